@@ -1,0 +1,2 @@
+//! firmware-sim
+#![no_std]
