@@ -136,7 +136,7 @@ impl Gearing {
 /// To the nearest integer, halves away from zero (`f64::round` is not in `core`).
 fn round(x: f64) -> f64 {
     const WHOLE: f64 = 4_503_599_627_370_496.0; // 2^52: no fraction from here on
-    if !(x.abs() < WHOLE) {
+    if x.is_nan() || x.abs() >= WHOLE {
         return x;
     }
     let nearest = (x.abs() + 0.5) as i64 as f64;

@@ -1,0 +1,223 @@
+//! CSV: a header row with units, one row a point, nothing rounded.
+//!
+//! `x_m,y_m,z_m,intensity,ring,time_s,tilt_deg`; metadata as lines that start with `#` before the header row.
+//! Coordinates and angles are the shortest decimals that read back to the same f64; times have their nine
+//! decimals, so no nanosecond is lost.
+//!
+//! Left out: quoting (no field needs it), other separators, reading.
+
+use std::io::{self, Write};
+
+use super::stage::Stage;
+use crate::{Column, Fields, Metadata, Point, Points, Sink, SinkError, Summary};
+
+const FORMAT: &str = "csv";
+
+/// Writes CSV to anything that takes bytes, batch by batch.
+#[derive(Debug)]
+pub struct CsvWriter<W> {
+    output: W,
+    fields: Fields,
+    stage: Stage,
+    text: Vec<u8>,
+    summary: Summary,
+}
+
+impl<W: Write> CsvWriter<W> {
+    /// A writer into `output` with the columns of [`Fields::FILE`].
+    pub fn new(output: W) -> Self {
+        Self {
+            output,
+            fields: Fields::FILE,
+            stage: Stage::default(),
+            text: Vec::new(),
+            summary: Summary::default(),
+        }
+    }
+
+    /// The same with other columns; only before [`Sink::begin`].
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.fields = fields;
+        self
+    }
+
+    /// Gives the output back.
+    pub fn into_inner(self) -> W {
+        self.output
+    }
+
+    fn failed(&self, source: io::Error) -> SinkError {
+        SinkError::Write {
+            format: FORMAT,
+            points: self.summary.points,
+            source,
+        }
+    }
+
+    fn encode_header(&mut self, metadata: &Metadata) -> io::Result<()> {
+        self.text.clear();
+        for line in metadata.lines() {
+            writeln!(self.text, "# {line}")?;
+        }
+        write!(self.text, "x_m,y_m,z_m")?;
+        for column in self.fields.columns() {
+            write!(self.text, ",{}", heading(column))?;
+        }
+        writeln!(self.text)
+    }
+
+    fn encode(&mut self, batch: &Points) -> io::Result<()> {
+        self.text.clear();
+        for point in batch.iter() {
+            let [x, y, z] = point.position_m;
+            write!(self.text, "{x},{y},{z}")?;
+            for column in self.fields.columns() {
+                self.text.push(b',');
+                encode_field(&mut self.text, column, &point)?;
+            }
+            self.text.push(b'\n');
+        }
+        Ok(())
+    }
+}
+
+fn encode_field(text: &mut Vec<u8>, column: Column, point: &Point) -> io::Result<()> {
+    match column {
+        Column::Intensity => write!(text, "{}", point.intensity),
+        Column::Ring => write!(text, "{}", point.ring),
+        Column::Laser => write!(text, "{}", point.laser),
+        Column::Tilt => write!(text, "{}", point.tilt.0),
+        Column::Time => encode_seconds(text, point.time.as_nanos()),
+        Column::DeviceTime => encode_seconds(text, point.device_time.as_nanos()),
+    }
+}
+
+/// Seconds with all nine decimals.
+fn encode_seconds(text: &mut Vec<u8>, ns: i64) -> io::Result<()> {
+    let sign = if ns < 0 { "-" } else { "" };
+    let magnitude = ns.unsigned_abs();
+    let (whole, rest) = (magnitude / 1_000_000_000, magnitude % 1_000_000_000);
+    write!(text, "{sign}{whole}.{rest:09}")
+}
+
+const fn heading(column: Column) -> &'static str {
+    match column {
+        Column::Time => "time_s",
+        Column::DeviceTime => "device_time_s",
+        Column::Tilt => "tilt_deg",
+        plain => plain.name(),
+    }
+}
+
+impl<W: Write> Sink for CsvWriter<W> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        batch.fields().require(self.fields)?;
+        let result = self
+            .encode(batch)
+            .and_then(|()| self.output.write_all(&self.text));
+        if let Err(source) = result {
+            self.stage.cut();
+            return Err(self.failed(source));
+        }
+        self.summary.add(batch.summary());
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.fields
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.stage.begin(FORMAT)?;
+        self.encode_header(metadata)
+            .and_then(|()| self.output.write_all(&self.text))
+            .map_err(|source| self.failed(source))?;
+        self.stage.opened();
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        self.stage.finish(FORMAT)?;
+        self.output.flush().map_err(|source| self.failed(source))?;
+        Ok(self.summary)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::testing::{SmallDisk, cloud, metadata};
+
+    fn written(fields: Fields, points: &Points) -> String {
+        let mut writer = CsvWriter::new(vec![]).with_fields(fields);
+        writer.begin(&metadata()).unwrap();
+        writer.points(points).unwrap();
+        assert_eq!(writer.finish().unwrap(), points.summary());
+        String::from_utf8(writer.into_inner()).unwrap()
+    }
+
+    #[test]
+    fn the_first_line_says_simulated_and_the_header_names_units() {
+        let text = written(Fields::FILE, &cloud(2));
+        assert!(text.starts_with("# SIMULATED"));
+        let header = text.lines().find(|line| !line.starts_with('#'));
+        assert_eq!(header, Some("x_m,y_m,z_m,intensity,ring,time_s,tilt_deg"));
+    }
+
+    #[test]
+    fn nothing_is_lost() {
+        let given = cloud(200);
+        let text = written(Fields::ALL, &given);
+        let rows: Vec<Vec<&str>> = text
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+            .skip(1)
+            .map(|line| line.split(',').collect())
+            .collect();
+        assert_eq!(rows.len(), given.len());
+        let ns = |text: &str| text.replace('.', "").parse::<i64>().unwrap();
+        for (row, point) in rows.iter().zip(given.iter()) {
+            let number = |i: usize| row[i].parse::<f64>().unwrap();
+            assert_eq!([number(0), number(1), number(2)], point.position_m);
+            assert_eq!(row[3], point.intensity.to_string());
+            assert_eq!(row[4], point.ring.to_string());
+            assert_eq!(ns(row[5]), point.time.as_nanos());
+            assert_eq!(number(6), point.tilt.0);
+            assert_eq!(row[7], point.laser.to_string());
+            assert_eq!(ns(row[8]), point.device_time.as_nanos());
+        }
+    }
+
+    #[test]
+    fn times_keep_their_sign_and_zeros() {
+        for (ns, expected) in [
+            (0, "0.000000000"),
+            (-1, "-0.000000001"),
+            (1_000_000_010, "1.000000010"),
+            (i64::MIN, "-9223372036.854775808"),
+        ] {
+            let mut text = vec![];
+            encode_seconds(&mut text, ns).unwrap();
+            assert_eq!(String::from_utf8(text).unwrap(), expected);
+        }
+    }
+
+    #[test]
+    fn a_full_disk_is_an_error_that_says_how_far_it_came() {
+        let mut writer = CsvWriter::new(SmallDisk::new(20_000));
+        writer.begin(&metadata()).unwrap();
+        writer.points(&cloud(10)).unwrap();
+        let error = writer.points(&cloud(1000)).unwrap_err();
+        assert!(
+            matches!(error, SinkError::Write { points: 10, .. }),
+            "{error}"
+        );
+        assert!(matches!(
+            writer.points(&cloud(1)),
+            Err(SinkError::Order { .. })
+        ));
+        assert_eq!(writer.finish().unwrap().points, 10);
+    }
+}

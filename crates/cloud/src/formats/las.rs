@@ -1,0 +1,306 @@
+//! LAS 1.4 and LAZ, point format 6, by the `las` crate.
+//!
+//! Coordinates are in a local frame without a coordinate reference system, in 0.1 mm steps from offset 0, which
+//! reaches 214.7 km. Intensity is the reflectivity times 257, so that 0..=255 fills 0..=65535. `gps_time` is
+//! adjusted standard GPS time, got from the host's Unix time and the leap seconds. Ring, time (f64 Unix
+//! seconds), tilt (f32 degrees) and whatever else is asked for are extra bytes, described so that readers see
+//! them by name. A simulated cloud says so in the system identifier, in the text record, and by the synthetic
+//! flag of every point, which survives merging with other clouds.
+//!
+//! Left out: a creation date (the same log must give the same bytes), scan angle and edge flags (they speak of
+//! line scanners), colours, reading.
+
+mod extra_bytes;
+mod gps_time;
+mod output;
+
+use std::io::{Seek, Write};
+
+use las::{Builder, GpsTimeType, PointData, PointDataBuilder, Transform, Vector, Vlr};
+
+use self::extra_bytes::Extra;
+use self::output::{Fault, Output};
+use super::rows::fill;
+use super::seconds::seconds;
+use super::stage::Stage;
+use crate::{Column, Fields, Metadata, Points, Sink, SinkError, Summary};
+
+const SCALE_M: f64 = 1e-4;
+const STEPS_PER_M: f64 = 1e4;
+/// The greatest coordinate that 32 bits of 0.1 mm hold.
+const LIMIT_M: f64 = (i32::MAX as f64) / STEPS_PER_M;
+const INTENSITY_STEP: u16 = u16::MAX / u8::MAX as u16;
+
+/// Point format 6 (LAS 1.4 R15, section 2.6.7): where the fields stand that are not left zero.
+mod at {
+    pub const XYZ: [usize; 3] = [0, 4, 8];
+    pub const INTENSITY: usize = 12;
+    pub const RETURNS: usize = 14;
+    pub const FLAGS: usize = 15;
+    pub const GPS_TIME: usize = 22;
+    pub const EXTRA: usize = 30;
+}
+/// The first return of one.
+const ONE_OF_ONE: u8 = 0x11;
+/// Classification flag bit 0: not from a real lidar.
+const SYNTHETIC: u8 = 1;
+
+/// Writes LAS or LAZ, batch by batch, to an output that seeks. LAZ writes in small pieces: give it a buffered output.
+///
+/// Unlike PLY, a file whose output failed in mid-batch is lost: its header cannot be completed.
+pub struct LasWriter<W: Write + Seek + Send + Sync + 'static> {
+    format: &'static str,
+    fields: Fields,
+    extras: Vec<Extra>,
+    flags: u8,
+    stage: Stage,
+    fault: Fault,
+    state: State<W>,
+    summary: Summary,
+}
+
+enum State<W: Write + Seek + Send + Sync + 'static> {
+    /// Before begin, or after finish.
+    Idle(Output<W>),
+    Open {
+        writer: las::Writer<Output<W>>,
+        slab: PointData,
+    },
+    /// The output went down with the library's writer.
+    Lost,
+}
+
+impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
+    /// A writer of uncompressed LAS into `output` with the columns of [`Fields::FILE`].
+    pub fn las(output: W) -> Self {
+        Self::new("las", output)
+    }
+
+    /// A writer of LAZ into `output` with the columns of [`Fields::FILE`].
+    pub fn laz(output: W) -> Self {
+        Self::new("laz", output)
+    }
+
+    fn new(format: &'static str, output: W) -> Self {
+        let (output, fault) = Output::new(output);
+        Self {
+            format,
+            fields: Fields::FILE,
+            extras: extra_bytes::layout(Fields::FILE),
+            flags: 0,
+            stage: Stage::default(),
+            fault,
+            state: State::Idle(output),
+            summary: Summary::default(),
+        }
+    }
+
+    /// The same with other columns; only before [`Sink::begin`].
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.fields = fields;
+        self.extras = extra_bytes::layout(fields);
+        self
+    }
+
+    /// Gives the output back, at its start; `None` where it was lost because writing the header failed.
+    pub fn into_inner(self) -> Option<W> {
+        match self.state {
+            State::Idle(output) => Some(output.into_inner()),
+            State::Open { writer, .. } => writer.into_inner().ok().map(Output::into_inner),
+            State::Lost => None,
+        }
+    }
+
+    fn header(&self, metadata: &Metadata) -> Result<las::Header, SinkError> {
+        let axis = Transform {
+            scale: SCALE_M,
+            offset: 0.0,
+        };
+        let mut point_format = las::point::Format::new(6).map_err(|e| self.encoding(e))?;
+        point_format.extra_bytes = extra_bytes::length(&self.extras);
+        point_format.is_compressed = self.format == "laz";
+        let marker = if metadata.simulated { "SIMULATED " } else { "" };
+        // The builder has private fields, so it cannot be written as one literal.
+        let mut builder = Builder::from((1, 4));
+        builder.point_format = point_format;
+        builder.transforms = Vector {
+            x: axis,
+            y: axis,
+            z: axis,
+        };
+        builder.gps_time_type = GpsTimeType::Standard;
+        builder.system_identifier = fitting(&format!("{marker}{}", metadata.source));
+        builder.generating_software = fitting(&metadata.software);
+        builder.vlrs = vec![
+            extra_bytes::record(&self.extras),
+            text_record(metadata, marker),
+        ];
+        builder.into_header().map_err(|e| self.encoding(e))
+    }
+
+    fn encoding(&self, error: impl Into<las::Error>) -> SinkError {
+        SinkError::Encode {
+            format: self.format,
+            points: self.summary.points,
+            source: Box::new(error.into()),
+        }
+    }
+
+    /// What the output said comes first: the library was not told.
+    fn outcome<T>(&self, result: las::Result<T>) -> Result<T, SinkError> {
+        match self.fault.get() {
+            Some(source) => Err(SinkError::Write {
+                format: self.format,
+                points: self.summary.points,
+                source,
+            }),
+            None => result.map_err(|error| self.encoding(error)),
+        }
+    }
+
+    fn check(&self, batch: &Points) -> Result<(), SinkError> {
+        batch.fields().require(self.fields)?;
+        for (axis, column) in [('x', batch.x_m()), ('y', batch.y_m()), ('z', batch.z_m())] {
+            let outside = column
+                .iter()
+                .enumerate()
+                .find(|(_, value)| value.is_nan() || value.abs() > LIMIT_M);
+            if let Some((index, &got_m)) = outside {
+                return Err(SinkError::Coordinate {
+                    format: self.format,
+                    axis,
+                    point: self.summary.points + index as u64,
+                    got_m,
+                    limit_m: LIMIT_M,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Writes a batch's points as records of format 6 into `rows`.
+fn encode(batch: &Points, flags: u8, extras: &[Extra], rows: &mut [u8], row_bytes: usize) {
+    fill(
+        rows,
+        row_bytes,
+        at::RETURNS,
+        std::iter::repeat([ONE_OF_ONE]),
+    );
+    fill(rows, row_bytes, at::FLAGS, std::iter::repeat([flags]));
+    for (offset, axis) in at::XYZ
+        .into_iter()
+        .zip([batch.x_m(), batch.y_m(), batch.z_m()])
+    {
+        let steps = axis.iter().map(|v| (v * STEPS_PER_M).round() as i32);
+        fill(rows, row_bytes, offset, steps.map(i32::to_le_bytes));
+    }
+    let intensity = batch.intensity().iter();
+    let scaled = intensity.map(|v| (u16::from(*v) * INTENSITY_STEP).to_le_bytes());
+    fill(rows, row_bytes, at::INTENSITY, scaled);
+    let gps = batch.time().iter().map(|t| gps_time::adjusted_s(*t));
+    fill(rows, row_bytes, at::GPS_TIME, gps.map(f64::to_le_bytes));
+    for extra in extras {
+        let offset = at::EXTRA + extra.offset;
+        match extra.column {
+            Column::Ring => fill(rows, row_bytes, offset, batch.ring().iter().map(|v| [*v])),
+            Column::Laser => fill(rows, row_bytes, offset, batch.laser().iter().map(|v| [*v])),
+            Column::Tilt => {
+                let tilt = batch.tilt_deg().iter().map(|v| *v as f32);
+                fill(rows, row_bytes, offset, tilt.map(f32::to_le_bytes));
+            }
+            Column::Time => {
+                let time = batch.time().iter().map(|t| seconds(t.as_nanos()));
+                fill(rows, row_bytes, offset, time.map(f64::to_le_bytes));
+            }
+            Column::DeviceTime => {
+                let time = batch.device_time().iter().map(|t| seconds(t.as_nanos()));
+                fill(rows, row_bytes, offset, time.map(f64::to_le_bytes));
+            }
+            Column::Intensity => {}
+        }
+    }
+}
+
+/// The first 32 characters: what LAS has room for. The text record has it all.
+fn fitting(text: &str) -> String {
+    let ascii = |c: char| {
+        if c == ' ' || c.is_ascii_graphic() {
+            c
+        } else {
+            '?'
+        }
+    };
+    text.trim().chars().map(ascii).take(32).collect()
+}
+
+/// The metadata as a text area description (LAS 1.4 R15, section 5.2: `LASF_Spec` 3).
+fn text_record(metadata: &Metadata, marker: &str) -> Vlr {
+    let mut text = metadata.lines().join("\n").into_bytes();
+    text.push(0);
+    Vlr {
+        user_id: "LASF_Spec".to_owned(),
+        record_id: 3,
+        description: format!("{marker}cloud"),
+        data: text,
+    }
+}
+
+impl<W: Write + Seek + Send + Sync + 'static> Sink for LasWriter<W> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.stage.points(self.format)?;
+        self.check(batch)?;
+        let State::Open { writer, slab } = &mut self.state else {
+            return Err(SinkError::Order {
+                format: self.format,
+                expected: "begin",
+                got: "points",
+            });
+        };
+        let row_bytes = slab.record_len();
+        let rows = slab.resize_for(batch.len());
+        rows.fill(0);
+        encode(batch, self.flags, &self.extras, rows, row_bytes);
+        let result = writer.write_points(slab);
+        if let Err(error) = self.outcome(result) {
+            self.stage.cut();
+            return Err(error);
+        }
+        self.summary.add(batch.summary());
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.fields
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.stage.begin(self.format)?;
+        self.flags = if metadata.simulated { SYNTHETIC } else { 0 };
+        let header = self.header(metadata)?;
+        let slab = PointDataBuilder::new().for_header(&header).build();
+        if let State::Idle(output) = std::mem::replace(&mut self.state, State::Lost) {
+            let writer = las::Writer::new(output, header);
+            let writer = self.outcome(writer)?;
+            self.state = State::Open { writer, slab };
+            self.stage.opened();
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        self.stage.finish(self.format)?;
+        if let State::Open { writer, .. } = std::mem::replace(&mut self.state, State::Lost) {
+            let output = writer.into_inner().and_then(|mut output| {
+                output.flush()?;
+                Ok(output)
+            });
+            self.state = State::Idle(self.outcome(output)?);
+        }
+        Ok(self.summary)
+    }
+}
+
+#[cfg(test)]
+mod tests;

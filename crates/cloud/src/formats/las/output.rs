@@ -1,0 +1,125 @@
+//! An output whose failures the library never sees.
+//!
+//! The `las` crate completes its file when its writer is dropped and panics if that fails, so on a full disk any
+//! error would end the program. [`Output`] keeps the first error for us and from then on only pretends to write.
+
+use std::io::{self, Seek, SeekFrom, Write};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The first error of an [`Output`].
+#[derive(Clone, Default)]
+pub(super) struct Fault(Arc<Mutex<Option<io::Error>>>);
+
+impl Fault {
+    /// The error, again and again: what was pretended once stays lost. It is rebuilt because an [`io::Error`]
+    /// cannot be cloned.
+    pub(super) fn get(&self) -> Option<io::Error> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.as_ref().map(|error| match error.raw_os_error() {
+            Some(code) => io::Error::from_raw_os_error(code),
+            None => io::Error::new(error.kind(), error.to_string()),
+        })
+    }
+
+    fn keep(&self, error: io::Error) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.get_or_insert(error);
+    }
+}
+
+/// Passes everything on until the first error.
+pub(super) struct Output<W> {
+    inner: W,
+    fault: Fault,
+    /// Where a pretended write would be; `None` while writing is real.
+    pretended: Option<u64>,
+}
+
+impl<W: Write + Seek> Output<W> {
+    pub(super) fn new(inner: W) -> (Self, Fault) {
+        let fault = Fault::default();
+        let output = Self {
+            inner,
+            fault: fault.clone(),
+            pretended: None,
+        };
+        (output, fault)
+    }
+
+    pub(super) fn into_inner(self) -> W {
+        self.inner
+    }
+
+    fn fail(&mut self, error: io::Error) -> u64 {
+        let position = self.inner.stream_position().unwrap_or(0);
+        self.fault.keep(error);
+        self.pretended = Some(position);
+        position
+    }
+}
+
+impl<W: Write + Seek> Write for Output<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.pretended.is_none() {
+            match self.inner.write(bytes) {
+                Ok(0) if !bytes.is_empty() => self.fail(io::ErrorKind::WriteZero.into()),
+                Err(error) if error.kind() != io::ErrorKind::Interrupted => self.fail(error),
+                other => return other,
+            };
+        }
+        self.pretended = self
+            .pretended
+            .map(|at| at.saturating_add(bytes.len() as u64));
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.pretended.is_none()
+            && let Err(error) = self.inner.flush()
+        {
+            self.fail(error);
+        }
+        Ok(())
+    }
+}
+
+impl<W: Write + Seek> Seek for Output<W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let here = match self.pretended {
+            Some(here) => here,
+            None => match self.inner.seek(to) {
+                Ok(position) => return Ok(position),
+                Err(error) => self.fail(error),
+            },
+        };
+        let there = match to {
+            SeekFrom::Start(position) => position,
+            SeekFrom::Current(by) | SeekFrom::End(by) => here.saturating_add_signed(by),
+        };
+        self.pretended = Some(there);
+        Ok(there)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::testing::SmallDisk;
+
+    #[test]
+    fn the_first_error_is_kept_and_the_rest_pretended() {
+        let (mut output, fault) = Output::new(SmallDisk::new(5));
+        output.write_all(b"1234").unwrap();
+        assert!(fault.get().is_none());
+        output.write_all(b"56789").unwrap();
+        assert_eq!(output.stream_position().unwrap(), 9);
+        assert_eq!(output.seek(SeekFrom::Start(3)).unwrap(), 3);
+        output.write_all(b"xx").unwrap();
+        assert_eq!(output.stream_position().unwrap(), 5);
+        output.flush().unwrap();
+        for _ in 0..2 {
+            assert_eq!(fault.get().unwrap().kind(), io::ErrorKind::StorageFull);
+        }
+        assert_eq!(output.into_inner().file.into_inner(), b"12345");
+    }
+}

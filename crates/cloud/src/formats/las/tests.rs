@@ -1,0 +1,272 @@
+use std::io::Cursor;
+
+use las::{Reader, Version};
+
+use super::*;
+use crate::Point;
+use crate::formats::testing::{LATE_NS, SmallDisk, cloud, metadata};
+
+fn written(writer: LasWriter<Cursor<Vec<u8>>>, metadata: &Metadata, batches: &[Points]) -> Vec<u8> {
+    let mut writer = writer;
+    writer.begin(metadata).unwrap();
+    let mut expected = Summary::default();
+    for batch in batches {
+        writer.points(batch).unwrap();
+        expected.add(batch.summary());
+    }
+    assert_eq!(writer.finish().unwrap(), expected);
+    writer.into_inner().unwrap().into_inner()
+}
+
+fn points_of(reader: &mut Reader) -> impl Iterator<Item = las::Result<las::Point>> {
+    let points: Vec<_> = reader.read_all().unwrap().points().collect();
+    points.into_iter()
+}
+
+fn both(batches: &[Points]) -> [Vec<u8>; 2] {
+    let empty = || Cursor::new(vec![]);
+    [
+        written(LasWriter::las(empty()), &metadata(), batches),
+        written(LasWriter::laz(empty()), &metadata(), batches),
+    ]
+}
+
+#[test]
+fn the_points_come_back_from_las_and_laz() {
+    let batches = [cloud(300), cloud(0), cloud(7)];
+    let given: Vec<Point> = batches.iter().flat_map(Points::iter).collect();
+    for bytes in both(&batches) {
+        let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
+        let read: Vec<las::Point> = points_of(&mut reader).map(Result::unwrap).collect();
+        assert_eq!(read.len(), given.len());
+        for (got, expected) in read.iter().zip(&given) {
+            for (got, expected) in [got.x, got.y, got.z].into_iter().zip(expected.position_m) {
+                assert!((got - expected).abs() <= 0.5001e-4, "{got} {expected}");
+            }
+            assert_eq!(got.intensity, u16::from(expected.intensity) * 257);
+            assert_eq!((got.return_number, got.number_of_returns), (1, 1));
+            assert!(
+                got.is_synthetic,
+                "simulated clouds are marked point by point"
+            );
+            assert!((got.gps_time.unwrap() - gps_time::adjusted_s(expected.time)).abs() < 1e-12);
+            let (ring, rest) = got.extra_bytes.split_at(1);
+            let (time, tilt) = rest.split_at(8);
+            assert_eq!(ring, [expected.ring]);
+            let time = f64::from_le_bytes(time.try_into().unwrap());
+            assert!((time - expected.time.as_nanos() as f64 * 1e-9).abs() < 1e-6);
+            let tilt = f32::from_le_bytes(tilt.try_into().unwrap());
+            assert!((f64::from(tilt) - expected.tilt.0).abs() < 2e-6);
+        }
+    }
+}
+
+#[test]
+fn the_header_carries_counts_bounds_and_who_wrote_it() {
+    let batches = [cloud(300)];
+    let expected = batches[0].summary().bounds.unwrap();
+    for (bytes, compressed) in both(&batches).into_iter().zip([false, true]) {
+        let reader = Reader::new(Cursor::new(bytes)).unwrap();
+        let header = reader.header();
+        assert_eq!(header.number_of_points(), 300);
+        assert_eq!(header.number_of_points_by_return(1), Some(300));
+        assert_eq!(header.point_format().to_u8().unwrap(), 6);
+        assert_eq!(header.version(), Version::new(1, 4));
+        assert_eq!(
+            header.system_identifier(),
+            "SIMULATED VLP-16 on a tilt axis"
+        );
+        assert_eq!(header.generating_software(), "velomotion 0.1.0");
+        assert!(header.gps_time_type().is_standard());
+        assert_eq!(header.date(), None);
+        assert_eq!(header.laz_vlr().is_ok(), compressed);
+        let bounds = header.bounds();
+        let [min, max] = [bounds.min, bounds.max].map(|v| [v.x, v.y, v.z]);
+        for (got, expected) in min.into_iter().zip(expected.min_m) {
+            assert!((got - expected).abs() < 2e-4);
+        }
+        for (got, expected) in max.into_iter().zip(expected.max_m) {
+            assert!((got - expected).abs() < 2e-4);
+        }
+        let text = header.vlrs().iter().find(|vlr| vlr.record_id == 3).unwrap();
+        assert!(text.data.starts_with(b"SIMULATED"));
+        assert_eq!(text.description, "SIMULATED cloud");
+    }
+}
+
+#[test]
+fn a_real_cloud_is_not_called_simulated() {
+    let metadata = Metadata {
+        simulated: false,
+        ..metadata()
+    };
+    let bytes = written(LasWriter::laz(Cursor::new(vec![])), &metadata, &[cloud(3)]);
+    assert!(!bytes.windows(9).any(|window| window == b"SIMULATED"));
+    let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
+    assert!(points_of(&mut reader).all(|point| !point.unwrap().is_synthetic));
+}
+
+#[test]
+fn every_column_can_be_asked_for_or_none() {
+    let given = cloud(20);
+    for (fields, extra) in [(Fields::NONE, 0), (Fields::ALL, 22)] {
+        let writer = LasWriter::laz(Cursor::new(vec![])).with_fields(fields);
+        let bytes = written(writer, &metadata(), std::slice::from_ref(&given));
+        let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
+        for (got, expected) in points_of(&mut reader).map(Result::unwrap).zip(given.iter()) {
+            assert_eq!(got.extra_bytes.len(), extra);
+            if fields == Fields::ALL {
+                assert_eq!(got.extra_bytes[13], expected.laser);
+                let time = f64::from_le_bytes(got.extra_bytes[14..].try_into().unwrap());
+                assert!((time - expected.device_time.as_nanos() as f64 * 1e-9).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_empty_cloud_is_a_file_too() {
+    for bytes in both(&[]) {
+        let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
+        assert_eq!(reader.header().number_of_points(), 0);
+        assert_eq!(points_of(&mut reader).count(), 0);
+    }
+}
+
+#[test]
+fn the_same_points_give_the_same_bytes() {
+    assert_eq!(both(&[cloud(50)]), both(&[cloud(50)]));
+}
+
+#[test]
+fn long_and_foreign_names_are_cut_not_refused() {
+    let metadata = Metadata {
+        source: "Größe ".repeat(20),
+        software: "v".repeat(100),
+        comments: vec!["z".repeat(100_000)],
+        ..metadata()
+    };
+    for writer in [
+        LasWriter::las(Cursor::new(vec![])),
+        LasWriter::laz(Cursor::new(vec![])),
+    ] {
+        let bytes = written(writer, &metadata, &[cloud(5)]);
+        let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
+        assert_eq!(reader.header().generating_software(), "v".repeat(32));
+        assert_eq!(
+            reader.header().system_identifier(),
+            "SIMULATED Gr??e Gr??e Gr??e Gr??"
+        );
+        assert_eq!(points_of(&mut reader).count(), 5);
+    }
+}
+
+#[test]
+fn coordinates_that_do_not_fit_are_named() {
+    for (bad, fits) in [
+        (f64::NAN, false),
+        (f64::INFINITY, false),
+        (214_749.0, false),
+        (-214_748.0, true),
+        (214_748.0, true),
+    ] {
+        let mut batch = cloud(4);
+        batch.push(Point {
+            position_m: [0.0, bad, 0.0],
+            ..Point::default()
+        });
+        let mut writer = LasWriter::las(Cursor::new(vec![]));
+        writer.begin(&metadata()).unwrap();
+        writer.points(&cloud(10)).unwrap();
+        let result = writer.points(&batch);
+        assert_eq!(result.is_ok(), fits, "{bad}");
+        if let Err(error) = result {
+            assert!(
+                matches!(
+                    error,
+                    SinkError::Coordinate {
+                        axis: 'y',
+                        point: 14,
+                        ..
+                    }
+                ),
+                "{error}"
+            );
+        }
+        let count = writer.finish().unwrap().points;
+        assert_eq!(count, if fits { 15 } else { 10 });
+    }
+}
+
+/// The library panics when it cannot complete its file on drop: no byte at which the disk may fill up must get there.
+#[test]
+fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
+    for make in [LasWriter::las, LasWriter::laz] {
+        let [las, laz] = both(&[cloud(20)]).map(|bytes| bytes.len() as u64);
+        for room in (0..las.max(laz)).step_by(3) {
+            let mut writer = make(SmallDisk::new(room));
+            let result = writer
+                .begin(&metadata())
+                .and_then(|()| writer.points(&cloud(20)))
+                .and_then(|()| writer.finish());
+            match result {
+                Ok(summary) => assert_eq!(summary.points, 20),
+                Err(error) => {
+                    assert!(matches!(error, SinkError::Write { .. }), "{error}");
+                    assert!(room < las.max(laz));
+                }
+            }
+        }
+        let mut writer = make(SmallDisk::new(100));
+        assert!(writer.begin(&metadata()).is_err());
+        assert!(matches!(
+            writer.points(&cloud(1)),
+            Err(SinkError::Order { .. })
+        ));
+    }
+}
+
+#[test]
+fn what_a_full_disk_cut_off_cannot_be_finished() {
+    let header = both(&[])[0].len() as u64;
+    let mut writer = LasWriter::las(SmallDisk::new(header + 500));
+    writer.begin(&metadata()).unwrap();
+    writer.points(&cloud(10)).unwrap();
+    let error = writer.points(&cloud(10)).unwrap_err();
+    assert!(
+        matches!(error, SinkError::Write { points: 10, .. }),
+        "{error}"
+    );
+    assert!(matches!(
+        writer.points(&cloud(1)),
+        Err(SinkError::Order { .. })
+    ));
+    let error = writer.finish().unwrap_err();
+    assert!(
+        matches!(error, SinkError::Write { points: 10, .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_writer_that_is_dropped_leaves_a_file_of_what_it_had() {
+    let file = crate::formats::testing::Shared::default();
+    let mut writer = LasWriter::laz(file.clone());
+    writer.begin(&metadata()).unwrap();
+    writer.points(&cloud(12)).unwrap();
+    drop(writer);
+    let mut reader = Reader::new(Cursor::new(file.bytes())).unwrap();
+    assert_eq!(points_of(&mut reader).count(), 12);
+}
+
+#[test]
+fn times_of_2099_keep_a_quarter_microsecond() {
+    let bytes = &both(&[cloud(2)])[0];
+    let mut reader = Reader::new(Cursor::new(bytes.clone())).unwrap();
+    let times: Vec<f64> = points_of(&mut reader)
+        .map(|p| p.unwrap().gps_time.unwrap())
+        .collect();
+    assert!((times[1] - times[0] - 2.304e-6).abs() < 0.25e-6);
+    let seconds = LATE_NS / 1_000_000_000 + 18 - 315_964_800 - 1_000_000_000;
+    assert_eq!(times[0], seconds as f64);
+}

@@ -1,0 +1,160 @@
+//! Clouds as files: PLY, LAS/LAZ and CSV, each a [`Sink`] over anything that writes (and seeks, where a count
+//! goes into a header).
+//!
+//! Nothing here opens, names or renames files, and nothing reads them. A writer stores intensity, ring, time and tilt
+//! ([`Fields::FILE`](crate::Fields::FILE)) unless `with_fields` asks otherwise.
+//!
+//! | format | positions | time | order of writing |
+//! |---|---|---|---|
+//! | PLY | f32, within 4 um at 100 m | f64 Unix seconds, within 0.12 us | batch by batch |
+//! | LAS, LAZ | 0.1 mm steps, within 0.05 mm | gps_time within 0.03 us until 2028 (then 0.06), and f64 Unix seconds | batch by batch |
+//! | CSV | exact | exact | batch by batch |
+
+pub mod csv;
+pub mod las;
+pub mod ply;
+mod rows;
+mod seconds;
+mod stage;
+
+use std::fmt;
+use std::io::{Seek, Write};
+use std::path::Path;
+
+use crate::Sink;
+
+/// A file format for clouds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Format {
+    /// Binary little-endian PLY.
+    Ply,
+    /// LAS 1.4, point format 6.
+    Las,
+    /// The same, compressed by LASzip.
+    Laz,
+    /// Comma-separated text.
+    Csv,
+}
+
+/// No format goes by this extension.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no cloud format for {}: expected one of {}", shown(.got), expected())]
+pub struct UnsupportedFormat {
+    /// The extension without its dot; empty where the name has none.
+    pub got: String,
+}
+
+fn shown(extension: &str) -> String {
+    if extension.is_empty() {
+        "a name without extension".to_owned()
+    } else {
+        format!("extension .{extension}")
+    }
+}
+
+fn expected() -> String {
+    Format::ALL.map(|format| format!(".{format}")).join(" ")
+}
+
+impl Format {
+    /// Every format.
+    pub const ALL: [Self; 4] = [Self::Ply, Self::Las, Self::Laz, Self::Csv];
+
+    /// The file name extension, without its dot.
+    #[must_use]
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Las => "las",
+            Self::Laz => "laz",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// The format that goes by `extension`, given without its dot and in any case.
+    ///
+    /// # Errors
+    /// [`UnsupportedFormat`], whose message lists those that there are.
+    pub fn from_extension(extension: &str) -> Result<Self, UnsupportedFormat> {
+        Self::ALL
+            .into_iter()
+            .find(|format| extension.eq_ignore_ascii_case(format.extension()))
+            .ok_or_else(|| UnsupportedFormat {
+                got: extension.to_owned(),
+            })
+    }
+
+    /// The format that `path`'s extension names. The file is not looked at.
+    ///
+    /// # Errors
+    /// [`UnsupportedFormat`] where no format goes by it, or it has none.
+    pub fn from_path(path: &Path) -> Result<Self, UnsupportedFormat> {
+        let extension = path.extension().unwrap_or_default();
+        Self::from_extension(&extension.to_string_lossy())
+    }
+
+    /// A writer of this format into `output`, which should be buffered: LAZ writes in small pieces.
+    pub fn writer<W>(self, output: W) -> Box<dyn Sink + Send>
+    where
+        W: Write + Seek + Send + Sync + 'static,
+    {
+        match self {
+            Self::Ply => Box::new(ply::PlyWriter::new(output)),
+            Self::Las => Box::new(las::LasWriter::las(output)),
+            Self::Laz => Box::new(las::LasWriter::laz(output)),
+            Self::Csv => Box::new(csv::CsvWriter::new(output)),
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.extension())
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod testing;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extensions_name_formats_in_any_case() {
+        for format in Format::ALL {
+            assert_eq!(Format::from_extension(format.extension()), Ok(format));
+        }
+        assert_eq!(
+            Format::from_path(Path::new("a.b/Scan.LAZ")),
+            Ok(Format::Laz)
+        );
+    }
+
+    #[test]
+    fn an_unknown_extension_says_what_there_is() {
+        let error = Format::from_extension("xyz").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "no cloud format for extension .xyz: expected one of .ply .las .laz .csv"
+        );
+        let error = Format::from_path(Path::new("cloud")).unwrap_err();
+        assert!(error.to_string().contains("without extension"), "{error}");
+    }
+
+    #[test]
+    fn every_format_writes_what_its_writer_was_given() {
+        for format in Format::ALL {
+            let file = testing::Shared::default();
+            let mut sink = format.writer(file.clone());
+            let cloud = testing::cloud(100);
+            sink.begin(&testing::metadata()).unwrap();
+            sink.points(&cloud).unwrap();
+            let summary = sink.finish().unwrap();
+            assert_eq!(summary, cloud.summary(), "{format}");
+            let bytes = file.bytes();
+            let said = bytes.windows(9).any(|window| window == b"SIMULATED");
+            assert!(said, "{format} does not say that it is simulated");
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! Binary little-endian PLY.
+//!
+//! `float x y z` in metres, then by default `float intensity` (0..255), `uchar ring`, `double time` (Unix
+//! seconds of the host), `float tilt` (degrees). Intensity is a float because PCL's point types declare it so
+//! and PCL matches a field only if its type matches too; ring is a uchar because every reader knows that type:
+//! Open3D 0.20 skips a ushort and meshio fails on one. An f32 coordinate is within 4 um of the truth at 100 m,
+//! an f32 tilt within 2e-6 deg at 45.
+//!
+//! The vertex count is known last but stands first. [`PlyWriter`] seeks back; a comment of matching length
+//! beside the count takes up the slack, so that the count itself is a plain number for every reader. [`PlyPipe`]
+//! keeps the rows in memory instead.
+//!
+//! Left out: faces, ASCII and big-endian PLY, reading.
+
+use std::io::{self, Seek, SeekFrom, Write};
+
+use super::rows::Rows;
+use super::seconds::seconds;
+use super::stage::Stage;
+use crate::{Column, Fields, Metadata, Points, Sink, SinkError, Summary};
+
+const FORMAT: &str = "ply";
+
+/// Writes PLY to an output that seeks, batch by batch. Each batch is one write: the output needs no buffer.
+#[derive(Debug)]
+pub struct PlyWriter<W> {
+    output: W,
+    layout: Layout,
+    stage: Stage,
+    count_at: u64,
+    summary: Summary,
+}
+
+/// Writes PLY to an output that does not seek (a pipe): the rows stay in memory (29 bytes a point) until
+/// [`Sink::finish`].
+#[derive(Debug)]
+pub struct PlyPipe<W> {
+    output: W,
+    layout: Layout,
+    stage: Stage,
+    head: String,
+    body: Vec<u8>,
+    summary: Summary,
+}
+
+/// Which column stands where in a row.
+#[derive(Debug)]
+struct Layout {
+    fields: Fields,
+    rows: Rows,
+}
+
+impl Layout {
+    fn new(fields: Fields) -> Self {
+        let position = 3 * size_of::<f32>();
+        let columns: usize = fields.columns().map(|column| ply_type(column).1).sum();
+        Self {
+            fields,
+            rows: Rows::new(position + columns),
+        }
+    }
+
+    /// The header up to the count.
+    fn head(metadata: &Metadata) -> String {
+        let mut head = String::from("ply\nformat binary_little_endian 1.0\n");
+        for line in metadata.lines() {
+            head += &format!("comment {line}\n");
+        }
+        head
+    }
+
+    /// The header from the count on.
+    fn tail(&self) -> String {
+        let mut tail = String::from("property float x\nproperty float y\nproperty float z\n");
+        for column in self.fields.columns() {
+            tail += &format!("property {} {}\n", ply_type(column).0, column.name());
+        }
+        tail + "end_header\n"
+    }
+
+    /// The rows of a batch.
+    fn encode(&mut self, batch: &Points) -> Result<&[u8], SinkError> {
+        batch.fields().require(self.fields)?;
+        let rows = &mut self.rows;
+        rows.reset(batch.len());
+        let mut at = 0;
+        for axis in [batch.x_m(), batch.y_m(), batch.z_m()] {
+            rows.fill(at, axis.iter().map(|v| (*v as f32).to_le_bytes()));
+            at += size_of::<f32>();
+        }
+        for column in self.fields.columns() {
+            match column {
+                Column::Intensity => {
+                    rows.fill(
+                        at,
+                        batch
+                            .intensity()
+                            .iter()
+                            .map(|v| f32::from(*v).to_le_bytes()),
+                    );
+                }
+                Column::Ring => rows.fill(at, batch.ring().iter().map(|v| [*v])),
+                Column::Time => rows.fill(
+                    at,
+                    batch
+                        .time()
+                        .iter()
+                        .map(|t| seconds(t.as_nanos()).to_le_bytes()),
+                ),
+                Column::Tilt => {
+                    rows.fill(
+                        at,
+                        batch.tilt_deg().iter().map(|v| (*v as f32).to_le_bytes()),
+                    );
+                }
+                Column::Laser => rows.fill(at, batch.laser().iter().map(|v| [*v])),
+                Column::DeviceTime => rows.fill(
+                    at,
+                    batch
+                        .device_time()
+                        .iter()
+                        .map(|t| seconds(t.as_nanos()).to_le_bytes()),
+                ),
+            }
+            at += ply_type(column).1;
+        }
+        Ok(self.rows.bytes())
+    }
+}
+
+/// A column's PLY type and its size in bytes.
+const fn ply_type(column: Column) -> (&'static str, usize) {
+    match column {
+        Column::Intensity | Column::Tilt => ("float", 4),
+        Column::Time | Column::DeviceTime => ("double", 8),
+        Column::Ring | Column::Laser => ("uchar", 1),
+    }
+}
+
+/// The count as a header line, with a comment before it that makes every count equally long.
+fn count_lines(points: u64) -> String {
+    const DIGITS: usize = 20; // of u64::MAX
+    let count = points.to_string();
+    let slack = ".".repeat(DIGITS.saturating_sub(count.len()));
+    format!("comment room for the count .{slack}\nelement vertex {count}\n")
+}
+
+fn failed(points: u64) -> impl Fn(io::Error) -> SinkError {
+    move |source| SinkError::Write {
+        format: FORMAT,
+        points,
+        source,
+    }
+}
+
+impl<W: Write + Seek> PlyWriter<W> {
+    /// A writer into `output` from where it stands, with the columns of [`Fields::FILE`].
+    pub fn new(output: W) -> Self {
+        Self {
+            output,
+            layout: Layout::new(Fields::FILE),
+            stage: Stage::default(),
+            count_at: 0,
+            summary: Summary::default(),
+        }
+    }
+
+    /// The same with other columns; only before [`Sink::begin`].
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.layout = Layout::new(fields);
+        self
+    }
+
+    /// [`PlyPipe::new`], which is the shorter way to say it.
+    pub fn to_pipe<P: Write>(output: P) -> PlyPipe<P> {
+        PlyPipe::new(output)
+    }
+
+    /// Gives the output back.
+    pub fn into_inner(self) -> W {
+        self.output
+    }
+
+    fn write_header(&mut self, metadata: &Metadata) -> io::Result<()> {
+        let head = Layout::head(metadata);
+        self.count_at = self.output.stream_position()? + head.len() as u64;
+        let header = head + &count_lines(0) + &self.layout.tail();
+        self.output.write_all(header.as_bytes())
+    }
+
+    fn write_count(&mut self) -> io::Result<()> {
+        self.output.seek(SeekFrom::Start(self.count_at))?;
+        self.output
+            .write_all(count_lines(self.summary.points).as_bytes())?;
+        self.output.seek(SeekFrom::End(0))?;
+        self.output.flush()
+    }
+}
+
+/// After a failed batch, [`Sink::finish`] still makes a whole file of the batches before it.
+impl<W: Write + Seek> Sink for PlyWriter<W> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        let rows = self.layout.encode(batch)?;
+        if let Err(source) = self.output.write_all(rows) {
+            self.stage.cut();
+            return Err(failed(self.summary.points)(source));
+        }
+        self.summary.add(batch.summary());
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.layout.fields
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.stage.begin(FORMAT)?;
+        self.write_header(metadata).map_err(failed(0))?;
+        self.stage.opened();
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        self.stage.finish(FORMAT)?;
+        self.write_count().map_err(failed(self.summary.points))?;
+        Ok(self.summary)
+    }
+}
+
+impl<W: Write> PlyPipe<W> {
+    /// A writer into `output` with the columns of [`Fields::FILE`].
+    pub fn new(output: W) -> Self {
+        Self {
+            output,
+            layout: Layout::new(Fields::FILE),
+            stage: Stage::default(),
+            head: String::new(),
+            body: Vec::new(),
+            summary: Summary::default(),
+        }
+    }
+
+    /// The same with other columns; only before [`Sink::begin`].
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.layout = Layout::new(fields);
+        self
+    }
+
+    /// Gives the output back.
+    pub fn into_inner(self) -> W {
+        self.output
+    }
+
+    fn write_all(&mut self) -> io::Result<()> {
+        let header = format!(
+            "{}element vertex {}\n{}",
+            self.head,
+            self.summary.points,
+            self.layout.tail()
+        );
+        self.output.write_all(header.as_bytes())?;
+        self.output.write_all(&self.body)?;
+        self.output.flush()
+    }
+}
+
+impl<W: Write> Sink for PlyPipe<W> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        self.body.extend_from_slice(self.layout.encode(batch)?);
+        self.summary.add(batch.summary());
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.layout.fields
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.stage.begin(FORMAT)?;
+        self.head = Layout::head(metadata);
+        self.stage.opened();
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        self.stage.finish(FORMAT)?;
+        self.write_all().map_err(failed(0))?;
+        Ok(self.summary)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,67 @@
+//! The order of a writer's calls: begin, points, finish.
+
+use crate::SinkError;
+
+/// How far a writer has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Stage {
+    /// Nothing written.
+    #[default]
+    New,
+    /// The header is written, points may come.
+    Open,
+    /// A batch was cut off in the middle: no more points, but what was whole can be finished.
+    Cut,
+    /// Finished, or the header failed.
+    Closed,
+}
+
+impl Stage {
+    /// Begins; until [`Stage::opened`] says that it worked, nothing else may come.
+    pub(super) fn begin(&mut self, format: &'static str) -> Result<(), SinkError> {
+        match self {
+            Self::New => {
+                *self = Self::Closed;
+                Ok(())
+            }
+            Self::Open | Self::Cut => Err(order(format, "points or finish", "begin")),
+            Self::Closed => Err(order(format, "nothing more", "begin")),
+        }
+    }
+
+    pub(super) fn opened(&mut self) {
+        *self = Self::Open;
+    }
+
+    pub(super) fn points(self, format: &'static str) -> Result<(), SinkError> {
+        match self {
+            Self::Open => Ok(()),
+            Self::New => Err(order(format, "begin", "points")),
+            Self::Cut => Err(order(format, "finish after a failed batch", "points")),
+            Self::Closed => Err(order(format, "nothing more", "points")),
+        }
+    }
+
+    pub(super) fn cut(&mut self) {
+        *self = Self::Cut;
+    }
+
+    pub(super) fn finish(&mut self, format: &'static str) -> Result<(), SinkError> {
+        match self {
+            Self::Open | Self::Cut => {
+                *self = Self::Closed;
+                Ok(())
+            }
+            Self::New => Err(order(format, "begin", "finish")),
+            Self::Closed => Err(order(format, "nothing more", "finish")),
+        }
+    }
+}
+
+fn order(format: &'static str, expected: &'static str, got: &'static str) -> SinkError {
+    SinkError::Order {
+        format,
+        expected,
+        got,
+    }
+}

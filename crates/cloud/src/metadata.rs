@@ -1,0 +1,111 @@
+//! What a cloud says about itself beside its points.
+//!
+//! Free of any wall-clock time, user or host name: the same log must give the same file, bit for bit.
+
+/// What a file says in its header, whatever the format.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Metadata {
+    /// Whether software stood in for the devices. Every format says so in the first place it has.
+    pub simulated: bool,
+    /// What the points come from: the sensor and the rig.
+    pub source: String,
+    /// Name and version of the software that made the cloud.
+    pub software: String,
+    /// What the time column counts from and whose clock it is, in words.
+    pub time_reference: String,
+    /// Anything else; a text of several lines becomes several comments.
+    pub comments: Vec<String>,
+}
+
+/// Longest comment line: some PLY readers keep a line in 1024 bytes, some split it into at most 32 words.
+const LINE_CHARS: usize = 120;
+
+impl Metadata {
+    /// Everything as lines of printable ASCII, none empty, none longer than 120 characters. A cloud from
+    /// software devices says so in the first line, which starts with `SIMULATED`.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let mut text = Vec::new();
+        if self.simulated {
+            text.push("SIMULATED: software devices, not a scan of anything real".to_owned());
+        }
+        let named = [
+            ("software", &self.software),
+            ("source", &self.source),
+            ("time", &self.time_reference),
+        ];
+        for (name, value) in named {
+            if !value.is_empty() {
+                text.push(format!("{name}: {value}"));
+            }
+        }
+        text.push(
+            "frame: x right, y forward, z up in metres from the tilt axis; tilt in degrees"
+                .to_owned(),
+        );
+        text.extend(self.comments.iter().cloned());
+        text.iter().flat_map(|text| printable(text)).collect()
+    }
+}
+
+/// Splits at control characters and at the longest line, and replaces what is not ASCII: PLY and LAS are ASCII
+/// formats, and their readers fail on anything else.
+fn printable(text: &str) -> Vec<String> {
+    text.split(|c: char| c.is_control() && c != '\t')
+        .flat_map(|line| {
+            let line: Vec<char> = line
+                .trim()
+                .chars()
+                .map(|c| match c {
+                    '\t' => ' ',
+                    c if c.is_ascii() => c,
+                    _ => '?',
+                })
+                .collect();
+            let parts: Vec<String> = line
+                .chunks(LINE_CHARS)
+                .map(|part| part.iter().collect::<String>().trim().to_owned())
+                .collect();
+            parts
+        })
+        .filter(|line| !line.is_empty())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn simulated_comes_first_and_only_if_it_is() {
+        let mut metadata = Metadata {
+            simulated: true,
+            software: "velomotion 0.1.0".into(),
+            ..Metadata::default()
+        };
+        let lines = metadata.lines();
+        assert!(lines[0].starts_with("SIMULATED"));
+        assert_eq!(lines[1], "software: velomotion 0.1.0");
+        metadata.simulated = false;
+        assert!(!metadata.lines().join("").contains("SIMULATED"));
+    }
+
+    #[test]
+    fn lines_cannot_break_a_header() {
+        let metadata = Metadata {
+            comments: vec![
+                "two\nlines\r\n\n  \nend_header".into(),
+                "é\u{0}\u{1b}[31m".into(),
+                "@".repeat(1000),
+            ],
+            ..Metadata::default()
+        };
+        let lines = metadata.lines();
+        assert_eq!(lines[1..4], ["two", "lines", "end_header"]);
+        for line in &lines {
+            assert!(!line.is_empty() && line.len() <= LINE_CHARS, "{line:?}");
+            assert!(line.bytes().all(|b| (b' '..=b'~').contains(&b)), "{line:?}");
+        }
+        assert_eq!(lines.join("").matches('@').count(), 1000);
+    }
+}
