@@ -4,4 +4,6 @@
 //! stay representable. What a value means for a scan is decided elsewhere.
 #![no_std]
 
+pub mod epos2;
 pub mod record;
+pub mod vlp16;

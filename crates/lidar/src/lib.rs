@@ -1,1 +1,22 @@
-//! lidar
+//! Velodyne packets to firings to returns: models, azimuth, time, hour unwrap, loss, dual return.
+//!
+//! [`Decoder`] takes the payloads of one sensor in order of arrival and emits [`Firing`]s in order of device time. It never
+//! guesses across a gap. [`Timekeeper`] says when packets were fired without decoding them, by the code that the decoder
+//! itself uses, so that a first pass over a log agrees with the second to the nanosecond.
+//! Left out on purpose: host time (a clock model's), the tilt of the platform, frames, and which port or address bytes
+//! came from.
+
+mod continuity;
+mod decoder;
+mod firing;
+mod geometry;
+mod hours;
+mod identify;
+mod plan;
+mod stats;
+mod timekeeper;
+
+pub use decoder::{Decoder, Options};
+pub use firing::{Duplicates, Echo, Firing, Return, SensorPoint};
+pub use stats::{Conflict, Stats};
+pub use timekeeper::{PacketTiming, Timekeeper};

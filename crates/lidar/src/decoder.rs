@@ -1,0 +1,362 @@
+//! Payloads in, firings out: order, loss, model, and the one packet that is held back.
+//!
+//! A packet is decoded when its successor is there, because the rotor's rate in its last block, the length of a gap inside it
+//! and sometimes its model are known only then: 1.3 ms of delay. Left out: anything that looks further ahead.
+
+use core::{iter, ptr};
+
+use protocol::vlp16::{DATA_LEN, DataPacket, Model, PositionPacket, ReturnMode};
+use units::{Host, Lidar, Span, Stamp};
+
+use crate::continuity::{Blind, missing};
+use crate::firing::{Channels, Duplicates, Echo, Firing};
+use crate::geometry::Geometry;
+use crate::plan::{Link, Slot, Steps, Successor, first_azimuth};
+use crate::stats::Stats;
+use crate::timekeeper::Timekeeper;
+
+/// A packet this much before its predecessor is out of order; further back, the device's clock was set.
+const REORDER: Span = Span::from_millis(10);
+/// A gap this long is checked against the host's clock before packets are called lost.
+const LONG_GAP: Span = Span::from_secs(1);
+/// How every block begins.
+const BLOCK_FLAG: &[u8] = &[0xFF, 0xEE];
+
+/// How to decode.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// The model, where factory byte and packet spacing are not to be asked.
+    pub model: Option<&'static Model>,
+    /// Whether z includes the height at which each laser's ray starts (manual table 9-1).
+    pub vertical_offsets: bool,
+    /// Dual returns at one distance.
+    pub duplicates: Duplicates,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            model: None,
+            vertical_offsets: true,
+            duplicates: Duplicates::Unique,
+        }
+    }
+}
+
+/// Decodes the packets of one sensor.
+#[derive(Clone, Debug)]
+pub struct Decoder {
+    timekeeper: Timekeeper,
+    unpacker: Unpacker,
+    held: Option<Held>,
+    /// The held packet's payload.
+    buffer: [u8; DATA_LEN],
+    /// First firing of the last packet that was emitted since the clock last stepped.
+    emitted: Option<Stamp<Lidar>>,
+}
+
+/// What is known of a packet apart from its bytes.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    start: Stamp<Lidar>,
+    host: Stamp<Host>,
+    dual: bool,
+    model: Option<&'static Model>,
+}
+
+/// Turns a packet and its successor into firings.
+#[derive(Clone, Debug)]
+struct Unpacker {
+    options: Options,
+    geometry: Option<Geometry>,
+    blind: Option<Blind>,
+    stats: Stats,
+    turned_cdeg: f64,
+    turning_ns: f64,
+}
+
+impl Decoder {
+    /// A decoder for one sensor.
+    #[must_use]
+    pub fn new(options: Options) -> Self {
+        Self {
+            timekeeper: Timekeeper::new(options),
+            unpacker: Unpacker {
+                options,
+                geometry: None,
+                blind: None,
+                stats: Stats::default(),
+                turned_cdeg: 0.0,
+                turning_ns: 0.0,
+            },
+            held: None,
+            buffer: [0; DATA_LEN],
+            emitted: None,
+        }
+    }
+
+    /// Takes a UDP payload that arrived at `host` and emits what it completes: the firings of the packet before it.
+    ///
+    /// Nothing is an error here: payloads that are no data packets are counted in [`Stats`].
+    pub fn packet(
+        &mut self,
+        host: Stamp<Host>,
+        payload: &[u8],
+        emit: &mut impl FnMut(&Firing<'_>),
+    ) {
+        let stats = &mut self.unpacker.stats;
+        match DataPacket::new(payload) {
+            Ok(packet) => self.data(host, payload, &packet, emit),
+            Err(error) if payload.len() == DATA_LEN || payload.starts_with(BLOCK_FLAG) => {
+                stats.malformed += 1;
+                stats.first_malformed.get_or_insert(error);
+            }
+            Err(_) => match PositionPacket::new(payload) {
+                Ok(position) => {
+                    stats.position += 1;
+                    stats.pps = Some(position.pps());
+                }
+                Err(_) => stats.other += 1,
+            },
+        }
+    }
+
+    /// Emits the packet held back. The decoder can go on with packets of the same sensor afterwards.
+    pub fn finish(&mut self, emit: &mut impl FnMut(&Firing<'_>)) {
+        if let Some(held) = self.held.take() {
+            self.emitted = Some(held.start);
+            if let Ok(packet) = DataPacket::new(&self.buffer) {
+                self.unpacker.unpack(&packet, held, None, emit);
+            }
+        }
+    }
+
+    /// What was seen so far.
+    #[must_use]
+    pub const fn stats(&self) -> &Stats {
+        &self.unpacker.stats
+    }
+
+    fn data(
+        &mut self,
+        host: Stamp<Host>,
+        payload: &[u8],
+        packet: &DataPacket<'_>,
+        emit: &mut impl FnMut(&Firing<'_>),
+    ) {
+        let known = self.timekeeper.observe(host, packet);
+        let stats = &mut self.unpacker.stats;
+        stats.data += 1;
+        stats.product = Some(packet.product());
+        stats.return_mode = Some(packet.return_mode());
+        if let Some(conflict) = known.conflict {
+            stats.report(conflict);
+            if let Some(held) = &mut self.held {
+                held.model = known.model;
+            }
+        }
+        let new = Held {
+            start: known.start,
+            host,
+            dual: known.dual,
+            model: known.model,
+        };
+        let Some(held) = self.held else {
+            self.hold(new, payload);
+            return;
+        };
+        let ahead = new.start.saturating_since(held.start);
+        if ahead == Span::ZERO && payload == self.buffer {
+            stats.duplicates += 1;
+        } else if ahead < Span::ZERO && -REORDER <= ahead {
+            self.out_of_order(packet, new, held, emit);
+        } else {
+            self.in_order(packet, new, held, emit);
+            self.hold(new, payload);
+        }
+    }
+
+    fn hold(&mut self, packet: Held, payload: &[u8]) {
+        if let Ok(payload) = payload.try_into() {
+            self.buffer = payload;
+            self.held = Some(packet);
+        }
+    }
+
+    /// Emits the held packet, `next` being the one after it.
+    fn in_order(
+        &mut self,
+        packet: &DataPacket<'_>,
+        new: Held,
+        held: Held,
+        emit: &mut impl FnMut(&Firing<'_>),
+    ) {
+        let Ok(before) = DataPacket::new(&self.buffer) else {
+            return;
+        };
+        let ahead = new.start.saturating_since(held.start);
+        let waited = new.host.saturating_since(held.host);
+        let stepped = ahead < Span::ZERO || (ahead >= LONG_GAP && waited < ahead.half());
+        let next = (!stepped).then_some(Successor {
+            azimuth_cdeg: first_azimuth(packet),
+            after: ahead,
+        });
+        self.emitted = next.map(|_| held.start);
+        if stepped {
+            self.unpacker.stats.clock_steps += 1;
+        }
+        self.unpacker.unpack(&before, held, next, emit);
+    }
+
+    /// Emits a packet that arrived after the one that follows it, which stays held.
+    fn out_of_order(
+        &mut self,
+        packet: &DataPacket<'_>,
+        new: Held,
+        held: Held,
+        emit: &mut impl FnMut(&Firing<'_>),
+    ) {
+        let stats = &mut self.unpacker.stats;
+        if self.emitted.is_some_and(|emitted| new.start <= emitted) {
+            stats.late += 1;
+            return;
+        }
+        let Ok(after) = DataPacket::new(&self.buffer) else {
+            return;
+        };
+        stats.reordered += 1;
+        let (lost, duration) = (stats.lost_packets, stats.duration);
+        let next = Successor {
+            azimuth_cdeg: first_azimuth(&after),
+            after: held.start.saturating_since(new.start),
+        };
+        self.unpacker.unpack(packet, new, Some(next), emit);
+        if self.emitted.replace(new.start).is_some() {
+            // The packet before it counted the gap that it fills, and all of the time.
+            let stats = &mut self.unpacker.stats;
+            stats.lost_packets = lost.saturating_sub(1);
+            stats.duration = duration;
+        }
+    }
+}
+
+impl Unpacker {
+    /// Emits the firings of a packet. `next` is its successor by device time, if that is known.
+    fn unpack(
+        &mut self,
+        packet: &DataPacket<'_>,
+        held: Held,
+        next: Option<Successor>,
+        emit: &mut impl FnMut(&Firing<'_>),
+    ) {
+        let Some(model) = held.model else {
+            self.stats.unidentified += 1;
+            return;
+        };
+        let steps = Steps::new(packet, model, held.dual);
+        let link = steps.link(next);
+        self.learn(&steps, link.measured);
+        self.tally(model, &steps, link, next);
+        let (slots, blocks) = steps.slots(link);
+        let geometry = match self.geometry.take() {
+            Some(geometry) if ptr::eq(geometry.model, model) => geometry,
+            _ => Geometry::new(model, self.options.vertical_offsets),
+        };
+        for (i, slot) in slots.iter().take(blocks).enumerate() {
+            self.unpack_block(packet, held, &geometry, i, slot, emit);
+        }
+        self.geometry = Some(geometry);
+    }
+
+    /// Emits the firings of one block, or of one pair.
+    fn unpack_block(
+        &mut self,
+        packet: &DataPacket<'_>,
+        held: Held,
+        geometry: &Geometry,
+        i: usize,
+        slot: &Slot,
+        emit: &mut impl FnMut(&Firing<'_>),
+    ) {
+        let model = geometry.model;
+        let period_ns = f64::from(model.block_period_ns());
+        let firing_cdeg = slot.pace_cdeg / model.firings_per_block as f64;
+        let first = if held.dual { 2 * i } else { i };
+        let (Some(even), odd) = (packet.block(first), packet.block(first + 1)) else {
+            return;
+        };
+        let lasers = model.lasers.len();
+        let even = even.raw_channels().chunks_exact(lasers);
+        let odd = odd
+            .map_or(&[][..], |odd| odd.raw_channels())
+            .chunks_exact(lasers);
+        // No block follows the last one; a pair always has both.
+        let odd = odd.map(Some).chain(iter::repeat(None));
+        for (n, (even, odd)) in even.zip(odd).enumerate() {
+            let channels = match odd {
+                Some(strongest) if held.dual => Channels::Two {
+                    last: even,
+                    strongest,
+                    duplicates: self.options.duplicates,
+                },
+                _ => Channels::One {
+                    raw: even,
+                    echo: single_echo(packet.return_mode()),
+                },
+            };
+            let (returns, unique) = channels.count();
+            self.stats.returns += returns;
+            self.stats.unique_returns += unique;
+            self.stats.firings += 1;
+            let after = Span::from_nanos(n as i64 * i64::from(model.firing_period_ns));
+            let azimuth_cdeg = f64::from(slot.azimuth_cdeg) + firing_cdeg * n as f64;
+            emit(&Firing {
+                start: held.start + slot.after + after,
+                azimuth_deg: (azimuth_cdeg / 100.0).rem_euclid(360.0),
+                azimuth_rate_deg_s: slot.pace_cdeg / 100.0 / (period_ns * 1e-9),
+                model,
+                rays: &geometry.rays,
+                channels,
+            });
+        }
+    }
+
+    /// Keeps where the sensor looks away, until it fires there again.
+    fn learn(&mut self, steps: &Steps, measured: bool) {
+        if measured && let Some(blind) = steps.jump() {
+            self.blind = Some(blind);
+        } else if self.blind.is_some_and(|b| b.hides(steps.last_azimuth())) {
+            self.blind = None;
+        }
+    }
+
+    fn tally(&mut self, model: &'static Model, steps: &Steps, link: Link, next: Option<Successor>) {
+        let stats = &mut self.stats;
+        stats.model = Some(model);
+        let length_ns = next.map_or(steps.fill_ns(), |next| next.after.as_nanos());
+        stats.duration = Span::from_nanos(stats.duration.as_nanos().saturating_add(length_ns));
+        if let Some(next) = next {
+            stats.lost_packets = stats.lost_packets.saturating_add(missing(
+                steps,
+                next,
+                steps.jump().or(self.blind),
+            ));
+        }
+        let (turned_cdeg, periods) = steps.turned(link);
+        self.turned_cdeg += turned_cdeg;
+        self.turning_ns += f64::from(model.block_period_ns()) * periods;
+        if self.turning_ns > 0.0 {
+            let turns_per_ns = self.turned_cdeg / 36_000.0 / self.turning_ns;
+            stats.rpm = Some(turns_per_ns * 60e9);
+        }
+    }
+}
+
+/// What the returns of a packet without pairs are.
+const fn single_echo(mode: ReturnMode) -> Echo {
+    match mode {
+        ReturnMode::Strongest => Echo::Strongest,
+        ReturnMode::Last => Echo::Last,
+        ReturnMode::Dual | ReturnMode::Unknown(_) => Echo::Unknown,
+    }
+}

@@ -1,0 +1,338 @@
+//! One firing of all lasers, and its returns as points of the sensor's frame.
+//!
+//! Points are made as they are asked for: who only needs the times pays for no geometry. Left out: where the sensor stood.
+
+use protocol::vlp16::{Channel, Model};
+use units::{Lidar, Span, Stamp};
+
+use crate::geometry::Ray;
+
+/// What to do where both returns of a dual-return pair have the same distance: one pulse reported twice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Duplicates {
+    /// Give it once.
+    #[default]
+    Unique,
+    /// Give both.
+    All,
+}
+
+/// Which return of its pulse a point is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Echo {
+    /// The strongest.
+    Strongest,
+    /// The last; in dual mode not the strongest, or one whose partner is missing.
+    Last,
+    /// Dual mode, both returns at one distance: the last is the strongest.
+    LastAndStrongest,
+    /// Dual mode's second return: the strongest, or the second strongest where the last is the strongest. The packet
+    /// does not say which.
+    StrongestOrSecond,
+    /// The return mode is not known.
+    Unknown,
+}
+
+/// One laser's measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Return {
+    /// Place in the firing order, from 0.
+    pub laser: u8,
+    /// Distance in the model's unit; never 0.
+    pub distance_raw: u16,
+    /// Calibrated reflectivity.
+    pub reflectivity: u8,
+    /// Which return of its pulse it is.
+    pub echo: Echo,
+}
+
+/// A return as a point of the sensor's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorPoint {
+    /// When its laser fired.
+    pub time: Stamp<Lidar>,
+    /// x right, y forward, z up, from the sensor's origin, in metres.
+    pub position_m: [f64; 3],
+    /// Measured distance in metres.
+    pub range_m: f64,
+    /// Place in the firing order, from 0.
+    pub laser: u8,
+    /// Place by elevation, 0 the lowest.
+    pub ring: u8,
+    /// Calibrated reflectivity: 0 to 100 diffuse, 101 to 255 retro-reflective.
+    pub reflectivity: u8,
+    /// Which return of its pulse it is.
+    pub echo: Echo,
+}
+
+/// The channels of one firing as they are on the wire, one entry a laser.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Channels<'a> {
+    One {
+        raw: &'a [[u8; 3]],
+        echo: Echo,
+    },
+    Two {
+        last: &'a [[u8; 3]],
+        strongest: &'a [[u8; 3]],
+        duplicates: Duplicates,
+    },
+}
+
+impl Channels<'_> {
+    /// Channels with a distance, and the same with equal pairs counted once.
+    pub(crate) fn count(&self) -> (u64, u64) {
+        let distance = |raw: &[u8; 3]| Channel::from_bytes(*raw).distance_raw;
+        match self {
+            Self::One { raw, .. } => {
+                let returns = raw.iter().map(|raw| u64::from(distance(raw) != 0)).sum();
+                (returns, returns)
+            }
+            Self::Two {
+                last, strongest, ..
+            } => last
+                .iter()
+                .zip(*strongest)
+                .map(|(a, b)| (distance(a), distance(b)))
+                .fold((0, 0), |(returns, unique), (a, b)| {
+                    let both = u64::from(a != 0) + u64::from(b != 0);
+                    (returns + both, unique + both - u64::from(a != 0 && a == b))
+                }),
+        }
+    }
+}
+
+/// One firing of all lasers.
+#[derive(Clone, Copy, Debug)]
+pub struct Firing<'a> {
+    /// When laser 0 fired.
+    pub start: Stamp<Lidar>,
+    /// Azimuth at `start` in degrees, 0 up to 360, clockwise from y seen from above.
+    pub azimuth_deg: f64,
+    /// How fast the azimuth grows, in degrees per second.
+    pub azimuth_rate_deg_s: f64,
+    /// The model it was decoded as.
+    pub model: &'static Model,
+    pub(crate) rays: &'a [Ray],
+    pub(crate) channels: Channels<'a>,
+}
+
+impl<'a> Firing<'a> {
+    /// The returns in firing order; a laser without one is absent. Of a dual pair the last return comes first.
+    #[must_use]
+    pub const fn returns(&self) -> Returns<'a> {
+        Returns {
+            channels: self.channels,
+            laser: 0,
+            partner: None,
+        }
+    }
+
+    /// The returns as points of the sensor's frame, in firing order.
+    ///
+    /// x = R cos w sin a, y = R cos w cos a, z = R sin w + vertical offset (manual 9.2; the paper's Eq. 1-3), with the
+    /// azimuth a carried on at the rotor's rate to when each laser fired.
+    pub fn points(&self) -> impl Iterator<Item = SensorPoint> + use<'a> {
+        let firing = *self;
+        self.returns().filter_map(move |seen| {
+            Some(firing.place(seen, firing.rays.get(usize::from(seen.laser))?))
+        })
+    }
+
+    /// Azimuth at which a laser fired, in degrees, not brought back below 360; `None` for a laser the model lacks.
+    #[must_use]
+    pub fn laser_azimuth_deg(&self, laser: u8) -> Option<f64> {
+        let ray = self.rays.get(usize::from(laser))?;
+        Some(self.azimuth_of(ray))
+    }
+
+    fn azimuth_of(&self, ray: &Ray) -> f64 {
+        self.azimuth_deg + self.azimuth_rate_deg_s * ray.delay_s + ray.azimuth_offset_deg
+    }
+
+    fn place(&self, seen: Return, ray: &Ray) -> SensorPoint {
+        let range_m = f64::from(seen.distance_raw) * self.model.distance_unit_m;
+        let (sin_azimuth, cos_azimuth) = self.azimuth_of(ray).to_radians().sin_cos();
+        let across_m = range_m * ray.cos_elevation;
+        SensorPoint {
+            time: self.start + Span::from_nanos(ray.delay_ns),
+            position_m: [
+                across_m * sin_azimuth,
+                across_m * cos_azimuth,
+                range_m * ray.sin_elevation + ray.vertical_offset_m,
+            ],
+            range_m,
+            laser: seen.laser,
+            ring: ray.ring,
+            reflectivity: seen.reflectivity,
+            echo: seen.echo,
+        }
+    }
+}
+
+/// Iterator over the returns of a firing.
+#[derive(Clone, Debug)]
+pub struct Returns<'a> {
+    channels: Channels<'a>,
+    laser: u8,
+    partner: Option<Return>,
+}
+
+impl Iterator for Returns<'_> {
+    type Item = Return;
+
+    fn next(&mut self) -> Option<Return> {
+        if let Some(partner) = self.partner.take() {
+            return Some(partner);
+        }
+        loop {
+            let laser = self.laser;
+            let i = usize::from(laser);
+            let seen = |channel: Channel, echo| {
+                (channel.distance_raw != 0).then_some(Return {
+                    laser,
+                    distance_raw: channel.distance_raw,
+                    reflectivity: channel.reflectivity,
+                    echo,
+                })
+            };
+            let found = match self.channels {
+                Channels::One { raw, echo } => seen(Channel::from_bytes(*raw.get(i)?), echo),
+                Channels::Two {
+                    last,
+                    strongest,
+                    duplicates,
+                } => {
+                    let even = Channel::from_bytes(*last.get(i)?);
+                    let odd = Channel::from_bytes(*strongest.get(i)?);
+                    if even.distance_raw == odd.distance_raw {
+                        if duplicates == Duplicates::All {
+                            self.partner = seen(odd, Echo::LastAndStrongest);
+                        }
+                        seen(even, Echo::LastAndStrongest)
+                    } else {
+                        let first = seen(even, Echo::Last);
+                        let second = seen(odd, Echo::StrongestOrSecond);
+                        if first.is_some() {
+                            self.partner = second;
+                        }
+                        first.or(second)
+                    }
+                }
+            };
+            self.laser = laser.checked_add(1)?;
+            if found.is_some() {
+                return found;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::vlp16::models::{VLP_16, VLP_32C};
+
+    use super::*;
+    use crate::geometry::Geometry;
+
+    fn raw(channels: &[(u16, u8)]) -> Vec<[u8; 3]> {
+        let bytes = |&(d, r): &(u16, u8)| [d.to_le_bytes()[0], d.to_le_bytes()[1], r];
+        channels.iter().map(bytes).collect()
+    }
+
+    fn pair(duplicates: Duplicates) -> Vec<(u8, u16, Echo)> {
+        let last = raw(&[(500, 1), (0, 0), (700, 3), (0, 0), (900, 5)]);
+        let strongest = raw(&[(500, 1), (600, 2), (300, 9), (0, 0), (0, 0)]);
+        let returns = Returns {
+            channels: Channels::Two {
+                last: &last,
+                strongest: &strongest,
+                duplicates,
+            },
+            laser: 0,
+            partner: None,
+        };
+        returns.map(|r| (r.laser, r.distance_raw, r.echo)).collect()
+    }
+
+    #[test]
+    fn dual_returns_are_labelled_and_equal_pairs_given_once() {
+        use Echo::{Last, LastAndStrongest, StrongestOrSecond};
+        let unique = [
+            (0, 500, LastAndStrongest),
+            (1, 600, StrongestOrSecond),
+            (2, 700, Last),
+            (2, 300, StrongestOrSecond),
+            (4, 900, Last),
+        ];
+        assert_eq!(pair(Duplicates::Unique), unique);
+        let mut all = unique.to_vec();
+        all.insert(1, (0, 500, LastAndStrongest));
+        assert_eq!(pair(Duplicates::All), all);
+    }
+
+    fn firing<'a>(geometry: &'a Geometry, raw: &'a [[u8; 3]]) -> Firing<'a> {
+        Firing {
+            start: Stamp::from_nanos(1_000_000),
+            azimuth_deg: 90.0,
+            azimuth_rate_deg_s: 3_600.0,
+            model: geometry.model,
+            rays: &geometry.rays,
+            channels: Channels::One {
+                raw,
+                echo: Echo::Strongest,
+            },
+        }
+    }
+
+    #[test]
+    fn a_point_is_where_equations_1_to_3_put_it() {
+        let raw = raw(&[(5_000, 7); 16]);
+        let geometry = Geometry::new(&VLP_16, true);
+        let firing = firing(&geometry, &raw);
+        let points: Vec<SensorPoint> = firing.points().collect();
+        assert_eq!(points.len(), 16);
+        // Laser 15: 34.56 us later, so 0.124416 deg on; 15 deg up; it starts 11.2 mm below the origin.
+        let p = points[15];
+        let (azimuth, elevation) = (90.124_416_f64.to_radians(), 15f64.to_radians());
+        let expected = [
+            10.0 * elevation.cos() * azimuth.sin(),
+            10.0 * elevation.cos() * azimuth.cos(),
+            10.0 * elevation.sin() - 0.0112,
+        ];
+        for (got, expected) in p.position_m.iter().zip(expected) {
+            assert!((got - expected).abs() < 1e-12, "{p:?}");
+        }
+        assert_eq!(p.time, Stamp::from_nanos(1_034_560));
+        assert_eq!((p.laser, p.ring, p.reflectivity), (15, 15, 7));
+        assert!((p.range_m - 10.0).abs() < 1e-12);
+        // Clockwise from y: at 90 deg a point lies to the right.
+        assert!(points[0].position_m[0] > 9.6 && points[0].position_m[1].abs() < 1e-9);
+    }
+
+    #[test]
+    fn vertical_offsets_can_be_left_out() {
+        let raw = raw(&[(5_000, 7); 16]);
+        let (with, without) = (Geometry::new(&VLP_16, true), Geometry::new(&VLP_16, false));
+        let pairs = firing(&with, &raw)
+            .points()
+            .zip(firing(&without, &raw).points());
+        for ((a, b), laser) in pairs.zip(VLP_16.lasers) {
+            assert!((a.position_m[2] - b.position_m[2] - laser.vertical_offset_m).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_vlp_32c_counts_in_4_mm_and_fires_pairs_off_the_centre_line() {
+        let raw = raw(&[(2_500, 7); 32]);
+        let geometry = Geometry::new(&VLP_32C, true);
+        let firing = firing(&geometry, &raw);
+        let points: Vec<SensorPoint> = firing.points().collect();
+        assert_eq!(points.len(), 32);
+        assert!((points[0].range_m - 10.0).abs() < 1e-12);
+        assert_eq!(points[0].time, points[1].time);
+        assert_eq!(firing.laser_azimuth_deg(0), Some(91.4));
+        assert_eq!(firing.laser_azimuth_deg(1), Some(85.8));
+        assert_eq!(firing.laser_azimuth_deg(32), None);
+    }
+}

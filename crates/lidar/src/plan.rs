@@ -1,0 +1,253 @@
+//! When each block of a packet fired and how fast the rotor turned, from the packet and the one after it.
+//!
+//! A packet gives one time and twelve azimuths. Blocks follow at the model's period, except where the sensor's field of
+//! view is limited: such a sensor is silent while it looks away, and the packet that it was filling then goes on a whole gap
+//! later. The azimuths show that jump; the time of the next packet says how long it took.
+//! Left out: what lies beyond the next packet, and any guess where packets are missing.
+
+use protocol::vlp16::{BLOCKS, DataPacket, Model};
+use units::Span;
+
+use crate::continuity::Blind;
+
+/// A turn in hundredths of a degree.
+pub(crate) const TURN_CDEG: i32 = 36_000;
+/// A step back by less is the rotor's jitter or a slow reversal, not nearly a whole turn forward.
+const BACKLASH_CDEG: i32 = 100;
+/// A step of more than twice the usual one and this much is a jump.
+const JUMP_CDEG: i32 = 20;
+/// Packets this close to the nominal spacing follow each other without a gap; stamps are whole microseconds.
+pub(crate) const CONTIGUOUS_NS: i64 = 20_000;
+/// How far a measured gap may exceed what the rotor's rate makes of it.
+const GAP_SLACK: f64 = 1.5;
+
+/// The packet after this one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Successor {
+    /// Azimuth of its first block.
+    pub azimuth_cdeg: i32,
+    /// Device time from this packet's first firing to its first firing.
+    pub after: Span,
+}
+
+/// One block, or one pair of a dual-return packet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Slot {
+    /// Time after the packet's first firing.
+    pub after: Span,
+    /// Azimuth of its first firing, 0 up to 36000.
+    pub azimuth_cdeg: i32,
+    /// Growth of the azimuth per block period.
+    pub pace_cdeg: f64,
+}
+
+/// The azimuth steps within a packet.
+#[derive(Clone, Debug)]
+pub(crate) struct Steps {
+    azimuths: [i32; BLOCKS],
+    blocks: usize,
+    period_ns: i64,
+    usual_cdeg: i32,
+    /// Mean of the steps that are no jumps.
+    pub mean_cdeg: f64,
+    /// How many those are.
+    count: usize,
+}
+
+/// What the successor says of a packet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Link {
+    /// Step from the last block to the successor's first, where the two follow each other.
+    step_cdeg: Option<i32>,
+    /// Length of the packet's gaps over their length by the rotor's rate.
+    stretch: f64,
+    /// Whether the successor's time measured that.
+    pub measured: bool,
+}
+
+/// Azimuth from `from` to `to`, forward, or a little back.
+pub(crate) const fn turned(from: i32, to: i32) -> i32 {
+    let forward = (to - from).rem_euclid(TURN_CDEG);
+    if forward > TURN_CDEG - BACKLASH_CDEG {
+        forward - TURN_CDEG
+    } else {
+        forward
+    }
+}
+
+/// A block's azimuth with 36000 as 0.
+pub(crate) fn first_azimuth(packet: &DataPacket<'_>) -> i32 {
+    let azimuth = packet.block(0).map_or(0, |block| block.azimuth_cdeg());
+    i32::from(azimuth) % TURN_CDEG
+}
+
+impl Steps {
+    pub(crate) fn new(packet: &DataPacket<'_>, model: &Model, dual: bool) -> Self {
+        let mut steps = Self {
+            azimuths: [0; BLOCKS],
+            blocks: Model::firing_blocks(dual),
+            period_ns: i64::from(model.block_period_ns()),
+            usual_cdeg: 0,
+            mean_cdeg: 0.0,
+            count: 0,
+        };
+        let stride = BLOCKS / steps.blocks;
+        for (azimuth, block) in steps
+            .azimuths
+            .iter_mut()
+            .zip(packet.blocks().step_by(stride))
+        {
+            *azimuth = i32::from(block.azimuth_cdeg()) % TURN_CDEG;
+        }
+        steps.usual_cdeg = steps.median();
+        let (sum, count) = steps
+            .inner()
+            .filter(|&step| !steps.is_jump(step))
+            .fold((0, 0), |(sum, count), step| (sum + step, count + 1));
+        if count > 0 {
+            steps.mean_cdeg = f64::from(sum) / count as f64;
+            steps.count = count;
+        }
+        steps
+    }
+
+    /// The azimuths of blocks that fired separately.
+    fn azimuths(&self) -> &[i32] {
+        self.azimuths.get(..self.blocks).unwrap_or_default()
+    }
+
+    /// Azimuth of the last block.
+    pub(crate) fn last_azimuth(&self) -> i32 {
+        self.azimuths().last().copied().unwrap_or_default()
+    }
+
+    /// Steps from each block to the next within the packet.
+    fn inner(&self) -> impl Iterator<Item = i32> + Clone + '_ {
+        let azimuths = self.azimuths();
+        let next = azimuths.iter().skip(1);
+        azimuths.iter().zip(next).map(|(&a, &b)| turned(a, b))
+    }
+
+    fn median(&self) -> i32 {
+        let mut sorted = [i32::MAX; BLOCKS];
+        for (slot, step) in sorted.iter_mut().zip(self.inner()) {
+            *slot = step;
+        }
+        sorted.sort_unstable();
+        sorted
+            .get((self.blocks - 1) / 2)
+            .copied()
+            .unwrap_or_default()
+    }
+
+    pub(crate) fn is_jump(&self, step_cdeg: i32) -> bool {
+        step_cdeg > 2 * self.usual_cdeg.max(0) + JUMP_CDEG
+    }
+
+    /// The first jump within the packet.
+    pub(crate) fn jump(&self) -> Option<Blind> {
+        let azimuths = self.azimuths();
+        let mut pairs = azimuths.iter().zip(azimuths.iter().skip(1));
+        pairs
+            .find(|&(&from, &to)| self.is_jump(turned(from, to)))
+            .map(|(&from, &to)| Blind { from, to })
+    }
+
+    /// Nominal time to fill the packet.
+    pub(crate) const fn fill_ns(&self) -> i64 {
+        self.period_ns * self.blocks as i64
+    }
+
+    /// Azimuth turned while the packet is filled.
+    pub(crate) fn fill_cdeg(&self) -> f64 {
+        self.mean_cdeg * self.blocks as f64
+    }
+
+    /// How long the rotor takes over a jump beyond the usual step; 0 where it stands still.
+    fn gap_ns(&self, step_cdeg: i32) -> f64 {
+        if self.mean_cdeg <= 0.0 || !self.is_jump(step_cdeg) {
+            return 0.0;
+        }
+        (f64::from(step_cdeg) - self.mean_cdeg) / self.mean_cdeg * self.period_ns as f64
+    }
+
+    /// Length of the packet's own gaps by the rotor's rate.
+    pub(crate) fn gaps_ns(&self) -> f64 {
+        self.inner().map(|step| self.gap_ns(step)).sum()
+    }
+
+    /// Joins the packet to its successor, as far as the two can be shown to follow each other.
+    pub(crate) fn link(&self, next: Option<Successor>) -> Link {
+        let inner_ns = self.gaps_ns();
+        let Some(next) = next else {
+            return Link::missing();
+        };
+        let step = turned(self.last_azimuth(), next.azimuth_cdeg);
+        let goes_on = (!self.is_jump(step)).then_some(step);
+        let excess_ns = next.after.as_nanos().saturating_sub(self.fill_ns());
+        if (-CONTIGUOUS_NS..=CONTIGUOUS_NS).contains(&excess_ns) {
+            // Whatever the azimuths say, there was no time for a gap.
+            return Link {
+                step_cdeg: goes_on,
+                stretch: 0.0,
+                measured: false,
+            };
+        }
+        if inner_ns <= 0.0 || excess_ns < 0 {
+            return Link::missing();
+        }
+        // With a narrow field of view the sensor may have looked away once more between the two packets.
+        let looked_away = self
+            .jump()
+            .is_some_and(|blind| blind.is_between(self.last_azimuth(), next.azimuth_cdeg));
+        let outer_ns = if looked_away { self.gap_ns(step) } else { 0.0 };
+        let stretch = excess_ns as f64 / (inner_ns + outer_ns);
+        let follows = (goes_on.is_some() || looked_away) && stretch <= GAP_SLACK;
+        Link {
+            step_cdeg: goes_on.filter(|_| follows),
+            // Where packets are missing after this one, the time they took is not the gap's.
+            stretch: if follows { stretch } else { stretch.min(1.0) },
+            measured: follows && stretch >= 1.0 / GAP_SLACK,
+        }
+    }
+
+    /// Azimuth turned and block periods it took, up to the successor if it follows; jumps left out.
+    pub(crate) fn turned(&self, link: Link) -> (f64, f64) {
+        let inner = (self.mean_cdeg * self.count as f64, self.count as f64);
+        link.step_cdeg
+            .map_or(inner, |step| (inner.0 + f64::from(step), inner.1 + 1.0))
+    }
+
+    /// Time, azimuth and pace of each block.
+    pub(crate) fn slots(&self, link: Link) -> ([Slot; BLOCKS], usize) {
+        let mut slots = [Slot::default(); BLOCKS];
+        let mut after_ns = 0;
+        let mut pace = self.mean_cdeg;
+        let steps = self.inner().map(Some).chain([link.step_cdeg]);
+        for ((slot, &azimuth), step) in slots.iter_mut().zip(self.azimuths()).zip(steps) {
+            // A jump says nothing of the pace: the block before does, or for the first block the packet's mean.
+            if let Some(step) = step.filter(|&step| !self.is_jump(step)) {
+                pace = f64::from(step);
+            }
+            *slot = Slot {
+                after: Span::from_nanos(after_ns),
+                azimuth_cdeg: azimuth,
+                pace_cdeg: pace,
+            };
+            let gap = step.map_or(0.0, |step| self.gap_ns(step));
+            after_ns += self.period_ns + (gap * link.stretch).round() as i64;
+        }
+        (slots, self.blocks)
+    }
+}
+
+impl Link {
+    /// No successor that follows: the rotor's rate stands in for the length of gaps.
+    const fn missing() -> Self {
+        Self {
+            step_cdeg: None,
+            stretch: 1.0,
+            measured: false,
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! maxon EPOS2: serial frames, the commands they carry, the objects a tilt axis needs, and what its codes mean.
+//!
+//! Sources: maxon EPOS2 Communication Guide (framing, commands, communication errors) and EPOS2 Firmware Specification
+//! (objects, device control, device errors). The same objects over CANopen are framed elsewhere; here is neither a
+//! timeout nor a retry nor an opinion about what to ask the drive.
+
+mod bounded;
+pub mod cia402;
+pub mod comm_error;
+mod crc;
+pub mod device_error;
+mod error;
+mod frame;
+pub mod message;
+pub mod objects;
+pub mod rs232;
+pub mod usb;
+
+pub use bounded::{Bounded, Full};
+pub use comm_error::CommError;
+pub use crc::{Crc, crc16};
+pub use device_error::DeviceError;
+pub use error::{FrameError, Layer};
+pub use frame::{Frame, MAX_WORDS, Words};
+
+#[cfg(test)]
+mod tests;

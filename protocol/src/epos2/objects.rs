@@ -1,0 +1,344 @@
+//! The object dictionary entries that a tilt axis needs, typed (Firmware Specification, "Object Dictionary"; types and
+//! defaults as in the unit's own device description).
+//!
+//! A name here is not a claim that a device has the object; access rights and limits are the device's to enforce.
+
+use core::fmt;
+use core::marker::PhantomData;
+
+/// Index and subindex of an entry.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Address {
+    /// Index.
+    pub index: u16,
+    /// Subindex.
+    pub sub: u8,
+}
+
+impl Address {
+    /// The entry `index`:`sub`.
+    #[must_use]
+    pub const fn new(index: u16, sub: u8) -> Self {
+        Self { index, sub }
+    }
+}
+
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:04X}:{:02X}", self.index, self.sub)
+    }
+}
+
+/// A value type of up to 32 bits, as it stands in the data of a serial command or an expedited SDO.
+pub trait Scalar: Copy {
+    /// Bytes of the object.
+    const BYTES: u8;
+    /// The value in the low bytes of `raw`; what stands above is ignored (a real unit leaves garbage there).
+    fn from_raw(raw: u32) -> Self;
+    /// The value in the low bytes, extended to 32 bits by its sign.
+    fn to_raw(self) -> u32;
+}
+
+macro_rules! scalar {
+    ($($t:ty),*) => {$(
+        impl Scalar for $t {
+            const BYTES: u8 = size_of::<$t>() as u8;
+            fn from_raw(raw: u32) -> Self {
+                raw as $t
+            }
+            fn to_raw(self) -> u32 {
+                // Through i64 signed types extend by their sign, unsigned ones by zero.
+                i64::from(self) as u32
+            }
+        }
+    )*};
+}
+scalar!(u8, u16, u32, i8, i16, i32);
+
+/// An entry with its type.
+pub struct Object<T> {
+    /// Where it stands.
+    pub address: Address,
+    /// The specification's name.
+    pub name: &'static str,
+    value: PhantomData<fn() -> T>,
+}
+
+impl<T> Object<T> {
+    /// The entry `index`:`sub`.
+    #[must_use]
+    pub const fn new(index: u16, sub: u8, name: &'static str) -> Self {
+        Self {
+            address: Address::new(index, sub),
+            name,
+            value: PhantomData,
+        }
+    }
+}
+
+impl<T: Scalar> Object<T> {
+    /// The value in an answer's data.
+    #[must_use]
+    pub fn decode(&self, raw: u32) -> T {
+        T::from_raw(raw)
+    }
+
+    /// The data of a write.
+    #[must_use]
+    pub fn encode(&self, value: T) -> u32 {
+        value.to_raw()
+    }
+}
+
+// Derives would ask for `T: Clone` and so on; the type is only a name.
+impl<T> Clone for Object<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T> Copy for Object<T> {}
+impl<T> fmt::Debug for Object<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.address, self.name)
+    }
+}
+
+macro_rules! objects {
+    ($($(#[doc = $doc:literal])+ $name:ident: $t:ty = $index:literal, $sub:literal, $text:literal;)*) => {
+        $($(#[doc = $doc])+ pub const $name: Object<$t> = Object::new($index, $sub, $text);)*
+
+        #[cfg(test)]
+        const ALL: &[(Address, &str)] = &[$((Address::new($index, $sub), $text)),*];
+    };
+}
+
+objects! {
+    /// Constant 0x00020192: servo drive.
+    DEVICE_TYPE: u32 = 0x1000, 0, "Device Type";
+    /// Error register: bit 0 generic, 1 current, 2 voltage, 3 temperature, 4 communication, 5 device profile, 7 motion.
+    ERROR_REGISTER: u8 = 0x1001, 0, "Error Register";
+    /// Number of entries of the error history; writing 0 clears it.
+    ERROR_COUNT: u8 = 0x1003, 0, "Number of Errors";
+    /// The latest error.
+    ERROR_HISTORY_1: u32 = 0x1003, 1, "Error History (1)";
+    /// Save, signature [`SAVE`].
+    STORE_ALL: u32 = 0x1010, 1, "Save All Parameters";
+    /// Restore, signature [`LOAD`].
+    RESTORE_ALL: u32 = 0x1011, 1, "Restore All Default Parameters";
+    /// Free-running counter, 1 us.
+    TIMESTAMP: u32 = 0x1013, 0, "High Resolution Time Stamp";
+    /// Bits 31 invalid, 10..0 COB-ID.
+    CONSUMER_HEARTBEAT: u32 = 0x1016, 1, "Consumer 1 Heartbeat Time";
+    /// Milliseconds, 0 off.
+    PRODUCER_HEARTBEAT: u16 = 0x1017, 0, "Producer Heartbeat Time";
+    /// 0x000000FB is maxon.
+    VENDOR_ID: u32 = 0x1018, 1, "Vendor ID";
+    /// High word: hardware version.
+    PRODUCT_CODE: u32 = 0x1018, 2, "Product Code";
+    /// High word: software version.
+    REVISION: u32 = 0x1018, 3, "Revision Number";
+    /// Lower 32 bits of the serial number.
+    SERIAL_NUMBER: u32 = 0x1018, 4, "Serial Number";
+    /// Node id.
+    NODE_ID: u8 = 0x2000, 0, "Node ID";
+    /// Firmware version, BCD (0x2126).
+    SOFTWARE_VERSION: u16 = 0x2003, 1, "Software Version";
+    /// Hardware version, BCD (0x6420).
+    HARDWARE_VERSION: u16 = 0x2003, 2, "Hardware Version";
+    /// Milliseconds, 500 by default.
+    RS232_FRAME_TIMEOUT: u16 = 0x2005, 0, "RS232 Frame Timeout";
+    /// Milliseconds, 500 by default.
+    USB_FRAME_TIMEOUT: u16 = 0x2006, 0, "USB Frame Timeout";
+    /// Averaged velocity, rpm.
+    VELOCITY_AVERAGED: i32 = 0x2028, 0, "Velocity Actual Value Averaged";
+    /// Purpose of digital input 1.
+    INPUT_1: u16 = 0x2070, 1, "Configuration of Digital Input1";
+    /// Purpose of digital input 2.
+    INPUT_2: u16 = 0x2070, 2, "Configuration of Digital Input2";
+    /// Purpose of digital input 3.
+    INPUT_3: u16 = 0x2070, 3, "Configuration of Digital Input3";
+    /// Purpose of digital input 4 (2 home switch by default).
+    INPUT_4: u16 = 0x2070, 4, "Configuration of Digital Input4";
+    /// Purpose of digital input 5 (1 positive limit by default).
+    INPUT_5: u16 = 0x2070, 5, "Configuration of Digital Input5";
+    /// Purpose of digital input 6 (0 negative limit by default).
+    INPUT_6: u16 = 0x2070, 6, "Configuration of Digital Input6";
+    /// Inputs after mask and polarity, one bit a purpose.
+    INPUT_STATE: u16 = 0x2071, 1, "Digital Input Functionalities State";
+    /// Which purposes are looked at.
+    INPUT_MASK: u16 = 0x2071, 2, "Digital Input Functionalities Mask";
+    /// Bit set: active low.
+    INPUT_POLARITY: u16 = 0x2071, 3, "Digital Input Functionalities Polarity";
+    /// Which purposes run their error routine: without its bit a limit switch does not stop the axis.
+    INPUT_EXECUTION_MASK: u16 = 0x2071, 4, "Digital Input Functionalities Execution Mask";
+    /// Outputs, one bit a purpose.
+    OUTPUT_STATE: u16 = 0x2078, 1, "Digital Output State";
+    /// Which outputs the state drives.
+    OUTPUT_MASK: u16 = 0x2078, 2, "Digital Output Mask";
+    /// Bit set: active low.
+    OUTPUT_POLARITY: u16 = 0x2078, 3, "Digital Output Polarity";
+    /// Purpose of digital output 1; [`OUTPUT_BRAKE`] makes it the holding brake.
+    OUTPUT_1: u16 = 0x2079, 1, "Configuration of Digital Output1";
+    /// Purpose of digital output 2.
+    OUTPUT_2: u16 = 0x2079, 2, "Configuration of Digital Output2";
+    /// Purpose of digital output 3.
+    OUTPUT_3: u16 = 0x2079, 3, "Configuration of Digital Output3";
+    /// Purpose of digital output 4.
+    OUTPUT_4: u16 = 0x2079, 4, "Configuration of Digital Output4";
+    /// Homing to a mechanical stop: mA.
+    HOMING_CURRENT: u16 = 0x2080, 0, "Current Threshold for Homing Mode";
+    /// The position that home gets, qc.
+    HOME_POSITION: i32 = 0x2081, 0, "Home Position";
+    /// Milliseconds the brake needs to open.
+    BRAKE_RISE: u16 = 0x2100, 1, "Brake Reaction Rise Time";
+    /// Milliseconds the brake needs to close.
+    BRAKE_FALL: u16 = 0x2100, 2, "Brake Reaction Fall Time";
+    /// Standing still is below this, rpm.
+    STANDSTILL_WINDOW: u16 = 0x2101, 1, "Standstill Window";
+    /// For this long, ms.
+    STANDSTILL_TIME: u16 = 0x2101, 2, "Standstill Window Time";
+    /// Give up waiting after this, ms.
+    STANDSTILL_TIMEOUT: u16 = 0x2101, 3, "Standstill Timeout";
+    /// Encoder lines per motor turn.
+    ENCODER_LINES: u32 = 0x2210, 1, "Pulse Number Incremental Encoder 1";
+    /// 1 incremental with index, 2 without.
+    SENSOR_TYPE: u16 = 0x2210, 2, "Position Sensor Type";
+    /// See [`crate::epos2::cia402::control`].
+    CONTROLWORD: u16 = 0x6040, 0, "Controlword";
+    /// See [`crate::epos2::cia402::status`].
+    STATUSWORD: u16 = 0x6041, 0, "Statusword";
+    /// See [`crate::epos2::cia402::mode`].
+    MODE: i8 = 0x6060, 0, "Modes of Operation";
+    /// The mode that is in effect.
+    MODE_DISPLAY: i8 = 0x6061, 0, "Modes of Operation Display";
+    /// Demand, qc.
+    POSITION_DEMAND: i32 = 0x6062, 0, "Position Demand Value";
+    /// Encoder, qc.
+    POSITION_ACTUAL: i32 = 0x6064, 0, "Position Actual Value";
+    /// qc, 2000 by default.
+    MAX_FOLLOWING_ERROR: u32 = 0x6065, 0, "Max Following Error";
+    /// qc; FFFFFFFF: the target counts as reached at the end of the profile.
+    POSITION_WINDOW: u32 = 0x6067, 0, "Position Window";
+    /// Milliseconds in the window before the target counts as reached.
+    POSITION_WINDOW_TIME: u16 = 0x6068, 0, "Position Window Time";
+    /// Demand, rpm.
+    VELOCITY_DEMAND: i32 = 0x606B, 0, "Velocity Demand Value";
+    /// Actual, rpm.
+    VELOCITY_ACTUAL: i32 = 0x606C, 0, "Velocity Actual Value";
+    /// mA.
+    CURRENT_ACTUAL: i16 = 0x6078, 0, "Current Actual Value";
+    /// qc.
+    TARGET_POSITION: i32 = 0x607A, 0, "Target Position";
+    /// From the reference to home, qc.
+    HOME_OFFSET: i32 = 0x607C, 0, "Home Offset";
+    /// Software limit, qc; [`i32::MIN`] is off.
+    MIN_POSITION: i32 = 0x607D, 1, "Min Position Limit";
+    /// Software limit, qc; [`i32::MAX`] is off.
+    MAX_POSITION: i32 = 0x607D, 2, "Max Position Limit";
+    /// rpm, at most 25000.
+    MAX_PROFILE_VELOCITY: u32 = 0x607F, 0, "Max Profile Velocity";
+    /// rpm.
+    PROFILE_VELOCITY: u32 = 0x6081, 0, "Profile Velocity";
+    /// rpm/s.
+    PROFILE_ACCELERATION: u32 = 0x6083, 0, "Profile Acceleration";
+    /// rpm/s.
+    PROFILE_DECELERATION: u32 = 0x6084, 0, "Profile Deceleration";
+    /// rpm/s.
+    QUICK_STOP_DECELERATION: u32 = 0x6085, 0, "QuickStop Deceleration";
+    /// 0 trapezoid, 1 sinus.
+    PROFILE_TYPE: i16 = 0x6086, 0, "Motion Profile Type";
+    /// Homing method.
+    HOMING_METHOD: i8 = 0x6098, 0, "Homing Method";
+    /// rpm.
+    HOMING_SWITCH_SPEED: u32 = 0x6099, 1, "Speed for Switch Search";
+    /// rpm.
+    HOMING_ZERO_SPEED: u32 = 0x6099, 2, "Speed for Zero Search";
+    /// rpm/s.
+    HOMING_ACCELERATION: u32 = 0x609A, 0, "Homing Acceleration";
+    /// rpm/s.
+    MAX_ACCELERATION: u32 = 0x60C5, 0, "Max Acceleration";
+    /// rpm.
+    TARGET_VELOCITY: i32 = 0x60FF, 0, "Target Velocity";
+    /// 10 sinusoidal EC motor, 11 block commutated, 1 DC.
+    MOTOR_TYPE: u16 = 0x6402, 0, "Motor Type";
+    /// mA.
+    CONTINUOUS_CURRENT: u16 = 0x6410, 1, "Continuous Current Limit";
+    /// mA.
+    OUTPUT_CURRENT: u16 = 0x6410, 2, "Output Current Limit";
+    /// rpm.
+    MAX_MOTOR_SPEED: u32 = 0x6410, 4, "Maximal Motor Speed";
+    /// One bit a mode.
+    SUPPORTED_MODES: u32 = 0x6502, 0, "Supported Drive Modes";
+}
+
+/// The device name ("EPOS2"), a string: segmented read only.
+pub const DEVICE_NAME: Address = Address::new(0x1008, 0);
+/// The whole serial number, 64 bits: segmented read only.
+pub const SERIAL_NUMBER_64: Address = Address::new(0x2004, 0);
+
+/// What [`STORE_ALL`] wants: "save", low byte first.
+pub const SAVE: u32 = u32::from_le_bytes(*b"save");
+/// What [`RESTORE_ALL`] wants: "load", low byte first.
+pub const LOAD: u32 = u32::from_le_bytes(*b"load");
+
+/// Bits of [`INPUT_STATE`], its mask, polarity and execution mask; a purpose in 2070 is the number of its bit.
+pub mod input {
+    /// Negative limit switch.
+    pub const NEGATIVE_LIMIT: u16 = 1 << 0;
+    /// Positive limit switch.
+    pub const POSITIVE_LIMIT: u16 = 1 << 1;
+    /// Home switch.
+    pub const HOME_SWITCH: u16 = 1 << 2;
+    /// Position marker.
+    pub const POSITION_MARKER: u16 = 1 << 3;
+    /// Enable.
+    pub const DRIVE_ENABLE: u16 = 1 << 4;
+    /// Quick stop.
+    pub const QUICK_STOP: u16 = 1 << 5;
+}
+
+/// Purpose of a digital output: holding brake (2079), and the number of its bit in 2078.
+pub const OUTPUT_BRAKE: u16 = 2;
+/// Purpose of a digital output: ready / fault.
+pub const OUTPUT_READY: u16 = 0;
+
+/// The error history's entry `n`, 1 to 5, latest first.
+#[must_use]
+pub const fn error_history(n: u8) -> Object<u32> {
+    Object::new(0x1003, n, "Error History")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_address_stands_twice() {
+        for (i, (address, name)) in ALL.iter().enumerate() {
+            assert!(
+                ALL.iter().skip(i + 1).all(|(other, _)| other != address),
+                "{address} {name}"
+            );
+        }
+    }
+
+    #[test]
+    fn garbage_above_the_value_is_cut_off() {
+        assert_eq!(STATUSWORD.decode(0xDEAD_0337), 0x0337);
+        assert_eq!(MODE_DISPLAY.decode(0xDEAD_BEFF), -1);
+        assert_eq!(POSITION_ACTUAL.decode(0xFFFF_8AD0), -30_000);
+    }
+
+    #[test]
+    fn negative_values_extend_their_sign() {
+        assert_eq!(HOMING_METHOD.encode(-3), 0xFFFF_FFFD);
+        assert_eq!(CONTROLWORD.encode(0xFFFF), 0x0000_FFFF);
+        assert_eq!(TARGET_POSITION.encode(-1), u32::MAX);
+    }
+
+    #[test]
+    fn signatures_are_the_letters_low_byte_first() {
+        assert_eq!(SAVE, 0x6576_6173);
+        assert_eq!(LOAD, 0x6461_6F6C);
+    }
+}
