@@ -1,0 +1,243 @@
+//! What is plugged in: serial ports, and EPOS2 units on USB with or without a serial port to them.
+//!
+//! Linux's `ftdi_sio` driver does not know the EPOS2's product number, so that a unit can be on the bus and still have
+//! no port; only sysfs shows that. Whether a device answers is not tried, and the network is not searched.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serialport::SerialPortType;
+
+/// USB vendor of the EPOS2 (FTDI's).
+pub const EPOS2_VENDOR: u16 = 0x0403;
+/// USB product of the EPOS2.
+pub const EPOS2_PRODUCT: u16 = 0xA8B0;
+
+/// What the bus says about a USB device.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UsbIdentity {
+    /// Vendor number.
+    pub vendor: u16,
+    /// Product number.
+    pub product: u16,
+    /// Product name, where the device tells one.
+    pub name: Option<String>,
+    /// Serial number, where the device tells one.
+    pub serial_number: Option<String>,
+}
+
+/// A serial port of this machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SerialPortFound {
+    /// Its path.
+    pub path: PathBuf,
+    /// The USB device behind it, if one is.
+    pub usb: Option<UsbIdentity>,
+}
+
+/// An EPOS2 on USB.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Epos2Found {
+    /// What it says about itself.
+    pub usb: UsbIdentity,
+    /// Its place on the bus, such as `1-4.2`.
+    pub bus_place: String,
+    /// Its serial port; `None`: no driver has taken it.
+    pub port: Option<PathBuf>,
+}
+
+/// What was found. Lists are in order of their names.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Findings {
+    /// Serial ports, whatever is behind them.
+    pub serial_ports: Vec<SerialPortFound>,
+    /// EPOS2 units on USB.
+    pub epos2: Vec<Epos2Found>,
+    /// What could not be looked at, and why.
+    pub problems: Vec<String>,
+}
+
+/// Looks at this machine.
+#[must_use]
+pub fn discover() -> Findings {
+    let mut findings = Findings::default();
+    match serial_ports() {
+        Ok(ports) => findings.serial_ports = ports,
+        Err(e) => findings.problems.push(format!("serial ports: {e}")),
+    }
+    match find_epos2(Path::new("/sys/bus/usb/devices")) {
+        Ok(units) => findings.epos2 = units,
+        Err(e) => findings.problems.push(format!("USB: {e}")),
+    }
+    findings
+}
+
+fn serial_ports() -> std::io::Result<Vec<SerialPortFound>> {
+    // serialport (4.10) panics where this folder cannot be read.
+    fs::read_dir("/sys/class/tty")?;
+    let mut ports: Vec<_> = serialport::available_ports()?
+        .into_iter()
+        .map(serial_port)
+        .collect();
+    ports.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(ports)
+}
+
+fn serial_port(found: serialport::SerialPortInfo) -> SerialPortFound {
+    let usb = match found.port_type {
+        SerialPortType::UsbPort(usb) => Some(UsbIdentity {
+            vendor: usb.vid,
+            product: usb.pid,
+            name: usb.product,
+            serial_number: usb.serial_number,
+        }),
+        _ => None,
+    };
+    SerialPortFound {
+        path: PathBuf::from(found.port_name),
+        usb,
+    }
+}
+
+/// The EPOS2 units under sysfs's list of USB devices. No such list (no USB on this machine, a container): none.
+fn find_epos2(devices: &Path) -> std::io::Result<Vec<Epos2Found>> {
+    let mut units = Vec::new();
+    let entries = match fs::read_dir(devices) {
+        Ok(entries) => entries,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(units),
+        Err(e) => return Err(e),
+    };
+    for entry in entries {
+        let device = entry?.path();
+        let number = |file| u16::from_str_radix(&attribute(&device, file)?, 16).ok();
+        let (Some(vendor), Some(product)) = (number("idVendor"), number("idProduct")) else {
+            continue; // an interface or a hub's port, not a device
+        };
+        if (vendor, product) != (EPOS2_VENDOR, EPOS2_PRODUCT) {
+            continue;
+        }
+        let bus_place = device
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        units.push(Epos2Found {
+            usb: UsbIdentity {
+                vendor,
+                product,
+                name: attribute(&device, "product"),
+                serial_number: attribute(&device, "serial"),
+            },
+            port: port_of(&device, &bus_place),
+            bus_place,
+        });
+    }
+    units.sort_by(|a, b| a.bus_place.cmp(&b.bus_place));
+    Ok(units)
+}
+
+/// The serial port under a USB device: `1-4/1-4:1.0/ttyUSB0`, or `1-4/1-4:1.0/tty/ttyACM0`.
+fn port_of(device: &Path, bus_place: &str) -> Option<PathBuf> {
+    let prefix = format!("{bus_place}:");
+    for interface in names(device).iter().filter(|n| n.starts_with(&prefix)) {
+        let interface = device.join(interface);
+        for folder in [interface.clone(), interface.join("tty")] {
+            let port = names(&folder)
+                .into_iter()
+                .find(|name| name.starts_with("tty") && name.len() > 3);
+            if let Some(port) = port {
+                return Some(Path::new("/dev").join(port));
+            }
+        }
+    }
+    None
+}
+
+/// The names in a folder, in order; none if it cannot be read.
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .collect();
+    names.sort();
+    names
+}
+
+/// A line of sysfs.
+fn attribute(device: &Path, file: &str) -> Option<String> {
+    let text = fs::read_to_string(device.join(file)).ok()?;
+    let text = text.trim();
+    (!text.is_empty()).then(|| text.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn device(devices: &Path, place: &str, product: &str) -> PathBuf {
+        let folder = devices.join(place);
+        fs::create_dir_all(&folder).unwrap();
+        for (file, text) in [
+            ("idVendor", "0403"),
+            ("idProduct", product),
+            ("product", "maxon motor EPOS2"),
+            ("serial", "123456"),
+        ] {
+            fs::write(folder.join(file), format!("{text}\n")).unwrap();
+        }
+        folder
+    }
+
+    #[test]
+    fn units_are_found_with_and_without_a_port() {
+        let sysfs = tempfile::tempdir().unwrap();
+        let with_port = device(sysfs.path(), "1-4.2", "a8b0");
+        fs::create_dir_all(with_port.join("1-4.2:1.0/ttyUSB0")).unwrap();
+        device(sysfs.path(), "1-1", "a8b0");
+        let acm = device(sysfs.path(), "2-1", "a8b0");
+        fs::create_dir_all(acm.join("2-1:1.0/tty/ttyACM3")).unwrap();
+        device(sysfs.path(), "1-2", "6001"); // an ordinary FTDI adapter
+        fs::create_dir_all(sysfs.path().join("1-4.2:1.0")).unwrap(); // sysfs lists interfaces too
+        let found = find_epos2(sysfs.path()).unwrap();
+        let summary: Vec<_> = found
+            .iter()
+            .map(|unit| (unit.bus_place.as_str(), unit.port.as_deref()))
+            .collect();
+        assert_eq!(
+            summary,
+            [
+                ("1-1", None),
+                ("1-4.2", Some(Path::new("/dev/ttyUSB0"))),
+                ("2-1", Some(Path::new("/dev/ttyACM3"))),
+            ]
+        );
+        assert_eq!(found[0].usb.name.as_deref(), Some("maxon motor EPOS2"));
+        assert_eq!(found[0].usb.serial_number.as_deref(), Some("123456"));
+    }
+
+    #[test]
+    fn a_machine_without_usb_has_none() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(find_epos2(&folder.path().join("missing")).unwrap(), []);
+    }
+
+    #[test]
+    fn serial_ports_are_paths_under_dev() {
+        let found = serial_port(serialport::SerialPortInfo {
+            port_name: "/dev/ttyUSB0".to_owned(),
+            port_type: SerialPortType::UsbPort(serialport::UsbPortInfo {
+                vid: EPOS2_VENDOR,
+                pid: EPOS2_PRODUCT,
+                serial_number: None,
+                manufacturer: None,
+                product: Some("maxon motor EPOS2".to_owned()),
+            }),
+        });
+        assert_eq!(found.path, Path::new("/dev/ttyUSB0"));
+        assert_eq!(found.usb.map(|usb| usb.product), Some(EPOS2_PRODUCT));
+        for port in discover().serial_ports {
+            assert!(port.path.starts_with("/dev"), "{port:?}");
+        }
+    }
+}

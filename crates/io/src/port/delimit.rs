@@ -1,0 +1,146 @@
+//! Where EPOS2 USB frames start and end in a stream of bytes: for the log, which keeps raw bytes and loses none.
+//!
+//! The frames are those of [`UsbDecoder`]; what they say is thrown away here, and a frame with a wrong CRC is a frame like
+//! any other, as it was on the wire.
+
+use protocol::epos2::FrameError;
+use protocol::epos2::usb::{DLE, UsbDecoder};
+
+/// A run of bytes that belongs together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Piece {
+    /// A frame from its `90 02` to its last CRC byte, stuffing included.
+    Frame(usize),
+    /// Bytes that belong to no frame, or to one that was broken off.
+    Noise(usize),
+}
+
+/// The pieces of a stream, by their lengths; every byte pushed is in exactly one piece.
+#[derive(Debug, Default)]
+pub(super) struct Delimiter {
+    decoder: UsbDecoder,
+    /// Bytes since the end of the last piece, and the last of them.
+    open: usize,
+    last: u8,
+}
+
+impl Delimiter {
+    /// Takes a byte; a piece that ends with it, or (noise) two bytes before it where a frame starts.
+    pub(super) fn push(&mut self, byte: u8) -> Option<Piece> {
+        self.open += 1;
+        self.last = byte;
+        let within = self.decoder.is_within_frame();
+        match self.decoder.push(byte) {
+            None if !within && self.decoder.is_within_frame() => self.start(),
+            None => None,
+            Some(Ok(_) | Err(FrameError::Crc { .. })) => Some(Piece::Frame(self.take())),
+            // The sync pair of a new frame inside another.
+            Some(Err(_)) if self.decoder.is_within_frame() => self.start(),
+            Some(Err(_)) => Some(Piece::Noise(self.take())),
+        }
+    }
+
+    /// Whether the bytes of the open piece may still become a frame.
+    pub(super) fn in_frame(&self) -> bool {
+        self.decoder.is_within_frame() || (self.open > 0 && self.last == DLE)
+    }
+
+    /// Ends the open piece.
+    pub(super) fn flush(&mut self) -> Option<Piece> {
+        self.decoder.reset();
+        match self.take() {
+            0 => None,
+            open => Some(Piece::Noise(open)),
+        }
+    }
+
+    fn take(&mut self) -> usize {
+        std::mem::take(&mut self.open)
+    }
+
+    /// A sync pair was seen: what was open before it is noise.
+    fn start(&mut self) -> Option<Piece> {
+        let before = self.open.saturating_sub(2);
+        self.open = 2;
+        (before > 0).then_some(Piece::Noise(before))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pieces(bytes: &[u8]) -> Vec<Piece> {
+        let mut delimiter = Delimiter::default();
+        let mut pieces: Vec<_> = bytes.iter().filter_map(|&b| delimiter.push(b)).collect();
+        pieces.extend(delimiter.flush());
+        pieces
+    }
+
+    /// The answer 0x0237 to reading the statusword.
+    const ANSWER: [u8; 14] = [
+        0x90, 0x02, 0x00, 0x04, 0, 0, 0, 0, 0x37, 0x02, 0, 0, 0x68, 0x00,
+    ];
+    /// An answer with the word 0x0090 in it, so with stuffing.
+    const STUFFED: [u8; 15] = [
+        0x90, 0x02, 0x00, 0x04, 0, 0, 0, 0, 0, 0, 0x90, 0x90, 0x80, 0x14, 0x35,
+    ];
+
+    #[test]
+    fn frames_back_to_back() {
+        let stream = [&ANSWER[..], &STUFFED, &ANSWER].concat();
+        assert_eq!(
+            pieces(&stream),
+            [Piece::Frame(14), Piece::Frame(15), Piece::Frame(14)]
+        );
+    }
+
+    #[test]
+    fn noise_around_frames_is_kept_apart() {
+        let stream = [&[0x11, 0x90][..], &ANSWER, &[0x90, 0x33]].concat();
+        assert_eq!(
+            pieces(&stream),
+            [Piece::Noise(2), Piece::Frame(14), Piece::Noise(2)]
+        );
+    }
+
+    #[test]
+    fn a_start_inside_a_frame_breaks_it_off() {
+        let stream = [&ANSWER[..9], &ANSWER].concat();
+        assert_eq!(pieces(&stream), [Piece::Noise(9), Piece::Frame(14)]);
+    }
+
+    #[test]
+    fn a_single_90_breaks_a_frame() {
+        let stream = [&ANSWER[..8], &[0x90, 0x05], &ANSWER].concat();
+        assert_eq!(pieces(&stream), [Piece::Noise(10), Piece::Frame(14)]);
+    }
+
+    #[test]
+    fn a_frame_may_end_in_a_doubled_90() {
+        let mut stream = ANSWER.to_vec();
+        stream.pop();
+        stream.extend([0x90, 0x90]);
+        stream.extend(ANSWER);
+        assert_eq!(pieces(&stream), [Piece::Frame(15), Piece::Frame(14)]);
+    }
+
+    #[test]
+    fn a_data_pair_90_90_02_is_no_start() {
+        let frame = [0x90, 0x02, 0x00, 0x01, 0x90, 0x90, 0x02, 0xAA, 0xBB];
+        assert_eq!(pieces(&frame), [Piece::Frame(9)]);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_byte_is_lost_or_counted_twice(bytes in proptest::collection::vec(
+            proptest::prop_oneof![
+                proptest::prelude::Just(0x90_u8), proptest::prelude::Just(2), proptest::prelude::any::<u8>()
+            ], 0..200)) {
+            let total: usize = pieces(&bytes).iter().map(|piece| match *piece {
+                Piece::Frame(n) | Piece::Noise(n) => n,
+            }).sum();
+            proptest::prop_assert_eq!(total, bytes.len());
+        }
+    }
+}

@@ -1,0 +1,751 @@
+use super::*;
+use proptest::prelude::*;
+
+use crate::files::Overwrite;
+use crate::log::{LogConfig, LogWriter, OwnedRecord};
+
+const SOURCE: [u8; 4] = [192, 168, 1, 201];
+
+/// An IPv4 packet with UDP in it, written without etherparse and without checksums, which recordings often lack.
+fn ip(port: u16, payload: &[u8]) -> Vec<u8> {
+    let udp_len = (payload.len() + 8) as u16;
+    let mut out = vec![0x45, 0];
+    out.extend((udp_len + 20).to_be_bytes());
+    out.extend([0, 0, 0x40, 0, 64, 17, 0, 0]);
+    out.extend(SOURCE);
+    out.extend([255; 4]);
+    out.extend(port.to_be_bytes());
+    out.extend(port.to_be_bytes());
+    out.extend(udp_len.to_be_bytes());
+    out.extend([0, 0]);
+    out.extend(payload);
+    out
+}
+
+fn ethernet(tags: &[u8], packet: &[u8]) -> Vec<u8> {
+    [
+        &[0xFF; 6][..],
+        &[0x60, 0x76, 0x88, 1, 2, 3],
+        tags,
+        &[8, 0],
+        packet,
+    ]
+    .concat()
+}
+
+fn put(out: &mut Vec<u8>, value: u32, big_endian: bool) {
+    out.extend(if big_endian {
+        value.to_be_bytes()
+    } else {
+        value.to_le_bytes()
+    });
+}
+
+/// A pcap file; records are (seconds, fraction, original length or that of the data, data).
+fn pcap(magic: u32, big: bool, link: u32, records: &[(u32, u32, Option<u32>, &[u8])]) -> Vec<u8> {
+    let mut out = Vec::new();
+    put(&mut out, magic, big);
+    out.extend(if big { [0, 2, 0, 4] } else { [2, 0, 4, 0] });
+    for value in [0, 0, 65_535, link] {
+        put(&mut out, value, big);
+    }
+    for (s, fraction, original, data) in records {
+        let length = data.len() as u32;
+        for value in [*s, *fraction, length, original.unwrap_or(length)] {
+            put(&mut out, value, big);
+        }
+        out.extend(*data);
+    }
+    out
+}
+
+fn block(kind: u32, big: bool, body: &[u8]) -> Vec<u8> {
+    let mut out = Vec::new();
+    let length = body.len() as u32 + 12;
+    put(&mut out, kind, big);
+    put(&mut out, length, big);
+    out.extend(body);
+    put(&mut out, length, big);
+    out
+}
+
+fn section(big: bool) -> Vec<u8> {
+    let mut body = Vec::new();
+    put(&mut body, 0x1A2B_3C4D, big);
+    body.extend(if big { [0, 1, 0, 0] } else { [1, 0, 0, 0] });
+    body.extend([0xFF; 8]);
+    block(0x0A0D_0D0A, big, &body)
+}
+
+fn interface(big: bool, link: u16, options: &[(u16, &[u8])]) -> Vec<u8> {
+    let u16s = |value: u16| {
+        if big {
+            value.to_be_bytes()
+        } else {
+            value.to_le_bytes()
+        }
+    };
+    let mut body = u16s(link).to_vec();
+    body.extend([0; 6]);
+    for (code, value) in options {
+        body.extend(u16s(*code));
+        body.extend(u16s(value.len() as u16));
+        body.extend(*value);
+        body.resize(body.len().next_multiple_of(4), 0);
+    }
+    block(1, big, &body)
+}
+
+fn packet(big: bool, interface: u32, time: u64, data: &[u8], flags: Option<u32>) -> Vec<u8> {
+    let mut body = Vec::new();
+    let length = data.len() as u32;
+    for value in [interface, (time >> 32) as u32, time as u32, length, length] {
+        put(&mut body, value, big);
+    }
+    body.extend(data);
+    body.resize(body.len().next_multiple_of(4), 0);
+    if let Some(flags) = flags {
+        body.extend(if big { [0, 2, 0, 4] } else { [2, 0, 4, 0] });
+        put(&mut body, flags, big);
+    }
+    block(6, big, &body)
+}
+
+/// Everything in a recording, how it ended, and the counts.
+fn read(bytes: &[u8]) -> (Vec<OwnedRecord>, End, Counts) {
+    let mut recording = Recording::new(bytes, "test").unwrap();
+    let mut records = Vec::new();
+    while let Some(record) = recording.next_record().unwrap() {
+        records.push(OwnedRecord::from(&record));
+    }
+    let end = recording.end().cloned().unwrap();
+    (records, end, recording.counts().clone())
+}
+
+fn datagram(ns: i64, port: u16, payload: &[u8]) -> OwnedRecord {
+    OwnedRecord::from(&Record {
+        host: Stamp::from_nanos(ns),
+        wire: Wire::Lidar {
+            source: SOURCE,
+            port,
+            payload,
+        },
+    })
+}
+
+fn frame(ns: i64, link: DriveLink, direction: Direction, frame: &[u8]) -> OwnedRecord {
+    OwnedRecord::from(&Record {
+        host: Stamp::from_nanos(ns),
+        wire: Wire::Drive {
+            link,
+            direction,
+            frame,
+        },
+    })
+}
+
+#[test]
+fn pcap_in_micro_and_nanoseconds_and_both_byte_orders() {
+    let data = ethernet(&[], &ip(2368, b"firing"));
+    for big_endian in [false, true] {
+        for (magic, nanoseconds) in [(0xA1B2_C3D4, false), (0xA1B2_3C4D, true)] {
+            let file = pcap(
+                magic,
+                big_endian,
+                1,
+                &[(1_599_213_599, 872_340, None, &data)],
+            );
+            let fraction = if nanoseconds { 872_340 } else { 872_340_000 };
+            let (records, end, counts) = read(&file);
+            let ns = 1_599_213_599_000_000_000 + fraction;
+            assert_eq!(records, [datagram(ns, 2368, b"firing")]);
+            assert_eq!(end, End::Complete);
+            assert_eq!(counts.to_port_of_size(2368, 6), 1);
+            let format = Recording::new(file.as_slice(), "").unwrap().format();
+            assert_eq!(
+                format,
+                Format::Pcap {
+                    nanoseconds,
+                    big_endian
+                }
+            );
+        }
+    }
+}
+
+#[test]
+fn every_way_to_wrap_an_ip_packet() {
+    let ip = ip(8308, b"$GPRMC");
+    let tag = [0x81, 0x00, 0x00, 0x05];
+    let double_tag = [0x88, 0xA8, 0, 7, 0x81, 0x00, 0x00, 0x05];
+    let cooked1 = [&[0, 0, 0, 1, 0, 6, 1, 2, 3, 4, 5, 6, 0, 0, 8, 0][..], &ip].concat();
+    let cooked2 = [&[8, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 6][..], &[0; 8], &ip].concat();
+    for (link, data) in [
+        (1, ethernet(&[], &ip)),
+        (1, [ethernet(&[], &ip), vec![0; 10]].concat()), // padding or check sequence
+        (1, ethernet(&tag, &ip)),
+        (1, ethernet(&double_tag, &ip)),
+        (113, cooked1),
+        (276, cooked2),
+        (101, ip.clone()),
+        (12, ip.clone()),
+        (228, ip.clone()),
+        (0, [&[2, 0, 0, 0][..], &ip].concat()),
+        (0, [&[0, 0, 0, 2][..], &ip].concat()),
+        (108, [&[0, 0, 0, 2][..], &ip].concat()),
+        (1 | 0x2400_0000, ethernet(&[], &ip)), // with the length of the check sequence in its field
+    ] {
+        let (records, end, counts) = read(&pcap(0xA1B2_C3D4, false, link, &[(1, 0, None, &data)]));
+        assert_eq!(
+            records,
+            [datagram(1_000_000_000, 8308, b"$GPRMC")],
+            "link {link}: {counts:?}"
+        );
+        assert_eq!(end, End::Complete);
+    }
+}
+
+#[test]
+fn what_is_not_a_datagram_is_counted_by_kind() {
+    let good = ethernet(&[], &ip(2368, b"good"));
+    let arp = {
+        let mut frame = ethernet(&[], &[0; 28]);
+        frame[12..14].copy_from_slice(&[8, 6]);
+        frame[14..22].copy_from_slice(&[0, 1, 8, 0, 6, 4, 0, 1]);
+        frame
+    };
+    let mut first_fragment = ethernet(&[], &ip(2368, b"part"));
+    first_fragment[20] = 0x20; // more fragments
+    let mut last_fragment = ethernet(&[], &ip(2368, b"part"));
+    last_fragment[20..22].copy_from_slice(&[0, 9]);
+    let mut lies = ethernet(&[], &ip(2368, b"lies"));
+    lies[39] += 1; // UDP length beyond the packet
+    let mut lldp = good.clone();
+    lldp[12..14].copy_from_slice(&[0x88, 0xCC]);
+    let file = pcap(
+        0xA1B2_C3D4,
+        false,
+        1,
+        &[
+            (1, 0, None, &arp),
+            (2, 0, None, &first_fragment),
+            (3, 0, None, &last_fragment),
+            (4, 0, None, &lldp),
+            (5, 0, Some(1248), &good), // cut by a snap length
+            (6, 0, None, &lies),
+            (7, 0, None, &good[..20]),
+            (8, 0, None, &[]),
+            (9, 0, None, &good),
+        ],
+    );
+    let (records, end, counts) = read(&file);
+    assert_eq!(records, [datagram(9_000_000_000, 2368, b"good")]);
+    assert_eq!(end, End::Complete);
+    assert_eq!(
+        (
+            counts.records,
+            counts.other,
+            counts.fragments,
+            counts.malformed
+        ),
+        (9, 2, 2, 4)
+    );
+    let first = counts.first_malformed.unwrap();
+    let before: usize = [&arp, &first_fragment, &last_fragment, &lldp]
+        .iter()
+        .map(|data| 16 + data.len())
+        .sum();
+    assert_eq!(first.offset, 24 + before as u64);
+    assert_eq!(
+        first.fault.to_string(),
+        format!("the capture kept {} bytes of 1248", good.len())
+    );
+}
+
+#[test]
+fn a_short_layer_is_named_with_what_it_lacks() {
+    let mut lies = ethernet(&[], &ip(2368, b"lies"));
+    lies[39] += 1;
+    let (_, _, counts) = read(&pcap(0xA1B2_C3D4, false, 1, &[(6, 0, None, &lies)]));
+    let fault = counts.first_malformed.unwrap().fault;
+    assert!(
+        matches!(
+            &fault,
+            Fault::Short {
+                expected: 13,
+                got: 12,
+                ..
+            }
+        ),
+        "{fault}"
+    );
+    assert!(fault.to_string().contains("UDP"), "{fault}");
+}
+
+#[test]
+fn pcapng_times_in_every_resolution_and_both_byte_orders() {
+    let data = ethernet(&[], &ip(2368, b"x"));
+    let second = 1_700_000_000_i64;
+    for big in [false, true] {
+        for (resolution, units) in [
+            (None, second as u64 * 1_000_000 + 5),
+            (Some(9), second as u64 * 1_000_000_000 + 5_000),
+            (Some(10), second as u64 * 10_000_000_000 + 50_009), // the tenth of a nanosecond is dropped
+            (Some(0x80 | 20), ((second as u64) << 20) + 6),      // 6 / 2^20 s = 5722.0 ns
+        ] {
+            let options: Vec<(u16, Vec<u8>)> = resolution.iter().map(|&r| (9, vec![r])).collect();
+            let options: Vec<(u16, &[u8])> =
+                options.iter().map(|(c, v)| (*c, v.as_slice())).collect();
+            let file = [
+                section(big),
+                interface(big, 1, &options),
+                packet(big, 0, units, &data, None),
+            ]
+            .concat();
+            let expected = match resolution {
+                Some(0x94) => 5_722,
+                _ => 5_000,
+            };
+            let (records, end, _) = read(&file);
+            let ns = second * 1_000_000_000 + expected;
+            assert_eq!(records, [datagram(ns, 2368, b"x")], "{resolution:?} {big}");
+            assert_eq!(end, End::Complete);
+        }
+        let offset = if big {
+            100_i64.to_be_bytes()
+        } else {
+            100_i64.to_le_bytes()
+        };
+        let file = [
+            section(big),
+            interface(big, 1, &[(14, &offset)]),
+            packet(big, 0, 7, &data, None),
+        ]
+        .concat();
+        assert_eq!(read(&file).0, [datagram(100_000_007_000, 2368, b"x")]);
+    }
+}
+
+#[test]
+fn absurd_time_resolutions_are_held_not_wrapped() {
+    let data = ethernet(&[], &ip(2368, b"x"));
+    for (resolution, expected) in [(0, i64::MAX), (127, 0), (0xFF, 0)] {
+        let file = [
+            section(false),
+            interface(false, 1, &[(9, &[resolution])]),
+            packet(false, 0, u64::MAX, &data, None),
+        ]
+        .concat();
+        assert_eq!(read(&file).0, [datagram(expected, 2368, b"x")]);
+    }
+}
+
+#[test]
+fn pcapng_sections_start_anew_and_other_blocks_are_passed_over() {
+    let data = ethernet(&[], &ip(2368, b"x"));
+    let can = [0, 0, 6, 1, 8, 0, 0, 0, 0x40, 0x41, 0x60, 0, 0, 0, 0, 0];
+    let file = [
+        section(false),
+        interface(false, 1, &[]),
+        block(4, false, &[0; 8]), // name resolution
+        packet(false, 0, 1, &data, None),
+        packet(false, 1, 2, &data, None), // no such interface
+        block(3, false, &[1, 0, 0, 0, 0xAA, 0, 0, 0]), // simple packet
+        block(0x7777, false, &[1; 400]),  // of a kind that is not known
+        block(6, false, &[0xFF; 40]),     // lengths beyond the block
+        section(true),                    // the other byte order
+        interface(true, 227, &[]),
+        interface(true, 1, &[]),
+        packet(true, 0, 3, &can, Some(1)),
+        packet(true, 0, 4, &can, None), // by its function code: to the drive
+        packet(true, 1, 5, &data, None),
+    ]
+    .concat();
+    let (records, end, counts) = read(&file);
+    assert_eq!(
+        records,
+        [
+            datagram(1_000, 2368, b"x"),
+            frame(3_000, DriveLink::Can, Direction::FromDevice, &can),
+            frame(4_000, DriveLink::Can, Direction::ToDevice, &can),
+            datagram(5_000, 2368, b"x"),
+        ]
+    );
+    assert_eq!(end, End::Complete);
+    assert_eq!((counts.records, counts.malformed), (7, 3));
+    assert_eq!(
+        counts.first_malformed.unwrap().fault,
+        Fault::Interface {
+            got: 1,
+            described: 1
+        }
+    );
+}
+
+#[test]
+fn a_can_recording_in_classic_pcap() {
+    let answer = [
+        0, 0, 5, 0x81, 8, 0, 0, 0, 0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0,
+    ];
+    let file = pcap(0xA1B2_C3D4, false, 227, &[(1, 0, None, &answer)]);
+    assert_eq!(
+        read(&file).0,
+        [frame(
+            1_000_000_000,
+            DriveLink::Can,
+            Direction::FromDevice,
+            &answer
+        )]
+    );
+}
+
+#[test]
+fn a_wrong_length_ends_the_reading_and_says_where() {
+    let data = ethernet(&[], &ip(2368, b"x"));
+    let mut file = pcap(0xA1B2_C3D4, false, 1, &[(1, 0, None, &data)]);
+    let offset = file.len() as u64;
+    file.extend([0xFF; 64]);
+    let (records, end, _) = read(&file);
+    assert_eq!(records.len(), 1);
+    assert!(
+        matches!(end, End::Unreadable { offset: at, fault: Fault::Length { .. } } if at == offset),
+        "{end:?}"
+    );
+
+    let mut broken = packet(false, 0, 1, &data, None);
+    let last = broken.len() - 4;
+    broken[last] ^= 4;
+    let head = [section(false), interface(false, 1, &[])].concat();
+    let (records, end, _) = read(&[head.clone(), broken].concat());
+    assert_eq!(records.len(), 0);
+    assert!(
+        matches!(end, End::Unreadable { offset, fault: Fault::Lengths { .. } } if offset == head.len() as u64),
+        "{end:?}"
+    );
+}
+
+/// Where records end in a file, so that a cut elsewhere is within one.
+fn cut_everywhere(file: &[u8], ends: &[usize]) {
+    let whole = read(file).0;
+    let header_end = ends[0];
+    for cut in 0..file.len() {
+        let got = Recording::new(&file[..cut], "cut");
+        if cut < header_end {
+            match got {
+                Err(RecordingError::Empty { .. }) => assert_eq!(cut, 0),
+                Err(RecordingError::Short { got, .. }) => assert_eq!(got, cut as u64),
+                // Fewer bytes than a magic number has.
+                other => panic!("cut at {cut}: {other:?}"),
+            }
+            continue;
+        }
+        let (records, end, counts) = read(&file[..cut]);
+        assert_eq!(records, whole[..records.len()], "cut at {cut}");
+        assert_eq!(counts.malformed, 0);
+        let start = *ends.iter().rfind(|&&end| end <= cut).unwrap();
+        if start == cut {
+            assert_eq!(end, End::Complete, "cut at {cut}");
+        } else {
+            let End::Truncated {
+                offset,
+                expected,
+                got,
+            } = end
+            else {
+                panic!("cut at {cut}: {end:?}");
+            };
+            assert_eq!((offset, got), (start as u64, (cut - start) as u64));
+            assert!(expected > got);
+        }
+    }
+}
+
+#[test]
+fn a_pcap_cut_at_any_byte_keeps_what_was_whole() {
+    let data = ethernet(&[], &ip(2368, b"firing"));
+    let records: Vec<(u32, u32, Option<u32>, &[u8])> =
+        (0..4).map(|s| (s, 0, None, data.as_slice())).collect();
+    for big in [false, true] {
+        let file = pcap(0xA1B2_3C4D, big, 1, &records);
+        let ends: Vec<usize> = (0..=4).map(|n| 24 + n * (16 + data.len())).collect();
+        cut_everywhere(&file, &ends);
+    }
+}
+
+#[test]
+fn a_pcapng_cut_at_any_byte_keeps_what_was_whole() {
+    let data = ethernet(&[], &ip(2368, b"firing"));
+    for big in [false, true] {
+        let mut file = Vec::new();
+        let mut ends = Vec::new();
+        for part in [
+            section(big),
+            interface(big, 1, &[(9, &[9])]),
+            packet(big, 0, 1, &data, None),
+            packet(big, 0, 2, &data, Some(1)),
+            packet(big, 0, 3, &data, Some(2)),
+        ] {
+            file.extend(part);
+            ends.push(file.len());
+        }
+        cut_everywhere(&file, &ends);
+    }
+}
+
+#[test]
+fn files_that_are_no_recordings_say_what_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = Recording::open(folder.path().join("missing.pcap")).unwrap_err();
+    assert!(matches!(missing, RecordingError::Open { .. }), "{missing}");
+    let directory = Recording::open(folder.path()).unwrap_err();
+    assert!(
+        matches!(directory, RecordingError::Read { offset: 0, .. }),
+        "{directory}"
+    );
+
+    let open = |bytes: &[u8]| Recording::new(bytes, "file").unwrap_err().to_string();
+    assert_eq!(
+        open(b""),
+        "file: expected a pcap or pcapng recording, got an empty file"
+    );
+    assert!(open(b"ply\nformat binary").ends_with("got a PLY cloud"));
+    assert!(open(&[0x1F, 0x8B, 8, 0]).contains("gzip"));
+    assert!(open(b"time_s,angle_deg\n0,0\n1,1\n").ends_with("starts 74 69 6D 65 5F 73 2C 61"));
+    assert!(open(&pcap(0xA1B2_C3D4, false, 105, &[])).ends_with("got 105"));
+    let user0 = pcap(0xA1B2_C3D4, false, 147, &[]);
+    assert!(
+        open(&user0).ends_with("got 147"),
+        "nothing says whose use of it this is"
+    );
+    let mut wrong_order = section(false);
+    wrong_order[8] ^= 1;
+    assert!(open(&wrong_order).contains("byte-order magic"));
+}
+
+/// The folder of real recordings, or a printed reason to skip.
+fn real(name: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("VELOMOTION_RECORDINGS").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings"),
+        PathBuf::from,
+    );
+    let path = folder.join(name);
+    if !path.exists() {
+        eprintln!("skipped: {} is not there", path.display());
+        return None;
+    }
+    Some(path)
+}
+
+#[test]
+fn real_recordings_hold_what_is_known_of_them() {
+    for (name, data, position) in [
+        ("vlp16-strongest-gps.pcap", 293, 57),
+        ("vlp16-dual.pcap", 603, 0),
+        ("vlp16-2014-no-factory-bytes.pcap", 1902, 0),
+        ("vlp16-fov-limited-malformed.pcap", 41, 36),
+    ] {
+        let Some(path) = real(name) else { return };
+        for pass in 1..=2 {
+            let mut recording = Recording::open(&path).unwrap();
+            let mut last = Stamp::from_nanos(0);
+            let mut records = 0;
+            while let Some(record) = recording.next_record().unwrap() {
+                assert!(record.host > Stamp::from_nanos(1_300_000_000_000_000_000));
+                last = last.max(record.host);
+                records += 1;
+            }
+            let counts = recording.counts();
+            assert_eq!(
+                counts.to_port_of_size(2368, 1206),
+                data,
+                "{name}, pass {pass}"
+            );
+            assert_eq!(counts.to_port_of_size(8308, 512), position, "{name}");
+            assert_eq!(records, data + position, "{name}");
+            let end = recording.end().cloned().unwrap();
+            if name.contains("malformed") {
+                // Cut off in its last record, 554 bytes and 16 of header, of which 258 are there.
+                let expected = End::Truncated {
+                    offset: 72_426,
+                    expected: 570,
+                    got: 258,
+                };
+                assert_eq!(end, expected);
+                assert_eq!(counts.other, 1, "an ARP question");
+            } else {
+                assert_eq!(end, End::Complete, "{name}");
+            }
+        }
+    }
+}
+
+/// A reader that makes up a long pcap file as it goes.
+struct Endless {
+    record: Vec<u8>,
+    left: usize,
+    at: usize,
+}
+
+impl Read for Endless {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.at == self.record.len() && self.left > 0 {
+            self.left -= 1;
+            self.at = 0;
+        }
+        let n = buffer.len().min(self.record.len() - self.at);
+        buffer[..n].copy_from_slice(&self.record[self.at..self.at + n]);
+        self.at += n;
+        Ok(n)
+    }
+}
+
+#[test]
+fn a_long_recording_does_not_grow_in_memory() {
+    let data = ethernet(&[], &ip(2368, &[7; 1206]));
+    let file = pcap(0xA1B2_C3D4, false, 1, &[(1, 0, None, &data)]);
+    let records = 100_000;
+    let endless = Endless {
+        record: file[24..].to_vec(),
+        left: records,
+        at: data.len() + 16,
+    };
+    let mut recording = Recording::new(file[..24].chain(endless), "126 MB").unwrap();
+    let before = recording.window.capacity();
+    let mut n = 0;
+    while recording.next_record().unwrap().is_some() {
+        n += 1;
+    }
+    assert_eq!(n, records);
+    assert_eq!(recording.window.capacity(), before);
+    assert!(before <= 1 << 20);
+}
+
+/// Small sound files of every format, to be damaged.
+fn sound_files() -> Vec<Vec<u8>> {
+    let data = ethernet(&[0x81, 0, 0, 5], &ip(2368, b"firing"));
+    let can = [0, 0, 6, 1, 2, 0, 0, 0, 0x40, 0x41];
+    let mut files = vec![
+        pcap(
+            0xA1B2_CD34,
+            false,
+            1,
+            &[(1, 2, None, &[0; 40]), (3, 4, None, &data)],
+        ),
+        pcap(
+            0xA1B2_C3D4,
+            false,
+            276,
+            &[(1, 2, None, &data), (3, 4, None, &data)],
+        ),
+        pcap(
+            0xA1B2_C3D4,
+            false,
+            113,
+            &[(1, 2, None, &data), (3, 4, None, &data)],
+        ),
+        pcap(0xA1B2_C3D4, false, 0, &[(1, 2, None, &data)]),
+    ];
+    for big in [false, true] {
+        files.push(pcap(
+            0xA1B2_C3D4,
+            big,
+            1,
+            &[(1, 2, None, &data), (3, 4, None, &data)],
+        ));
+        files.push(
+            [
+                section(big),
+                interface(big, 1, &[(2, b"lidar"), (9, &[9]), (14, &[0; 8])]),
+                interface(big, 227, &[(2, b"can")]),
+                interface(big, 147, &[(2, b"epos2-usb")]),
+                packet(big, 0, 1, &data, Some(1)),
+                packet(big, 1, 2, &can, Some(2)),
+                packet(big, 2, 3, &[0x90, 2, 0, 0], Some(2)),
+            ]
+            .concat(),
+        );
+    }
+    files
+}
+
+/// Reads whatever it is to its end.
+fn exhaust(bytes: &[u8]) -> u64 {
+    let Ok(mut recording) = Recording::new(bytes, "noise") else {
+        return 0;
+    };
+    while recording.next_record().unwrap().is_some() {}
+    let counts = recording.counts();
+    let udp = counts.datagrams.values().sum::<u64>() + counts.more_datagrams;
+    let parts = udp + counts.to_drive + counts.from_drive + counts.other;
+    assert_eq!(counts.records, parts + counts.fragments + counts.malformed);
+    assert!(recording.end().is_some());
+    counts.records
+}
+
+#[test]
+fn the_sound_files_are_sound() {
+    for (n, file) in sound_files().iter().enumerate() {
+        assert!(exhaust(file) > 0, "file {n}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        exhaust(&bytes);
+        for file in sound_files() {
+            // Behind a header that is believed.
+            exhaust(&[&file[..24.min(file.len())], &bytes].concat());
+        }
+    }
+
+    #[test]
+    fn no_damage_makes_it_panic(
+        n in any::<prop::sample::Index>(),
+        damage in prop::collection::vec((any::<prop::sample::Index>(), prop_oneof![Just(0_u8), Just(0xFF), any::<u8>()]), 1..12),
+        cut in any::<prop::sample::Index>(),
+    ) {
+        let files = sound_files();
+        let mut file = files[n.index(files.len())].clone();
+        for (at, value) in damage {
+            let at = at.index(file.len());
+            file[at] = value;
+        }
+        exhaust(&file);
+        exhaust(&file[..cut.index(file.len())]);
+    }
+}
+
+#[test]
+fn our_own_log_reads_back_with_its_configuration() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.pcapng");
+    let config = LogConfig {
+        metadata: "device = \"sim\"\n[mount]\nd_m = 0.06 # µ\n".to_owned(),
+        drive: Some(DriveLink::Usb),
+    };
+    let mut writer = LogWriter::create(&path, &config, Overwrite::Refuse).unwrap();
+    let records = [
+        datagram(5, 2368, b"firing"),
+        frame(6, DriveLink::Usb, Direction::ToDevice, &[0x90, 2, 0x10]),
+        frame(7, DriveLink::Usb, Direction::FromDevice, &[]),
+        frame(8, DriveLink::Rs232, Direction::FromDevice, b"O"),
+        frame(9, DriveLink::Can, Direction::ToDevice, &[0; 16]),
+    ];
+    for record in &records {
+        writer.write(&record.as_record()).unwrap();
+    }
+    writer.finish().unwrap();
+    let mut recording = Recording::open(&path).unwrap();
+    assert_eq!(recording.metadata(), Some(config.metadata.as_str()));
+    assert_eq!(recording.format(), Format::PcapNg);
+    for expected in &records {
+        let record = recording.next_record().unwrap().unwrap();
+        assert_eq!(OwnedRecord::from(&record), *expected);
+    }
+    assert!(recording.next_record().unwrap().is_none());
+    assert!(recording.next_record().unwrap().is_none(), "still");
+    assert_eq!(recording.end(), Some(&End::Complete));
+}

@@ -1,0 +1,188 @@
+use super::*;
+use std::net::UdpSocket;
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+use std::thread;
+use std::time::Instant;
+
+use units::{Host, Span, Stamp};
+
+use crate::clock;
+use crate::log::OwnedRecord;
+
+fn local(receive_buffer: usize) -> ListenConfig {
+    ListenConfig {
+        address: Ipv4Addr::LOCALHOST,
+        data_port: 0,
+        position_port: Some(0),
+        receive_buffer,
+    }
+}
+
+fn payload_of(record: &OwnedRecord) -> (u16, Vec<u8>) {
+    match record.as_record().wire {
+        Wire::Lidar {
+            source,
+            port,
+            payload,
+        } => {
+            assert_eq!(source, [127, 0, 0, 1]);
+            (port, payload.to_vec())
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn both_ports_are_heard_with_kernel_times() {
+    let mut listener = Listener::bind(&local(1 << 20)).unwrap();
+    let data = listener.sockets()[0].address();
+    let position = listener.sockets()[1].address();
+    assert_ne!(data.port(), position.port());
+    assert!(listener.sockets()[0].receive_buffer() > 0);
+    let stop = Arc::new(AtomicBool::new(false));
+    let (heard, inbox) = channel();
+    let listening = {
+        let stop = Arc::clone(&stop);
+        thread::spawn(move || {
+            let counts = listener.run(&stop, |record| {
+                heard
+                    .send((OwnedRecord::from(record), clock::now()))
+                    .unwrap();
+            });
+            (listener, counts)
+        })
+    };
+    let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let mut last: Option<Stamp<Host>> = None;
+    for n in 0..200_u8 {
+        let (to, length) = if n % 10 == 0 {
+            (position, 512)
+        } else {
+            (data, 1206)
+        };
+        let before = clock::now();
+        sender.send_to(&vec![n; length], to).unwrap();
+        let (record, after) = inbox.recv_timeout(Duration::from_secs(5)).unwrap();
+        assert_eq!(payload_of(&record), (to.port(), vec![n; length]));
+        // On loopback the packet is stamped within the send.
+        assert!(
+            before <= record.host() && record.host() <= after,
+            "packet {n}"
+        );
+        assert!(last <= Some(record.host()), "times do not run back");
+        last = Some(record.host());
+    }
+    let stopping = Instant::now();
+    stop.store(true, Ordering::Release);
+    let (listener, counts) = listening.join().unwrap();
+    assert!(stopping.elapsed() < Duration::from_secs(1));
+    assert_eq!(
+        counts.unwrap(),
+        ListenCounts {
+            data: 180,
+            position: 20,
+            dropped: 0,
+            without_kernel_time: 0
+        }
+    );
+    assert_eq!(listener.counts().data, 180);
+}
+
+#[test]
+fn the_kernels_time_does_not_depend_on_when_the_program_reads() {
+    let mut listener = Listener::bind(&local(1 << 20)).unwrap();
+    let to = listener.sockets()[0].address();
+    let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    sender.send_to(b"early", to).unwrap();
+    let sent = clock::now();
+    thread::sleep(Duration::from_millis(100));
+    let mut times = Vec::new();
+    // A flag that is set already: what has arrived is still given.
+    let counts = listener
+        .run(&AtomicBool::new(true), |record| times.push(record.host))
+        .unwrap();
+    assert_eq!((counts.data, times.len()), (1, 1));
+    assert!(
+        times[0] <= sent + Span::from_millis(50),
+        "{times:?}, sent {sent:?}"
+    );
+}
+
+#[test]
+fn what_the_kernel_drops_is_counted_exactly() {
+    let mut listener = Listener::bind(&local(4096)).unwrap();
+    let to = listener.sockets()[0].address();
+    let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let stop = AtomicBool::new(true);
+    // Far more than the buffer holds, and nobody reads.
+    for n in 0..500_u16 {
+        sender.send_to(&[n as u8; 1206], to).unwrap();
+    }
+    let first = listener.run(&stop, |_| {}).unwrap();
+    assert!(first.data < 500, "the buffer was to be too small");
+    // The count comes with the next packet that gets through.
+    sender.send_to(b"after", to).unwrap();
+    let counts = listener.run(&stop, |_| {}).unwrap();
+    assert_eq!(counts.data, first.data + 1);
+    assert_eq!(counts.dropped, 501 - counts.data);
+}
+
+#[test]
+fn an_oversized_datagram_is_marked_and_an_empty_one_is_kept() {
+    let runtime = Builder::new_current_thread().enable_io().build().unwrap();
+    runtime.block_on(async {
+        let mut socket =
+            LidarSocket::bind(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 0), 65_536).unwrap();
+        let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let from = sender.local_addr().unwrap();
+        let mut buffer = [0; 100];
+        assert!(socket.try_recv(&mut buffer).unwrap().is_none());
+        for (length, expected, cut) in [(101, 100, true), (100, 100, false), (0, 0, false)] {
+            sender.send_to(&vec![1; length], socket.address()).unwrap();
+            let received = socket.recv(&mut buffer).await.unwrap();
+            assert_eq!((received.len, received.cut), (expected, cut));
+            assert_eq!(std::net::SocketAddr::V4(received.source), from);
+            assert!(received.kernel_time);
+        }
+    });
+}
+
+#[test]
+fn addresses_that_cannot_be_bound_say_why() {
+    let taken = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port();
+    let config = ListenConfig {
+        data_port: port,
+        ..local(65_536)
+    };
+    let busy = listen(&config, &AtomicBool::new(true), |_| {}).unwrap_err();
+    assert!(
+        matches!(busy, UdpError::Busy { address } if address.port() == port),
+        "{busy}"
+    );
+    let config = ListenConfig {
+        address: Ipv4Addr::new(203, 0, 113, 7), // TEST-NET-3: nobody's
+        ..local(65_536)
+    };
+    let elsewhere = Listener::bind(&config).unwrap_err();
+    assert!(
+        matches!(elsewhere, UdpError::NoInterface { .. }),
+        "{elsewhere}"
+    );
+    let outside = LidarSocket::bind(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 0), 1).unwrap_err();
+    assert!(matches!(outside, UdpError::NoRuntime { .. }), "{outside}");
+}
+
+#[test]
+fn one_port_for_both_is_one_socket() {
+    let free = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let port = free.local_addr().unwrap().port();
+    drop(free);
+    let config = ListenConfig {
+        data_port: port,
+        position_port: Some(port),
+        ..local(65_536)
+    };
+    assert_eq!(Listener::bind(&config).unwrap().sockets().len(), 1);
+}
