@@ -4,6 +4,7 @@
 //! stay representable. What a value means for a scan is decided elsewhere.
 #![no_std]
 
+pub mod canopen;
 pub mod epos2;
 pub mod record;
 pub mod vlp16;

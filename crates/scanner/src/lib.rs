@@ -1,1 +1,18 @@
-//! scanner
+//! The synchroniser: which angle the platform had when a laser fired.
+//!
+//! [`scanner`] is the whole path on one page; [`clock`], [`polls`], [`trajectory`] and [`sweeps`] are its parts. Nothing here
+//! reads a clock or a file: the same records give the same cloud, bit for bit.
+
+pub mod clock;
+pub mod config;
+pub mod error;
+pub mod polls;
+pub mod scanner;
+pub mod sweeps;
+pub mod tilt;
+pub mod trajectory;
+
+pub use config::{ScanConfig, SweepPlan};
+pub use error::ScanError;
+pub use scanner::{Alignment, Placed, Placer, Survey};
+pub use tilt::{AngleTable, TableTime, TiltSource};

@@ -1,1 +1,28 @@
-//! sim
+//! Scenes, ray casting, the tilted lidar and what truly happened: both devices of the scanner in one virtual world.
+//!
+//! [`Rig`] makes the bytes that the devices would send, [`Truth`] keeps where every beam really met the scene. The
+//! geometry is stated here in its own way, by composing rigid motions, and nothing of the scanner's own code is used,
+//! so that the two agreeing is evidence. There is no I/O, no clock and no global randomness: time and seeds are
+//! arguments, and one seed gives one result.
+//!
+//! Left out: effects of the real world (range noise, beam divergence, loss, jitter of the sensor's own clock). What is not
+//! here costs nothing.
+
+mod clock;
+mod head;
+pub mod link;
+mod rig;
+mod scene;
+pub mod scenes;
+mod shaft;
+mod shapes;
+mod spinning;
+mod truth;
+mod world;
+
+pub use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT};
+pub use head::{Head, LASERS, Laser, MAX_RANGE_M, MIN_RANGE_M};
+pub use rig::{Datagram, LidarConfig, Rig, RigConfig};
+pub use scene::{Hit, Scene};
+pub use shapes::{Cuboid, Cylinder, Plane, Shape, Sphere, TurnedCuboid};
+pub use truth::Truth;

@@ -1,1 +1,21 @@
-//! velomotion
+//! The program: command line, configuration, devices, printing. One file a verb in [`commands`].
+//!
+//! What a scan is and how it becomes a cloud lives in the library crates; here threads are started, files opened and
+//! sentences printed.
+
+pub mod cli;
+pub mod commands;
+pub mod config;
+pub mod devices;
+pub mod failure;
+pub mod motion;
+pub mod names;
+pub mod output;
+pub mod progress;
+pub mod recording;
+pub mod recordings;
+pub mod report;
+pub mod session;
+pub mod simulated;
+
+pub use failure::{Failure, Kind};

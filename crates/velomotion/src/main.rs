@@ -1,1 +1,81 @@
-fn main() {}
+//! The entry point: parses the command line, runs a command, prints what it says and how it failed.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::Parser;
+use tracing_subscriber::EnvFilter;
+use velomotion::cli::{Cli, Common};
+use velomotion::commands::{self, Said};
+use velomotion::failure::Failure;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    start_log(&cli.common);
+    let (said, failure) = match commands::run(&cli) {
+        Ok(mut said) => {
+            let failure = said.failure.take();
+            (Some(said), failure)
+        }
+        Err(failure) => (None, Some(failure)),
+    };
+    if let Err(error) = print(&cli.common, said, failure.as_ref()) {
+        // A reader that went away (a closed pipe) is no reason to fail.
+        tracing::debug!("stdout: {error}");
+    }
+    match failure {
+        None => ExitCode::SUCCESS,
+        Some(failure) => {
+            let code = failure.kind.exit_code();
+            eprintln!("{:?}", miette::Report::new(failure));
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// With `--json` exactly one object, failure or not; else the text, unless `--quiet`. Where the cloud has stdout, stderr.
+fn print(common: &Common, said: Option<Said>, failure: Option<&Failure>) -> std::io::Result<()> {
+    let stdout_taken = said.as_ref().is_some_and(|said| said.stdout_taken);
+    let line = match (common.json, said) {
+        (true, said) => {
+            let mut object = said.map_or_else(|| serde_json::json!({}), |said| said.json);
+            if let (Some(failure), Some(object)) = (failure, object.as_object_mut()) {
+                object.insert("error".to_owned(), error_object(failure));
+            }
+            object.to_string()
+        }
+        (false, Some(said)) if !common.quiet => said.text,
+        (false, _) => return Ok(()),
+    };
+    if stdout_taken {
+        eprintln!("{line}");
+        return Ok(());
+    }
+    let mut stdout = std::io::stdout().lock();
+    writeln!(stdout, "{line}")?;
+    stdout.flush()
+}
+
+fn error_object(failure: &Failure) -> serde_json::Value {
+    serde_json::json!({
+        "message": failure.message,
+        "help": failure.help,
+        "exit_code": failure.kind.exit_code(),
+    })
+}
+
+fn start_log(common: &Common) {
+    let level = match (common.quiet, common.verbose) {
+        (true, _) => "error",
+        (false, 0) => "warn",
+        (false, 1) => "info",
+        (false, _) => "debug",
+    };
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .without_time()
+        .with_target(false)
+        .init();
+}

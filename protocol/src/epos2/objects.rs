@@ -103,12 +103,35 @@ impl<T> fmt::Debug for Object<T> {
     }
 }
 
+/// An entry of [`ALL`], without its type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Named {
+    /// Where it stands.
+    pub address: Address,
+    /// The specification's name.
+    pub name: &'static str,
+    /// Width of its value.
+    pub bytes: u8,
+}
+
+/// The specification's name of an entry; `None` for one that is not in [`ALL`].
+#[must_use]
+pub fn name(address: Address) -> Option<&'static str> {
+    ALL.iter()
+        .find(|named| named.address == address)
+        .map(|named| named.name)
+}
+
 macro_rules! objects {
     ($($(#[doc = $doc:literal])+ $name:ident: $t:ty = $index:literal, $sub:literal, $text:literal;)*) => {
         $($(#[doc = $doc])+ pub const $name: Object<$t> = Object::new($index, $sub, $text);)*
 
-        #[cfg(test)]
-        const ALL: &[(Address, &str)] = &[$((Address::new($index, $sub), $text)),*];
+        /// Every entry with a name here.
+        pub const ALL: &[Named] = &[$(Named {
+            address: Address::new($index, $sub),
+            name: $text,
+            bytes: <$t as Scalar>::BYTES,
+        }),*];
     };
 }
 
@@ -207,6 +230,12 @@ objects! {
     CONTROLWORD: u16 = 0x6040, 0, "Controlword";
     /// See [`crate::epos2::cia402::status`].
     STATUSWORD: u16 = 0x6041, 0, "Statusword";
+    /// How "shutdown" stops: 0 at once, 1 by the profile deceleration.
+    SHUTDOWN_OPTION: i16 = 0x605B, 0, "Shutdown Option Code";
+    /// How "disable operation" stops: 0 at once, 1 by the profile deceleration.
+    DISABLE_OPTION: i16 = 0x605C, 0, "Disable Operation Option Code";
+    /// How a fault stops: 0 at once, 1 by the profile deceleration, 2 by the quick-stop deceleration.
+    FAULT_OPTION: i16 = 0x605E, 0, "Fault Reaction Option Code";
     /// See [`crate::epos2::cia402::mode`].
     MODE: i8 = 0x6060, 0, "Modes of Operation";
     /// The mode that is in effect.
@@ -314,12 +343,19 @@ mod tests {
 
     #[test]
     fn no_address_stands_twice() {
-        for (i, (address, name)) in ALL.iter().enumerate() {
+        for (i, named) in ALL.iter().enumerate() {
+            let mut others = ALL.iter().skip(i + 1);
             assert!(
-                ALL.iter().skip(i + 1).all(|(other, _)| other != address),
-                "{address} {name}"
+                others.all(|other| other.address != named.address),
+                "{named:?}"
             );
         }
+    }
+
+    #[test]
+    fn entries_have_names() {
+        assert_eq!(name(STATUSWORD.address), Some("Statusword"));
+        assert_eq!(name(Address::new(0x5000, 0)), None);
     }
 
     #[test]

@@ -258,7 +258,7 @@ impl UsbDelimiter {
 
     /// Takes one byte; the raw bytes and what they decode to come out with the byte that completes a frame.
     ///
-    /// A frame that a new one breaks off is reported without its bytes' escape of the new sync pair.
+    /// A frame that a new one breaks off comes out without the new one's sync pair.
     pub fn push(&mut self, byte: u8) -> Option<(Bytes, Result<Frame, FrameError>)> {
         let was_within = self.decoder.is_within_frame();
         let outcome = self.decoder.push(byte);

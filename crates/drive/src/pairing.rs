@@ -1,0 +1,254 @@
+//! Which request an answer belongs to.
+//!
+//! A serial answer of the EPOS2 names neither object nor request, so it can only be told by order and shape: answers come in
+//! the order of the requests, some may be lost, and a read answers four words where a write answers two. An answer that
+//! fits more than one outstanding request is given to none. After a loss the client asks for an object that does not
+//! exist (a marker): its error comes after whatever was still under way, and from there on both sides are in step again.
+//! There are two markers with different errors, taken in turn, so that a late answer to one is not taken for the other's.
+//! The live client and the listener on a log share this code, so a log pairs the way the capture did.
+//! When to give up waiting is decided elsewhere.
+
+use std::collections::VecDeque;
+
+use protocol::epos2::CommError;
+use protocol::epos2::objects::Address;
+use units::{Host, Span, Stamp};
+
+use crate::codec::Reply;
+
+/// Entries that no EPOS2 has, with the errors that say so: an index at the end of the manufacturer's range of CiA 301, and a
+/// subindex of an object that each device has.
+pub(crate) const MARKERS: [(Address, CommError); 2] = [
+    (Address::new(0x5FFF, 0), CommError::NO_OBJECT),
+    (Address::new(0x1018, 0xFF), CommError::NO_SUB),
+];
+
+/// What was asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Access {
+    /// ReadObject.
+    Read,
+    /// WriteObject of this value.
+    Write(u32),
+    /// Any other command; only the listener meets them.
+    Other,
+}
+
+/// A request on the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Asked {
+    pub address: Address,
+    pub access: Access,
+    pub at: Stamp<Host>,
+    /// Tells copies of one request apart; 0 is a request to another node.
+    pub id: u64,
+}
+
+/// What an answer turned out to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Paired {
+    /// The answer to this request; requests before it will not be answered any more.
+    To(Asked),
+    /// The answer to a marker: all requests before the marker will not be answered any more.
+    Marker,
+    /// An answer that belongs to no request, or might belong to several.
+    Stray,
+}
+
+/// Requests that may still be answered, oldest first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pairing {
+    outstanding: VecDeque<Asked>,
+}
+
+/// More than this many unanswered requests say nothing any more.
+const MAX_OUTSTANDING: usize = 16;
+/// No drive answers after this long: its own frame timeout is 500 ms.
+const EXPIRY: Span = Span::from_secs(2);
+
+impl Pairing {
+    /// A request went out.
+    pub fn sent(&mut self, asked: Asked) {
+        self.outstanding
+            .retain(|old| asked.at.saturating_since(old.at) < EXPIRY);
+        if self.outstanding.len() >= MAX_OUTSTANDING {
+            self.outstanding.pop_front();
+        }
+        self.outstanding.push_back(asked);
+    }
+
+    /// An answer came in.
+    pub fn received(&mut self, reply: &Reply) -> Paired {
+        if let Some(marker) = self.marker(reply.error) {
+            self.outstanding.drain(..=marker);
+            return Paired::Marker;
+        }
+        let mut fitting = (0..)
+            .zip(&self.outstanding)
+            .filter(|(_, asked)| marker_error(asked).is_none() && fits(asked.access, reply));
+        match (fitting.next(), fitting.next()) {
+            (Some((index, &asked)), None) => {
+                self.outstanding.drain(..=index);
+                Paired::To(asked)
+            }
+            _ => Paired::Stray,
+        }
+    }
+
+    /// The oldest marker that an error answers. Where only markers are out, an unexpected error answers the first of them.
+    fn marker(&self, error: CommError) -> Option<usize> {
+        if error.is_none() {
+            return None;
+        }
+        let expected = |asked| marker_error(asked) == Some(error);
+        let only_markers = || self.outstanding.iter().all(|a| marker_error(a).is_some());
+        self.outstanding
+            .iter()
+            .position(expected)
+            .or_else(|| (!self.in_step() && only_markers()).then_some(0))
+    }
+
+    /// Whether nothing is outstanding.
+    pub fn in_step(&self) -> bool {
+        self.outstanding.is_empty()
+    }
+}
+
+/// The error that answers a request, if it is a marker.
+fn marker_error(asked: &Asked) -> Option<CommError> {
+    MARKERS
+        .iter()
+        .find(|(address, _)| asked.access == Access::Read && asked.address == *address)
+        .map(|(_, error)| *error)
+}
+
+/// Whether a reply has the shape of an answer to `access`. An error may answer anything.
+fn fits(access: Access, reply: &Reply) -> bool {
+    match access {
+        _ if !reply.error.is_none() => true,
+        Access::Read => reply.value.is_some(),
+        Access::Write(_) => reply.words == 0,
+        Access::Other => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const READ_OK: Reply = Reply {
+        error: CommError::NONE,
+        words: 2,
+        value: Some(7),
+    };
+    const WRITE_OK: Reply = Reply {
+        error: CommError::NONE,
+        words: 0,
+        value: None,
+    };
+    const ABSENT: Reply = Reply {
+        error: CommError::NO_OBJECT,
+        words: 0,
+        value: None,
+    };
+
+    fn asked(id: u64, access: Access) -> Asked {
+        Asked {
+            address: Address::new(0x6064, 0),
+            access,
+            at: Stamp::from_nanos(1_000_000 * id as i64),
+            id,
+        }
+    }
+
+    const NO_SUB: Reply = Reply {
+        error: CommError::NO_SUB,
+        ..ABSENT
+    };
+
+    fn marker(id: u64, kind: usize) -> Asked {
+        Asked {
+            address: MARKERS[kind].0,
+            ..asked(id, Access::Read)
+        }
+    }
+
+    fn pairing(sent: &[Asked]) -> Pairing {
+        let mut pairing = Pairing::default();
+        sent.iter().for_each(|asked| pairing.sent(*asked));
+        pairing
+    }
+
+    #[test]
+    fn one_request_gets_its_answer() {
+        let read = asked(1, Access::Read);
+        let mut pairing = pairing(&[read]);
+        assert_eq!(pairing.received(&READ_OK), Paired::To(read));
+        assert_eq!(pairing.received(&READ_OK), Paired::Stray);
+    }
+
+    #[test]
+    fn a_write_does_not_take_the_answer_to_a_read() {
+        let write = asked(1, Access::Write(0));
+        let mut pairing = pairing(&[write]);
+        assert_eq!(pairing.received(&READ_OK), Paired::Stray);
+        assert_eq!(pairing.received(&WRITE_OK), Paired::To(write));
+    }
+
+    #[test]
+    fn an_answer_that_fits_two_requests_goes_to_none() {
+        let mut pairing = pairing(&[asked(1, Access::Read), asked(2, Access::Read)]);
+        assert_eq!(pairing.received(&READ_OK), Paired::Stray);
+        assert!(!pairing.in_step());
+    }
+
+    #[test]
+    fn an_answer_retires_what_was_asked_before() {
+        let write = asked(2, Access::Write(0));
+        let mut pairing = pairing(&[asked(1, Access::Read), write]);
+        assert_eq!(pairing.received(&WRITE_OK), Paired::To(write));
+        assert!(pairing.in_step());
+    }
+
+    #[test]
+    fn a_late_answer_before_the_marker_is_still_told_apart() {
+        let read = asked(1, Access::Read);
+        let mut pairing = pairing(&[read, marker(2, 0)]);
+        assert_eq!(pairing.received(&READ_OK), Paired::To(read));
+        assert!(!pairing.in_step());
+        assert_eq!(pairing.received(&ABSENT), Paired::Marker);
+        assert!(pairing.in_step());
+    }
+
+    #[test]
+    fn each_marker_is_answered_for_itself() {
+        let sent = [asked(1, Access::Read), marker(2, 0), marker(3, 1)];
+        let mut both = pairing(&sent);
+        assert_eq!(both.received(&ABSENT), Paired::Marker);
+        assert!(!both.in_step());
+        assert_eq!(both.received(&NO_SUB), Paired::Marker);
+        assert!(both.in_step());
+        let mut second_only = pairing(&sent);
+        assert_eq!(second_only.received(&NO_SUB), Paired::Marker);
+        assert!(second_only.in_step());
+    }
+
+    #[test]
+    fn an_unexpected_error_answers_a_marker_that_is_alone() {
+        let other = Reply {
+            error: CommError::GENERAL,
+            ..ABSENT
+        };
+        let read = asked(1, Access::Read);
+        assert_eq!(pairing(&[marker(1, 1)]).received(&other), Paired::Marker);
+        let mut with_read = pairing(&[read, marker(2, 1)]);
+        assert_eq!(with_read.received(&other), Paired::To(read));
+    }
+
+    #[test]
+    fn old_requests_are_forgotten() {
+        let late = asked(3_000, Access::Read);
+        let mut pairing = pairing(&[asked(1, Access::Read), late]);
+        assert_eq!(pairing.received(&READ_OK), Paired::To(late));
+    }
+}

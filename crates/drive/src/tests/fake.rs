@@ -1,0 +1,336 @@
+//! A drive made for tests: a dictionary, the states a client walks, an axis that moves at constant speed, and a hand on the
+//! wire that can lose, delay, damage or repeat any answer. It shares nothing with the client but the frame format.
+
+use std::collections::BTreeMap;
+
+use protocol::epos2::message::{Answer, ReadObject, Request, WriteObject};
+use protocol::epos2::objects::Address;
+use protocol::epos2::usb::{self, UsbDecoder};
+use protocol::epos2::{CommError, Frame};
+use units::{Host, Span, Stamp};
+
+/// What happens to one answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fate {
+    Sent,
+    Lost,
+    Late(Span),
+    Damaged,
+    Twice,
+    /// The drive saw the request damaged.
+    Rejected,
+}
+
+/// Decides the fate of the answer to the n-th request (from 0).
+pub type Hand = Box<dyn FnMut(usize, &Request) -> Fate>;
+
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    from: f64,
+    to: f64,
+    began: Stamp<Host>,
+    /// qc per second.
+    speed: f64,
+}
+
+pub struct Fake {
+    decoder: UsbDecoder,
+    pub objects: BTreeMap<(u16, u8), u32>,
+    /// State bits of the statusword.
+    pub state: u16,
+    pub flags: u16,
+    controlword: u16,
+    place: f64,
+    motion: Option<Motion>,
+    homing_until: Option<Stamp<Host>>,
+    pub homing_time: Span,
+    /// The axis does not follow.
+    pub blocked: bool,
+    pub deaf_to_quick_stop: bool,
+    /// Fault that comes at this time.
+    pub fault_at: Option<(Stamp<Host>, u16)>,
+    pub faults_that_stay: bool,
+    /// Objects that take no value.
+    pub stubborn: Vec<(u16, u8)>,
+    pub hand: Hand,
+    pub turnaround: Span,
+    answers: Vec<(Stamp<Host>, Vec<u8>)>,
+    pub requests: Vec<(Stamp<Host>, Request)>,
+    junk: u32,
+}
+
+pub const DISABLED: u16 = 0x0140;
+pub const READY: u16 = 0x0121;
+pub const ENABLED: u16 = 0x0137;
+pub const QUICK_STOP: u16 = 0x0117;
+pub const FAULT: u16 = 0x0108;
+const REACHED: u16 = 1 << 10;
+const ACKNOWLEDGED: u16 = 1 << 12;
+const REFERENCED: u16 = 1 << 15;
+
+impl Fake {
+    /// A drive as it comes from the factory, with an 8120 from lying on the shelf without a CAN bus.
+    pub fn new() -> Self {
+        let objects = [
+            (0x1000, 0, 0x0002_0192),
+            (0x1003, 0, 1),
+            (0x1003, 1, 0x8120),
+            (0x1018, 1, 0xFB),
+            (0x1018, 2, 0x6420_0000),
+            (0x1018, 3, 0x2126_0000),
+            (0x1018, 4, 0x9090_9090),
+            (0x2003, 1, 0x2126),
+            (0x2003, 2, 0x6420),
+            (0x2070, 4, 2),
+            (0x2070, 5, 1),
+            (0x2070, 6, 0),
+            (0x2071, 1, 0),
+            (0x2071, 2, 0xE387),
+            (0x2071, 3, 0),
+            (0x2071, 4, 8),
+            (0x2078, 2, 0),
+            (0x2079, 1, 15),
+            (0x2081, 0, 0),
+            (0x2100, 1, 0),
+            (0x2100, 2, 0),
+            (0x6060, 0, 1),
+            (0x6065, 0, 2000),
+            (0x6067, 0, u32::MAX),
+            (0x606C, 0, 0),
+            (0x607A, 0, 0),
+            (0x607C, 0, 0),
+            (0x607D, 1, i32::MIN as u32),
+            (0x607D, 2, i32::MAX as u32),
+            (0x607F, 0, 25_000),
+            (0x6081, 0, 1000),
+            (0x6083, 0, 10_000),
+            (0x6084, 0, 10_000),
+            (0x6085, 0, 10_000),
+            (0x6086, 0, 0),
+            (0x6098, 0, 7),
+            (0x6099, 1, 100),
+            (0x6099, 2, 10),
+            (0x609A, 0, 1000),
+            (0x60C5, 0, u32::MAX),
+        ];
+        Self {
+            decoder: UsbDecoder::new(),
+            objects: objects.map(|(index, sub, v)| ((index, sub), v)).into(),
+            state: FAULT,
+            flags: 0x0200,
+            controlword: 0,
+            place: 1234.0,
+            motion: None,
+            homing_until: None,
+            homing_time: Span::from_millis(700),
+            blocked: false,
+            deaf_to_quick_stop: false,
+            fault_at: None,
+            faults_that_stay: false,
+            stubborn: Vec::new(),
+            hand: Box::new(|_, _| Fate::Sent),
+            turnaround: Span::from_micros(800),
+            answers: Vec::new(),
+            requests: Vec::new(),
+            junk: 0x9002_1357,
+        }
+    }
+
+    /// Takes bytes from the host.
+    pub fn input(&mut self, bytes: &[u8], now: Stamp<Host>) {
+        self.live(now);
+        for &byte in bytes {
+            let Some(Ok(frame)) = self.decoder.push(byte) else {
+                continue;
+            };
+            let request = Request::parse(&frame).unwrap().unwrap();
+            let fate = (self.hand)(self.requests.len(), &request);
+            self.requests.push((now, request));
+            let answer = if fate == Fate::Rejected {
+                Answer::bare(CommError::CRC).to_frame()
+            } else {
+                self.serve(&request, now)
+            };
+            self.send(&answer, fate, now);
+        }
+    }
+
+    fn send(&mut self, answer: &Frame, fate: Fate, now: Stamp<Host>) {
+        let mut bytes = usb::to_bytes(answer).to_vec();
+        let earliest = now + self.turnaround;
+        // Answers keep their order.
+        let at = self.answers.last().map_or(earliest, |a| a.0.max(earliest));
+        match fate {
+            Fate::Lost => return,
+            Fate::Late(by) => return self.answers.push((at + by, bytes)),
+            Fate::Damaged => *bytes.last_mut().unwrap() ^= 0x55,
+            Fate::Twice => self.answers.push((at, bytes.clone())),
+            Fate::Sent | Fate::Rejected => {}
+        }
+        self.answers.push((at, bytes));
+    }
+
+    pub fn next_answer(&self) -> Option<Stamp<Host>> {
+        self.answers.first().map(|a| a.0)
+    }
+
+    pub fn take_answer(&mut self, now: Stamp<Host>) -> Option<Vec<u8>> {
+        (self.next_answer()? <= now).then(|| self.answers.remove(0).1)
+    }
+
+    /// Where the shaft is.
+    pub fn position(&self, now: Stamp<Host>) -> f64 {
+        let Some(m) = self.motion else {
+            return self.place;
+        };
+        let way = m.speed * (now - m.began).as_secs_f64();
+        let left = m.to - m.from;
+        m.from + left.signum() * way.min(left.abs())
+    }
+
+    fn serve(&mut self, request: &Request, now: Stamp<Host>) -> Frame {
+        match request {
+            Request::ReadObject(read) => ReadObject::answer(self.get(read.address, now)),
+            Request::WriteObject(write) => {
+                WriteObject::answer(self.put(write.address, write.value, now))
+            }
+            _ => Answer::bare(CommError::COMMAND).to_frame(),
+        }
+    }
+
+    fn get(&mut self, address: Address, now: Stamp<Host>) -> Result<u32, CommError> {
+        self.junk = self
+            .junk
+            .wrapping_mul(1_664_525)
+            .wrapping_add(1_013_904_223);
+        let junk = self.junk;
+        let entry = (address.index, address.sub);
+        Ok(match entry {
+            (0x6041, 0) => junk << 16 | u32::from(self.statusword(now)),
+            (0x6061, 0) => junk << 8 | self.objects[&(0x6060, 0)] & 0xFF,
+            (0x6064, 0) => self.position(now).floor() as i32 as u32,
+            _ => {
+                let absent = if address.sub == 0xFF {
+                    CommError::NO_SUB
+                } else {
+                    CommError::NO_OBJECT
+                };
+                let value = *self.objects.get(&entry).ok_or(absent)?;
+                match width(address) {
+                    1 => junk << 8 | value & 0xFF,
+                    2 => junk << 16 | value & 0xFFFF,
+                    _ => value,
+                }
+            }
+        })
+    }
+
+    fn put(&mut self, address: Address, value: u32, now: Stamp<Host>) -> Result<(), CommError> {
+        let entry = (address.index, address.sub);
+        if entry == (0x6040, 0) {
+            self.control(value as u16, now);
+            return Ok(());
+        }
+        let stubborn = self.stubborn.contains(&entry);
+        let old = self.objects.get_mut(&entry).ok_or(CommError::NO_OBJECT)?;
+        if !stubborn {
+            *old = value;
+        }
+        Ok(())
+    }
+
+    fn statusword(&self, now: Stamp<Host>) -> u16 {
+        let target = f64::from(self.objects[&(0x607A, 0)] as i32);
+        let there = self.homing_until.is_none() && self.position(now) == target && !self.blocked;
+        self.state | self.flags | if there { REACHED } else { 0 }
+    }
+
+    fn live(&mut self, now: Stamp<Host>) {
+        if let Some((at, code)) = self.fault_at
+            && at <= now
+        {
+            self.fault_at = None;
+            self.fault(code, now);
+        }
+        if self.homing_until.is_some_and(|until| until <= now) {
+            self.homing_until = None;
+            self.place = f64::from(self.objects[&(0x2081, 0)] as i32);
+            // Home is where the target is, too.
+            self.objects.insert((0x607A, 0), self.objects[&(0x2081, 0)]);
+            self.flags |= ACKNOWLEDGED | REFERENCED;
+        }
+    }
+
+    fn fault(&mut self, code: u16, now: Stamp<Host>) {
+        self.freeze(now);
+        self.state = FAULT;
+        self.objects.insert((0x1003, 0), 1);
+        self.objects.insert((0x1003, 1), u32::from(code));
+    }
+
+    fn freeze(&mut self, now: Stamp<Host>) {
+        self.place = self.position(now);
+        self.motion = None;
+        self.homing_until = None;
+    }
+
+    fn control(&mut self, word: u16, now: Stamp<Host>) {
+        let rising = word & !self.controlword;
+        self.controlword = word;
+        if self.state == FAULT {
+            if rising & 0x80 != 0 && !self.faults_that_stay {
+                self.state = DISABLED;
+            }
+            return;
+        }
+        if word & 2 == 0 {
+            self.freeze(now);
+            self.state = DISABLED;
+        } else if word & 4 == 0 {
+            if self.state == ENABLED && !self.deaf_to_quick_stop {
+                self.freeze(now);
+                self.state = QUICK_STOP;
+            }
+        } else if word & 0xF == 6 {
+            self.freeze(now);
+            self.state = READY;
+        } else if word & 0xF == 0xF && matches!(self.state, READY | ENABLED) {
+            self.state = ENABLED;
+            self.setpoint(rising, word, now);
+        }
+    }
+
+    fn setpoint(&mut self, rising: u16, word: u16, now: Stamp<Host>) {
+        if word & 0x10 == 0 {
+            self.flags &= !ACKNOWLEDGED;
+        }
+        if rising & 0x10 == 0 {
+            return;
+        }
+        if self.objects[&(0x6060, 0)] == 6 {
+            self.homing_until = Some(now + self.homing_time);
+            return;
+        }
+        self.flags |= ACKNOWLEDGED;
+        let from = self.position(now);
+        self.motion = Some(Motion {
+            from,
+            to: f64::from(self.objects[&(0x607A, 0)] as i32),
+            began: now,
+            speed: if self.blocked {
+                0.0
+            } else {
+                f64::from(self.objects[&(0x6081, 0)]) * 2000.0 / 60.0
+            },
+        });
+    }
+}
+
+/// Bytes of the objects that are narrower than 32 bits.
+fn width(address: Address) -> u8 {
+    match (address.index, address.sub) {
+        (0x1003, 0) | (0x6060 | 0x6098, _) => 1,
+        (0x2003 | 0x2070 | 0x2071 | 0x2078 | 0x2079 | 0x2080 | 0x2100 | 0x6086, _) => 2,
+        _ => 4,
+    }
+}

@@ -1,0 +1,369 @@
+//! What the client makes of faults: of the drive, of the axis, of the link.
+
+use protocol::epos2::CommError;
+use protocol::epos2::DeviceError;
+use protocol::epos2::message::Request;
+use units::{Quadcounts, Span};
+
+use super::fake::{DISABLED, FAULT, Fate};
+use super::rig::{Rig, to};
+use crate::{AxisConfig, Command, DriveError, Outcome, Progress};
+
+fn made_safe(rig: &Rig) -> bool {
+    rig.progress()
+        .iter()
+        .any(|p| matches!(p, Progress::MadeSafe(_)))
+}
+
+fn is_read(request: &Request, index: u16) -> bool {
+    matches!(request, Request::ReadObject(read) if read.address.index == index)
+}
+
+fn is_write(request: &Request, index: u16, value: u32) -> bool {
+    matches!(request, Request::WriteObject(w) if w.address.index == index && w.value == value)
+}
+
+/// In mid-move with the record of the start forgotten.
+fn moving() -> Rig {
+    let mut rig = Rig::homed();
+    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    assert_eq!(rig.run_for(Span::from_millis(400)), None);
+    let moved = rig.fake.position(rig.now) + 40_000.0;
+    assert!(moved > 5_000.0, "{moved}");
+    rig
+}
+
+#[test]
+fn a_fault_in_mid_sweep_is_named_and_the_axis_made_safe() {
+    let mut rig = moving();
+    let at = rig.now + Span::from_millis(10);
+    rig.fake.fault_at = Some((at, 0xFF07));
+    assert_eq!(
+        rig.finish(),
+        Err(DriveError::Fault {
+            error: Some(DeviceError::POSITIVE_LIMIT)
+        })
+    );
+    assert!(made_safe(&rig));
+    assert_eq!(rig.fake.state, FAULT);
+    let quick_stop = rig
+        .fake
+        .requests
+        .iter()
+        .find(|(_, request)| is_write(request, 0x6040, 0x0B))
+        .unwrap();
+    // Seen within a status period, acted upon within a few round trips.
+    assert!(quick_stop.0 - at < Span::from_millis(30));
+}
+
+#[test]
+fn a_blocked_axis_is_given_up_after_the_planned_time() {
+    let mut rig = Rig::homed();
+    rig.fake.blocked = true;
+    let began = rig.now;
+    let error = rig.run(Command::Goto(to(45.0))).unwrap_err();
+    let DriveError::NotArrived {
+        target,
+        position,
+        reached,
+        ..
+    } = error
+    else {
+        panic!("{error:?}")
+    };
+    assert_eq!((target.0, position.0, reached), (30_000, -40_000, false));
+    // 105 deg at 56.25 deg/s with 112.5 ms of ramp, and the margin of 1 s.
+    let took = (rig.now - began).as_secs_f64();
+    assert!((2.9..3.5).contains(&took), "{took}");
+    assert!(made_safe(&rig));
+    assert_eq!(rig.fake.state, DISABLED);
+}
+
+#[test]
+fn homing_that_never_ends_is_stopped() {
+    let mut config = AxisConfig::default();
+    config.homing.time_limit = Span::from_secs(5);
+    let mut rig = Rig::new(config);
+    rig.fake.homing_time = Span::from_secs(1000);
+    rig.run(Command::Connect).unwrap();
+    assert!(matches!(
+        rig.run(Command::Home),
+        Err(DriveError::HomingTime { method: 17, .. })
+    ));
+    assert!(made_safe(&rig));
+}
+
+#[test]
+fn homing_error_bit_is_told() {
+    let mut rig = Rig::new(AxisConfig::default());
+    rig.run(Command::Connect).unwrap();
+    rig.fake.flags |= 1 << 13;
+    assert!(matches!(
+        rig.run(Command::Home),
+        Err(DriveError::Homing { method: 17, .. })
+    ));
+}
+
+#[test]
+fn a_home_outside_the_limits_is_refused() {
+    let mut config = AxisConfig::default();
+    config.homing.home_position = units::Degrees(-70.0);
+    let mut rig = Rig::new(config);
+    rig.run(Command::Connect).unwrap();
+    assert!(matches!(
+        rig.run(Command::Home),
+        Err(DriveError::Outside { .. })
+    ));
+}
+
+#[test]
+fn a_fault_that_does_not_clear_ends_the_connection() {
+    let mut rig = Rig::new(AxisConfig::default());
+    rig.fake.faults_that_stay = true;
+    assert_eq!(
+        rig.run(Command::Connect),
+        Err(DriveError::FaultStays {
+            error: Some(DeviceError::CAN_PASSIVE)
+        })
+    );
+    assert!(matches!(
+        rig.client.start(Command::Home),
+        Err(DriveError::NotConnected { .. })
+    ));
+}
+
+#[test]
+fn a_limit_switch_mask_that_does_not_take_prevents_every_move() {
+    let mut rig = Rig::new(AxisConfig::default());
+    rig.fake.stubborn = vec![(0x2071, 4)];
+    let error = rig.run(Command::Connect).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "object 2071:04 read back: expected 0xB, got 0x8"
+    );
+}
+
+#[test]
+fn a_drive_that_restarted_in_between_is_noticed_before_it_moves() {
+    let mut rig = Rig::homed();
+    rig.fake.objects.insert((0x2071, 4), 8);
+    assert!(matches!(
+        rig.run(Command::Goto(to(0.0))),
+        Err(DriveError::NotTaken { .. })
+    ));
+    assert!(!rig.writes().iter().any(|w| w.2 == 0x1F));
+}
+
+#[test]
+fn another_device_is_refused() {
+    let mut rig = Rig::new(AxisConfig::default());
+    rig.fake.objects.insert((0x1018, 1), 0x2E);
+    let error = rig.run(Command::Connect).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "object 1018:01 (Vendor ID): expected 0xFB, got 0x2E"
+    );
+    assert!(rig.writes().is_empty());
+}
+
+#[test]
+fn a_refusal_names_object_and_reason() {
+    let mut rig = Rig::new(AxisConfig::default());
+    rig.fake.objects.remove(&(0x607F, 0));
+    let error = rig.run(Command::Connect).unwrap_err();
+    assert!(matches!(
+        error,
+        DriveError::Refused {
+            error: CommError::NO_OBJECT,
+            ..
+        }
+    ));
+    assert!(error.to_string().starts_with(
+        "writing 0x5DC to object 607F:00 refused by the drive: 06020000 Object does not exist"
+    ));
+}
+
+#[test]
+fn stop_in_mid_sweep_stops() {
+    let mut rig = moving();
+    let at = rig.now;
+    rig.client.start(Command::Stop).unwrap();
+    let Ok(Outcome::Stopped(stopped)) = rig.finish() else {
+        panic!("{:?}", rig.events.last())
+    };
+    assert_eq!(
+        f64::from(stopped.position.0),
+        rig.fake.position(rig.now).floor()
+    );
+    assert!(stopped.angle.is_some() && stopped.brake);
+    assert_eq!(rig.fake.state, DISABLED);
+    let (seen, _) = rig
+        .fake
+        .requests
+        .iter()
+        .find(|(_, request)| is_write(request, 0x6040, 0x0B))
+        .unwrap();
+    assert!(*seen - at < Span::from_millis(2), "{:?}", *seen - at);
+}
+
+#[test]
+fn stop_does_not_wait_for_a_link_that_lost_an_answer() {
+    let mut rig = moving();
+    // Everything is lost from here on until the drive sees a quick stop.
+    let mut stopped = false;
+    rig.fake.hand = Box::new(move |_, request| {
+        stopped |= is_write(request, 0x6040, 0x0B);
+        if stopped { Fate::Sent } else { Fate::Lost }
+    });
+    rig.run_for(Span::from_millis(10));
+    let at = rig.now;
+    rig.client.start(Command::Stop).unwrap();
+    assert!(matches!(rig.finish(), Ok(Outcome::Stopped(_))));
+    let (seen, _) = rig
+        .fake
+        .requests
+        .iter()
+        .find(|(_, request)| is_write(request, 0x6040, 0x0B))
+        .unwrap();
+    assert!(*seen - at <= Span::from_millis(100), "{:?}", *seen - at);
+}
+
+#[test]
+fn stop_of_an_idle_or_faulty_drive_is_harmless() {
+    let mut rig = Rig::new(AxisConfig::default());
+    let Ok(Outcome::Stopped(stopped)) = rig.run(Command::Stop) else {
+        panic!("{:?}", rig.events)
+    };
+    assert!(stopped.fault);
+    assert_eq!(stopped.angle, None);
+    assert_eq!(rig.fake.state, FAULT);
+}
+
+#[test]
+fn an_axis_that_does_not_stop_is_said_not_to() {
+    let mut config = AxisConfig::default();
+    config.timing.state_limit = Span::from_millis(100);
+    let mut rig = Rig::new(config);
+    rig.run(Command::Connect).unwrap();
+    rig.run(Command::Home).unwrap();
+    rig.client
+        .start(Command::Goto(crate::Move {
+            speed: units::Rpm(200),
+            ..to(45.0)
+        }))
+        .unwrap();
+    assert_eq!(rig.run_for(Span::from_millis(500)), None);
+    rig.fake.deaf_to_quick_stop = true;
+    rig.client.start(Command::Stop).unwrap();
+    assert!(matches!(rig.finish(), Err(DriveError::StillMoving { .. })));
+}
+
+#[test]
+fn a_dead_link_in_mid_sweep_is_told_as_not_stopped() {
+    let mut rig = moving();
+    let died = rig.now;
+    rig.fake.hand = Box::new(|_, _| Fate::Lost);
+    let error = rig.finish().unwrap_err();
+    let DriveError::NotStopped { cause, stop } = &error else {
+        panic!("{error:?}")
+    };
+    assert!(matches!(**cause, DriveError::LinkLost { .. }), "{cause:?}");
+    assert!(matches!(**stop, DriveError::LinkLost { .. }), "{stop:?}");
+    assert!(rig.now - died < Span::from_secs(1));
+    // The quick stop went out all the same, for a drive that hears but cannot be heard.
+    assert!(rig.fake.state != super::fake::ENABLED);
+}
+
+#[test]
+fn lost_answers_to_samples_cost_samples_and_nothing_else() {
+    let mut rig = Rig::homed();
+    rig.fake.hand = Box::new(|n, request| {
+        if is_read(request, 0x6064) && n % 40 == 7 {
+            Fate::Lost
+        } else {
+            Fate::Sent
+        }
+    });
+    let Ok(Outcome::Arrived(arrived)) = rig.run(Command::Sweep(to(-15.0))) else {
+        panic!("{:?}", rig.events.last())
+    };
+    assert_eq!(arrived.position, Quadcounts(-10_000));
+    assert!(rig.client.link_stats().lost > 0);
+}
+
+#[test]
+fn late_answers_are_taken_for_what_they_are() {
+    let mut rig = Rig::homed();
+    rig.fake.hand = Box::new(|n, _| match n % 50 {
+        20 => Fate::Late(Span::from_millis(130)),
+        _ => Fate::Sent,
+    });
+    assert!(rig.run(Command::Sweep(to(-15.0))).is_ok());
+    let late = rig
+        .samples()
+        .iter()
+        .filter(|s| s.answer - s.request > Span::from_millis(100))
+        .count();
+    assert!(late > 0, "a late answer is an answer, with its true times");
+}
+
+#[test]
+fn damage_and_repetition_are_survived() {
+    for (fate, every) in [
+        (Fate::Damaged, 9),
+        (Fate::Twice, 5),
+        (Fate::Rejected, 7),
+        (Fate::Late(Span::from_millis(3)), 3),
+    ] {
+        let mut rig = Rig::new(AxisConfig::default());
+        // Reads and rejected writes are repeated; a write whose answer is damaged is not.
+        rig.fake.hand = Box::new(move |n, request| {
+            let write = matches!(request, Request::WriteObject(_));
+            if n % every == 0 && !(write && fate == Fate::Damaged) {
+                fate
+            } else {
+                Fate::Sent
+            }
+        });
+        for command in [
+            Command::Connect,
+            Command::Home,
+            Command::Sweep(to(-15.0)),
+            Command::Brake,
+        ] {
+            let result = rig.run(command);
+            assert!(result.is_ok(), "{fate:?} {command:?}: {result:?}");
+        }
+        assert_eq!(rig.fake.position(rig.now), -10_000.0);
+    }
+}
+
+#[test]
+fn a_write_whose_answer_is_lost_is_not_repeated() {
+    let mut rig = Rig::new(AxisConfig::default());
+    rig.fake.hand = Box::new(|_, request| {
+        if is_write(request, 0x607F, 1500) {
+            Fate::Lost
+        } else {
+            Fate::Sent
+        }
+    });
+    assert!(matches!(
+        rig.run(Command::Connect),
+        Err(DriveError::NoAnswer { attempts: 1, .. })
+    ));
+    let writes = rig.writes();
+    assert_eq!(writes.iter().filter(|w| w.0 == 0x607F).count(), 1);
+}
+
+#[test]
+fn silence_ends_a_command_in_bounded_time() {
+    let mut rig = Rig::new(AxisConfig::default());
+    rig.fake.hand = Box::new(|_, _| Fate::Lost);
+    let began = rig.now;
+    let error = rig.run(Command::Connect).unwrap_err();
+    assert!(matches!(error, DriveError::LinkLost { .. }));
+    assert!(rig.now - began <= Span::from_millis(1600));
+    assert!(error.to_string().contains("silence for 1500 ms"), "{error}");
+    assert!(!error.help().is_empty());
+}

@@ -1,0 +1,347 @@
+//! The link against every kind of loss, and against anything at all on the wire.
+
+use proptest::prelude::*;
+use protocol::epos2::CommError;
+use protocol::epos2::message::{Answer, ReadObject, Request as Wire, WriteObject};
+use protocol::epos2::objects::Address;
+use protocol::epos2::usb::{self, UsbDecoder};
+use units::{Host, Span, Stamp};
+
+use crate::codec::Codec;
+use crate::link::{Link, Lost, Request};
+use crate::pairing::{Access, MARKERS};
+use crate::{AxisConfig, Client, Command};
+
+const TIMEOUT: Span = Span::from_millis(100);
+
+fn request(index: u16, access: Access) -> Request {
+    Request {
+        address: Address::new(index, 0),
+        access,
+        timeout: TIMEOUT,
+        retries: 2,
+        urgent: false,
+    }
+}
+
+fn read(index: u16) -> Request {
+    request(index, Access::Read)
+}
+
+fn at(ms: i64) -> Stamp<Host> {
+    Stamp::from_nanos(ms * 1_000_000)
+}
+
+fn answer(value: u32) -> Vec<u8> {
+    usb::to_bytes(&ReadObject::answer(Ok(value))).to_vec()
+}
+
+/// The answer to a marker.
+fn absent(kind: usize) -> Vec<u8> {
+    usb::to_bytes(&ReadObject::answer(Err(MARKERS[kind].1))).to_vec()
+}
+
+fn marker(kind: usize) -> Vec<u8> {
+    Codec::usb(1).encode(MARKERS[kind].0, Access::Read)
+}
+
+fn value(link: &mut Link) -> Option<u32> {
+    link.take()?.ok()?.reply.value
+}
+
+#[test]
+fn a_late_answer_does_not_answer_the_next_question() {
+    let mut link = Link::new(Codec::usb(1));
+    link.submit(read(0x6064));
+    let first = link.transmit(at(0)).unwrap();
+    link.abandon();
+    link.submit(read(0x6041));
+    assert_eq!(link.transmit(at(1)), None, "the first is still awaited");
+    assert_eq!(link.deadline(), Some(at(51)), "but not for long");
+    assert_eq!(link.transmit(at(51)), Some(marker(0)));
+    link.input(&answer(1), at(52));
+    assert_eq!(link.take(), None, "the late answer is nobody's");
+    link.input(&absent(0), at(53));
+    let second = link.transmit(at(53)).unwrap();
+    assert_ne!(first, second);
+    link.input(&answer(2), at(54));
+    let answered = link.take().unwrap().unwrap();
+    assert_eq!(answered.reply.value, Some(2));
+    assert_eq!((answered.request, answered.answer), (at(53), at(54)));
+}
+
+#[test]
+fn reads_are_repeated_a_bounded_number_of_times() {
+    let mut link = Link::new(Codec::usb(1));
+    link.submit(read(0x6064));
+    let mut now = at(0);
+    let mut sent = 0;
+    let lost = loop {
+        if let Some(frame) = link.transmit(now) {
+            match (0..2).find(|&kind| frame == marker(kind)) {
+                Some(kind) => link.input(&absent(kind), now),
+                None => sent += 1,
+            }
+        }
+        if let Some(result) = link.take() {
+            break result.unwrap_err();
+        }
+        now = link.deadline().unwrap_or(now);
+        link.expire(now);
+    };
+    assert_eq!(sent, 3);
+    assert_eq!(
+        lost,
+        Lost::Answer {
+            attempts: 3,
+            damaged: false
+        }
+    );
+}
+
+#[test]
+fn a_damaged_answer_is_asked_for_again_at_once() {
+    let mut link = Link::new(Codec::usb(1));
+    link.submit(read(0x6064));
+    link.transmit(at(0)).unwrap();
+    let mut bad = answer(7);
+    bad[10] ^= 1;
+    link.input(&bad, at(2));
+    assert_eq!(link.transmit(at(2)), Some(marker(0)));
+    link.input(&absent(0), at(4));
+    assert!(link.transmit(at(4)).is_some());
+    link.input(&answer(7), at(6));
+    assert_eq!(value(&mut link), Some(7));
+}
+
+#[test]
+fn noise_before_the_answer_does_not_lose_it() {
+    let mut link = Link::new(Codec::usb(1));
+    link.submit(request(0x6040, Access::Write(0)));
+    link.transmit(at(0)).unwrap();
+    link.input(&[0x90, 2, 0x33, 1, 1, 1, 1, 1], at(1));
+    assert_eq!(link.transmit(at(1)), Some(marker(0)));
+    // The write's own answer comes before the marker's: it was carried out after all.
+    link.input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(2));
+    assert!(link.take().unwrap().is_ok());
+}
+
+#[test]
+fn an_urgent_request_does_not_wait_for_the_marker() {
+    let mut link = Link::new(Codec::usb(1));
+    link.submit(read(0x6064));
+    link.transmit(at(0)).unwrap();
+    link.expire(at(100));
+    assert_eq!(link.transmit(at(100)), Some(marker(0)));
+    link.abandon();
+    let stop = request(0x6040, Access::Write(0x0B));
+    link.submit(Request {
+        urgent: true,
+        ..stop
+    });
+    let frame = Codec::usb(1).encode(stop.address, stop.access);
+    assert_eq!(link.transmit(at(101)), Some(frame.clone()));
+    assert_eq!(link.transmit(at(101)), None, "once");
+    link.input(&absent(0), at(102));
+    link.input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(103));
+    assert!(link.take().unwrap().is_ok());
+}
+
+#[test]
+fn silence_is_told_after_two_markers() {
+    let mut link = Link::new(Codec::usb(1));
+    link.submit(read(0x6064));
+    let mut frames = Vec::new();
+    let mut now = at(0);
+    let end = loop {
+        frames.extend(link.transmit(now));
+        if let Some(end) = link.take() {
+            break end;
+        }
+        now = link.deadline().unwrap();
+        link.expire(now);
+    };
+    assert_eq!(frames[1..], [marker(0), marker(1)]);
+    assert_eq!(
+        end,
+        Err(Lost::Link {
+            silent: Span::from_millis(300)
+        })
+    );
+    // The link comes back: what it owed is told apart, then all is well.
+    link.submit(read(0x6041));
+    assert_eq!(link.transmit(at(400)), Some(marker(0)));
+    for late in [answer(1), absent(0), absent(1), absent(0)] {
+        link.input(&late, at(401));
+    }
+    assert_eq!(link.take(), None);
+    assert!(link.transmit(at(402)).is_some());
+    link.input(&answer(2), at(403));
+    assert_eq!(value(&mut link), Some(2));
+}
+
+#[test]
+fn a_lost_marker_answer_does_not_keep_the_link_out_of_step_for_ever() {
+    let mut link = Link::new(Codec::usb(1));
+    link.submit(read(0x6064));
+    link.transmit(at(0)).unwrap();
+    assert_eq!(link.transmit(at(100)), Some(marker(0)));
+    assert_eq!(link.transmit(at(200)), Some(marker(1)));
+    link.input(&absent(1), at(201));
+    assert!(link.transmit(at(201)).is_some());
+    link.input(&answer(9), at(202));
+    assert_eq!(value(&mut link), Some(9));
+}
+
+#[test]
+fn a_request_the_drive_saw_damaged_goes_out_again_even_if_it_writes() {
+    let mut link = Link::new(Codec::usb(1));
+    let write = Request {
+        retries: 0,
+        ..request(0x607A, Access::Write(5))
+    };
+    link.submit(write);
+    let first = link.transmit(at(0)).unwrap();
+    link.input(
+        &usb::to_bytes(&WriteObject::answer(Err(CommError::CRC))),
+        at(1),
+    );
+    assert_eq!(link.take(), None);
+    assert_eq!(link.transmit(at(1)), Some(first));
+    link.input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(2));
+    assert!(link.take().unwrap().is_ok());
+}
+
+/// What becomes of an answer on its way.
+#[derive(Clone, Copy, Debug)]
+enum Fate {
+    Arrives,
+    IsLost,
+    IsDamaged,
+    TakesMs(u16),
+}
+
+fn fate() -> impl Strategy<Value = Fate> {
+    prop_oneof![
+        6 => Just(Fate::Arrives),
+        1 => Just(Fate::IsLost),
+        1 => Just(Fate::IsDamaged),
+        2 => (1..260u16).prop_map(Fate::TakesMs),
+    ]
+}
+
+/// A device whose value at index i is i, behind a wire that keeps the order of what it does not lose.
+fn serve(frame: &[u8]) -> Vec<u8> {
+    let mut decoder = UsbDecoder::new();
+    let frame = frame
+        .iter()
+        .find_map(|&b| decoder.push(b))
+        .unwrap()
+        .unwrap();
+    let answer = match Wire::parse(&frame).unwrap().unwrap() {
+        Wire::ReadObject(read) => {
+            let marker = MARKERS.iter().find(|(address, _)| *address == read.address);
+            ReadObject::answer(match marker {
+                Some((_, error)) => Err(*error),
+                None => Ok(u32::from(read.address.index)),
+            })
+        }
+        Wire::WriteObject(_) => WriteObject::answer(Ok(())),
+        other => panic!("{other:?}"),
+    };
+    usb::to_bytes(&answer).to_vec()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Whatever is lost, damaged or late, an answer given is the answer to the question asked, and every question ends.
+    #[test]
+    fn no_answer_is_ever_given_to_another_question(
+        fates in proptest::collection::vec(fate(), 1..60),
+        abandons in proptest::collection::vec(any::<bool>(), 12),
+    ) {
+        let mut link = Link::new(Codec::usb(1));
+        let mut wire: Vec<(Stamp<Host>, Vec<u8>)> = Vec::new();
+        let mut fates = fates.into_iter().cycle();
+        let mut now = at(0);
+        for (n, abandon) in (0u16..).zip(abandons) {
+            let access = if n % 4 == 3 { Access::Write(1) } else { Access::Read };
+            let retries = if n % 4 == 3 { 0 } else { 2 };
+            link.submit(Request { retries, ..request(0x6000 + n, access) });
+            let began = now;
+            for _ in 0..400 {
+                if let Some(frame) = link.transmit(now) {
+                    let earliest = wire.last().map_or(now, |w| w.0.max(now));
+                    let mut bytes = serve(&frame);
+                    match fates.next().unwrap() {
+                        Fate::Arrives => wire.push((earliest + Span::from_millis(1), bytes)),
+                        Fate::IsLost => {}
+                        Fate::IsDamaged => {
+                            bytes[2] ^= 0x40;
+                            wire.push((earliest + Span::from_millis(1), bytes));
+                        }
+                        Fate::TakesMs(ms) => wire.push((earliest + Span::from_millis(ms.into()), bytes)),
+                    }
+                }
+                if let Some(end) = link.take() {
+                    if let Ok(answered) = end {
+                        let value = (access == Access::Read).then_some(u32::from(0x6000 + n));
+                        prop_assert_eq!(answered.reply.value, value);
+                        prop_assert_eq!(answered.reply.error, CommError::NONE);
+                        prop_assert!(answered.request >= began && answered.answer == now);
+                    }
+                    break;
+                }
+                if abandon && now > began + Span::from_millis(30) {
+                    link.abandon();
+                    break;
+                }
+                let next = [wire.first().map(|w| w.0), link.deadline()];
+                now = next.into_iter().flatten().min().unwrap().max(now);
+                while wire.first().is_some_and(|w| w.0 <= now) {
+                    let (_, bytes) = wire.remove(0);
+                    link.input(&bytes, now);
+                }
+                link.expire(now);
+            }
+            prop_assert!(now - began < Span::from_secs(3));
+        }
+    }
+
+    /// Any bytes at any time: no panic, no request beside the one that is out, and an end.
+    #[test]
+    fn a_client_survives_any_bytes(
+        inputs in proptest::collection::vec(
+            prop_oneof![
+                proptest::collection::vec(any::<u8>(), 0..30),
+                Just(usb::to_bytes(&WriteObject::answer(Ok(()))).to_vec()),
+                any::<u32>().prop_map(answer),
+                any::<u32>().prop_map(|code| {
+                    usb::to_bytes(&Answer::bare(CommError(code)).to_frame()).to_vec()
+                }),
+            ],
+            0..60,
+        ),
+        stop_after in 0..60usize,
+    ) {
+        let mut client = Client::new(AxisConfig::default());
+        client.start(Command::Connect).unwrap();
+        let mut now = at(0);
+        for (n, bytes) in inputs.iter().enumerate() {
+            if n == stop_after {
+                client.start(Command::Stop).unwrap();
+            }
+            while client.poll_transmit(now).is_some() {}
+            now += Span::from_millis(1);
+            client.handle_input(bytes, now);
+        }
+        for _ in 0..4000 {
+            while client.poll_transmit(now).is_some() {}
+            let Some(next) = client.poll_timeout() else { break };
+            now = next.max(now + Span::from_nanos(1));
+            client.handle_timeout(now);
+        }
+        prop_assert_eq!(client.running(), None);
+    }
+}

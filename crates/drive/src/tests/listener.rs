@@ -1,0 +1,134 @@
+//! The listener sees in a log what the client saw live.
+
+use proptest::prelude::*;
+use protocol::record::{Direction, DriveLink};
+use units::{Span, Stamp};
+
+use super::fake::Fate;
+use super::rig::{Rig, to};
+use crate::{Command, Listener, Observation, ShaftSample};
+
+fn sampled(heard: &[Observation]) -> Vec<ShaftSample> {
+    heard
+        .iter()
+        .filter_map(|seen| match seen {
+            Observation::Sample(sample) => Some(*sample),
+            _ => None,
+        })
+        .collect()
+}
+
+#[test]
+fn a_log_gives_the_clients_samples_writes_and_states() {
+    let mut rig = Rig::homed();
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    let heard = rig.heard();
+    assert_eq!(sampled(&heard), rig.samples());
+    let wrote: Vec<_> = heard
+        .iter()
+        .filter_map(|seen| match seen {
+            Observation::Wrote { address, value, .. } => Some((address.index, address.sub, *value)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(wrote, rig.writes());
+    assert!(heard.iter().any(|seen| matches!(
+        seen,
+        Observation::Statusword { value, .. } if value & 0x417F == 0x0137
+    )));
+}
+
+#[test]
+fn lost_and_late_answers_leave_the_log_right() {
+    let mut rig = Rig::homed();
+    rig.fake.hand = Box::new(|n, request| match n % 31 {
+        _ if matches!(request, protocol::epos2::message::Request::WriteObject(_)) => Fate::Sent,
+        3 => Fate::Lost,
+        11 => Fate::Late(Span::from_millis(120)),
+        19 => Fate::Damaged,
+        27 => Fate::Twice,
+        _ => Fate::Sent,
+    });
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    let heard = rig.heard();
+    assert_eq!(sampled(&heard), rig.samples());
+    assert!(
+        heard
+            .iter()
+            .any(|seen| matches!(seen, Observation::Noise { .. }))
+    );
+}
+
+#[test]
+fn a_log_that_begins_in_the_middle_is_understood() {
+    let mut rig = Rig::homed();
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    let all = sampled(&rig.heard());
+    for cut in [1, 2, 101, 102] {
+        rig.log.drain(..cut);
+        let rest = sampled(&rig.heard());
+        assert_eq!(rest, all[all.len() - rest.len()..]);
+        assert!(rest.len() + cut + 1 >= all.len().saturating_sub(200));
+    }
+}
+
+#[test]
+fn requests_to_other_nodes_are_not_ours() {
+    let mut rig = Rig::homed();
+    rig.run(Command::Goto(to(-15.0))).unwrap();
+    let mut listener = Listener::new(2);
+    for (direction, frame, host) in &rig.log {
+        listener.observe(DriveLink::Usb, *direction, frame, *host, &mut |seen| {
+            panic!("{seen:?}");
+        });
+    }
+}
+
+#[test]
+fn other_links_are_passed_over() {
+    let mut listener = Listener::new(1);
+    let frame = [0x90, 2, 0, 2, 0, 0, 0, 0, 0x40, 0x8B];
+    for link in [DriveLink::Can, DriveLink::Rs232] {
+        listener.observe(
+            link,
+            Direction::FromDevice,
+            &frame,
+            Stamp::from_nanos(0),
+            &mut |seen| panic!("{seen:?}"),
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Noise between the frames of a log, damaged frames and missing ones: fewer samples, never a wrong one.
+    #[test]
+    fn noise_never_makes_a_sample(
+        noise in proptest::collection::vec((any::<prop::sample::Index>(), proptest::collection::vec(any::<u8>(), 0..20), any::<bool>()), 0..20),
+        missing in proptest::collection::vec(any::<prop::sample::Index>(), 0..10),
+    ) {
+        let mut rig = Rig::homed();
+        let until = rig.now + Span::from_millis(80);
+        rig.run(Command::Hold { until }).unwrap();
+        rig.run(Command::Goto(crate::Move { speed: units::Rpm(1500), ..to(-55.0) })).unwrap();
+        let truth = sampled(&rig.heard());
+        for index in &missing {
+            // Only answers go missing: a recorder sees its own requests.
+            let at = index.index(rig.log.len());
+            if rig.log[at].0 == Direction::FromDevice {
+                rig.log.remove(at);
+            }
+        }
+        for (index, bytes, to_device) in &noise {
+            let at = index.index(rig.log.len());
+            let direction = if *to_device { Direction::ToDevice } else { Direction::FromDevice };
+            let host = rig.log[at].2;
+            rig.log.insert(at, (direction, bytes.clone(), host));
+        }
+        let heard = sampled(&rig.heard());
+        for sample in &heard {
+            prop_assert!(truth.contains(sample), "{sample:?}");
+        }
+    }
+}

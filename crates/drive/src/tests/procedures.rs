@@ -1,0 +1,292 @@
+//! Each command from its first frame to its outcome.
+
+use protocol::epos2::DeviceError;
+use units::{Degrees, Quadcounts, Rpm, Span};
+
+use super::fake::{DISABLED, ENABLED, Fake};
+use super::rig::{Rig, to};
+use crate::{AxisConfig, Command, CommandKind, DriveError, Outcome, Progress};
+
+fn target(qc: i32) -> (u16, u8, u32) {
+    (0x607A, 0, qc as u32)
+}
+
+#[test]
+fn connect_identifies_clears_and_configures() {
+    let mut rig = Rig::new(AxisConfig::default());
+    let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+        panic!("{:?}", rig.events)
+    };
+    assert_eq!(connected.identity.software, 0x2126);
+    assert_eq!(connected.identity.serial, 0x9090_9090);
+    assert_eq!(connected.history, [DeviceError::CAN_PASSIVE]);
+    assert!(!connected.referenced);
+    assert_eq!(rig.fake.state, DISABLED);
+    let cleared = Progress::FaultCleared {
+        error: Some(DeviceError::CAN_PASSIVE),
+    };
+    assert!(rig.progress().contains(&cleared));
+    let held = |index, sub| rig.fake.objects[&(index, sub)];
+    assert_eq!(held(0x2071, 4), 8 | 3, "2071:4 stops at both switches");
+    assert_eq!(held(0x607D, 1) as i32, -40_000);
+    assert_eq!(held(0x607D, 2) as i32, 40_000);
+    assert_eq!(held(0x607F, 0), 1500);
+    assert_eq!(held(0x2079, 1), 2, "output 1 is the brake");
+    assert_eq!(held(0x2078, 2), 4);
+    assert_eq!(held(0x6085, 0), 20_000);
+}
+
+#[test]
+fn switches_and_brake_are_left_alone_where_there_are_none() {
+    let mut rig = Rig::new(AxisConfig {
+        brake: None,
+        limit_switches: crate::config::LimitSwitches {
+            negative: None,
+            positive: None,
+            active_low: false,
+        },
+        ..AxisConfig::default()
+    });
+    rig.run(Command::Connect).unwrap();
+    let fresh = Fake::new();
+    for entry in [(0x2071, 4), (0x2079, 1), (0x2078, 2), (0x2100, 1)] {
+        assert_eq!(rig.fake.objects[&entry], fresh.objects[&entry]);
+    }
+}
+
+#[test]
+fn connect_brings_an_axis_to_rest_that_another_left_moving() {
+    let mut rig = Rig::homed();
+    rig.client.start(Command::Goto(to(45.0))).unwrap();
+    assert_eq!(rig.run_for(Span::from_millis(300)), None);
+    assert_eq!(rig.fake.state, ENABLED);
+    // Another process takes over.
+    rig.client = crate::Client::new(AxisConfig::default());
+    rig.forget();
+    rig.run(Command::Connect).unwrap();
+    assert_eq!(rig.writes()[0], (0x6040, 0, 0x0B));
+    assert_eq!(rig.fake.state, DISABLED);
+}
+
+#[test]
+fn home_finds_the_home_position() {
+    let mut rig = Rig::new(AxisConfig::default());
+    rig.run(Command::Connect).unwrap();
+    rig.forget();
+    assert_eq!(
+        rig.run(Command::Home),
+        Ok(Outcome::Homed {
+            position: Quadcounts(-40_000),
+            angle: Degrees(-60.0),
+        })
+    );
+    let writes = rig.writes();
+    for wanted in [(0x6098, 0, 17), (0x607C, 0, 3333), (0x6040, 0, 0x1F)] {
+        assert!(writes.contains(&wanted), "{wanted:X?}");
+    }
+    assert_eq!(rig.fake.objects[&(0x6060, 0)], 1, "profile position again");
+}
+
+#[test]
+fn homing_by_current_writes_its_threshold_and_others_do_not() {
+    let threshold = |method| {
+        let mut config = AxisConfig::default();
+        config.homing.method = method;
+        let mut rig = Rig::new(config);
+        rig.fake.objects.insert((0x2080, 0), 0);
+        rig.run(Command::Connect).unwrap();
+        rig.run(Command::Home).unwrap();
+        rig.fake.objects[&(0x2080, 0)]
+    };
+    assert_eq!(threshold(-3), 500);
+    assert_eq!(threshold(23), 0);
+}
+
+#[test]
+fn a_sweep_is_sampled_from_standstill_to_standstill() {
+    let mut rig = Rig::homed();
+    let Ok(Outcome::Arrived(arrived)) = rig.run(Command::Sweep(to(-15.0))) else {
+        panic!("{:?}", rig.events)
+    };
+    assert_eq!(arrived.position, Quadcounts(-10_000));
+    assert_eq!(arrived.plan.speed, Rpm(1125));
+    assert!(rig.writes().contains(&target(-10_000)));
+    let samples = rig.samples();
+    let still = |at| {
+        samples
+            .iter()
+            .filter(|s| s.position == Quadcounts(at))
+            .count()
+    };
+    assert!(still(-40_000) >= 30, "{} before", still(-40_000));
+    assert!(still(-10_000) >= 30, "{} after", still(-10_000));
+    // 30,000 qc at 37,500 qc/s: 0.8 s of motion at 1 kHz; now and then the statusword takes a poll's place.
+    let moving = samples.len() - still(-40_000) - still(-10_000);
+    assert!((700..=800).contains(&moving), "{moving}");
+    for pair in samples.windows(2) {
+        assert!(pair[0].answer <= pair[1].request);
+        assert!(pair[0].request < pair[0].answer);
+        let apart = pair[1].request - pair[0].request;
+        assert!(apart >= rig.fake.turnaround, "{apart:?}");
+        assert!(apart < Span::from_millis(60), "{apart:?}");
+    }
+}
+
+#[test]
+fn samples_lie_between_their_stamps() {
+    let mut rig = Rig::homed();
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    let samples = rig.samples();
+    let began = samples
+        .iter()
+        .rposition(|s| s.position.0 == -40_000)
+        .unwrap();
+    let t0 = samples[began + 1].request;
+    for s in samples.iter().skip(began + 1).take(600) {
+        // The scripted drive latches when the request arrives.
+        let way = 37_500.0 * (s.request - t0).as_secs_f64();
+        let got = f64::from(s.position.0 - samples[began + 1].position.0);
+        assert!((got - way).abs() <= 1.0, "{got} {way}");
+    }
+}
+
+#[test]
+fn polling_as_fast_as_answers_come() {
+    let mut config = AxisConfig::default();
+    config.timing.poll_period = Span::ZERO;
+    let mut rig = Rig::new(config);
+    rig.fake.turnaround = Span::from_micros(250);
+    rig.run(Command::Connect).unwrap();
+    rig.run(Command::Home).unwrap();
+    rig.forget();
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    assert!(rig.samples().len() > 3_000, "{}", rig.samples().len());
+}
+
+#[test]
+fn a_goto_needs_no_standstill_around_it() {
+    let mut rig = Rig::homed();
+    rig.run(Command::Goto(to(-15.0))).unwrap();
+    let samples = rig.samples();
+    let still = samples.iter().filter(|s| s.position.0 == -40_000).count();
+    assert!(still <= 3, "{still}");
+}
+
+#[test]
+fn a_move_to_where_the_axis_stands_arrives() {
+    let mut rig = Rig::homed();
+    assert!(matches!(
+        rig.run(Command::Goto(to(-60.0))),
+        Ok(Outcome::Arrived(_))
+    ));
+}
+
+#[test]
+fn hold_samples_until_its_end() {
+    let mut rig = Rig::homed();
+    let until = rig.now + Span::from_millis(100);
+    assert_eq!(rig.run(Command::Hold { until }), Ok(Outcome::Held));
+    assert!((90..=101).contains(&rig.samples().len()));
+    assert!(rig.writes().is_empty());
+}
+
+#[test]
+fn brake_switches_the_power_off_without_a_quick_stop() {
+    let mut rig = Rig::homed();
+    let Ok(Outcome::Stopped(stopped)) = rig.run(Command::Brake) else {
+        panic!("{:?}", rig.events)
+    };
+    assert_eq!(stopped.angle, Some(Degrees(-60.0)));
+    assert!(stopped.brake && !stopped.fault);
+    assert_eq!(rig.writes(), [(0x6040, 0, 0)]);
+    assert_eq!(rig.fake.state, DISABLED);
+}
+
+#[test]
+fn status_changes_nothing() {
+    let mut rig = Rig::new(AxisConfig::default());
+    let Ok(Outcome::Status(status)) = rig.run(Command::Status) else {
+        panic!("{:?}", rig.events)
+    };
+    assert_eq!(status.state, Some(crate::cia402::State::Fault));
+    assert_eq!(status.history, [DeviceError::CAN_PASSIVE]);
+    assert_eq!((status.angle, status.position.0), (None, 1234));
+    assert_eq!(status.mode, 1);
+    assert!(rig.writes().is_empty());
+}
+
+#[test]
+fn clear_faults_clears() {
+    let mut rig = Rig::new(AxisConfig::default());
+    assert_eq!(
+        rig.run(Command::ClearFaults),
+        Ok(Outcome::FaultsCleared(vec![DeviceError::CAN_PASSIVE]))
+    );
+    assert_eq!(rig.fake.state, DISABLED);
+}
+
+#[test]
+fn refusals_come_before_the_first_byte() {
+    let mut rig = Rig::homed();
+    let fast = crate::Move {
+        speed: Rpm(1501),
+        ..to(0.0)
+    };
+    let still = crate::Move {
+        speed: Rpm(0),
+        ..to(0.0)
+    };
+    for (command, kind) in [
+        (Command::Goto(to(60.1)), "Limits"),
+        (Command::Sweep(to(-60.1)), "Limits"),
+        (Command::Goto(to(f64::NAN)), "Limits"),
+        (Command::Goto(fast), "Speed"),
+        (Command::Sweep(still), "Speed"),
+    ] {
+        let error = rig.client.start(command).unwrap_err();
+        assert!(format!("{error:?}").starts_with(kind), "{error:?}");
+        assert_eq!(rig.client.poll_transmit(rig.now), None);
+        assert_eq!(rig.client.running(), None);
+    }
+}
+
+#[test]
+fn moves_need_a_connection_and_a_reference() {
+    let mut rig = Rig::new(AxisConfig::default());
+    assert_eq!(
+        rig.client.start(Command::Home),
+        Err(DriveError::NotConnected {
+            asked: CommandKind::Home
+        })
+    );
+    rig.run(Command::Connect).unwrap();
+    assert!(matches!(
+        rig.run(Command::Goto(to(0.0))),
+        Err(DriveError::NotReferenced { .. })
+    ));
+    assert!(!rig.writes().iter().any(|w| w.0 == 0x607A));
+}
+
+#[test]
+fn one_command_at_a_time() {
+    let mut rig = Rig::homed();
+    rig.client.start(Command::Goto(to(0.0))).unwrap();
+    assert_eq!(
+        rig.client.start(Command::Status),
+        Err(DriveError::Busy {
+            asked: CommandKind::Status,
+            running: CommandKind::Goto,
+        })
+    );
+    assert!(rig.finish().is_ok());
+}
+
+#[test]
+fn the_client_can_live_on_a_thread() {
+    fn sendable<T: Send + 'static>(_: &T) {}
+    let mut client = crate::Client::new(AxisConfig::default());
+    client.start(Command::Connect).unwrap();
+    sendable(&client);
+    let first = std::thread::spawn(move || client.poll_transmit(units::Stamp::from_nanos(0)));
+    assert!(first.join().unwrap().is_some());
+}

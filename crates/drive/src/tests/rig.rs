@@ -1,0 +1,158 @@
+//! Client and scripted drive in virtual time, with everything on the wire kept.
+
+use protocol::record::{Direction, DriveLink};
+use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
+
+use super::fake::Fake;
+use crate::{
+    AxisConfig, Client, Command, DriveError, Event, Listener, Move, Observation, Outcome, Progress,
+    ShaftSample,
+};
+
+pub struct Rig {
+    pub client: Client,
+    pub fake: Fake,
+    pub now: Stamp<Host>,
+    pub events: Vec<Event>,
+    pub log: Vec<(Direction, Vec<u8>, Stamp<Host>)>,
+}
+
+impl Rig {
+    pub fn new(config: AxisConfig) -> Self {
+        Self {
+            client: Client::new(config),
+            fake: Fake::new(),
+            now: Stamp::from_nanos(1_795_000_000_000_000_000),
+            events: Vec::new(),
+            log: Vec::new(),
+        }
+    }
+
+    /// A rig that is connected and homed, with the record of that forgotten.
+    pub fn homed() -> Self {
+        let mut rig = Self::new(AxisConfig::default());
+        rig.run(Command::Connect).unwrap();
+        rig.run(Command::Home).unwrap();
+        rig.forget();
+        rig
+    }
+
+    pub fn forget(&mut self) {
+        self.fake.requests.clear();
+        self.events.clear();
+        self.log.clear();
+    }
+
+    /// Runs a command to its end.
+    pub fn run(&mut self, command: Command) -> Result<Outcome, DriveError> {
+        self.client.start(command)?;
+        self.finish()
+    }
+
+    pub fn finish(&mut self) -> Result<Outcome, DriveError> {
+        let limit = self.now + Span::from_secs(120);
+        while self.now < limit {
+            if let Some(end) = self.step() {
+                return end;
+            }
+        }
+        panic!("no end after 120 s: {:?}", self.client);
+    }
+
+    /// Runs for a while; `None` if the command has not ended.
+    pub fn run_for(&mut self, span: Span) -> Option<Result<Outcome, DriveError>> {
+        let until = self.now + span;
+        while self.now < until {
+            if let Some(end) = self.step() {
+                return Some(end);
+            }
+        }
+        None
+    }
+
+    /// One turn of the owner's loop.
+    pub fn step(&mut self) -> Option<Result<Outcome, DriveError>> {
+        while let Some(frame) = self.client.poll_transmit(self.now) {
+            self.fake.input(&frame, self.now);
+            self.log.push((Direction::ToDevice, frame, self.now));
+        }
+        while let Some(event) = self.client.poll_event() {
+            self.events.push(event.clone());
+            match event {
+                Event::Done(outcome) => return Some(Ok(outcome)),
+                Event::Failed(error) => return Some(Err(error)),
+                Event::Sample(_) | Event::Progress(_) => {}
+            }
+        }
+        let next = [self.fake.next_answer(), self.client.poll_timeout()];
+        let next = next
+            .into_iter()
+            .flatten()
+            .min()
+            .expect("nothing to wait for");
+        // Real time always passes.
+        self.now = next.max(self.now + Span::from_nanos(1));
+        while let Some(bytes) = self.fake.take_answer(self.now) {
+            self.client.handle_input(&bytes, self.now);
+            self.log.push((Direction::FromDevice, bytes, self.now));
+        }
+        if self.client.poll_timeout().is_some_and(|t| t <= self.now) {
+            self.client.handle_timeout(self.now);
+        }
+        None
+    }
+
+    pub fn samples(&self) -> Vec<ShaftSample> {
+        self.events
+            .iter()
+            .filter_map(|event| match event {
+                Event::Sample(sample) => Some(*sample),
+                _ => None,
+            })
+            .collect()
+    }
+
+    pub fn progress(&self) -> Vec<Progress> {
+        self.events
+            .iter()
+            .filter_map(|event| match event {
+                Event::Progress(progress) => Some(progress.clone()),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// Writes that reached the drive: index, sub, value.
+    pub fn writes(&self) -> Vec<(u16, u8, u32)> {
+        self.fake
+            .requests
+            .iter()
+            .filter_map(|(_, request)| match request {
+                protocol::epos2::message::Request::WriteObject(w) => {
+                    Some((w.address.index, w.address.sub, w.value))
+                }
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// What the listener makes of the log.
+    pub fn heard(&self) -> Vec<Observation> {
+        let mut listener = Listener::new(1);
+        let mut heard = Vec::new();
+        for (direction, frame, host) in &self.log {
+            listener.observe(DriveLink::Usb, *direction, frame, *host, &mut |seen| {
+                heard.push(seen);
+            });
+        }
+        heard
+    }
+}
+
+pub fn to(angle_deg: f64) -> Move {
+    Move {
+        to: Degrees(angle_deg),
+        speed: Rpm(1125),
+        acceleration: RpmPerS(10_000),
+    }
+}

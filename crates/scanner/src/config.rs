@@ -1,0 +1,122 @@
+//! What a scan needs to know beside its bytes: carried in the log as TOML, so that a log explains itself.
+
+use cloud::mount::Mount;
+use serde::{Deserialize, Serialize};
+use units::{Degrees, Gearing, GearingError, Metres};
+
+/// The configuration of a scan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ScanConfig {
+    /// Version of the program that wrote it.
+    pub velomotion: String,
+    /// Name of the device profile.
+    pub device: String,
+    /// Whether the devices were software.
+    pub simulated: bool,
+    /// How the lidar sits on the tilt axis.
+    pub mount: MountConfig,
+    /// The tilt axis.
+    pub axis: AxisConfig,
+    /// What was to be swept; absent where nothing was.
+    pub sweep: Option<SweepPlan>,
+}
+
+/// How the lidar sits on the tilt axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MountConfig {
+    /// Height of the lidar's origin above the tilt axis, metres (d of Eq. 4-6).
+    pub d_m: f64,
+}
+
+/// Encoder, gear and node id.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AxisConfig {
+    /// Node id of the drive.
+    pub node: u8,
+    /// Lines of the encoder on the motor shaft.
+    pub encoder_lines: u32,
+    /// Motor turns and axis turns of the gear: `[120, 1]` is 120:1.
+    pub gear: [u32; 2],
+}
+
+/// The sweeps of a capture.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepPlan {
+    /// Angle where sweeps start, degrees.
+    pub from_deg: f64,
+    /// Angle where sweeps end, degrees.
+    pub to_deg: f64,
+    /// Cruise speed as commanded in whole rpm, degrees per second.
+    pub cruise_deg_s: f64,
+    /// Acceleration as commanded in whole rpm/s, degrees per second squared.
+    pub accel_deg_s2: f64,
+    /// How many sweeps.
+    pub sweeps: u32,
+    /// Whether the way back is a sweep too.
+    pub both_ways: bool,
+}
+
+impl Default for ScanConfig {
+    fn default() -> Self {
+        Self {
+            velomotion: env!("CARGO_PKG_VERSION").to_owned(),
+            device: "unknown".to_owned(),
+            simulated: false,
+            mount: MountConfig::default(),
+            axis: AxisConfig::default(),
+            sweep: None,
+        }
+    }
+}
+
+impl Default for MountConfig {
+    /// 6 cm: the Velomotion-16.
+    fn default() -> Self {
+        Self { d_m: 0.06 }
+    }
+}
+
+impl Default for AxisConfig {
+    /// 500 lines behind 120:1: 0.0015 deg a quadcount, 0.05 deg/s an rpm.
+    fn default() -> Self {
+        Self {
+            node: 1,
+            encoder_lines: 500,
+            gear: [120, 1],
+        }
+    }
+}
+
+impl MountConfig {
+    /// The mount's geometry.
+    #[must_use]
+    pub fn mount(self) -> Mount {
+        Mount::new(Metres(self.d_m))
+    }
+}
+
+impl AxisConfig {
+    /// The gearing.
+    ///
+    /// # Errors
+    /// Where a number of it is zero.
+    pub fn gearing(self) -> Result<Gearing, GearingError> {
+        let [motor_turns, axis_turns] = self.gear;
+        Gearing::new(self.encoder_lines, motor_turns, axis_turns)
+    }
+}
+
+impl SweepPlan {
+    /// Whether a move from `from` towards `target` is one of the plan's sweeps.
+    #[must_use]
+    pub fn is_sweep(&self, from: Degrees, target: Degrees, tolerance_deg: f64) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= tolerance_deg;
+        let along = near(from.0, self.from_deg) && near(target.0, self.to_deg);
+        let back = near(from.0, self.to_deg) && near(target.0, self.from_deg);
+        along || (self.both_ways && back)
+    }
+}

@@ -1,0 +1,161 @@
+//! Polled shaft positions to angle samples: the middle of request and answer, slow polls left out where they are not needed.
+//!
+//! A poll that took unusually long was held up on one side or the other, and which side cannot be known: its
+//! middle may be off by half the excess. In steady motion its neighbours tell the angle better than it does. On a ramp they may not: a slow
+//! poll stays where the line across the hole would be worse than the poll.
+
+use drive::ShaftSample;
+use units::{Gearing, Span};
+
+use crate::trajectory::AngleSample;
+
+/// Polls with a round trip above this quantile are slow.
+const QUICK_QUANTILE: f64 = 0.9;
+
+/// Angle samples of `polls`, in their order. The gearing turns quadcounts into degrees.
+#[must_use]
+pub fn angle_samples(polls: &[ShaftSample], gearing: Gearing) -> Vec<AngleSample> {
+    let (least, limit) = round_trips(polls);
+    let samples: Vec<AngleSample> = polls.iter().map(|poll| sample(poll, gearing)).collect();
+    let quick = |s: &AngleSample| s.bound + s.bound <= limit;
+    let mut kept = Vec::with_capacity(samples.len());
+    for (i, this) in samples.iter().enumerate() {
+        if quick(this) {
+            kept.push(*this);
+            continue;
+        }
+        let before = samples.get(..i).unwrap_or_default();
+        let after = samples.get(i + 1..).unwrap_or_default();
+        let quick_before = before.iter().rev().filter(|s| quick(s));
+        let quick_after = after.iter().filter(|s| quick(s));
+        let hole = Hole::between(quick_before, quick_after);
+        // At the ends of a recording there is nothing to replace a poll by.
+        if hole.is_none_or(|hole| hole.line_error() > hole.poll_error(this, least)) {
+            kept.push(*this);
+        }
+    }
+    kept
+}
+
+fn sample(poll: &ShaftSample, gearing: Gearing) -> AngleSample {
+    let half = poll.answer.saturating_since(poll.request).half();
+    AngleSample {
+        host: poll.request + half,
+        bound: half,
+        angle: gearing.angle(poll.position),
+    }
+}
+
+/// The motion on both sides of a stretch without quick polls.
+struct Hole {
+    length: Span,
+    speed_before: f64,
+    speed_after: f64,
+}
+
+impl Hole {
+    fn between<'a>(
+        mut before: impl Iterator<Item = &'a AngleSample>,
+        mut after: impl Iterator<Item = &'a AngleSample>,
+    ) -> Option<Self> {
+        let (last, last_but_one) = (before.next()?, before.next()?);
+        let (first, second) = (after.next()?, after.next()?);
+        Some(Self {
+            length: first.host - last.host,
+            speed_before: speed(last_but_one, last),
+            speed_after: speed(first, second),
+        })
+    }
+
+    /// How far a straight line across the hole is from motion whose speed changes evenly: v't2/8.
+    fn line_error(&self) -> f64 {
+        (self.speed_after - self.speed_before).abs() * self.length.as_secs_f64() / 8.0
+    }
+
+    /// How far the angle may have been from the poll's at its middle.
+    fn poll_error(&self, poll: &AngleSample, least: Span) -> f64 {
+        let excess = (poll.bound + poll.bound - least).as_secs_f64();
+        self.speed_before.abs().max(self.speed_after.abs()) * excess / 2.0
+    }
+}
+
+/// Degrees per second between two samples; zero between two of one instant.
+fn speed(a: &AngleSample, b: &AngleSample) -> f64 {
+    let time = (b.host - a.host).as_secs_f64();
+    if time > 0.0 {
+        (b.angle.0 - a.angle.0) / time
+    } else {
+        0.0
+    }
+}
+
+/// The least round trip, and the one above which polls are slow.
+fn round_trips(polls: &[ShaftSample]) -> (Span, Span) {
+    let mut trips: Vec<Span> = polls
+        .iter()
+        .map(|poll| poll.answer.saturating_since(poll.request))
+        .collect();
+    trips.sort_unstable();
+    let rank = (trips.len() as f64 * QUICK_QUANTILE) as usize;
+    let least = trips.first().copied().unwrap_or(Span::ZERO);
+    (least, trips.get(rank).copied().unwrap_or(least))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use units::{Quadcounts, Stamp};
+
+    fn poll(request_us: i64, round_trip_us: i64) -> ShaftSample {
+        ShaftSample {
+            request: Stamp::from_nanos(request_us * 1_000),
+            answer: Stamp::from_nanos((request_us + round_trip_us) * 1_000),
+            position: Quadcounts(-2),
+        }
+    }
+
+    fn gearing() -> Gearing {
+        Gearing::new(500, 120, 1).unwrap()
+    }
+
+    #[test]
+    fn a_sample_stands_in_the_middle_of_its_poll() {
+        let samples = angle_samples(&[poll(100, 50)], gearing());
+        assert_eq!(samples[0].host.as_nanos(), 125_000);
+        assert_eq!(samples[0].bound.as_nanos(), 25_000);
+        assert_eq!(samples[0].angle.0, -0.003);
+    }
+
+    #[test]
+    fn the_slowest_tenth_is_left_out() {
+        let polls: Vec<_> = (0..100)
+            .map(|i| poll(i * 1_000, if i % 20 == 10 { 5_000 } else { 500 + i }))
+            .collect();
+        let samples = angle_samples(&polls, gearing());
+        assert!(samples.len() >= 90);
+        assert!(samples.iter().all(|s| s.bound.as_nanos() < 1_000_000));
+    }
+
+    #[test]
+    fn a_slow_poll_on_a_ramp_stays_if_it_is_better_than_the_line_across_the_hole() {
+        let at = |position, poll| ShaftSample {
+            position: Quadcounts(position),
+            ..poll
+        };
+        let mut polls: Vec<_> = (0..20).map(|i| at(0, poll(i * 1_000, 500))).collect();
+        // From rest to 50 deg/s in 12 ms that hold two slow polls.
+        polls.push(at(40, poll(20_500, 3_000)));
+        polls.push(at(100, poll(23_500, 8_000)));
+        polls.extend((0..20).map(|i| at(200 + 33 * i as i32, poll(31_500 + i * 1_000, 500))));
+        let samples = angle_samples(&polls, gearing());
+        let kept = |angle: f64| samples.iter().any(|s| (s.angle.0 - angle).abs() < 1e-9);
+        assert!(kept(0.06) && !kept(0.15), "{samples:?}");
+    }
+
+    #[test]
+    fn polls_that_all_have_one_round_trip_are_all_kept() {
+        let polls: Vec<_> = (0..10).map(|i| poll(i * 1_000, 500)).collect();
+        assert_eq!(angle_samples(&polls, gearing()).len(), 10);
+        assert!(angle_samples(&[], gearing()).is_empty());
+    }
+}

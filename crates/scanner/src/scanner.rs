@@ -1,0 +1,257 @@
+//! The whole path, from recorded bytes to points, on one page.
+//!
+//! Two passes over the same records. The [`Survey`] reads times alone: packet arrivals for the lidar's clock, polls for the
+//! trajectory. The [`Placer`] then decodes every firing, asks the clock when it happened and the trajectory how the
+//! platform stood, and places its points. Both are pure functions of the records in their order.
+
+use cloud::mount::{Mount, Tilt};
+use cloud::{Fields, Point, Points, Sink, SinkError};
+use drive::record::{Record, Wire};
+use drive::{Listener, Observation, ShaftSample};
+use lidar::{Decoder, Firing, Options, Stats, Timekeeper};
+use units::{Degrees, Gearing, Host, Metres, Stamp};
+
+use crate::clock::{Arrival, LidarClock};
+use crate::config::ScanConfig;
+use crate::error::ScanError;
+use crate::polls::angle_samples;
+use crate::sweeps::{MoveWatch, Sweep};
+use crate::tilt::TiltSource;
+use crate::trajectory::{Linear, Trajectory};
+
+/// First pass: what the records say about time and tilt.
+pub struct Survey {
+    gearing: Gearing,
+    timekeeper: Timekeeper,
+    listener: Listener,
+    arrivals: Vec<Arrival>,
+    polls: Vec<ShaftSample>,
+    moves: MoveWatch,
+}
+
+/// What the first pass found: enough to place any firing.
+#[derive(Clone, Debug)]
+pub struct Alignment {
+    /// Lidar time to host time.
+    pub clock: LidarClock,
+    /// Host time to tilt angle.
+    pub trajectory: Trajectory,
+    /// The sweeps; empty where the platform does not tilt by the log.
+    pub sweeps: Vec<Sweep>,
+    /// How the lidar sits on the axis.
+    pub mount: Mount,
+    /// Only firings within one of these spans become points.
+    spans: Vec<(Stamp<Host>, Stamp<Host>)>,
+}
+
+impl Survey {
+    /// A survey of a log written with `config`.
+    ///
+    /// # Errors
+    /// [`ScanError::Gearing`] where the configuration's gearing cannot exist.
+    pub fn new(config: &ScanConfig, options: Options) -> Result<Self, ScanError> {
+        let gearing = config.axis.gearing()?;
+        Ok(Self {
+            gearing,
+            timekeeper: Timekeeper::new(options),
+            listener: Listener::new(config.axis.node),
+            arrivals: Vec::new(),
+            polls: Vec::new(),
+            moves: MoveWatch::new(gearing),
+        })
+    }
+
+    /// Takes one record.
+    pub fn observe(&mut self, record: &Record<'_>) {
+        match record.wire {
+            Wire::Lidar { payload, .. } => {
+                if let Some(timing) = self.timekeeper.packet(record.host, payload) {
+                    self.arrivals.push(Arrival {
+                        device: timing.first_firing,
+                        host: record.host - timing.fill,
+                    });
+                }
+            }
+            Wire::Drive {
+                link,
+                direction,
+                frame,
+            } => {
+                let (polls, moves) = (&mut self.polls, &mut self.moves);
+                self.listener.observe(
+                    link,
+                    direction,
+                    frame,
+                    record.host,
+                    &mut |seen| match seen {
+                        Observation::Sample(poll) => polls.push(poll),
+                        Observation::Wrote {
+                            address,
+                            value,
+                            request,
+                            ..
+                        } => moves.wrote(address, value, request),
+                        _ => {}
+                    },
+                );
+            }
+        }
+    }
+
+    /// Solves for clock, trajectory and sweeps.
+    ///
+    /// # Errors
+    /// [`ScanError`] where the records hold no lidar packet, or tilt was asked of them and they hold none, or no sweep.
+    pub fn solve(self, config: &ScanConfig, tilt: &TiltSource) -> Result<Alignment, ScanError> {
+        let clock = LidarClock::fit(&self.arrivals).ok_or(ScanError::NoLidarPackets)?;
+        let samples = match tilt {
+            TiltSource::Log => angle_samples(&self.polls, self.gearing),
+            TiltSource::None => Vec::new(),
+            TiltSource::Table(table) => table.samples(&self.arrivals)?,
+        };
+        let sweeps = match tilt {
+            TiltSource::Log => self.moves.sweeps(&samples, config.sweep.as_ref()),
+            TiltSource::None | TiltSource::Table(_) => Vec::new(),
+        };
+        let (trajectory, spans) = match tilt {
+            TiltSource::None => (Trajectory::Fixed(Degrees(0.0)), vec![ALWAYS]),
+            TiltSource::Table(_) => {
+                let linear = Linear::new(samples).ok_or(ScanError::NoTilt)?;
+                (Trajectory::Linear(linear), vec![ALWAYS])
+            }
+            TiltSource::Log => {
+                let linear = Linear::new(samples).ok_or(ScanError::NoTilt)?;
+                if sweeps.is_empty() {
+                    return Err(ScanError::NoSweep);
+                }
+                let spans = sweeps.iter().map(|s| (s.start, s.end)).collect();
+                (Trajectory::Linear(linear), spans)
+            }
+        };
+        Ok(Alignment {
+            clock,
+            trajectory,
+            sweeps,
+            mount: match tilt {
+                // The sensor's own frame: nothing of the platform in it.
+                TiltSource::None => Mount::new(Metres(0.0)),
+                TiltSource::Log | TiltSource::Table(_) => config.mount.mount(),
+            },
+            spans,
+        })
+    }
+}
+
+const ALWAYS: (Stamp<Host>, Stamp<Host>) =
+    (Stamp::from_nanos(i64::MIN), Stamp::from_nanos(i64::MAX));
+
+impl Alignment {
+    /// RMS of the angle samples against their neighbours, degrees, during the sweeps; `None` without tilt.
+    #[must_use]
+    pub fn angle_rms_deg(&self) -> Option<f64> {
+        match &self.trajectory {
+            Trajectory::Fixed(_) => None,
+            Trajectory::Linear(linear) => linear.leave_one_out_rms(&self.spans).map(|rms| rms.0),
+        }
+    }
+
+    fn wants(&self, host: Stamp<Host>) -> bool {
+        self.spans
+            .iter()
+            .any(|(from, to)| *from <= host && host <= *to)
+    }
+}
+
+/// Second pass: places every firing and hands the points to a sink in batches.
+pub struct Placer<'a> {
+    alignment: &'a Alignment,
+    decoder: Decoder,
+    batch: Points,
+    placed: Placed,
+    sink: &'a mut dyn Sink,
+}
+
+/// What became of the returns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Placed {
+    /// Points handed to the sink.
+    pub points: u64,
+    /// Returns outside every sweep, or outside the time for which an angle is known.
+    pub outside: u64,
+}
+
+const BATCH_POINTS: usize = 1 << 14;
+
+impl<'a> Placer<'a> {
+    /// A placer into `sink`, which has begun.
+    pub fn new(alignment: &'a Alignment, options: Options, sink: &'a mut dyn Sink) -> Self {
+        let fields: Fields = sink.fields();
+        Self {
+            alignment,
+            decoder: Decoder::new(options),
+            batch: Points::with_capacity(fields, BATCH_POINTS),
+            placed: Placed::default(),
+            sink,
+        }
+    }
+
+    /// Takes one record.
+    ///
+    /// # Errors
+    /// What the sink reports.
+    pub fn observe(&mut self, record: &Record<'_>) -> Result<(), SinkError> {
+        let Wire::Lidar { payload, .. } = record.wire else {
+            return Ok(());
+        };
+        let (alignment, batch, placed) = (self.alignment, &mut self.batch, &mut self.placed);
+        self.decoder.packet(record.host, payload, &mut |firing| {
+            place(alignment, firing, batch, placed);
+        });
+        if self.batch.len() >= BATCH_POINTS {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Places what the decoder still holds and says what came of it all. The sink is not finished: its owner does that.
+    ///
+    /// # Errors
+    /// What the sink reports.
+    pub fn finish(mut self) -> Result<(Placed, Stats), SinkError> {
+        let (alignment, batch, placed) = (self.alignment, &mut self.batch, &mut self.placed);
+        self.decoder
+            .finish(&mut |firing| place(alignment, firing, batch, placed));
+        self.flush()?;
+        Ok((self.placed, self.decoder.stats().clone()))
+    }
+
+    fn flush(&mut self) -> Result<(), SinkError> {
+        self.sink.points(&self.batch)?;
+        self.batch.clear();
+        Ok(())
+    }
+}
+
+/// The heart: a firing's points in the sensor's frame, each at its own time and tilt, into the frame of the platform (Eq. 4-6).
+fn place(alignment: &Alignment, firing: &Firing<'_>, batch: &mut Points, placed: &mut Placed) {
+    for point in firing.points() {
+        let host = alignment.clock.host(point.time);
+        let tilt = match alignment.trajectory.angle(host) {
+            Some(angle) if alignment.wants(host) => angle,
+            _ => {
+                placed.outside += 1;
+                continue;
+            }
+        };
+        placed.points += 1;
+        batch.push(Point {
+            position_m: alignment.mount.place(point.position_m, Tilt::new(tilt)),
+            intensity: point.reflectivity,
+            ring: point.ring,
+            laser: point.laser,
+            time: host,
+            device_time: point.time,
+            tilt,
+        });
+    }
+}

@@ -1,0 +1,152 @@
+//! Where tilt angles come from: the drive's traffic in the log, nowhere, or a table that another rig wrote.
+
+use units::{Degrees, Host, Span, Stamp};
+
+use crate::clock::Arrival;
+use crate::error::ScanError;
+use crate::trajectory::AngleSample;
+
+/// Where tilt angles come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TiltSource {
+    /// The drive's recorded traffic.
+    Log,
+    /// The platform stands still; the cloud is in the sensor's own frame, with no mount applied.
+    None,
+    /// Angles measured by something else.
+    Table(AngleTable),
+}
+
+/// Angles over time, as another rig wrote them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AngleTable {
+    rows: Vec<(f64, f64)>,
+}
+
+/// Which clock a table's times are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableTime {
+    /// Host time: Unix seconds, as in the recording's packet headers.
+    Unix,
+    /// Seconds since the recording's first lidar packet.
+    SinceFirstPacket,
+}
+
+/// Times below this (1973) cannot be Unix times of a lidar recording and count from its first packet.
+const UNIX_FROM_S: f64 = 1e8;
+
+impl AngleTable {
+    /// Rows of (seconds, degrees), in strictly increasing time.
+    ///
+    /// # Errors
+    /// [`ScanError::NoTilt`] without rows, [`ScanError::TableOrder`] where time does not increase.
+    pub fn new(rows: Vec<(f64, f64)>) -> Result<Self, ScanError> {
+        if rows.is_empty() {
+            return Err(ScanError::NoTilt);
+        }
+        let back = rows
+            .windows(2)
+            .position(|w| matches!(w, [a, b] if b.0 <= a.0 || a.0.is_nan() || b.0.is_nan()));
+        match back {
+            Some(row) => Err(ScanError::TableOrder { row: row + 2 }),
+            None => Ok(Self { rows }),
+        }
+    }
+
+    /// Which clock the table's times are of.
+    #[must_use]
+    pub fn time(&self) -> TableTime {
+        match self.rows.first() {
+            Some((first, _)) if *first >= UNIX_FROM_S => TableTime::Unix,
+            _ => TableTime::SinceFirstPacket,
+        }
+    }
+
+    /// The rows as samples in host time.
+    pub(crate) fn samples(&self, arrivals: &[Arrival]) -> Result<Vec<AngleSample>, ScanError> {
+        let hosts = || arrivals.iter().map(|a| a.host);
+        let (Some(first), Some(last)) = (hosts().min(), hosts().max()) else {
+            return Err(ScanError::NoLidarPackets);
+        };
+        let epoch: Stamp<Host> = match self.time() {
+            TableTime::Unix => Stamp::from_nanos(0),
+            TableTime::SinceFirstPacket => first,
+        };
+        let samples: Vec<AngleSample> = self
+            .rows
+            .iter()
+            .map(|(seconds, angle)| AngleSample {
+                host: epoch.saturating_add(Span::from_secs_f64(*seconds)),
+                bound: Span::ZERO,
+                angle: Degrees(*angle),
+            })
+            .collect();
+        let overlaps = matches!(
+            (samples.first(), samples.last()),
+            (Some(from), Some(to)) if from.host <= last && to.host >= first
+        );
+        if overlaps {
+            return Ok(samples);
+        }
+        let seconds = |host: Stamp<Host>| (host.saturating_since(epoch)).as_secs_f64();
+        Err(ScanError::TableElsewhere {
+            table_from_s: self.rows.first().map_or(0.0, |r| r.0),
+            table_to_s: self.rows.last().map_or(0.0, |r| r.0),
+            recording_from_s: seconds(first),
+            recording_to_s: seconds(last),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recording(from_s: i64, to_s: i64) -> Vec<Arrival> {
+        [from_s, to_s]
+            .map(|s| Arrival {
+                device: Stamp::from_nanos(0),
+                host: Stamp::from_nanos(s * 1_000_000_000),
+            })
+            .to_vec()
+    }
+
+    #[test]
+    fn small_times_count_from_the_first_packet() {
+        let table = AngleTable::new(vec![(0.5, -1.0), (1.5, -2.0)]).unwrap();
+        assert_eq!(table.time(), TableTime::SinceFirstPacket);
+        let samples = table
+            .samples(&recording(1_600_000_000, 1_600_000_010))
+            .unwrap();
+        assert_eq!(samples[0].host.as_nanos(), 1_600_000_000_500_000_000);
+    }
+
+    #[test]
+    fn unix_times_are_the_recordings_own() {
+        let table = AngleTable::new(vec![(1.6e9, -1.0), (1.6e9 + 1.0, -2.0)]).unwrap();
+        assert_eq!(table.time(), TableTime::Unix);
+        let samples = table
+            .samples(&recording(1_600_000_000, 1_600_000_010))
+            .unwrap();
+        assert_eq!(samples[0].host.as_nanos(), 1_600_000_000_000_000_000);
+    }
+
+    #[test]
+    fn angles_of_another_time_are_refused_with_both_times() {
+        let table = AngleTable::new(vec![(1.7e9, -1.0), (1.7e9 + 1.0, -2.0)]).unwrap();
+        let error = table.samples(&recording(1_600_000_000, 1_600_000_010));
+        let text = error.unwrap_err().to_string();
+        assert!(
+            text.contains("1700000000") && text.contains("1600000010"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn time_must_increase() {
+        let rows = vec![(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)];
+        assert_eq!(AngleTable::new(rows), Err(ScanError::TableOrder { row: 3 }));
+        assert_eq!(AngleTable::new(Vec::new()), Err(ScanError::NoTilt));
+        assert!(AngleTable::new(vec![(0.0, 0.0), (f64::NAN, 0.0)]).is_err());
+    }
+}

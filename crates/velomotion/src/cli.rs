@@ -1,0 +1,136 @@
+//! The command line. Other programs drive it: names and meanings are a contract.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Dense point clouds from a multi-beam lidar on a tilting platform.
+#[derive(Debug, Parser)]
+#[command(version, about, max_term_width = 100)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// What every command understands.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// What every command understands.
+#[derive(Clone, Debug, Args)]
+pub struct Common {
+    /// Device to use: sim, auto, or a [device.NAME] of the configuration
+    #[arg(long, global = true, value_name = "sim|auto|NAME")]
+    pub device: Option<String>,
+    /// Configuration file
+    #[arg(long, global = true, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Print exactly one JSON object on stdout
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Say less
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more (-vv: everything)
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    pub verbose: u8,
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Sweep the platform and make a point cloud of it
+    Capture(Capture),
+    /// Make the point cloud of a log or of a plain lidar recording
+    Replay(Replay),
+    /// Say what a file holds
+    Info(Info),
+}
+
+/// `capture`.
+#[derive(Clone, Debug, Args)]
+pub struct Capture {
+    /// Cruise speed of the tilt axis; becomes whole rpm of the motor
+    #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true)]
+    pub speed: f64,
+    /// Angle where the sweep starts [default: the axis's upper limit]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub from: Option<f64>,
+    /// Angle where the sweep ends [default: the axis's lower limit]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub to: Option<f64>,
+    /// Acceleration of the tilt axis [default: the device's]
+    #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
+    pub accel: Option<f64>,
+    /// How many sweeps
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub sweeps: u32,
+    /// Scan on the way back too
+    #[arg(long)]
+    pub both_ways: bool,
+    /// Raw log to keep [default: named after the cloud]
+    #[arg(long, value_name = "LOG.pcapng")]
+    pub log: Option<PathBuf>,
+    /// Where the cloud goes
+    #[command(flatten)]
+    pub output: Output,
+}
+
+/// `replay`.
+#[derive(Clone, Debug, Args)]
+pub struct Replay {
+    /// Log of a capture, or any pcap or pcapng with lidar packets
+    #[arg(value_name = "LOG|PCAP")]
+    pub input: PathBuf,
+    /// Where tilt angles come from: the log, nowhere (the sensor's own frame), or a CSV of time_s,angle_deg
+    #[arg(long, value_name = "log|none|ANGLES.csv", default_value = "log")]
+    pub tilt: String,
+    /// Where the cloud goes
+    #[command(flatten)]
+    pub output: Output,
+}
+
+/// Where a cloud goes.
+#[derive(Clone, Debug, Args)]
+pub struct Output {
+    /// Cloud to write: .ply .las .laz .csv; - is PLY on stdout
+    #[arg(short, long, value_name = "CLOUD")]
+    pub output: Option<PathBuf>,
+    /// Overwrite files that exist
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// `info`.
+#[derive(Clone, Debug, Args)]
+pub struct Info {
+    /// Log, pcap or pcapng
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn the_cards_command_is_understood() {
+        let cli = Cli::try_parse_from(["velomotion", "capture", "--speed", "56.25"]).unwrap();
+        assert!(matches!(
+            cli.command,
+            Command::Capture(Capture { speed: 56.25, .. })
+        ));
+    }
+
+    #[test]
+    fn angles_may_be_negative() {
+        let line = "velomotion capture --speed 10 --from -5 --to -45.5";
+        assert!(Cli::try_parse_from(line.split(' ')).is_ok());
+    }
+}

@@ -1,0 +1,51 @@
+//! The verbs, one file each.
+
+pub mod capture;
+pub mod info;
+pub mod replay;
+
+use crate::cli::{Cli, Command};
+use crate::failure::Failure;
+
+/// What a command has to say on stdout: one JSON object, or text for people.
+pub struct Said {
+    /// For programs.
+    pub json: serde_json::Value,
+    /// For people.
+    pub text: String,
+    /// A failure that left something worth saying: it decides the exit code and is printed after the text.
+    pub failure: Option<Failure>,
+    /// Whether a cloud went to stdout: the text goes to stderr then.
+    pub stdout_taken: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Failure`] where nothing came of it.
+pub fn run(cli: &Cli) -> Result<Said, Failure> {
+    match &cli.command {
+        Command::Capture(arguments) => capture::run(arguments, &cli.common),
+        Command::Replay(arguments) => replay::run(arguments, &cli.common),
+        Command::Info(arguments) => info::run(arguments),
+    }
+}
+
+impl Said {
+    /// A scan's report. Where the cloud itself went to stdout, nothing else may.
+    #[must_use]
+    pub fn scan(scan: &crate::report::Scan, failure: Option<Failure>, stdout_taken: bool) -> Self {
+        Self {
+            json: json(scan),
+            text: scan.table(),
+            failure,
+            stdout_taken,
+        }
+    }
+}
+
+/// The report as JSON. Reports are structs of numbers and strings: there is nothing in them that JSON cannot say.
+fn json(report: &impl serde::Serialize) -> serde_json::Value {
+    serde_json::to_value(report)
+        .unwrap_or_else(|error| serde_json::json!({ "error": error.to_string() }))
+}

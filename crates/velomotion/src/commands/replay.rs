@@ -1,0 +1,235 @@
+//! `velomotion replay`: a cloud from a log, or from anybody's lidar recording. `capture` ends with the same function.
+
+use std::path::Path;
+
+use analysis::truth::Comparison;
+use cloud::{Metadata, Sink, SinkError};
+use scanner::{
+    Alignment, AngleTable, Placer, ScanConfig, ScanError, Survey, TableTime, TiltSource,
+};
+use sim::Truth;
+
+use super::Said;
+use super::info::{Traffic, contents};
+use crate::cli::{self, Common};
+use crate::failure::{Failure, Kind};
+use crate::names;
+use crate::output::{self, Target, sink_failure};
+use crate::progress::Progress;
+use crate::recordings;
+use crate::report::{self, Scan, Sync};
+
+/// What to make a cloud of.
+pub struct Request<'a> {
+    /// Log or plain recording.
+    pub recording: &'a Path,
+    /// Where angles come from.
+    pub tilt: TiltSource,
+    /// What truly happened, where a simulator knows.
+    pub truth: Option<&'a Truth>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Failure`] where no cloud came of it.
+pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
+    let request = Request {
+        recording: &arguments.input,
+        tilt: tilt_source(&arguments.tilt)?,
+        truth: None,
+    };
+    let progress = Progress::new(common);
+    if let TiltSource::Table(table) = &request.tilt {
+        progress.say(match table.time() {
+            TableTime::Unix => "tilt angles: times are Unix seconds, as in the recording",
+            TableTime::SinceFirstPacket => {
+                "tilt angles: times count from the recording's first lidar packet"
+            }
+        });
+    }
+    output::one_for_stdout(arguments.output.output.as_deref(), common.json)?;
+    // The input is looked at before an output is opened.
+    drop(recordings::open(&arguments.input)?);
+    let cloud = arguments
+        .output
+        .output
+        .clone()
+        .unwrap_or_else(|| names::cloud_of(&arguments.input));
+    let target = Target::open(&cloud, arguments.output.force)?;
+    let stdout = target.is_stdout();
+    let scan = make(&request, target)?;
+    if scan.simulated {
+        progress.say("SIMULATED: this log is of software devices");
+    }
+    let failure = scan.contents.truncated.as_ref().map(|truncated| {
+        Failure::new(
+            Kind::Incomplete,
+            format!("{} is cut off: {truncated}", arguments.input.display()),
+        )
+        .help(format!(
+            "the cloud of what was there is {}; take the recording from its source again if you need the rest",
+            cloud.display()
+        ))
+    });
+    Ok(Said::scan(&scan, failure, stdout))
+}
+
+/// Makes the cloud of a recording: two passes over it, points into the target.
+///
+/// # Errors
+/// [`Kind::BadInput`] where the recording does not hold what is needed, [`Kind::Incomplete`] where the cloud cannot be written.
+pub fn make(request: &Request<'_>, mut target: Target) -> Result<Scan, Failure> {
+    let output = target.path().to_owned();
+    let written = match request.truth {
+        None => scan(request, target.sink(), &output)?,
+        Some(truth) => {
+            let mut comparison = Comparison::new(|time: units::Stamp<units::Lidar>, laser| {
+                truth.point(time.as_nanos(), laser)
+            });
+            let written = scan(request, &mut (target.sink(), &mut comparison), &output)?;
+            written.with_truth(comparison.report())
+        }
+    };
+    target.commit()?;
+    Ok(written)
+}
+
+/// The two passes.
+///
+/// # Errors
+/// As for [`make`].
+pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result<Scan, Failure> {
+    let path = request.recording;
+    let config = recordings::config(path)?;
+    let options = lidar::Options::default();
+    let cannot_scan = |error: ScanError| scan_failure(path, &error);
+    let cannot_write = |error: SinkError| sink_failure(output, &error);
+
+    let mut survey = Survey::new(&config, options).map_err(cannot_scan)?;
+    let mut traffic = Traffic::new(&config);
+    let pass = recordings::read(path, |record| {
+        survey.observe(record);
+        traffic.observe(record);
+        Ok(())
+    })?;
+    let alignment = survey.solve(&config, &request.tilt).map_err(cannot_scan)?;
+
+    sink.begin(&metadata(&config, &request.tilt))
+        .map_err(cannot_write)?;
+    let mut placer = Placer::new(&alignment, options, sink);
+    recordings::read(path, |record| placer.observe(record).map_err(cannot_write))?;
+    let (placed, stats) = placer.finish().map_err(cannot_write)?;
+
+    Ok(Scan {
+        contents: contents(&stats, &traffic, &pass),
+        points: placed.points,
+        left_out: placed.outside,
+        sweeps: alignment
+            .sweeps
+            .iter()
+            .map(report::SweepReport::from)
+            .collect(),
+        sync: sync(&alignment),
+        output: output.display().to_string(),
+        log: path.display().to_string(),
+        simulated: config.simulated,
+        truth: None,
+    })
+}
+
+fn sync(alignment: &Alignment) -> Sync {
+    Sync {
+        clock_method: "lower envelope",
+        clock_residual_us: alignment.clock.residual().as_micros_f64(),
+        angle_method: alignment.trajectory.method(),
+        angle_rms_deg: alignment.angle_rms_deg(),
+    }
+}
+
+/// What the cloud says about itself. Nothing of the file's name or of today: a log gives the same bytes wherever it lies.
+fn metadata(config: &ScanConfig, tilt: &TiltSource) -> Metadata {
+    let mut comments = Vec::new();
+    if *tilt == TiltSource::None {
+        comments.push("not tilted: the sensor's own frame".to_owned());
+    }
+    Metadata {
+        simulated: config.simulated,
+        source: format!("device {}", config.device),
+        software: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
+        time_reference: "Unix seconds (UTC) of the recording host's clock".to_owned(),
+        comments,
+    }
+}
+
+/// Reads `--tilt`.
+fn tilt_source(text: &str) -> Result<TiltSource, Failure> {
+    match text {
+        "log" => Ok(TiltSource::Log),
+        "none" => Ok(TiltSource::None),
+        path => angle_table(Path::new(path)).map(TiltSource::Table),
+    }
+}
+
+/// Reads a CSV of time_s,angle_deg; a first line without numbers is a heading.
+fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
+    let wrong = |what: String| {
+        Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
+            "give a CSV of two columns, time_s,angle_deg: times in increasing order, either Unix seconds\n\
+             or seconds since the recording's first packet",
+        )
+    };
+    let text =
+        std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
+    let mut rows = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let line = line.trim();
+        let blank = line.is_empty() || line.starts_with('#');
+        match parse_row(line) {
+            Some(row) => rows.push(row),
+            // A heading may stand before the first row.
+            None if blank || (rows.is_empty() && number == 0) => {}
+            None => {
+                return Err(wrong(format!(
+                    "line {}: expected two finite numbers, got {line:?}",
+                    number + 1
+                )));
+            }
+        }
+    }
+    AngleTable::new(rows).map_err(|error| match error {
+        ScanError::NoTilt => wrong("expected rows of time_s,angle_deg, got none".to_owned()),
+        error => wrong(error.to_string()),
+    })
+}
+
+fn parse_row(line: &str) -> Option<(f64, f64)> {
+    let mut cells = line
+        .split([',', ';'])
+        .map(|cell| cell.trim().parse::<f64>());
+    match (cells.next(), cells.next()) {
+        (Some(Ok(time)), Some(Ok(angle))) if time.is_finite() && angle.is_finite() => {
+            Some((time, angle))
+        }
+        _ => None,
+    }
+}
+
+fn scan_failure(path: &Path, error: &ScanError) -> Failure {
+    let help = match error {
+        ScanError::NoLidarPackets => {
+            "give a recording of the lidar's UDP traffic (ports 2368 and 8308); info says what this file holds"
+        }
+        ScanError::NoTilt => {
+            "this is a plain lidar recording: add --tilt none for the sensor's own frame, or --tilt ANGLES.csv"
+        }
+        ScanError::NoSweep => {
+            "the recording ended before a sweep began: --tilt none gives its points in the sensor's own frame"
+        }
+        ScanError::TableElsewhere { .. } | ScanError::TableOrder { .. } => {
+            "give times as Unix seconds like the recording's, or as seconds since its first packet"
+        }
+        ScanError::Gearing(_) => "correct encoder_lines and gear in the configuration",
+    };
+    Failure::new(Kind::BadInput, format!("{}: {error}", path.display())).help(help)
+}

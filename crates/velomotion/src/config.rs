@@ -1,0 +1,284 @@
+//! The configuration file: which devices there are and how the scanner is built.
+//!
+//! Values of the command line win over the file, the file over what is built in. A key that is not known is an error with
+//! its line: a misspelt limit must not pass for none.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::net::Ipv4Addr;
+use std::path::{Path, PathBuf};
+
+use scanner::config::{AxisConfig, MountConfig};
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use crate::failure::{Failure, Kind};
+
+/// The whole file.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// `device = "NAME"`, or a `[device.NAME]` table each and `[device] default = "NAME"`.
+    pub device: Devices,
+    /// How the lidar sits on the tilt axis.
+    pub mount: MountConfig,
+    /// The tilt axis.
+    pub axis: Axis,
+}
+
+/// The devices of a configuration.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Devices {
+    /// What is used without `--device`.
+    pub default: Option<String>,
+    /// Profiles by name.
+    pub profiles: BTreeMap<String, Device>,
+}
+
+/// One `[device.NAME]`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Device {
+    /// How the drive is attached.
+    pub kind: DeviceKind,
+    /// Path of the drive's serial port; needed unless the device is software.
+    pub port: Option<PathBuf>,
+    /// Local address on which the lidar's packets arrive.
+    #[serde(default = "any_address")]
+    pub lidar: Ipv4Addr,
+    /// Acceleration used without `--accel`, degrees per second squared.
+    #[serde(default = "gentle")]
+    pub accel_deg_s2: f64,
+}
+
+/// How the drive is attached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DeviceKind {
+    /// Software EPOS2 and software VLP-16.
+    Sim,
+    /// EPOS2 on USB.
+    Usb,
+}
+
+/// The tilt axis: encoder, gear, limits.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Axis {
+    /// Node id of the drive.
+    pub node: u8,
+    /// Lines of the encoder on the motor shaft.
+    pub encoder_lines: u32,
+    /// Motor turns and axis turns.
+    pub gear: [u32; 2],
+    /// Smallest tilt angle allowed, degrees.
+    pub min_deg: f64,
+    /// Largest tilt angle allowed, degrees.
+    pub max_deg: f64,
+    /// Largest tilt speed allowed, degrees per second.
+    pub max_speed_deg_s: f64,
+    /// Largest tilt acceleration allowed, degrees per second squared; a quick stop uses it.
+    pub max_accel_deg_s2: f64,
+    /// Digital output of the drive (1..=5) that opens the brake; absent without brake.
+    pub brake_output: Option<u8>,
+    /// How the axis finds its angle after power-on.
+    pub homing: Homing,
+}
+
+/// How the axis finds its angle.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Homing {
+    /// Homing method (object 6098).
+    pub method: i8,
+    /// Tilt angle at the place that homing finds, degrees.
+    pub at_deg: f64,
+    /// Tilt angle to go to from there, degrees.
+    pub to_deg: f64,
+    /// Speed towards the switch, degrees per second.
+    pub speed_deg_s: f64,
+    /// Speed over its edge, degrees per second.
+    pub edge_speed_deg_s: f64,
+}
+
+impl Default for Axis {
+    fn default() -> Self {
+        let scan = AxisConfig::default();
+        Self {
+            node: scan.node,
+            encoder_lines: scan.encoder_lines,
+            gear: scan.gear,
+            min_deg: -45.0,
+            max_deg: 0.0,
+            max_speed_deg_s: 98.0,
+            max_accel_deg_s2: 10_000.0,
+            brake_output: Some(1),
+            homing: Homing::default(),
+        }
+    }
+}
+
+impl Default for Homing {
+    fn default() -> Self {
+        Self {
+            method: 18,
+            at_deg: 1.0,
+            to_deg: 0.0,
+            speed_deg_s: 10.0,
+            edge_speed_deg_s: 1.0,
+        }
+    }
+}
+
+impl Axis {
+    /// The part of it that a log carries.
+    #[must_use]
+    pub fn scan(&self) -> AxisConfig {
+        AxisConfig {
+            node: self.node,
+            encoder_lines: self.encoder_lines,
+            gear: self.gear,
+        }
+    }
+}
+
+impl Device {
+    /// The built-in simulator: a head so light that it takes 45 degrees at 56.25 deg/s in 0.81 s.
+    #[must_use]
+    pub fn simulator() -> Self {
+        Self {
+            kind: DeviceKind::Sim,
+            port: None,
+            lidar: Ipv4Addr::LOCALHOST,
+            accel_deg_s2: 5000.0,
+        }
+    }
+
+    /// An EPOS2 found on USB.
+    #[must_use]
+    pub fn usb(port: PathBuf) -> Self {
+        Self {
+            kind: DeviceKind::Usb,
+            port: Some(port),
+            lidar: any_address(),
+            accel_deg_s2: gentle(),
+        }
+    }
+}
+
+fn any_address() -> Ipv4Addr {
+    Ipv4Addr::UNSPECIFIED
+}
+
+/// The drive's factory setting behind 120:1, 10,000 rpm/s.
+fn gentle() -> f64 {
+    500.0
+}
+
+impl<'de> Deserialize<'de> for Devices {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NameOrProfiles;
+        impl<'de> Visitor<'de> for NameOrProfiles {
+            type Value = Devices;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a device's name, or [device.NAME] tables")
+            }
+            fn visit_str<E>(self, name: &str) -> Result<Devices, E> {
+                Ok(Devices {
+                    default: Some(name.to_owned()),
+                    profiles: BTreeMap::new(),
+                })
+            }
+            fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Devices, M::Error> {
+                let mut devices = Devices::default();
+                while let Some(key) = map.next_key::<String>()? {
+                    if key == "default" {
+                        devices.default = Some(map.next_value()?);
+                    } else {
+                        devices.profiles.insert(key, map.next_value()?);
+                    }
+                }
+                Ok(devices)
+            }
+        }
+        deserializer.deserialize_any(NameOrProfiles)
+    }
+}
+
+/// Reads the configuration: `file` if given, else the first there is of the usual places, else what is built in.
+///
+/// # Errors
+/// Where a file was named and cannot be read, or any that is read cannot be understood.
+pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
+    let Some(path) = file.map(Path::to_owned).or_else(usual_place) else {
+        return Ok(Config::default());
+    };
+    let text = std::fs::read_to_string(&path).map_err(|error| {
+        Failure::new(
+            Kind::BadInput,
+            format!("cannot read the configuration {}: {error}", path.display()),
+        )
+        .help("name an existing file with --config, or leave the option out")
+    })?;
+    toml::from_str(&text).map_err(|error| {
+        Failure::new(
+            Kind::BadInput,
+            format!(
+                "the configuration {} cannot be understood:\n{error}",
+                path.display()
+            ),
+        )
+        .help("correct that line; the checkout's velomotion.toml shows every key")
+    })
+}
+
+fn usual_place() -> Option<PathBuf> {
+    let var = |name| std::env::var_os(name).map(PathBuf::from);
+    let user = var("XDG_CONFIG_HOME").or_else(|| var("HOME").map(|home| home.join(".config")));
+    [
+        Some(PathBuf::from("velomotion.toml")),
+        user.map(|dir| dir.join("velomotion/velomotion.toml")),
+        Some(PathBuf::from("/etc/velomotion/velomotion.toml")),
+    ]
+    .into_iter()
+    .flatten()
+    .find(|path| path.is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_checkouts_own_file_says_sim_and_nothing_but_defaults() {
+        let text = include_str!("../../../velomotion.toml");
+        let config: Config = toml::from_str(text).unwrap();
+        assert_eq!(config.device.default.as_deref(), Some("sim"));
+        assert_eq!(config.axis, Axis::default());
+        assert_eq!(config.mount, MountConfig::default());
+    }
+
+    #[test]
+    fn device_is_a_name_or_tables() {
+        let config: Config = toml::from_str(
+            "[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\nport = '/dev/ttyUSB3'",
+        )
+        .unwrap();
+        assert_eq!(config.device.default.as_deref(), Some("bench"));
+        let bench = &config.device.profiles["bench"];
+        assert_eq!(bench.kind, DeviceKind::Usb);
+        assert_eq!(bench.accel_deg_s2, 500.0);
+    }
+
+    #[test]
+    fn a_misspelt_key_is_an_error_with_its_line() {
+        for text in [
+            "\n[axis]\nmin_degg = -45",
+            "\n[device.a]\nkind = 'usb'\nprot = '/dev/x'",
+        ] {
+            let error = toml::from_str::<Config>(text).unwrap_err().to_string();
+            assert!(error.contains("line "), "{error}");
+            assert!(error.contains("unknown field"), "{error}");
+        }
+    }
+}

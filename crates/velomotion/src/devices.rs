@@ -1,0 +1,148 @@
+//! From a device profile to an open drive port and a lidar address.
+
+use std::path::{Path, PathBuf};
+
+use drive::config::{Brake, Homing, LimitSwitches, Limits, Timing};
+use units::{DegPerS, DegPerS2, Degrees, Rpm, RpmPerS, Span};
+
+use crate::config::{Axis, Config, Device, DeviceKind};
+use crate::failure::{Failure, Kind};
+
+/// The device to use and its name: `--device`, else the configuration's, else whatever is plugged in.
+///
+/// # Errors
+/// [`Kind::Usage`] for a name that is not there, [`Kind::NoDevice`] where `auto` finds nothing.
+pub fn choose(config: &Config, asked: Option<&str>) -> Result<(String, Device), Failure> {
+    let name = asked
+        .or(config.device.default.as_deref())
+        .unwrap_or("auto")
+        .to_owned();
+    if let Some(device) = config.device.profiles.get(&name) {
+        return Ok((name, device.clone()));
+    }
+    match name.as_str() {
+        "sim" => Ok((name, Device::simulator())),
+        "auto" => Ok((name, Device::usb(find()?))),
+        _ => {
+            let mut known: Vec<&str> = config.device.profiles.keys().map(String::as_str).collect();
+            known.extend(["sim", "auto"]);
+            Err(Failure::new(
+                Kind::Usage,
+                format!("no device is called {name}: expected one of {}", known.join(", ")),
+            )
+            .help(format!(
+                "add a [device.{name}] to the configuration, or use --device sim for software devices"
+            )))
+        }
+    }
+}
+
+/// The EPOS2's serial port on USB.
+fn find() -> Result<PathBuf, Failure> {
+    let found = io::discover::discover();
+    if let Some(port) = found.epos2.iter().find_map(|unit| unit.port.clone()) {
+        return Ok(port);
+    }
+    let ports: Vec<String> = found
+        .serial_ports
+        .iter()
+        .map(|port| port.path.display().to_string())
+        .collect();
+    let ports = if ports.is_empty() {
+        "none".to_owned()
+    } else {
+        ports.join(", ")
+    };
+    let help = if found.epos2.is_empty() {
+        "plug the EPOS2 in and switch it on, or name its port in a [device.NAME] of the configuration,\n\
+         or use --device sim for software devices"
+    } else {
+        "an EPOS2 is plugged in, but Linux's ftdi_sio does not know its USB id and makes no port of it. As root:\n\
+         modprobe ftdi_sio && echo 0403 a8b0 > /sys/bus/usb-serial/drivers/ftdi_sio/new_id"
+    };
+    Err(Failure::new(
+        Kind::NoDevice,
+        format!(
+            "no tilt drive: looked for an EPOS2 (USB 0403:A8B0) with a serial port and found none (serial ports: {ports})"
+        ),
+    )
+    .help(help))
+}
+
+/// The axis as its client knows it.
+///
+/// # Errors
+/// [`Kind::BadInput`] where the configuration describes no axis that can be.
+pub fn axis(axis: &Axis) -> Result<drive::AxisConfig, Failure> {
+    let wrong = |error: &dyn std::fmt::Display| {
+        Failure::new(
+            Kind::BadInput,
+            format!("the configuration's [axis]: {error}"),
+        )
+        .help("correct that value in the configuration; docs: wiring says what each one means")
+    };
+    let gearing = axis.scan().gearing().map_err(|error| wrong(&error))?;
+    let rpm = |deg_s: f64| gearing.rpm(DegPerS(deg_s));
+    let homing = &axis.homing;
+    let config = drive::AxisConfig {
+        node: axis.node,
+        gearing,
+        limits: Limits {
+            min: Degrees(axis.min_deg),
+            max: Degrees(axis.max_deg),
+        },
+        max_speed: rpm(axis.max_speed_deg_s),
+        max_acceleration: gearing.rpm_per_s(DegPerS2(axis.max_accel_deg_s2)),
+        quick_stop: gearing.rpm_per_s(DegPerS2(axis.max_accel_deg_s2)),
+        limit_switches: LimitSwitches::default(),
+        brake: axis.brake_output.map(|output| Brake {
+            output,
+            ..Brake::default()
+        }),
+        homing: Homing {
+            method: homing.method,
+            switch_speed: rpm(homing.speed_deg_s),
+            zero_speed: rpm(homing.edge_speed_deg_s),
+            acceleration: RpmPerS(5_000),
+            offset: Degrees(homing.to_deg - homing.at_deg),
+            home_position: Degrees(homing.to_deg),
+            time_limit: Span::from_secs(60),
+            ..Homing::default()
+        },
+        timing: Timing::default(),
+        ..drive::AxisConfig::default()
+    };
+    config.check().map_err(|error| wrong(&error))?;
+    Ok(config)
+}
+
+/// The drive's port path of a device that is hardware.
+///
+/// # Errors
+/// [`Kind::BadInput`] where the profile names none.
+pub fn port_path<'a>(name: &str, device: &'a Device) -> Result<&'a Path, Failure> {
+    device.port.as_deref().ok_or_else(|| {
+        Failure::new(
+            Kind::BadInput,
+            format!(
+                "device {name} is of kind {:?} but names no port",
+                device.kind
+            ),
+        )
+        .help(format!(
+            "add port = \"/dev/ttyUSB0\" (or what it is) to [device.{name}] of the configuration"
+        ))
+    })
+}
+
+/// Whether the device is software.
+#[must_use]
+pub fn simulated(device: &Device) -> bool {
+    device.kind == DeviceKind::Sim
+}
+
+/// Largest speed the axis may be asked for, as the drive will take it.
+#[must_use]
+pub fn max_speed(axis: &drive::AxisConfig) -> (Rpm, DegPerS) {
+    (axis.max_speed, axis.gearing.rate(axis.max_speed))
+}

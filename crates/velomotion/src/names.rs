@@ -1,0 +1,66 @@
+//! Names of files that nobody named.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// The cloud of a capture begun at `start`: the date and, for software devices, that it is simulated.
+#[must_use]
+pub fn cloud(start: SystemTime, simulated: bool) -> PathBuf {
+    let time = humantime::format_rfc3339_seconds(start)
+        .to_string()
+        .replace(':', "-");
+    let what = if simulated { "-simulated" } else { "" };
+    PathBuf::from(format!("velomotion{what}-{time}.ply"))
+}
+
+/// The log that belongs to a cloud: beside it, the same name. `-` (stdout) has no place of its own.
+#[must_use]
+pub fn log_of(cloud: &Path, start: SystemTime, simulated: bool) -> PathBuf {
+    if cloud == Path::new("-") {
+        return self::cloud(start, simulated).with_extension("pcapng");
+    }
+    cloud.with_extension("pcapng")
+}
+
+/// The cloud of a recording, in the working directory.
+#[must_use]
+pub fn cloud_of(recording: &Path) -> PathBuf {
+    let mut name = recording
+        .file_stem()
+        .unwrap_or(recording.as_os_str())
+        .to_owned();
+    name.push(".ply");
+    PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn a_simulated_scan_says_so_in_its_name() {
+        let start = SystemTime::UNIX_EPOCH + Duration::from_secs(1_795_226_733);
+        assert_eq!(
+            cloud(start, true),
+            Path::new("velomotion-simulated-2026-11-21T02-05-33Z.ply")
+        );
+        assert_eq!(
+            log_of(&cloud(start, false), start, false),
+            Path::new("velomotion-2026-11-21T02-05-33Z.pcapng")
+        );
+        assert_eq!(
+            log_of(Path::new("-"), start, true),
+            Path::new("velomotion-simulated-2026-11-21T02-05-33Z.pcapng")
+        );
+    }
+
+    #[test]
+    fn a_recordings_cloud_goes_where_the_user_is() {
+        assert_eq!(
+            cloud_of(Path::new("/data/hall.pcap")),
+            Path::new("hall.ply")
+        );
+        assert_eq!(cloud_of(Path::new("a.b.pcapng")), Path::new("a.b.ply"));
+    }
+}

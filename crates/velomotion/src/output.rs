@@ -1,0 +1,182 @@
+//! Where a cloud goes: a file that takes its name when it is complete, or stdout.
+
+use std::io::{self as stdio, BufWriter, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ::io::files::{FileError, NewFile, Overwrite};
+use cloud::formats::Format;
+use cloud::formats::ply::PlyWriter;
+use cloud::{Sink, SinkError};
+
+use crate::failure::{Failure, Kind};
+
+/// A cloud's destination, checked and opened before anything is measured.
+pub struct Target {
+    path: PathBuf,
+    file: Option<Shared>,
+    sink: Box<dyn Sink + Send>,
+}
+
+impl Target {
+    /// Opens `path`: the format by its extension, `-` for PLY on stdout.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] where the extension names no format or the file exists and `force` is not set; [`Kind::BadInput`] where it
+    /// cannot be made.
+    pub fn open(path: &Path, force: bool) -> Result<Self, Failure> {
+        if path == Path::new("-") {
+            return Ok(Self {
+                path: path.to_owned(),
+                file: None,
+                sink: Box::new(PlyWriter::<stdio::Empty>::to_pipe(stdio::stdout())),
+            });
+        }
+        let format = Format::from_path(path).map_err(|error| {
+            Failure::new(Kind::Usage, format!("{}: {error}", path.display()))
+                .help("give -o a name with one of those extensions, or - for PLY on stdout")
+        })?;
+        let file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
+        let shared = Shared(Arc::new(Mutex::new(Some(file))));
+        let buffered = BufWriter::with_capacity(1 << 20, shared.clone());
+        Ok(Self {
+            path: path.to_owned(),
+            file: Some(shared),
+            sink: format.writer(buffered),
+        })
+    }
+
+    /// The sink.
+    pub fn sink(&mut self) -> &mut (dyn Sink + Send) {
+        &mut *self.sink
+    }
+
+    /// The name as the user gave it.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether the cloud goes to stdout, where nothing else may go then.
+    #[must_use]
+    pub fn is_stdout(&self) -> bool {
+        self.file.is_none()
+    }
+
+    /// Completes the file and gives it its name.
+    ///
+    /// # Errors
+    /// What the sink or the file system reports; an older file of that name is then as it was.
+    pub fn commit(mut self) -> Result<(), Failure> {
+        self.sink
+            .finish()
+            .map_err(|error| sink_failure(&self.path, &error))?;
+        drop(self.sink);
+        match self.file.and_then(|shared| shared.take()) {
+            Some(file) => file.commit().map_err(|error| file_failure(&error)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Refuses a name that is taken, before anything is opened.
+///
+/// # Errors
+/// [`Kind::Usage`].
+pub fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
+    if !force && path.exists() {
+        let path = path.to_owned();
+        return Err(file_failure(&FileError::Exists { path }));
+    }
+    Ok(())
+}
+
+/// Refuses a cloud and a JSON object on one stdout.
+///
+/// # Errors
+/// [`Kind::Usage`].
+pub fn one_for_stdout(cloud: Option<&Path>, json: bool) -> Result<(), Failure> {
+    if json && cloud == Some(Path::new("-")) {
+        return Err(
+            Failure::new(Kind::Usage, "-o - and --json both want stdout".to_owned())
+                .help("name a file with -o, or leave --json out"),
+        );
+    }
+    Ok(())
+}
+
+/// `--force` or not.
+#[must_use]
+pub fn overwrite(force: bool) -> Overwrite {
+    if force {
+        Overwrite::Replace
+    } else {
+        Overwrite::Refuse
+    }
+}
+
+/// A file that cannot be made, with what to do about it.
+#[must_use]
+pub fn file_failure(error: &FileError) -> Failure {
+    let (kind, help) = match error {
+        FileError::Exists { .. } => (
+            Kind::Usage,
+            "choose another name, or overwrite it with --force",
+        ),
+        FileError::Directory { .. } => (Kind::Usage, "name a file in it"),
+        FileError::NoFolder { .. } => (Kind::Usage, "make the folder first, or name another"),
+        FileError::Io { .. } => (
+            Kind::BadInput,
+            "see whether the disk is full and the folder may be written to",
+        ),
+    };
+    Failure::new(kind, error.to_string()).help(help)
+}
+
+/// A cloud that cannot be written, with what to do about it.
+#[must_use]
+pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
+    Failure::new(
+        Kind::Incomplete,
+        format!("the cloud {} could not be written: {error}", path.display()),
+    )
+    .help("free some space or name another place; the cloud can be made again from its log with replay")
+}
+
+/// The file, shared between the writer inside a sink and the commit after it.
+#[derive(Clone)]
+struct Shared(Arc<Mutex<Option<NewFile>>>);
+
+impl Shared {
+    fn take(&self) -> Option<NewFile> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut NewFile) -> stdio::Result<T>) -> stdio::Result<T> {
+        match self
+            .0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .as_mut()
+        {
+            Some(file) => act(file),
+            None => Err(stdio::Error::other("the file is complete already")),
+        }
+    }
+}
+
+impl Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> stdio::Result<usize> {
+        self.with(|file| file.write(bytes))
+    }
+
+    fn flush(&mut self) -> stdio::Result<()> {
+        self.with(NewFile::flush)
+    }
+}
+
+impl Seek for Shared {
+    fn seek(&mut self, to: SeekFrom) -> stdio::Result<u64> {
+        self.with(|file| file.seek(to))
+    }
+}

@@ -1,0 +1,112 @@
+//! What a person sees while a command works: sentences and, on a terminal, a bar with the time left. All on stderr.
+
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use drive::Plan;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use units::{Degrees, Host, Stamp};
+
+use crate::cli::Common;
+
+/// Speaks to the person at the terminal.
+pub struct Progress {
+    quiet: bool,
+    terminal: bool,
+    sweep: Option<Sweep>,
+}
+
+/// A move that is under way.
+struct Sweep {
+    bar: ProgressBar,
+    plan: Plan,
+    started: Option<Stamp<Host>>,
+}
+
+const MILLISECONDS: i64 = 1_000_000;
+
+impl Progress {
+    /// Quiet with `--quiet`; bars only where stderr is a terminal.
+    #[must_use]
+    pub fn new(common: &Common) -> Self {
+        Self {
+            quiet: common.quiet,
+            terminal: std::io::stderr().is_terminal(),
+            sweep: None,
+        }
+    }
+
+    /// Says nothing at all.
+    #[must_use]
+    pub fn silent() -> Self {
+        Self {
+            quiet: true,
+            terminal: false,
+            sweep: None,
+        }
+    }
+
+    /// One line, unless quiet.
+    pub fn say(&self, line: &str) {
+        if !self.quiet {
+            match &self.sweep {
+                Some(sweep) if self.terminal => sweep.bar.suspend(|| eprintln!("{line}")),
+                _ => eprintln!("{line}"),
+            }
+        }
+    }
+
+    /// A move begins that will take as long as planned.
+    pub fn begin_move(&mut self, plan: &Plan) {
+        self.end_move();
+        if self.quiet || !self.terminal {
+            return;
+        }
+        let length = plan.duration.as_nanos() / MILLISECONDS;
+        let bar = ProgressBar::with_draw_target(
+            Some(length.max(1).unsigned_abs()),
+            ProgressDrawTarget::stderr_with_hz(20),
+        );
+        if let Ok(style) = ProgressStyle::with_template("{bar:40} {msg}") {
+            bar.set_style(style);
+        }
+        self.sweep = Some(Sweep {
+            bar,
+            plan: *plan,
+            started: None,
+        });
+    }
+
+    /// The axis stands at `angle` at `now`, with `packets` lidar packets received so far.
+    pub fn moved(&mut self, now: Stamp<Host>, angle: Degrees, packets: u64) {
+        let Some(sweep) = &mut self.sweep else {
+            return;
+        };
+        let started = *sweep.started.get_or_insert(now);
+        let passed = now.saturating_since(started);
+        let left = Duration::from_nanos(
+            u64::try_from((sweep.plan.duration - passed).as_nanos()).unwrap_or(0),
+        );
+        sweep
+            .bar
+            .set_position((passed.as_nanos() / MILLISECONDS).unsigned_abs());
+        sweep.bar.set_message(format!(
+            "{:8.3} deg, {packets} packets, {:.1} s left",
+            angle.0,
+            left.as_secs_f64()
+        ));
+    }
+
+    /// The move is over.
+    pub fn end_move(&mut self) {
+        if let Some(sweep) = self.sweep.take() {
+            sweep.bar.finish_and_clear();
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.end_move();
+    }
+}

@@ -1,0 +1,245 @@
+//! What commands say at the end: one JSON object for programs, a table for people.
+
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, Table};
+use serde::Serialize;
+
+/// Packets by what they were.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Packets {
+    /// Lidar data packets that were decoded.
+    pub data: u64,
+    /// Position packets.
+    pub position: u64,
+    /// Records or packets that are damaged.
+    pub malformed: u64,
+    /// Traffic of something else.
+    pub other: u64,
+}
+
+/// The tilt part of a log.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Tilt {
+    /// Shaft samples.
+    pub samples: u64,
+    /// usb, rs232 or can.
+    pub transport: String,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Contents {
+    /// Sensor model.
+    pub model: Option<String>,
+    /// strongest, last or dual.
+    pub return_mode: Option<String>,
+    /// Packets by what they were.
+    pub packets: Packets,
+    /// Channels with a distance.
+    pub returns: u64,
+    /// Data packets missing by device time.
+    pub lost_packets: u64,
+    /// From the first to the last firing, seconds of the device's clock.
+    pub duration_s: f64,
+    /// Rotation of the lidar.
+    pub rpm: Option<f64>,
+    /// What a log holds of the drive.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt: Option<Tilt>,
+    /// Where and why the file ends too early.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub truncated: Option<String>,
+}
+
+/// One sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SweepReport {
+    /// Angle at its start.
+    pub from_deg: f64,
+    /// Angle at its end.
+    pub to_deg: f64,
+    /// Measured speed in the cruise.
+    pub cruise_deg_s: f64,
+    /// Time in motion, ramps included.
+    pub duration_s: f64,
+    /// Range over time.
+    pub mean_deg_s: f64,
+}
+
+/// How the clocks and the angle were joined.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sync {
+    /// Method of the lidar's clock.
+    pub clock_method: &'static str,
+    /// Median delay of a packet above the clock's envelope.
+    pub clock_residual_us: f64,
+    /// Method of the trajectory.
+    pub angle_method: &'static str,
+    /// RMS of angle samples against their neighbours.
+    pub angle_rms_deg: Option<f64>,
+}
+
+/// A cloud against the simulator's truth.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Truth {
+    /// Root mean square of the points' errors.
+    pub rms_m: f64,
+    /// Largest error.
+    pub worst_m: f64,
+}
+
+/// What `replay` and `capture` say.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Scan {
+    /// What the log holds.
+    #[serde(flatten)]
+    pub contents: Contents,
+    /// Points of the cloud.
+    pub points: u64,
+    /// Returns left out: fired outside every sweep or where no angle is known.
+    pub left_out: u64,
+    /// The sweeps.
+    pub sweeps: Vec<SweepReport>,
+    /// How the clocks and the angle were joined.
+    pub sync: Sync,
+    /// The cloud.
+    pub output: String,
+    /// The log.
+    pub log: String,
+    /// Whether the devices were software.
+    pub simulated: bool,
+    /// Against the simulator's truth; real scans have none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub truth: Option<Truth>,
+}
+
+impl Contents {
+    fn rows(&self) -> Vec<(&'static str, String)> {
+        let p = self.packets;
+        let mut rows = vec![
+            ("lidar", self.lidar()),
+            (
+                "packets",
+                format!(
+                    "{} data, {} position, {} malformed, {} other",
+                    p.data, p.position, p.malformed, p.other
+                ),
+            ),
+            ("returns", self.returns.to_string()),
+            ("lost packets", self.lost_packets.to_string()),
+            ("duration", format!("{:.3} s", self.duration_s)),
+        ];
+        if let Some(tilt) = &self.tilt {
+            let tilt = format!("{} samples over {}", tilt.samples, tilt.transport);
+            rows.push(("tilt", tilt));
+        }
+        if let Some(truncated) = &self.truncated {
+            rows.push(("cut off", truncated.clone()));
+        }
+        rows
+    }
+
+    fn lidar(&self) -> String {
+        let Some(model) = &self.model else {
+            return "none".to_owned();
+        };
+        let mode = self.return_mode.as_deref().unwrap_or("unknown");
+        let rpm = self
+            .rpm
+            .map_or("unknown".to_owned(), |rpm| format!("{rpm:.0}"));
+        format!("{model}, {mode} return, {rpm} rpm")
+    }
+
+    /// A table for people.
+    #[must_use]
+    pub fn table(&self) -> String {
+        table(self.rows())
+    }
+}
+
+impl Scan {
+    /// A table for people.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let mut rows = self.contents.rows();
+        for sweep in &self.sweeps {
+            rows.push((
+                "sweep",
+                format!(
+                    "{:.3} to {:.3} deg in {:.3} s: cruise {:.3}, mean {:.3} deg/s",
+                    sweep.from_deg,
+                    sweep.to_deg,
+                    sweep.duration_s,
+                    sweep.cruise_deg_s,
+                    sweep.mean_deg_s
+                ),
+            ));
+        }
+        let sync = &self.sync;
+        rows.push((
+            "clock",
+            format!(
+                "{}, packets {:.0} us above it",
+                sync.clock_method, sync.clock_residual_us
+            ),
+        ));
+        let rms = sync.angle_rms_deg.map_or(String::new(), |rms| {
+            format!(", samples agree to {rms:.4} deg RMS")
+        });
+        rows.push(("angle", format!("{}{rms}", sync.angle_method)));
+        rows.push((
+            "points",
+            format!("{} ({} returns outside sweeps)", self.points, self.left_out),
+        ));
+        if let Some(truth) = self.truth {
+            rows.push((
+                "against truth",
+                format!(
+                    "RMS {:.2} mm, worst {:.2} mm",
+                    truth.rms_m * 1e3,
+                    truth.worst_m * 1e3
+                ),
+            ));
+        }
+        rows.push(("cloud", self.output.clone()));
+        rows.push(("log", self.log.clone()));
+        table(rows)
+    }
+}
+
+fn table(rows: Vec<(&'static str, String)>) -> String {
+    let mut table = Table::new();
+    table.load_style(NOTHING);
+    for (name, value) in rows {
+        table.add_row(vec![name.to_owned(), value]);
+    }
+    if let Some(names) = table.column_mut(0) {
+        names.set_cell_alignment(CellAlignment::Right);
+    }
+    table.to_string()
+}
+
+impl From<&scanner::sweeps::Sweep> for SweepReport {
+    fn from(sweep: &scanner::sweeps::Sweep) -> Self {
+        let duration_s = (sweep.end - sweep.start).as_secs_f64();
+        Self {
+            from_deg: sweep.from.0,
+            to_deg: sweep.to.0,
+            cruise_deg_s: sweep.cruise.0,
+            duration_s,
+            mean_deg_s: (sweep.to.0 - sweep.from.0) / duration_s,
+        }
+    }
+}
+
+impl Scan {
+    /// Adds what a comparison with the truth found.
+    #[must_use]
+    pub fn with_truth(mut self, report: analysis::truth::TruthReport) -> Self {
+        self.truth = Some(Truth {
+            rms_m: report.rms_m,
+            worst_m: report.worst_m,
+        });
+        self
+    }
+}

@@ -1,0 +1,159 @@
+//! The software scanner in real time: one thread that moves a [`sim::Rig`] along with the host's clock, answers on a
+//! pseudo-terminal and sends lidar packets over loopback.
+
+use std::net::{Ipv4Addr, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+
+use firmware_sim::epos2::{NodeConfig, Region, Switch};
+use io::port::{Port, PortError, Pty};
+use scanner::ScanConfig;
+use sim::{Rig, RigConfig, Truth};
+use thiserror::Error;
+use units::{Degrees, Host, Metres, Span, Stamp};
+
+use crate::failure::{Failure, Kind};
+use crate::recording::DATA_PORT;
+
+/// Where the software lidar sends its packets.
+#[derive(Clone, Copy, Debug)]
+pub struct Destinations {
+    /// Local port that receives data packets.
+    pub data: u16,
+    /// Local port that receives position packets.
+    pub position: u16,
+}
+
+/// A software scanner that runs.
+pub struct Simulated {
+    port: PathBuf,
+    stop: Arc<AtomicBool>,
+    thread: JoinHandle<Result<Truth, SimulatorError>>,
+}
+
+/// Why the devices stopped.
+#[derive(Debug, Error)]
+enum SimulatorError {
+    #[error("pseudo-terminal: {0}")]
+    Port(#[from] PortError),
+    #[error("loopback socket: {0}")]
+    Socket(#[from] std::io::Error),
+}
+
+/// Longest nap: the drive's control cycle.
+const CYCLE: Span = Span::from_millis(1);
+
+impl Simulated {
+    /// Starts the devices. They live until [`Simulated::stop`].
+    ///
+    /// # Errors
+    /// Where the machine gives no pseudo-terminal or no socket.
+    pub fn start(config: RigConfig, to: Destinations) -> Result<Self, Failure> {
+        let cannot = |what: &str, error: &dyn std::fmt::Display| {
+            Failure::new(Kind::NoDevice, format!("the simulator cannot open {what}: {error}"))
+                .help("see whether this machine gives out pseudo-terminals (/dev/ptmx) and loopback sockets")
+        };
+        let pty = Pty::open().map_err(|error| cannot("a pseudo-terminal", &error))?;
+        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))
+            .map_err(|error| cannot("a loopback socket", &error))?;
+        let port = pty.path().to_owned();
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopping = Arc::clone(&stop);
+        let thread = std::thread::Builder::new()
+            .name("software scanner".to_owned())
+            .spawn(move || run(Rig::new(config), pty, &socket, to, &stopping))
+            .map_err(|error| cannot("a thread", &error))?;
+        Ok(Self { port, stop, thread })
+    }
+
+    /// The serial port of the software drive.
+    #[must_use]
+    pub fn port(&self) -> &Path {
+        &self.port
+    }
+
+    /// Switches the devices off and gives what truly happened.
+    ///
+    /// # Errors
+    /// Where the devices had failed.
+    pub fn stop(self) -> Result<Truth, Failure> {
+        self.stop.store(true, Ordering::Relaxed);
+        let failed =
+            |why: String| Failure::new(Kind::DeviceFault, format!("the simulator failed: {why}"));
+        match self.thread.join() {
+            Ok(Ok(truth)) => Ok(truth),
+            Ok(Err(error)) => Err(failed(error.to_string())),
+            Err(_) => Err(failed("its thread panicked".to_owned())),
+        }
+    }
+}
+
+fn run(
+    mut rig: Rig,
+    mut pty: Pty,
+    socket: &UdpSocket,
+    to: Destinations,
+    stop: &AtomicBool,
+) -> Result<Truth, SimulatorError> {
+    let mut buffer = [0; 512];
+    while !stop.load(Ordering::Relaxed) {
+        let now = io::clock::now();
+        let nap = rig
+            .next_event()
+            .saturating_since(now)
+            .clamp(Span::ZERO, CYCLE);
+        let read = pty.read(&mut buffer, nap)?.map_or(0, |(count, _)| count);
+        rig.advance(io::clock::now());
+        rig.drive_input(buffer.get(..read).unwrap_or_default());
+        while let Some(bytes) = rig.drive_output() {
+            pty.write_frame(&bytes)?;
+        }
+        while let Some(datagram) = rig.poll_datagram() {
+            let port = if datagram.port == DATA_PORT {
+                to.data
+            } else {
+                to.position
+            };
+            socket.send_to(&datagram.payload, (Ipv4Addr::LOCALHOST, port))?;
+        }
+    }
+    Ok(rig.truth())
+}
+
+/// The software scanner that fits an axis: its encoder and gear, switches a degree beyond its lower limit and where homing
+/// expects the other, the lidar at 10 Hz in the hall, switched on at `start` some way down.
+#[must_use]
+pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> RigConfig {
+    let gearing = axis.gearing;
+    let qc = |angle: f64| gearing.position(Degrees(angle)).map_or(0, |qc| qc.0);
+    let switch = |input: Option<u8>, pressed| {
+        input.map(|input| Switch {
+            input,
+            pressed,
+            normally_closed: axis.limit_switches.active_low,
+        })
+    };
+    let low = Region::AtMost(qc(axis.limits.min.0 - 1.0));
+    // Homing finds the switch at its home position less the way it goes on from there.
+    let high = Region::AtLeast(qc(axis.homing.home_position.0 - axis.homing.offset.0));
+    let middle = 0.5 * (axis.limits.min.0 + axis.limits.max.0);
+    RigConfig {
+        mount: Metres(scan.mount.d_m),
+        gearing,
+        drive: NodeConfig {
+            node_id: axis.node,
+            qc_per_turn: gearing.qc_per_motor_turn(),
+            initial_position: qc(0.5 * (middle + axis.limits.max.0)),
+            switches: [
+                switch(axis.limit_switches.negative, low),
+                switch(axis.limit_switches.positive, high),
+                None,
+                None,
+            ],
+            ..NodeConfig::default()
+        },
+        ..RigConfig::new(start)
+    }
+}

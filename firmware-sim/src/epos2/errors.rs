@@ -1,0 +1,93 @@
+//! The error register (1001) and the error history (1003).
+
+use protocol::epos2::DeviceError;
+
+/// Depth of the history.
+const DEPTH: usize = 5;
+
+/// What went wrong and when it was cleared.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Errors {
+    register: u8,
+    /// Latest first.
+    history: [u32; DEPTH],
+    count: usize,
+}
+
+impl Errors {
+    pub fn push(&mut self, error: DeviceError) {
+        self.register |= register_bits(error);
+        self.history.copy_within(..DEPTH - 1, 1);
+        self.history[0] = error.0.into();
+        self.count = (self.count + 1).min(DEPTH);
+    }
+
+    pub const fn register(&self) -> u8 {
+        self.register
+    }
+
+    /// Fault reset: no error is active any more, the history stays.
+    pub fn acknowledge(&mut self) {
+        self.register = 0;
+    }
+
+    pub fn clear_history(&mut self) {
+        self.history = [0; DEPTH];
+        self.count = 0;
+    }
+
+    /// 1003: the number of entries at sub 0, the entries from 1 on; entries that do not exist yet read as 0.
+    pub fn history(&self, sub: u8) -> u32 {
+        match usize::from(sub).checked_sub(1) {
+            None => self.count as u32,
+            Some(i) => self.history.get(i).copied().unwrap_or_default(),
+        }
+    }
+}
+
+/// Bits of the error register: CiA 301 for those it knows; bit 7 is maxon's "motion error". Which errors are motion errors is
+/// not said; here those of switches and limits.
+const fn register_bits(error: DeviceError) -> u8 {
+    const GENERIC: u8 = 1 << 0;
+    GENERIC
+        | match error.0 {
+            0x2000..0x3000 => 1 << 1,
+            0x3000..0x4000 | 0x5113 | 0x5114 => 1 << 2,
+            0x4000..0x5000 => 1 << 3,
+            0x8100..0x8300 => 1 << 4,
+            0x8600..0x8700 | 0xFF01..=0xFF05 => 1 << 5,
+            0xFF06..=0xFF09 => 1 << 7,
+            _ => 0,
+        }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_history_keeps_the_latest_five() {
+        let mut errors = Errors::default();
+        for code in 1..=7 {
+            errors.push(DeviceError(code));
+        }
+        assert_eq!(errors.history(0), 5);
+        assert_eq!(
+            [1, 2, 3, 4, 5, 6].map(|sub| errors.history(sub)),
+            [7, 6, 5, 4, 3, 0]
+        );
+        errors.clear_history();
+        assert_eq!((errors.history(0), errors.history(1)), (0, 0));
+    }
+
+    #[test]
+    fn the_register_names_the_kind() {
+        let mut errors = Errors::default();
+        errors.push(DeviceError::CAN_PASSIVE);
+        assert_eq!(errors.register(), 0x11);
+        errors.push(DeviceError::NEGATIVE_LIMIT);
+        assert_eq!(errors.register(), 0x91);
+        errors.acknowledge();
+        assert_eq!(errors.register(), 0);
+    }
+}

@@ -1,0 +1,187 @@
+//! The demand, millisecond by millisecond: at rest, on a position profile, or at a speed reached by a ramp.
+//!
+//! The shaft follows the demand exactly (an ideal servo): lag, ripple and a blocked shaft are effects and not simulated here.
+
+use super::fixed::{Fine, MS, Speed, WORLD_END};
+use super::leg::Leg;
+use super::profile::{Limits, Profile, Unusable};
+
+/// The demand and where it goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Generator {
+    qc_per_turn: u32,
+    position: Fine,
+    speed: Speed,
+    motion: Motion,
+    /// Since the motion began: ms with 32 fractional bits.
+    time: i128,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Motion {
+    Rest,
+    Profile(Profile),
+    /// To zero if the direction changes, to the speed; then on at this speed.
+    Ramp([Leg; 2]),
+}
+
+impl Generator {
+    pub fn new(position: Fine, qc_per_turn: u32) -> Self {
+        Self {
+            qc_per_turn,
+            position,
+            speed: Speed::ZERO,
+            motion: Motion::Rest,
+            time: 0,
+        }
+    }
+
+    /// The demand at the end of the millisecond under way.
+    pub const fn position(&self) -> Fine {
+        self.position
+    }
+
+    pub const fn speed(&self) -> Speed {
+        self.speed
+    }
+
+    pub const fn is_moving(&self) -> bool {
+        !matches!(self.motion, Motion::Rest)
+    }
+
+    /// Stands still at once, wherever it is.
+    pub fn freeze(&mut self) {
+        self.speed = Speed::ZERO;
+        self.motion = Motion::Rest;
+        self.time = 0;
+    }
+
+    /// The encoder's resolution has been configured anew. Only while nothing moves.
+    pub fn set_qc_per_turn(&mut self, qc_per_turn: u32) {
+        self.qc_per_turn = qc_per_turn;
+    }
+
+    /// Goes to `target`, from whatever it is doing now.
+    pub fn go_to(&mut self, target: Fine, limits: Limits) -> Result<(), Unusable> {
+        let target = target.clamp(-WORLD_END, WORLD_END);
+        let profile = Profile::plan(self.position, self.speed, target, limits, self.qc_per_turn)?;
+        self.begin(Motion::Profile(profile));
+        Ok(())
+    }
+
+    /// Ramps to `speed` and keeps it; speed zero is a stop.
+    pub fn run_at(&mut self, speed: Speed, acceleration: u32) {
+        if speed == Speed::ZERO && self.speed == Speed::ZERO {
+            self.freeze();
+            return;
+        }
+        let reverses = self.speed.0.signum() * speed.0.signum() < 0;
+        let turn = if reverses { Speed::ZERO } else { self.speed };
+        let stop = Leg::change(self.position, self.speed, turn, acceleration);
+        let from = if reverses {
+            stop.finish(self.qc_per_turn)
+        } else {
+            self.position
+        };
+        let change = Leg::change(from, turn, speed, acceleration);
+        self.begin(Motion::Ramp([stop, change]));
+    }
+
+    fn begin(&mut self, motion: Motion) {
+        self.motion = motion;
+        self.time = 0;
+    }
+
+    /// One millisecond.
+    pub fn step(&mut self) {
+        self.time += MS;
+        let (position, speed) = match &self.motion {
+            Motion::Rest => return,
+            Motion::Profile(profile) => match profile.at(self.time) {
+                Some(now) => now,
+                None => {
+                    self.position = profile.target();
+                    self.freeze();
+                    return;
+                }
+            },
+            Motion::Ramp(legs) => {
+                let now = self.on_ramp(legs);
+                if now.1 == Speed::ZERO && self.time >= legs[0].duration + legs[1].duration {
+                    self.position = now.0.clamp(-WORLD_END, WORLD_END);
+                    self.freeze();
+                    return;
+                }
+                now
+            }
+        };
+        self.position = position.clamp(-WORLD_END, WORLD_END);
+        self.speed = speed;
+        if self.position != position {
+            self.freeze();
+        }
+    }
+
+    fn on_ramp(&self, [stop, change]: &[Leg; 2]) -> (Fine, Speed) {
+        if self.time < stop.duration {
+            return stop.at(self.time, self.qc_per_turn);
+        }
+        let time = self.time - stop.duration;
+        if time < change.duration {
+            return change.at(time, self.qc_per_turn);
+        }
+        let from = change.finish(self.qc_per_turn);
+        Leg::cruise(from, change.end, 0).at(time - change.duration, self.qc_per_turn)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixed::{FINE_PER_QC, fine, floor_qc};
+    use super::*;
+
+    #[test]
+    fn a_ramp_reverses_through_zero_and_keeps_its_speed() {
+        let mut generator = Generator::new(0, 2000);
+        generator.run_at(Speed::from_rpm(60), 600); // 2 qc a ms after 100 ms
+        for _ in 0..200 {
+            generator.step();
+        }
+        assert_eq!(generator.speed(), Speed::from_rpm(60));
+        assert_eq!(floor_qc(generator.position()), 100 + 200);
+        generator.run_at(Speed::from_rpm(-60), 600);
+        for _ in 0..300 {
+            generator.step();
+        }
+        assert_eq!(generator.position(), fine(300 - 200));
+        assert_eq!(generator.speed(), Speed::from_rpm(-60));
+        generator.run_at(Speed::ZERO, 600);
+        for _ in 0..100 {
+            generator.step();
+        }
+        assert!(!generator.is_moving());
+        assert_eq!(generator.position(), fine(0));
+    }
+
+    #[test]
+    fn a_slow_ramp_does_not_drift_in_a_quarter_of_an_hour() {
+        // 1 rpm is 1/30 qc a ms, which no binary fraction holds.
+        let mut generator = Generator::new(0, 2000);
+        generator.run_at(Speed::from_rpm(1), 1000); // there after 1 ms
+        for _ in 0..900_001 {
+            generator.step();
+        }
+        assert_eq!(generator.position(), fine(30_000) + FINE_PER_QC / 60);
+    }
+
+    #[test]
+    fn the_end_of_the_world_stops_it() {
+        let mut generator = Generator::new(WORLD_END - 5, 10_000_000);
+        generator.run_at(Speed::from_rpm(25_000), u32::MAX);
+        for _ in 0..3 {
+            generator.step();
+        }
+        assert_eq!(generator.position(), WORLD_END);
+        assert!(!generator.is_moving());
+    }
+}

@@ -1,0 +1,337 @@
+//! Homing mode (Firmware Specification, "Homing Mode"; methods as in CiA 402).
+//!
+//! A method is a row of [`method`]: which switch is searched in which direction, and whether the reference is the switch's
+//! edge or the next index pulse beyond it. The edge is seen once a control cycle, the index pulse is latched exactly. After
+//! detection the axis moves by the home offset (607C) from the reference, and that place gets the position 2081.
+//! Methods -1 to -4, which look for a mechanical stop by current, are not simulated: there is no stop to run into.
+
+use protocol::epos2::cia402::{control, status};
+use protocol::epos2::objects::{self, input};
+
+use super::fixed::{Speed, fine, floor_qc};
+use super::node::Node;
+use super::profile::Limits;
+
+/// What homing has under way and how the last one ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Homing {
+    phase: Phase,
+    method: Method,
+    attained: bool,
+    failed: bool,
+    /// Bit 10: standing still after homing or its interruption.
+    reached: bool,
+    /// Count at the last control cycle, for index pulses.
+    last: i64,
+}
+
+/// Directions are 1 and -1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Phase {
+    #[default]
+    Idle,
+    /// Interrupted: ramping down.
+    Stopping,
+    /// Towards the switch.
+    Search { direction: i32 },
+    /// A limit switch was met before the home switch: back, until the home switch is met from behind.
+    Back { direction: i32 },
+    /// Slowly off the switch; `on` once it has been seen pressed while going this way.
+    Leave { direction: i32, on: bool },
+    /// Slowly on to the index pulse.
+    Index { direction: i32 },
+    /// To the home offset from the reference (world qc).
+    Return { reference: i64 },
+}
+
+/// How a reference is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Method {
+    /// Bit of the switch in 2071, and the direction of its search; the edge is met in the other direction.
+    switch: Option<(u16, i32)>,
+    /// Direction of the way to the index pulse.
+    index: Option<i32>,
+}
+
+/// The method of a number (6098); `None` for one that is not simulated.
+fn method(number: i8) -> Option<Method> {
+    let limit = |switch, direction| Some((switch, direction));
+    let (switch, with_index) = match number {
+        0 | 35 => (None, false),
+        1 => (limit(input::NEGATIVE_LIMIT, -1), true),
+        2 => (limit(input::POSITIVE_LIMIT, 1), true),
+        7 => (limit(input::HOME_SWITCH, 1), true),
+        11 => (limit(input::HOME_SWITCH, -1), true),
+        17 => (limit(input::NEGATIVE_LIMIT, -1), false),
+        18 => (limit(input::POSITIVE_LIMIT, 1), false),
+        23 => (limit(input::HOME_SWITCH, 1), false),
+        27 => (limit(input::HOME_SWITCH, -1), false),
+        33 => {
+            return Some(Method {
+                switch: None,
+                index: Some(-1),
+            });
+        }
+        34 => {
+            return Some(Method {
+                switch: None,
+                index: Some(1),
+            });
+        }
+        _ => return None,
+    };
+    let index = switch
+        .filter(|_| with_index)
+        .map(|(_, direction)| -direction);
+    Some(Method { switch, index })
+}
+
+/// Whether a value may be written to 6098.
+pub(super) fn is_simulated(number: i64) -> bool {
+    i8::try_from(number).is_ok_and(|number| method(number).is_some())
+}
+
+impl Homing {
+    /// Whether it moves the axis.
+    pub fn is_active(&self) -> bool {
+        !matches!(self.phase, Phase::Idle | Phase::Stopping)
+    }
+
+    pub fn status_bits(&self) -> u16 {
+        let reached = if self.reached {
+            status::TARGET_REACHED
+        } else {
+            0
+        };
+        let attained = if self.attained {
+            status::HOMING_ATTAINED
+        } else {
+            0
+        };
+        let failed = if self.failed { status::HOMING_ERROR } else { 0 };
+        reached | attained | failed
+    }
+
+    /// No homing any more.
+    pub fn abandon(&mut self) {
+        self.phase = Phase::Idle;
+    }
+}
+
+impl Node {
+    /// The controlword changed while operation is enabled: bit 4 starts on its rising edge and interrupts on its falling one, as does
+    /// a halt.
+    pub(super) fn homing_command(&mut self, old: u16, word: u16) {
+        let (rising, falling) = (word & !old, old & !word);
+        let interrupted = falling & control::HOMING_START != 0 || rising & control::HALT != 0;
+        if self.homing.is_active() && interrupted {
+            self.homing.phase = Phase::Stopping;
+            self.ramp_down(objects::HOMING_ACCELERATION);
+        } else if rising & control::HOMING_START != 0 && word & control::HALT == 0 {
+            self.start_homing();
+        }
+    }
+
+    fn start_homing(&mut self) {
+        let number = self.dictionary.get(objects::HOMING_METHOD);
+        let chosen = method(number).unwrap_or_default();
+        self.homing = Homing {
+            method: chosen,
+            last: floor_qc(self.generator.position()),
+            ..Homing::default()
+        };
+        // 2210:2: only type 1 has an index channel.
+        let no_index = self.dictionary.get(objects::SENSOR_TYPE) != 1;
+        let rates = [self.homing_speed(true), self.homing_speed(false)];
+        let moves = chosen != Method::default();
+        if chosen.index.is_some() && no_index
+            || moves && (rates.contains(&Speed::ZERO) || self.homing_acceleration() == 0)
+        {
+            self.fail_homing();
+            return;
+        }
+        match (chosen.switch, chosen.index) {
+            (Some((switch, direction)), _) if self.inputs & switch != 0 => {
+                self.leave_switch(-direction, false);
+            }
+            (Some((_, direction)), _) => {
+                self.run(direction, true);
+                self.homing.phase = Phase::Search { direction };
+            }
+            (None, Some(direction)) => {
+                self.run(direction, false);
+                self.homing.phase = Phase::Index { direction };
+            }
+            (None, None) => self.home_here(number == 35),
+        }
+    }
+
+    /// Methods without motion: 35 takes the present place for home, 0 wants no homing at all.
+    fn home_here(&mut self, reference: bool) {
+        if reference {
+            self.set_home(floor_qc(self.generator.position()));
+        } else {
+            self.homing.attained = true;
+            self.homing.reached = true;
+        }
+    }
+
+    /// One millisecond of the mode.
+    pub(super) fn advance_homing(&mut self) {
+        let now = floor_qc(self.generator.position());
+        let last = core::mem::replace(&mut self.homing.last, now);
+        let moving = self.generator.is_moving();
+        match self.homing.phase {
+            Phase::Idle => {}
+            Phase::Stopping => {
+                if !moving {
+                    self.homing.phase = Phase::Idle;
+                    self.homing.reached = true;
+                }
+            }
+            Phase::Return { reference } => {
+                if !moving {
+                    let offset = self.dictionary.get(objects::HOME_OFFSET);
+                    self.set_home(reference.saturating_add(offset.into()));
+                }
+            }
+            // Only the end of the world stops the shaft in these.
+            _ if !moving => self.fail_homing(),
+            Phase::Search { direction } => self.search(direction),
+            Phase::Back { direction } => self.search_back(direction),
+            Phase::Leave { direction, on } => self.watch_edge(direction, on, now),
+            Phase::Index { direction } => self.watch_index(direction, last, now),
+        }
+    }
+
+    fn search(&mut self, direction: i32) {
+        let switch = self.homing.method.switch.map_or(0, |(switch, _)| switch);
+        let limit = limit_switch(direction);
+        if self.inputs & switch != 0 {
+            self.leave_switch(-direction, false);
+        } else if self.inputs & limit != 0 {
+            self.run(-direction, true);
+            self.homing.phase = Phase::Back {
+                direction: -direction,
+            };
+        }
+    }
+
+    fn search_back(&mut self, direction: i32) {
+        let switch = self.homing.method.switch.map_or(0, |(switch, _)| switch);
+        if self.inputs & switch != 0 {
+            self.leave_switch(direction, true);
+        } else if self.is_going(direction) && self.inputs & limit_switch(direction) != 0 {
+            self.fail_homing();
+        }
+    }
+
+    fn leave_switch(&mut self, direction: i32, on: bool) {
+        self.run(direction, false);
+        self.homing.phase = Phase::Leave { direction, on };
+    }
+
+    /// The edge counts when the switch has been pressed on the way in this direction: a home switch may have been passed while
+    /// slowing down.
+    fn watch_edge(&mut self, direction: i32, on: bool, now: i64) {
+        let switch = self.homing.method.switch.map_or(0, |(switch, _)| switch);
+        let pressed = self.inputs & switch != 0;
+        if !self.is_going(direction) {
+            return;
+        }
+        if pressed {
+            self.homing.phase = Phase::Leave {
+                direction,
+                on: true,
+            };
+        } else if on {
+            match self.homing.method.index {
+                Some(direction) => self.homing.phase = Phase::Index { direction },
+                None => self.return_to(now),
+            }
+        }
+    }
+
+    fn watch_index(&mut self, direction: i32, last: i64, now: i64) {
+        let turn = i64::from(self.config.qc_per_turn.max(1));
+        let first = i64::from(self.config.index_position);
+        let pulse = |count: i64| first + (count - first).div_euclid(turn) * turn;
+        // The last pulse at or below the higher count is one that was passed if it is above the lower count; downwards the
+        // pulse at the lower count has been met, the one at the higher not again.
+        let passed = if direction > 0 {
+            Some(pulse(now)).filter(|&at| at > last)
+        } else {
+            Some(pulse(last - 1)).filter(|&at| at >= now)
+        };
+        if self.is_going(direction)
+            && let Some(reference) = passed
+        {
+            self.return_to(reference);
+        }
+    }
+
+    /// The reference is known: on to the home offset, at the speed of the switch search (which speed is not specified).
+    fn return_to(&mut self, reference: i64) {
+        let offset = self.dictionary.get(objects::HOME_OFFSET);
+        let acceleration = self.homing_acceleration();
+        let limits = Limits {
+            speed: self.homing_speed(true),
+            acceleration,
+            deceleration: acceleration,
+        };
+        let target = fine(reference.saturating_add(offset.into()));
+        if self.generator.go_to(target, limits).is_ok() {
+            self.homing.phase = Phase::Return { reference };
+        } else {
+            self.fail_homing();
+        }
+    }
+
+    /// The place `world` qc is home.
+    fn set_home(&mut self, world: i64) {
+        let position = self.dictionary.get(objects::HOME_POSITION);
+        self.origin = world.saturating_sub(position.into());
+        self.referenced = true;
+        self.homing.phase = Phase::Idle;
+        self.homing.attained = true;
+        self.homing.reached = true;
+    }
+
+    fn fail_homing(&mut self) {
+        self.homing.phase = Phase::Idle;
+        self.homing.failed = true;
+        self.ramp_down(objects::HOMING_ACCELERATION);
+    }
+
+    fn run(&mut self, direction: i32, fast: bool) {
+        let Speed(speed) = self.homing_speed(fast);
+        let acceleration = self.homing_acceleration();
+        self.generator
+            .run_at(Speed(speed * i64::from(direction)), acceleration);
+    }
+
+    fn is_going(&self, direction: i32) -> bool {
+        self.generator.speed().0.signum() == i64::from(direction)
+    }
+
+    fn homing_speed(&self, fast: bool) -> Speed {
+        self.speed_within_limits(self.dictionary.get(if fast {
+            objects::HOMING_SWITCH_SPEED
+        } else {
+            objects::HOMING_ZERO_SPEED
+        }))
+    }
+
+    fn homing_acceleration(&self) -> u32 {
+        self.acceleration(objects::HOMING_ACCELERATION)
+    }
+}
+
+/// The limit switch that lies in a direction.
+const fn limit_switch(direction: i32) -> u16 {
+    if direction < 0 {
+        input::NEGATIVE_LIMIT
+    } else {
+        input::POSITIVE_LIMIT
+    }
+}

@@ -1,0 +1,61 @@
+//! Digital inputs: switches to inputs, inputs to purposes (2070), mask, polarity and execution mask (2071).
+
+use protocol::epos2::DeviceError;
+use protocol::epos2::objects::{self, Address, input};
+
+use super::fixed::floor_qc;
+use super::node::Node;
+
+/// Digital inputs of the unit.
+const INPUTS: u8 = 9;
+
+impl Node {
+    /// 2071:1 at the present position. A purpose that no input has stays inactive, whatever its polarity.
+    pub(super) fn sense(&self) -> u16 {
+        let position = floor_qc(self.generator.position());
+        let (mut high, mut assigned) = (0, 0);
+        for number in 1..=INPUTS {
+            // 0..=15, as only that can be written.
+            let purpose = self.dictionary.raw(Address::new(0x2070, number)) & 15;
+            assigned |= 1u16 << purpose;
+            if self.input_is_high(number, position) {
+                high |= 1u16 << purpose;
+            }
+        }
+        let mask = self.dictionary.get(objects::INPUT_MASK);
+        let polarity = self.dictionary.get(objects::INPUT_POLARITY);
+        (high ^ polarity) & assigned & mask
+    }
+
+    fn input_is_high(&self, number: u8, position: i64) -> bool {
+        self.config
+            .switches
+            .iter()
+            .flatten()
+            .filter(|switch| switch.input == number)
+            .any(|switch| switch.pressed.contains(position) != switch.normally_closed)
+    }
+
+    /// Looks at the inputs and runs the error routines of those that have one (2071:4).
+    ///
+    /// A limit switch is an error when it becomes active and when the axis moves on into it, so that a unit whose fault has
+    /// been cleared can leave it. While homing no limit switch is an error: homing is what looks for them.
+    pub(super) fn watch_inputs(&mut self) {
+        let before = self.inputs;
+        self.inputs = self.sense();
+        let watched = self.inputs & self.dictionary.get(objects::INPUT_EXECUTION_MASK);
+        if self.homing.is_active() || !self.is_powered() {
+            return;
+        }
+        let direction = self.generator.speed().0.signum();
+        for (bit, into, error) in [
+            (input::NEGATIVE_LIMIT, -1, DeviceError::NEGATIVE_LIMIT),
+            (input::POSITIVE_LIMIT, 1, DeviceError::POSITIVE_LIMIT),
+        ] {
+            let became = before & bit == 0;
+            if watched & bit != 0 && (became || direction == into) {
+                self.fail(error);
+            }
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! The garbage that a real unit leaves in words it does not use: seeded, so that a run repeats.
+
+/// A small generator of arbitrary numbers (splitmix64).
+#[derive(Clone, Debug)]
+pub(super) struct Junk(u64);
+
+impl Junk {
+    pub const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+}

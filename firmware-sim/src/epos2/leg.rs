@@ -1,0 +1,70 @@
+//! A stretch of motion at constant acceleration, in closed form, so that nothing accumulates from millisecond to millisecond.
+
+use super::fixed::{BITS, Fine, Speed, distance, div_ceil};
+
+/// Constant acceleration from `from` and `start` until `end` is reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Leg {
+    pub from: Fine,
+    pub start: Speed,
+    pub end: Speed,
+    /// rpm/s, which is millirpm/ms; without sign.
+    pub acceleration: u32,
+    /// ms with 32 fractional bits.
+    pub duration: i128,
+}
+
+impl Leg {
+    /// A change of speed. An acceleration of 0 is taken for 1.
+    pub fn change(from: Fine, start: Speed, end: Speed, acceleration: u32) -> Self {
+        let acceleration = acceleration.max(1);
+        let change = i128::from(end.0) - i128::from(start.0);
+        Self {
+            from,
+            start,
+            end,
+            acceleration,
+            duration: div_ceil(change.abs(), i128::from(acceleration)),
+        }
+    }
+
+    /// Constant speed for `duration`.
+    pub const fn cruise(from: Fine, speed: Speed, duration: i128) -> Self {
+        Self {
+            from,
+            start: speed,
+            end: speed,
+            acceleration: 0,
+            duration,
+        }
+    }
+
+    /// Position and speed at `time` into the leg.
+    pub fn at(&self, time: i128, qc_per_turn: u32) -> (Fine, Speed) {
+        let gained = i128::from(self.acceleration).saturating_mul(time);
+        let (start, end) = (i128::from(self.start.0), i128::from(self.end.0));
+        let speed = if end >= start {
+            (start + gained).min(end)
+        } else {
+            (start - gained).max(end)
+        };
+        let moved = distance((start + speed).saturating_mul(time), qc_per_turn);
+        (self.from.saturating_add(moved), Speed(speed as i64))
+    }
+
+    /// Where a change of speed ends: from the squares of the speeds, so without the rounding of its duration.
+    pub fn finish(&self, qc_per_turn: u32) -> Fine {
+        if self.acceleration == 0 {
+            return self.at(self.duration, qc_per_turn).0;
+        }
+        let (high, low) = (self.start.squared(), self.end.squared());
+        // (end^2 - start^2) / a with the sign of the motion; legs that pass through zero are two legs.
+        let work = (high.max(low) - high.min(low)) / i128::from(self.acceleration);
+        let forward = self.start.0 >= 0 && self.end.0 >= 0;
+        let moved = distance(work, qc_per_turn);
+        self.from
+            .saturating_add(if forward { moved } else { -moved })
+    }
+}
+
+const _: () = assert!(BITS == 32, "the doc comments say 32");

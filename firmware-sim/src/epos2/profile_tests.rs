@@ -1,0 +1,344 @@
+//! The profile against an independent closed form in f64, and its limits exactly.
+
+extern crate std;
+
+use proptest::prelude::*;
+
+use super::super::fixed::{FINE_PER_QC, MAX_QC_PER_TURN, MS, Speed, WORLD_END, fine};
+use super::super::generator::Generator;
+use super::{Limits, Profile, Unusable};
+
+const QC_PER_TURN: u32 = 2000;
+
+fn limits(speed_rpm: i32, acceleration: u32, deceleration: u32) -> Limits {
+    Limits {
+        speed: Speed::from_rpm(speed_rpm),
+        acceleration,
+        deceleration,
+    }
+}
+
+/// The textbook trapezoid from rest: position in qc at `t` seconds, and its duration.
+struct Textbook {
+    from: f64,
+    sign: f64,
+    length: f64,
+    v: f64,
+    a: f64,
+    d: f64,
+}
+
+impl Textbook {
+    fn new(from: f64, to: f64, l: Limits, qc_per_turn: u32) -> Self {
+        let per_rpm = f64::from(qc_per_turn) / 60.0;
+        let a = f64::from(l.acceleration) * per_rpm;
+        let d = f64::from(l.deceleration) * per_rpm;
+        let v = f64::from(l.speed.to_rpm()) * per_rpm;
+        let length = (to - from).abs();
+        let v = v.min((2.0 * length * a * d / (a + d)).sqrt());
+        Self {
+            from,
+            sign: (to - from).signum(),
+            length,
+            v,
+            a,
+            d,
+        }
+    }
+
+    fn duration(&self) -> f64 {
+        if self.length == 0.0 {
+            return 0.0;
+        }
+        self.v / self.a + self.cruise() + self.v / self.d
+    }
+
+    fn cruise(&self) -> f64 {
+        (self.length - self.v * self.v / (2.0 * self.a) - self.v * self.v / (2.0 * self.d)) / self.v
+    }
+
+    fn at(&self, t: f64) -> f64 {
+        let (ta, tc) = (self.v / self.a, self.cruise());
+        let left = self.duration() - t;
+        let s = if left <= 0.0 {
+            self.length
+        } else if t < ta {
+            0.5 * self.a * t * t
+        } else if t < ta + tc {
+            self.v * (t - 0.5 * ta)
+        } else {
+            self.length - 0.5 * self.d * left * left
+        };
+        self.from + self.sign * s
+    }
+}
+
+fn qc(position: i64) -> f64 {
+    position as f64 / FINE_PER_QC as f64
+}
+
+/// Steps a generator to the target and checks each step against the limits; returns the milliseconds it took.
+fn run(
+    generator: &mut Generator,
+    target: i64,
+    l: Limits,
+    most_ms: usize,
+    mut each: impl FnMut(usize, f64),
+) -> usize {
+    let mut steps = 0;
+    // Largest change of position in a ms, and of that change from one ms to the next; 1 unit each for rounding down, and
+    // 2^-32 ms at the joints.
+    let top = i128::from(l.speed.0.max(generator.speed().0.abs()));
+    let most = ((top * 2 * i128::from(QC_PER_TURN)) >> 32) + 64;
+    let steepest = i128::from(l.acceleration.max(l.deceleration));
+    let change = (steepest * 2 * i128::from(QC_PER_TURN)) + 128;
+    let mut last = None;
+    while generator.is_moving() {
+        let before = generator.position();
+        generator.step();
+        steps += 1;
+        let moved = i128::from(generator.position() - before);
+        assert!(moved.abs() <= most, "{moved} > {most} at {steps}");
+        if let Some(last) = last {
+            let differs: i128 = moved - last;
+            assert!(differs.abs() <= change, "{differs} > {change} at {steps}");
+        }
+        assert!(generator.speed().0.abs() <= top as i64);
+        last = Some(moved);
+        each(steps, qc(generator.position()));
+        assert!(steps <= most_ms, "not there after {most_ms} ms");
+    }
+    assert_eq!(generator.position(), target);
+    assert_eq!(generator.speed(), Speed::ZERO);
+    steps
+}
+
+#[test]
+fn the_papers_sweep() {
+    // 45 deg at 56.25 deg/s (1125 rpm) behind 120:1, 10000 rpm/s: 0.8 s and the ramp's 0.1125 s.
+    let mut generator = Generator::new(fine(-15_000), QC_PER_TURN);
+    let l = limits(1125, 10_000, 10_000);
+    generator.go_to(fine(15_000), l).unwrap();
+    let mut at_cruise = 0;
+    let steps = run(&mut generator, fine(15_000), l, 2000, |ms, position| {
+        if ms == 500 {
+            // Ramp 0.1125 s at half speed, then 37500 qc/s.
+            at_cruise = 1;
+            assert!((position - (-15_000.0 + 37_500.0 * (0.5 - 0.05625))).abs() < 1e-6);
+        }
+    });
+    assert_eq!((steps, at_cruise), (913, 1));
+}
+
+#[test]
+fn no_distance_takes_no_time() {
+    let profile =
+        Profile::plan(fine(5), Speed::ZERO, fine(5), limits(1, 1, 1), QC_PER_TURN).unwrap();
+    assert_eq!((profile.duration(), profile.at(0)), (0, None));
+}
+
+#[test]
+fn what_never_ends_is_refused() {
+    for l in [
+        limits(0, 1, 1),
+        limits(1, 0, 1),
+        limits(1, 1, 0),
+        limits(-5, 1, 1),
+    ] {
+        assert_eq!(
+            Profile::plan(0, Speed::ZERO, fine(1), l, QC_PER_TURN),
+            Err(Unusable)
+        );
+    }
+    // The whole range at 1 rpm: 2 years.
+    assert_eq!(
+        Profile::plan(
+            fine(-(1 << 30)),
+            Speed::ZERO,
+            fine(1 << 30),
+            limits(1, 1, 1),
+            QC_PER_TURN
+        ),
+        Err(Unusable)
+    );
+}
+
+#[test]
+fn degenerate_profiles() {
+    let most = u32::MAX;
+    for (length, l) in [
+        (1, limits(1, 1, 1)),            // the least of everything
+        (1, limits(25_000, most, most)), // there in the first millisecond
+        (100, limits(1, most, 1)),       // a tiny speed, lopsided
+        (30_000, limits(1, 10, 10)),     // 900 s
+        (3, limits(25_000, 1, most)),    // a triangle that falls like a wall
+        (3, limits(25_000, most, 1)),
+        (60_000, limits(25_000, most, most)),
+    ] {
+        for sign in [1, -1] {
+            let mut generator = Generator::new(0, QC_PER_TURN);
+            generator.go_to(fine(sign * length), l).unwrap();
+            let textbook = Textbook::new(0.0, (sign * length) as f64, l, QC_PER_TURN);
+            let steps = run(
+                &mut generator,
+                fine(sign * length),
+                l,
+                1_000_000,
+                |ms, position| {
+                    let expected = textbook.at(ms as f64 * 1e-3);
+                    assert!(
+                        (position - expected).abs() < 1e-3,
+                        "{l:?} {ms}: {position} {expected}"
+                    );
+                },
+            );
+            // Phases are rounded up to 2^-32 ms, so a whole number of milliseconds may take one more.
+            let expected = (textbook.duration() * 1e3 - 1e-6).ceil().max(1.0) as usize;
+            assert!(
+                steps == expected || steps == expected + 1,
+                "{steps} {expected}"
+            );
+        }
+    }
+}
+
+fn any_limits() -> impl Strategy<Value = Limits> {
+    // Log-uniform, so that slow and fast are equally likely.
+    let power = |bits: u32| {
+        (0..=bits, any::<u32>()).prop_map(move |(b, r)| (1u32 << b).max(r & ((2u32 << b) - 1)))
+    };
+    (power(13), power(30), power(30), any::<bool>())
+        .prop_map(|(v, a, d, same)| limits((v as i32).min(25_000), a, if same { a } else { d }))
+}
+
+/// A length the limits get over in some thousand milliseconds, so that 10,000 cases are a matter of seconds.
+fn shorten(length: i64, l: Limits) -> i64 {
+    let per_rpm = f64::from(QC_PER_TURN) / 60.0;
+    let slowest = f64::from(l.acceleration.min(l.deceleration)) * per_rpm;
+    let v = f64::from(l.speed.to_rpm()) * per_rpm;
+    let in_a_second = v.min(slowest / 4.0) + 1.0;
+    length % (4 * in_a_second as i64 + 1)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(10_000))]
+
+    #[test]
+    fn lands_exactly_within_its_limits_and_on_the_textbook(
+        from in -1_000_000i64..1_000_000,
+        length in -1_000_000i64..=1_000_000,
+        l in any_limits(),
+    ) {
+        let to = from + shorten(length, l);
+        let mut generator = Generator::new(fine(from), QC_PER_TURN);
+        generator.go_to(fine(to), l).unwrap();
+        let textbook = Textbook::new(from as f64, to as f64, l, QC_PER_TURN);
+        // Checked at about a hundred instants, all limits at each.
+        let every = (textbook.duration() * 10.0) as usize + 1;
+        let steps = run(&mut generator, fine(to), l, 1_000_000, |ms, position| {
+            if ms % every == 0 {
+                let expected = textbook.at(ms as f64 * 1e-3);
+                assert!((position - expected).abs() < 1e-3, "{ms}: {position} {expected}");
+            }
+        });
+        let expected = textbook.duration() * 1e3;
+        prop_assert!((steps as f64) < expected + 1.001 && steps as f64 > expected - 0.001, "{steps} {expected}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
+
+    #[test]
+    fn a_new_target_in_motion_keeps_the_limits_too(
+        first in -100_000i64..100_000,
+        second in -100_000i64..100_000,
+        l in any_limits(),
+        slower in 1i32..25_000,
+        after in 0usize..400,
+    ) {
+        let first = shorten(first, l);
+        let second = shorten(second, l);
+        let mut generator = Generator::new(0, QC_PER_TURN);
+        generator.go_to(fine(first), l).unwrap();
+        for _ in 0..after {
+            generator.step();
+        }
+        let l = Limits { speed: l.speed.min(Speed::from_rpm(slower)), ..l };
+        generator.go_to(fine(second), l).unwrap();
+        run(&mut generator, fine(second), l, 10_000_000, |_, _| {});
+    }
+
+    #[test]
+    fn a_stop_in_motion_is_the_textbook_braking_distance(
+        length in -100_000i64..100_000,
+        l in any_limits(),
+        after in 0usize..400,
+    ) {
+        let mut generator = Generator::new(0, QC_PER_TURN);
+        generator.go_to(fine(shorten(length, l)), l).unwrap();
+        for _ in 0..after {
+            generator.step();
+        }
+        let (from, speed) = (qc(generator.position()), generator.speed());
+        generator.run_at(Speed::ZERO, l.deceleration);
+        let mut steps = 0u32;
+        while generator.is_moving() {
+            generator.step();
+            steps += 1;
+            prop_assert!(steps < 1_000_000);
+        }
+        let v = speed.0 as f64 / MS as f64 / 1000.0 * f64::from(QC_PER_TURN) / 60.0;
+        let d = f64::from(l.deceleration) * f64::from(QC_PER_TURN) / 60.0;
+        let expected = from + v * v.abs() / (2.0 * d);
+        prop_assert!((qc(generator.position()) - expected).abs() < 1e-3);
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Order {
+    GoTo(i64, Limits),
+    RunAt(i32, u32),
+    Steps(u16),
+}
+
+fn order() -> impl Strategy<Value = Order> {
+    let extreme = prop_oneof![any::<u32>(), 0u32..3, Just(u32::MAX)];
+    let limits =
+        (0i32..=25_000, extreme.clone(), extreme.clone()).prop_map(|(v, a, d)| limits(v, a, d));
+    // Farther than the world is long: a 32-bit position from an origin as far away.
+    let target = (any::<i32>(), any::<i32>()).prop_map(|(a, b)| fine(i64::from(a) + i64::from(b)));
+    prop_oneof![
+        (target, limits).prop_map(|(target, limits)| Order::GoTo(target, limits)),
+        (-25_000i32..=25_000, extreme).prop_map(|(speed, a)| Order::RunAt(speed, a)),
+        (0u16..300).prop_map(Order::Steps),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1_000))]
+
+    #[test]
+    fn no_numbers_are_too_large(
+        from in any::<i32>(),
+        qc_per_turn in prop_oneof![Just(MAX_QC_PER_TURN), 4..=MAX_QC_PER_TURN],
+        orders in prop::collection::vec(order(), 1..30),
+    ) {
+        let mut generator = Generator::new(fine(from.into()).clamp(-WORLD_END, WORLD_END), qc_per_turn);
+        for order in orders {
+            match order {
+                Order::GoTo(target, limits) => {
+                    let _ = generator.go_to(target, limits);
+                }
+                Order::RunAt(speed, acceleration) => generator.run_at(Speed::from_rpm(speed), acceleration),
+                Order::Steps(n) => {
+                    for _ in 0..n {
+                        generator.step();
+                        prop_assert!(generator.position().abs() <= WORLD_END);
+                        prop_assert!(generator.speed().0.abs() <= Speed::from_rpm(25_000).0);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The unit's RS232 interface: request and answer with their handshake bytes, half duplex (Communication Guide, "RS232
+//! Communication").
+//!
+//! Wire time at the baud rate belongs to the link, not here.
+
+use protocol::epos2::message::{
+    InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, RequestCanFrame, SegmentedRead,
+    SegmentedWrite, SendCanFrame, WriteObject,
+};
+use protocol::epos2::rs232::{BodyDecoder, Bytes, FAILED, OKAY, encode_body};
+use protocol::epos2::{Frame, objects};
+
+use super::node::Node;
+use super::service::Service;
+
+/// The RS232 side of a unit.
+#[derive(Clone, Debug)]
+pub struct Rs232Server {
+    turn: Turn,
+    service: Service,
+    /// When the last byte came.
+    heard_us: u64,
+}
+
+/// Whose turn it is and for what.
+#[derive(Clone, Debug)]
+enum Turn {
+    /// The master's: an opcode.
+    Opcode,
+    /// The master's: the rest of its request.
+    Body(BodyDecoder),
+    /// The master's: whether it is ready for the answer.
+    Ready(Frame),
+    /// The master's: whether it has understood the answer.
+    Receipt,
+}
+
+/// Opcodes that the unit takes.
+const KNOWN: [u8; 9] = [
+    ReadObject::OPCODE,
+    WriteObject::OPCODE,
+    InitiateSegmentedRead::OPCODE,
+    InitiateSegmentedWrite::OPCODE,
+    SegmentedRead::OPCODE,
+    SegmentedWrite::OPCODE,
+    Nmt::OPCODE,
+    SendCanFrame::OPCODE,
+    RequestCanFrame::OPCODE,
+];
+
+impl Rs232Server {
+    /// An interface whose garbage in unused words follows from `seed`.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self {
+            turn: Turn::Opcode,
+            service: Service::new(seed),
+            heard_us: 0,
+        }
+    }
+
+    /// Takes bytes from the master at the node's present instant; what the unit sends goes to `out`.
+    ///
+    /// A silence longer than the frame timeout (2005) ends whatever was under way.
+    pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
+        let now_us = node.time_us();
+        let timeout_us = 1000 * u64::from(node.dictionary.get(objects::RS232_FRAME_TIMEOUT));
+        if now_us.saturating_sub(self.heard_us) > timeout_us {
+            self.turn = Turn::Opcode;
+        }
+        self.heard_us = now_us;
+        for &byte in bytes {
+            let turn = core::mem::replace(&mut self.turn, Turn::Opcode);
+            self.turn = self.take(turn, byte, node, out);
+        }
+    }
+
+    fn take(&mut self, turn: Turn, byte: u8, node: &mut Node, out: &mut impl FnMut(&[u8])) -> Turn {
+        match turn {
+            Turn::Opcode if KNOWN.contains(&byte) => {
+                out(&[OKAY]);
+                Turn::Body(BodyDecoder::new(byte))
+            }
+            Turn::Opcode => {
+                out(&[FAILED]);
+                Turn::Opcode
+            }
+            Turn::Body(mut decoder) => match decoder.push(byte) {
+                None => Turn::Body(decoder),
+                Some(Ok(request)) => {
+                    out(&[OKAY]);
+                    self.answer(&request, node, out)
+                }
+                Some(Err(_)) => {
+                    out(&[FAILED]);
+                    Turn::Opcode
+                }
+            },
+            Turn::Ready(answer) if byte == OKAY => {
+                let mut body = Bytes::new();
+                // An answer always has words.
+                if encode_body(&answer, &mut body).is_err() {
+                    return Turn::Opcode;
+                }
+                out(&body);
+                Turn::Receipt
+            }
+            // Refused, understood or not: the next byte is an opcode.
+            Turn::Ready(_) | Turn::Receipt => Turn::Opcode,
+        }
+    }
+
+    /// NMT and "send CAN frame" have no answer on RS232.
+    fn answer(&mut self, request: &Frame, node: &mut Node, out: &mut impl FnMut(&[u8])) -> Turn {
+        let answer = self.service.execute(node, request);
+        if [Nmt::OPCODE, SendCanFrame::OPCODE].contains(&request.opcode) {
+            return Turn::Opcode;
+        }
+        out(&[Frame::ANSWER]);
+        Turn::Ready(answer)
+    }
+}
+
+#[cfg(test)]
+#[path = "rs232_tests.rs"]
+mod tests;

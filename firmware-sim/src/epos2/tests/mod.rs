@@ -1,0 +1,89 @@
+//! The unit through its object dictionary alone, as a client sees it.
+
+mod access;
+mod anything;
+mod homing;
+mod limits;
+mod position;
+mod states;
+
+use protocol::epos2::DeviceError;
+use protocol::epos2::cia402::{State, control, status};
+use protocol::epos2::objects::{self, Object, Scalar};
+
+use super::{Node, NodeConfig};
+
+/// A unit without fault, at world 0.
+fn healthy() -> Node {
+    Node::new(NodeConfig {
+        fault_at_power_on: DeviceError::NONE,
+        initial_position: 0,
+        ..NodeConfig::default()
+    })
+}
+
+fn get<T: Scalar>(node: &Node, object: Object<T>) -> T {
+    object.decode(node.read(object.address).unwrap().raw().unwrap())
+}
+
+fn set<T: Scalar>(node: &mut Node, object: Object<T>, value: T) {
+    node.write(object.address, object.encode(value)).unwrap();
+}
+
+fn command(node: &mut Node, word: u16) {
+    set(node, objects::CONTROLWORD, word);
+}
+
+fn state(node: &Node) -> State {
+    State::from_statusword(get(node, objects::STATUSWORD)).expect("a legal statusword")
+}
+
+fn has(node: &Node, bits: u16) -> bool {
+    get(node, objects::STATUSWORD) & bits == bits
+}
+
+fn ticks(node: &mut Node, n: usize) {
+    for _ in 0..n {
+        node.tick();
+    }
+}
+
+/// Ticks until `done`, and how many it took.
+fn until(node: &mut Node, most: usize, done: impl Fn(&Node) -> bool) -> usize {
+    for n in 0..most {
+        if done(node) {
+            return n;
+        }
+        node.tick();
+    }
+    panic!(
+        "not done after {most} ms: statusword {:04X}",
+        get(node, objects::STATUSWORD)
+    );
+}
+
+fn enable(node: &mut Node) {
+    command(node, control::SHUTDOWN);
+    command(node, control::ENABLE_OPERATION);
+    until(node, 100, |node| state(node) == State::OperationEnabled);
+}
+
+fn enabled() -> Node {
+    let mut node = healthy();
+    enable(&mut node);
+    node
+}
+
+fn go(node: &mut Node, target: i32, word: u16) {
+    set(node, objects::TARGET_POSITION, target);
+    command(node, control::ENABLE_OPERATION);
+    command(node, word);
+}
+
+fn arrive(node: &mut Node) -> usize {
+    until(node, 100_000, |node| has(node, status::TARGET_REACHED))
+}
+
+fn position(node: &Node) -> i32 {
+    get(node, objects::POSITION_ACTUAL)
+}

@@ -1,0 +1,227 @@
+//! Node ids, 11-bit identifiers, and which of them a service has by default (CiA 301, "Predefined connection set").
+//!
+//! An object of the drive may move a service to another identifier (1005, 1014, 140x, 180x); who does that compares
+//! identifiers himself.
+
+use core::fmt;
+
+/// A node's number, 1 to 127.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeId(u8);
+
+impl NodeId {
+    /// The highest.
+    pub const MAX: Self = Self(127);
+
+    /// The node `id`; `None` outside 1 to 127 (0 means "all nodes" where it is allowed).
+    #[must_use]
+    pub const fn new(id: u8) -> Option<Self> {
+        match id {
+            1..=127 => Some(Self(id)),
+            _ => None,
+        }
+    }
+
+    /// The number.
+    #[must_use]
+    pub const fn get(self) -> u8 {
+        self.0
+    }
+}
+
+impl fmt::Display for NodeId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// An 11-bit CAN identifier, as CANopen uses them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CobId(u16);
+
+impl CobId {
+    /// NMT commands.
+    pub const NMT: Self = Self(0x000);
+    /// Synchronisation.
+    pub const SYNC: Self = Self(0x080);
+    /// Time stamp.
+    pub const TIME: Self = Self(0x100);
+    /// The highest.
+    pub const MAX: Self = Self(0x7FF);
+
+    /// The identifier `id`; `None` above 11 bits.
+    #[must_use]
+    pub const fn new(id: u16) -> Option<Self> {
+        if id <= Self::MAX.0 {
+            Some(Self(id))
+        } else {
+            None
+        }
+    }
+
+    /// The low 11 bits of `word`.
+    pub(super) const fn masked(word: u32) -> Self {
+        Self((word & Self::MAX.0 as u32) as u16)
+    }
+
+    /// The number.
+    #[must_use]
+    pub const fn get(self) -> u16 {
+        self.0
+    }
+}
+
+impl fmt::Display for CobId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:03X}", self.0)
+    }
+}
+
+/// Which of a node's four PDOs of a direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PdoNumber {
+    /// PDO 1.
+    One,
+    /// PDO 2.
+    Two,
+    /// PDO 3.
+    Three,
+    /// PDO 4.
+    Four,
+}
+
+impl PdoNumber {
+    /// All four.
+    pub const ALL: [Self; 4] = [Self::One, Self::Two, Self::Three, Self::Four];
+
+    /// 0 to 3: what is added to the index of PDO 1's objects.
+    #[must_use]
+    pub const fn offset(self) -> u16 {
+        match self {
+            Self::One => 0,
+            Self::Two => 1,
+            Self::Three => 2,
+            Self::Four => 3,
+        }
+    }
+}
+
+/// Whose message an identifier carries; sending and receiving are seen from the node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// 000: commands to nodes.
+    Nmt,
+    /// 080: synchronisation.
+    Sync,
+    /// 080 + node: what went wrong at a node.
+    Emergency(NodeId),
+    /// 100: time stamp.
+    Time,
+    /// 180, 280, 380, 480 + node: process data from a node.
+    TransmitPdo(PdoNumber, NodeId),
+    /// 200, 300, 400, 500 + node: process data to a node.
+    ReceivePdo(PdoNumber, NodeId),
+    /// 580 + node: answers of a node's SDO server.
+    SdoAnswer(NodeId),
+    /// 600 + node: requests to a node's SDO server.
+    SdoRequest(NodeId),
+    /// 700 + node: boot-up and heartbeat of a node.
+    Heartbeat(NodeId),
+    /// In no service's place.
+    Other(CobId),
+}
+
+impl Channel {
+    /// The channel of an identifier.
+    #[must_use]
+    pub const fn of(id: CobId) -> Self {
+        match id {
+            CobId::NMT => return Self::Nmt,
+            CobId::SYNC => return Self::Sync,
+            CobId::TIME => return Self::Time,
+            _ => {}
+        }
+        let Some(node) = NodeId::new((id.0 & 0x7F) as u8) else {
+            return Self::Other(id);
+        };
+        match id.0 & !0x7F {
+            0x080 => Self::Emergency(node),
+            0x180 => Self::TransmitPdo(PdoNumber::One, node),
+            0x200 => Self::ReceivePdo(PdoNumber::One, node),
+            0x280 => Self::TransmitPdo(PdoNumber::Two, node),
+            0x300 => Self::ReceivePdo(PdoNumber::Two, node),
+            0x380 => Self::TransmitPdo(PdoNumber::Three, node),
+            0x400 => Self::ReceivePdo(PdoNumber::Three, node),
+            0x480 => Self::TransmitPdo(PdoNumber::Four, node),
+            0x500 => Self::ReceivePdo(PdoNumber::Four, node),
+            0x580 => Self::SdoAnswer(node),
+            0x600 => Self::SdoRequest(node),
+            0x700 => Self::Heartbeat(node),
+            _ => Self::Other(id),
+        }
+    }
+
+    /// The identifier of the channel.
+    #[must_use]
+    pub const fn cob_id(self) -> CobId {
+        let (base, node) = match self {
+            Self::Nmt => return CobId::NMT,
+            Self::Sync => return CobId::SYNC,
+            Self::Time => return CobId::TIME,
+            Self::Other(id) => return id,
+            Self::Emergency(node) => (0x080, node),
+            Self::TransmitPdo(number, node) => (0x180 + 0x100 * number.offset(), node),
+            Self::ReceivePdo(number, node) => (0x200 + 0x100 * number.offset(), node),
+            Self::SdoAnswer(node) => (0x580, node),
+            Self::SdoRequest(node) => (0x600, node),
+            Self::Heartbeat(node) => (0x700, node),
+        };
+        CobId(base + node.0 as u16)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_identifier_has_one_channel_and_back() {
+        for id in 0..=0x7FF {
+            let id = CobId::new(id).unwrap();
+            assert_eq!(Channel::of(id).cob_id(), id);
+        }
+        assert_eq!(CobId::new(0x800), None);
+    }
+
+    #[test]
+    fn only_1_to_127_are_nodes() {
+        let nodes = (0..=255).filter_map(NodeId::new).map(NodeId::get);
+        assert!(nodes.eq(1..=127));
+    }
+
+    #[test]
+    fn the_predefined_set_of_node_1() {
+        let node = NodeId::new(1).unwrap();
+        let expected = [
+            (0x000, Channel::Nmt),
+            (0x080, Channel::Sync),
+            (0x081, Channel::Emergency(node)),
+            (0x100, Channel::Time),
+            (0x181, Channel::TransmitPdo(PdoNumber::One, node)),
+            (0x201, Channel::ReceivePdo(PdoNumber::One, node)),
+            (0x281, Channel::TransmitPdo(PdoNumber::Two, node)),
+            (0x301, Channel::ReceivePdo(PdoNumber::Two, node)),
+            (0x381, Channel::TransmitPdo(PdoNumber::Three, node)),
+            (0x401, Channel::ReceivePdo(PdoNumber::Three, node)),
+            (0x481, Channel::TransmitPdo(PdoNumber::Four, node)),
+            (0x501, Channel::ReceivePdo(PdoNumber::Four, node)),
+            (0x581, Channel::SdoAnswer(node)),
+            (0x601, Channel::SdoRequest(node)),
+            (0x701, Channel::Heartbeat(node)),
+        ];
+        for (id, channel) in expected {
+            assert_eq!(Channel::of(CobId::new(id).unwrap()), channel);
+            assert_eq!(channel.cob_id().get(), id);
+        }
+    }
+}

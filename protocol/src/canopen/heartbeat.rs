@@ -1,0 +1,238 @@
+//! Heartbeat and boot-up (CiA 301, "Error control services"): a node says it lives, and in which state; a machine
+//! without I/O that notices when it no longer does; the consumer's object 1016.
+//!
+//! Node guarding, the older way with remote frames, is left out: CiA 301 advises against it.
+
+use units::{Span, Stamp};
+
+use super::cob_id::{Channel, NodeId};
+use super::error::{Layer, MessageError};
+use super::frame::CanFrame;
+use super::message::{bytes, wrong_id};
+use super::nmt::NmtState;
+
+/// A sign of life. The first after a start has [`NmtState::BootUp`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Heartbeat {
+    /// Who lives.
+    pub node: NodeId,
+    /// In which state.
+    pub state: NmtState,
+}
+
+impl Heartbeat {
+    /// The sign as a frame.
+    #[must_use]
+    pub fn to_frame(&self) -> CanFrame {
+        CanFrame::of(
+            Channel::Heartbeat(self.node).cob_id(),
+            [self.state.to_u8()],
+        )
+    }
+
+    /// The sign in `frame`.
+    ///
+    /// # Errors
+    /// [`MessageError`].
+    pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
+        let layer = Layer::Heartbeat;
+        let Some(Channel::Heartbeat(node)) = frame.cob_id().map(Channel::of) else {
+            return Err(wrong_id(layer, "701 to 77F", frame));
+        };
+        let [state] = *bytes::<1>(layer, frame)?;
+        Ok(Self {
+            node,
+            state: NmtState::from_u8(state),
+        })
+    }
+}
+
+/// The value of an entry of 1016: whose heartbeat is expected how often, else error 8130 and its reaction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ConsumerEntry {
+    /// Whose.
+    pub node: NodeId,
+    /// At least once in so many milliseconds; 0 switches the entry off.
+    pub time_ms: u16,
+}
+
+impl ConsumerEntry {
+    /// The value: node in bits 16 to 23, time in bits 0 to 15.
+    #[must_use]
+    pub const fn to_u32(self) -> u32 {
+        (self.node.get() as u32) << 16 | self.time_ms as u32
+    }
+
+    /// The entry of a value; `None` where it is switched off or names no node.
+    #[must_use]
+    pub const fn from_u32(value: u32) -> Option<Self> {
+        let time_ms = value as u16;
+        match NodeId::new((value >> 16) as u8) {
+            Some(node) if time_ms != 0 => Some(Self { node, time_ms }),
+            _ => None,
+        }
+    }
+}
+
+/// What a heartbeat, or its absence, says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeartbeatEvent<C> {
+    /// The node has just started: what it was told before, it has forgotten.
+    BootUp,
+    /// The node is in another state than before; `from` is `None` at the first heartbeat, and at the first after a loss.
+    State {
+        /// Before.
+        from: Option<NmtState>,
+        /// Now.
+        to: NmtState,
+    },
+    /// No heartbeat for longer than the limit.
+    Lost {
+        /// When the last one came.
+        last: Stamp<C>,
+    },
+}
+
+/// Listens to a node's heartbeat. Time is the caller's, in any clock.
+///
+/// It expects nothing before the first heartbeat, as CiA 301 has it: whether a node is there at all is asked otherwise.
+#[derive(Clone, Copy, Debug)]
+pub struct HeartbeatConsumer<C> {
+    node: NodeId,
+    limit: Span,
+    state: Option<NmtState>,
+    last: Option<Stamp<C>>,
+}
+
+impl<C> HeartbeatConsumer<C> {
+    /// Listens to `node`, which is lost when it has been silent for `limit` (more than its producer time, 1017).
+    #[must_use]
+    pub const fn new(node: NodeId, limit: Span) -> Self {
+        Self {
+            node,
+            limit,
+            state: None,
+            last: None,
+        }
+    }
+
+    /// The state it was last in; `None` before its first heartbeat and while it is lost.
+    #[must_use]
+    pub const fn state(&self) -> Option<NmtState> {
+        self.state
+    }
+
+    /// Takes any frame of the bus; those of others do nothing.
+    pub fn handle_frame(&mut self, frame: &CanFrame, now: Stamp<C>) -> Option<HeartbeatEvent<C>> {
+        let heartbeat = Heartbeat::parse(frame).ok()?;
+        if heartbeat.node != self.node {
+            return None;
+        }
+        self.last = Some(now);
+        let to = heartbeat.state;
+        let from = self.state.replace(to);
+        match to {
+            NmtState::BootUp => Some(HeartbeatEvent::BootUp),
+            _ if from == Some(to) => None,
+            _ => Some(HeartbeatEvent::State { from, to }),
+        }
+    }
+
+    /// When the node is lost, unless a heartbeat comes.
+    #[must_use]
+    pub fn poll_timeout(&self) -> Option<Stamp<C>> {
+        self.last.map(|last| last.saturating_add(self.limit))
+    }
+
+    /// Whether the node is lost at `now`; told once.
+    pub fn handle_timeout(&mut self, now: Stamp<C>) -> Option<HeartbeatEvent<C>> {
+        let last = self.last?;
+        if now < last.saturating_add(self.limit) {
+            return None;
+        }
+        self.last = None;
+        self.state = None;
+        Some(HeartbeatEvent::Lost { last })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use units::Host;
+
+    fn at(ms: i64) -> Stamp<Host> {
+        Stamp::from_nanos(ms * 1_000_000)
+    }
+
+    fn node(id: u8) -> NodeId {
+        NodeId::new(id).unwrap()
+    }
+
+    fn beat(id: u8, state: NmtState) -> CanFrame {
+        Heartbeat {
+            node: node(id),
+            state,
+        }
+        .to_frame()
+    }
+
+    #[test]
+    fn a_node_lives_changes_is_lost_and_comes_back() {
+        use NmtState::{Operational, PreOperational};
+        let mut consumer = HeartbeatConsumer::new(node(1), Span::from_millis(100));
+        assert_eq!(consumer.poll_timeout(), None);
+        assert_eq!(consumer.handle_timeout(at(1_000_000)), None);
+        let mut hear = |state, ms| consumer.handle_frame(&beat(1, state), at(ms));
+        assert_eq!(hear(NmtState::BootUp, 0), Some(HeartbeatEvent::BootUp));
+        assert_eq!(
+            hear(PreOperational, 10),
+            Some(HeartbeatEvent::State {
+                from: Some(NmtState::BootUp),
+                to: PreOperational
+            })
+        );
+        assert_eq!(hear(PreOperational, 60), None);
+        assert!(matches!(hear(Operational, 110), Some(HeartbeatEvent::State { .. })));
+        // Another node does not keep this one alive.
+        assert_eq!(consumer.handle_frame(&beat(2, Operational), at(150)), None);
+        assert_eq!(consumer.poll_timeout(), Some(at(210)));
+        assert_eq!(consumer.handle_timeout(at(209)), None);
+        assert_eq!(
+            consumer.handle_timeout(at(210)),
+            Some(HeartbeatEvent::Lost { last: at(110) })
+        );
+        assert_eq!((consumer.handle_timeout(at(300)), consumer.state()), (None, None));
+        assert_eq!(
+            consumer.handle_frame(&beat(1, Operational), at(400)),
+            Some(HeartbeatEvent::State {
+                from: None,
+                to: Operational
+            })
+        );
+    }
+
+    #[test]
+    fn a_second_boot_up_is_a_restart_even_without_a_beat_between() {
+        let mut consumer = HeartbeatConsumer::new(node(1), Span::from_millis(100));
+        for ms in [0, 5] {
+            assert_eq!(
+                consumer.handle_frame(&beat(1, NmtState::BootUp), at(ms)),
+                Some(HeartbeatEvent::BootUp)
+            );
+        }
+    }
+
+    #[test]
+    fn entries_of_1016_read_back() {
+        let entry = ConsumerEntry {
+            node: node(127),
+            time_ms: 500,
+        };
+        assert_eq!(entry.to_u32(), 0x007F_01F4);
+        assert_eq!(ConsumerEntry::from_u32(0x007F_01F4), Some(entry));
+        assert_eq!(ConsumerEntry::from_u32(0x007F_0000), None);
+        assert_eq!(ConsumerEntry::from_u32(0x0000_01F4), None);
+        assert_eq!(ConsumerEntry::from_u32(0), None);
+    }
+}

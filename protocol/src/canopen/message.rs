@@ -1,0 +1,118 @@
+//! Any message of the predefined connection set: for whoever looks on at a bus or reads a log.
+
+use super::cob_id::{Channel, CobId, NodeId, PdoNumber};
+use super::emcy::Emergency;
+use super::error::{Layer, MessageError};
+use super::frame::CanFrame;
+use super::heartbeat::Heartbeat;
+use super::nmt::Nmt;
+use super::sdo::{Answer, Request};
+use super::sync::Sync;
+use crate::epos2::Bounded;
+
+/// A frame with its meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Message {
+    /// A command to nodes.
+    Nmt(Nmt),
+    /// A beat.
+    Sync(Sync),
+    /// What went wrong at a node.
+    Emergency(Emergency),
+    /// Process data from a node; what it means is in the node's mapping ([`super::pdo::Layout`]).
+    TransmitPdo(PdoNumber, NodeId, Bounded<u8, 8>),
+    /// Process data to a node.
+    ReceivePdo(PdoNumber, NodeId, Bounded<u8, 8>),
+    /// A request to a node's SDO server.
+    SdoRequest(NodeId, Request),
+    /// An answer of a node's SDO server.
+    SdoAnswer(NodeId, Answer),
+    /// A node's sign of life.
+    Heartbeat(Heartbeat),
+    /// A frame in no service's place, the time stamp, or a remote frame: not looked into.
+    Other(CanFrame),
+}
+
+impl Message {
+    /// The message in `frame`.
+    ///
+    /// # Errors
+    /// [`MessageError`] where the identifier is a service's and the content is not.
+    pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
+        let Some(id) = frame.cob_id().filter(|_| !frame.is_remote()) else {
+            return Ok(Self::Other(*frame));
+        };
+        let mut data = Bounded::new();
+        data.extend(frame.data().iter().copied());
+        Ok(match Channel::of(id) {
+            Channel::Nmt => Self::Nmt(Nmt::parse(frame)?),
+            Channel::Sync => Self::Sync(Sync::parse(frame)?),
+            Channel::Emergency(_) => Self::Emergency(Emergency::parse(frame)?),
+            Channel::TransmitPdo(number, node) => Self::TransmitPdo(number, node, data),
+            Channel::ReceivePdo(number, node) => Self::ReceivePdo(number, node, data),
+            Channel::SdoRequest(_) => {
+                let (node, request) = Request::parse(frame)?;
+                Self::SdoRequest(node, request)
+            }
+            Channel::SdoAnswer(_) => {
+                let (node, answer) = Answer::parse(frame)?;
+                Self::SdoAnswer(node, answer)
+            }
+            Channel::Heartbeat(_) => Self::Heartbeat(Heartbeat::parse(frame)?),
+            Channel::Time | Channel::Other(_) => Self::Other(*frame),
+        })
+    }
+
+    /// The message as a frame.
+    #[must_use]
+    pub fn to_frame(&self) -> CanFrame {
+        match self {
+            Self::Nmt(message) => message.to_frame(),
+            Self::Sync(message) => message.to_frame(),
+            Self::Emergency(message) => message.to_frame(),
+            Self::TransmitPdo(number, node, data) => {
+                pdo(Channel::TransmitPdo(*number, *node).cob_id(), data)
+            }
+            Self::ReceivePdo(number, node, data) => {
+                pdo(Channel::ReceivePdo(*number, *node).cob_id(), data)
+            }
+            Self::SdoRequest(node, request) => request.to_frame(*node),
+            Self::SdoAnswer(node, answer) => answer.to_frame(*node),
+            Self::Heartbeat(message) => message.to_frame(),
+            Self::Other(frame) => *frame,
+        }
+    }
+}
+
+/// Process data as a frame.
+pub(super) fn pdo(id: CobId, data: &Bounded<u8, 8>) -> CanFrame {
+    // Both hold eight bytes at most, so there is no error to take this way out.
+    CanFrame::new(id, data).unwrap_or_else(|_| CanFrame::of(id, []))
+}
+
+/// The data of a frame that must have `N` bytes of it.
+pub(super) fn bytes<const N: usize>(
+    layer: Layer,
+    frame: &CanFrame,
+) -> Result<&[u8; N], MessageError> {
+    if frame.is_remote() {
+        return Err(MessageError::Remote { layer });
+    }
+    frame
+        .data()
+        .try_into()
+        .map_err(|_| MessageError::Length {
+            layer,
+            expected: N,
+            got: frame.data().len(),
+        })
+}
+
+/// The error of a frame on another service's identifier.
+pub(super) fn wrong_id(layer: Layer, expected: &'static str, frame: &CanFrame) -> MessageError {
+    MessageError::Id {
+        layer,
+        expected,
+        got: frame.id(),
+    }
+}

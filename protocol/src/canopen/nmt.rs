@@ -1,0 +1,212 @@
+//! Network management (CiA 301, "NMT services"): what nodes are told, and the states they tell of.
+//!
+//! A node confirms nothing; whether it obeyed shows in its heartbeat.
+
+use core::fmt;
+
+use super::cob_id::{CobId, NodeId};
+use super::error::{Layer, MessageError};
+use super::frame::CanFrame;
+use super::message::{bytes, wrong_id};
+use crate::epos2::message::NmtCommand as GatewayCommand;
+
+/// What nodes are told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NmtCommand {
+    /// 01: to operational.
+    Start,
+    /// 02: to stopped.
+    Stop,
+    /// 80: to pre-operational.
+    EnterPreOperational,
+    /// 81: restart of the node.
+    ResetNode,
+    /// 82: restart of its communication.
+    ResetCommunication,
+    /// A command specifier that CiA 301 does not know.
+    Unknown(u8),
+}
+
+impl NmtCommand {
+    /// The command specifier.
+    #[must_use]
+    pub const fn to_u8(self) -> u8 {
+        match self {
+            Self::Start => 0x01,
+            Self::Stop => 0x02,
+            Self::EnterPreOperational => 0x80,
+            Self::ResetNode => 0x81,
+            Self::ResetCommunication => 0x82,
+            Self::Unknown(specifier) => specifier,
+        }
+    }
+
+    /// The command of a specifier.
+    #[must_use]
+    pub const fn from_u8(specifier: u8) -> Self {
+        match specifier {
+            0x01 => Self::Start,
+            0x02 => Self::Stop,
+            0x80 => Self::EnterPreOperational,
+            0x81 => Self::ResetNode,
+            0x82 => Self::ResetCommunication,
+            specifier => Self::Unknown(specifier),
+        }
+    }
+}
+
+/// The same command through a unit's serial interface.
+impl From<NmtCommand> for GatewayCommand {
+    fn from(command: NmtCommand) -> Self {
+        Self::from_u16(u16::from(command.to_u8()))
+    }
+}
+
+/// A command to a node or to all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Nmt {
+    /// `None` is all nodes.
+    pub node: Option<NodeId>,
+    /// What to do.
+    pub command: NmtCommand,
+}
+
+impl Nmt {
+    /// The command as a frame.
+    #[must_use]
+    pub fn to_frame(&self) -> CanFrame {
+        let node = self.node.map_or(0, NodeId::get);
+        CanFrame::of(CobId::NMT, [self.command.to_u8(), node])
+    }
+
+    /// The command in `frame`.
+    ///
+    /// # Errors
+    /// [`MessageError`]; a node above 127 is [`MessageError::Value`].
+    pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
+        let layer = Layer::Nmt;
+        if frame.cob_id() != Some(CobId::NMT) {
+            return Err(wrong_id(layer, "000", frame));
+        }
+        let [specifier, node] = *bytes::<2>(layer, frame)?;
+        if node > NodeId::MAX.get() {
+            return Err(MessageError::Value {
+                layer,
+                offset: 1,
+                expected: "0 to 127",
+                got: node,
+            });
+        }
+        Ok(Self {
+            node: NodeId::new(node),
+            command: NmtCommand::from_u8(specifier),
+        })
+    }
+
+    /// Whether `node` is meant.
+    #[must_use]
+    pub fn is_for(&self, node: NodeId) -> bool {
+        self.node.is_none_or(|meant| meant == node)
+    }
+}
+
+/// A node's state as its heartbeat tells it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum NmtState {
+    /// 00: it has just started and is about to be pre-operational.
+    BootUp,
+    /// 04: only NMT and heartbeat.
+    Stopped,
+    /// 05: everything.
+    Operational,
+    /// 7F: everything but PDOs.
+    PreOperational,
+    /// A value that CiA 301 does not know.
+    Unknown(u8),
+}
+
+impl NmtState {
+    /// The byte of a heartbeat.
+    #[must_use]
+    pub const fn to_u8(self) -> u8 {
+        match self {
+            Self::BootUp => 0x00,
+            Self::Stopped => 0x04,
+            Self::Operational => 0x05,
+            Self::PreOperational => 0x7F,
+            Self::Unknown(state) => state,
+        }
+    }
+
+    /// The state of a heartbeat's byte.
+    #[must_use]
+    pub const fn from_u8(state: u8) -> Self {
+        match state {
+            0x00 => Self::BootUp,
+            0x04 => Self::Stopped,
+            0x05 => Self::Operational,
+            0x7F => Self::PreOperational,
+            state => Self::Unknown(state),
+        }
+    }
+}
+
+impl fmt::Display for NmtState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::BootUp => f.write_str("boot-up"),
+            Self::Stopped => f.write_str("stopped"),
+            Self::Operational => f.write_str("operational"),
+            Self::PreOperational => f.write_str("pre-operational"),
+            Self::Unknown(state) => write!(f, "unknown state {state:02X}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn specifiers_and_states_read_back() {
+        for byte in 0..=255 {
+            assert_eq!(NmtCommand::from_u8(byte).to_u8(), byte);
+            assert_eq!(NmtState::from_u8(byte).to_u8(), byte);
+            assert_eq!(
+                GatewayCommand::from(NmtCommand::from_u8(byte)).to_u16(),
+                u16::from(byte)
+            );
+        }
+    }
+
+    #[test]
+    fn a_command_is_for_its_node_or_for_all() {
+        let [one, two] = [1, 2].map(|id| NodeId::new(id).unwrap());
+        let command = NmtCommand::Start;
+        let to = |node| Nmt { node, command };
+        assert!(to(None).is_for(one) && to(Some(one)).is_for(one));
+        assert!(!to(Some(two)).is_for(one));
+    }
+
+    #[test]
+    fn a_node_above_127_and_a_wrong_length_are_refused() {
+        let frame = CanFrame::of(CobId::NMT, [1, 128]);
+        assert_eq!(
+            Nmt::parse(&frame),
+            Err(MessageError::Value {
+                layer: Layer::Nmt,
+                offset: 1,
+                expected: "0 to 127",
+                got: 128
+            })
+        );
+        assert_eq!(
+            Nmt::parse(&CanFrame::of(CobId::NMT, [1])),
+            Err(MessageError::Length {
+                layer: Layer::Nmt,
+                expected: 2,
+                got: 1
+            })
+        );
+    }
+}

@@ -1,0 +1,144 @@
+//! Communication parameters of a PDO: its identifier (140x:1, 180x:1) and when it is sent (140x:2, 180x:2).
+
+use crate::canopen::cob_id::CobId;
+use crate::canopen::frame::{CanId, ExtendedId};
+
+/// Bits of the identifier's value.
+const INVALID: u32 = 1 << 31;
+const NO_REMOTE: u32 = 1 << 30;
+const EXTENDED: u32 = 1 << 29;
+
+/// Identifier of a PDO with its flags.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CommunicationId {
+    /// The PDO is in use (bit 31 is clear).
+    pub valid: bool,
+    /// It may be asked for by a remote frame (bit 30 is clear).
+    pub remote: bool,
+    /// Its identifier (bit 29: 29 bits instead of 11).
+    pub id: CanId,
+}
+
+impl CommunicationId {
+    /// The object's value.
+    #[must_use]
+    pub const fn to_u32(self) -> u32 {
+        let invalid = if self.valid { 0 } else { INVALID };
+        let no_remote = if self.remote { 0 } else { NO_REMOTE };
+        let extended = match self.id {
+            CanId::Standard(_) => 0,
+            CanId::Extended(_) => EXTENDED,
+        };
+        invalid | no_remote | extended | self.id.raw()
+    }
+
+    /// The meaning of the object's value; without bit 29 only the low 11 bits of the identifier count.
+    #[must_use]
+    pub const fn from_u32(value: u32) -> Self {
+        Self {
+            valid: value & INVALID == 0,
+            remote: value & NO_REMOTE == 0,
+            id: if value & EXTENDED == 0 {
+                CanId::Standard(CobId::masked(value))
+            } else {
+                CanId::Extended(ExtendedId::masked(value))
+            },
+        }
+    }
+}
+
+/// When a PDO is sent, or a received one takes effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TransmissionType {
+    /// 0: at the next SYNC after an event.
+    SyncOnEvent,
+    /// 1 to 240: at every so-many-th SYNC. For a received PDO: at the next.
+    EverySync(u8),
+    /// 252: latched at SYNC, sent when asked for.
+    RemoteLatched,
+    /// 253: sent when asked for.
+    Remote,
+    /// 254: at an event of the manufacturer's choice.
+    Event,
+    /// 255: at an event of the device profile's choice (a change of a mapped value).
+    ProfileEvent,
+    /// 241 to 251.
+    Reserved(u8),
+}
+
+impl TransmissionType {
+    /// At every SYNC.
+    pub const EACH_SYNC: Self = Self::EverySync(1);
+
+    /// The object's value. `EverySync` with a number it cannot have gives that number.
+    #[must_use]
+    pub const fn to_u8(self) -> u8 {
+        match self {
+            Self::SyncOnEvent => 0,
+            Self::EverySync(value) | Self::Reserved(value) => value,
+            Self::RemoteLatched => 252,
+            Self::Remote => 253,
+            Self::Event => 254,
+            Self::ProfileEvent => 255,
+        }
+    }
+
+    /// The meaning of the object's value.
+    #[must_use]
+    pub const fn from_u8(value: u8) -> Self {
+        match value {
+            0 => Self::SyncOnEvent,
+            1..=240 => Self::EverySync(value),
+            241..=251 => Self::Reserved(value),
+            252 => Self::RemoteLatched,
+            253 => Self::Remote,
+            254 => Self::Event,
+            255 => Self::ProfileEvent,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canopen::{Channel, NodeId, PdoNumber};
+    use proptest::prelude::*;
+
+    /// Defaults of the unit's own device description for node 1: TPDO1 in use, TPDO2 to 4 not, remote frames nowhere.
+    #[test]
+    fn the_epos2s_defaults() {
+        let node = NodeId::new(1).unwrap();
+        let values = [0x4000_0181, 0xC000_0281, 0xC000_0381, 0xC000_0481];
+        for (value, number) in values.into_iter().zip(PdoNumber::ALL) {
+            let id = CommunicationId {
+                valid: number == PdoNumber::One,
+                remote: false,
+                id: Channel::TransmitPdo(number, node).cob_id().into(),
+            };
+            assert_eq!(id.to_u32(), value);
+            assert_eq!(CommunicationId::from_u32(value), id);
+        }
+        assert_eq!(
+            TransmissionType::from_u8(0xFF),
+            TransmissionType::ProfileEvent
+        );
+        assert_eq!(TransmissionType::from_u8(1), TransmissionType::EACH_SYNC);
+    }
+
+    #[test]
+    fn types_read_back() {
+        for value in 0..=255 {
+            assert_eq!(TransmissionType::from_u8(value).to_u8(), value);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn identifiers_read_back(value in any::<u32>()) {
+            let id = CommunicationId::from_u32(value);
+            prop_assert_eq!(CommunicationId::from_u32(id.to_u32()), id);
+            let ignored = if value & EXTENDED == 0 { 0x1FFF_F800 } else { 0 };
+            prop_assert_eq!(id.to_u32(), value & !ignored);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! The writes that configure a PDO, in the order in which a node takes them (CiA 301, "PDO mapping procedure").
+//!
+//! The node must be pre-operational meanwhile, and be started afterwards; that is the caller's business.
+
+use super::communication::{CommunicationId, TransmissionType};
+use super::layout::Layout;
+use crate::canopen::cob_id::{Channel, NodeId, PdoNumber};
+use crate::canopen::sdo::Expedited;
+use crate::epos2::objects::{Address, Scalar};
+
+/// One of a node's PDOs; the direction is seen from the node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pdo {
+    /// The node sends it.
+    Transmit(PdoNumber),
+    /// The node receives it.
+    Receive(PdoNumber),
+}
+
+impl Pdo {
+    /// Index of its communication parameters.
+    #[must_use]
+    pub const fn communication(self) -> u16 {
+        match self {
+            Self::Receive(number) => 0x1400 + number.offset(),
+            Self::Transmit(number) => 0x1800 + number.offset(),
+        }
+    }
+
+    /// Index of its mapping.
+    #[must_use]
+    pub const fn mapping(self) -> u16 {
+        match self {
+            Self::Receive(number) => 0x1600 + number.offset(),
+            Self::Transmit(number) => 0x1A00 + number.offset(),
+        }
+    }
+
+    /// Its identifier in the predefined connection set.
+    #[must_use]
+    pub const fn channel(self, node: NodeId) -> Channel {
+        match self {
+            Self::Receive(number) => Channel::ReceivePdo(number, node),
+            Self::Transmit(number) => Channel::TransmitPdo(number, node),
+        }
+    }
+}
+
+/// What a PDO is to become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Configuration {
+    /// When it is sent or takes effect.
+    pub transmission: TransmissionType,
+    /// For a PDO the node sends: the shortest time between two, in 100 us (180x:3; the EPOS2 has 10 by default). `None`
+    /// leaves it. CiA 301 lets it hold back events only, not SYNC; whether the EPOS2 does is not documented, so set 0 for
+    /// a fast SYNC.
+    pub inhibit_100us: Option<u16>,
+    /// What it carries.
+    pub layout: Layout,
+}
+
+/// One object to write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Write {
+    /// The object.
+    pub address: Address,
+    /// Its value.
+    pub data: Expedited,
+}
+
+/// The writes that make `pdo` of `node` what `configuration` says, and put it in use under its predefined identifier,
+/// without remote frames: out of use first, then type and inhibit time, mapping count 0, entries, count, into use last.
+pub fn configuration(
+    pdo: Pdo,
+    node: NodeId,
+    configuration: &Configuration,
+) -> impl Iterator<Item = Write> + '_ {
+    let id = |valid| {
+        let id = pdo.channel(node).cob_id().into();
+        let remote = false;
+        let value = CommunicationId { valid, remote, id };
+        write(pdo.communication(), 1, value.to_u32())
+    };
+    let inhibit = configuration
+        .inhibit_100us
+        .filter(|_| matches!(pdo, Pdo::Transmit(_)))
+        .map(|time| write(pdo.communication(), 3, time));
+    let entries = configuration.layout.entries();
+    let mapped = (1..)
+        .zip(entries)
+        .map(move |(sub, entry)| write(pdo.mapping(), sub, entry.to_u32()));
+    // At most eight entries.
+    let count = |count| write(pdo.mapping(), 0, count);
+    [
+        id(false),
+        write(pdo.communication(), 2, configuration.transmission.to_u8()),
+    ]
+    .into_iter()
+    .chain(inhibit)
+    .chain([count(0)])
+    .chain(mapped)
+    .chain([count(entries.len() as u8), id(true)])
+}
+
+fn write<T: Scalar>(index: u16, sub: u8, value: T) -> Write {
+    Write {
+        address: Address::new(index, sub),
+        data: Expedited::of(value),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use crate::canopen::pdo::Mapping;
+    use crate::canopen::sdo::{Initiate, Request};
+    use crate::epos2::objects::{POSITION_ACTUAL, TIMESTAMP};
+    use std::vec::Vec;
+
+    fn angle() -> Configuration {
+        Configuration {
+            transmission: TransmissionType::EACH_SYNC,
+            inhibit_100us: Some(0),
+            layout: Layout::new(&[Mapping::of(POSITION_ACTUAL), Mapping::of(TIMESTAMP)]).unwrap(),
+        }
+    }
+
+    fn messages(pdo: Pdo, wanted: &Configuration) -> Vec<[u8; 8]> {
+        configuration(pdo, NodeId::new(1).unwrap(), wanted)
+            .map(|Write { address, data }| {
+                let transfer = Initiate::Expedited(data);
+                Request::InitiateDownload { address, transfer }.to_bytes()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_angle_stream_is_configured_in_the_order_the_node_wants() {
+        assert_eq!(
+            messages(Pdo::Transmit(PdoNumber::One), &angle()),
+            [
+                [0x23, 0x00, 0x18, 1, 0x81, 0x01, 0x00, 0xC0], // out of use
+                [0x2F, 0x00, 0x18, 2, 0x01, 0, 0, 0],          // at every SYNC
+                [0x2B, 0x00, 0x18, 3, 0x00, 0, 0, 0],          // no inhibit time
+                [0x2F, 0x00, 0x1A, 0, 0x00, 0, 0, 0],
+                [0x23, 0x00, 0x1A, 1, 0x20, 0x00, 0x64, 0x60],
+                [0x23, 0x00, 0x1A, 2, 0x20, 0x00, 0x13, 0x10],
+                [0x2F, 0x00, 0x1A, 0, 0x02, 0, 0, 0],
+                [0x23, 0x00, 0x18, 1, 0x81, 0x01, 0x00, 0x40], // 40000181: in use
+            ]
+        );
+    }
+
+    #[test]
+    fn a_received_pdo_has_no_inhibit_time() {
+        let messages = messages(Pdo::Receive(PdoNumber::Four), &angle());
+        assert_eq!(messages.len(), 7);
+        assert_eq!(messages[0], [0x23, 0x03, 0x14, 1, 0x01, 0x05, 0x00, 0xC0]);
+        assert_eq!(messages[2], [0x2F, 0x03, 0x16, 0, 0, 0, 0, 0]);
+    }
+}

@@ -1,0 +1,337 @@
+//! What a PDO carries: its mapping entries (160x, 1A0x), and the packing of values by them.
+//!
+//! Values stand one behind the other without gaps, each low byte first, low bit first where one has no whole bytes.
+
+use core::fmt;
+
+use thiserror::Error;
+
+use crate::epos2::Bounded;
+use crate::epos2::objects::{Address, Object, Scalar};
+
+/// Entries a mapping of the EPOS2 has room for.
+pub const MAX_ENTRIES: usize = 8;
+/// Bits in a frame.
+const MAX_BITS: usize = 64;
+
+/// An object in a PDO.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub struct Mapping {
+    /// The object.
+    pub address: Address,
+    /// Its length in bits.
+    pub bits: u8,
+}
+
+impl Mapping {
+    /// The entry of a whole object.
+    #[must_use]
+    pub const fn of<T: Scalar>(object: Object<T>) -> Self {
+        Self {
+            address: object.address,
+            bits: 8 * T::BYTES,
+        }
+    }
+
+    /// The entry's value: index, subindex, length, from the highest byte to the lowest.
+    #[must_use]
+    pub const fn to_u32(self) -> u32 {
+        (self.address.index as u32) << 16 | (self.address.sub as u32) << 8 | self.bits as u32
+    }
+
+    /// The entry of a value.
+    #[must_use]
+    pub const fn from_u32(value: u32) -> Self {
+        let [high, low, sub, bits] = value.to_be_bytes();
+        Self {
+            address: Address::new(u16::from_be_bytes([high, low]), sub),
+            bits,
+        }
+    }
+}
+
+/// As in the object: `60640020`.
+impl fmt::Debug for Mapping {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:08X}", self.to_u32())
+    }
+}
+
+/// Why entries make no PDO.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum LayoutError {
+    /// More entries than a mapping holds.
+    #[error("PDO mapping: {got} entries, expected at most {max}")]
+    TooMany {
+        /// [`MAX_ENTRIES`].
+        max: usize,
+        /// Entries given.
+        got: usize,
+    },
+    /// More bits than a frame holds; a node answers it with [`crate::epos2::CommError::PDO_LENGTH`].
+    #[error("PDO mapping: {got} bits, expected at most {max}")]
+    TooLong {
+        /// 64.
+        max: usize,
+        /// Bits of all entries.
+        got: usize,
+    },
+    /// An entry without a bit.
+    #[error("PDO mapping: entry {entry} has no bits, expected 1 to 64")]
+    Empty {
+        /// Which entry, counted from 1 as their subindices are.
+        entry: usize,
+    },
+}
+
+/// Why data does not go with a mapping.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum PdoError {
+    /// Fewer bytes than are mapped; a node answers it with error 8210.
+    #[error("PDO: {got} data bytes, expected {expected}")]
+    Short {
+        /// Bytes mapped.
+        expected: usize,
+        /// Bytes there are.
+        got: usize,
+    },
+    /// Another number of values than entries.
+    #[error("PDO: {got} values, expected {expected}")]
+    Values {
+        /// Entries.
+        expected: usize,
+        /// Values given.
+        got: usize,
+    },
+}
+
+/// The entries of a PDO that fit a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Layout {
+    entries: Bounded<Mapping, MAX_ENTRIES>,
+}
+
+impl Layout {
+    /// The layout of `entries`.
+    ///
+    /// # Errors
+    /// [`LayoutError`].
+    pub fn new(entries: &[Mapping]) -> Result<Self, LayoutError> {
+        let layout = Self {
+            entries: Bounded::from_slice(entries).map_err(|full| LayoutError::TooMany {
+                max: full.capacity,
+                got: entries.len(),
+            })?,
+        };
+        if let Some(empty) = entries.iter().position(|entry| entry.bits == 0) {
+            return Err(LayoutError::Empty { entry: empty + 1 });
+        }
+        match layout.bits() {
+            got if got > MAX_BITS => Err(LayoutError::TooLong { max: MAX_BITS, got }),
+            _ => Ok(layout),
+        }
+    }
+
+    /// The entries in their order.
+    #[must_use]
+    pub fn entries(&self) -> &[Mapping] {
+        &self.entries
+    }
+
+    /// Bits of all entries, at most 64.
+    #[must_use]
+    pub fn bits(&self) -> usize {
+        self.entries.iter().map(|entry| usize::from(entry.bits)).sum()
+    }
+
+    /// Data bytes of the frame: the bits, filled up to whole bytes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.bits().div_ceil(8)
+    }
+
+    /// Whether nothing is mapped.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// The frame's data; of each value the low bits of its entry are taken.
+    ///
+    /// # Errors
+    /// [`PdoError::Values`] unless there is a value for each entry.
+    pub fn pack(&self, values: &[u64]) -> Result<Bounded<u8, 8>, PdoError> {
+        if values.len() != self.entries.len() {
+            return Err(PdoError::Values {
+                expected: self.entries.len(),
+                got: values.len(),
+            });
+        }
+        let packed = self
+            .places()
+            .zip(values)
+            .fold(0, |all, ((_, shift, mask), value)| all | (value & mask) << shift);
+        let mut data = Bounded::new();
+        data.extend(packed.to_le_bytes().into_iter().take(self.len()));
+        Ok(data)
+    }
+
+    /// The values in a frame's data, in the order of the entries, extended by zeros; bytes beyond the mapped ones do not
+    /// count (CiA 301).
+    ///
+    /// # Errors
+    /// [`PdoError::Short`].
+    pub fn unpack(&self, data: &[u8]) -> Result<Bounded<u64, MAX_ENTRIES>, PdoError> {
+        let packed = self.word(data)?;
+        let mut values = Bounded::new();
+        values.extend(self.places().map(|(_, shift, mask)| packed >> shift & mask));
+        Ok(values)
+    }
+
+    /// The value of `object` in a frame's data; `None` where it is not mapped in its whole length.
+    ///
+    /// # Errors
+    /// [`PdoError::Short`].
+    pub fn get<T: Scalar>(&self, object: Object<T>, data: &[u8]) -> Result<Option<T>, PdoError> {
+        let packed = self.word(data)?;
+        let wanted = Mapping::of(object);
+        let place = self.places().find(|(entry, ..)| *entry == wanted);
+        Ok(place.map(|(_, shift, mask)| object.decode((packed >> shift & mask) as u32)))
+    }
+
+    /// The mapped bytes as one number.
+    fn word(&self, data: &[u8]) -> Result<u64, PdoError> {
+        let mapped = data.get(..self.len()).ok_or(PdoError::Short {
+            expected: self.len(),
+            got: data.len(),
+        })?;
+        let bytes = mapped.iter().rev();
+        Ok(bytes.fold(0, |all, byte| all << 8 | u64::from(*byte)))
+    }
+
+    /// Each entry with the bit at which it begins (0 to 63) and the mask of its length.
+    fn places(&self) -> impl Iterator<Item = (Mapping, u32, u64)> + '_ {
+        self.entries.iter().scan(0, |next, entry| {
+            let shift = *next;
+            *next += u32::from(entry.bits);
+            let unused = u64::BITS.saturating_sub(u32::from(entry.bits));
+            Some((*entry, shift, u64::MAX >> unused))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::epos2::objects::{MODE_DISPLAY, POSITION_ACTUAL, STATUSWORD, TIMESTAMP};
+    use proptest::prelude::*;
+
+    fn entry(bits: u8) -> Mapping {
+        Mapping {
+            address: Address::new(0x2000, bits),
+            bits,
+        }
+    }
+
+    /// The stream of the tilt angle: position and time stamp in one frame.
+    #[test]
+    fn the_angle_stream() {
+        let entries = [Mapping::of(POSITION_ACTUAL), Mapping::of(TIMESTAMP)];
+        assert_eq!(entries.map(Mapping::to_u32), [0x6064_0020, 0x1013_0020]);
+        let layout = Layout::new(&entries).unwrap();
+        let data = [0xD0, 0x8A, 0xFF, 0xFF, 0x78, 0x56, 0x34, 0x12];
+        assert_eq!(layout.get(POSITION_ACTUAL, &data), Ok(Some(-30_000)));
+        assert_eq!(layout.get(TIMESTAMP, &data), Ok(Some(0x1234_5678)));
+        assert_eq!(layout.get(STATUSWORD, &data), Ok(None));
+        let packed = layout.pack(&[-30_000_i32 as u32 as u64, 0x1234_5678]);
+        assert_eq!(packed.unwrap().as_slice(), data);
+        let short = PdoError::Short {
+            expected: 8,
+            got: 7,
+        };
+        assert_eq!(layout.unpack(&data[..7]), Err(short));
+        assert_eq!(layout.get(TIMESTAMP, &data[..7]), Err(short));
+    }
+
+    /// A real unit's TPDO1 (1A00): an analogue value, statusword, mode.
+    #[test]
+    fn values_follow_one_another_without_gaps() {
+        let entries = [0x20C4_0110, 0x6041_0010, 0x6061_0008].map(Mapping::from_u32);
+        let layout = Layout::new(&entries).unwrap();
+        assert_eq!((layout.bits(), layout.len()), (40, 5));
+        // A longer frame is taken, what is behind does not count.
+        let data = [0x11, 0x22, 0x37, 0x03, 0xFF, 0xEE];
+        assert_eq!(
+            layout.unpack(&data).unwrap().as_slice(),
+            [0x2211, 0x0337, 0xFF]
+        );
+        assert_eq!(layout.get(MODE_DISPLAY, &data), Ok(Some(-1)));
+        assert_eq!(
+            layout.pack(&[1]),
+            Err(PdoError::Values {
+                expected: 3,
+                got: 1
+            })
+        );
+    }
+
+    #[test]
+    fn lengths_need_no_whole_bytes() {
+        let layout = Layout::new(&[entry(1), entry(12), entry(3)]).unwrap();
+        let packed = layout.pack(&[1, 0xABC, 0b101]).unwrap();
+        assert_eq!(
+            u16::from_le_bytes([packed[0], packed[1]]),
+            0b101 << 13 | 0xABC << 1 | 1
+        );
+        assert_eq!(
+            layout.unpack(&packed).unwrap().as_slice(),
+            [1, 0xABC, 0b101]
+        );
+    }
+
+    #[test]
+    fn what_fits_no_frame_is_refused() {
+        assert_eq!(
+            Layout::new(&[entry(32), entry(33)]),
+            Err(LayoutError::TooLong { max: 64, got: 65 })
+        );
+        assert_eq!(
+            Layout::new(&[entry(1); 9]),
+            Err(LayoutError::TooMany { max: 8, got: 9 })
+        );
+        assert_eq!(
+            Layout::new(&[entry(1), entry(0)]),
+            Err(LayoutError::Empty { entry: 2 })
+        );
+        assert_eq!(
+            Layout::new(&[entry(255); 8]),
+            Err(LayoutError::TooLong { max: 64, got: 2040 })
+        );
+        assert!(Layout::new(&[entry(64)]).is_ok());
+        assert_eq!(Layout::default().pack(&[]).unwrap().as_slice(), []);
+    }
+
+    proptest! {
+        #[test]
+        fn values_read_back(parts in prop::collection::vec((1_u8..=64, any::<u64>()), 0..8)) {
+            let mut bits = 0;
+            let parts: std::vec::Vec<_> = parts
+                .into_iter()
+                .take_while(|(more, _)| { bits += usize::from(*more); bits <= 64 })
+                .collect();
+            let entries: std::vec::Vec<_> = parts.iter().map(|(bits, _)| entry(*bits)).collect();
+            let values: std::vec::Vec<_> = parts.iter().map(|(bits, value)| value & (u64::MAX >> (64 - bits))).collect();
+            let layout = Layout::new(&entries).unwrap();
+            let data = layout.pack(&values).unwrap();
+            prop_assert_eq!(data.len(), layout.len());
+            prop_assert_eq!(layout.unpack(&data).unwrap().as_slice(), values);
+        }
+
+        #[test]
+        fn entries_read_back(value in any::<u32>()) {
+            prop_assert_eq!(Mapping::from_u32(value).to_u32(), value);
+        }
+    }
+
+    extern crate std;
+}

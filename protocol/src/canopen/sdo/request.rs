@@ -1,0 +1,116 @@
+//! What a client asks a node's SDO server; CiA 301's "download" is writing, "upload" is reading.
+
+use super::transfer::{Initiate, Segment, TOGGLE, toggle_bit};
+use super::{ABORT, LEN, address, command, message};
+use crate::canopen::cob_id::{Channel, NodeId};
+use crate::canopen::error::{Layer, MessageError};
+use crate::canopen::frame::CanFrame;
+use crate::canopen::message::{bytes, wrong_id};
+use crate::epos2::CommError;
+use crate::epos2::objects::Address;
+
+/// Command specifiers of a client.
+const DOWNLOAD_SEGMENT: u8 = 0;
+const INITIATE_DOWNLOAD: u8 = 1;
+const INITIATE_UPLOAD: u8 = 2;
+const UPLOAD_SEGMENT: u8 = 3;
+
+/// A message from client to server.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// Write an object.
+    InitiateDownload {
+        /// The object.
+        address: Address,
+        /// Its data, or the size of it.
+        transfer: Initiate,
+    },
+    /// Take the next segment.
+    DownloadSegment(Segment),
+    /// Read an object.
+    InitiateUpload {
+        /// The object.
+        address: Address,
+    },
+    /// Give the next segment.
+    UploadSegment {
+        /// Alternates from segment to segment, beginning with `false`.
+        toggle: bool,
+    },
+    /// The client breaks off.
+    Abort {
+        /// The object of the transfer.
+        address: Address,
+        /// Why.
+        error: CommError,
+    },
+    /// A command specifier that this protocol does not look into (5 and 6: block transfer).
+    Unknown([u8; LEN]),
+}
+
+impl Request {
+    /// The data of the frame.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; LEN] {
+        match *self {
+            Self::InitiateDownload { address, transfer } => {
+                let (bits, data) = transfer.encode();
+                message(command(INITIATE_DOWNLOAD) | bits, address, data)
+            }
+            Self::DownloadSegment(segment) => segment.to_bytes(),
+            Self::InitiateUpload { address } => {
+                message(command(INITIATE_UPLOAD), address, [0; 4])
+            }
+            Self::UploadSegment { toggle } => {
+                let command = command(UPLOAD_SEGMENT) | toggle_bit(toggle);
+                [command, 0, 0, 0, 0, 0, 0, 0]
+            }
+            Self::Abort { address, error } => {
+                message(command(ABORT), address, error.0.to_le_bytes())
+            }
+            Self::Unknown(bytes) => bytes,
+        }
+    }
+
+    /// The message of a frame's data; bits and bytes that it does not use do not count.
+    #[must_use]
+    pub fn from_bytes(bytes: [u8; LEN]) -> Self {
+        let [command, data @ ..] = bytes;
+        let [low, high, sub, rest @ ..] = data;
+        let address = address(low, high, sub);
+        match command >> 5 {
+            DOWNLOAD_SEGMENT => Self::DownloadSegment(Segment::parse(command, data)),
+            INITIATE_DOWNLOAD => Self::InitiateDownload {
+                address,
+                transfer: Initiate::parse(command, rest),
+            },
+            INITIATE_UPLOAD => Self::InitiateUpload { address },
+            UPLOAD_SEGMENT => Self::UploadSegment {
+                toggle: command & TOGGLE != 0,
+            },
+            ABORT => Self::Abort {
+                address,
+                error: CommError(u32::from_le_bytes(rest)),
+            },
+            _ => Self::Unknown(bytes),
+        }
+    }
+
+    /// The request to `node` as a frame.
+    #[must_use]
+    pub fn to_frame(&self, node: NodeId) -> CanFrame {
+        CanFrame::of(Channel::SdoRequest(node).cob_id(), self.to_bytes())
+    }
+
+    /// The node asked, and the request in `frame`.
+    ///
+    /// # Errors
+    /// [`MessageError`]; an SDO message has eight bytes whatever it uses of them.
+    pub fn parse(frame: &CanFrame) -> Result<(NodeId, Self), MessageError> {
+        let layer = Layer::SdoRequest;
+        let Some(Channel::SdoRequest(node)) = frame.cob_id().map(Channel::of) else {
+            return Err(wrong_id(layer, "601 to 67F", frame));
+        };
+        Ok((node, Self::from_bytes(*bytes(layer, frame)?)))
+    }
+}

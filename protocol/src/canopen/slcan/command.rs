@@ -1,0 +1,184 @@
+//! What a host tells an adapter.
+
+use super::error::SlcanError;
+use super::frame::{parse_frame, write_frame};
+use super::line::{CR, Event, Line, Lines, length};
+use crate::canopen::frame::CanFrame;
+
+/// The nine bit rates that have a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Bitrate {
+    /// S0.
+    Kbit10,
+    /// S1.
+    Kbit20,
+    /// S2.
+    Kbit50,
+    /// S3.
+    Kbit100,
+    /// S4.
+    Kbit125,
+    /// S5.
+    Kbit250,
+    /// S6.
+    Kbit500,
+    /// S7.
+    Kbit800,
+    /// S8: the EPOS2 from the factory.
+    Kbit1000,
+}
+
+impl Bitrate {
+    /// All, in the order of their numbers.
+    pub const ALL: [Self; 9] = [
+        Self::Kbit10,
+        Self::Kbit20,
+        Self::Kbit50,
+        Self::Kbit100,
+        Self::Kbit125,
+        Self::Kbit250,
+        Self::Kbit500,
+        Self::Kbit800,
+        Self::Kbit1000,
+    ];
+
+    /// Bits per second.
+    #[must_use]
+    pub const fn bit_s(self) -> u32 {
+        match self {
+            Self::Kbit10 => 10_000,
+            Self::Kbit20 => 20_000,
+            Self::Kbit50 => 50_000,
+            Self::Kbit100 => 100_000,
+            Self::Kbit125 => 125_000,
+            Self::Kbit250 => 250_000,
+            Self::Kbit500 => 500_000,
+            Self::Kbit800 => 800_000,
+            Self::Kbit1000 => 1_000_000,
+        }
+    }
+
+    /// The bit rate of so many bits per second, if it has a number.
+    #[must_use]
+    pub fn from_bit_s(bit_s: u32) -> Option<Self> {
+        Self::ALL.into_iter().find(|rate| rate.bit_s() == bit_s)
+    }
+
+    /// The digit behind `S`.
+    const fn digit(self) -> u8 {
+        b'0' + self as u8
+    }
+
+    fn from_digit(digit: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|rate| rate.digit() == digit)
+    }
+}
+
+/// A line from host to adapter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// CR alone: ends whatever stood in the adapter's buffer.
+    Empty,
+    /// `S`: sets the bit rate; the channel must be closed.
+    Bitrate(Bitrate),
+    /// `O`: opens the channel.
+    Open,
+    /// `L`: opens the channel, listening only.
+    OpenListening,
+    /// `C`: closes the channel.
+    Close,
+    /// `V`: asks for the version.
+    Version,
+    /// `N`: asks for the serial number.
+    SerialNumber,
+    /// `F`: asks for the status flags.
+    Status,
+    /// `Z0`, `Z1`: time stamps behind received frames.
+    Stamps(bool),
+    /// `t`, `T`, `r`, `R`: sends a frame.
+    Transmit(CanFrame),
+    /// Anything else.
+    Unknown(Line),
+}
+
+impl Command {
+    /// Writes the line, its CR included.
+    pub fn encode(&self, out: &mut impl Extend<u8>) {
+        match self {
+            Self::Empty => {}
+            Self::Bitrate(rate) => out.extend([b'S', rate.digit()]),
+            Self::Open => out.extend([b'O']),
+            Self::OpenListening => out.extend([b'L']),
+            Self::Close => out.extend([b'C']),
+            Self::Version => out.extend([b'V']),
+            Self::SerialNumber => out.extend([b'N']),
+            Self::Status => out.extend([b'F']),
+            Self::Stamps(on) => out.extend([b'Z', b'0' + u8::from(*on)]),
+            Self::Transmit(frame) => write_frame(frame, out),
+            Self::Unknown(line) => out.extend(line.iter().copied()),
+        }
+        out.extend([CR]);
+    }
+
+    /// The command of a line without its CR.
+    ///
+    /// # Errors
+    /// [`SlcanError`] for a frame that is none and a bit rate without a number.
+    pub fn parse(line: &Line) -> Result<Self, SlcanError> {
+        Ok(match line.as_slice() {
+            [] => Self::Empty,
+            [b'S', digits @ ..] => {
+                length(line, 2)?;
+                let got = digits.first().copied().unwrap_or_default();
+                Self::Bitrate(Bitrate::from_digit(got).ok_or(SlcanError::Character {
+                    offset: 1,
+                    expected: "0 to 8",
+                    got,
+                })?)
+            }
+            [b'O'] => Self::Open,
+            [b'L'] => Self::OpenListening,
+            [b'C'] => Self::Close,
+            [b'V'] => Self::Version,
+            [b'N'] => Self::SerialNumber,
+            [b'F'] => Self::Status,
+            [b'Z', b'0'] => Self::Stamps(false),
+            [b'Z', b'1'] => Self::Stamps(true),
+            [b't' | b'T' | b'r' | b'R', ..] => match parse_frame(line)? {
+                (frame, None) => Self::Transmit(frame),
+                // A host has no time stamps.
+                (_, Some(_)) => {
+                    return Err(SlcanError::Length {
+                        expected: line.len() - 4,
+                        got: line.len(),
+                    });
+                }
+            },
+            _ => Self::Unknown(*line),
+        })
+    }
+}
+
+/// The adapter's side: takes the bytes of a stream one by one and gives commands back.
+#[derive(Clone, Debug, Default)]
+pub struct CommandDecoder {
+    lines: Lines,
+}
+
+impl CommandDecoder {
+    /// A decoder at the beginning of a line.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes one byte; a command, or why there is none, comes out with the byte that completes the line.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Command, SlcanError>> {
+        match self.lines.push(byte)? {
+            Event::Line(line) => Some(Command::parse(&line)),
+            Event::Dropped(error) => Some(Err(error)),
+            // No host says it: noise.
+            Event::Bell => None,
+        }
+    }
+}

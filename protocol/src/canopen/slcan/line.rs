@@ -1,0 +1,123 @@
+//! Bytes to lines, and hexadecimal digits.
+
+use super::error::SlcanError;
+use crate::epos2::Bounded;
+
+/// Ends a line; alone, it is an adapter's "done".
+pub const CR: u8 = 0x0D;
+/// An adapter's "no".
+pub const BEL: u8 = 0x07;
+/// Some put it behind CR.
+const LF: u8 = 0x0A;
+/// The longest line kept. A frame has at most 30 characters, with a time stamp; texts about versions may be longer.
+pub const MAX_LINE: usize = 96;
+
+/// A line, or a text in one.
+pub type Line = Bounded<u8, MAX_LINE>;
+
+/// What a byte completed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Event {
+    /// A line without its CR, perhaps empty.
+    Line(Line),
+    Bell,
+    Dropped(SlcanError),
+}
+
+/// Gathers bytes to lines.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lines {
+    line: Line,
+    /// The line has become too long; its end is waited for.
+    skipping: bool,
+}
+
+impl Lines {
+    pub(super) fn push(&mut self, byte: u8) -> Option<Event> {
+        match byte {
+            CR => Some(self.end()),
+            BEL => {
+                *self = Self::default();
+                Some(Event::Bell)
+            }
+            LF => None,
+            // Between lines anything else than text is noise of the line or of a port just opened.
+            _ if self.line.is_empty() && !byte.is_ascii_graphic() => None,
+            b't' | b'T' | b'r' | b'R' if self.is_broken_off() => {
+                let got = self.line.len();
+                *self = Self::default();
+                self.line.extend([byte]);
+                Some(Event::Dropped(SlcanError::BrokenOff { got }))
+            }
+            _ => {
+                self.skipping |= self.line.push(byte).is_err();
+                None
+            }
+        }
+    }
+
+    fn end(&mut self) -> Event {
+        let Self { line, skipping } = core::mem::take(self);
+        if skipping {
+            Event::Dropped(SlcanError::TooLong { max: MAX_LINE })
+        } else {
+            Event::Line(line)
+        }
+    }
+
+    /// Whether the letter of a frame ends the line so far: arguments are hexadecimal, and only versions and serial
+    /// numbers are free text.
+    fn is_broken_off(&self) -> bool {
+        !matches!(self.line.as_slice(), [] | [b'V' | b'v' | b'N', ..])
+    }
+}
+
+/// The number of `len` hexadecimal digits (at most 8) from character `offset` of a line.
+pub(super) fn number(line: &[u8], offset: usize, len: usize) -> Result<u32, SlcanError> {
+    let digits = line
+        .get(offset..offset + len)
+        .ok_or(SlcanError::Length {
+            expected: offset + len,
+            got: line.len(),
+        })?;
+    let mut number = 0;
+    for (at, &got) in (offset..).zip(digits) {
+        let digit = char::from(got).to_digit(16).ok_or(SlcanError::Character {
+            offset: at,
+            expected: "a hexadecimal digit",
+            got,
+        })?;
+        number = number << 4 | digit;
+    }
+    Ok(number)
+}
+
+/// The low `len` hexadecimal digits of `number`.
+pub(super) fn write_number(number: u32, len: u32, out: &mut impl Extend<u8>) {
+    out.extend((0..len).rev().map(|place| {
+        let digit = (number >> (4 * place) & 0xF) as u8;
+        match digit {
+            0..=9 => b'0' + digit,
+            _ => b'A' + digit - 10,
+        }
+    }));
+}
+
+/// Whether a line has `expected` characters.
+pub(super) fn length(line: &[u8], expected: usize) -> Result<(), SlcanError> {
+    if line.len() == expected {
+        Ok(())
+    } else {
+        Err(SlcanError::Length {
+            expected,
+            got: line.len(),
+        })
+    }
+}
+
+/// What stands behind the letter of a line.
+pub(super) fn text(line: &[u8]) -> Line {
+    let mut text = Line::new();
+    text.extend(line.iter().copied().skip(1));
+    text
+}

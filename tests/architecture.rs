@@ -1,0 +1,124 @@
+//! The dependency table of docs/ARCHITECTURE, held against `cargo tree`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
+
+/// Crate, and what of the workspace it may depend on. `velomotion` and `velomotion-tests` may depend on anything.
+const MAY_DEPEND_ON: [(&str, &[&str]); 10] = [
+    ("units", &[]),
+    ("protocol", &["units"]),
+    ("lidar", &["units", "protocol"]),
+    ("drive", &["units", "protocol"]),
+    ("firmware-sim", &["units", "protocol"]),
+    ("cloud", &["units"]),
+    ("scanner", &["units", "lidar", "drive", "cloud"]),
+    ("sim", &["units", "firmware-sim"]),
+    ("analysis", &["units", "cloud"]),
+    ("io", &["units", "protocol"]),
+];
+
+/// A library, and the crates of the workspace that may use it directly.
+const CONFINED: [(&str, &[&str]); 9] = [
+    ("serialport", &["io"]),
+    ("socket2", &["io"]),
+    ("nix", &["io"]),
+    ("etherparse", &["io"]),
+    ("clap", &["velomotion"]),
+    ("miette", &["velomotion"]),
+    ("indicatif", &["velomotion"]),
+    ("signal-hook", &["velomotion"]),
+    ("las", &["cloud"]),
+];
+
+/// Direct normal dependencies of every member, by name.
+fn direct_dependencies() -> BTreeMap<String, BTreeSet<String>> {
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+    let output = Command::new(cargo)
+        .args(["tree", "--workspace", "--offline", "--edges", "normal"])
+        .args(["--depth", "1", "--prefix", "depth", "--format", " {p}"])
+        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .output()
+        .expect("cargo runs");
+    assert!(
+        output.status.success(),
+        "cargo tree: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let mut tree: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let mut member = String::new();
+    for line in String::from_utf8_lossy(&output.stdout).lines() {
+        let mut words = line.split_whitespace();
+        match (words.next(), words.next()) {
+            (Some("0"), Some(name)) => {
+                member = name.to_owned();
+                tree.entry(member.clone()).or_default();
+            }
+            (Some("1"), Some(name)) => {
+                tree.entry(member.clone())
+                    .or_default()
+                    .insert(name.to_owned());
+            }
+            _ => {}
+        }
+    }
+    tree
+}
+
+#[test]
+fn crates_depend_only_on_what_the_table_allows() {
+    let tree = direct_dependencies();
+    let members: BTreeSet<&str> = tree.keys().map(String::as_str).collect();
+    for (name, allowed) in MAY_DEPEND_ON {
+        let dependencies = &tree[name];
+        for dependency in dependencies.iter().filter(|d| members.contains(d.as_str())) {
+            assert!(
+                allowed.contains(&dependency.as_str()),
+                "{name} depends on {dependency}; the table allows {allowed:?}"
+            );
+        }
+    }
+    for member in members {
+        let listed = MAY_DEPEND_ON.iter().any(|(name, _)| *name == member);
+        assert!(
+            listed || member == "velomotion" || member == "velomotion-tests",
+            "{member} is not in the table"
+        );
+    }
+}
+
+#[test]
+fn libraries_stay_in_the_crates_they_are_for() {
+    let tree = direct_dependencies();
+    for (library, allowed) in CONFINED {
+        for (member, dependencies) in &tree {
+            assert!(
+                !dependencies.contains(library) || allowed.contains(&member.as_str()),
+                "{member} uses {library}, which belongs to {allowed:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_core_bans_clocks_files_and_sockets() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    for (name, _) in MAY_DEPEND_ON.iter().filter(|(name, _)| *name != "io") {
+        let directory = match *name {
+            "protocol" | "firmware-sim" => format!("{root}/{name}"),
+            name => format!("{root}/crates/{name}"),
+        };
+        let text = std::fs::read_to_string(format!("{directory}/clippy.toml"))
+            .unwrap_or_else(|error| panic!("{directory}/clippy.toml: {error}"));
+        for banned in [
+            "std::time::Instant::now",
+            "std::time::SystemTime::now",
+            "std::fs::File::open",
+            "std::net::UdpSocket::bind",
+        ] {
+            assert!(
+                text.contains(banned),
+                "{name}'s clippy.toml does not ban {banned}"
+            );
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! From the devices' bytes to the cloud, in virtual time, held against what truly happened.
+
+use units::{DegPerS, DegPerS2};
+use velomotion_tests::capture::{Captured, Setting};
+
+/// The card's scan: 45 degrees at 56.25 deg/s in a hall no surface of which is farther than 20 m.
+#[test]
+fn the_cards_scan_is_true_to_a_few_millimetres() {
+    let captured = Captured::new(Setting::default());
+    let (scan, cloud) = captured.scan();
+    assert!(cloud.len() > 180_000, "{} points", cloud.len());
+    assert_eq!(scan.points, cloud.len() as u64);
+    let farthest = cloud
+        .positions()
+        .map(|p| p.iter().map(|x| x * x).sum::<f64>())
+        .fold(0.0, f64::max);
+    assert!(farthest.sqrt() <= 20.0, "{} m", farthest.sqrt());
+
+    let error = captured.error();
+    assert_eq!(error.points, scan.points, "{error:?}");
+    assert_eq!((error.unmatched, error.not_finite), (0, 0), "{error:?}");
+    assert!(error.rms_m < 2e-3, "{error:?}");
+    assert!(error.worst_m < 10e-3, "{error:?}");
+
+    let [sweep] = scan.sweeps[..] else {
+        panic!("{:?}", scan.sweeps);
+    };
+    assert!(
+        sweep.from_deg.abs() < 0.01 && (sweep.to_deg + 45.0).abs() < 0.01,
+        "{sweep:?}"
+    );
+    assert!((sweep.cruise_deg_s + 56.25).abs() < 0.1, "{sweep:?}");
+    // 45 / 56.25 s of cruise and a ramp's worth: 0.811 s, seen through polls a millisecond or two apart.
+    assert!((sweep.duration_s - 0.811).abs() < 0.006, "{sweep:?}");
+    assert_eq!(scan.contents.lost_packets, 0);
+}
+
+/// Every other seed is another day on the same link.
+#[test]
+fn the_error_does_not_depend_on_the_day() {
+    for seed in 2..8 {
+        let mut setting = Setting::default();
+        setting.links.seed = seed;
+        let error = Captured::new(setting).error();
+        assert!(
+            error.rms_m < 2e-3 && error.worst_m < 10e-3,
+            "seed {seed}: {error:?}"
+        );
+    }
+}
+
+/// The lidar counts microseconds of the hour: a sweep across the hour is one sweep.
+#[test]
+fn a_scan_across_the_hour_is_whole() {
+    let usual = Captured::new(Setting::default());
+    let mut setting = Setting::default();
+    // Homing takes some seconds: the hour turns during the sweep for some of these starts, around it for the others.
+    let usual_points = usual.cloud().len() as i64;
+    for before in [2_000, 3_000, 3_500, 4_000, 4_500, 5_000] {
+        setting.lidar_clock_us = 3_600_000_000 - before * 1_000;
+        let captured = Captured::new(setting);
+        let error = captured.error();
+        assert!(
+            error.worst_m < 10e-3,
+            "{before} ms before the hour: {error:?}"
+        );
+        assert!(
+            (error.points as i64 - usual_points).abs() < 3_000,
+            "{before}: {error:?}"
+        );
+        assert_eq!(captured.scan().0.contents.lost_packets, 0);
+    }
+}
+
+#[test]
+fn slow_sweeps_both_ways_are_found_and_true() {
+    let mut setting = Setting::default();
+    setting.wish.speed = DegPerS(20.0);
+    setting.wish.acceleration = DegPerS2(500.0);
+    setting.wish.sweeps = 2;
+    setting.wish.both_ways = true;
+    let captured = Captured::new(setting);
+    let (scan, _) = captured.scan();
+    let ways: Vec<(f64, f64)> = scan
+        .sweeps
+        .iter()
+        .map(|s| (s.from_deg.round(), s.to_deg.round()))
+        .collect();
+    assert_eq!(ways, [(0.0, -45.0), (-45.0, 0.0)]);
+    assert!(
+        (scan.sweeps[1].cruise_deg_s - 20.0).abs() < 0.02,
+        "{:?}",
+        scan.sweeps
+    );
+    assert!(captured.error().worst_m < 10e-3, "{:?}", captured.error());
+}
+
+#[test]
+fn one_way_sweeps_leave_the_way_back_out() {
+    let mut setting = Setting::default();
+    setting.wish.sweeps = 2;
+    let (scan, cloud) = Captured::new(setting).scan();
+    assert_eq!(scan.sweeps.len(), 2);
+    assert!(scan.sweeps.iter().all(|s| s.cruise_deg_s < 0.0));
+    assert!(
+        (2 * 180_000..520_000).contains(&cloud.len()),
+        "{}",
+        cloud.len()
+    );
+}

@@ -1,0 +1,27 @@
+"""laspy reads a .las or .laz cloud: count, bounds and dimensions as JSON.
+
+usage: laspy_reads.py CLOUD.laz
+"""
+
+import json
+import sys
+
+import laspy
+import numpy as np
+
+with laspy.open(sys.argv[1]) as reader:
+    las = reader.read()
+xyz = np.vstack([las.x, las.y, las.z])
+print(
+    json.dumps(
+        {
+            "points": int(las.header.point_count),
+            "min": xyz.min(axis=1).tolist(),
+            "max": xyz.max(axis=1).tolist(),
+            "header_min": list(las.header.mins),
+            "header_max": list(las.header.maxs),
+            "dimensions": list(las.point_format.dimension_names),
+            "system_identifier": las.header.system_identifier,
+        }
+    )
+)

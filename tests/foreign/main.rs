@@ -1,0 +1,144 @@
+//! Other people's programs read what we write.
+//!
+//! Each test says what it skipped where its program is missing; with `VELOMOTION_FOREIGN=required`, as in CI, that is a failure.
+//! `VELOMOTION_PYTHON` names a python3 that has `requirements.txt` installed.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+use velomotion_tests::capture::{Captured, Setting};
+
+/// What the program printed, or `None`, said aloud, where it or one of its modules is not there.
+fn run(mut command: Command, needs: &str) -> Option<String> {
+    match command.output() {
+        Ok(output) if output.status.success() => {
+            Some(String::from_utf8_lossy(&output.stdout).into_owned())
+        }
+        Ok(output) => panic!("{command:?}: {}", String::from_utf8_lossy(&output.stderr)),
+        Err(error) => missing(&format!("{command:?}: {error}; needs {needs}")),
+    }
+}
+
+fn missing<T>(why: &str) -> Option<T> {
+    assert!(
+        std::env::var_os("VELOMOTION_FOREIGN").is_none_or(|v| v != "required"),
+        "required here: {why}"
+    );
+    eprintln!("skipped: {why}");
+    None
+}
+
+fn python(script: &str, arguments: &[&Path], modules: &str) -> Option<Value> {
+    let python = std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into());
+    let import = Command::new(&python)
+        .args(["-c", &format!("import {modules}")])
+        .output();
+    if !matches!(&import, Ok(output) if output.status.success()) {
+        return missing(&format!("{script}: {python:?} cannot import {modules}"));
+    }
+    let mut command = Command::new(python);
+    command
+        .arg(
+            Path::new(env!("CARGO_MANIFEST_DIR"))
+                .join("foreign")
+                .join(script),
+        )
+        .args(arguments);
+    let said = run(command, modules)?;
+    Some(serde_json::from_str(&said).unwrap_or_else(|error| panic!("{error} in {said}")))
+}
+
+#[test]
+fn velodyne_decoder_decodes_our_log_to_the_same_points() {
+    let scan = Captured::new(Setting::default());
+    let sensor = scan.sensor_frame("sensor.csv");
+    let Some(result) = python(
+        "velodyne_decoder_agrees.py",
+        &[&scan.log(), &sensor],
+        "velodyne_decoder, dpkt, numpy",
+    ) else {
+        return;
+    };
+    assert_eq!(result["theirs"], result["ours"], "{result}");
+    assert!(result["ours"].as_u64().unwrap() > 180_000, "{result}");
+    assert_eq!(result["same_rings"], true, "{result}");
+    assert!(
+        result["max_difference_m"].as_f64().unwrap() < 1e-3,
+        "{result}"
+    );
+}
+
+#[test]
+fn tshark_reads_our_log_without_a_malformed_record() {
+    let scan = Captured::new(Setting::default());
+    let fields = [
+        "-T",
+        "fields",
+        "-e",
+        "frame.protocols",
+        "-e",
+        "udp.length",
+        "-e",
+        "_ws.malformed",
+    ];
+    let checks = [
+        "-o",
+        "ip.check_checksum:TRUE",
+        "-o",
+        "udp.check_checksum:TRUE",
+    ];
+    let mut command = Command::new("tshark");
+    command
+        .args(["-n", "-r"])
+        .arg(scan.log())
+        .args(fields)
+        .args(checks);
+    let Some(said) = run(command, "Debian's tshark") else {
+        return;
+    };
+    assert_eq!(said.lines().count(), scan.records());
+    let udp = said.lines().filter(|line| line.contains("\t1214")).count();
+    assert_eq!(udp as u64, scan.data_packets());
+    let mut command = Command::new("tshark");
+    command
+        .args(["-n", "-r"])
+        .arg(scan.log())
+        .args(checks)
+        .args([
+            "-Y",
+            "_ws.malformed || udp.checksum.status == 0 || ip.checksum.status == 0",
+        ]);
+    assert_eq!(run(command, "Debian's tshark").as_deref(), Some(""));
+}
+
+#[test]
+fn laspy_reads_our_laz_with_the_right_count_and_bounds() {
+    let scan = Captured::new(Setting::default());
+    let cloud = scan.cloud_file("cloud.laz");
+    let Some(result) = python("laspy_reads.py", &[&cloud], "laspy, lazrs, numpy") else {
+        return;
+    };
+    let summary = scan.cloud().summary();
+    let bounds = summary.bounds.unwrap();
+    assert_eq!(result["points"].as_u64(), Some(summary.points));
+    for (name, wanted) in [("min", bounds.min_m), ("max", bounds.max_m)] {
+        for (axis, wanted) in wanted.iter().enumerate() {
+            // Steps of 0.1 mm.
+            for of in [name.to_owned(), format!("header_{name}")] {
+                let got = result[&of][axis].as_f64().unwrap();
+                assert!(
+                    (got - wanted).abs() < 1.01e-4,
+                    "{of} {axis}: {got} {wanted}"
+                );
+            }
+        }
+    }
+    let dimensions = result["dimensions"].as_array().unwrap();
+    for name in ["intensity", "ring", "time", "tilt"] {
+        assert!(
+            dimensions.iter().any(|d| d == name),
+            "{name}: {dimensions:?}"
+        );
+    }
+}

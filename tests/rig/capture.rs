@@ -1,0 +1,267 @@
+//! A whole capture in virtual time: the log file that the program would have written, and what it makes of it.
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use analysis::truth::TruthReport;
+use cloud::{Fields, Points};
+use drive::Client;
+use io::files::Overwrite;
+use io::log::{LogConfig, LogWriter};
+use io::port::Recorder;
+use protocol::record::{DriveLink, Record, Wire};
+use scanner::{ScanConfig, SweepPlan, TiltSource};
+use sim::Rig;
+use sim::link::LinkModel;
+use tempfile::TempDir;
+use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
+use velomotion::commands::replay::{self, Request};
+use velomotion::config::Axis;
+use velomotion::motion::{self, Wish};
+use velomotion::output::Target;
+use velomotion::report::Scan;
+use velomotion::session::Session;
+use velomotion::{devices, simulated};
+
+use crate::port::{Arrived, Links, VirtualPort};
+
+/// What to capture, and over what.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// The moves.
+    pub wish: Wish,
+    /// The links' delays.
+    pub links: Links,
+    /// When it begins.
+    pub start: Stamp<Host>,
+    /// The lidar's clock then, microseconds past the hour.
+    pub lidar_clock_us: u32,
+}
+
+impl Default for Setting {
+    /// The card's command: 45 degrees at 56.25 deg/s over USB, 2026-11-21 02:05:33 UTC.
+    fn default() -> Self {
+        Self {
+            wish: Wish {
+                from: Degrees(0.0),
+                to: Degrees(-45.0),
+                speed: DegPerS(56.25),
+                acceleration: DegPerS2(5_000.0),
+                sweeps: 1,
+                both_ways: false,
+            },
+            links: Links {
+                request: LinkModel::USB,
+                answer: LinkModel::USB,
+                lidar: LinkModel::ETHERNET,
+                seed: 1,
+            },
+            start: Stamp::from_nanos(1_795_226_733_000_000_000),
+            lidar_clock_us: 1_234_567_890,
+        }
+    }
+}
+
+/// A capture that has been made.
+pub struct Captured {
+    folder: TempDir,
+    records: usize,
+    data_packets: u64,
+    truth: sim::Truth,
+}
+
+/// A record that owns its bytes.
+#[derive(Clone, Debug)]
+struct Owned {
+    host: Stamp<Host>,
+    link: DriveLink,
+    direction: protocol::record::Direction,
+    frame: Vec<u8>,
+}
+
+impl Captured {
+    /// Runs the capture.
+    #[must_use]
+    pub fn new(setting: Setting) -> Self {
+        let axis = devices::axis(&Axis::default()).unwrap();
+        let steps = motion::steps(&setting.wish, &axis, Degrees(0.0)).unwrap();
+        let config = scan_config(&setting.wish);
+        let mut rig = simulated::rig(&axis, &config, setting.start);
+        rig.lidar.clock_at_start_us = setting.lidar_clock_us;
+        let port = VirtualPort::new(Rig::new(rig), setting.start, setting.links);
+
+        let drive: Rc<RefCell<Vec<Owned>>> = Rc::default();
+        let sink = Rc::clone(&drive);
+        let recorder = Recorder::new(port.clone(), DriveLink::Usb, move |record: &Record<'_>| {
+            if let Wire::Drive {
+                link,
+                direction,
+                frame,
+            } = record.wire
+            {
+                sink.borrow_mut().push(Owned {
+                    host: record.host,
+                    link,
+                    direction,
+                    frame: frame.to_vec(),
+                });
+            }
+        });
+        let client = Client::new(axis);
+        let mut session = Session::new(
+            client,
+            recorder,
+            |recorder| recorder.port().now(),
+            Arc::new(AtomicBool::new(false)),
+        );
+        motion::run(&mut session, &steps, &mut |_| {}).unwrap();
+        drop(session);
+        // The lidar goes on for a moment, as in a capture.
+        let mut tail = port.clone();
+        io::port::Port::read(&mut tail, &mut [0; 1], Span::from_millis(20)).unwrap();
+
+        let (packets, truth) = port.end();
+        let folder = tempfile::tempdir().unwrap();
+        let drive = drive.take();
+        let records = write_log(
+            &folder.path().join("scan.pcapng"),
+            &config,
+            &drive,
+            &packets,
+        );
+        let data_packets = packets
+            .iter()
+            .filter(|p| p.datagram.port == sim::DATA_PORT)
+            .count() as u64;
+        Self {
+            folder,
+            records,
+            data_packets,
+            truth,
+        }
+    }
+
+    /// The log file.
+    #[must_use]
+    pub fn log(&self) -> PathBuf {
+        self.folder.path().join("scan.pcapng")
+    }
+
+    /// Records in the log.
+    #[must_use]
+    pub fn records(&self) -> usize {
+        self.records
+    }
+
+    /// Lidar data packets in the log.
+    #[must_use]
+    pub fn data_packets(&self) -> u64 {
+        self.data_packets
+    }
+
+    /// What truly happened.
+    #[must_use]
+    pub fn truth(&self) -> &sim::Truth {
+        &self.truth
+    }
+
+    /// The cloud, in memory with every column.
+    #[must_use]
+    pub fn cloud(&self) -> Points {
+        self.scan().1
+    }
+
+    /// The program's report and the cloud.
+    #[must_use]
+    pub fn scan(&self) -> (Scan, Points) {
+        let mut points = Points::new(Fields::ALL);
+        let request = Request {
+            recording: &self.log(),
+            tilt: TiltSource::Log,
+            truth: None,
+        };
+        let scan = replay::scan(&request, &mut points, Path::new("memory")).unwrap();
+        (scan, points)
+    }
+
+    /// How far the cloud is from what truly happened.
+    #[must_use]
+    pub fn error(&self) -> TruthReport {
+        let truth = |time: Stamp<units::Lidar>, laser| self.truth.point(time.as_nanos(), laser);
+        analysis::truth::compare(&self.cloud(), truth).unwrap()
+    }
+
+    /// Writes the cloud beside the log.
+    #[must_use]
+    pub fn cloud_file(&self, name: &str) -> PathBuf {
+        self.file(name, TiltSource::Log)
+    }
+
+    /// Writes every return in the sensor's own frame beside the log.
+    #[must_use]
+    pub fn sensor_frame(&self, name: &str) -> PathBuf {
+        self.file(name, TiltSource::None)
+    }
+
+    fn file(&self, name: &str, tilt: TiltSource) -> PathBuf {
+        let path = self.folder.path().join(name);
+        let request = Request {
+            recording: &self.log(),
+            tilt,
+            truth: None,
+        };
+        replay::make(&request, Target::open(&path, false).unwrap()).unwrap();
+        path
+    }
+}
+
+fn scan_config(wish: &Wish) -> ScanConfig {
+    ScanConfig {
+        device: "sim".to_owned(),
+        simulated: true,
+        sweep: Some(SweepPlan {
+            from_deg: wish.from.0,
+            to_deg: wish.to.0,
+            cruise_deg_s: wish.speed.0,
+            accel_deg_s2: wish.acceleration.0,
+            sweeps: wish.sweeps,
+            both_ways: wish.both_ways,
+        }),
+        ..ScanConfig::default()
+    }
+}
+
+/// Writes both devices' records in order of time; their number.
+fn write_log(path: &Path, config: &ScanConfig, drive: &[Owned], packets: &[Arrived]) -> usize {
+    let drive = drive.iter().map(|owned| Record {
+        host: owned.host,
+        wire: Wire::Drive {
+            link: owned.link,
+            direction: owned.direction,
+            frame: &owned.frame,
+        },
+    });
+    let lidar = packets.iter().map(|arrived| Record {
+        host: arrived.host,
+        wire: Wire::Lidar {
+            source: [192, 168, 1, 201],
+            port: arrived.datagram.port,
+            payload: &arrived.datagram.payload,
+        },
+    });
+    let mut records: Vec<Record<'_>> = drive.chain(lidar).collect();
+    records.sort_by_key(|record| record.host);
+    let head = LogConfig {
+        metadata: toml::to_string(config).unwrap(),
+        drive: Some(DriveLink::Usb),
+    };
+    let mut writer = LogWriter::create(path, &head, Overwrite::Refuse).unwrap();
+    for record in &records {
+        writer.write(record).unwrap();
+    }
+    writer.finish().unwrap();
+    records.len()
+}
