@@ -59,7 +59,9 @@ pub enum FrameError {
         got: usize,
     },
     /// A frame with an 11-bit identifier has bits above these.
-    #[error("CAN frame: identifier word at byte 0 is {got:08X}, expected 11 bits without the extended flag")]
+    #[error(
+        "CAN frame: identifier word at byte 0 is {got:08X}, expected 11 bits without the extended flag"
+    )]
     Id {
         /// The identifier word, flags included.
         got: u32,
@@ -73,7 +75,9 @@ pub enum FrameError {
         got: u8,
     },
     /// The controller's report of an error on the bus, no frame from it.
-    #[error("CAN frame: identifier word at byte 0 is {got:08X}: an error report of the controller, expected a frame")]
+    #[error(
+        "CAN frame: identifier word at byte 0 is {got:08X}: an error report of the controller, expected a frame"
+    )]
     Report {
         /// The identifier word, flags included: its low bits are the class of the error.
         got: u32,

@@ -203,7 +203,8 @@ impl CanFrame {
     /// [`FrameError`]: too short for its head or its length, longer than a classic frame, an identifier that is none,
     /// CAN FD, an error report.
     pub fn from_socketcan(bytes: &[u8]) -> Result<Self, FrameError> {
-        let Some((&[a, b, c, d, len, flags, _, _], rest)) = bytes.split_first_chunk::<DATA_OFFSET>()
+        let Some((&[a, b, c, d, len, flags, _, _], rest)) =
+            bytes.split_first_chunk::<DATA_OFFSET>()
         else {
             return Err(FrameError::Short {
                 expected: DATA_OFFSET,

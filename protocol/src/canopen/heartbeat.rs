@@ -24,10 +24,7 @@ impl Heartbeat {
     /// The sign as a frame.
     #[must_use]
     pub fn to_frame(&self) -> CanFrame {
-        CanFrame::of(
-            Channel::Heartbeat(self.node).cob_id(),
-            [self.state.to_u8()],
-        )
+        CanFrame::of(Channel::Heartbeat(self.node).cob_id(), [self.state.to_u8()])
     }
 
     /// The sign in `frame`.
@@ -193,7 +190,10 @@ mod tests {
             })
         );
         assert_eq!(hear(PreOperational, 60), None);
-        assert!(matches!(hear(Operational, 110), Some(HeartbeatEvent::State { .. })));
+        assert!(matches!(
+            hear(Operational, 110),
+            Some(HeartbeatEvent::State { .. })
+        ));
         // Another node does not keep this one alive.
         assert_eq!(consumer.handle_frame(&beat(2, Operational), at(150)), None);
         assert_eq!(consumer.poll_timeout(), Some(at(210)));
@@ -202,7 +202,10 @@ mod tests {
             consumer.handle_timeout(at(210)),
             Some(HeartbeatEvent::Lost { last: at(110) })
         );
-        assert_eq!((consumer.handle_timeout(at(300)), consumer.state()), (None, None));
+        assert_eq!(
+            (consumer.handle_timeout(at(300)), consumer.state()),
+            (None, None)
+        );
         assert_eq!(
             consumer.handle_frame(&beat(1, Operational), at(400)),
             Some(HeartbeatEvent::State {

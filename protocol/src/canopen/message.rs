@@ -98,14 +98,11 @@ pub(super) fn bytes<const N: usize>(
     if frame.is_remote() {
         return Err(MessageError::Remote { layer });
     }
-    frame
-        .data()
-        .try_into()
-        .map_err(|_| MessageError::Length {
-            layer,
-            expected: N,
-            got: frame.data().len(),
-        })
+    frame.data().try_into().map_err(|_| MessageError::Length {
+        layer,
+        expected: N,
+        got: frame.data().len(),
+    })
 }
 
 /// The error of a frame on another service's identifier.

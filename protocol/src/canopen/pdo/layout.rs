@@ -141,7 +141,10 @@ impl Layout {
     /// Bits of all entries, at most 64.
     #[must_use]
     pub fn bits(&self) -> usize {
-        self.entries.iter().map(|entry| usize::from(entry.bits)).sum()
+        self.entries
+            .iter()
+            .map(|entry| usize::from(entry.bits))
+            .sum()
     }
 
     /// Data bytes of the frame: the bits, filled up to whole bytes.
@@ -170,7 +173,9 @@ impl Layout {
         let packed = self
             .places()
             .zip(values)
-            .fold(0, |all, ((_, shift, mask), value)| all | (value & mask) << shift);
+            .fold(0, |all, ((_, shift, mask), value)| {
+                all | (value & mask) << shift
+            });
         let mut data = Bounded::new();
         data.extend(packed.to_le_bytes().into_iter().take(self.len()));
         Ok(data)

@@ -58,9 +58,7 @@ impl Request {
                 message(command(INITIATE_DOWNLOAD) | bits, address, data)
             }
             Self::DownloadSegment(segment) => segment.to_bytes(),
-            Self::InitiateUpload { address } => {
-                message(command(INITIATE_UPLOAD), address, [0; 4])
-            }
+            Self::InitiateUpload { address } => message(command(INITIATE_UPLOAD), address, [0; 4]),
             Self::UploadSegment { toggle } => {
                 let command = command(UPLOAD_SEGMENT) | toggle_bit(toggle);
                 [command, 0, 0, 0, 0, 0, 0, 0]

@@ -18,10 +18,16 @@ pub(super) struct Transfer<const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     InitiateUpload,
-    UploadSegment { toggle: bool, size: Option<u32> },
+    UploadSegment {
+        toggle: bool,
+        size: Option<u32>,
+    },
     InitiateDownload,
     /// `sent` bytes of the data are out, this segment's included.
-    DownloadSegment { toggle: bool, sent: usize },
+    DownloadSegment {
+        toggle: bool,
+        sent: usize,
+    },
 }
 
 impl Step {
@@ -127,7 +133,13 @@ fn append<const N: usize>(
 ) -> Result<Next, TransferError> {
     let announced = size.map(|size| size as usize);
     let got = transfer.data.len() + segment.bytes.len();
-    let wrong = |expected: usize| if segment.last { got != expected } else { got > expected };
+    let wrong = |expected: usize| {
+        if segment.last {
+            got != expected
+        } else {
+            got > expected
+        }
+    };
     if let Some(expected) = announced.filter(|&expected| wrong(expected)) {
         return Err(TransferError::Size { expected, got });
     }

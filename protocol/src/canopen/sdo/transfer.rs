@@ -85,10 +85,7 @@ impl Initiate {
     /// Low bits of the command byte, and the four bytes behind the object.
     pub(super) const fn encode(&self) -> (u8, [u8; 4]) {
         match self {
-            Self::Expedited(data) => (
-                (4 - data.len) << 2 | EXPEDITED | SIZE_INDICATED,
-                data.bytes,
-            ),
+            Self::Expedited(data) => ((4 - data.len) << 2 | EXPEDITED | SIZE_INDICATED, data.bytes),
             Self::Unsized(bytes) => (EXPEDITED, *bytes),
             Self::Segmented { size: Some(size) } => (SIZE_INDICATED, size.to_le_bytes()),
             Self::Segmented { size: None } => (0, [0; 4]),

@@ -74,12 +74,10 @@ impl Lines {
 
 /// The number of `len` hexadecimal digits (at most 8) from character `offset` of a line.
 pub(super) fn number(line: &[u8], offset: usize, len: usize) -> Result<u32, SlcanError> {
-    let digits = line
-        .get(offset..offset + len)
-        .ok_or(SlcanError::Length {
-            expected: offset + len,
-            got: line.len(),
-        })?;
+    let digits = line.get(offset..offset + len).ok_or(SlcanError::Length {
+        expected: offset + len,
+        got: line.len(),
+    })?;
     let mut number = 0;
     for (at, &got) in (offset..).zip(digits) {
         let digit = char::from(got).to_digit(16).ok_or(SlcanError::Character {

@@ -1,0 +1,647 @@
+//! The client against scripted answers, against a slow but complete server, and against noise.
+
+extern crate std;
+use std::vec;
+use std::vec::Vec;
+
+use proptest::prelude::*;
+use units::{Host, Span, Stamp};
+
+use super::*;
+use crate::canopen::{CanFrame, MessageError, NodeId};
+use crate::epos2::CommError;
+use crate::epos2::objects::{self, Address, Scalar};
+
+const ROOM: usize = 40;
+type Client = SdoClient<Host, ROOM>;
+
+const NAME: Address = objects::DEVICE_NAME;
+const STATUS: Address = objects::STATUSWORD.address;
+const POSITION: Address = objects::POSITION_ACTUAL.address;
+
+fn node() -> NodeId {
+    NodeId::new(1).unwrap()
+}
+
+fn at(ms: i64) -> Stamp<Host> {
+    Stamp::from_nanos(ms * 1_000_000)
+}
+
+fn client() -> Client {
+    SdoClient::new(node(), Span::from_millis(50))
+}
+
+fn expedited(address: Address, data: &[u8]) -> Answer {
+    let transfer = Initiate::Expedited(Expedited::new(data).unwrap());
+    Answer::InitiateUpload { address, transfer }
+}
+
+fn sized(address: Address, size: u32) -> Answer {
+    let transfer = Initiate::Segmented { size: Some(size) };
+    Answer::InitiateUpload { address, transfer }
+}
+
+fn part(toggle: bool, last: bool, bytes: &[u8]) -> Answer {
+    Answer::UploadSegment(Segment {
+        toggle,
+        last,
+        bytes: crate::epos2::Bounded::from_slice(bytes).unwrap(),
+    })
+}
+
+/// What the client wants sent.
+fn sent(client: &mut Client, now: Stamp<Host>) -> Vec<Request> {
+    core::iter::from_fn(|| client.poll_transmit(now))
+        .map(|frame| Request::parse(&frame).unwrap().1)
+        .collect()
+}
+
+fn hear(client: &mut Client, answer: Answer) -> Handled {
+    client.handle_frame(&answer.to_frame(node()))
+}
+
+/// Plays a read: answers in turn, each after the request for it was sent; the outcome and what the client sent last.
+fn play(address: Address, answers: &[Answer]) -> (Outcome<ROOM>, Vec<Request>) {
+    let mut client = client();
+    client.read(address).unwrap();
+    for answer in answers {
+        assert_eq!(sent(&mut client, at(0)).len(), 1);
+        assert_eq!(hear(&mut client, *answer), Handled::Taken);
+    }
+    let outcome = client.poll_outcome().expect("the transfer has ended");
+    assert_eq!((client.is_busy(), client.poll_timeout()), (false, None));
+    (outcome, sent(&mut client, at(0)))
+}
+
+fn failure(address: Address, answers: &[Answer]) -> (TransferError, Option<CommError>) {
+    let (outcome, last) = play(address, answers);
+    let told = match last.as_slice() {
+        [] => None,
+        [
+            Request::Abort {
+                address: about,
+                error,
+            },
+        ] => {
+            assert_eq!(*about, address);
+            Some(*error)
+        }
+        other => panic!("{other:?}"),
+    };
+    (outcome.result.unwrap_err(), told)
+}
+
+#[test]
+fn an_expedited_read() {
+    let (outcome, last) = play(STATUS, &[expedited(STATUS, &[0x40, 0x01])]);
+    let value = outcome.result.unwrap();
+    assert_eq!((outcome.address, outcome.access), (STATUS, Access::Read));
+    assert_eq!(value.scalar::<u16>(), Ok(0x0140));
+    assert!(value.sized && last.is_empty());
+    // The object is longer or shorter than its reader thinks.
+    let (expected, got) = (4, 2);
+    assert_eq!(
+        value.scalar::<i32>(),
+        Err(TransferError::Size { expected, got })
+    );
+    assert_eq!(
+        value.scalar::<u8>(),
+        Err(TransferError::Size {
+            expected: 1,
+            got: 2
+        })
+    );
+}
+
+#[test]
+fn an_answer_without_a_size_has_four_bytes_of_which_the_type_takes_its_own() {
+    let transfer = Initiate::Unsized([0xFE, 0xFF, 0xAA, 0xBB]);
+    let answer = Answer::InitiateUpload {
+        address: STATUS,
+        transfer,
+    };
+    let value = play(STATUS, &[answer]).0.result.unwrap();
+    assert!(!value.sized);
+    assert_eq!(value.scalar::<i16>(), Ok(-2));
+    assert_eq!(value.bytes.as_slice(), [0xFE, 0xFF, 0xAA, 0xBB]);
+}
+
+#[test]
+fn a_segmented_read() {
+    let answers = [sized(NAME, 5), part(false, true, b"EPOS2")];
+    let (outcome, _) = play(NAME, &answers);
+    assert_eq!(outcome.result.unwrap().bytes.as_slice(), b"EPOS2");
+    // Without a size, in three segments, the last empty.
+    let unsized_ = Answer::InitiateUpload {
+        address: NAME,
+        transfer: Initiate::Segmented { size: None },
+    };
+    let answers = [
+        unsized_,
+        part(false, false, b"0123456"),
+        part(true, false, b"78"),
+        part(false, true, b""),
+    ];
+    let (outcome, _) = play(NAME, &answers);
+    assert_eq!(outcome.result.unwrap().bytes.as_slice(), b"012345678");
+    // Nothing at all.
+    let (outcome, _) = play(NAME, &[sized(NAME, 0), part(false, true, b"")]);
+    assert!(outcome.result.unwrap().bytes.is_empty());
+}
+
+#[test]
+fn what_the_node_refuses_is_typed_and_not_aborted_again() {
+    let error = CommError::NO_OBJECT;
+    let address = NAME;
+    let refused = Answer::Abort { address, error };
+    let expected = (TransferError::Aborted(error), None);
+    assert_eq!(failure(NAME, &[refused]), expected);
+    assert_eq!(failure(NAME, &[sized(NAME, 9), refused]), expected);
+}
+
+#[test]
+fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
+    use TransferError::{EmptySegment, OtherObject, Size, Toggle, TooLong, Unexpected};
+    let other = expedited(POSITION, &[1, 2, 3, 4]);
+    let (expected, got) = (NAME, POSITION);
+    assert_eq!(
+        failure(NAME, &[other]),
+        (OtherObject { expected, got }, Some(CommError::COMMAND))
+    );
+    let abort = Answer::Abort {
+        address: POSITION,
+        error: CommError::RANGE,
+    };
+    assert!(matches!(failure(NAME, &[abort]).0, OtherObject { .. }));
+    assert_eq!(
+        failure(NAME, &[sized(NAME, 9), part(true, false, b"0123456")]),
+        (
+            Toggle {
+                expected: false,
+                got: true
+            },
+            Some(CommError::TOGGLE)
+        )
+    );
+    // The same segment twice.
+    let twice = [
+        sized(NAME, 20),
+        part(false, false, b"0123456"),
+        part(false, false, b"0123456"),
+    ];
+    assert!(matches!(failure(NAME, &twice).0, Toggle { .. }));
+    let wrote = Answer::InitiateDownload { address: NAME };
+    assert_eq!(
+        failure(NAME, &[wrote]),
+        (
+            Unexpected {
+                expected: "the answer to an upload (4x)",
+                got: 0x60
+            },
+            Some(CommError::COMMAND)
+        )
+    );
+    for stray in [
+        part(false, true, b"x"),
+        Answer::DownloadSegment { toggle: false },
+        Answer::Unknown([0xC0; 8]),
+    ] {
+        assert!(matches!(failure(NAME, &[stray]).0, Unexpected { .. }));
+    }
+    let (expected, got) = (5, 3);
+    assert_eq!(
+        failure(NAME, &[sized(NAME, 5), part(false, true, b"EPO")]),
+        (Size { expected, got }, Some(CommError::LENGTH))
+    );
+    let (expected, got) = (5, 7);
+    assert_eq!(
+        failure(NAME, &[sized(NAME, 5), part(false, false, b"0123456")]).0,
+        Size { expected, got }
+    );
+    let (max, got) = (ROOM, ROOM + 1);
+    assert_eq!(
+        failure(NAME, &[sized(NAME, 41)]),
+        (TooLong { max, got }, Some(CommError::MEMORY))
+    );
+    assert_eq!(
+        failure(NAME, &[sized(NAME, 41_000_000)]).0,
+        TooLong {
+            max,
+            got: 41_000_000
+        }
+    );
+    assert_eq!(
+        failure(NAME, &[sized(NAME, 5), part(false, false, b"")]),
+        (EmptySegment, Some(CommError::COMMAND))
+    );
+}
+
+#[test]
+fn an_endless_read_without_a_size_ends_at_the_room() {
+    let mut client = client();
+    client.read(NAME).unwrap();
+    sent(&mut client, at(0));
+    let transfer = Initiate::Segmented { size: None };
+    let address = NAME;
+    hear(&mut client, Answer::InitiateUpload { address, transfer });
+    let mut toggle = false;
+    for _ in 0..6 {
+        sent(&mut client, at(0));
+        hear(&mut client, part(toggle, false, b"0123456"));
+        toggle = !toggle;
+    }
+    let (max, got) = (ROOM, 42);
+    assert_eq!(
+        client.poll_outcome().unwrap().result,
+        Err(TransferError::TooLong { max, got })
+    );
+}
+
+#[test]
+fn a_damaged_answer_is_typed() {
+    let mut client = client();
+    client.read(STATUS).unwrap();
+    sent(&mut client, at(0));
+    let whole = expedited(STATUS, &[1, 2]).to_frame(node());
+    let short = CanFrame::new(whole.id(), &whole.data()[..6]).unwrap();
+    assert_eq!(client.handle_frame(&short), Handled::Taken);
+    assert!(matches!(
+        client.poll_outcome().unwrap().result,
+        Err(TransferError::Message(MessageError::Length {
+            expected: 8,
+            got: 6,
+            ..
+        }))
+    ));
+}
+
+#[test]
+fn writes_of_every_length_leave_as_they_should() {
+    let mut client = client();
+    client.write_scalar(STATUS, 0x000F_u16).unwrap();
+    assert_eq!(
+        client.poll_transmit(at(0)).unwrap().data(),
+        [0x2B, 0x41, 0x60, 0, 0x0F, 0, 0, 0]
+    );
+    hear(&mut client, Answer::InitiateDownload { address: STATUS });
+    let outcome = client.poll_outcome().unwrap();
+    assert_eq!(outcome.access, Access::Write);
+    assert!(outcome.result.unwrap().bytes.is_empty());
+    // Nine bytes: announced, seven, two.
+    client.write(NAME, b"123456789").unwrap();
+    let mut data = vec![];
+    for answer in [
+        Answer::InitiateDownload { address: NAME },
+        Answer::DownloadSegment { toggle: false },
+        Answer::DownloadSegment { toggle: true },
+    ] {
+        data.push(client.poll_transmit(at(0)).unwrap().data().to_vec());
+        hear(&mut client, answer);
+    }
+    assert_eq!(
+        data,
+        [
+            vec![0x21, 0x08, 0x10, 0, 9, 0, 0, 0],
+            b"\x001234567".to_vec(),
+            b"\x1B89\0\0\0\0\0".to_vec()
+        ]
+    );
+    assert!(client.poll_outcome().unwrap().result.is_ok());
+    let (max, got) = (ROOM, ROOM + 1);
+    assert_eq!(
+        client.write(NAME, &[0; ROOM + 1]),
+        Err(StartError::TooLong { max, got })
+    );
+}
+
+#[test]
+fn a_wrong_toggle_in_a_write_is_typed() {
+    let mut client = client();
+    client.write(NAME, b"123456789").unwrap();
+    sent(&mut client, at(0));
+    hear(&mut client, Answer::InitiateDownload { address: NAME });
+    sent(&mut client, at(0));
+    hear(&mut client, Answer::DownloadSegment { toggle: true });
+    let (expected, got) = (false, true);
+    assert_eq!(
+        client.poll_outcome().unwrap().result,
+        Err(TransferError::Toggle { expected, got })
+    );
+}
+
+#[test]
+fn time_runs_from_when_a_request_was_sent() {
+    let mut client = client();
+    client.read(NAME).unwrap();
+    assert_eq!(client.poll_timeout(), None);
+    client.handle_timeout(at(1_000));
+    assert!(client.is_busy());
+    assert!(client.poll_transmit(at(100)).is_some());
+    assert_eq!(client.poll_timeout(), Some(at(150)));
+    client.handle_timeout(at(149));
+    assert!(client.is_busy());
+    // Each answer has its own time.
+    hear(&mut client, sized(NAME, 5));
+    assert_eq!(client.poll_timeout(), None);
+    assert!(client.poll_transmit(at(200)).is_some());
+    assert_eq!(client.poll_timeout(), Some(at(250)));
+    client.handle_timeout(at(250));
+    let error = client.poll_outcome().unwrap().result.unwrap_err();
+    let expected = "an upload segment (0x, 1x)";
+    assert_eq!(error, TransferError::Timeout { expected });
+    assert_eq!(
+        sent(&mut client, at(250)),
+        [Request::Abort {
+            address: NAME,
+            error: CommError::TIMEOUT
+        }]
+    );
+}
+
+#[test]
+fn one_at_a_time() {
+    let mut client = client();
+    client.read(NAME).unwrap();
+    let busy = Err(StartError::Busy { address: NAME });
+    assert_eq!(client.read(STATUS), busy);
+    assert_eq!(client.write(STATUS, &[1]), busy);
+    // Nothing was sent yet, so nothing needs to be aborted and no answer is owed.
+    client.cancel();
+    assert_eq!(client.read(STATUS), busy, "the outcome is not fetched");
+    assert_eq!(
+        client.poll_outcome().unwrap().result,
+        Err(TransferError::Cancelled)
+    );
+    assert_eq!((client.owed(), sent(&mut client, at(0))), (None, vec![]));
+    assert_eq!(client.read(STATUS), Ok(()));
+    sent(&mut client, at(0));
+    client.cancel();
+    let aborted = sent(&mut client, at(0));
+    assert!(matches!(aborted[..], [Request::Abort { .. }]));
+    assert_eq!(client.owed(), Some(STATUS));
+}
+
+/// Lets a read of `address` run out of time.
+fn time_out(client: &mut Client, address: Address) {
+    client.read(address).unwrap();
+    sent(client, at(0));
+    client.handle_timeout(at(50));
+    client.poll_outcome().unwrap();
+    sent(client, at(50));
+    assert_eq!(client.owed(), Some(address));
+}
+
+#[test]
+fn a_late_answer_is_not_taken_for_another() {
+    let mut client = client();
+    time_out(&mut client, POSITION);
+    client.read(STATUS).unwrap();
+    sent(&mut client, at(60));
+    let late = expedited(POSITION, &[1, 2, 3, 4]);
+    assert_eq!(hear(&mut client, late), Handled::Late);
+    assert_eq!(client.owed(), None);
+    let answer = expedited(STATUS, &[0x40, 1]);
+    assert_eq!(hear(&mut client, answer), Handled::Taken);
+    assert!(client.poll_outcome().unwrap().result.is_ok());
+    // While nothing is asked it is dropped as well; once, as only one was owed.
+    time_out(&mut client, POSITION);
+    assert_eq!(hear(&mut client, late), Handled::Late);
+    assert_eq!(hear(&mut client, late), Handled::Unasked);
+    // Asked for another way, the object's name alone does not make it the answer.
+    time_out(&mut client, POSITION);
+    client.write(POSITION, &[1, 2, 3, 4]).unwrap();
+    sent(&mut client, at(60));
+    assert_eq!(hear(&mut client, late), Handled::Late);
+    let wrote = Answer::InitiateDownload { address: POSITION };
+    assert_eq!(hear(&mut client, wrote), Handled::Taken);
+    assert!(client.poll_outcome().unwrap().result.is_ok());
+}
+
+#[test]
+fn an_answer_in_order_settles_what_was_owed() {
+    for answer in [
+        expedited(STATUS, &[0x40, 1]),
+        Answer::Abort {
+            address: STATUS,
+            error: CommError::STATE,
+        },
+    ] {
+        let mut client = client();
+        time_out(&mut client, POSITION);
+        client.read(STATUS).unwrap();
+        sent(&mut client, at(60));
+        assert_eq!(hear(&mut client, answer), Handled::Taken);
+        client.poll_outcome().unwrap();
+        assert_eq!(client.owed(), None);
+    }
+}
+
+#[test]
+fn a_late_segment_does_not_disturb_the_next_transfer() {
+    let mut client = client();
+    client.read(NAME).unwrap();
+    sent(&mut client, at(0));
+    hear(&mut client, sized(NAME, 20));
+    sent(&mut client, at(0));
+    client.handle_timeout(at(50));
+    client.poll_outcome().unwrap();
+    client.read(STATUS).unwrap();
+    assert_eq!(
+        sent(&mut client, at(60)).len(),
+        2,
+        "abort, then the request"
+    );
+    assert_eq!(
+        hear(&mut client, part(false, false, b"0123456")),
+        Handled::Late
+    );
+    assert_eq!(
+        hear(&mut client, expedited(STATUS, &[0x40, 1])),
+        Handled::Taken
+    );
+}
+
+#[test]
+fn frames_of_others_and_answers_to_nothing_do_nothing() {
+    let mut client = client();
+    client.read(STATUS).unwrap();
+    let answer = expedited(STATUS, &[0x40, 1]);
+    // It would fit, but nothing was sent yet.
+    assert_eq!(hear(&mut client, answer), Handled::Unasked);
+    sent(&mut client, at(0));
+    let two = NodeId::new(2).unwrap();
+    assert_eq!(client.handle_frame(&answer.to_frame(two)), Handled::Foreign);
+    let request = Request::InitiateUpload { address: STATUS };
+    assert_eq!(
+        client.handle_frame(&request.to_frame(node())),
+        Handled::Foreign
+    );
+    assert_eq!(hear(&mut client, answer), Handled::Taken);
+    // The controller of the bus may deliver a frame twice.
+    assert_eq!(hear(&mut client, answer), Handled::Unasked);
+}
+
+/// A server as CiA 301 describes it, for one object; it answers what it is asked and no more.
+struct Server {
+    data: Vec<u8>,
+    expedite: bool,
+    announce: bool,
+    at: usize,
+    toggle: bool,
+    announced: Option<u32>,
+}
+
+impl Server {
+    fn new(data: &[u8], expedite: bool, announce: bool) -> Self {
+        Self {
+            data: data.to_vec(),
+            expedite,
+            announce,
+            at: 0,
+            toggle: false,
+            announced: None,
+        }
+    }
+
+    fn answer(&mut self, request: Request) -> Answer {
+        match request {
+            Request::InitiateUpload { address } => {
+                (self.at, self.toggle) = (0, false);
+                let size = self.announce.then_some(self.data.len() as u32);
+                let transfer = Expedited::new(&self.data)
+                    .filter(|_| self.expedite)
+                    .map_or(Initiate::Segmented { size }, Initiate::Expedited);
+                Answer::InitiateUpload { address, transfer }
+            }
+            Request::UploadSegment { toggle } => {
+                assert_eq!(toggle, self.toggle);
+                let segment = Segment::cut(&self.data, self.at, toggle);
+                self.at += segment.bytes.len();
+                self.toggle = !toggle;
+                Answer::UploadSegment(segment)
+            }
+            Request::InitiateDownload { address, transfer } => {
+                self.toggle = false;
+                self.data.clear();
+                match transfer {
+                    Initiate::Expedited(data) => self.data.extend(data.as_slice()),
+                    Initiate::Segmented { size } => self.announced = size,
+                    Initiate::Unsized(_) => panic!("the client says sizes"),
+                }
+                Answer::InitiateDownload { address }
+            }
+            Request::DownloadSegment(segment) => {
+                assert_eq!(segment.toggle, self.toggle);
+                self.data.extend(segment.bytes.as_slice());
+                self.toggle = !self.toggle;
+                if segment.last {
+                    assert_eq!(self.announced, Some(self.data.len() as u32));
+                }
+                Answer::DownloadSegment {
+                    toggle: segment.toggle,
+                }
+            }
+            Request::Abort { .. } | Request::Unknown(_) => panic!("{request:?}"),
+        }
+    }
+
+    fn serve(&mut self, client: &mut Client) -> Outcome<ROOM> {
+        for _ in 0..20 {
+            for request in sent(client, at(0)) {
+                assert_eq!(hear(client, self.answer(request)), Handled::Taken);
+            }
+            if let Some(outcome) = client.poll_outcome() {
+                return outcome;
+            }
+        }
+        panic!("no end");
+    }
+}
+
+fn noise() -> impl Strategy<Value = Answer> {
+    let byte = prop_oneof![
+        prop::sample::select(
+            &[
+                0x00_u8, 0x10, 0x01, 0x20, 0x30, 0x41, 0x43, 0x4B, 0x60, 0x80
+            ][..]
+        ),
+        any::<u8>(),
+    ];
+    (byte, prop::bool::ANY, any::<[u8; 7]>()).prop_map(|(command, ours, rest)| {
+        let mut bytes = [0; 8];
+        bytes[0] = command;
+        bytes[1..].copy_from_slice(&rest);
+        if ours {
+            bytes[1..4].copy_from_slice(&[0x08, 0x10, 0x00]);
+        }
+        Answer::from_bytes(bytes)
+    })
+}
+
+proptest! {
+    #[test]
+    fn every_length_is_read_and_written(
+        data in prop::collection::vec(any::<u8>(), 0..=ROOM), expedite: bool, announce: bool,
+    ) {
+        let mut client = client();
+        client.read(NAME).unwrap();
+        let outcome = Server::new(&data, expedite, announce).serve(&mut client);
+        prop_assert_eq!(outcome.result.unwrap().bytes.as_slice(), &data);
+        client.write(NAME, &data).unwrap();
+        let mut server = Server::new(&[], expedite, announce);
+        prop_assert!(server.serve(&mut client).result.is_ok());
+        prop_assert_eq!(server.data, data);
+    }
+
+    #[test]
+    fn scalars_of_every_type_read_back(value in any::<i32>()) {
+        fn trip<T: Scalar + PartialEq + core::fmt::Debug>(value: T) {
+            let mut client = client();
+            client.write_scalar(NAME, value).unwrap();
+            let mut server = Server::new(&[], true, true);
+            server.serve(&mut client).result.unwrap();
+            assert_eq!(server.data.len(), usize::from(T::BYTES));
+            client.read(NAME).unwrap();
+            assert_eq!(server.serve(&mut client).result.unwrap().scalar::<T>(), Ok(value));
+        }
+        trip(value);
+        trip(value as i16);
+        trip(value as i8);
+        trip(value as u32);
+        trip(value as u16);
+        trip(value as u8);
+    }
+
+    #[test]
+    fn any_eight_bytes_are_a_message_both_ways(bytes in any::<[u8; 8]>()) {
+        let request = Request::from_bytes(bytes);
+        prop_assert_eq!(Request::from_bytes(request.to_bytes()), request);
+        let answer = Answer::from_bytes(bytes);
+        prop_assert_eq!(Answer::from_bytes(answer.to_bytes()), answer);
+        prop_assert_eq!(answer.to_bytes()[0] >> 5, bytes[0] >> 5);
+    }
+
+    /// Whatever comes, a transfer ends: with the answers or with the time.
+    #[test]
+    fn noise_ends_a_transfer_sooner_or_later(answers in prop::collection::vec(noise(), 0..40), write in 0..20_usize) {
+        let mut client = client();
+        match write {
+            0 => client.read(NAME).unwrap(),
+            n => client.write(NAME, &[0x55; ROOM][..n]).unwrap(),
+        }
+        for answer in answers {
+            sent(&mut client, at(0));
+            hear(&mut client, answer);
+        }
+        let mut outcome = client.poll_outcome();
+        if outcome.is_none() {
+            prop_assert!(client.is_busy());
+            sent(&mut client, at(0));
+            client.handle_timeout(at(50));
+            outcome = client.poll_outcome();
+        }
+        prop_assert_eq!(outcome.unwrap().address, NAME);
+        prop_assert!(!client.is_busy());
+        prop_assert!(client.read(STATUS).is_ok());
+    }
+}

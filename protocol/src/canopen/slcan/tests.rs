@@ -1,0 +1,243 @@
+//! Lines of the Lawicel manuals both ways, what adapters and noise make of them, and any bytes.
+
+extern crate std;
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::canopen::tests::any_frame;
+use crate::canopen::{CanFrame, CobId, ExtendedId};
+
+fn line(text: &str) -> Line {
+    Line::from_slice(text.as_bytes()).unwrap()
+}
+
+fn standard(id: u16, data: &[u8]) -> CanFrame {
+    CanFrame::new(CobId::new(id).unwrap(), data).unwrap()
+}
+
+fn extended(id: u32, data: &[u8]) -> CanFrame {
+    CanFrame::new(ExtendedId::new(id).unwrap(), data).unwrap()
+}
+
+fn received(frame: CanFrame, stamp_ms: Option<u16>) -> Reply {
+    Reply::Received { frame, stamp_ms }
+}
+
+fn commands(bytes: &[u8]) -> Vec<Result<Command, SlcanError>> {
+    let mut decoder = CommandDecoder::new();
+    bytes.iter().filter_map(|&b| decoder.push(b)).collect()
+}
+
+fn replies(bytes: &[u8]) -> Vec<Result<Reply, SlcanError>> {
+    let mut decoder = ReplyDecoder::new();
+    bytes.iter().filter_map(|&b| decoder.push(b)).collect()
+}
+
+fn encoded(encode: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
+    let mut out = Vec::new();
+    encode(&mut out);
+    out
+}
+
+#[test]
+fn golden_commands_both_ways() {
+    let request = standard(0x601, &[0x40, 0x41, 0x60, 0, 0, 0, 0, 0]);
+    let golden: [(&str, Command); 17] = [
+        ("\r", Command::Empty),
+        ("S0\r", Command::Bitrate(Bitrate::Kbit10)),
+        ("S8\r", Command::Bitrate(Bitrate::Kbit1000)),
+        ("O\r", Command::Open),
+        ("L\r", Command::OpenListening),
+        ("C\r", Command::Close),
+        ("V\r", Command::Version),
+        ("N\r", Command::SerialNumber),
+        ("F\r", Command::Status),
+        ("Z1\r", Command::Stamps(true)),
+        ("t60184041600000000000\r", Command::Transmit(request)),
+        ("t0800\r", Command::Transmit(standard(0x080, &[]))),
+        (
+            "T000001232AABB\r",
+            Command::Transmit(extended(0x123, &[0xAA, 0xBB])),
+        ),
+        (
+            "r7011\r",
+            Command::Transmit(CanFrame::remote(CobId::new(0x701).unwrap(), 1).unwrap()),
+        ),
+        (
+            "R1FFFFFFF8\r",
+            Command::Transmit(CanFrame::remote(ExtendedId::MAX, 8).unwrap()),
+        ),
+        ("M00000000\r", Command::Unknown(line("M00000000"))),
+        ("s031C\r", Command::Unknown(line("s031C"))),
+    ];
+    for (text, command) in golden {
+        assert_eq!(
+            encoded(|out| command.encode(out)),
+            text.as_bytes(),
+            "{text}"
+        );
+        assert_eq!(commands(text.as_bytes()), [Ok(command)], "{text}");
+    }
+}
+
+#[test]
+fn golden_replies_both_ways() {
+    let answer = standard(0x581, &[0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0]);
+    let golden: [(&str, Reply); 10] = [
+        ("\r", Reply::Done),
+        ("\x07", Reply::Refused),
+        ("z\r", Reply::Sent),
+        ("Z\r", Reply::SentExtended),
+        ("t58184B41600040010000\r", received(answer, None)),
+        (
+            "t58184B4160004001000012C7\r",
+            received(answer, Some(0x12C7)),
+        ),
+        (
+            "r70110001\r",
+            received(
+                CanFrame::remote(CobId::new(0x701).unwrap(), 1).unwrap(),
+                Some(1),
+            ),
+        ),
+        ("V1013\r", Reply::Version(line("1013"))),
+        ("NA123\r", Reply::SerialNumber(line("A123"))),
+        ("F08\r", Reply::Status(8)),
+    ];
+    for (text, reply) in golden {
+        assert_eq!(encoded(|out| reply.encode(out)), text.as_bytes(), "{text}");
+        assert_eq!(replies(text.as_bytes()), [Ok(reply)], "{text}");
+    }
+}
+
+#[test]
+fn bit_rates_have_their_numbers() {
+    for (digit, rate) in (b'0'..).zip(Bitrate::ALL) {
+        assert_eq!(commands(&[b'S', digit, CR]), [Ok(Command::Bitrate(rate))]);
+        assert_eq!(Bitrate::from_bit_s(rate.bit_s()), Some(rate));
+    }
+    assert_eq!(Bitrate::from_bit_s(83_300), None);
+    let character = |got| {
+        Err(SlcanError::Character {
+            offset: 1,
+            expected: "0 to 8",
+            got,
+        })
+    };
+    assert_eq!(commands(b"S9\r"), [character(b'9')]);
+    let length = |got| Err(SlcanError::Length { expected: 2, got });
+    assert_eq!(commands(b"S\rS10\r"), [length(1), length(3)]);
+}
+
+#[test]
+fn small_letters_line_feeds_and_versions_of_any_length_are_taken() {
+    let frame = standard(0x7AB, &[0xCD]);
+    assert_eq!(replies(b"t7ab1cd\r\n"), [Ok(received(frame, None))]);
+    assert_eq!(
+        commands(b"C\r\nt7ab1Cd\r\n"),
+        [Ok(Command::Close), Ok(Command::Transmit(frame))]
+    );
+    let version = "CANable slcan Rev 2, https://example.org";
+    let reply = [b"V", version.as_bytes(), b"\r"].concat();
+    assert_eq!(replies(&reply), [Ok(Reply::Version(line(version)))]);
+}
+
+#[test]
+fn lines_that_are_no_frames_say_why() {
+    let character = |offset, expected, got| SlcanError::Character {
+        offset,
+        expected,
+        got,
+    };
+    let length = |expected, got| SlcanError::Length { expected, got };
+    let digit = "a hexadecimal digit";
+    let max = 0x7FF;
+    for (text, error) in [
+        ("t\r", length(4, 1)),
+        ("t60\r", length(4, 3)),
+        ("t601\r", length(5, 4)),
+        ("t6012AA\r", length(9, 7)),
+        ("t6011AABB\r", length(11, 9)),
+        ("t6G1\r", character(2, digit, b'G')),
+        ("t6011A \r", character(6, digit, b' ')),
+        ("t6019AABBCCDDEEFF001122\r", character(4, "0 to 8", b'9')),
+        ("rFFF0\r", SlcanError::Id { max, got: 0xFFF }),
+        (
+            "T200000000\r",
+            SlcanError::Id {
+                max: 0x1FFF_FFFF,
+                got: 0x2000_0000,
+            },
+        ),
+    ] {
+        assert_eq!(replies(text.as_bytes()), [Err(error)], "{text}");
+        assert_eq!(commands(text.as_bytes()), [Err(error)], "{text}");
+    }
+    // A host has no time stamps.
+    assert_eq!(commands(b"t60110012C7\r"), [Err(length(7, 11))]);
+    assert_eq!(replies(b"F0\r"), [Err(length(3, 2))]);
+}
+
+#[test]
+fn noise_costs_at_most_the_line_it_is_in() {
+    let frame = standard(0x581, &[1]);
+    let good = received(frame, None);
+    // Between lines.
+    assert_eq!(replies(b"\x00\xFF\x80 t581101\r"), [Ok(good)]);
+    // A frame whose end was lost, before a frame.
+    assert_eq!(
+        replies(b"t5811t581101\r"),
+        [Err(SlcanError::BrokenOff { got: 5 }), Ok(good)]
+    );
+    assert_eq!(
+        replies(b"x#z\xA0t581101\r"),
+        [Err(SlcanError::BrokenOff { got: 4 }), Ok(good)]
+    );
+    // In a line, and BEL in a line.
+    assert_eq!(replies(b"t58\xE31101\rt581101\r")[1..], [Ok(good)]);
+    assert_eq!(
+        replies(b"t5811\x07t581101\r"),
+        [Ok(Reply::Refused), Ok(good)]
+    );
+    assert_eq!(commands(b"\x07C\x07O\r"), [Ok(Command::Open)]);
+    // Without any CR.
+    let long = [&[b'x'; 500][..], b"\rt581101\r"].concat();
+    let max = MAX_LINE;
+    assert_eq!(replies(&long), [Err(SlcanError::TooLong { max }), Ok(good)]);
+}
+
+proptest! {
+    #[test]
+    fn every_frame_passes_both_ways(frames in prop::collection::vec((any_frame(), any::<Option<u16>>()), 0..8)) {
+        let mut to_adapter = Vec::new();
+        let mut to_host = Vec::new();
+        for (frame, stamp_ms) in &frames {
+            Command::Transmit(*frame).encode(&mut to_adapter);
+            received(*frame, *stamp_ms).encode(&mut to_host);
+        }
+        let sent: Vec<_> = frames.iter().map(|(frame, _)| Ok(Command::Transmit(*frame))).collect();
+        prop_assert_eq!(commands(&to_adapter), sent);
+        let heard: Vec<_> = frames.iter().map(|(frame, stamp)| Ok(received(*frame, *stamp))).collect();
+        prop_assert_eq!(replies(&to_host), heard);
+    }
+
+    #[test]
+    fn any_bytes_are_lines_or_errors_and_a_good_line_comes_through(bytes in prop::collection::vec(
+        prop_oneof![
+            2 => prop::sample::select(&b"tTrRzZVNFSOC0128F\r\n\x07"[..]),
+            1 => any::<u8>(),
+        ], 0..300)) {
+        let frame = standard(0x601, &[0x40]);
+        for reply in replies(&bytes).into_iter().flatten() {
+            prop_assert_eq!(replies(&encoded(|out| reply.encode(out))), [Ok(reply)]);
+        }
+        for command in commands(&bytes).into_iter().flatten() {
+            prop_assert_eq!(commands(&encoded(|out| command.encode(out))), [Ok(command)]);
+        }
+        let good = [&bytes[..], b"\rt601140\r"].concat();
+        prop_assert_eq!(replies(&good).pop(), Some(Ok(received(frame, None))));
+        prop_assert_eq!(commands(&good).pop(), Some(Ok(Command::Transmit(frame))));
+    }
+}

@@ -1,0 +1,377 @@
+//! Golden bytes of the EPOS2 on CAN, both ways, and properties of every message.
+
+extern crate std;
+use std::string::ToString as _;
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::emcy::Emergency;
+use super::heartbeat::Heartbeat;
+use super::nmt::{Nmt, NmtCommand, NmtState};
+use super::pdo::{CommunicationId, TransmissionType};
+use super::sdo::{Answer, Expedited, Initiate, Request, Segment};
+use super::sync::Sync;
+use super::{CanFrame, CanId, CobId, ExtendedId, Layer, Message, MessageError, NodeId, PdoNumber};
+use crate::epos2::objects::{Address, DEVICE_NAME, STATUSWORD};
+use crate::epos2::{Bounded, CommError, DeviceError};
+
+fn node(id: u8) -> NodeId {
+    NodeId::new(id).unwrap()
+}
+
+/// A frame as candump writes it.
+fn frame(text: &str) -> CanFrame {
+    let (id, data) = text.split_once('#').unwrap();
+    let id = CobId::new(u16::from_str_radix(id, 16).unwrap()).unwrap();
+    let data: Vec<u8> = (0..data.len())
+        .step_by(2)
+        .map(|at| u8::from_str_radix(&data[at..at + 2], 16).unwrap())
+        .collect();
+    CanFrame::new(id, &data).unwrap()
+}
+
+pub(super) fn any_id() -> impl Strategy<Value = CanId> {
+    prop_oneof![
+        (0_u16..0x800).prop_map(|id| CobId::new(id).unwrap().into()),
+        (0_u32..1 << 29).prop_map(|id| ExtendedId::new(id).unwrap().into()),
+    ]
+}
+
+pub(super) fn any_frame() -> impl Strategy<Value = CanFrame> {
+    prop_oneof![
+        4 => (any_id(), prop::collection::vec(any::<u8>(), 0..=8))
+            .prop_map(|(id, data)| CanFrame::new(id, &data).unwrap()),
+        1 => (any_id(), 0_u8..=8).prop_map(|(id, len)| CanFrame::remote(id, len).unwrap()),
+    ]
+}
+
+const NAME: Address = DEVICE_NAME;
+
+fn upload(address: Address, data: &[u8]) -> Answer {
+    let transfer = Initiate::Expedited(Expedited::new(data).unwrap());
+    Answer::InitiateUpload { address, transfer }
+}
+
+fn download(address: Address, data: &[u8]) -> Request {
+    let transfer = Initiate::Expedited(Expedited::new(data).unwrap());
+    Request::InitiateDownload { address, transfer }
+}
+
+fn segment(toggle: bool, last: bool, bytes: &[u8]) -> Segment {
+    let bytes = Bounded::from_slice(bytes).unwrap();
+    Segment {
+        toggle,
+        last,
+        bytes,
+    }
+}
+
+/// EPOS2 Communication Guide, "SDO communication" (node 1); the segments are those of reading the device name.
+fn sdo_messages() -> Vec<(&'static str, Message)> {
+    let ask = |request| Message::SdoRequest(node(1), request);
+    let say = |answer| Message::SdoAnswer(node(1), answer);
+    let address = STATUSWORD.address;
+    let six = Address::new(0x2080, 3);
+    std::vec![
+        (
+            "601#4041600000000000",
+            ask(Request::InitiateUpload { address })
+        ),
+        ("581#4B41600040010000", say(upload(address, &[0x40, 0x01]))),
+        (
+            "581#4380200344332211",
+            say(upload(six, &[0x44, 0x33, 0x22, 0x11]))
+        ),
+        (
+            "581#4780200333221100",
+            say(upload(six, &[0x33, 0x22, 0x11]))
+        ),
+        ("581#4F80200311000000", say(upload(six, &[0x11]))),
+        (
+            "601#2380200344332211",
+            ask(download(six, &[0x44, 0x33, 0x22, 0x11]))
+        ),
+        (
+            "601#2780200333221100",
+            ask(download(six, &[0x33, 0x22, 0x11]))
+        ),
+        (
+            "601#2B4060000F000000",
+            ask(download(Address::new(0x6040, 0), &[0x0F, 0]))
+        ),
+        (
+            "601#2F60600001000000",
+            ask(download(Address::new(0x6060, 0), &[1]))
+        ),
+        (
+            "581#6040600000000000",
+            say(Answer::InitiateDownload {
+                address: Address::new(0x6040, 0)
+            })
+        ),
+        (
+            "581#8041600000000206",
+            say(Answer::Abort {
+                address,
+                error: CommError::NO_OBJECT
+            })
+        ),
+        (
+            "601#8041600000000405",
+            ask(Request::Abort {
+                address,
+                error: CommError::TIMEOUT
+            })
+        ),
+        (
+            "601#4008100000000000",
+            ask(Request::InitiateUpload { address: NAME })
+        ),
+        (
+            "581#4108100005000000",
+            say(Answer::InitiateUpload {
+                address: NAME,
+                transfer: Initiate::Segmented { size: Some(5) }
+            })
+        ),
+        (
+            "601#6000000000000000",
+            ask(Request::UploadSegment { toggle: false })
+        ),
+        (
+            "581#0545504F53320000",
+            say(Answer::UploadSegment(segment(false, true, b"EPOS2")))
+        ),
+        // Writing nine bytes in segments: announced, seven, two.
+        (
+            "601#2180200309000000",
+            ask(Request::InitiateDownload {
+                address: six,
+                transfer: Initiate::Segmented { size: Some(9) }
+            })
+        ),
+        (
+            "601#0001020304050607",
+            ask(Request::DownloadSegment(segment(
+                false,
+                false,
+                &[1, 2, 3, 4, 5, 6, 7]
+            )))
+        ),
+        (
+            "581#2000000000000000",
+            say(Answer::DownloadSegment { toggle: false })
+        ),
+        (
+            "601#1B08090000000000",
+            ask(Request::DownloadSegment(segment(true, true, &[8, 9])))
+        ),
+        (
+            "581#3000000000000000",
+            say(Answer::DownloadSegment { toggle: true })
+        ),
+        (
+            "601#7000000000000000",
+            ask(Request::UploadSegment { toggle: true })
+        ),
+        // Forms the EPOS2 does not use and other nodes may.
+        (
+            "581#42416000AABBCCDD",
+            say(Answer::InitiateUpload {
+                address,
+                transfer: Initiate::Unsized([0xAA, 0xBB, 0xCC, 0xDD])
+            })
+        ),
+        (
+            "581#4041600000000000",
+            say(Answer::InitiateUpload {
+                address,
+                transfer: Initiate::Segmented { size: None }
+            })
+        ),
+        (
+            "601#A041600000000000",
+            ask(Request::Unknown([0xA0, 0x41, 0x60, 0, 0, 0, 0, 0]))
+        ),
+        (
+            "581#C241600000000000",
+            say(Answer::Unknown([0xC2, 0x41, 0x60, 0, 0, 0, 0, 0]))
+        ),
+    ]
+}
+
+/// CiA 301: NMT, boot-up, heartbeat, SYNC; EPOS2 Communication Guide: EMCY of node 1.
+fn other_messages() -> Vec<(&'static str, Message)> {
+    let nmt = |node, command| Message::Nmt(Nmt { node, command });
+    let heart = |state| {
+        Message::Heartbeat(Heartbeat {
+            node: node(1),
+            state,
+        })
+    };
+    let mut process = Bounded::new();
+    process.extend([0x37, 0x03]);
+    std::vec![
+        ("000#0101", nmt(Some(node(1)), NmtCommand::Start)),
+        ("000#0200", nmt(None, NmtCommand::Stop)),
+        (
+            "000#807F",
+            nmt(Some(node(127)), NmtCommand::EnterPreOperational)
+        ),
+        ("000#8101", nmt(Some(node(1)), NmtCommand::ResetNode)),
+        (
+            "000#8201",
+            nmt(Some(node(1)), NmtCommand::ResetCommunication)
+        ),
+        ("000#0301", nmt(Some(node(1)), NmtCommand::Unknown(3))),
+        ("701#00", heart(NmtState::BootUp)),
+        ("701#04", heart(NmtState::Stopped)),
+        ("701#05", heart(NmtState::Operational)),
+        ("701#7F", heart(NmtState::PreOperational)),
+        ("701#85", heart(NmtState::Unknown(0x85))),
+        ("080#", Message::Sync(Sync::default())),
+        ("080#F0", Message::Sync(Sync { counter: Some(240) })),
+        (
+            "081#1186200000000000",
+            Message::Emergency(Emergency::new(node(1), DeviceError::FOLLOWING, 0x20))
+        ),
+        (
+            "081#0000000000000000",
+            Message::Emergency(Emergency::new(node(1), DeviceError::NONE, 0))
+        ),
+        (
+            "181#3703",
+            Message::TransmitPdo(PdoNumber::One, node(1), process)
+        ),
+        (
+            "201#3703",
+            Message::ReceivePdo(PdoNumber::One, node(1), process)
+        ),
+        (
+            "100#000000000000",
+            Message::Other(frame("100#000000000000"))
+        ),
+        (
+            "7E5#0400000000000000",
+            Message::Other(frame("7E5#0400000000000000"))
+        ),
+    ]
+}
+
+#[test]
+fn golden_messages_both_ways() {
+    for (text, message) in sdo_messages().into_iter().chain(other_messages()) {
+        assert_eq!(message.to_frame().to_string(), text);
+        assert_eq!(Message::parse(&frame(text)), Ok(message), "{text}");
+    }
+}
+
+#[test]
+fn golden_pdo_parameters() {
+    let tpdo1 = CommunicationId::from_u32(0x4000_0180 + 1);
+    assert!(tpdo1.valid && !tpdo1.remote);
+    assert_eq!(tpdo1.id.raw(), 0x181);
+    assert!(!CommunicationId::from_u32(0xC000_0281).valid);
+    assert_eq!(
+        TransmissionType::from_u8(0xFF),
+        TransmissionType::ProfileEvent
+    );
+    assert_eq!(CobId::SYNC.get(), 0x080);
+}
+
+#[test]
+fn the_end_of_errors_is_told_apart() {
+    let parse = |text| Emergency::parse(&frame(text)).unwrap();
+    assert!(parse("081#0000000000000000").is_reset());
+    let error = parse("0FF#06FF800102030405");
+    assert!(!error.is_reset());
+    assert_eq!(error.node, node(127));
+    assert_eq!(error.error, DeviceError::NEGATIVE_LIMIT);
+    assert_eq!((error.register, error.vendor), (0x80, [1, 2, 3, 4, 5]));
+}
+
+#[test]
+fn another_length_and_another_service_are_refused() {
+    let length = |layer, expected, got| {
+        Err(MessageError::Length {
+            layer,
+            expected,
+            got,
+        })
+    };
+    for (text, error) in [
+        ("581#4B416000400100", length(Layer::SdoAnswer, 8, 7)),
+        ("601#", length(Layer::SdoRequest, 8, 0)),
+        ("701#0500", length(Layer::Heartbeat, 1, 2)),
+        ("080#0000", length(Layer::Sync, 0, 2)),
+        ("081#11862000", length(Layer::Emergency, 8, 4)),
+        ("000#", length(Layer::Nmt, 2, 0)),
+    ] {
+        assert_eq!(Message::parse(&frame(text)), error, "{text}");
+    }
+    let other = frame("581#4B41600040010000");
+    let got = other.id();
+    let id = |layer, expected| MessageError::Id {
+        layer,
+        expected,
+        got,
+    };
+    assert_eq!(Nmt::parse(&other), Err(id(Layer::Nmt, "000")));
+    assert_eq!(Sync::parse(&other), Err(id(Layer::Sync, "080")));
+    assert_eq!(
+        Emergency::parse(&other),
+        Err(id(Layer::Emergency, "081 to 0FF"))
+    );
+    assert_eq!(
+        Heartbeat::parse(&other),
+        Err(id(Layer::Heartbeat, "701 to 77F"))
+    );
+    assert_eq!(
+        Request::parse(&other),
+        Err(id(Layer::SdoRequest, "601 to 67F"))
+    );
+    // A 29-bit identifier with the same number is no message of CANopen.
+    let extended = CanFrame::new(ExtendedId::new(0x581).unwrap(), other.data()).unwrap();
+    assert!(matches!(
+        Answer::parse(&extended),
+        Err(MessageError::Id { .. })
+    ));
+    assert_eq!(Message::parse(&extended), Ok(Message::Other(extended)));
+}
+
+#[test]
+fn a_remote_frame_is_no_message() {
+    let id = CobId::new(0x701).unwrap();
+    let guard = CanFrame::remote(id, 1).unwrap();
+    let layer = Layer::Heartbeat;
+    assert_eq!(
+        Heartbeat::parse(&guard),
+        Err(MessageError::Remote { layer })
+    );
+    assert_eq!(Message::parse(&guard), Ok(Message::Other(guard)));
+}
+
+proptest! {
+    #[test]
+    fn any_frame_is_a_message_or_an_error(frame in any_frame()) {
+        if let Ok(message) = Message::parse(&frame) {
+            prop_assert_eq!(Message::parse(&message.to_frame()), Ok(message));
+        }
+    }
+
+    #[test]
+    fn any_data_on_a_service_is_a_message_or_an_error(
+        base in prop::sample::select(&[0_u16, 0x080, 0x100, 0x180, 0x200, 0x480, 0x500, 0x580, 0x600, 0x700][..]),
+        id in 0_u16..0x80,
+        data in prop::collection::vec(any::<u8>(), 0..=8),
+    ) {
+        let frame = CanFrame::new(CobId::new(base + id).unwrap(), &data).unwrap();
+        if let Ok(message) = Message::parse(&frame) {
+            let again = message.to_frame();
+            prop_assert_eq!(again.id(), frame.id());
+            prop_assert_eq!(again.dlc(), frame.dlc());
+            prop_assert_eq!(Message::parse(&again), Ok(message));
+        }
+    }
+}
