@@ -64,6 +64,8 @@ pub struct SweepReport {
     pub duration_s: f64,
     /// Range over time.
     pub mean_deg_s: f64,
+    /// Turns of the lidar in that time; none where its speed is not known.
+    pub frames: Option<f64>,
 }
 
 /// How the clocks and the angle were joined.
@@ -166,10 +168,11 @@ impl Scan {
             rows.push((
                 "sweep",
                 format!(
-                    "{:.3} to {:.3} deg in {:.3} s: cruise {:.3}, mean {:.3} deg/s",
+                    "{:.3} to {:.3} deg in {:.3} s, {}\ncruise {:.3}, mean {:.3} deg/s",
                     sweep.from_deg,
                     sweep.to_deg,
                     sweep.duration_s,
+                    frames(sweep.frames),
                     sweep.cruise_deg_s,
                     sweep.mean_deg_s
                 ),
@@ -207,6 +210,12 @@ impl Scan {
     }
 }
 
+fn frames(frames: Option<f64>) -> String {
+    frames.map_or("lidar speed unknown".to_owned(), |n| {
+        format!("{n:.1} frames")
+    })
+}
+
 fn table(rows: Vec<(&'static str, String)>) -> String {
     let mut table = Table::new();
     table.load_style(NOTHING);
@@ -216,11 +225,13 @@ fn table(rows: Vec<(&'static str, String)>) -> String {
     if let Some(names) = table.column_mut(0) {
         names.set_cell_alignment(CellAlignment::Right);
     }
-    table.to_string()
+    table.trim_fmt()
 }
 
-impl From<&scanner::sweeps::Sweep> for SweepReport {
-    fn from(sweep: &scanner::sweeps::Sweep) -> Self {
+impl SweepReport {
+    /// The report on a sweep during which the lidar turned at `rpm`.
+    #[must_use]
+    pub fn new(sweep: &scanner::sweeps::Sweep, rpm: Option<f64>) -> Self {
         let duration_s = (sweep.end - sweep.start).as_secs_f64();
         Self {
             from_deg: sweep.from.0,
@@ -228,6 +239,7 @@ impl From<&scanner::sweeps::Sweep> for SweepReport {
             cruise_deg_s: sweep.cruise.0,
             duration_s,
             mean_deg_s: (sweep.to.0 - sweep.from.0) / duration_s,
+            frames: rpm.map(|rpm| duration_s * rpm / 60.0),
         }
     }
 }

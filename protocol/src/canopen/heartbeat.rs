@@ -3,7 +3,7 @@
 //!
 //! Node guarding, the older way with remote frames, is left out: CiA 301 advises against it.
 
-use units::{Span, Stamp};
+use units::{Host, Span, Stamp};
 
 use super::cob_id::{Channel, NodeId};
 use super::error::{Layer, MessageError};
@@ -73,7 +73,7 @@ impl ConsumerEntry {
 
 /// What a heartbeat, or its absence, says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HeartbeatEvent<C> {
+pub enum HeartbeatEvent {
     /// The node has just started: what it was told before, it has forgotten.
     BootUp,
     /// The node is in another state than before; `from` is `None` at the first heartbeat, and at the first after a loss.
@@ -85,23 +85,23 @@ pub enum HeartbeatEvent<C> {
     },
     /// No heartbeat for longer than the limit.
     Lost {
-        /// When the last one came.
-        last: Stamp<C>,
+        /// Since the last one.
+        silence: Span,
     },
 }
 
-/// Listens to a node's heartbeat. Time is the caller's, in any clock.
+/// Listens to a node's heartbeat.
 ///
 /// It expects nothing before the first heartbeat, as CiA 301 has it: whether a node is there at all is asked otherwise.
 #[derive(Clone, Copy, Debug)]
-pub struct HeartbeatConsumer<C> {
+pub struct HeartbeatConsumer {
     node: NodeId,
     limit: Span,
     state: Option<NmtState>,
-    last: Option<Stamp<C>>,
+    last: Option<Stamp<Host>>,
 }
 
-impl<C> HeartbeatConsumer<C> {
+impl HeartbeatConsumer {
     /// Listens to `node`, which is lost when it has been silent for `limit` (more than its producer time, 1017).
     #[must_use]
     pub const fn new(node: NodeId, limit: Span) -> Self {
@@ -120,7 +120,7 @@ impl<C> HeartbeatConsumer<C> {
     }
 
     /// Takes any frame of the bus; those of others do nothing.
-    pub fn handle_frame(&mut self, frame: &CanFrame, now: Stamp<C>) -> Option<HeartbeatEvent<C>> {
+    pub fn handle_frame(&mut self, frame: &CanFrame, now: Stamp<Host>) -> Option<HeartbeatEvent> {
         let heartbeat = Heartbeat::parse(frame).ok()?;
         if heartbeat.node != self.node {
             return None;
@@ -137,26 +137,27 @@ impl<C> HeartbeatConsumer<C> {
 
     /// When the node is lost, unless a heartbeat comes.
     #[must_use]
-    pub fn poll_timeout(&self) -> Option<Stamp<C>> {
+    pub fn poll_timeout(&self) -> Option<Stamp<Host>> {
         self.last.map(|last| last.saturating_add(self.limit))
     }
 
     /// Whether the node is lost at `now`; told once.
-    pub fn handle_timeout(&mut self, now: Stamp<C>) -> Option<HeartbeatEvent<C>> {
+    pub fn handle_timeout(&mut self, now: Stamp<Host>) -> Option<HeartbeatEvent> {
         let last = self.last?;
         if now < last.saturating_add(self.limit) {
             return None;
         }
         self.last = None;
         self.state = None;
-        Some(HeartbeatEvent::Lost { last })
+        Some(HeartbeatEvent::Lost {
+            silence: now.saturating_since(last),
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use units::Host;
 
     fn at(ms: i64) -> Stamp<Host> {
         Stamp::from_nanos(ms * 1_000_000)
@@ -200,7 +201,9 @@ mod tests {
         assert_eq!(consumer.handle_timeout(at(209)), None);
         assert_eq!(
             consumer.handle_timeout(at(210)),
-            Some(HeartbeatEvent::Lost { last: at(110) })
+            Some(HeartbeatEvent::Lost {
+                silence: Span::from_millis(100)
+            })
         );
         assert_eq!(
             (consumer.handle_timeout(at(300)), consumer.state()),

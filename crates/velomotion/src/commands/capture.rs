@@ -152,18 +152,17 @@ fn headline(setup: &Setup) -> Vec<String> {
         plan.speed.0,
         trim(setup.axis.gearing.rate(plan.speed).0)
     ));
+    let shape = if plan.triangle {
+        format!("too short to cruise, peak {:.2} deg/s", plan.cruise.0)
+    } else {
+        format!("{:.3} s of cruise", plan.cruising.as_secs_f64())
+    };
     lines.push(format!(
-        "sweep {} to {} deg in {:.3} s at {} deg/s2: {}, mean {:.2} deg/s",
+        "sweep {} to {} deg in {:.3} s: {shape}, ramps of {} deg/s2",
         trim(plan.from.0),
         trim(plan.to.0),
         plan.duration.as_secs_f64(),
         trim(setup.axis.gearing.acceleration(plan.acceleration).0),
-        if plan.triangle {
-            format!("peak {:.2} deg/s, too short to cruise", plan.cruise.0)
-        } else {
-            format!("{:.3} s of cruise", plan.cruising.as_secs_f64())
-        },
-        plan.mean.0
     ));
     lines
 }

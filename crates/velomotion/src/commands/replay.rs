@@ -128,7 +128,7 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
         sweeps: alignment
             .sweeps
             .iter()
-            .map(report::SweepReport::from)
+            .map(|sweep| report::SweepReport::new(sweep, stats.rpm))
             .collect(),
         sync: sync(&alignment),
         output: output.display().to_string(),

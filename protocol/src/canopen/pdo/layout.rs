@@ -227,6 +227,8 @@ impl Layout {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
     use super::*;
     use crate::epos2::objects::{MODE_DISPLAY, POSITION_ACTUAL, STATUSWORD, TIMESTAMP};
     use proptest::prelude::*;
@@ -329,7 +331,8 @@ mod tests {
             let layout = Layout::new(&entries).unwrap();
             let data = layout.pack(&values).unwrap();
             prop_assert_eq!(data.len(), layout.len());
-            prop_assert_eq!(layout.unpack(&data).unwrap().as_slice(), values);
+            let unpacked = layout.unpack(&data).unwrap();
+            prop_assert_eq!(unpacked.as_slice(), values);
         }
 
         #[test]
@@ -337,6 +340,4 @@ mod tests {
             prop_assert_eq!(Mapping::from_u32(value).to_u32(), value);
         }
     }
-
-    extern crate std;
 }

@@ -4,7 +4,7 @@
 //! most its object, so a late one cannot be told from the answer to the same question asked again: see
 //! [`SdoClient::owed`].
 
-use units::{Span, Stamp};
+use units::{Host, Span, Stamp};
 
 use super::outcome::{Handled, Outcome, StartError, TransferError, Value};
 use super::step::{Next, Step, Transfer, advance};
@@ -14,9 +14,9 @@ use crate::canopen::frame::CanFrame;
 use crate::epos2::Bounded;
 use crate::epos2::objects::{Address, Scalar};
 
-/// The client of one node's SDO server, in any clock `C`, for objects of up to `N` bytes (at least 4).
+/// The client of one node's SDO server, for objects of up to `N` bytes (at least 4).
 #[derive(Clone, Debug)]
-pub struct SdoClient<C, const N: usize> {
+pub struct SdoClient<const N: usize> {
     node: NodeId,
     timeout: Span,
     transfer: Option<Transfer<N>>,
@@ -24,12 +24,12 @@ pub struct SdoClient<C, const N: usize> {
     abort: Option<Request>,
     request: Option<Request>,
     /// From when the last request was sent.
-    deadline: Option<Stamp<C>>,
+    deadline: Option<Stamp<Host>>,
     outcome: Option<Outcome<N>>,
     owed: Option<Address>,
 }
 
-impl<C, const N: usize> SdoClient<C, N> {
+impl<const N: usize> SdoClient<N> {
     /// The client of `node`, which is given `timeout` for each answer.
     #[must_use]
     pub const fn new(node: NodeId, timeout: Span) -> Self {
@@ -132,7 +132,7 @@ impl<C, const N: usize> SdoClient<C, N> {
     }
 
     /// The next frame to send; `now` is when that is done. The time for the answer begins.
-    pub fn poll_transmit(&mut self, now: Stamp<C>) -> Option<CanFrame> {
+    pub fn poll_transmit(&mut self, now: Stamp<Host>) -> Option<CanFrame> {
         let message = self.abort.take().or_else(|| {
             let request = self.request.take()?;
             self.deadline = Some(now.saturating_add(self.timeout));
@@ -143,12 +143,12 @@ impl<C, const N: usize> SdoClient<C, N> {
 
     /// When [`SdoClient::handle_timeout`] wants to be called, if no answer comes.
     #[must_use]
-    pub const fn poll_timeout(&self) -> Option<Stamp<C>> {
+    pub const fn poll_timeout(&self) -> Option<Stamp<Host>> {
         self.deadline
     }
 
     /// Gives the transfer up if its time is over.
-    pub fn handle_timeout(&mut self, now: Stamp<C>) {
+    pub fn handle_timeout(&mut self, now: Stamp<Host>) {
         if self.deadline.is_none_or(|deadline| now < deadline) {
             return;
         }

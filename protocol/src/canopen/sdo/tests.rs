@@ -13,7 +13,7 @@ use crate::epos2::CommError;
 use crate::epos2::objects::{self, Address, Scalar};
 
 const ROOM: usize = 40;
-type Client = SdoClient<Host, ROOM>;
+type Client = SdoClient<ROOM>;
 
 const NAME: Address = objects::DEVICE_NAME;
 const STATUS: Address = objects::STATUSWORD.address;
@@ -586,7 +586,8 @@ proptest! {
         let mut client = client();
         client.read(NAME).unwrap();
         let outcome = Server::new(&data, expedite, announce).serve(&mut client);
-        prop_assert_eq!(outcome.result.unwrap().bytes.as_slice(), &data);
+        let value = outcome.result.unwrap();
+        prop_assert_eq!(value.bytes.as_slice(), &data);
         client.write(NAME, &data).unwrap();
         let mut server = Server::new(&[], expedite, announce);
         prop_assert!(server.serve(&mut client).result.is_ok());
