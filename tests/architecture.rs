@@ -30,11 +30,14 @@ const CONFINED: [(&str, &[&str]); 9] = [
     ("las", &["cloud"]),
 ];
 
-/// Direct normal dependencies of every member, by name.
-fn direct_dependencies() -> BTreeMap<String, BTreeSet<String>> {
+/// What `sim` must never see, not even in its tests: it states the geometry its own way (invariant 3).
+const STRANGERS_TO_SIM: [&str; 4] = ["lidar", "drive", "scanner", "cloud"];
+
+/// Direct dependencies of every member, by name, along these kinds of edges.
+fn direct_dependencies(edges: &str) -> BTreeMap<String, BTreeSet<String>> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let output = Command::new(cargo)
-        .args(["tree", "--workspace", "--offline", "--edges", "normal"])
+        .args(["tree", "--workspace", "--offline", "--edges", edges])
         .args(["--depth", "1", "--prefix", "depth", "--format", " {p}"])
         .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
         .output()
@@ -66,7 +69,7 @@ fn direct_dependencies() -> BTreeMap<String, BTreeSet<String>> {
 
 #[test]
 fn crates_depend_only_on_what_the_table_allows() {
-    let tree = direct_dependencies();
+    let tree = direct_dependencies("normal,build");
     let members: BTreeSet<&str> = tree.keys().map(String::as_str).collect();
     for (name, allowed) in MAY_DEPEND_ON {
         let dependencies = &tree[name];
@@ -87,8 +90,21 @@ fn crates_depend_only_on_what_the_table_allows() {
 }
 
 #[test]
+fn the_simulator_and_the_scanner_stay_strangers_even_in_tests() {
+    let tree = direct_dependencies("normal,build,dev");
+    for stranger in STRANGERS_TO_SIM {
+        assert!(!tree["sim"].contains(stranger), "sim sees {stranger}");
+    }
+    for (member, strangers) in [("lidar", ["drive", "sim"]), ("drive", ["lidar", "sim"])] {
+        for stranger in strangers {
+            assert!(!tree[member].contains(stranger), "{member} sees {stranger}");
+        }
+    }
+}
+
+#[test]
 fn libraries_stay_in_the_crates_they_are_for() {
-    let tree = direct_dependencies();
+    let tree = direct_dependencies("normal,build");
     for (library, allowed) in CONFINED {
         for (member, dependencies) in &tree {
             assert!(

@@ -1,6 +1,7 @@
 //! From the devices' bytes to the cloud, in virtual time, held against what truly happened.
 
-use units::{DegPerS, DegPerS2};
+use units::{DegPerS, DegPerS2, Host, Span, Stamp};
+use velomotion::session::SessionError;
 use velomotion_tests::capture::{Captured, Setting};
 
 /// The card's scan: 45 degrees at 56.25 deg/s in a hall no surface of which is farther than 20 m.
@@ -61,6 +62,7 @@ fn a_scan_across_the_hour_is_whole() {
     let mut setting = Setting::default();
     // Homing takes some seconds: the hour turns during the sweep for some of these starts, around it for the others.
     let usual_points = usual.cloud().len() as i64;
+    let mut turned_inside = 0;
     for before in [2_000, 3_000, 3_500, 4_000, 4_500, 5_000] {
         setting.lidar_clock_us = 3_600_000_000 - before * 1_000;
         let captured = Captured::new(setting);
@@ -73,8 +75,16 @@ fn a_scan_across_the_hour_is_whole() {
             (error.points as i64 - usual_points).abs() < 3_000,
             "{before}: {error:?}"
         );
-        assert_eq!(captured.scan().0.contents.lost_packets, 0);
+        let (scan, cloud) = captured.scan();
+        assert_eq!(scan.contents.lost_packets, 0);
+        let hour = |t: &units::Stamp<units::Lidar>| t.as_nanos().div_euclid(3_600_000_000_000);
+        let first = cloud.device_time().first().map(hour);
+        turned_inside += usize::from(first != cloud.device_time().last().map(hour));
     }
+    assert!(
+        turned_inside > 0,
+        "no sweep was across the hour: the test is blind"
+    );
 }
 
 #[test]
@@ -111,5 +121,47 @@ fn one_way_sweeps_leave_the_way_back_out() {
         (2 * 180_000..520_000).contains(&cloud.len()),
         "{}",
         cloud.len()
+    );
+}
+
+/// Wherever Ctrl-C falls, the axis comes to rest, is disabled, and stays where it is; a sweep that had begun becomes a cloud.
+#[test]
+fn an_interrupted_capture_stops_the_axis_and_keeps_what_there_was() {
+    let mut clouds = 0;
+    for after_ms in (1..3_200).step_by(97) {
+        let mut setting = Setting::default();
+        setting.wish.speed = DegPerS(30.0);
+        setting.wish.acceleration = DegPerS2(500.0);
+        setting.interrupt_after = Some(Span::from_millis(after_ms));
+        let (captured, ended) = Captured::run(setting);
+        assert!(
+            matches!(ended, Err(SessionError::Interrupted)),
+            "{after_ms} ms: {ended:?}"
+        );
+        let truth = captured.truth();
+        let angle = |at: Stamp<Host>| truth.tilt_deg_at(at).unwrap();
+        let end = truth.end() - Span::from_millis(1);
+        assert_eq!(
+            angle(end),
+            angle(end - Span::from_millis(10)),
+            "{after_ms} ms: still moves"
+        );
+        assert!(captured.brake_is_set(), "{after_ms} ms: no brake");
+        if let Ok((scan, cloud)) = captured.try_scan() {
+            clouds += 1;
+            assert_eq!(scan.sweeps.len(), 1, "{after_ms} ms");
+            assert!(
+                (scan.sweeps[0].to_deg - angle(end)).abs() < 0.01,
+                "{after_ms} ms: {scan:?}"
+            );
+            assert!(
+                !cloud.is_empty() && captured.error().worst_m < 10e-3,
+                "{after_ms} ms"
+            );
+        }
+    }
+    assert!(
+        clouds > 5,
+        "no interruption fell into a sweep: the test is blind"
     );
 }

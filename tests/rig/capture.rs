@@ -13,18 +13,19 @@ use io::files::Overwrite;
 use io::log::{LogConfig, LogWriter};
 use io::port::Recorder;
 use protocol::record::{DriveLink, Record, Wire};
-use scanner::{ScanConfig, SweepPlan, TiltSource};
+use scanner::{ScanConfig, TiltSource};
 use sim::Rig;
 use sim::link::LinkModel;
 use tempfile::TempDir;
 use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
 use velomotion::commands::replay::{self, Request};
-use velomotion::config::Axis;
+use velomotion::config::{Axis, Config};
 use velomotion::motion::{self, Wish};
 use velomotion::output::Target;
 use velomotion::report::Scan;
-use velomotion::session::Session;
-use velomotion::{devices, simulated};
+use velomotion::session::{Session, SessionError};
+use velomotion::setup::scan_config;
+use velomotion::{Failure, devices, simulated};
 
 use crate::port::{Arrived, Links, VirtualPort};
 
@@ -39,6 +40,8 @@ pub struct Setting {
     pub start: Stamp<Host>,
     /// The lidar's clock then, microseconds past the hour.
     pub lidar_clock_us: u32,
+    /// How long after the begin the user presses Ctrl-C.
+    pub interrupt_after: Option<Span>,
 }
 
 impl Default for Setting {
@@ -61,6 +64,7 @@ impl Default for Setting {
             },
             start: Stamp::from_nanos(1_795_226_733_000_000_000),
             lidar_clock_us: 1_234_567_890,
+            interrupt_after: None,
         }
     }
 }
@@ -83,12 +87,19 @@ struct Owned {
 }
 
 impl Captured {
-    /// Runs the capture.
+    /// Runs the capture, which must come to its end.
     #[must_use]
     pub fn new(setting: Setting) -> Self {
+        let (captured, ended) = Self::run(setting);
+        ended.unwrap();
+        captured
+    }
+
+    /// Runs the capture, whatever it comes to.
+    pub fn run(setting: Setting) -> (Self, Result<(), SessionError>) {
         let axis = devices::axis(&Axis::default()).unwrap();
         let steps = motion::steps(&setting.wish, &axis, Degrees(0.0)).unwrap();
-        let config = scan_config(&setting.wish);
+        let config = scan_config(&Config::default(), "sim", true, &setting.wish, &steps);
         let mut rig = simulated::rig(&axis, &config, setting.start);
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;
         let port = VirtualPort::new(Rig::new(rig), setting.start, setting.links);
@@ -111,13 +122,13 @@ impl Captured {
             }
         });
         let client = Client::new(axis);
-        let mut session = Session::new(
-            client,
-            recorder,
-            |recorder| recorder.port().now(),
-            Arc::new(AtomicBool::new(false)),
-        );
-        motion::run(&mut session, &steps, &mut |_| {}).unwrap();
+        let interrupt = Arc::new(AtomicBool::new(false));
+        if let Some(after) = setting.interrupt_after {
+            port.interrupt_at(setting.start + after, Arc::clone(&interrupt));
+        }
+        let now = |recorder: &Recorder<VirtualPort, _>| recorder.port().now();
+        let mut session = Session::new(client, recorder, now, interrupt);
+        let ended = motion::run(&mut session, &steps, &mut |_| {});
         drop(session);
         // The lidar goes on for a moment, as in a capture.
         let mut tail = port.clone();
@@ -136,12 +147,13 @@ impl Captured {
             .iter()
             .filter(|p| p.datagram.port == sim::DATA_PORT)
             .count() as u64;
-        Self {
+        let captured = Self {
             folder,
             records,
             data_packets,
             truth,
-        }
+        };
+        (captured, ended)
     }
 
     /// The log file.
@@ -162,6 +174,34 @@ impl Captured {
         self.data_packets
     }
 
+    /// Whether the last statusword in the log says that the power stage is off, so that the brake holds.
+    #[must_use]
+    pub fn brake_is_set(&self) -> bool {
+        let mut listener = drive::Listener::new(1);
+        let mut last = None;
+        let mut recording = io::recording::Recording::open(self.log()).unwrap();
+        while let Some(record) = recording.next_record().unwrap() {
+            if let Wire::Drive {
+                link,
+                direction,
+                frame,
+            } = record.wire
+            {
+                listener.observe(link, direction, frame, record.host, &mut |seen| {
+                    if let drive::Observation::Statusword { value, .. } = seen {
+                        last = drive::cia402::State::from_statusword(value);
+                    }
+                });
+            }
+        }
+        // An axis that was interrupted before its power stage was first on has nothing to set.
+        use drive::cia402::State;
+        !matches!(
+            last,
+            Some(State::OperationEnabled | State::QuickStopActive | State::FaultReactionEnabled)
+        )
+    }
+
     /// What truly happened.
     #[must_use]
     pub fn truth(&self) -> &sim::Truth {
@@ -177,14 +217,23 @@ impl Captured {
     /// The program's report and the cloud.
     #[must_use]
     pub fn scan(&self) -> (Scan, Points) {
+        self.try_scan().unwrap()
+    }
+
+    /// The program's report and the cloud, if the log holds one.
+    ///
+    /// # Errors
+    /// Where it does not.
+    pub fn try_scan(&self) -> Result<(Scan, Points), Failure> {
         let mut points = Points::new(Fields::ALL);
         let request = Request {
             recording: &self.log(),
             tilt: TiltSource::Log,
             truth: None,
+            interrupt: &AtomicBool::new(false),
         };
-        let scan = replay::scan(&request, &mut points, Path::new("memory")).unwrap();
-        (scan, points)
+        let scan = replay::scan(&request, &mut points, Path::new("memory"))?;
+        Ok((scan, points))
     }
 
     /// How far the cloud is from what truly happened.
@@ -212,25 +261,10 @@ impl Captured {
             recording: &self.log(),
             tilt,
             truth: None,
+            interrupt: &AtomicBool::new(false),
         };
         replay::make(&request, Target::open(&path, false).unwrap()).unwrap();
         path
-    }
-}
-
-fn scan_config(wish: &Wish) -> ScanConfig {
-    ScanConfig {
-        device: "sim".to_owned(),
-        simulated: true,
-        sweep: Some(SweepPlan {
-            from_deg: wish.from.0,
-            to_deg: wish.to.0,
-            cruise_deg_s: wish.speed.0,
-            accel_deg_s2: wish.acceleration.0,
-            sweeps: wish.sweeps,
-            both_ways: wish.both_ways,
-        }),
-        ..ScanConfig::default()
     }
 }
 

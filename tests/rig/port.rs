@@ -3,6 +3,8 @@
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use io::port::{Port, PortError};
 use sim::link::{Link, LinkModel};
@@ -41,6 +43,8 @@ pub struct World {
     /// Answers on their way, in order of arrival.
     incoming: VecDeque<(Stamp<Host>, Vec<u8>)>,
     packets: Vec<Arrived>,
+    /// When the user presses Ctrl-C, and the flag that it sets.
+    interrupt: Option<(Stamp<Host>, Arc<AtomicBool>)>,
 }
 
 /// The port; clones share one world.
@@ -59,6 +63,7 @@ impl VirtualPort {
             lidar: Link::new(links.lidar, links.seed + 2),
             incoming: VecDeque::new(),
             packets: Vec::new(),
+            interrupt: None,
         })))
     }
 
@@ -66,6 +71,11 @@ impl VirtualPort {
     #[must_use]
     pub fn now(&self) -> Stamp<Host> {
         self.0.borrow().now
+    }
+
+    /// Sets `flag` when the time comes to `at`.
+    pub fn interrupt_at(&self, at: Stamp<Host>, flag: Arc<AtomicBool>) {
+        self.0.borrow_mut().interrupt = Some((at, flag));
     }
 
     /// The world's end: its packets in order of arrival and what truly happened.
@@ -80,6 +90,9 @@ impl VirtualPort {
 impl World {
     /// Brings the devices to `at` and collects what they sent.
     fn advance(&mut self, at: Stamp<Host>) {
+        if let Some((_, flag)) = self.interrupt.take_if(|(when, _)| *when <= at) {
+            flag.store(true, Ordering::Relaxed);
+        }
         self.rig.advance(at);
         while let Some(datagram) = self.rig.poll_datagram() {
             let host = self.lidar.deliver(datagram.at);

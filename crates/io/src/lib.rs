@@ -4,6 +4,7 @@
 //! decided elsewhere. Nothing here decodes a lidar packet, speaks to a drive or knows a scan. Signals, arguments and
 //! printing belong to the binary.
 
+pub mod can;
 pub mod clock;
 pub mod discover;
 pub mod files;

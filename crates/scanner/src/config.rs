@@ -50,7 +50,7 @@ pub struct SweepPlan {
     pub from_deg: f64,
     /// Angle where sweeps end, degrees.
     pub to_deg: f64,
-    /// Cruise speed as commanded in whole rpm, degrees per second.
+    /// Speed as commanded in whole rpm, degrees per second; a sweep too short for it does not reach it.
     pub cruise_deg_s: f64,
     /// Acceleration as commanded in whole rpm/s, degrees per second squared.
     pub accel_deg_s2: f64,
@@ -111,12 +111,15 @@ impl AxisConfig {
 }
 
 impl SweepPlan {
-    /// Whether a move from `from` towards `target` is one of the plan's sweeps.
+    /// Whether a move from `from` towards `target` is a sweep of the plan: along it, or `back`.
     #[must_use]
-    pub fn is_sweep(&self, from: Degrees, target: Degrees, tolerance_deg: f64) -> bool {
+    pub fn is_sweep(&self, from: Degrees, target: Degrees, back: bool, tolerance_deg: f64) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= tolerance_deg;
-        let along = near(from.0, self.from_deg) && near(target.0, self.to_deg);
-        let back = near(from.0, self.to_deg) && near(target.0, self.from_deg);
-        along || (self.both_ways && back)
+        let (start, end) = if back {
+            (self.to_deg, self.from_deg)
+        } else {
+            (self.from_deg, self.to_deg)
+        };
+        near(from.0, start) && near(target.0, end)
     }
 }

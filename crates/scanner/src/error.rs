@@ -31,6 +31,12 @@ pub enum ScanError {
         /// Last packet.
         recording_to_s: f64,
     },
+    /// A table of angles with a number that cannot be.
+    #[error("tilt angles: row {row}: expected seconds within +-1e10 and degrees within +-3600")]
+    TableRange {
+        /// Row, counted from 1 over the rows with numbers.
+        row: usize,
+    },
     /// A table of angles that goes back in time.
     #[error("tilt angles: row {row} is not later than the row before it")]
     TableOrder {

@@ -40,7 +40,7 @@ pub fn angle_samples(polls: &[ShaftSample], gearing: Gearing) -> Vec<AngleSample
 fn sample(poll: &ShaftSample, gearing: Gearing) -> AngleSample {
     let half = poll.answer.saturating_since(poll.request).half();
     AngleSample {
-        host: poll.request + half,
+        host: poll.request.saturating_add(half),
         bound: half,
         angle: gearing.angle(poll.position),
     }
@@ -61,7 +61,7 @@ impl Hole {
         let (last, last_but_one) = (before.next()?, before.next()?);
         let (first, second) = (after.next()?, after.next()?);
         Some(Self {
-            length: first.host - last.host,
+            length: first.host.saturating_since(last.host),
             speed_before: speed(last_but_one, last),
             speed_after: speed(first, second),
         })
@@ -81,7 +81,7 @@ impl Hole {
 
 /// Degrees per second between two samples; zero between two of one instant.
 fn speed(a: &AngleSample, b: &AngleSample) -> f64 {
-    let time = (b.host - a.host).as_secs_f64();
+    let time = b.host.saturating_since(a.host).as_secs_f64();
     if time > 0.0 {
         (b.angle.0 - a.angle.0) / time
     } else {

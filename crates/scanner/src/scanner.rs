@@ -6,7 +6,7 @@
 
 use cloud::mount::{Mount, Tilt};
 use cloud::{Fields, Point, Points, Sink, SinkError};
-use drive::record::{Record, Wire};
+use drive::record::{DriveLink, Record, Wire};
 use drive::{Listener, Observation, ShaftSample};
 use lidar::{Decoder, Firing, Options, Stats, Timekeeper};
 use units::{Degrees, Gearing, Host, Metres, Stamp};
@@ -27,6 +27,7 @@ pub struct Survey {
     arrivals: Vec<Arrival>,
     polls: Vec<ShaftSample>,
     moves: MoveWatch,
+    link: Option<DriveLink>,
 }
 
 /// What the first pass found: enough to place any firing.
@@ -58,6 +59,7 @@ impl Survey {
             arrivals: Vec::new(),
             polls: Vec::new(),
             moves: MoveWatch::new(gearing),
+            link: None,
         })
     }
 
@@ -68,7 +70,7 @@ impl Survey {
                 if let Some(timing) = self.timekeeper.packet(record.host, payload) {
                     self.arrivals.push(Arrival {
                         device: timing.first_firing,
-                        host: record.host - timing.fill,
+                        host: record.host.saturating_add(-timing.fill),
                     });
                 }
             }
@@ -77,6 +79,7 @@ impl Survey {
                 direction,
                 frame,
             } => {
+                self.link = Some(link);
                 let (polls, moves) = (&mut self.polls, &mut self.moves);
                 self.listener.observe(
                     link,
@@ -96,6 +99,12 @@ impl Survey {
                 );
             }
         }
+    }
+
+    /// How the drive is attached and how many shaft samples there are; `None` without traffic of a drive.
+    #[must_use]
+    pub fn drive(&self) -> Option<(DriveLink, u64)> {
+        self.link.map(|link| (link, self.polls.len() as u64))
     }
 
     /// Solves for clock, trajectory and sweeps.

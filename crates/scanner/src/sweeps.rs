@@ -97,16 +97,31 @@ impl MoveWatch {
             .skip(1)
             .map(|next| next.commanded)
             .chain([Stamp::from_nanos(i64::MAX)]);
-        self.moves
+        let moved = self
+            .moves
             .iter()
             .zip(ends)
-            .filter_map(|(command, end)| sweep(command, end, samples, rest))
-            .filter(|(sweep, target)| {
-                plan.is_none_or(|plan| plan.is_sweep(sweep.from, *target, END_TOLERANCE_DEG))
-            })
-            .map(|(sweep, _)| sweep)
-            .collect()
+            .filter_map(|(command, end)| sweep(command, end, samples, rest));
+        match plan {
+            None => moved.map(|(sweep, _)| sweep).collect(),
+            Some(plan) => planned(moved, plan),
+        }
     }
+}
+
+/// The plan's sweeps among the moves: the first goes along, with `both_ways` the next one back, and so on, and no more than were
+/// planned. So the way to the starting place is none, though it may go from end to end.
+fn planned(moved: impl Iterator<Item = (Sweep, Degrees)>, plan: &SweepPlan) -> Vec<Sweep> {
+    let mut sweeps: Vec<Sweep> = Vec::new();
+    for (sweep, target) in moved {
+        let back = plan.both_ways && sweeps.len() % 2 == 1;
+        if (sweeps.len() as u64) < u64::from(plan.sweeps)
+            && plan.is_sweep(sweep.from, target, back, END_TOLERANCE_DEG)
+        {
+            sweeps.push(sweep);
+        }
+    }
+    sweeps
 }
 
 /// The motion between `command` and `end`, with its target; `None` where the axis did not move.
@@ -158,7 +173,7 @@ fn cruise(moving: &[AngleSample], from: Degrees, to: Degrees) -> DegPerS {
     let points = || {
         moving.iter().filter(middle).map(|s| {
             (
-                (s.host - origin.host).as_secs_f64(),
+                s.host.saturating_since(origin.host).as_secs_f64(),
                 s.angle.0 - origin.angle.0,
             )
         })
@@ -267,6 +282,7 @@ mod tests {
         assert_eq!(axis.watch.sweeps(&axis.samples, Some(&PLAN)).len(), 1);
         let both_ways = SweepPlan {
             both_ways: true,
+            sweeps: 2,
             ..PLAN
         };
         assert_eq!(axis.watch.sweeps(&axis.samples, Some(&both_ways)).len(), 2);
@@ -287,6 +303,24 @@ mod tests {
         axis.command(-45.0, 0x1F);
         axis.travel(-25.0, 45.0);
         assert!(axis.watch.sweeps(&axis.samples, Some(&PLAN)).is_empty());
+    }
+
+    #[test]
+    fn the_approach_from_the_far_end_is_no_sweep_even_both_ways() {
+        let plan = SweepPlan {
+            from_deg: -45.0,
+            to_deg: 0.0,
+            both_ways: true,
+            ..PLAN
+        };
+        let mut axis = Axis::new();
+        for way in [-45.0, 45.0, -45.0] {
+            axis.command(axis.angle + way, 0x1F);
+            axis.travel(way, 45.0);
+        }
+        let sweeps = axis.watch.sweeps(&axis.samples, Some(&plan));
+        assert_eq!(sweeps.len(), 1, "{sweeps:?}");
+        assert!(sweeps[0].cruise.0 > 0.0, "{sweeps:?}");
     }
 
     #[test]

@@ -39,14 +39,18 @@ impl AngleTable {
     /// Rows of (seconds, degrees), in strictly increasing time.
     ///
     /// # Errors
-    /// [`ScanError::NoTilt`] without rows, [`ScanError::TableOrder`] where time does not increase.
+    /// [`ScanError::NoTilt`] without rows, [`ScanError::TableRange`] for times and angles that cannot be,
+    /// [`ScanError::TableOrder`] where time does not increase.
     pub fn new(rows: Vec<(f64, f64)>) -> Result<Self, ScanError> {
         if rows.is_empty() {
             return Err(ScanError::NoTilt);
         }
+        if let Some(row) = rows.iter().position(|r| !in_range(*r)) {
+            return Err(ScanError::TableRange { row: row + 1 });
+        }
         let back = rows
             .windows(2)
-            .position(|w| matches!(w, [a, b] if b.0 <= a.0 || a.0.is_nan() || b.0.is_nan()));
+            .position(|w| matches!(w, [a, b] if b.0 <= a.0));
         match back {
             Some(row) => Err(ScanError::TableOrder { row: row + 2 }),
             None => Ok(Self { rows }),
@@ -98,6 +102,11 @@ impl AngleTable {
     }
 }
 
+/// Times from 1653 to 2286 and angles within ten turns: what is outside is a mistake, and would overflow 64 bits of nanoseconds.
+fn in_range((seconds, degrees): (f64, f64)) -> bool {
+    seconds.abs() <= 1e10 && degrees.abs() <= 3_600.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -147,6 +156,9 @@ mod tests {
         let rows = vec![(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)];
         assert_eq!(AngleTable::new(rows), Err(ScanError::TableOrder { row: 3 }));
         assert_eq!(AngleTable::new(Vec::new()), Err(ScanError::NoTilt));
-        assert!(AngleTable::new(vec![(0.0, 0.0), (f64::NAN, 0.0)]).is_err());
+        for bad in [(f64::NAN, 0.0), (9e18, 0.0), (1.0, f64::INFINITY)] {
+            let table = AngleTable::new(vec![(0.0, 0.0), bad]);
+            assert_eq!(table, Err(ScanError::TableRange { row: 2 }));
+        }
     }
 }

@@ -60,12 +60,6 @@ impl Linear {
         (!samples.is_empty()).then_some(Self { samples })
     }
 
-    /// The samples in order of time.
-    #[must_use]
-    pub fn samples(&self) -> &[AngleSample] {
-        &self.samples
-    }
-
     /// The angle at `host`; `None` before the first and after the last sample.
     #[must_use]
     pub fn angle(&self, host: Stamp<Host>) -> Option<Degrees> {
@@ -101,8 +95,8 @@ impl Linear {
 }
 
 fn between(a: &AngleSample, b: &AngleSample, host: Stamp<Host>) -> Degrees {
-    let whole = (b.host - a.host).as_nanos() as f64;
-    let part = (host - a.host).as_nanos() as f64;
+    let whole = b.host.saturating_since(a.host).as_nanos() as f64;
+    let part = host.saturating_since(a.host).as_nanos() as f64;
     Degrees(a.angle.0 + (b.angle.0 - a.angle.0) * (part / whole))
 }
 

@@ -77,8 +77,10 @@ pub struct Axis {
     pub max_deg: f64,
     /// Largest tilt speed allowed, degrees per second.
     pub max_speed_deg_s: f64,
-    /// Largest tilt acceleration allowed, degrees per second squared; a quick stop uses it.
+    /// Largest tilt acceleration allowed, degrees per second squared.
     pub max_accel_deg_s2: f64,
+    /// Deceleration of a quick stop (Ctrl-C, limit switch, fault), degrees per second squared.
+    pub quick_stop_deg_s2: f64,
     /// Digital output of the drive (1..=5) that opens the brake; absent without brake.
     pub brake_output: Option<u8>,
     /// How the axis finds its angle after power-on.
@@ -112,6 +114,7 @@ impl Default for Axis {
             max_deg: 0.0,
             max_speed_deg_s: 98.0,
             max_accel_deg_s2: 10_000.0,
+            quick_stop_deg_s2: 500.0,
             brake_output: Some(1),
             homing: Homing::default(),
         }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use drive::config::{Brake, Homing, LimitSwitches, Limits, Timing};
-use units::{DegPerS, DegPerS2, Degrees, Rpm, RpmPerS, Span};
+use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
 
 use crate::config::{Axis, Config, Device, DeviceKind};
 use crate::failure::{Failure, Kind};
@@ -93,7 +93,7 @@ pub fn axis(axis: &Axis) -> Result<drive::AxisConfig, Failure> {
         },
         max_speed: rpm(axis.max_speed_deg_s),
         max_acceleration: gearing.rpm_per_s(DegPerS2(axis.max_accel_deg_s2)),
-        quick_stop: gearing.rpm_per_s(DegPerS2(axis.max_accel_deg_s2)),
+        quick_stop: gearing.rpm_per_s(DegPerS2(axis.quick_stop_deg_s2)),
         limit_switches: LimitSwitches::default(),
         brake: axis.brake_output.map(|output| Brake {
             output,
@@ -139,10 +139,4 @@ pub fn port_path<'a>(name: &str, device: &'a Device) -> Result<&'a Path, Failure
 #[must_use]
 pub fn simulated(device: &Device) -> bool {
     device.kind == DeviceKind::Sim
-}
-
-/// Largest speed the axis may be asked for, as the drive will take it.
-#[must_use]
-pub fn max_speed(axis: &drive::AxisConfig) -> (Rpm, DegPerS) {
-    (axis.max_speed, axis.gearing.rate(axis.max_speed))
 }

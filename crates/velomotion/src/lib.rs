@@ -16,6 +16,8 @@ pub mod recording;
 pub mod recordings;
 pub mod report;
 pub mod session;
+pub mod setup;
+pub mod signals;
 pub mod simulated;
 
 pub use failure::{Failure, Kind};

@@ -8,6 +8,7 @@ use tracing_subscriber::EnvFilter;
 use velomotion::cli::{Cli, Common};
 use velomotion::commands::{self, Said};
 use velomotion::failure::Failure;
+use velomotion::progress::to_stderr;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -27,7 +28,7 @@ fn main() -> ExitCode {
         None => ExitCode::SUCCESS,
         Some(failure) => {
             let code = failure.kind.exit_code();
-            eprintln!("{:?}", miette::Report::new(failure));
+            to_stderr(&format!("{:?}", miette::Report::new(failure)));
             ExitCode::from(code)
         }
     }
@@ -48,7 +49,7 @@ fn print(common: &Common, said: Option<Said>, failure: Option<&Failure>) -> std:
         (false, _) => return Ok(()),
     };
     if stdout_taken {
-        eprintln!("{line}");
+        to_stderr(&line);
         return Ok(());
     }
     let mut stdout = std::io::stdout().lock();
@@ -75,6 +76,8 @@ fn start_log(common: &Common) {
     tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(std::io::stderr)
+        // A closed stderr must not panic in mid-sweep.
+        .log_internal_errors(false)
         .without_time()
         .with_target(false)
         .init();

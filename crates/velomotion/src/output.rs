@@ -105,6 +105,54 @@ pub fn one_for_stdout(cloud: Option<&Path>, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
+/// An older file of a name, put aside until the new one is worth more.
+pub struct Aside {
+    path: PathBuf,
+    aside: Option<PathBuf>,
+}
+
+impl Aside {
+    /// Puts `path` aside if it is there. Dropped without [`Aside::replaced`], it is put back.
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] where it cannot be renamed.
+    pub fn put(path: &Path) -> Result<Self, Failure> {
+        let mut aside = None;
+        if path.is_file() {
+            let mut name = path.as_os_str().to_owned();
+            name.push(".before");
+            std::fs::rename(path, &name).map_err(|source| {
+                file_failure(&FileError::Io {
+                    path: path.to_owned(),
+                    action: "rename",
+                    source,
+                })
+            })?;
+            aside = Some(PathBuf::from(name));
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            aside,
+        })
+    }
+
+    /// The new file is there: the older one goes.
+    pub fn replaced(mut self) {
+        if let Some(aside) = self.aside.take() {
+            // What cannot be removed stays, which loses nothing.
+            let _ = std::fs::remove_file(aside);
+        }
+    }
+}
+
+impl Drop for Aside {
+    fn drop(&mut self) {
+        if let Some(aside) = self.aside.take() {
+            let _ = std::fs::rename(aside, &self.path);
+        }
+    }
+}
+
 /// `--force` or not.
 #[must_use]
 pub fn overwrite(force: bool) -> Overwrite {

@@ -1,6 +1,6 @@
 //! What a person sees while a command works: sentences and, on a terminal, a bar with the time left. All on stderr.
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use drive::Plan;
@@ -36,22 +36,12 @@ impl Progress {
         }
     }
 
-    /// Says nothing at all.
-    #[must_use]
-    pub fn silent() -> Self {
-        Self {
-            quiet: true,
-            terminal: false,
-            sweep: None,
-        }
-    }
-
     /// One line, unless quiet.
     pub fn say(&self, line: &str) {
         if !self.quiet {
             match &self.sweep {
-                Some(sweep) if self.terminal => sweep.bar.suspend(|| eprintln!("{line}")),
-                _ => eprintln!("{line}"),
+                Some(sweep) if self.terminal => sweep.bar.suspend(|| to_stderr(line)),
+                _ => to_stderr(line),
             }
         }
     }
@@ -103,6 +93,11 @@ impl Progress {
             sweep.bar.finish_and_clear();
         }
     }
+}
+
+/// A line to stderr. Nobody may be reading any more, which is no reason to lose a scan (`eprintln!` would panic).
+pub fn to_stderr(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 impl Drop for Progress {

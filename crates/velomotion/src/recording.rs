@@ -72,7 +72,6 @@ impl Recording {
     pub fn start(
         ear: Ear,
         path: &Path,
-        overwrite: Overwrite,
         config: &ScanConfig,
         link: DriveLink,
     ) -> Result<Self, Failure> {
@@ -82,10 +81,12 @@ impl Recording {
                     Kind::BadInput,
                     format!("the configuration has no TOML: {error}"),
                 )
+                .help("see whether every number in the configuration is finite")
             })?,
             drive: Some(link),
         };
-        let writer = LogWriter::create(path, &head, overwrite).map_err(|e| log_failure(&e))?;
+        let writer =
+            LogWriter::create(path, &head, Overwrite::Refuse).map_err(|e| log_failure(&e))?;
         let log = Recorder::start(writer).map_err(|e| log_failure(&e))?;
         let stop = Arc::new(AtomicBool::new(false));
         let packets = Arc::new(AtomicU64::new(0));
@@ -130,10 +131,10 @@ impl Recording {
                 kind: Kind::Incomplete,
                 ..lidar_failure(&error)
             }),
-            Err(_) => Err(Failure::new(
-                Kind::Incomplete,
-                "the lidar's thread panicked",
-            )),
+            Err(_) => Err(
+                Failure::new(Kind::Incomplete, "the lidar's thread panicked")
+                    .help("this is a defect of the program; run with -vv and report what it says"),
+            ),
         }
     }
 }

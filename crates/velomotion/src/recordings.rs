@@ -33,12 +33,12 @@ pub fn config(path: &Path) -> Result<ScanConfig, Failure> {
     let recording = open(path)?;
     match recording.metadata() {
         // Other programs comment their recordings too.
-        Some(text) if text.contains("velomotion") => toml::from_str(text).map_err(|error| {
+        Some(text) if text.trim_start().starts_with("velomotion = ") => toml::from_str(text).map_err(|error| {
             Failure::new(
                 Kind::BadInput,
                 format!("{}: the log's configuration cannot be understood:\n{error}", path.display()),
             )
-            .help("the log was written by another version: replay it with that one, or with --tilt none")
+            .help("the log was written by another version: replay it with the version that its first line names")
         }),
         _ => Ok(ScanConfig::default()),
     }

@@ -75,6 +75,8 @@ pub struct Sync {
     pub clock_method: &'static str,
     /// Median delay of a packet above the clock's envelope.
     pub clock_residual_us: f64,
+    /// How much slower than the host's clock the lidar's runs.
+    pub clock_drift_ppm: f64,
     /// Method of the trajectory.
     pub angle_method: &'static str,
     /// RMS of angle samples against their neighbours.
@@ -110,6 +112,8 @@ pub struct Scan {
     pub log: String,
     /// Whether the devices were software.
     pub simulated: bool,
+    /// Records that a capture lost: packets that the kernel dropped, records that the disk was too slow for.
+    pub lost_records: u64,
     /// Against the simulator's truth; real scans have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<Truth>,
@@ -182,8 +186,8 @@ impl Scan {
         rows.push((
             "clock",
             format!(
-                "{}, packets {:.0} us above it",
-                sync.clock_method, sync.clock_residual_us
+                "{}, packets {:.0} us above it, drift {:.1} ppm",
+                sync.clock_method, sync.clock_residual_us, sync.clock_drift_ppm
             ),
         ));
         let rms = sync.angle_rms_deg.map_or(String::new(), |rms| {

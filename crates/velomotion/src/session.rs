@@ -2,12 +2,13 @@
 //!
 //! The client is a machine without I/O; this loop is all that stands between it and a wire. Time comes from the caller, so
 //! that the same loop runs against the clock and, in tests, in virtual time.
-//! Whatever ends a procedure early (Ctrl-C, a fault), the axis is stopped before this returns, or the error says that it could not be.
+//! Whatever ends a procedure early (Ctrl-C, a fault, a panic in whoever watches), the axis is stopped before this returns, or
+//! the error says that it could not be.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use drive::{Client, Command, DriveError, Event, Outcome};
+use drive::{Client, Command, CommandKind, DriveError, Event, Outcome};
 use io::port::{Port, PortError};
 use thiserror::Error;
 use units::{Host, Span, Stamp};
@@ -18,24 +19,48 @@ pub enum SessionError {
     /// The user asked to stop; the axis has stopped.
     #[error("stopped by the user")]
     Interrupted,
+    /// The user asked to stop, and the drive did not do it.
+    #[error("stopped by the user, but the axis may still move: {0}")]
+    NotStopped(DriveError),
     /// The drive refused, reported a fault or did not answer. The axis has stopped unless the error says otherwise.
     #[error("{0}")]
     Drive(DriveError),
-    /// The port itself failed: nothing can be sent any more.
-    #[error("{0}; the axis could not be told to stop")]
+    /// The port failed. A stop was sent if the port still took it; no answer can be waited for.
+    #[error("{0}; the axis may still move")]
     Port(#[from] PortError),
 }
 
-/// A drive client on a port.
-pub struct Session<P> {
+impl SessionError {
+    /// What to do about it.
+    #[must_use]
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Interrupted => None,
+            Self::Drive(error) => Some(error.help().to_owned()),
+            Self::NotStopped(_) | Self::Port(_) => Some(
+                "switch the motor's supply off if the axis moves, then check cable and supply"
+                    .to_owned(),
+            ),
+        }
+    }
+}
+
+/// A drive client on a port. Dropped while the axis may move, it tells it to stop.
+pub struct Session<P: Port> {
     client: Client,
     port: P,
     now: fn(&P) -> Stamp<Host>,
     interrupt: Arc<AtomicBool>,
+    /// Whether a command was begun that can move or power the axis, and none has ended since that leaves it disabled.
+    unsafe_to_leave: bool,
 }
 
 /// How long a silent port may keep the loop from looking at the interrupt flag.
 const LOOK_UP: Span = Span::from_millis(20);
+/// How often a stop is tried before it counts as failed; each try takes some tenths of a second.
+const STOP_TRIES: u32 = 5;
+/// How long a session that is dropped in motion waits for the axis to stop.
+const LAST_RESORT: Span = Span::from_secs(1);
 
 impl<P: Port> Session<P> {
     /// A session over `port`, whose time is `now`, that stops the axis when `interrupt` becomes true.
@@ -50,6 +75,7 @@ impl<P: Port> Session<P> {
             port,
             now,
             interrupt,
+            unsafe_to_leave: false,
         }
     }
 
@@ -62,26 +88,61 @@ impl<P: Port> Session<P> {
         command: Command,
         on_event: &mut dyn FnMut(&Event),
     ) -> Result<Outcome, SessionError> {
-        self.client.start(command).map_err(SessionError::Drive)?;
-        match self.pump(on_event, true)? {
-            Ended::Done(outcome) => Ok(outcome),
-            Ended::Failed(error) => Err(SessionError::Drive(error)),
-            Ended::Interrupted => {
-                self.client
-                    .start(Command::Stop)
-                    .map_err(SessionError::Drive)?;
-                match self.pump(on_event, false)? {
-                    Ended::Failed(error) => Err(SessionError::Drive(error)),
-                    Ended::Done(_) | Ended::Interrupted => Err(SessionError::Interrupted),
+        let kind = command.kind();
+        if let Err(error) = self.client.start(command) {
+            self.stop(on_event)?;
+            return Err(SessionError::Drive(error));
+        }
+        self.unsafe_to_leave |= powers(kind);
+        let ended = self.pump(on_event, true, None)?;
+        match ended {
+            Ended::Done(outcome) => {
+                if matches!(kind, CommandKind::Stop | CommandKind::Brake) {
+                    self.unsafe_to_leave = false;
                 }
+                Ok(outcome)
+            }
+            // The client has brought the axis to rest, or has said that it could not.
+            Ended::Failed(error) => {
+                self.unsafe_to_leave = matches!(error, DriveError::NotStopped { .. });
+                Err(SessionError::Drive(error))
+            }
+            Ended::Interrupted => match self.stop(on_event)? {
+                None => Err(SessionError::Interrupted),
+                Some(error) => Err(SessionError::NotStopped(error)),
+            },
+        }
+    }
+
+    /// The port.
+    pub fn port(&self) -> &P {
+        &self.port
+    }
+
+    /// Stops the axis and sets the brake; the last error, where every try failed.
+    fn stop(&mut self, on_event: &mut dyn FnMut(&Event)) -> Result<Option<DriveError>, PortError> {
+        let mut last = None;
+        for _ in 0..STOP_TRIES {
+            last = match self.client.start(Command::Stop) {
+                Err(error) => Some(error),
+                Ok(()) => match self.pump(on_event, false, None)? {
+                    Ended::Failed(error) => Some(error),
+                    Ended::Done(_) | Ended::Interrupted => None,
+                },
+            };
+            if last.is_none() {
+                self.unsafe_to_leave = false;
+                break;
             }
         }
+        Ok(last)
     }
 
     fn pump(
         &mut self,
         on_event: &mut dyn FnMut(&Event),
         interruptible: bool,
+        until: Option<Stamp<Host>>,
     ) -> Result<Ended, PortError> {
         let mut buffer = [0; 512];
         loop {
@@ -96,10 +157,12 @@ impl<P: Port> Session<P> {
                     _ => {}
                 }
             }
-            if interruptible && self.interrupt.load(Ordering::Relaxed) {
+            let now = (self.now)(&self.port);
+            if (interruptible && self.interrupt.load(Ordering::Relaxed))
+                || until.is_some_and(|until| now >= until)
+            {
                 return Ok(Ended::Interrupted);
             }
-            let now = (self.now)(&self.port);
             let wait = self
                 .client
                 .poll_timeout()
@@ -112,6 +175,25 @@ impl<P: Port> Session<P> {
                 }
                 None => self.client.handle_timeout((self.now)(&self.port)),
             }
+        }
+    }
+}
+
+/// Whether a command can leave the power stage on.
+fn powers(kind: CommandKind) -> bool {
+    matches!(
+        kind,
+        CommandKind::Home | CommandKind::Goto | CommandKind::Sweep | CommandKind::Hold
+    )
+}
+
+impl<P: Port> Drop for Session<P> {
+    /// After a panic, or an error of the port: the stop is sent all the same, and its end waited for where one can come.
+    fn drop(&mut self) {
+        if self.unsafe_to_leave && self.client.start(Command::Stop).is_ok() {
+            let until = (self.now)(&self.port).saturating_add(LAST_RESORT);
+            // There is nobody left to tell; whoever dropped the session has the error that led here.
+            let _ = self.pump(&mut |_| {}, false, Some(until));
         }
     }
 }

@@ -80,8 +80,10 @@ impl Simulated {
     /// Where the devices had failed.
     pub fn stop(self) -> Result<Truth, Failure> {
         self.stop.store(true, Ordering::Relaxed);
-        let failed =
-            |why: String| Failure::new(Kind::DeviceFault, format!("the simulator failed: {why}"));
+        let failed = |why: String| {
+            Failure::new(Kind::DeviceFault, format!("the simulator failed: {why}"))
+                .help("run with -vv and report what it says; the log of what came before is kept")
+        };
         match self.thread.join() {
             Ok(Ok(truth)) => Ok(truth),
             Ok(Err(error)) => Err(failed(error.to_string())),

@@ -2,182 +2,90 @@
 //!
 //! Whatever ends a capture early, the axis is stopped first, then the log is closed and the cloud made of what it holds.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::time::SystemTime;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use drive::{Client, Event, ShaftSample};
-use io::port::{PortError, Recorder, SerialPort};
+use io::port::{LatencyTimer, PortError, Recorder, SerialPort};
 use io::udp::ListenConfig;
 use protocol::record::DriveLink;
-use scanner::{ScanConfig, SweepPlan, TiltSource};
+use scanner::TiltSource;
 use sim::Truth;
-use units::{DegPerS, DegPerS2, Degrees};
 
 use super::Said;
 use super::replay::{self, Request};
 use crate::cli::{self, Common};
-use crate::config::{self, Config, Device};
 use crate::devices;
 use crate::failure::{Failure, Kind};
-use crate::motion::{self, Step, Told, Wish};
-use crate::names;
-use crate::output::{self, Target};
+use crate::motion::{self, Told};
+use crate::output::{self, Aside, Target};
 use crate::progress::Progress;
 use crate::recording::{Ear, Recorded, Recording};
+use crate::report::Scan;
 use crate::session::{Session, SessionError};
+use crate::setup::Setup;
+use crate::signals;
 use crate::simulated::{self, Simulated};
-
-/// Everything that is decided before a device is touched.
-struct Setup {
-    name: String,
-    device: Device,
-    axis: drive::AxisConfig,
-    steps: Vec<Step>,
-    scan: ScanConfig,
-    cloud: PathBuf,
-    log: PathBuf,
-    force: bool,
-}
 
 /// EPOS2 on USB: 1 Mbaud by the Communication Guide.
 const USB_BAUD: u32 = 1_000_000;
+/// A lidar that turns sends 754 packets a second; one that sends none in this time will not send any during the sweep.
+const LIDAR_WAIT: Duration = Duration::from_secs(2);
+
+/// How a recording ended: both halves, for either may have failed.
+struct Ended {
+    motion: Result<(), SessionError>,
+    recorded: Result<Recorded, Failure>,
+}
 
 /// Runs the command.
 ///
 /// # Errors
 /// [`Failure`] where nothing was recorded, or no cloud came of it.
 pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
-    let setup = setup(arguments, common)?;
+    let setup = Setup::new(arguments, common)?;
     output::one_for_stdout(Some(&setup.cloud), common.json)?;
     let target = Target::open(&setup.cloud, setup.force)?;
     output::check_free(&setup.log, setup.force)?;
-    let interrupt = interrupt_flag()?;
+    let interrupt = signals::interrupt_flag()?;
     let mut progress = Progress::new(common);
-    for line in headline(&setup) {
+    for line in setup.headline() {
         progress.say(&line);
     }
 
-    let (truth, motion) = if devices::simulated(&setup.device) {
-        simulate(&setup, interrupt, &mut progress)?
+    let older_log = Aside::put(&setup.log)?;
+    let (truth, ended) = if devices::simulated(&setup.device) {
+        simulate(&setup, &interrupt, &mut progress)?
     } else {
         let ear = Ear::bind(&ListenConfig {
             address: setup.device.lidar,
             ..ListenConfig::default()
         })?;
         let path = devices::port_path(&setup.name, &setup.device)?;
-        (None, record(&setup, ear, path, interrupt, &mut progress)?)
+        (None, record(&setup, ear, path, &interrupt, &mut progress)?)
     };
+    older_log.replaced();
+    // The stop is over; from here on Ctrl-C means the making of the cloud.
+    interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
-    finish(&setup, target, truth.as_ref(), motion)
-}
-
-/// Checks what was asked for against the axis, and plans the moves. Touches nothing.
-fn setup(arguments: &cli::Capture, common: &Common) -> Result<Setup, Failure> {
-    let start = SystemTime::now();
-    let config = config::load(common.config.as_deref())?;
-    let (name, device) = devices::choose(&config, common.device.as_deref())?;
-    let axis = devices::axis(&config.axis)?;
-    let wish = Wish {
-        from: Degrees(arguments.from.unwrap_or(config.axis.max_deg)),
-        to: Degrees(arguments.to.unwrap_or(config.axis.min_deg)),
-        speed: DegPerS(arguments.speed),
-        acceleration: DegPerS2(arguments.accel.unwrap_or(device.accel_deg_s2)),
-        sweeps: arguments.sweeps,
-        both_ways: arguments.both_ways,
+    let stdout = target.is_stdout();
+    let request = Request {
+        recording: &setup.log,
+        tilt: TiltSource::Log,
+        truth: truth.as_ref(),
+        interrupt: &interrupt,
     };
-    let steps = motion::steps(&wish, &axis, Degrees(config.axis.homing.to_deg))?;
-    let simulated = devices::simulated(&device);
-    let cloud = arguments
-        .output
-        .output
-        .clone()
-        .unwrap_or_else(|| names::cloud(start, simulated));
-    let log = arguments
-        .log
-        .clone()
-        .unwrap_or_else(|| names::log_of(&cloud, start, simulated));
-    Ok(Setup {
-        scan: scan_config(&config, &name, simulated, &wish, &steps),
-        name,
-        device,
-        axis,
-        steps,
-        cloud,
-        log,
-        force: arguments.output.force,
-    })
-}
-
-fn scan_config(
-    config: &Config,
-    device: &str,
-    simulated: bool,
-    wish: &Wish,
-    steps: &[Step],
-) -> ScanConfig {
-    let sweep = steps.iter().find(|step| step.sweep).map(|step| SweepPlan {
-        from_deg: step.plan.from.0,
-        to_deg: step.plan.to.0,
-        cruise_deg_s: step.plan.cruise.0,
-        accel_deg_s2: wish.acceleration.0,
-        sweeps: wish.sweeps,
-        both_ways: wish.both_ways,
-    });
-    ScanConfig {
-        device: device.to_owned(),
-        simulated,
-        mount: config.mount,
-        axis: config.axis.scan(),
-        sweep,
-        ..ScanConfig::default()
-    }
-}
-
-/// What is about to happen, as the drive will do it.
-fn headline(setup: &Setup) -> Vec<String> {
-    let mut lines = Vec::new();
-    if setup.scan.simulated {
-        lines.push(
-            "SIMULATED: software devices in a made-up hall, no scan of anything real".to_owned(),
-        );
-    }
-    let Some(Step { plan, .. }) = setup.steps.iter().find(|step| step.sweep) else {
-        return lines;
-    };
-    lines.push(format!(
-        "{} deg/s is {} rpm of the motor, {} deg/s",
-        plan.requested.0,
-        plan.speed.0,
-        trim(setup.axis.gearing.rate(plan.speed).0)
-    ));
-    let shape = if plan.triangle {
-        format!("too short to cruise, peak {:.2} deg/s", plan.cruise.0)
-    } else {
-        format!("{:.3} s of cruise", plan.cruising.as_secs_f64())
-    };
-    lines.push(format!(
-        "sweep {} to {} deg in {:.3} s: {shape}, ramps of {} deg/s2",
-        trim(plan.from.0),
-        trim(plan.to.0),
-        plan.duration.as_secs_f64(),
-        trim(setup.axis.gearing.acceleration(plan.acceleration).0),
-    ));
-    lines
-}
-
-/// A number without the noise of its last bits.
-fn trim(x: f64) -> f64 {
-    (x * 1e6).round() / 1e6 + 0.0
+    conclude(&setup, replay::make(&request, target), ended, stdout)
 }
 
 /// The same, against software devices that are started for it; with what truly happened.
 fn simulate(
     setup: &Setup,
-    interrupt: Arc<AtomicBool>,
+    interrupt: &Arc<AtomicBool>,
     progress: &mut Progress,
-) -> Result<(Option<Truth>, Result<(), SessionError>), Failure> {
+) -> Result<(Option<Truth>, Ended), Failure> {
     let ear = Ear::bind(&ListenConfig {
         address: setup.device.lidar,
         data_port: 0,
@@ -187,9 +95,9 @@ fn simulate(
     let rig = simulated::rig(&setup.axis, &setup.scan, io::clock::now());
     let devices = Simulated::start(rig, ear.ports())?;
     let path = devices.port().to_owned();
-    let motion = record(setup, ear, &path, interrupt, progress);
-    let truth = devices.stop()?;
-    Ok((Some(truth), motion?))
+    let ended = record(setup, ear, &path, interrupt, progress);
+    let truth = devices.stop();
+    Ok((Some(truth?), ended?))
 }
 
 /// Records both devices while the axis makes its moves.
@@ -197,131 +105,188 @@ fn record(
     setup: &Setup,
     ear: Ear,
     path: &Path,
-    interrupt: Arc<AtomicBool>,
+    interrupt: &Arc<AtomicBool>,
     progress: &mut Progress,
-) -> Result<Result<(), SessionError>, Failure> {
+) -> Result<Ended, Failure> {
     let port = SerialPort::open(path, USB_BAUD).map_err(|error| port_failure(&error))?;
-    let recording = Recording::start(
-        ear,
-        &setup.log,
-        output::overwrite(setup.force),
-        &setup.scan,
-        DriveLink::Usb,
-    )?;
+    if let LatencyTimer::High { ms } = port.latency_timer() {
+        progress.say(&format!(
+            "warning: the adapter's latency timer is {ms} ms and cannot be set: every angle is that much less certain (docs: wiring)"
+        ));
+    }
+    let recording = Recording::start(ear, &setup.log, &setup.scan, DriveLink::Usb)?;
+    if let Err(failure) = await_lidar(&recording, setup, interrupt) {
+        // Nothing has moved and nothing is recorded.
+        let _ = recording.finish();
+        let _ = std::fs::remove_file(&setup.log);
+        return Err(failure);
+    }
     let log = recording.handle();
     let port = Recorder::new(port, DriveLink::Usb, move |record| log.record(record));
     let client = Client::new(setup.axis.clone());
-    let mut session = Session::new(client, port, |_| io::clock::now(), interrupt);
+    let mut session = Session::new(client, port, |_| io::clock::now(), Arc::clone(interrupt));
     let gearing = setup.axis.gearing;
-    let motion = motion::run(&mut session, &setup.steps, &mut |told| match told {
-        Told::Step(step) => progress.begin_move(&step.plan),
-        Told::Event(Event::Sample(ShaftSample {
-            answer, position, ..
-        })) => progress.moved(*answer, gearing.angle(*position), recording.packets()),
-        Told::Event(event) => tracing::debug!(?event),
+    let motion = motion::run(&mut session, &setup.steps, &mut |told| {
+        if recording.failed() {
+            // A sweep that is not recorded is not worth making.
+            interrupt.store(true, Ordering::Relaxed);
+        }
+        match told {
+            Told::Step(step) => progress.begin_move(&step.plan),
+            Told::Event(Event::Sample(ShaftSample {
+                answer, position, ..
+            })) => progress.moved(*answer, gearing.angle(*position), recording.packets()),
+            Told::Event(event) => tracing::debug!(?event),
+        }
     });
     progress.end_move();
     drop(session);
-    let recorded = recording.finish()?;
-    warn(&recorded, progress);
-    Ok(motion)
-}
-
-/// What was lost is said, never passed over.
-fn warn(recorded: &Recorded, progress: &Progress) {
-    let losses = [
-        (
-            recorded.lidar.dropped,
-            "lidar packets dropped by the kernel: this machine was too slow",
-        ),
-        (
-            recorded.log.dropped,
-            "records dropped: the disk was too slow",
-        ),
-        (recorded.log.refused, "records that the log cannot hold"),
-        (
-            recorded.lidar.without_kernel_time,
-            "lidar packets without a kernel time: their times are less certain",
-        ),
-    ];
-    for (count, what) in losses {
-        if count > 0 {
-            progress.say(&format!("warning: {count} {what}"));
-        }
+    let recorded = recording.finish();
+    if let Ok(Recorded { lidar, .. }) = &recorded
+        && lidar.without_kernel_time > 0
+    {
+        progress.say(&format!(
+            "warning: {} lidar packets came without a kernel time: their times are less certain",
+            lidar.without_kernel_time
+        ));
     }
+    Ok(Ended { motion, recorded })
 }
 
-/// Makes the cloud of the log, whatever the motion came to, and says how it ended.
-fn finish(
+/// Waits for the first packet: a sweep without a lidar is a sweep for nothing.
+fn await_lidar(
+    recording: &Recording,
     setup: &Setup,
-    target: Target,
-    truth: Option<&Truth>,
-    motion: Result<(), SessionError>,
+    interrupt: &AtomicBool,
+) -> Result<(), Failure> {
+    let pause = Duration::from_millis(5);
+    let mut waited = Duration::ZERO;
+    while recording.packets() == 0 {
+        if interrupt.load(Ordering::Relaxed) {
+            return Err(Failure::new(Kind::Interrupted, "stopped by the user")
+                .help("nothing had moved yet"));
+        }
+        if waited >= LIDAR_WAIT {
+            let address = setup.device.lidar;
+            return Err(Failure::new(
+                Kind::NoDevice,
+                format!("no lidar: no packet came to {address}, UDP ports 2368 and 8308, in 2 s"),
+            )
+            .help(
+                "see whether the lidar is powered and turns, its cable is in, this machine's address is the one it sends to\n\
+                 (its web page, or tcpdump -n udp port 2368), and no firewall drops its packets",
+            ));
+        }
+        std::thread::sleep(pause);
+        waited += pause;
+    }
+    Ok(())
+}
+
+/// Says how it ended. What went wrong first is what the user must hear first.
+fn conclude(
+    setup: &Setup,
+    made: Result<Scan, Failure>,
+    ended: Ended,
+    stdout: bool,
 ) -> Result<Said, Failure> {
-    let stdout = target.is_stdout();
-    let request = Request {
-        recording: &setup.log,
-        tilt: TiltSource::Log,
-        truth,
+    let saved = match &made {
+        Ok(_) => format!(
+            "what was captured is saved: the cloud {} and the log {}",
+            setup.cloud.display(),
+            setup.log.display()
+        ),
+        Err(failure) => format!(
+            "there is no cloud ({}); the log is {}",
+            failure.message,
+            setup.log.display()
+        ),
     };
-    let made = replay::make(&request, target);
-    let failure = motion
-        .err()
-        .map(|error| motion_failure(&error, setup, made.is_ok()));
+    let lost = ended.recorded.as_ref().map_or(0, lost_records);
+    let failure = match (ended.motion, ended.recorded) {
+        // The log's failure is why the session was interrupted.
+        (Err(SessionError::Interrupted), Err(failure)) | (Ok(()), Err(failure)) => Some(failure),
+        (Err(error), recorded) => Some(motion_failure(&error, recorded.err())),
+        (Ok(()), Ok(recorded)) => loss(&recorded),
+    };
+    let failure = failure.map(|failure| {
+        let help = failure
+            .help
+            .clone()
+            .map_or(saved.clone(), |help| format!("{help}\n{saved}"));
+        failure.help(help)
+    });
     match (made, failure) {
-        (Ok(scan), failure) => Ok(Said::scan(&scan, failure, stdout)),
-        // What went wrong first is what the user must hear.
+        (Ok(scan), failure) => {
+            let scan = Scan {
+                lost_records: lost,
+                ..scan
+            };
+            Ok(Said::scan(&scan, failure, stdout))
+        }
         (Err(_), Some(failure)) => Err(failure),
         (Err(failure), None) => Err(failure),
     }
 }
 
-fn motion_failure(error: &SessionError, setup: &Setup, cloud: bool) -> Failure {
-    let saved = if cloud {
-        format!(
-            "what was captured is saved: the cloud {} and the log {}",
-            setup.cloud.display(),
-            setup.log.display()
-        )
-    } else {
-        format!(
-            "no sweep had begun, so there is no cloud; the log is {}",
-            setup.log.display()
-        )
-    };
-    let (kind, help) = match error {
-        SessionError::Interrupted => (Kind::Interrupted, None),
-        SessionError::Drive(error) => (Kind::DeviceFault, Some(error.help())),
-        SessionError::Port(_) => (
-            Kind::DeviceFault,
-            Some("switch the motor's supply off if the axis still moves, then check cable and supply".into()),
+fn lost_records(recorded: &Recorded) -> u64 {
+    recorded.lidar.dropped + recorded.log.dropped + recorded.log.refused
+}
+
+/// What was lost is said, never passed over.
+fn loss(recorded: &Recorded) -> Option<Failure> {
+    let losses = [
+        (
+            recorded.lidar.dropped,
+            "lidar packets that this machine was too slow for",
         ),
+        (
+            recorded.log.dropped,
+            "records that the disk was too slow for",
+        ),
+        (recorded.log.refused, "records that the log cannot hold"),
+    ];
+    let said: Vec<String> = losses
+        .into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("{count} {what}"))
+        .collect();
+    (!said.is_empty()).then(|| {
+        Failure::new(
+            Kind::Incomplete,
+            format!("the recording lost {}", said.join(", ")),
+        )
+        .help("close other programs, record to a faster disk, and scan again if the holes matter")
+    })
+}
+
+fn motion_failure(error: &SessionError, recorded: Option<Failure>) -> Failure {
+    let kind = match error {
+        SessionError::Interrupted => Kind::Interrupted,
+        SessionError::NotStopped(_) | SessionError::Drive(_) | SessionError::Port(_) => {
+            Kind::DeviceFault
+        }
     };
-    let help = help.map_or(saved.clone(), |help| format!("{help}\n{saved}"));
-    Failure::new(kind, error.to_string()).help(help)
+    let also = recorded.map_or(String::new(), |failure| {
+        format!("; and {}", failure.message)
+    });
+    let failure = Failure::new(kind, format!("{error}{also}"));
+    match error.help() {
+        Some(help) => failure.help(help),
+        None => failure,
+    }
 }
 
 fn port_failure(error: &PortError) -> Failure {
     let help = match error {
         PortError::Permission { .. } => {
-            "add yourself to the group that owns the port (dialout on Debian), or install the udev rule"
+            "add yourself to the group that owns the port (dialout on Debian), or install a udev rule for it"
         }
         PortError::Busy { .. } => "close the other program that uses the drive",
         _ => {
-            "see whether the drive is plugged in and switched on, and what its port is called; --device sim needs no hardware"
+            "see whether the drive is plugged in and switched on, and what its port is called;\n\
+             --device sim needs no hardware"
         }
     };
     Failure::new(Kind::NoDevice, error.to_string()).help(help)
-}
-
-/// Becomes true at Ctrl-C or SIGTERM. There is no shorter way out: the axis is stopped first, and every wait has its limit.
-fn interrupt_flag() -> Result<Arc<AtomicBool>, Failure> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
-    let flag = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        signal_hook::flag::register(signal, Arc::clone(&flag)).map_err(|error| {
-            Failure::new(Kind::NoDevice, format!("cannot watch for Ctrl-C: {error}"))
-        })?;
-    }
-    Ok(flag)
 }

@@ -1,10 +1,9 @@
 //! `velomotion info`: what a log or recording holds.
 
-use drive::{Listener, Observation};
 use lidar::{Decoder, Stats};
-use protocol::record::{DriveLink, Record, Wire};
+use protocol::record::{DriveLink, Wire};
 use protocol::vlp16::ReturnMode;
-use scanner::ScanConfig;
+use scanner::Survey;
 
 use super::Said;
 use crate::cli;
@@ -20,16 +19,17 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
     let path = &arguments.file;
     let config = recordings::config(path)?;
     let mut decoder = Decoder::new(lidar::Options::default());
-    let mut traffic = Traffic::new(&config);
+    let mut survey = Survey::new(&config, lidar::Options::default())
+        .map_err(|error| super::replay::scan_failure(path, &error))?;
     let pass = recordings::read(path, |record| {
         if let Wire::Lidar { payload, .. } = record.wire {
             decoder.packet(record.host, payload, &mut |_| {});
         }
-        traffic.observe(record);
+        survey.observe(record);
         Ok(())
     })?;
     decoder.finish(&mut |_| {});
-    let contents = contents(decoder.stats(), &traffic, &pass);
+    let contents = contents(decoder.stats(), survey.drive(), &pass);
     let failure = pass.truncated.map(|truncated| {
         Failure::new(
             Kind::Incomplete,
@@ -45,61 +45,14 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
     })
 }
 
-/// The drive's traffic in a log, counted.
-pub struct Traffic {
-    listener: Listener,
-    link: Option<DriveLink>,
-    samples: u64,
-}
-
-impl Traffic {
-    /// Nothing seen yet.
-    #[must_use]
-    pub fn new(config: &ScanConfig) -> Self {
-        Self {
-            listener: Listener::new(config.axis.node),
-            link: None,
-            samples: 0,
-        }
-    }
-
-    /// Takes one record.
-    pub fn observe(&mut self, record: &Record<'_>) {
-        let Wire::Drive {
-            link,
-            direction,
-            frame,
-        } = record.wire
-        else {
-            return;
-        };
-        self.link = Some(link);
-        let samples = &mut self.samples;
-        self.listener
-            .observe(link, direction, frame, record.host, &mut |seen| {
-                if matches!(seen, Observation::Sample(_)) {
-                    *samples += 1;
-                }
-            });
-    }
-
-    fn tilt(&self) -> Option<Tilt> {
-        let transport = match self.link? {
-            DriveLink::Usb => "usb",
-            DriveLink::Rs232 => "rs232",
-            DriveLink::Can => "can",
-        };
-        Some(Tilt {
-            samples: self.samples,
-            transport: transport.to_owned(),
-        })
-    }
-}
-
 /// What was found, for the report.
 #[must_use]
-pub fn contents(stats: &Stats, traffic: &Traffic, pass: &Pass) -> Contents {
+pub fn contents(stats: &Stats, drive: Option<(DriveLink, u64)>, pass: &Pass) -> Contents {
     let counts = &pass.counts;
+    let tilt = drive.map(|(link, samples)| Tilt {
+        samples,
+        transport: transport(link).to_owned(),
+    });
     Contents {
         model: stats.model.map(|model| model.name.to_owned()),
         return_mode: stats.return_mode.map(return_mode),
@@ -113,8 +66,16 @@ pub fn contents(stats: &Stats, traffic: &Traffic, pass: &Pass) -> Contents {
         lost_packets: stats.lost_packets,
         duration_s: stats.duration.as_secs_f64(),
         rpm: stats.rpm,
-        tilt: traffic.tilt(),
+        tilt,
         truncated: pass.truncated.clone(),
+    }
+}
+
+fn transport(link: DriveLink) -> &'static str {
+    match link {
+        DriveLink::Usb => "usb",
+        DriveLink::Rs232 => "rs232",
+        DriveLink::Can => "can",
     }
 }
 

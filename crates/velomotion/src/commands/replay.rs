@@ -1,6 +1,7 @@
 //! `velomotion replay`: a cloud from a log, or from anybody's lidar recording. `capture` ends with the same function.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use analysis::truth::Comparison;
 use cloud::{Metadata, Sink, SinkError};
@@ -10,7 +11,7 @@ use scanner::{
 use sim::Truth;
 
 use super::Said;
-use super::info::{Traffic, contents};
+use super::info::contents;
 use crate::cli::{self, Common};
 use crate::failure::{Failure, Kind};
 use crate::names;
@@ -18,6 +19,7 @@ use crate::output::{self, Target, sink_failure};
 use crate::progress::Progress;
 use crate::recordings;
 use crate::report::{self, Scan, Sync};
+use crate::signals;
 
 /// What to make a cloud of.
 pub struct Request<'a> {
@@ -27,6 +29,8 @@ pub struct Request<'a> {
     pub tilt: TiltSource,
     /// What truly happened, where a simulator knows.
     pub truth: Option<&'a Truth>,
+    /// Set where the user wants no more of it.
+    pub interrupt: &'a AtomicBool,
 }
 
 /// Runs the command.
@@ -34,10 +38,12 @@ pub struct Request<'a> {
 /// # Errors
 /// [`Failure`] where no cloud came of it.
 pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
+    let interrupt = signals::interrupt_flag()?;
     let request = Request {
         recording: &arguments.input,
         tilt: tilt_source(&arguments.tilt)?,
         truth: None,
+        interrupt: &interrupt,
     };
     let progress = Progress::new(common);
     if let TiltSource::Table(table) = &request.tilt {
@@ -107,22 +113,28 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
     let cannot_write = |error: SinkError| sink_failure(output, &error);
 
     let mut survey = Survey::new(&config, options).map_err(cannot_scan)?;
-    let mut traffic = Traffic::new(&config);
+    let go_on = || match request.interrupt.load(Ordering::Relaxed) {
+        true => Err(stopped(path)),
+        false => Ok(()),
+    };
     let pass = recordings::read(path, |record| {
         survey.observe(record);
-        traffic.observe(record);
-        Ok(())
+        go_on()
     })?;
+    let drive = survey.drive();
     let alignment = survey.solve(&config, &request.tilt).map_err(cannot_scan)?;
 
     sink.begin(&metadata(&config, &request.tilt))
         .map_err(cannot_write)?;
     let mut placer = Placer::new(&alignment, options, sink);
-    recordings::read(path, |record| placer.observe(record).map_err(cannot_write))?;
+    recordings::read(path, |record| {
+        placer.observe(record).map_err(cannot_write)?;
+        go_on()
+    })?;
     let (placed, stats) = placer.finish().map_err(cannot_write)?;
 
     Ok(Scan {
-        contents: contents(&stats, &traffic, &pass),
+        contents: contents(&stats, drive, &pass),
         points: placed.points,
         left_out: placed.outside,
         sweeps: alignment
@@ -134,14 +146,24 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
         output: output.display().to_string(),
         log: path.display().to_string(),
         simulated: config.simulated,
+        lost_records: 0,
         truth: None,
     })
+}
+
+fn stopped(path: &Path) -> Failure {
+    Failure::new(
+        Kind::Interrupted,
+        "stopped by the user while making the cloud",
+    )
+    .help(format!("replay {} makes it again", path.display()))
 }
 
 fn sync(alignment: &Alignment) -> Sync {
     Sync {
         clock_method: "lower envelope",
         clock_residual_us: alignment.clock.residual().as_micros_f64(),
+        clock_drift_ppm: alignment.clock.drift_ppm(),
         angle_method: alignment.trajectory.method(),
         angle_rms_deg: alignment.angle_rms_deg(),
     }
@@ -215,7 +237,7 @@ fn parse_row(line: &str) -> Option<(f64, f64)> {
     }
 }
 
-fn scan_failure(path: &Path, error: &ScanError) -> Failure {
+pub(super) fn scan_failure(path: &Path, error: &ScanError) -> Failure {
     let help = match error {
         ScanError::NoLidarPackets => {
             "give a recording of the lidar's UDP traffic (ports 2368 and 8308); info says what this file holds"
@@ -226,7 +248,9 @@ fn scan_failure(path: &Path, error: &ScanError) -> Failure {
         ScanError::NoSweep => {
             "the recording ended before a sweep began: --tilt none gives its points in the sensor's own frame"
         }
-        ScanError::TableElsewhere { .. } | ScanError::TableOrder { .. } => {
+        ScanError::TableElsewhere { .. }
+        | ScanError::TableRange { .. }
+        | ScanError::TableOrder { .. } => {
             "give times as Unix seconds like the recording's, or as seconds since its first packet"
         }
         ScanError::Gearing(_) => "correct encoder_lines and gear in the configuration",

@@ -1,0 +1,136 @@
+//! The drive's CAN bus: frames out and in, each with the host time at which it passed.
+//!
+//! Two ways to a bus: an interface of the kernel ([`SocketCan`]), and an adapter on a serial port that speaks SLCAN
+//! ([`Slcan`]). Nothing here knows CANopen. Recording is a wrapper ([`Recorder`]), never a flag inside. Interfaces are
+//! found and used, not set up: that takes the administrator's rights, and errors say the command.
+
+mod interfaces;
+mod recorder;
+mod slcan;
+mod socket;
+
+use std::io;
+
+use protocol::canopen::CanFrame;
+use units::{Host, Span, Stamp};
+
+pub use interfaces::{Interface, interfaces};
+pub use recorder::Recorder;
+pub use slcan::Slcan;
+pub use socket::SocketCan;
+
+use crate::port::PortError;
+
+/// A way to a CAN bus.
+pub trait CanPort {
+    /// Sends a frame; the time just before it was handed to the system. Whether it reached the bus shows only in what
+    /// comes back.
+    ///
+    /// # Errors
+    /// [`CanError`].
+    fn write_frame(&mut self, frame: &CanFrame) -> Result<Stamp<Host>, CanError>;
+
+    /// The next frame from the bus, and when it came; `None` if none comes within `timeout` (a span of zero or less: if
+    /// none is there). Frames sent here do not come back.
+    ///
+    /// # Errors
+    /// [`CanError`]. After [`CanError::NotSent`] the port goes on.
+    fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError>;
+}
+
+impl<P: CanPort + ?Sized> CanPort for Box<P> {
+    fn write_frame(&mut self, frame: &CanFrame) -> Result<Stamp<Host>, CanError> {
+        (**self).write_frame(frame)
+    }
+
+    fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError> {
+        (**self).read(timeout)
+    }
+}
+
+/// Why a bus could not be reached or used.
+#[derive(Debug, thiserror::Error)]
+pub enum CanError {
+    /// The kernel was built without CAN, or its module is not loaded.
+    #[error(
+        "CAN interface {interface}: this kernel has no CAN; load it with `sudo modprobe can_raw`, or use an SLCAN adapter on a serial port, which needs none"
+    )]
+    NoCan {
+        /// The interface asked for.
+        interface: String,
+    },
+    /// There is no such interface.
+    #[error(
+        "CAN interface {interface}: no such interface, expected one of: {}",
+        list(known)
+    )]
+    NoInterface {
+        /// The interface asked for.
+        interface: String,
+        /// The CAN interfaces there are.
+        known: Vec<String>,
+    },
+    /// It is an interface, but of another kind of network.
+    #[error(
+        "CAN interface {interface}: not a CAN interface, expected one of: {}",
+        list(known)
+    )]
+    NotCan {
+        /// The interface asked for.
+        interface: String,
+        /// The CAN interfaces there are.
+        known: Vec<String>,
+    },
+    /// The interface is down: never set up, or taken down while in use.
+    #[error("CAN interface {interface}: it is down; bring it up with `{command}`")]
+    Down {
+        /// The interface.
+        interface: String,
+        /// What brings it up.
+        command: String,
+    },
+    /// The interface went away while in use.
+    #[error("CAN interface {interface}: disconnected")]
+    Disconnected {
+        /// The interface.
+        interface: String,
+    },
+    /// The interface's queue stays full: no other node acknowledges what is sent.
+    #[error(
+        "CAN interface {interface}: expected to send a frame, got rid of none in 0.5 s: is the drive on, the bus terminated, the bit rate right?"
+    )]
+    WriteTimeout {
+        /// The interface.
+        interface: String,
+    },
+    /// An SLCAN adapter refused a command when it was opened.
+    #[error("SLCAN adapter: refused {command}, expected CR")]
+    Refused {
+        /// The command.
+        command: String,
+    },
+    /// An SLCAN adapter did not take a frame: its buffer is full or its channel was closed.
+    #[error("SLCAN adapter: a frame was refused and is lost")]
+    NotSent,
+    /// The adapter's serial port.
+    #[error(transparent)]
+    Port(#[from] PortError),
+    /// The system refused for another reason.
+    #[error("CAN interface {interface}: cannot {action}: {source}")]
+    Io {
+        /// The interface.
+        interface: String,
+        /// `open`, `read` or `write`.
+        action: &'static str,
+        /// The system's reason.
+        source: io::Error,
+    },
+}
+
+fn list(names: &[String]) -> String {
+    if names.is_empty() {
+        "(there is none)".to_owned()
+    } else {
+        names.join(", ")
+    }
+}

@@ -1,0 +1,99 @@
+//! Which CAN interfaces the kernel has, by what sysfs says of them.
+
+use std::fs;
+use std::path::Path;
+
+/// `ARPHRD_CAN` of the kernel's `if_arp.h`: what sysfs gives as the type of a CAN interface.
+const CAN: &str = "280";
+/// `IFF_UP` of the kernel's `if.h`.
+const UP: u32 = 1;
+
+/// A CAN interface of the kernel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Interface {
+    /// Its name, such as `can0`.
+    pub name: String,
+    /// It is up.
+    pub up: bool,
+}
+
+impl Interface {
+    /// The command that brings the interface up, for a person with the administrator's rights.
+    #[must_use]
+    pub fn up_command(&self) -> String {
+        up_command(&self.name)
+    }
+}
+
+/// The CAN interfaces there are, in the order of their names.
+#[must_use]
+pub fn interfaces() -> Vec<Interface> {
+    interfaces_in(Path::new("/sys"))
+}
+
+fn interfaces_in(sysfs: &Path) -> Vec<Interface> {
+    let Ok(entries) = fs::read_dir(sysfs.join("class/net")) else {
+        return Vec::new();
+    };
+    let mut found: Vec<_> = entries
+        .flatten()
+        .filter(|entry| read(&entry.path().join("type")).is_some_and(|kind| kind == CAN))
+        .map(|entry| Interface {
+            name: entry.file_name().to_string_lossy().into_owned(),
+            up: is_up(&entry.path()),
+        })
+        .collect();
+    found.sort_by(|a, b| a.name.cmp(&b.name));
+    found
+}
+
+fn is_up(interface: &Path) -> bool {
+    read(&interface.join("flags"))
+        .and_then(|flags| u32::from_str_radix(flags.strip_prefix("0x")?, 16).ok())
+        .is_some_and(|flags| flags & UP != 0)
+}
+
+fn read(file: &Path) -> Option<String> {
+    Some(fs::read_to_string(file).ok()?.trim().to_owned())
+}
+
+/// A virtual bus has no bit rate; the EPOS2 has 1 Mbit/s from the factory.
+pub(super) fn up_command(name: &str) -> String {
+    if name.starts_with("vcan") {
+        format!("sudo ip link set {name} up")
+    } else {
+        format!("sudo ip link set {name} up type can bitrate 1000000")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn can_interfaces_are_told_from_others() {
+        let sysfs = tempfile::tempdir().unwrap();
+        for (name, kind, flags) in [
+            ("vcan0", "280\n", "0xc1\n"),
+            ("can0", "280\n", "0x40080\n"),
+            ("eth0", "1\n", "0x1003\n"),
+        ] {
+            let folder = sysfs.path().join("class/net").join(name);
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(folder.join("type"), kind).unwrap();
+            fs::write(folder.join("flags"), flags).unwrap();
+        }
+        let found = interfaces_in(sysfs.path());
+        let [can0, vcan0] = [("can0", false), ("vcan0", true)].map(|(name, up)| Interface {
+            name: name.to_owned(),
+            up,
+        });
+        assert_eq!(found, [can0.clone(), vcan0.clone()]);
+        assert_eq!(
+            can0.up_command(),
+            "sudo ip link set can0 up type can bitrate 1000000"
+        );
+        assert_eq!(vcan0.up_command(), "sudo ip link set vcan0 up");
+        assert_eq!(interfaces_in(&sysfs.path().join("none")), []);
+    }
+}

@@ -1,0 +1,144 @@
+//! On a kernel with CAN and an interface `vcan0` that is up, these send frames; elsewhere they say why they do not, and
+//! fail for it where `VELOMOTION_VCAN` is set in the environment, as a run in a machine made for them does.
+
+use super::*;
+
+const BUS: &str = "vcan0";
+
+/// Says why a test does nothing on this machine.
+fn skip(reason: &str) {
+    assert!(std::env::var_os("VELOMOTION_VCAN").is_none(), "{reason}");
+    eprintln!("skipped: {reason}");
+}
+
+/// Two ports on the bus; `None`, after saying why, where the machine has no such bus.
+fn pair() -> Option<(SocketCan, SocketCan)> {
+    match (SocketCan::open(BUS), SocketCan::open(BUS)) {
+        (Ok(one), Ok(other)) => Some((one, other)),
+        (Err(error), _) | (_, Err(error)) => {
+            let absent = matches!(
+                error,
+                CanError::NoCan { .. } | CanError::NoInterface { .. } | CanError::Down { .. }
+            );
+            assert!(absent, "{error}");
+            skip(&error.to_string());
+            None
+        }
+    }
+}
+
+fn frames() -> Vec<CanFrame> {
+    let id = |id| CobId::new(id).unwrap();
+    let extended = ExtendedId::new(0x1234_5678).unwrap();
+    vec![
+        CanFrame::of(id(0x080), []),
+        CanFrame::of(id(0x601), [0x40, 0x41, 0x60, 0, 0, 0, 0, 0]),
+        CanFrame::of(CobId::MAX, [1, 2, 3]),
+        CanFrame::of(extended, [0xAA]),
+        CanFrame::remote(id(0x701), 1).unwrap(),
+        CanFrame::remote(extended, 8).unwrap(),
+    ]
+}
+
+#[test]
+fn frames_become_the_kernels_and_back() {
+    for frame in frames() {
+        let kernel = to_kernel(&frame).unwrap();
+        assert_eq!(from_kernel(&kernel), Some(frame));
+        // The crate's view of the frame and our own bytes of a log agree.
+        let bytes = frame.to_socketcan();
+        let word = u32::from_be_bytes(*bytes.first_chunk().unwrap());
+        assert_eq!(kernel.id_word(), word, "{frame}");
+        assert_eq!(kernel.data(), frame.data());
+    }
+    let report = socketcan::CanErrorFrame::new_error(0x40, &[0; 8]).unwrap();
+    assert_eq!(from_kernel(&report.into()), None);
+}
+
+#[test]
+fn frames_pass_between_two_ports_with_the_kernels_time() {
+    let Some((mut one, mut other)) = pair() else {
+        return;
+    };
+    assert_eq!(one.interface(), BUS);
+    for frame in frames() {
+        let sent = one.write_frame(&frame).unwrap();
+        // The kernel took its time when the frame passed, not when it is read.
+        thread::sleep(Duration::from_millis(5));
+        let before_read = clock::now();
+        let (got, host) = other.read(Span::from_secs(5)).unwrap().unwrap();
+        assert_eq!(got, frame);
+        assert!(sent <= host && host < before_read, "{sent:?} {host:?}");
+        // Nobody hears himself.
+        assert_eq!(one.read(Span::ZERO).unwrap(), None);
+    }
+}
+
+#[test]
+fn timeouts_hold_below_and_above_a_millisecond() {
+    let Some((mut one, _other)) = pair() else {
+        return;
+    };
+    for us in [-5, 0, 300, 20_000] {
+        let begin = Instant::now();
+        assert_eq!(one.read(Span::from_micros(us)).unwrap(), None);
+        let waited = begin.elapsed();
+        assert!(waited >= Duration::from_micros(u64::try_from(us).unwrap_or(0)));
+        assert!(waited < Duration::from_secs(1), "{waited:?}");
+    }
+}
+
+#[test]
+fn what_is_no_interface_says_why() {
+    let error = SocketCan::open("nocan7").unwrap_err();
+    assert!(
+        matches!(error, CanError::NoCan { .. } | CanError::NoInterface { .. }),
+        "{error}"
+    );
+    // Every machine has a loopback, and it is no CAN interface.
+    let error = SocketCan::open("lo").unwrap_err();
+    assert!(
+        matches!(error, CanError::NoCan { .. } | CanError::NotCan { .. }),
+        "{error}"
+    );
+}
+
+/// Takes an interface of its own, since it takes it down; adding one needs the administrator's rights.
+#[test]
+fn an_interface_that_is_down_says_how_to_bring_it_up() {
+    const OWN: &str = "vcan7";
+    let ip = |arguments: &str| {
+        std::process::Command::new("ip")
+            .args(arguments.split(' '))
+            .output()
+            .is_ok_and(|output| output.status.success())
+    };
+    if !ip(&format!("link add {OWN} type vcan")) {
+        return skip("this machine does not let this user add an interface");
+    }
+    let never_up = SocketCan::open(OWN).map(drop);
+    let listed_down = interfaces();
+    assert!(ip(&format!("link set {OWN} up")));
+    let listed_up = interfaces();
+    let mut port = SocketCan::open(OWN).unwrap();
+    assert_eq!(port.read(Span::ZERO).unwrap(), None);
+    assert!(ip(&format!("link set {OWN} down")));
+    let read = port.read(Span::from_secs(5)).map(drop);
+    let written = port.write_frame(&frames()[0]).map(drop);
+    assert!(ip(&format!("link del {OWN}")));
+    let gone = port.write_frame(&frames()[0]).unwrap_err();
+    for outcome in [never_up, read, written] {
+        assert_eq!(
+            outcome.unwrap_err().to_string(),
+            "CAN interface vcan7: it is down; bring it up with `sudo ip link set vcan7 up`"
+        );
+    }
+    assert!(matches!(gone, CanError::Disconnected { .. }), "{gone}");
+    for (list, up) in [(listed_down, false), (listed_up, true)] {
+        let name = OWN.to_owned();
+        assert!(
+            list.contains(&crate::can::Interface { name, up }),
+            "{list:?}"
+        );
+    }
+}
