@@ -150,7 +150,7 @@ objects! {
     RESTORE_ALL: u32 = 0x1011, 1, "Restore All Default Parameters";
     /// Free-running counter, 1 us.
     TIMESTAMP: u32 = 0x1013, 0, "High Resolution Time Stamp";
-    /// Bits 31 invalid, 10..0 COB-ID.
+    /// Bits 23..16 node id, 15..0 time in milliseconds (CiA 301).
     CONSUMER_HEARTBEAT: u32 = 0x1016, 1, "Consumer 1 Heartbeat Time";
     /// Milliseconds, 0 off.
     PRODUCER_HEARTBEAT: u16 = 0x1017, 0, "Producer Heartbeat Time";

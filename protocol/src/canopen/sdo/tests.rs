@@ -418,6 +418,29 @@ fn a_late_answer_is_not_taken_for_another() {
 }
 
 #[test]
+fn an_answer_that_nobody_is_owed_is_no_late_one() {
+    for stray in [
+        expedited(NAME, &[1, 2, 3, 4]),
+        Answer::InitiateDownload { address: NAME },
+        Answer::Abort {
+            address: NAME,
+            error: CommError::STATE,
+        },
+    ] {
+        let mut client = client();
+        time_out(&mut client, POSITION);
+        client.read(STATUS).unwrap();
+        sent(&mut client, at(60));
+        assert_eq!(hear(&mut client, stray), Handled::Taken);
+        let (expected, got) = (STATUS, NAME);
+        assert_eq!(
+            client.poll_outcome().unwrap().result,
+            Err(TransferError::OtherObject { expected, got })
+        );
+    }
+}
+
+#[test]
 fn an_answer_in_order_settles_what_was_owed() {
     for answer in [
         expedited(STATUS, &[0x40, 1]),
