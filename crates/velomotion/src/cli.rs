@@ -45,6 +45,12 @@ pub enum Command {
     Replay(Replay),
     /// Say what a file holds
     Info(Info),
+    /// Look at the tilt axis, home it, move it, stop it
+    Tilt(Tilt),
+    /// Say what this machine has of a scanner, what is wrong and what to do
+    Doctor,
+    /// Run the software EPOS2 alone, for developing a client against it
+    FirmwareSim(FirmwareSim),
 }
 
 /// `capture`.
@@ -107,6 +113,63 @@ pub struct Info {
     /// Log, pcap or pcapng
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
+}
+
+/// `tilt`.
+#[derive(Clone, Debug, Args)]
+pub struct Tilt {
+    /// What to do with the axis.
+    #[command(subcommand)]
+    pub verb: TiltVerb,
+}
+
+/// What to do with the axis.
+#[derive(Clone, Copy, Debug, Subcommand)]
+pub enum TiltVerb {
+    /// Say how it stands; changes nothing
+    Status,
+    /// Find its zero at the limit switch
+    Home,
+    /// Move it to an angle
+    Goto {
+        /// Where to
+        #[arg(value_name = "DEG", allow_negative_numbers = true)]
+        to: f64,
+        /// How fast
+        #[arg(
+            long,
+            value_name = "DEG_PER_S",
+            default_value_t = 10.0,
+            allow_negative_numbers = true
+        )]
+        speed: f64,
+        /// Acceleration [default: the device's]
+        #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
+        accel: Option<f64>,
+    },
+    /// Stop it now and set the brake, also while a capture runs
+    Stop,
+    /// Say what faults it had, what they mean and what to do
+    Faults {
+        /// Take the drive out of its fault; the history stays
+        #[arg(long)]
+        clear: bool,
+    },
+}
+
+/// `firmware-sim`.
+#[derive(Clone, Debug, Args)]
+#[command(group = clap::ArgGroup::new("interface").required(true))]
+pub struct FirmwareSim {
+    /// Speak EPOS2 USB frames on a pseudo-terminal
+    #[arg(long, group = "interface")]
+    pub usb: bool,
+    /// Speak EPOS2 RS232 frames on a pseudo-terminal
+    #[arg(long, group = "interface")]
+    pub rs232: bool,
+    /// Make a symbolic link to the port
+    #[arg(long, value_name = "PATH")]
+    pub link: Option<PathBuf>,
 }
 
 #[cfg(test)]

@@ -6,11 +6,13 @@
 pub mod cli;
 pub mod commands;
 pub mod config;
+pub mod control;
 pub mod devices;
 pub mod failure;
 pub mod motion;
 pub mod names;
 pub mod output;
+pub mod ports;
 pub mod progress;
 pub mod recording;
 pub mod recordings;
@@ -19,5 +21,6 @@ pub mod session;
 pub mod setup;
 pub mod signals;
 pub mod simulated;
+pub mod software_drive;
 
 pub use failure::{Failure, Kind};

@@ -38,6 +38,7 @@ fn main() -> ExitCode {
 fn print(common: &Common, said: Option<Said>, failure: Option<&Failure>) -> std::io::Result<()> {
     let stdout_taken = said.as_ref().is_some_and(|said| said.stdout_taken);
     let line = match (common.json, said) {
+        (_, Some(said)) if said.json.is_null() => return Ok(()),
         (true, said) => {
             let mut object = said.map_or_else(|| serde_json::json!({}), |said| said.json);
             if let (Some(failure), Some(object)) = (failure, object.as_object_mut()) {

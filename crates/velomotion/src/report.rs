@@ -220,7 +220,9 @@ fn frames(frames: Option<f64>) -> String {
     })
 }
 
-fn table(rows: Vec<(&'static str, String)>) -> String {
+/// Names and values as a table for people.
+#[must_use]
+pub fn table(rows: Vec<(&'static str, String)>) -> String {
     let mut table = Table::new();
     table.load_style(NOTHING);
     for (name, value) in rows {

@@ -124,10 +124,21 @@ fn run(
     Ok(rig.truth())
 }
 
-/// The software scanner that fits an axis: its encoder and gear, switches a degree beyond its lower limit and where homing
-/// expects the other, the lidar at 10 Hz in the hall, switched on at `start` some way down.
+/// The software scanner that fits an axis: its drive, and the lidar at 10 Hz in the hall, switched on at `start`.
 #[must_use]
 pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> RigConfig {
+    RigConfig {
+        mount: Metres(scan.mount.d_m),
+        gearing: axis.gearing,
+        drive: node(axis),
+        ..RigConfig::new(start)
+    }
+}
+
+/// The software drive that fits an axis: its encoder, switches a degree beyond its lower limit and where homing expects the other,
+/// the axis some way down.
+#[must_use]
+pub fn node(axis: &drive::AxisConfig) -> NodeConfig {
     let gearing = axis.gearing;
     let qc = |angle: f64| gearing.position(Degrees(angle)).map_or(0, |qc| qc.0);
     let switch = |input: Option<u8>, pressed| {
@@ -141,21 +152,16 @@ pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> R
     // Homing finds the switch at its home position less the way it goes on from there.
     let high = Region::AtLeast(qc(axis.homing.home_position.0 - axis.homing.offset.0));
     let middle = 0.5 * (axis.limits.min.0 + axis.limits.max.0);
-    RigConfig {
-        mount: Metres(scan.mount.d_m),
-        gearing,
-        drive: NodeConfig {
-            node_id: axis.node,
-            qc_per_turn: gearing.qc_per_motor_turn(),
-            initial_position: qc(0.5 * (middle + axis.limits.max.0)),
-            switches: [
-                switch(axis.limit_switches.negative, low),
-                switch(axis.limit_switches.positive, high),
-                None,
-                None,
-            ],
-            ..NodeConfig::default()
-        },
-        ..RigConfig::new(start)
+    NodeConfig {
+        node_id: axis.node,
+        qc_per_turn: gearing.qc_per_motor_turn(),
+        initial_position: qc(0.5 * (middle + axis.limits.max.0)),
+        switches: [
+            switch(axis.limit_switches.negative, low),
+            switch(axis.limit_switches.positive, high),
+            None,
+            None,
+        ],
+        ..NodeConfig::default()
     }
 }

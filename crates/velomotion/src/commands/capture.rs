@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use drive::{Client, Event, ShaftSample};
-use io::port::{LatencyTimer, PortError, Recorder, SerialPort};
+use io::port::{LatencyTimer, Recorder, SerialPort};
 use io::udp::ListenConfig;
 use protocol::record::DriveLink;
 use scanner::TiltSource;
@@ -17,7 +17,7 @@ use sim::Truth;
 use super::Said;
 use super::replay::{self, Request};
 use crate::cli::{self, Common};
-use crate::devices;
+use crate::control::Control;
 use crate::failure::{Failure, Kind};
 use crate::motion::{self, Told};
 use crate::output::{self, Aside, Target};
@@ -28,9 +28,8 @@ use crate::session::{Session, SessionError};
 use crate::setup::Setup;
 use crate::signals;
 use crate::simulated::{self, Simulated};
+use crate::{devices, ports};
 
-/// EPOS2 on USB: 1 Mbaud by the Communication Guide.
-const USB_BAUD: u32 = 1_000_000;
 /// A lidar that turns sends 754 packets a second; one that sends none in this time will not send any during the sweep.
 const LIDAR_WAIT: Duration = Duration::from_secs(2);
 
@@ -108,7 +107,7 @@ fn record(
     interrupt: &Arc<AtomicBool>,
     progress: &mut Progress,
 ) -> Result<Ended, Failure> {
-    let port = SerialPort::open(path, USB_BAUD).map_err(|error| port_failure(&error))?;
+    let port = SerialPort::open(path, ports::USB_BAUD).map_err(|error| ports::failure(&error))?;
     if let LatencyTimer::High { ms } = port.latency_timer() {
         progress.say(&format!(
             "warning: the adapter's latency timer is {ms} ms and cannot be set: every angle is that much less certain (docs: wiring)"
@@ -121,6 +120,7 @@ fn record(
         let _ = std::fs::remove_file(&setup.log);
         return Err(failure);
     }
+    let control = Control::listen(path, interrupt);
     let log = recording.handle();
     let port = Recorder::new(port, DriveLink::Usb, move |record| log.record(record));
     let client = Client::new(setup.axis.clone());
@@ -141,6 +141,12 @@ fn record(
     });
     progress.end_move();
     drop(session);
+    if let Some(control) = control {
+        control.ended(!matches!(
+            motion,
+            Err(SessionError::NotStopped(_) | SessionError::Port(_))
+        ));
+    }
     let recorded = recording.finish();
     if let Ok(Recorded { lidar, .. }) = &recorded
         && lidar.without_kernel_time > 0
@@ -275,18 +281,4 @@ fn motion_failure(error: &SessionError, recorded: Option<Failure>) -> Failure {
         Some(help) => failure.help(help),
         None => failure,
     }
-}
-
-fn port_failure(error: &PortError) -> Failure {
-    let help = match error {
-        PortError::Permission { .. } => {
-            "add yourself to the group that owns the port (dialout on Debian), or install a udev rule for it"
-        }
-        PortError::Busy { .. } => "close the other program that uses the drive",
-        _ => {
-            "see whether the drive is plugged in and switched on, and what its port is called;\n\
-             --device sim needs no hardware"
-        }
-    };
-    Failure::new(Kind::NoDevice, error.to_string()).help(help)
 }

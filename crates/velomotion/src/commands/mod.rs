@@ -1,8 +1,11 @@
 //! The verbs, one file each.
 
 pub mod capture;
+pub mod doctor;
+pub mod firmware_sim;
 pub mod info;
 pub mod replay;
+pub mod tilt;
 
 use crate::cli::{Cli, Command};
 use crate::failure::Failure;
@@ -28,10 +31,33 @@ pub fn run(cli: &Cli) -> Result<Said, Failure> {
         Command::Capture(arguments) => capture::run(arguments, &cli.common),
         Command::Replay(arguments) => replay::run(arguments, &cli.common),
         Command::Info(arguments) => info::run(arguments),
+        Command::Tilt(arguments) => tilt::run(arguments, &cli.common),
+        Command::Doctor => doctor::run(&cli.common),
+        Command::FirmwareSim(arguments) => firmware_sim::run(arguments, &cli.common),
     }
 }
 
 impl Said {
+    /// Everything was said while the command ran.
+    const fn nothing() -> Self {
+        Self {
+            json: serde_json::Value::Null,
+            text: String::new(),
+            failure: None,
+            stdout_taken: false,
+        }
+    }
+
+    /// A report that is no scan.
+    fn report(report: &impl serde::Serialize, text: String) -> Self {
+        Self {
+            json: json(report),
+            text,
+            failure: None,
+            stdout_taken: false,
+        }
+    }
+
     /// A scan's report. Where the cloud itself went to stdout, nothing else may.
     #[must_use]
     pub fn scan(scan: &crate::report::Scan, failure: Option<Failure>, stdout_taken: bool) -> Self {

@@ -1,0 +1,265 @@
+//! `velomotion doctor`: what this machine has of a scanner, what is wrong with it, and what to do.
+
+use std::fs;
+use std::path::Path;
+
+use io::can::Interface;
+use io::discover::{Epos2Found, Findings, discover};
+use serde::Serialize;
+
+use super::Said;
+use crate::cli::Common;
+use crate::config::{self, Config, DeviceKind};
+use crate::failure::Failure;
+
+/// One thing that was looked at.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+struct Finding {
+    /// What was looked at.
+    what: String,
+    /// ok, warning or problem.
+    verdict: Verdict,
+    /// What was found.
+    found: String,
+    /// What to do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    todo: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Verdict {
+    Ok,
+    Warning,
+    Problem,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+struct Report {
+    findings: Vec<Finding>,
+}
+
+/// A state file of sysfs, `None` where it is not there.
+type Sysfs<'a> = &'a dyn Fn(&Path) -> Option<String>;
+
+/// Runs the command.
+///
+/// # Errors
+/// Where the configuration cannot be read.
+pub fn run(common: &Common) -> Result<Said, Failure> {
+    let config = config::load(common.config.as_deref())?;
+    let read = |path: &Path| {
+        fs::read_to_string(path)
+            .ok()
+            .map(|text| text.trim().to_owned())
+    };
+    let mut findings = drives(&discover(), &read);
+    findings.extend(can_interfaces(&io::can::interfaces()));
+    findings.extend(profiles(&config));
+    findings.push(receive_buffer(&read));
+    let report = Report { findings };
+    let text = text(&report);
+    Ok(Said::report(&report, text))
+}
+
+fn finding(what: impl Into<String>, verdict: Verdict, found: impl Into<String>) -> Finding {
+    Finding {
+        what: what.into(),
+        verdict,
+        found: found.into(),
+        todo: None,
+    }
+}
+
+impl Finding {
+    fn todo(mut self, todo: impl Into<String>) -> Self {
+        self.todo = Some(todo.into());
+        self
+    }
+}
+
+fn drives(found: &Findings, read: Sysfs<'_>) -> Vec<Finding> {
+    let mut findings: Vec<Finding> = found.epos2.iter().map(|unit| epos2(unit, read)).collect();
+    if findings.is_empty() {
+        findings.push(
+            finding("EPOS2 on USB", Verdict::Warning, "none (0403:A8B0)").todo(
+                "plug it in and switch its supply on; a drive on RS232 or CAN does not show here",
+            ),
+        );
+    }
+    for port in &found.serial_ports {
+        let usb = port.usb.as_ref().map_or("no USB device".to_owned(), |usb| {
+            format!("USB {:04x}:{:04x}", usb.vendor, usb.product)
+        });
+        findings.push(finding(
+            format!("serial port {}", port.path.display()),
+            Verdict::Ok,
+            usb,
+        ));
+    }
+    findings.extend(
+        found
+            .problems
+            .iter()
+            .map(|problem| finding("looking", Verdict::Problem, problem)),
+    );
+    findings
+}
+
+fn epos2(unit: &Epos2Found, read: Sysfs<'_>) -> Finding {
+    let what = format!("EPOS2 on USB {}", unit.bus_place);
+    let Some(port) = &unit.port else {
+        return finding(what, Verdict::Problem, "no serial port: ftdi_sio does not know its id").todo(
+            "as root: modprobe ftdi_sio && echo 0403 a8b0 > /sys/bus/usb-serial/drivers/ftdi_sio/new_id\n\
+             for good, in /etc/udev/rules.d/99-epos2.rules:\n\
+             ACTION==\"add\", SUBSYSTEM==\"usb\", ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"a8b0\", \
+             RUN+=\"/bin/sh -c 'modprobe ftdi_sio; echo 0403 a8b0 > /sys/bus/usb-serial/drivers/ftdi_sio/new_id'\"",
+        );
+    };
+    let name = port.file_name().unwrap_or_default();
+    let timer = Path::new("/sys/bus/usb-serial/devices")
+        .join(name)
+        .join("latency_timer");
+    match read(&timer) {
+        Some(ms) if ms != "1" => finding(
+            what,
+            Verdict::Warning,
+            format!(
+                "{}, latency timer {ms} ms: every answer is late by up to that",
+                port.display()
+            ),
+        )
+        .todo(format!("as root: echo 1 > {}", timer.display())),
+        _ => finding(what, Verdict::Ok, port.display().to_string()),
+    }
+}
+
+fn can_interfaces(interfaces: &[Interface]) -> Vec<Finding> {
+    interfaces
+        .iter()
+        .map(|interface| {
+            let what = format!("CAN interface {}", interface.name);
+            if interface.up {
+                finding(what, Verdict::Ok, "up")
+            } else {
+                finding(what, Verdict::Problem, "down")
+                    .todo(format!("as root: {}", interface.up_command()))
+            }
+        })
+        .collect()
+}
+
+fn profiles(config: &Config) -> Vec<Finding> {
+    let named = config.device.default.as_deref().unwrap_or("auto");
+    let mut findings = vec![finding("device without --device", Verdict::Ok, named)];
+    for (name, device) in &config.device.profiles {
+        let what = format!("[device.{name}]");
+        findings.push(match (&device.kind, &device.port) {
+            (DeviceKind::Sim, _) => finding(what, Verdict::Ok, "software devices"),
+            (_, Some(port)) if port.exists() => {
+                finding(what, Verdict::Ok, port.display().to_string())
+            }
+            (_, Some(port)) => finding(
+                what,
+                Verdict::Problem,
+                format!("{} is not there", port.display()),
+            )
+            .todo("plug the drive in, or correct port in the configuration"),
+            (_, None) => finding(what, Verdict::Problem, "names no port")
+                .todo("add port = \"/dev/ttyUSB0\" (or what it is)"),
+        });
+    }
+    findings
+}
+
+/// The lidar's socket asks for 8 MiB; a smaller limit is what it gets.
+fn receive_buffer(read: Sysfs<'_>) -> Finding {
+    const WANTED: u64 = 8 << 20;
+    let what = "UDP receive buffer";
+    let limit: Option<u64> =
+        read(Path::new("/proc/sys/net/core/rmem_max")).and_then(|text| text.parse().ok());
+    match limit {
+        Some(limit) if limit < WANTED => finding(
+            what,
+            Verdict::Warning,
+            format!(
+                "at most {} KiB: packets are lost if this machine pauses longer than it holds",
+                limit >> 10
+            ),
+        )
+        .todo(format!("as root: sysctl -w net.core.rmem_max={WANTED}")),
+        Some(limit) => finding(what, Verdict::Ok, format!("up to {} KiB", limit >> 10)),
+        None => finding(what, Verdict::Ok, "limit not known"),
+    }
+}
+
+fn text(report: &Report) -> String {
+    let mut lines = Vec::new();
+    for finding in &report.findings {
+        let mark = match finding.verdict {
+            Verdict::Ok => "ok     ",
+            Verdict::Warning => "warning",
+            Verdict::Problem => "PROBLEM",
+        };
+        lines.push(format!("{mark}  {}: {}", finding.what, finding.found));
+        for line in finding.todo.iter().flat_map(|todo| todo.lines()) {
+            lines.push(format!("         {line}"));
+        }
+    }
+    lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use io::discover::UsbIdentity;
+    use std::path::PathBuf;
+
+    fn unit(port: Option<&str>) -> Epos2Found {
+        Epos2Found {
+            usb: UsbIdentity {
+                vendor: 0x0403,
+                product: 0xA8B0,
+                name: None,
+                serial_number: None,
+            },
+            bus_place: "1-4".to_owned(),
+            port: port.map(PathBuf::from),
+        }
+    }
+
+    #[test]
+    fn an_epos2_without_a_port_gets_the_udev_rule() {
+        let finding = epos2(&unit(None), &|_| None);
+        assert_eq!(finding.verdict, Verdict::Problem);
+        let todo = finding.todo.unwrap();
+        assert!(
+            todo.contains("udev") && todo.contains("0403 a8b0"),
+            "{todo}"
+        );
+    }
+
+    #[test]
+    fn a_slow_latency_timer_is_named_with_its_cure() {
+        let finding = epos2(&unit(Some("/dev/ttyUSB3")), &|path| {
+            assert!(path.ends_with("ttyUSB3/latency_timer"), "{path:?}");
+            Some("16".to_owned())
+        });
+        assert_eq!(finding.verdict, Verdict::Warning);
+        assert!(finding.todo.unwrap().contains("echo 1 > "));
+        let fast = epos2(&unit(Some("/dev/ttyUSB3")), &|_| Some("1".to_owned()));
+        assert_eq!(fast.verdict, Verdict::Ok);
+    }
+
+    #[test]
+    fn a_can_interface_that_is_down_gets_the_ip_command() {
+        let interfaces = [("can0", false), ("vcan0", true)].map(|(name, up)| Interface {
+            name: name.to_owned(),
+            up,
+        });
+        let findings = can_interfaces(&interfaces);
+        assert_eq!(findings[0].verdict, Verdict::Problem);
+        assert!(findings[0].todo.as_ref().unwrap().contains("can0"));
+        assert_eq!(findings[1].verdict, Verdict::Ok);
+    }
+}

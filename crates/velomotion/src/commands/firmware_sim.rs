@@ -1,0 +1,102 @@
+//! `velomotion firmware-sim`: the software EPOS2 alone, for whoever develops a client against it.
+
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use firmware_sim::epos2::{Rs232Server, UsbServer};
+use io::port::Pty;
+
+use super::Said;
+use crate::cli::{self, Common};
+use crate::failure::{Failure, Kind};
+use crate::software_drive::{self, Server};
+use crate::{config, devices, signals, simulated};
+
+/// Runs the command: the first line on stdout is the port; it ends when stdin closes or at SIGTERM.
+///
+/// # Errors
+/// Where the machine gives no pseudo-terminal, or the link cannot be made.
+pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<Said, Failure> {
+    let config = config::load(common.config.as_deref())?;
+    let axis = devices::axis(&config.axis)?;
+    let failed = |error: io::port::PortError| {
+        Failure::new(Kind::NoDevice, error.to_string())
+            .help("see whether this machine gives out pseudo-terminals (/dev/ptmx)")
+    };
+    let mut pty = Pty::open().map_err(failed)?;
+    let link = arguments
+        .link
+        .as_deref()
+        .map(|link| Link::make(link, pty.path()))
+        .transpose()?;
+    let stop = signals::interrupt_flag()?;
+    until_stdin_closes(&stop)?;
+    announce(pty.path())?;
+    let server = if arguments.rs232 {
+        Server::Rs232(Rs232Server::new(1))
+    } else {
+        Server::Usb(UsbServer::new(1))
+    };
+    let node = simulated::node(&axis);
+    software_drive::run(node, server, &mut pty, &stop).map_err(failed)?;
+    drop(link);
+    Ok(Said::nothing())
+}
+
+fn announce(port: &Path) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    writeln!(stdout, "{}", port.display())
+        .and_then(|()| stdout.flush())
+        .map_err(|error| {
+            Failure::new(
+                Kind::Usage,
+                format!("cannot say the port on stdout: {error}"),
+            )
+            .help("the first line on stdout is the port: read it")
+        })
+}
+
+/// Sets `stop` when stdin comes to its end.
+fn until_stdin_closes(stop: &Arc<AtomicBool>) -> Result<(), Failure> {
+    let stop = Arc::clone(stop);
+    std::thread::Builder::new()
+        .name("stdin".to_owned())
+        .spawn(move || {
+            let mut buffer = [0; 256];
+            while matches!(std::io::stdin().read(&mut buffer), Ok(count) if count > 0) {}
+            stop.store(true, Ordering::Relaxed);
+        })
+        .map(drop)
+        .map_err(|error| {
+            Failure::new(Kind::NoDevice, format!("no thread for stdin: {error}"))
+                .help("see how many processes and threads this user may have (ulimit -u)")
+        })
+}
+
+/// A symbolic link to the port that goes when the drive does.
+struct Link(PathBuf);
+
+impl Link {
+    fn make(link: &Path, port: &Path) -> Result<Self, Failure> {
+        // A link that an earlier run left is replaced; anything else of that name is not ours.
+        if link.is_symlink() {
+            let _ = std::fs::remove_file(link);
+        }
+        std::os::unix::fs::symlink(port, link).map_err(|error| {
+            Failure::new(
+                Kind::Usage,
+                format!("cannot make the link {}: {error}", link.display()),
+            )
+            .help("name a link in a folder that exists, where no file of that name is")
+        })?;
+        Ok(Self(link.to_owned()))
+    }
+}
+
+impl Drop for Link {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
