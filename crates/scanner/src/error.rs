@@ -31,6 +31,12 @@ pub enum ScanError {
         /// Last packet.
         recording_to_s: f64,
     },
+    /// A table between whose rows nothing lies.
+    #[error("tilt angles: expected at least two rows of time_s,angle_deg, got {rows}")]
+    TableShort {
+        /// Rows with numbers.
+        rows: usize,
+    },
     /// A table of angles with a number that cannot be.
     #[error("tilt angles: row {row}: expected seconds within +-1e10 and degrees within +-3600")]
     TableRange {

@@ -164,6 +164,15 @@ impl Alignment {
         }
     }
 
+    /// How far off the tilt angle may be at worst during the sweeps; `None` without tilt.
+    #[must_use]
+    pub fn angle_bound_deg(&self) -> Option<f64> {
+        match &self.trajectory {
+            Trajectory::Fixed(_) => None,
+            Trajectory::Linear(linear) => Some(linear.worst_bound(&self.spans).0),
+        }
+    }
+
     fn wants(&self, host: Stamp<Host>) -> bool {
         self.spans
             .iter()

@@ -39,11 +39,11 @@ impl AngleTable {
     /// Rows of (seconds, degrees), in strictly increasing time.
     ///
     /// # Errors
-    /// [`ScanError::NoTilt`] without rows, [`ScanError::TableRange`] for times and angles that cannot be,
+    /// [`ScanError::TableShort`] with fewer than two rows, [`ScanError::TableRange`] for times and angles that cannot be,
     /// [`ScanError::TableOrder`] where time does not increase.
     pub fn new(rows: Vec<(f64, f64)>) -> Result<Self, ScanError> {
-        if rows.is_empty() {
-            return Err(ScanError::NoTilt);
+        if rows.len() < 2 {
+            return Err(ScanError::TableShort { rows: rows.len() });
         }
         if let Some(row) = rows.iter().position(|r| !in_range(*r)) {
             return Err(ScanError::TableRange { row: row + 1 });
@@ -155,7 +155,10 @@ mod tests {
     fn time_must_increase() {
         let rows = vec![(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)];
         assert_eq!(AngleTable::new(rows), Err(ScanError::TableOrder { row: 3 }));
-        assert_eq!(AngleTable::new(Vec::new()), Err(ScanError::NoTilt));
+        assert_eq!(
+            AngleTable::new(vec![(0.0, 0.0)]),
+            Err(ScanError::TableShort { rows: 1 })
+        );
         for bad in [(f64::NAN, 0.0), (9e18, 0.0), (1.0, f64::INFINITY)] {
             let table = AngleTable::new(vec![(0.0, 0.0), bad]);
             assert_eq!(table, Err(ScanError::TableRange { row: 2 }));

@@ -72,6 +72,27 @@ impl Linear {
         Some(between(before, after, host))
     }
 
+    /// How far off the angle may be between samples within `spans`, at worst: half a poll's round trip at the speed there, and what a
+    /// straight line misses where the speed changes from one stretch to the next over a hole.
+    #[must_use]
+    pub fn worst_bound(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> Degrees {
+        let inside = |t: Stamp<Host>| spans.iter().any(|(from, to)| *from <= t && t <= *to);
+        let worst = self
+            .samples
+            .windows(4)
+            .filter_map(|w| match w {
+                [a, b, c, d] if inside(b.host) && inside(c.host) => {
+                    let (before, across, after) = (rate(a, b), rate(b, c), rate(c, d));
+                    let bent = (after - before).abs() * seconds(b, c) / 8.0;
+                    let held = across.abs() * b.bound.as_secs_f64().max(c.bound.as_secs_f64());
+                    Some(bent + held)
+                }
+                _ => None,
+            })
+            .fold(0.0, f64::max);
+        Degrees(worst)
+    }
+
     /// How well samples predict each other: the RMS of each sample against the line between its neighbours, over samples
     /// within `spans`. `None` where fewer than three samples fall there.
     ///
@@ -92,6 +113,15 @@ impl Linear {
             .fold((0.0, 0u32), |(sum, n), e| (sum + e * e, n + 1));
         (count > 0).then(|| Degrees((sum / f64::from(count)).sqrt()))
     }
+}
+
+fn seconds(a: &AngleSample, b: &AngleSample) -> f64 {
+    b.host.saturating_since(a.host).as_secs_f64()
+}
+
+/// Degrees per second; samples are in strictly increasing time.
+fn rate(a: &AngleSample, b: &AngleSample) -> f64 {
+    (b.angle.0 - a.angle.0) / seconds(a, b)
 }
 
 fn between(a: &AngleSample, b: &AngleSample, host: Stamp<Host>) -> Degrees {
@@ -134,6 +164,28 @@ mod tests {
     fn identical_timestamps_do_not_divide_by_zero() {
         let linear = Linear::new(vec![at(0, 0.0), at(0, 9.0), at(10, 1.0)]).unwrap();
         assert_eq!(linear.angle(Stamp::from_nanos(5)), Some(Degrees(0.5)));
+    }
+
+    #[test]
+    fn the_bound_sees_slow_polls_and_holes() {
+        let all = [(Stamp::from_nanos(0), Stamp::from_nanos(1_000_000_000))];
+        let moving = |holes: &[i64], bound_us: i64| {
+            let samples = (0..100)
+                .filter(|i| !holes.contains(i))
+                .map(|i| AngleSample {
+                    bound: Span::from_micros(bound_us),
+                    ..at(
+                        i * 1_000_000,
+                        0.05 * f64::from(i32::try_from(i - 50).unwrap().max(0)),
+                    )
+                });
+            Linear::new(samples.collect()).unwrap().worst_bound(&all).0
+        };
+        // 50 deg/s: 1 ms of doubt is 0.05 deg, and from rest to 50 deg/s over 11 ms 50 x 0.011 / 8.
+        assert!((moving(&[], 1_000) - (0.05 + 0.00625)).abs() < 1e-3);
+        let hole: Vec<i64> = (45..55).collect();
+        assert!((moving(&hole, 0) - 50.0 * 0.011 / 8.0).abs() < 1e-3);
+        assert!(moving(&[], 0) < 0.01);
     }
 
     #[test]

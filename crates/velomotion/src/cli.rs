@@ -68,10 +68,10 @@ pub struct Capture {
     /// Acceleration of the tilt axis [default: the device's]
     #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
     pub accel: Option<f64>,
-    /// How many sweeps
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    pub sweeps: u32,
-    /// Scan on the way back too
+    /// How many sweeps [default: 1, with --both-ways 2]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub sweeps: Option<u32>,
+    /// Scan on the way back too; each way counts as a sweep
     #[arg(long)]
     pub both_ways: bool,
     /// Raw log to keep [default: named after the cloud]

@@ -223,7 +223,7 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
         )
         .help("name an existing file with --config, or leave the option out")
     })?;
-    toml::from_str(&text).map_err(|error| {
+    let config: Config = toml::from_str(&text).map_err(|error| {
         Failure::new(
             Kind::BadInput,
             format!(
@@ -232,7 +232,43 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
             ),
         )
         .help("correct that line; the checkout's velomotion.toml shows every key")
-    })
+    })?;
+    config.check().map_err(|what| {
+        Failure::new(
+            Kind::BadInput,
+            format!("the configuration {}: {what}", path.display()),
+        )
+        .help("correct that value; docs: wiring says what each one means")
+    })?;
+    Ok(config)
+}
+
+impl Config {
+    /// Refuses numbers that no scanner has (TOML knows nan and inf).
+    fn check(&self) -> Result<(), String> {
+        let Axis { homing, .. } = &self.axis;
+        let within = [
+            ("mount.d_m", self.mount.d_m, 10.0),
+            ("axis.min_deg", self.axis.min_deg, 3_600.0),
+            ("axis.max_deg", self.axis.max_deg, 3_600.0),
+            ("axis.max_speed_deg_s", self.axis.max_speed_deg_s, 1e6),
+            ("axis.max_accel_deg_s2", self.axis.max_accel_deg_s2, 1e9),
+            ("axis.quick_stop_deg_s2", self.axis.quick_stop_deg_s2, 1e9),
+            ("axis.homing.at_deg", homing.at_deg, 3_600.0),
+            ("axis.homing.to_deg", homing.to_deg, 3_600.0),
+            ("axis.homing.speed_deg_s", homing.speed_deg_s, 1e6),
+            ("axis.homing.edge_speed_deg_s", homing.edge_speed_deg_s, 1e6),
+        ];
+        for (name, value, limit) in within {
+            // Not a number is not within either.
+            if !(-limit..=limit).contains(&value) {
+                return Err(format!(
+                    "{name}: expected a number within +-{limit}, got {value}"
+                ));
+            }
+        }
+        Ok(())
+    }
 }
 
 fn usual_place() -> Option<PathBuf> {
@@ -259,6 +295,15 @@ mod tests {
         assert_eq!(config.device.default.as_deref(), Some("sim"));
         assert_eq!(config.axis, Axis::default());
         assert_eq!(config.mount, MountConfig::default());
+    }
+
+    #[test]
+    fn numbers_that_no_scanner_has_are_refused() {
+        for text in ["[mount]\nd_m = nan", "[axis]\nmin_deg = -inf"] {
+            let config: Config = toml::from_str(text).unwrap();
+            assert!(config.check().is_err(), "{text}");
+        }
+        assert_eq!(Config::default().check(), Ok(()));
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! The entry point: parses the command line, runs a command, prints what it says and how it failed.
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
 use tracing_subscriber::EnvFilter;
 use velomotion::cli::{Cli, Common};
 use velomotion::commands::{self, Said};
-use velomotion::failure::Failure;
+use velomotion::failure::{Failure, Kind};
 use velomotion::progress::to_stderr;
 
 fn main() -> ExitCode {
@@ -20,10 +20,18 @@ fn main() -> ExitCode {
         }
         Err(failure) => (None, Some(failure)),
     };
-    if let Err(error) = print(&cli.common, said, failure.as_ref()) {
+    let printed = print(&cli.common, said, failure.as_ref());
+    let failure = failure.or_else(|| match printed {
         // A reader that went away (a closed pipe) is no reason to fail.
-        tracing::debug!("stdout: {error}");
-    }
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Some(
+            Failure::new(
+                Kind::Incomplete,
+                format!("cannot print the result: {error}"),
+            )
+            .help("see where stdout goes; what was done is done and its files are saved"),
+        ),
+        _ => None,
+    });
     match failure {
         None => ExitCode::SUCCESS,
         Some(failure) => {
@@ -79,6 +87,7 @@ fn start_log(common: &Common) {
         .with_writer(std::io::stderr)
         // A closed stderr must not panic in mid-sweep.
         .log_internal_errors(false)
+        .with_ansi(std::io::stderr().is_terminal())
         .without_time()
         .with_target(false)
         .init();

@@ -91,6 +91,40 @@ pub fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Refuses to write a cloud over the log or recording that it is made of.
+///
+/// # Errors
+/// [`Kind::Usage`].
+pub fn two_files(log: &Path, cloud: &Path) -> Result<(), Failure> {
+    if same_file(log, cloud) {
+        return Err(Failure::new(
+            Kind::Usage,
+            format!(
+                "the cloud and what it is made of are both {}",
+                log.display()
+            ),
+        )
+        .help("give the cloud another name with -o"));
+    }
+    Ok(())
+}
+
+/// Whether two names are one file, there or not.
+fn same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        let folder = match path.parent() {
+            Some(folder) if folder != Path::new("") => folder,
+            _ => Path::new("."),
+        };
+        let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        let path = path
+            .file_name()
+            .map_or(folder.clone(), |name| folder.join(name));
+        path.canonicalize().unwrap_or(path)
+    };
+    place(a) == place(b)
+}
+
 /// Refuses a cloud and a JSON object on one stdout.
 ///
 /// # Errors

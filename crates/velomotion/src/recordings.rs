@@ -31,17 +31,28 @@ pub fn open(path: &Path) -> Result<Recording, Failure> {
 /// [`Kind::BadInput`] where the file cannot be read, or carries a configuration of ours that cannot be understood.
 pub fn config(path: &Path) -> Result<ScanConfig, Failure> {
     let recording = open(path)?;
-    match recording.metadata() {
-        // Other programs comment their recordings too.
-        Some(text) if text.trim_start().starts_with("velomotion = ") => toml::from_str(text).map_err(|error| {
-            Failure::new(
-                Kind::BadInput,
-                format!("{}: the log's configuration cannot be understood:\n{error}", path.display()),
-            )
-            .help("the log was written by another version: replay it with the version that its first line names")
-        }),
-        _ => Ok(ScanConfig::default()),
+    // Other programs comment their recordings too.
+    let Some(text) = recording
+        .metadata()
+        .filter(|text| text.trim_start().starts_with("velomotion = "))
+    else {
+        return Ok(ScanConfig::default());
+    };
+    let wrong = |what: String| {
+        Failure::new(
+            Kind::BadInput,
+            format!(
+                "{}: the log's configuration cannot be understood:\n{what}",
+                path.display()
+            ),
+        )
+        .help("replay the log with the version that its first line names")
+    };
+    let config: ScanConfig = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
+    if !config.mount.d_m.is_finite() {
+        return Err(wrong(format!("mount.d_m is {}", config.mount.d_m)));
     }
+    Ok(config)
 }
 
 /// Gives every record to `take`, in file order.

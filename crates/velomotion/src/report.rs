@@ -49,6 +49,10 @@ pub struct Contents {
     /// Where and why the file ends too early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truncated: Option<String>,
+    /// Whether the devices were software.
+    pub simulated: bool,
+    /// What is doubtful about it.
+    pub warnings: Vec<String>,
 }
 
 /// One sweep.
@@ -81,6 +85,8 @@ pub struct Sync {
     pub angle_method: &'static str,
     /// RMS of angle samples against their neighbours.
     pub angle_rms_deg: Option<f64>,
+    /// How far off an angle may be at worst.
+    pub angle_bound_deg: Option<f64>,
 }
 
 /// A cloud against the simulator's truth.
@@ -110,8 +116,6 @@ pub struct Scan {
     pub output: String,
     /// The log.
     pub log: String,
-    /// Whether the devices were software.
-    pub simulated: bool,
     /// Records that a capture lost: packets that the kernel dropped, records that the disk was too slow for.
     pub lost_records: u64,
     /// Against the simulator's truth; real scans have none.
@@ -139,6 +143,15 @@ impl Contents {
             let tilt = format!("{} samples over {}", tilt.samples, tilt.transport);
             rows.push(("tilt", tilt));
         }
+        if self.simulated {
+            rows.insert(
+                0,
+                (
+                    "SIMULATED",
+                    "software devices, no scan of anything real".to_owned(),
+                ),
+            );
+        }
         if let Some(truncated) = &self.truncated {
             rows.push(("cut off", truncated.clone()));
         }
@@ -159,7 +172,15 @@ impl Contents {
     /// A table for people.
     #[must_use]
     pub fn table(&self) -> String {
-        table(self.rows())
+        let mut rows = self.rows();
+        rows.extend(self.warning_rows());
+        table(rows)
+    }
+
+    fn warning_rows(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
+        self.warnings
+            .iter()
+            .map(|warning| ("warning", warning.clone()))
     }
 }
 
@@ -196,7 +217,7 @@ impl Scan {
         rows.push(("angle", format!("{}{rms}", sync.angle_method)));
         rows.push((
             "points",
-            format!("{} ({} returns outside sweeps)", self.points, self.left_out),
+            format!("{} ({} returns left out)", self.points, self.left_out),
         ));
         if let Some(truth) = self.truth {
             rows.push((
@@ -210,6 +231,7 @@ impl Scan {
         }
         rows.push(("cloud", self.output.clone()));
         rows.push(("log", self.log.clone()));
+        rows.extend(self.contents.warning_rows());
         table(rows)
     }
 }

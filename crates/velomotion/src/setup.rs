@@ -1,6 +1,6 @@
 //! Everything about a capture that is decided before a device is touched.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::SystemTime;
 
 use scanner::{ScanConfig, SweepPlan};
@@ -8,9 +8,9 @@ use units::{DegPerS, DegPerS2, Degrees};
 
 use crate::cli::{self, Common};
 use crate::config::{self, Config, Device};
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::motion::{self, Step, Wish};
-use crate::{devices, names};
+use crate::{devices, names, output};
 
 /// A capture, decided.
 pub struct Setup {
@@ -48,7 +48,9 @@ impl Setup {
             to: Degrees(arguments.to.unwrap_or(config.axis.min_deg)),
             speed: DegPerS(arguments.speed),
             acceleration: DegPerS2(arguments.accel.unwrap_or(device.accel_deg_s2)),
-            sweeps: arguments.sweeps,
+            sweeps: arguments
+                .sweeps
+                .unwrap_or(if arguments.both_ways { 2 } else { 1 }),
             both_ways: arguments.both_ways,
         };
         let steps = motion::steps(&wish, &axis, Degrees(config.axis.homing.to_deg))?;
@@ -62,13 +64,7 @@ impl Setup {
             .log
             .clone()
             .unwrap_or_else(|| names::log_of(&cloud, start, simulated));
-        if same_file(&cloud, &log) {
-            return Err(Failure::new(
-                Kind::Usage,
-                format!("the cloud and the log are both {}", log.display()),
-            )
-            .help("give -o and --log different names"));
-        }
+        output::two_files(&log, &cloud)?;
         Ok(Self {
             scan: scan_config(&config, &name, simulated, &wish, &steps),
             name,
@@ -141,22 +137,6 @@ pub fn scan_config(
         sweep,
         ..ScanConfig::default()
     }
-}
-
-/// Whether two names are one file, there or not.
-fn same_file(a: &Path, b: &Path) -> bool {
-    let place = |path: &Path| {
-        let folder = match path.parent() {
-            Some(folder) if folder != Path::new("") => folder,
-            _ => Path::new("."),
-        };
-        let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-        let path = path
-            .file_name()
-            .map_or(folder.clone(), |name| folder.join(name));
-        path.canonicalize().unwrap_or(path)
-    };
-    place(a) == place(b)
 }
 
 /// A number without the noise of its last bits.

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use etherparse::err::packet::SliceError;
-use etherparse::{EtherType, NetSlice, SlicedPacket, TransportSlice};
+use etherparse::{
+    EtherType, LaxNetSlice, LaxSlicedPacket, NetSlice, SlicedPacket, TransportSlice, UdpHeader,
+};
 use protocol::record::{Direction, DriveLink};
 
 use super::Fault;
@@ -101,7 +103,10 @@ pub(super) fn look_inside(
         }
         LinkType::Unused => return Ok(Content::Other),
     };
-    let sliced = sliced.map_err(fault)?;
+    let sliced = match sliced {
+        Ok(sliced) => sliced,
+        Err(error) => return by_udp_length(link, data).ok_or_else(|| fault(error)),
+    };
     let Some(NetSlice::Ipv4(ip)) = sliced.net else {
         return Ok(Content::Other);
     };
@@ -111,14 +116,39 @@ pub(super) fn look_inside(
     let Some(TransportSlice::Udp(udp)) = sliced.transport else {
         return Ok(Content::Other);
     };
-    let payload = udp.payload();
-    // Where a part lies in the whole it was sliced from.
-    let start = (payload.as_ptr() as usize).saturating_sub(data.as_ptr() as usize);
     Ok(Content::Datagram {
         source: ip.header().source(),
         port: udp.destination_port(),
-        payload: start..start.saturating_add(payload.len()),
+        payload: within(data, udp.payload()),
     })
+}
+
+/// Where a part lies in the whole it was sliced from.
+fn within(whole: &[u8], part: &[u8]) -> Range<usize> {
+    let start = (part.as_ptr() as usize).saturating_sub(whole.as_ptr() as usize);
+    start..start.saturating_add(part.len())
+}
+
+/// A datagram whose IP header claims more than there is while its UDP length is all there: VLP-16 firmware of 2014 gives its
+/// position packets the IP length of a data packet. A packet that was cut short does not pass: its UDP length is missing bytes too.
+fn by_udp_length(link: LinkType, data: &[u8]) -> Option<Content> {
+    let lax = match link {
+        LinkType::Ethernet => LaxSlicedPacket::from_ethernet(data).ok()?,
+        LinkType::Ip => LaxSlicedPacket::from_ip(data).ok()?,
+        _ => return None,
+    };
+    match (&lax.net, &lax.transport) {
+        (Some(LaxNetSlice::Ipv4(ip)), Some(TransportSlice::Udp(udp)))
+            if usize::from(udp.length()) == udp.payload().len() + UdpHeader::LEN =>
+        {
+            Some(Content::Datagram {
+                source: ip.header().source(),
+                port: udp.destination_port(),
+                payload: within(data, udp.payload()),
+            })
+        }
+        _ => None,
+    }
 }
 
 /// A packet behind a Linux cooked header of `header_len` bytes with the EtherType at `at`.

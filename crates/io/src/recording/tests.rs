@@ -541,7 +541,8 @@ fn real_recordings_hold_what_is_known_of_them() {
     for (name, data, position) in [
         ("vlp16-strongest-gps.pcap", 293, 57),
         ("vlp16-dual.pcap", 603, 0),
-        ("vlp16-2014-no-factory-bytes.pcap", 1902, 0),
+        // Their IP length is that of a data packet, their UDP length true.
+        ("vlp16-2014-no-factory-bytes.pcap", 1902, 367),
         ("vlp16-fov-limited-malformed.pcap", 41, 36),
     ] {
         let Some(path) = real(name) else { return };

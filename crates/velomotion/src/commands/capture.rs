@@ -65,7 +65,6 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
         let path = devices::port_path(&setup.name, &setup.device)?;
         (None, record(&setup, ear, path, &interrupt, &mut progress)?)
     };
-    older_log.replaced();
     // The stop is over; from here on Ctrl-C means the making of the cloud.
     interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
@@ -76,7 +75,12 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
         truth: truth.as_ref(),
         interrupt: &interrupt,
     };
-    conclude(&setup, replay::make(&request, target), ended, stdout)
+    let made = replay::make(&request, target);
+    // A log without a sweep is not worth an older one; any other is.
+    if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
+        older_log.replaced();
+    }
+    conclude(&setup, made, ended, stdout)
 }
 
 /// The same, against software devices that are started for it; with what truly happened.
@@ -136,6 +140,7 @@ fn record(
             Told::Event(Event::Sample(ShaftSample {
                 answer, position, ..
             })) => progress.moved(*answer, gearing.angle(*position), recording.packets()),
+            Told::Event(Event::Progress(step)) => tracing::info!(?step),
             Told::Event(event) => tracing::debug!(?event),
         }
     });

@@ -3,7 +3,7 @@
 use lidar::{Decoder, Stats};
 use protocol::record::{DriveLink, Wire};
 use protocol::vlp16::ReturnMode;
-use scanner::Survey;
+use scanner::{ScanConfig, Survey};
 
 use super::Said;
 use crate::cli;
@@ -29,7 +29,7 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
         Ok(())
     })?;
     decoder.finish(&mut |_| {});
-    let contents = contents(decoder.stats(), survey.drive(), &pass);
+    let contents = contents(&config, decoder.stats(), survey.drive(), &pass);
     let failure = pass.truncated.map(|truncated| {
         Failure::new(
             Kind::Incomplete,
@@ -47,7 +47,12 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
 
 /// What was found, for the report.
 #[must_use]
-pub fn contents(stats: &Stats, drive: Option<(DriveLink, u64)>, pass: &Pass) -> Contents {
+pub fn contents(
+    config: &ScanConfig,
+    stats: &Stats,
+    drive: Option<(DriveLink, u64)>,
+    pass: &Pass,
+) -> Contents {
     let counts = &pass.counts;
     let tilt = drive.map(|(link, samples)| Tilt {
         samples,
@@ -68,7 +73,29 @@ pub fn contents(stats: &Stats, drive: Option<(DriveLink, u64)>, pass: &Pass) -> 
         rpm: stats.rpm,
         tilt,
         truncated: pass.truncated.clone(),
+        simulated: config.simulated,
+        warnings: warnings(stats, pass),
     }
+}
+
+fn warnings(stats: &Stats, pass: &Pass) -> Vec<String> {
+    let mut warnings: Vec<String> = stats.conflicts.iter().map(ToString::to_string).collect();
+    if let Some(malformed) = &pass.counts.first_malformed {
+        warnings.push(format!(
+            "{} records are damaged, the first at byte {}: {}",
+            pass.counts.malformed, malformed.offset, malformed.fault
+        ));
+    }
+    if let Some(error) = &stats.first_malformed {
+        warnings.push(format!(
+            "{} lidar packets are damaged, the first: {error}",
+            stats.malformed
+        ));
+    }
+    if stats.lost_packets > 0 {
+        warnings.push(format!("{} lidar packets are missing", stats.lost_packets));
+    }
+    warnings
 }
 
 fn transport(link: DriveLink) -> &'static str {

@@ -62,10 +62,11 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
         .output
         .clone()
         .unwrap_or_else(|| names::cloud_of(&arguments.input));
+    output::two_files(&arguments.input, &cloud)?;
     let target = Target::open(&cloud, arguments.output.force)?;
     let stdout = target.is_stdout();
     let scan = make(&request, target)?;
-    if scan.simulated {
+    if scan.contents.simulated {
         progress.say("SIMULATED: this log is of software devices");
     }
     let failure = scan.contents.truncated.as_ref().map(|truncated| {
@@ -133,8 +134,21 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
     })?;
     let (placed, stats) = placer.finish().map_err(cannot_write)?;
 
+    if placed.points == 0 && placed.outside > 0 {
+        return Err(Failure::new(
+            Kind::BadInput,
+            format!(
+                "{}: none of {} returns falls into the time for which a tilt angle is known",
+                path.display(),
+                placed.outside
+            ),
+        )
+        .help("see whether the angles belong to this recording; --tilt none needs none"));
+    }
+    let mut contents = contents(&config, &stats, drive, &pass);
+    contents.warnings.extend(doubts(&config, &alignment));
     Ok(Scan {
-        contents: contents(&stats, drive, &pass),
+        contents,
         points: placed.points,
         left_out: placed.outside,
         sweeps: alignment
@@ -145,7 +159,6 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
         sync: sync(&alignment),
         output: output.display().to_string(),
         log: path.display().to_string(),
-        simulated: config.simulated,
         lost_records: 0,
         truth: None,
     })
@@ -159,6 +172,44 @@ fn stopped(path: &Path) -> Failure {
     .help(format!("replay {} makes it again", path.display()))
 }
 
+/// Above this a point 10 m away may be off by more than 17 mm.
+const DOUBTFUL_DEG: f64 = 0.1;
+/// A sweep that ends farther than this from where it was to end was cut short.
+const SHORT_DEG: f64 = 0.1;
+
+/// What is doubtful about the angles: polls too slow or too few, sweeps that are not as planned.
+fn doubts(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if let Some(bound) = alignment
+        .angle_bound_deg()
+        .filter(|bound| *bound > DOUBTFUL_DEG)
+    {
+        doubts.push(format!(
+            "the drive's answers were slow or missing: angles may be off by {bound:.2} deg in places, {:.0} mm at 10 m",
+            bound.to_radians() * 10e3
+        ));
+    }
+    let Some(plan) = config.sweep.filter(|_| !alignment.sweeps.is_empty()) else {
+        return doubts;
+    };
+    for (number, sweep) in alignment.sweeps.iter().enumerate() {
+        let back = plan.both_ways && number % 2 == 1;
+        let end = if back { plan.from_deg } else { plan.to_deg };
+        if (sweep.to.0 - end).abs() > SHORT_DEG {
+            doubts.push(format!(
+                "sweep {} was cut short at {:.3} deg of {end} deg",
+                number + 1,
+                sweep.to.0
+            ));
+        }
+    }
+    let made = alignment.sweeps.len();
+    if (made as u64) < u64::from(plan.sweeps) {
+        doubts.push(format!("{made} of {} sweeps were made", plan.sweeps));
+    }
+    doubts
+}
+
 fn sync(alignment: &Alignment) -> Sync {
     Sync {
         clock_method: "lower envelope",
@@ -166,6 +217,7 @@ fn sync(alignment: &Alignment) -> Sync {
         clock_drift_ppm: alignment.clock.drift_ppm(),
         angle_method: alignment.trajectory.method(),
         angle_rms_deg: alignment.angle_rms_deg(),
+        angle_bound_deg: alignment.angle_bound_deg(),
     }
 }
 
@@ -204,13 +256,15 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     let text =
         std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
     let mut rows = Vec::new();
+    let mut heading = false;
     for (number, line) in text.lines().enumerate() {
         let line = line.trim();
         let blank = line.is_empty() || line.starts_with('#');
         match parse_row(line) {
             Some(row) => rows.push(row),
             // A heading may stand before the first row.
-            None if blank || (rows.is_empty() && number == 0) => {}
+            None if blank => {}
+            None if rows.is_empty() && !heading => heading = true,
             None => {
                 return Err(wrong(format!(
                     "line {}: expected two finite numbers, got {line:?}",
@@ -219,10 +273,7 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
             }
         }
     }
-    AngleTable::new(rows).map_err(|error| match error {
-        ScanError::NoTilt => wrong("expected rows of time_s,angle_deg, got none".to_owned()),
-        error => wrong(error.to_string()),
-    })
+    AngleTable::new(rows).map_err(|error| wrong(error.to_string()))
 }
 
 fn parse_row(line: &str) -> Option<(f64, f64)> {
@@ -249,6 +300,7 @@ pub(super) fn scan_failure(path: &Path, error: &ScanError) -> Failure {
             "the recording ended before a sweep began: --tilt none gives its points in the sensor's own frame"
         }
         ScanError::TableElsewhere { .. }
+        | ScanError::TableShort { .. }
         | ScanError::TableRange { .. }
         | ScanError::TableOrder { .. } => {
             "give times as Unix seconds like the recording's, or as seconds since its first packet"
