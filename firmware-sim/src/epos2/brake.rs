@@ -1,7 +1,9 @@
 //! The holding brake on a digital output: purpose 2 in 2079, looked at only with bit 2 of the output mask (2078:2).
 //!
-//! Opens before the motion and closes after it with the reaction times of 2100, while the motor holds. No output is the brake from
-//! the factory, and then nothing here happens. The standstill window (2101) is not simulated: the shaft stands when its demand does.
+//! Opens before the motion and closes after it with the reaction times of 2100, while the motor holds. It closes when the shaft has
+//! been slower than the standstill window for its time, or after the standstill timeout (2101). No output is the brake from the
+//! factory, and then nothing here happens, nor is a standstill waited for. The brake timeout (2100:3) is plain storage: what it
+//! limits is not documented.
 
 use protocol::epos2::objects::{self, Address};
 
@@ -16,6 +18,20 @@ pub enum Brake {
     Closed,
     /// The shaft is free.
     Open,
+}
+
+/// How long the shaft has been slow, and how long that has been waited for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Standstill {
+    still_ms: u16,
+    waited_ms: u16,
+}
+
+impl Standstill {
+    pub const NONE: Self = Self {
+        still_ms: 0,
+        waited_ms: 0,
+    };
 }
 
 /// Digital outputs of the unit.
@@ -57,6 +73,23 @@ impl Node {
         } else {
             0
         }
+    }
+
+    /// One millisecond of waiting for the shaft to stand; whether the brake may close.
+    pub(super) fn stands(&self, standstill: &mut Standstill) -> bool {
+        if !self.has_brake() {
+            return true;
+        }
+        let window = self.dictionary.get(objects::STANDSTILL_WINDOW);
+        let slow = self.velocity_actual_rpm().unsigned_abs() <= u32::from(window);
+        standstill.waited_ms = standstill.waited_ms.saturating_add(1);
+        standstill.still_ms = if slow {
+            standstill.still_ms.saturating_add(1)
+        } else {
+            0
+        };
+        standstill.still_ms > self.dictionary.get(objects::STANDSTILL_TIME)
+            || standstill.waited_ms > self.dictionary.get(objects::STANDSTILL_TIMEOUT)
     }
 
     /// 2078:1: what was written, but the brake's bit belongs to the unit. Set is closed: the specification calls the output

@@ -7,7 +7,7 @@ use protocol::epos2::cia402::{State, control, mode};
 use protocol::epos2::device_error::Reaction;
 use protocol::epos2::objects::{self, Object};
 
-use super::fixed::Speed;
+use super::brake::Standstill;
 use super::node::Node;
 use super::position_mode::PositionMode;
 
@@ -19,11 +19,29 @@ pub(super) enum Sequence {
     Enabling {
         left_ms: u16,
     },
-    /// The shaft comes to rest, the brake closes, then the power goes off.
+    /// The demand comes to rest, then the shaft, the brake closes, then the power goes off.
     Leaving {
         to: State,
-        brake_ms: Option<u16>,
+        step: Step,
     },
+}
+
+/// What a [`Sequence::Leaving`] waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    /// The shaft to stand: how long it has, and how long that was waited for.
+    Standstill(Standstill),
+    /// The brake to close.
+    Brake { left_ms: u16 },
+}
+
+impl Sequence {
+    const fn leaving(to: State) -> Self {
+        Self::Leaving {
+            to,
+            step: Step::Standstill(Standstill::NONE),
+        }
+    }
 }
 
 /// Milliseconds of "measure init"; the specification gives none.
@@ -66,6 +84,7 @@ impl Node {
         if self.state == State::Fault {
             if word & !old & control::FAULT_RESET != 0 {
                 self.errors.acknowledge();
+                self.lost_demand = false;
                 self.state = State::SwitchOnDisabled;
             }
             return;
@@ -76,6 +95,8 @@ impl Node {
         if self.state == State::OperationEnabled && self.sequence == Sequence::Idle {
             match self.mode {
                 mode::HOMING => self.homing_command(old, word),
+                // The mode looks at the halt bit itself.
+                mode::PROFILE_VELOCITY => {}
                 _ => self.position_command(old, word),
             }
         }
@@ -115,6 +136,7 @@ impl Node {
         self.state = State::MeasureInit;
         self.brake_released = true;
         self.position_mode = PositionMode::default();
+        self.velocity_mode.abandon();
         let left_ms = MEASURE_MS.saturating_add(self.brake_rise_ms());
         self.sequence = Sequence::Enabling { left_ms };
     }
@@ -130,20 +152,22 @@ impl Node {
         } else {
             self.generator.freeze();
         }
-        self.sequence = Sequence::Leaving { to, brake_ms: None };
+        self.sequence = Sequence::leaving(to);
     }
 
-    fn quick_stop(&mut self) {
+    /// From "operation enabled".
+    pub(super) fn quick_stop(&mut self) {
         self.abandon_motion();
         self.sequence = Sequence::Idle;
         self.ramp_down(objects::QUICK_STOP_DECELERATION);
         self.state = State::QuickStopActive;
     }
 
-    /// Power off now. The shaft stays where it is: without friction or load there is nothing else for it to do.
+    /// Power off now. The shaft stays where it is: without friction or load there is nothing else for it to do. The demand is
+    /// where the shaft is from now on.
     fn power_off(&mut self, to: State) {
         self.abandon_motion();
-        self.generator.freeze();
+        self.generator.rest_at(self.shaft.position());
         self.brake_released = false;
         self.sequence = Sequence::Idle;
         self.state = to;
@@ -152,13 +176,14 @@ impl Node {
     /// Neither setpoint nor homing is under way any more; what the shaft does is the caller's next line.
     fn abandon_motion(&mut self) {
         self.position_mode.abandon();
+        self.velocity_mode.abandon();
         self.homing.abandon();
     }
 
     /// Comes to rest at a deceleration, within the largest there is (60C5).
     pub(super) fn ramp_down(&mut self, deceleration: Object<u32>) {
         let rate = self.acceleration(deceleration);
-        self.generator.run_at(Speed::ZERO, rate);
+        self.generator.stop(rate);
     }
 
     /// An acceleration within the largest there is (60C5).
@@ -193,17 +218,14 @@ impl Node {
             self.power_off(State::FaultReactionDisabled);
             self.sequence = Sequence::Leaving {
                 to: State::Fault,
-                brake_ms: Some(0),
+                step: Step::Brake { left_ms: 0 },
             };
             return;
         };
         self.abandon_motion();
         self.ramp_down(ramp);
         self.state = State::FaultReactionEnabled;
-        self.sequence = Sequence::Leaving {
-            to: State::Fault,
-            brake_ms: None,
-        };
+        self.sequence = Sequence::leaving(State::Fault);
     }
 
     /// The ramp of the fault reaction option code (605E): 0 none, 1 slow-down, 2 quick stop; others are taken for 2.
@@ -229,17 +251,34 @@ impl Node {
                 };
             }
             Sequence::Leaving { .. } if self.generator.is_moving() => {}
-            Sequence::Leaving { to, brake_ms } => {
-                self.brake_released = false;
-                match brake_ms.unwrap_or_else(|| self.brake_fall_ms()) {
-                    0 => self.power_off(to),
-                    left => {
-                        self.sequence = Sequence::Leaving {
-                            to,
-                            brake_ms: Some(left - 1),
-                        }
+            Sequence::Leaving {
+                to,
+                step: Step::Standstill(mut standstill),
+            } => {
+                let step = if self.stands(&mut standstill) {
+                    self.brake_released = false;
+                    match self.brake_fall_ms() {
+                        0 => return self.power_off(to),
+                        fall => Step::Brake { left_ms: fall - 1 },
                     }
-                }
+                } else {
+                    Step::Standstill(standstill)
+                };
+                self.sequence = Sequence::Leaving { to, step };
+            }
+            Sequence::Leaving {
+                to,
+                step: Step::Brake { left_ms: 0 },
+            } => self.power_off(to),
+            Sequence::Leaving {
+                to,
+                step: Step::Brake { left_ms },
+            } => {
+                let left_ms = left_ms - 1;
+                self.sequence = Sequence::Leaving {
+                    to,
+                    step: Step::Brake { left_ms },
+                };
             }
         }
     }

@@ -1,136 +1,45 @@
 //! The object dictionary: one static table of entries ([`super::table`]) and the stored values beside it.
 //!
-//! Here are existence, access, width and limits. What a write does, and which values are computed on read, is the node's.
+//! Here are existence and storage. What a write does, and which values are computed on read, is the node's.
 
 use protocol::epos2::objects::{Address, Object, Scalar};
 
 use super::Abort;
-use super::table::TABLE;
-
-/// Data types of entries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Type {
-    U8,
-    U16,
-    U32,
-    U64,
-    I8,
-    I16,
-    I32,
-    Text,
-}
-
-impl Type {
-    /// Bytes of a number of this type; 0 for strings, which have no fixed length.
-    pub const fn bytes(self) -> usize {
-        match self {
-            Self::U8 | Self::I8 => 1,
-            Self::U16 | Self::I16 => 2,
-            Self::U32 | Self::I32 => 4,
-            Self::U64 => 8,
-            Self::Text => 0,
-        }
-    }
-
-    /// The number in the low bytes of `raw`.
-    pub const fn number(self, raw: u32) -> i64 {
-        match self {
-            Self::U8 => raw as u8 as i64,
-            Self::U16 => raw as u16 as i64,
-            Self::U32 | Self::U64 | Self::Text => raw as i64,
-            Self::I8 => raw as i8 as i64,
-            Self::I16 => raw as i16 as i64,
-            Self::I32 => raw as i32 as i64,
-        }
-    }
-}
-
-/// Who may do what with an entry.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Access {
-    Ro,
-    Rw,
-}
-
-/// One entry.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
-    pub address: Address,
-    pub ty: Type,
-    pub access: Access,
-    /// As from the factory.
-    pub default: i64,
-    /// The factory value has the node id added.
-    pub plus_node_id: bool,
-    pub low: i64,
-    pub high: i64,
-}
-
-/// An entry without limits of its own.
-pub(super) const fn entry(index: u16, sub: u8, ty: Type, access: Access, default: i64) -> Entry {
-    Entry {
-        address: Address { index, sub },
-        ty,
-        access,
-        default,
-        plus_node_id: false,
-        low: i64::MIN,
-        high: i64::MAX,
-    }
-}
-
-impl Entry {
-    pub const fn within(self, low: i64, high: i64) -> Self {
-        Self { low, high, ..self }
-    }
-
-    pub const fn plus_node_id(self) -> Self {
-        Self {
-            plus_node_id: true,
-            ..self
-        }
-    }
-
-    fn factory(&self, node_id: u8) -> u32 {
-        let plus = if self.plus_node_id {
-            i64::from(node_id)
-        } else {
-            0
-        };
-        (self.default + plus) as u32
-    }
-
-    /// Whether the low bytes of `raw` may be written.
-    pub fn check_write(&self, raw: u32) -> Result<(), Abort> {
-        let value = self.ty.number(raw);
-        if self.access == Access::Ro {
-            Err(Abort::READ_ONLY)
-        } else if value > self.high {
-            Err(Abort::TOO_HIGH)
-        } else if value < self.low {
-            Err(Abort::TOO_LOW)
-        } else {
-            Ok(())
-        }
-    }
-}
+use super::entry::Entry;
+use super::table::{COUNT, TABLE};
 
 /// Stored values, one an entry; the entries that are computed have one too, unused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Dictionary {
-    values: [u32; TABLE.len()],
+    values: [u32; COUNT],
 }
 
 impl Dictionary {
     /// Everything as from the factory.
     pub fn factory(node_id: u8) -> Self {
-        let mut dictionary = Self {
-            values: [0; TABLE.len()],
-        };
+        let mut dictionary = Self { values: [0; COUNT] };
         for (value, entry) in dictionary.values.iter_mut().zip(&TABLE) {
             *value = entry.factory(node_id);
         }
         dictionary
+    }
+
+    /// The entries from index `first` to `last` become those of `other`.
+    pub fn copy_range(&mut self, other: &Self, first: u16, last: u16) {
+        for ((value, entry), from) in self.values.iter_mut().zip(&TABLE).zip(&other.values) {
+            if (first..=last).contains(&entry.address.index) {
+                *value = *from;
+            }
+        }
+    }
+
+    /// An entry becomes what it was from the factory.
+    pub fn reset(&mut self, address: Address, node_id: u8) {
+        if let Ok((i, entry)) = Self::place(address)
+            && let Some(value) = self.values.get_mut(i)
+        {
+            *value = entry.factory(node_id);
+        }
     }
 
     /// The entry at `address`.
@@ -140,15 +49,12 @@ impl Dictionary {
 
     fn place(address: Address) -> Result<(usize, &'static Entry), Abort> {
         let found = TABLE.binary_search_by_key(&address, |entry| entry.address);
-        match found.ok().and_then(|i| Some((i, TABLE.get(i)?))) {
-            Some(found) => Ok(found),
-            None if TABLE
-                .iter()
-                .any(|entry| entry.address.index == address.index) =>
-            {
-                Err(Abort::NO_SUB)
-            }
-            None => Err(Abort::NO_OBJECT),
+        // Not found, it would stand behind the other subindices of its index, of which each has 0.
+        let before = found.unwrap_or_else(|at| at.saturating_sub(1));
+        match (found, TABLE.get(before)) {
+            (Ok(i), Some(entry)) => Ok((i, entry)),
+            (_, Some(entry)) if entry.address.index == address.index => Err(Abort::NO_SUB),
+            _ => Err(Abort::NO_OBJECT),
         }
     }
 
@@ -176,19 +82,6 @@ impl Dictionary {
     }
 }
 
-/// Lookups are binary searches.
-const _: () = {
-    let mut i = 1;
-    while i < TABLE.len() {
-        let (a, b) = (TABLE[i - 1].address, TABLE[i].address);
-        assert!(
-            a.index < b.index || a.index == b.index && a.sub < b.sub,
-            "the table is not in order"
-        );
-        i += 1;
-    }
-};
-
 #[cfg(test)]
 mod tests {
     use protocol::epos2::objects;
@@ -198,6 +91,9 @@ mod tests {
     #[test]
     fn defaults_fit_their_types_and_limits() {
         for entry in &TABLE {
+            if entry.ty.bytes() == 0 {
+                continue;
+            }
             let value = entry.ty.number(entry.factory(1));
             assert_eq!(
                 value,
@@ -221,7 +117,9 @@ mod tests {
                 .iter()
                 .find(|e| e.address == Address { index, sub: 0 })
                 .unwrap();
-            let holds = index == 0x1003 || count.default >= i64::from(entry.address.sub);
+            // The history and the mappings count what is in use.
+            let holds = matches!(index, 0x1003 | 0x1600..=0x1603 | 0x1A00..=0x1A03)
+                || count.default >= i64::from(entry.address.sub);
             assert!(holds, "{}", entry.address);
         }
     }

@@ -1,9 +1,11 @@
-//! The error register (1001) and the error history (1003).
+//! The error register (1001), the error history (1003), and what of them the CAN bus has not been told.
 
 use protocol::epos2::DeviceError;
 
 /// Depth of the history.
 const DEPTH: usize = 5;
+/// Emergency messages kept for the bus.
+const UNTOLD: usize = 8;
 
 /// What went wrong and when it was cleared.
 #[derive(Clone, Debug, Default)]
@@ -12,11 +14,22 @@ pub(super) struct Errors {
     /// Latest first.
     history: [u32; DEPTH],
     count: usize,
+    /// Oldest first.
+    untold: [News; UNTOLD],
+    untold_count: usize,
+}
+
+/// What an emergency message tells: an error, or with none that all are gone; and the register after it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct News {
+    pub error: DeviceError,
+    pub register: u8,
 }
 
 impl Errors {
     pub fn push(&mut self, error: DeviceError) {
         self.register |= register_bits(error);
+        self.tell(error);
         self.history.copy_within(..DEPTH - 1, 1);
         self.history[0] = error.0.into();
         self.count = (self.count + 1).min(DEPTH);
@@ -29,6 +42,27 @@ impl Errors {
     /// Fault reset: no error is active any more, the history stays.
     pub fn acknowledge(&mut self) {
         self.register = 0;
+        self.tell(DeviceError::NONE);
+    }
+
+    /// The oldest news are dropped where nobody fetches them.
+    fn tell(&mut self, error: DeviceError) {
+        if self.untold_count == UNTOLD {
+            self.next_news();
+        }
+        let register = self.register;
+        if let Some(free) = self.untold.get_mut(self.untold_count) {
+            *free = News { error, register };
+            self.untold_count += 1;
+        }
+    }
+
+    /// The next that the bus has not been told.
+    pub fn next_news(&mut self) -> Option<News> {
+        let news = *self.untold.first().filter(|_| self.untold_count > 0)?;
+        self.untold.rotate_left(1);
+        self.untold_count -= 1;
+        Some(news)
     }
 
     pub fn clear_history(&mut self) {
@@ -78,6 +112,21 @@ mod tests {
         );
         errors.clear_history();
         assert_eq!((errors.history(0), errors.history(1)), (0, 0));
+    }
+
+    #[test]
+    fn news_come_once_in_order_and_the_latest_eight() {
+        let mut errors = Errors::default();
+        for code in 1..=9 {
+            errors.push(DeviceError(code));
+        }
+        errors.acknowledge();
+        let mut told = [0; 8];
+        for told in &mut told {
+            *told = errors.next_news().unwrap().error.0;
+        }
+        assert_eq!(told, [3, 4, 5, 6, 7, 8, 9, 0]);
+        assert_eq!(errors.next_news(), None);
     }
 
     #[test]

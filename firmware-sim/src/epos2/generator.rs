@@ -1,6 +1,6 @@
 //! The demand, millisecond by millisecond: at rest, on a position profile, or at a speed reached by a ramp.
 //!
-//! The shaft follows the demand exactly (an ideal servo): lag, ripple and a blocked shaft are effects and not simulated here.
+//! What the shaft makes of the demand is the shaft's business.
 
 use super::fixed::{Fine, MS, Speed, WORLD_END};
 use super::leg::Leg;
@@ -56,6 +56,30 @@ impl Generator {
         self.time = 0;
     }
 
+    /// Rests at `position`: without power the demand is where the shaft is.
+    pub fn rest_at(&mut self, position: Fine) {
+        self.freeze();
+        self.position = position;
+    }
+
+    /// Moves what is under way as a whole, speeds unchanged. A profile, which ends at a place, stays.
+    pub fn shift(&mut self, by: Fine) {
+        match &mut self.motion {
+            Motion::Profile(_) => return,
+            Motion::Rest => {}
+            Motion::Ramp(legs) => {
+                for leg in legs {
+                    leg.from = leg.from.saturating_add(by);
+                }
+            }
+        }
+        self.position = self.position.saturating_add(by);
+    }
+
+    pub const fn qc_per_turn(&self) -> u32 {
+        self.qc_per_turn
+    }
+
     /// The encoder's resolution has been configured anew. Only while nothing moves.
     pub fn set_qc_per_turn(&mut self, qc_per_turn: u32) {
         self.qc_per_turn = qc_per_turn;
@@ -69,21 +93,28 @@ impl Generator {
         Ok(())
     }
 
+    /// Comes to rest.
+    pub fn stop(&mut self, deceleration: u32) {
+        self.run_at(Speed::ZERO, deceleration, deceleration);
+    }
+
     /// Ramps to `speed` and keeps it; speed zero is a stop.
-    pub fn run_at(&mut self, speed: Speed, acceleration: u32) {
+    pub fn run_at(&mut self, speed: Speed, acceleration: u32, deceleration: u32) {
         if speed == Speed::ZERO && self.speed == Speed::ZERO {
             self.freeze();
             return;
         }
         let reverses = self.speed.0.signum() * speed.0.signum() < 0;
         let turn = if reverses { Speed::ZERO } else { self.speed };
-        let stop = Leg::change(self.position, self.speed, turn, acceleration);
+        let stop = Leg::change(self.position, self.speed, turn, deceleration);
         let from = if reverses {
             stop.finish(self.qc_per_turn)
         } else {
             self.position
         };
-        let change = Leg::change(from, turn, speed, acceleration);
+        let slows = speed.0.unsigned_abs() < turn.0.unsigned_abs();
+        let rate = if slows { deceleration } else { acceleration };
+        let change = Leg::change(from, turn, speed, rate);
         self.begin(Motion::Ramp([stop, change]));
     }
 
@@ -143,19 +174,19 @@ mod tests {
     #[test]
     fn a_ramp_reverses_through_zero_and_keeps_its_speed() {
         let mut generator = Generator::new(0, 2000);
-        generator.run_at(Speed::from_rpm(60), 600); // 2 qc a ms after 100 ms
+        generator.run_at(Speed::from_rpm(60), 600, 600); // 2 qc a ms after 100 ms
         for _ in 0..200 {
             generator.step();
         }
         assert_eq!(generator.speed(), Speed::from_rpm(60));
         assert_eq!(floor_qc(generator.position()), 100 + 200);
-        generator.run_at(Speed::from_rpm(-60), 600);
+        generator.run_at(Speed::from_rpm(-60), 600, 600);
         for _ in 0..300 {
             generator.step();
         }
         assert_eq!(generator.position(), fine(300 - 200));
         assert_eq!(generator.speed(), Speed::from_rpm(-60));
-        generator.run_at(Speed::ZERO, 600);
+        generator.stop(600);
         for _ in 0..100 {
             generator.step();
         }
@@ -167,7 +198,7 @@ mod tests {
     fn a_slow_ramp_does_not_drift_in_a_quarter_of_an_hour() {
         // 1 rpm is 1/30 qc a ms, which no binary fraction holds.
         let mut generator = Generator::new(0, 2000);
-        generator.run_at(Speed::from_rpm(1), 1000); // there after 1 ms
+        generator.run_at(Speed::from_rpm(1), 1000, 1); // there after 1 ms
         for _ in 0..900_001 {
             generator.step();
         }
@@ -177,7 +208,7 @@ mod tests {
     #[test]
     fn the_end_of_the_world_stops_it() {
         let mut generator = Generator::new(WORLD_END - 5, 10_000_000);
-        generator.run_at(Speed::from_rpm(25_000), u32::MAX);
+        generator.run_at(Speed::from_rpm(25_000), u32::MAX, 1);
         for _ in 0..3 {
             generator.step();
         }
@@ -185,3 +216,7 @@ mod tests {
         assert!(!generator.is_moving());
     }
 }
+
+#[cfg(test)]
+#[path = "generator_tests.rs"]
+mod closed_form;

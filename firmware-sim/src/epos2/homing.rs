@@ -1,14 +1,14 @@
 //! Homing mode (Firmware Specification, "Homing Mode"; methods as in CiA 402).
 //!
-//! A method is a row of [`method`]: which switch is searched in which direction, and whether the reference is the switch's
-//! edge or the next index pulse beyond it. The edge is seen once a control cycle, the index pulse is latched exactly. After
-//! detection the axis moves by the home offset (607C) from the reference, and that place gets the position 2081.
-//! Methods -1 to -4, which look for a mechanical stop by current, are not simulated: there is no stop to run into.
+//! What a [`Method`] looks for is found here: the edge of a switch, seen once a control cycle; a mechanical stop, where the current
+//! reaches its threshold (2080); the index pulse beyond either, which is latched exactly. After detection the axis moves by the
+//! home offset (607C) from the reference, and that place gets the position 2081.
 
 use protocol::epos2::cia402::{control, status};
 use protocol::epos2::objects::{self, input};
 
 use super::fixed::{Speed, fine, floor_qc};
+use super::homing_method::{Method, Search, method};
 use super::node::Node;
 use super::profile::Limits;
 
@@ -34,6 +34,8 @@ enum Phase {
     Stopping,
     /// Towards the switch.
     Search { direction: i32 },
+    /// Towards the mechanical stop.
+    Press { direction: i32 },
     /// A limit switch was met before the home switch: back, until the home switch is met from behind.
     Back { direction: i32 },
     /// Slowly off the switch; `on` once it has been seen pressed while going this way.
@@ -42,53 +44,6 @@ enum Phase {
     Index { direction: i32 },
     /// To the home offset from the reference (world qc).
     Return { reference: i64 },
-}
-
-/// How a reference is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Method {
-    /// Bit of the switch in 2071, and the direction of its search; the edge is met in the other direction.
-    switch: Option<(u16, i32)>,
-    /// Direction of the way to the index pulse.
-    index: Option<i32>,
-}
-
-/// The method of a number (6098); `None` for one that is not simulated.
-fn method(number: i8) -> Option<Method> {
-    let limit = |switch, direction| Some((switch, direction));
-    let (switch, with_index) = match number {
-        0 | 35 => (None, false),
-        1 => (limit(input::NEGATIVE_LIMIT, -1), true),
-        2 => (limit(input::POSITIVE_LIMIT, 1), true),
-        7 => (limit(input::HOME_SWITCH, 1), true),
-        11 => (limit(input::HOME_SWITCH, -1), true),
-        17 => (limit(input::NEGATIVE_LIMIT, -1), false),
-        18 => (limit(input::POSITIVE_LIMIT, 1), false),
-        23 => (limit(input::HOME_SWITCH, 1), false),
-        27 => (limit(input::HOME_SWITCH, -1), false),
-        33 => {
-            return Some(Method {
-                switch: None,
-                index: Some(-1),
-            });
-        }
-        34 => {
-            return Some(Method {
-                switch: None,
-                index: Some(1),
-            });
-        }
-        _ => return None,
-    };
-    let index = switch
-        .filter(|_| with_index)
-        .map(|(_, direction)| -direction);
-    Some(Method { switch, index })
-}
-
-/// Whether a value may be written to 6098.
-pub(super) fn is_simulated(number: i64) -> bool {
-    i8::try_from(number).is_ok_and(|number| method(number).is_some())
 }
 
 impl Homing {
@@ -137,7 +92,7 @@ impl Node {
         let chosen = method(number).unwrap_or_default();
         self.homing = Homing {
             method: chosen,
-            last: floor_qc(self.generator.position()),
+            last: floor_qc(self.shaft.position()),
             ..Homing::default()
         };
         // 2210:2: only type 1 has an index channel.
@@ -150,13 +105,17 @@ impl Node {
             self.fail_homing();
             return;
         }
-        match (chosen.switch, chosen.index) {
-            (Some((switch, direction)), _) if self.inputs & switch != 0 => {
+        match (chosen.search, chosen.index) {
+            (Some(Search::Switch { bit, direction }), _) if self.inputs & bit != 0 => {
                 self.leave_switch(-direction, false);
             }
-            (Some((_, direction)), _) => {
+            (Some(Search::Switch { direction, .. }), _) => {
                 self.run(direction, true);
                 self.homing.phase = Phase::Search { direction };
+            }
+            (Some(Search::Stop { direction }), _) => {
+                self.run(direction, true);
+                self.homing.phase = Phase::Press { direction };
             }
             (None, Some(direction)) => {
                 self.run(direction, false);
@@ -169,7 +128,7 @@ impl Node {
     /// Methods without motion: 35 takes the present place for home, 0 wants no homing at all.
     fn home_here(&mut self, reference: bool) {
         if reference {
-            self.set_home(floor_qc(self.generator.position()));
+            self.set_home(floor_qc(self.shaft.position()));
         } else {
             self.homing.attained = true;
             self.homing.reached = true;
@@ -178,7 +137,7 @@ impl Node {
 
     /// One millisecond of the mode.
     pub(super) fn advance_homing(&mut self) {
-        let now = floor_qc(self.generator.position());
+        let now = floor_qc(self.shaft.position());
         let last = core::mem::replace(&mut self.homing.last, now);
         let moving = self.generator.is_moving();
         match self.homing.phase {
@@ -198,6 +157,7 @@ impl Node {
             // Only the end of the world stops the shaft in these.
             _ if !moving => self.fail_homing(),
             Phase::Search { direction } => self.search(direction),
+            Phase::Press { direction } => self.watch_current(direction, now),
             Phase::Back { direction } => self.search_back(direction),
             Phase::Leave { direction, on } => self.watch_edge(direction, on, now),
             Phase::Index { direction } => self.watch_index(direction, last, now),
@@ -205,7 +165,7 @@ impl Node {
     }
 
     fn search(&mut self, direction: i32) {
-        let switch = self.homing.method.switch.map_or(0, |(switch, _)| switch);
+        let switch = self.homing.method.switch_bit();
         let limit = limit_switch(direction);
         if self.inputs & switch != 0 {
             self.leave_switch(-direction, false);
@@ -218,7 +178,7 @@ impl Node {
     }
 
     fn search_back(&mut self, direction: i32) {
-        let switch = self.homing.method.switch.map_or(0, |(switch, _)| switch);
+        let switch = self.homing.method.switch_bit();
         if self.inputs & switch != 0 {
             self.leave_switch(direction, true);
         } else if self.is_going(direction) && self.inputs & limit_switch(direction) != 0 {
@@ -234,7 +194,7 @@ impl Node {
     /// The edge counts when the switch has been pressed on the way in this direction: a home switch may have been passed while
     /// slowing down.
     fn watch_edge(&mut self, direction: i32, on: bool, now: i64) {
-        let switch = self.homing.method.switch.map_or(0, |(switch, _)| switch);
+        let switch = self.homing.method.switch_bit();
         let pressed = self.inputs & switch != 0;
         if !self.is_going(direction) {
             return;
@@ -249,6 +209,22 @@ impl Node {
                 Some(direction) => self.homing.phase = Phase::Index { direction },
                 None => self.return_to(now),
             }
+        }
+    }
+
+    /// The stop is where the shaft stands when the current reaches the threshold; from there on the demand is where the shaft is.
+    fn watch_current(&mut self, direction: i32, now: i64) {
+        let current = i32::from(self.current_actual_ma()) * direction;
+        if current < i32::from(self.dictionary.get(objects::HOMING_CURRENT)) {
+            return;
+        }
+        self.generator.rest_at(self.shaft.position());
+        match self.homing.method.index {
+            Some(direction) => {
+                self.run(direction, false);
+                self.homing.phase = Phase::Index { direction };
+            }
+            None => self.return_to(now),
         }
     }
 
@@ -306,8 +282,8 @@ impl Node {
     fn run(&mut self, direction: i32, fast: bool) {
         let Speed(speed) = self.homing_speed(fast);
         let acceleration = self.homing_acceleration();
-        self.generator
-            .run_at(Speed(speed * i64::from(direction)), acceleration);
+        let speed = Speed(speed * i64::from(direction));
+        self.generator.run_at(speed, acceleration, acceleration);
     }
 
     fn is_going(&self, direction: i32) -> bool {

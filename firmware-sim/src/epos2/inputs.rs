@@ -1,6 +1,7 @@
 //! Digital inputs: switches to inputs, inputs to purposes (2070), mask, polarity and execution mask (2071).
 
 use protocol::epos2::DeviceError;
+use protocol::epos2::cia402::State;
 use protocol::epos2::objects::{self, Address, input};
 
 use super::fixed::floor_qc;
@@ -12,7 +13,7 @@ const INPUTS: u8 = 9;
 impl Node {
     /// 2071:1 at the present position. A purpose that no input has stays inactive, whatever its polarity.
     pub(super) fn sense(&self) -> u16 {
-        let position = floor_qc(self.generator.position());
+        let position = floor_qc(self.shaft.position());
         let (mut high, mut assigned) = (0, 0);
         for number in 1..=INPUTS {
             // 0..=15, as only that can be written.
@@ -46,6 +47,10 @@ impl Node {
         let watched = self.inputs & self.dictionary.get(objects::INPUT_EXECUTION_MASK);
         if self.homing.is_active() || !self.is_powered() {
             return;
+        }
+        let quick_stop = watched & !before & input::QUICK_STOP != 0;
+        if quick_stop && self.state == State::OperationEnabled {
+            self.quick_stop();
         }
         let direction = self.generator.speed().0.signum();
         for (bit, into, error) in [

@@ -1,37 +1,54 @@
 //! A maxon EPOS2 positioning controller with its motor, encoder, limit switches and brake, as a machine without I/O.
 //!
 //! [`Node`] is the unit: an object dictionary, the CiA 402 state machine and a profile generator that run at 1 kHz in integer
-//! arithmetic, one [`Node::tick`] a millisecond. [`UsbServer`] and [`Rs232Server`] answer the frames of its serial interfaces.
+//! arithmetic, one [`Node::tick`] a millisecond. [`UsbServer`] and [`Rs232Server`] answer the frames of its serial interfaces,
+//! [`CanServer`] those of a CAN bus, [`SlcanServer`] the same through a serial CAN adapter. A [`Bus`] is what its gateway reaches.
 //! Facts are from the EPOS2 Firmware Specification and Communication Guide; where they are silent the choice is said in a comment.
 //!
-//! Left out: CANopen, the modes a tilt axis has no use for, and everything electrical. The shaft follows its demand exactly, so there
-//! is no following error; an unpowered shaft stays where it is, brake or not.
+//! Left out: the modes a tilt axis has no use for, and everything electrical. The shaft follows its demand exactly unless something
+//! holds it; an unpowered shaft stays where it is, brake or not.
 
 mod brake;
+mod bus;
+mod can;
+mod conditions;
 mod config;
 mod control;
 mod dictionary;
+mod entry;
 mod errors;
 mod fixed;
+mod following;
+mod gateway;
 mod generator;
 mod homing;
+mod homing_method;
 mod inputs;
 mod junk;
 mod leg;
+mod mapping;
+mod network;
 mod node;
 mod objects;
 mod position_mode;
 mod profile;
 mod rs232;
 mod service;
+mod shaft;
+mod slcan;
+mod storage;
 mod table;
 mod usb;
 mod value;
+mod velocity_mode;
 
 pub use brake::Brake;
+pub use bus::{Bus, Neighbour};
+pub use can::CanServer;
 pub use config::{Identity, MAX_SWITCHES, NodeConfig, Region, Switch};
 pub use node::{Node, Segment};
 pub use rs232::Rs232Server;
+pub use slcan::SlcanServer;
 pub use usb::UsbServer;
 pub use value::Value;
 

@@ -1,19 +1,23 @@
 //! The unit as a whole: its parts, its clock, and its shaft.
 
+use protocol::canopen::nmt::NmtState;
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{State, mode, status};
-use protocol::epos2::message::NmtCommand;
 use protocol::epos2::objects;
 
 use super::config::NodeConfig;
 use super::control::Sequence;
 use super::dictionary::Dictionary;
 use super::errors::Errors;
-use super::fixed::{Fine, MAX_QC_PER_TURN, fine, floor_qc, q32};
+use super::fixed::{fine, floor_qc, q32};
 use super::generator::Generator;
 use super::homing::Homing;
+use super::network::Network;
 use super::objects::is_powered;
 use super::position_mode::PositionMode;
+use super::shaft::Shaft;
+use super::storage::factory;
+use super::velocity_mode::VelocityMode;
 
 /// The shaft's way through one millisecond, a straight line; world positions in 2^-32 qc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +38,10 @@ pub struct Node {
     /// What "save" keeps over power-off.
     pub(super) saved: Dictionary,
     pub(super) errors: Errors,
+    /// The demand.
     pub(super) generator: Generator,
+    /// What follows it.
+    pub(super) shaft: Shaft,
     pub(super) state: State,
     pub(super) controlword: u16,
     pub(super) sequence: Sequence,
@@ -44,11 +51,16 @@ pub struct Node {
     /// World qc of the place that the unit calls 0.
     pub(super) origin: i64,
     pub(super) referenced: bool,
+    /// Bit 13 in profile position mode: the last fault was a following error.
+    pub(super) lost_demand: bool,
     pub(super) position_mode: PositionMode,
+    pub(super) velocity_mode: VelocityMode,
     pub(super) homing: Homing,
     /// 2071:1 as of the last control cycle.
     pub(super) inputs: u16,
-    operational: bool,
+    pub(super) network: Network,
+    /// The node id in use: that of 2000 at power-on.
+    id: u8,
     segment: Segment,
     ticks: u64,
     phase_us: u32,
@@ -60,34 +72,37 @@ impl Node {
     #[must_use]
     pub fn new(config: NodeConfig) -> Self {
         let saved = factory(&config);
-        let position = fine(config.initial_position.into());
-        Self::boot(config, saved, position)
+        let shaft = Shaft::new(fine(config.initial_position.into()), config.hard_stops);
+        Self::boot(config, saved, shaft, Network::at_power_on())
     }
 
-    fn boot(config: NodeConfig, saved: Dictionary, position: Fine) -> Self {
+    fn boot(config: NodeConfig, saved: Dictionary, shaft: Shaft, network: Network) -> Self {
         let qc_per_turn = saved.get(objects::ENCODER_LINES).saturating_mul(4);
-        let at = q32(position);
+        let at = q32(shaft.position());
         let mut node = Self {
-            generator: Generator::new(position, qc_per_turn),
+            generator: Generator::new(shaft.position(), qc_per_turn),
             errors: Errors::default(),
             state: State::SwitchOnDisabled,
             controlword: 0,
             sequence: Sequence::Idle,
             brake_released: false,
             mode: saved.get(objects::MODE),
-            origin: floor_qc(position),
+            origin: floor_qc(shaft.position()),
             referenced: false,
+            lost_demand: false,
             position_mode: PositionMode::default(),
+            velocity_mode: VelocityMode::default(),
             homing: Homing::default(),
             inputs: 0,
-            // NMT pre-operational: nobody has started the node.
-            operational: false,
+            network,
+            id: saved.get(objects::NODE_ID),
             segment: Segment { start: at, end: at },
             ticks: 0,
             phase_us: 0,
             timestamp_base_us: 0,
             dictionary: saved.clone(),
             saved,
+            shaft,
             config,
         };
         node.inputs = node.sense();
@@ -99,7 +114,8 @@ impl Node {
     /// Power off and on: back to the saved parameters, the position is 0 again wherever the shaft is.
     pub fn power_cycle(&mut self) {
         let (config, saved) = (self.config.clone(), self.saved.clone());
-        *self = Self::boot(config, saved, self.generator.position());
+        let network = self.network.restarted();
+        *self = Self::boot(config, saved, self.shaft.at_power_on(), network);
     }
 
     /// One control cycle: 1 ms. Settles what the shaft does in the coming millisecond.
@@ -110,15 +126,20 @@ impl Node {
         self.advance_sequence();
         self.watch_inputs();
         self.watch_software_limits();
+        self.watch_following();
         if self.state == State::OperationEnabled && self.sequence == Sequence::Idle {
             match self.mode {
                 mode::HOMING => self.advance_homing(),
+                mode::PROFILE_VELOCITY => self.advance_velocity_mode(),
                 _ => self.advance_position_mode(),
             }
         }
-        let start = q32(self.generator.position());
+        let start = q32(self.shaft.position());
         self.generator.step();
-        let end = q32(self.generator.position());
+        self.shaft
+            .follow(self.generator.position(), self.generator.qc_per_turn());
+        self.follow_shaft();
+        let end = q32(self.shaft.position());
         self.segment = Segment { start, end };
     }
 
@@ -141,10 +162,10 @@ impl Node {
             .wrapping_add(self.phase_us.into())
     }
 
-    /// Node id as configured now (2000).
+    /// Node id in use. A new one (2000) must be saved and takes effect at the next power-on.
     #[must_use]
-    pub fn node_id(&self) -> u8 {
-        self.dictionary.get(objects::NODE_ID)
+    pub const fn node_id(&self) -> u8 {
+        self.id
     }
 
     /// State of the CiA 402 machine.
@@ -158,31 +179,28 @@ impl Node {
         self.fail(error);
     }
 
-    /// Network management: start, stop and pre-operational show in bit 9 of the statusword; a reset of the node is a power cycle.
-    pub fn nmt(&mut self, command: NmtCommand) {
-        match command {
-            NmtCommand::Start => self.operational = true,
-            NmtCommand::Stop | NmtCommand::EnterPreOperational | NmtCommand::ResetCommunication => {
-                self.operational = false;
-            }
-            NmtCommand::ResetNode => self.power_cycle(),
-            NmtCommand::Unknown(_) => {}
-        }
+    /// Jams the shaft where it is, whatever the motor does, until [`Node::unblock`]. Power-off does not free it.
+    pub fn block(&mut self) {
+        self.shaft.jam(true);
+    }
+
+    /// Frees a jammed shaft.
+    pub fn unblock(&mut self) {
+        self.shaft.jam(false);
     }
 
     /// 6041.
     pub(super) fn statusword(&self) -> u16 {
-        let remote = if self.operational { status::REMOTE } else { 0 };
-        let referenced = if self.referenced {
-            status::REFERENCED
-        } else {
-            0
-        };
+        let bit = |on, bit| if on { bit } else { 0 };
         let of_mode = match self.mode {
             mode::HOMING => self.homing.status_bits(),
-            _ => self.position_mode.status_bits(),
+            mode::PROFILE_VELOCITY => self.velocity_mode.status_bits(self.velocity_actual_rpm()),
+            _ => self.position_mode.status_bits() | bit(self.lost_demand, status::FOLLOWING_ERROR),
         };
-        self.state.pattern() | remote | referenced | of_mode
+        self.state.pattern()
+            | bit(self.nmt_state() == NmtState::Operational, status::REMOTE)
+            | bit(self.referenced, status::REFERENCED)
+            | of_mode
     }
 
     /// 6064: the encoder's counter at this instant. The specification does not say whether a unit latches it once a control
@@ -217,23 +235,7 @@ impl Node {
         self.timestamp_base_us = now_us.wrapping_sub(self.time_us() as u32);
     }
 
-    /// Back to factory values.
-    pub(super) fn restore(&mut self) {
-        self.dictionary = factory(&self.config);
-        self.mode = self.dictionary.get(objects::MODE);
-        let lines = self.dictionary.get(objects::ENCODER_LINES);
-        self.generator.set_qc_per_turn(lines.saturating_mul(4));
-    }
-
     pub(super) fn is_powered(&self) -> bool {
         is_powered(self.state)
     }
-}
-
-/// Factory values, with the encoder that the unit is built in with.
-fn factory(config: &NodeConfig) -> Dictionary {
-    let mut dictionary = Dictionary::factory(config.node_id);
-    let qc_per_turn = config.qc_per_turn.clamp(4, MAX_QC_PER_TURN);
-    dictionary.set(objects::ENCODER_LINES.address, qc_per_turn / 4);
-    dictionary
 }

@@ -168,7 +168,8 @@ impl Node {
         if window == u32::MAX {
             return true;
         }
-        let off = (i64::from(self.position_demand()) - target).unsigned_abs();
+        let position = floor_qc(self.shaft.position()) - self.origin;
+        let off = (position - target).unsigned_abs();
         let waited = &mut self.position_mode.in_window_ms;
         *waited = if off <= u64::from(window) {
             waited.saturating_add(1)

@@ -281,7 +281,7 @@ proptest! {
             generator.step();
         }
         let (from, speed) = (qc(generator.position()), generator.speed());
-        generator.run_at(Speed::ZERO, l.deceleration);
+        generator.stop(l.deceleration);
         let mut steps = 0u32;
         while generator.is_moving() {
             generator.step();
@@ -330,7 +330,7 @@ proptest! {
                 Order::GoTo(target, limits) => {
                     let _ = generator.go_to(target, limits);
                 }
-                Order::RunAt(speed, acceleration) => generator.run_at(Speed::from_rpm(speed), acceleration),
+                Order::RunAt(speed, acceleration) => generator.run_at(Speed::from_rpm(speed), acceleration, acceleration),
                 Order::Steps(n) => {
                     for _ in 0..n {
                         generator.step();

@@ -10,6 +10,7 @@ use protocol::epos2::message::{
 use protocol::epos2::rs232::{BodyDecoder, Bytes, FAILED, OKAY, encode_body};
 use protocol::epos2::{Frame, objects};
 
+use super::bus::Bus;
 use super::node::Node;
 use super::service::Service;
 
@@ -61,8 +62,19 @@ impl Rs232Server {
 
     /// Takes bytes from the master at the node's present instant; what the unit sends goes to `out`.
     ///
-    /// A silence longer than the frame timeout (2005) ends whatever was under way.
+    /// A silence longer than the frame timeout (2005) ends whatever was under way. On the unit's CAN bus there is nobody else.
     pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
+        self.input_with_bus(node, &mut (), bytes, out);
+    }
+
+    /// As [`Rs232Server::input`], with other nodes on the unit's CAN bus for its gateway.
+    pub fn input_with_bus(
+        &mut self,
+        node: &mut Node,
+        bus: &mut impl Bus,
+        bytes: &[u8],
+        out: &mut impl FnMut(&[u8]),
+    ) {
         let now_us = node.time_us();
         let timeout_us = 1000 * u64::from(node.dictionary.get(objects::RS232_FRAME_TIMEOUT));
         if now_us.saturating_sub(self.heard_us) > timeout_us {
@@ -71,11 +83,18 @@ impl Rs232Server {
         self.heard_us = now_us;
         for &byte in bytes {
             let turn = core::mem::replace(&mut self.turn, Turn::Opcode);
-            self.turn = self.take(turn, byte, node, out);
+            self.turn = self.take(turn, byte, node, bus, out);
         }
     }
 
-    fn take(&mut self, turn: Turn, byte: u8, node: &mut Node, out: &mut impl FnMut(&[u8])) -> Turn {
+    fn take(
+        &mut self,
+        turn: Turn,
+        byte: u8,
+        node: &mut Node,
+        bus: &mut impl Bus,
+        out: &mut impl FnMut(&[u8]),
+    ) -> Turn {
         match turn {
             Turn::Opcode if KNOWN.contains(&byte) => {
                 out(&[OKAY]);
@@ -89,7 +108,7 @@ impl Rs232Server {
                 None => Turn::Body(decoder),
                 Some(Ok(request)) => {
                     out(&[OKAY]);
-                    self.answer(&request, node, out)
+                    self.answer(&request, node, bus, out)
                 }
                 Some(Err(_)) => {
                     out(&[FAILED]);
@@ -111,8 +130,14 @@ impl Rs232Server {
     }
 
     /// NMT and "send CAN frame" have no answer on RS232.
-    fn answer(&mut self, request: &Frame, node: &mut Node, out: &mut impl FnMut(&[u8])) -> Turn {
-        let answer = self.service.execute(node, request);
+    fn answer(
+        &mut self,
+        request: &Frame,
+        node: &mut Node,
+        bus: &mut impl Bus,
+        out: &mut impl FnMut(&[u8]),
+    ) -> Turn {
+        let answer = self.service.execute(node, bus, request);
         if [Nmt::OPCODE, SendCanFrame::OPCODE].contains(&request.opcode) {
             return Turn::Opcode;
         }

@@ -1,4 +1,4 @@
-//! Carries out the commands of the serial interfaces on a node; framing is the servers' business.
+//! Carries out the commands of the serial interfaces on a node, or through it on the CAN bus; framing is the servers' business.
 //!
 //! Words of an answer that a command does not use are garbage, as on a real unit, and an error is answered in two words or in four.
 
@@ -10,9 +10,12 @@ use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, CommError, Frame};
 
 use super::Abort;
+use super::bus::Bus;
+use super::dictionary::Dictionary;
+use super::gateway;
 use super::junk::Junk;
 use super::node::Node;
-use super::value::Value;
+use super::value::{LONGEST, Value};
 
 /// A serial interface's state between commands.
 #[derive(Clone, Debug)]
@@ -31,11 +34,11 @@ struct Upload {
 /// A segmented write under way.
 #[derive(Clone, Copy, Debug)]
 struct Download {
+    node: u8,
     address: Address,
     len: u32,
     toggle: bool,
-    /// Numbers have at most four bytes.
-    bytes: Bounded<u8, 4>,
+    bytes: Bounded<u8, LONGEST>,
 }
 
 impl Service {
@@ -48,7 +51,7 @@ impl Service {
     }
 
     /// Executes a request and returns its answer.
-    pub fn execute(&mut self, node: &mut Node, frame: &Frame) -> Frame {
+    pub fn execute(&mut self, node: &mut Node, bus: &mut impl Bus, frame: &Frame) -> Frame {
         let request = match Request::parse(frame) {
             Ok(Some(request)) => request,
             Ok(None) => return self.refuse(CommError::ILLEGAL_COMMAND),
@@ -56,19 +59,26 @@ impl Service {
             Err(_) => return self.refuse(CommError::LENGTH),
         };
         match request {
-            Request::ReadObject(it) => self.read(node, it),
-            Request::WriteObject(it) => {
-                let outcome = local(node, it.node).and_then(|()| node.write(it.address, it.value));
-                WriteObject::answer(outcome)
-            }
-            Request::InitiateSegmentedRead(it) => self.begin_read(node, it),
+            Request::ReadObject(it) => self.read(node, bus, it),
+            Request::WriteObject(it) => match write(node, bus, it) {
+                Ok(()) => WriteObject::answer(Ok(())),
+                Err(error) => self.refuse(error),
+            },
+            Request::InitiateSegmentedRead(it) => self.begin_read(node, bus, it),
             Request::SegmentedRead(it) => self.read_segment(it),
             Request::InitiateSegmentedWrite(it) => self.begin_write(node, it),
-            Request::SegmentedWrite(SegmentedWrite(segment)) => self.write_segment(node, &segment),
-            Request::Nmt(it) => nmt(node, it),
-            // Nothing is on the bus: what is sent is lost, what is asked for never comes.
-            Request::SendCanFrame(_) => Answer::bare(CommError::NONE).to_frame(),
-            Request::RequestCanFrame(_) => RequestCanFrame::answer(Err(CommError::TIMEOUT)),
+            Request::SegmentedWrite(SegmentedWrite(segment)) => {
+                self.write_segment(node, bus, &segment)
+            }
+            Request::Nmt(it) => nmt(node, bus, it),
+            Request::SendCanFrame(it) => match gateway::send(bus, &it) {
+                Ok(()) => Answer::bare(CommError::NONE).to_frame(),
+                Err(error) => self.refuse(error),
+            },
+            Request::RequestCanFrame(it) => match gateway::request(bus, &it) {
+                Ok(data) => RequestCanFrame::answer(Ok(data)),
+                Err(error) => self.refuse(error),
+            },
         }
     }
 
@@ -84,8 +94,8 @@ impl Service {
         answer.to_frame()
     }
 
-    fn read(&mut self, node: &Node, request: ReadObject) -> Frame {
-        let outcome = local(node, request.node).and_then(|()| node.read(request.address));
+    fn read(&mut self, node: &Node, bus: &mut impl Bus, request: ReadObject) -> Frame {
+        let outcome = read(node, bus, request.node, request.address);
         // A value longer than the answer has room for: the length of the parameter is the reason.
         match outcome.and_then(|value| Ok((value.raw().ok_or(Abort::TOO_LONG)?, value))) {
             Ok((raw, value)) => {
@@ -97,9 +107,14 @@ impl Service {
         }
     }
 
-    fn begin_read(&mut self, node: &Node, request: InitiateSegmentedRead) -> Frame {
+    fn begin_read(
+        &mut self,
+        node: &Node,
+        bus: &mut impl Bus,
+        request: InitiateSegmentedRead,
+    ) -> Frame {
         self.upload = None;
-        match local(node, request.node).and_then(|()| node.read(request.address)) {
+        match read(node, bus, request.node, request.address) {
             Ok(value) => {
                 self.upload = Some(Upload { value });
                 Answer::bare(CommError::NONE).to_frame()
@@ -127,16 +142,18 @@ impl Service {
 
     fn begin_write(&mut self, node: &Node, request: InitiateSegmentedWrite) -> Frame {
         self.download = None;
-        let outcome = local(node, request.node)
-            .and_then(|()| node.read(request.address))
-            .and_then(|value| match (request.len as usize, value.bytes().len()) {
-                (given, wanted) if given > wanted => Err(Abort::TOO_LONG),
-                (given, wanted) if given < wanted => Err(Abort::TOO_SHORT),
-                _ => Ok(()),
-            });
+        // Another node is asked when all is there.
+        let outcome = if is_local(node, request.node) {
+            node.check_download(request.address, request.len as usize)
+        } else if request.len as usize > LONGEST {
+            Err(Abort::MEMORY)
+        } else {
+            Ok(())
+        };
         match outcome {
             Ok(()) => {
                 self.download = Some(Download {
+                    node: request.node,
                     address: request.address,
                     len: request.len,
                     toggle: false,
@@ -148,7 +165,12 @@ impl Service {
         }
     }
 
-    fn write_segment(&mut self, node: &mut Node, segment: &WriteSegment) -> Frame {
+    fn write_segment(
+        &mut self,
+        node: &mut Node,
+        bus: &mut impl Bus,
+        segment: &WriteSegment,
+    ) -> Frame {
         let Some(mut download) = self.download.take() else {
             return self.refuse(CommError::COMMAND);
         };
@@ -165,28 +187,51 @@ impl Service {
             self.download = Some(download);
             return SegmentedWrite::answer(Ok(segment.toggle));
         }
-        let mut raw = [0; 4];
-        for (to, from) in raw.iter_mut().zip(download.bytes.iter()) {
-            *to = *from;
-        }
-        match node.write(download.address, u32::from_le_bytes(raw)) {
+        let outcome = if is_local(node, download.node) {
+            node.write_bytes(download.address, &download.bytes)
+        } else {
+            gateway::write(bus, download.node, download.address, &download.bytes)
+        };
+        match outcome {
             Ok(()) => SegmentedWrite::answer(Ok(segment.toggle)),
             Err(error) => self.refuse(error),
         }
     }
 }
 
-/// Node 0 and the unit's own id are the unit; any other is looked for on the CAN bus, where there is none.
-fn local(node: &Node, id: u8) -> Result<(), Abort> {
-    if id == 0 || id == node.node_id() {
-        Ok(())
+/// Node 0 and the unit's own id are the unit; any other is looked for on the CAN bus.
+const fn is_local(node: &Node, id: u8) -> bool {
+    id == 0 || id == node.node_id()
+}
+
+fn read(node: &Node, bus: &mut impl Bus, id: u8, address: Address) -> Result<Value, Abort> {
+    if is_local(node, id) {
+        node.read(address)
     } else {
-        Err(Abort::TIMEOUT)
+        gateway::read(bus, id, address)
     }
 }
 
-/// Network management is broadcast on the bus and has no errors.
-fn nmt(node: &mut Node, request: Nmt) -> Frame {
+/// The command says nothing about the length of a value. For another node the unit needs to know it: what its own dictionary has,
+/// else four bytes.
+fn write(node: &mut Node, bus: &mut impl Bus, request: WriteObject) -> Result<(), Abort> {
+    let WriteObject {
+        node: id,
+        address,
+        value,
+    } = request;
+    if is_local(node, id) {
+        return node.write(address, value);
+    }
+    let known = Dictionary::entry(address).map(|entry| entry.ty.bytes());
+    let len = known.ok().filter(|len| (1..=4).contains(len)).unwrap_or(4);
+    let bytes = value.to_le_bytes();
+    gateway::write(bus, id, address, bytes.get(..len).unwrap_or(&bytes))
+}
+
+/// Network management is broadcast on the bus and has no errors. The unit hears what it says itself.
+fn nmt(node: &mut Node, bus: &mut impl Bus, request: Nmt) -> Frame {
+    gateway::nmt(bus, request.node, request.command.to_u16());
     if request.node == 0 || request.node == u16::from(node.node_id()) {
         node.nmt(request.command);
     }

@@ -5,6 +5,7 @@
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
 use protocol::epos2::{CommError, FrameError, objects};
 
+use super::bus::Bus;
 use super::node::Node;
 use super::service::Service;
 
@@ -31,8 +32,19 @@ impl UsbServer {
     /// Takes bytes from the host at the node's present instant; each answer goes to `out` as one whole frame.
     ///
     /// A frame with a wrong checksum is answered with communication error 05040004; one that breaks off is forgotten, at the
-    /// latest after the frame timeout (2006).
+    /// latest after the frame timeout (2006). On the unit's CAN bus there is nobody else.
     pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
+        self.input_with_bus(node, &mut (), bytes, out);
+    }
+
+    /// As [`UsbServer::input`], with other nodes on the unit's CAN bus for its gateway.
+    pub fn input_with_bus(
+        &mut self,
+        node: &mut Node,
+        bus: &mut impl Bus,
+        bytes: &[u8],
+        out: &mut impl FnMut(&[u8]),
+    ) {
         let now_us = node.time_us();
         let timeout_us = 1000 * u64::from(node.dictionary.get(objects::USB_FRAME_TIMEOUT));
         if now_us.saturating_sub(self.heard_us) > timeout_us {
@@ -41,7 +53,7 @@ impl UsbServer {
         self.heard_us = now_us;
         for &byte in bytes {
             let answer = match self.decoder.push(byte) {
-                Some(Ok(request)) => self.service.execute(node, &request),
+                Some(Ok(request)) => self.service.execute(node, bus, &request),
                 Some(Err(FrameError::Crc { .. })) => self.service.refuse(CommError::CRC),
                 Some(Err(_)) | None => continue,
             };

@@ -1,11 +1,14 @@
 //! The value of a dictionary entry as bytes: what serial answers and SDOs are made of.
 
-use super::dictionary::Type;
+use super::entry::Type;
+
+/// Bytes of the longest value.
+pub(super) const LONGEST: usize = 8;
 
 /// A value, low byte first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Value {
-    bytes: [u8; 8],
+    bytes: [u8; LONGEST],
     len: usize,
 }
 
@@ -20,12 +23,17 @@ impl Value {
 
     /// A string, cut to 8 characters.
     pub(super) fn text(text: &str) -> Self {
+        Self::of_bytes(text.as_bytes())
+    }
+
+    /// A value of another node, cut to 8 bytes.
+    pub(super) fn of_bytes(bytes: &[u8]) -> Self {
         let mut value = Self {
-            bytes: [0; 8],
+            bytes: [0; LONGEST],
             len: 0,
         };
-        for (to, from) in value.bytes.iter_mut().zip(text.bytes()) {
-            *to = from;
+        for (to, from) in value.bytes.iter_mut().zip(bytes) {
+            *to = *from;
             value.len += 1;
         }
         value

@@ -4,6 +4,7 @@ use protocol::epos2::cia402::control;
 use protocol::epos2::objects::{self, Address};
 
 use super::super::Abort;
+use super::super::entry::{Access, Type};
 use super::super::table::TABLE;
 use super::{command, enabled, get, healthy, set, ticks};
 
@@ -69,7 +70,17 @@ fn every_object_that_the_protocol_names_exists_in_its_width() {
         assert_eq!(value.bytes().len(), usize::from(named.bytes), "{named:?}");
     }
     for entry in &TABLE {
-        assert!(node.read(entry.address).is_ok(), "{}", entry.address);
+        let expected = match (entry.access, entry.ty) {
+            (Access::Wo, _) => Some(Abort::WRITE_ONLY),
+            (_, Type::Domain) => Some(Abort::STATE),
+            _ => None,
+        };
+        assert_eq!(
+            node.read(entry.address).err(),
+            expected,
+            "{}",
+            entry.address
+        );
     }
 }
 

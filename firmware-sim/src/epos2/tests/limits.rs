@@ -140,7 +140,8 @@ fn the_brake_opens_before_and_closes_after() {
     ticks(&mut node, 300);
     command(&mut node, control::SWITCH_ON);
     let ramp = until(&mut node, 200, |node| node.brake() == Brake::Closed);
-    assert!((100..104).contains(&ramp), "{ramp}");
+    // 100 ms of ramp, then 50 ms of standstill.
+    assert!((150..154).contains(&ramp), "{ramp}");
     assert_eq!(get(&node, objects::VELOCITY_ACTUAL), 0);
     assert_eq!(
         state(&node),
@@ -149,4 +150,28 @@ fn the_brake_opens_before_and_closes_after() {
     );
     let fall = until(&mut node, 200, |node| state(node) == State::SwitchedOn);
     assert!((29..33).contains(&fall), "{fall}");
+}
+
+#[test]
+fn a_standstill_that_is_not_found_is_not_waited_for_beyond_its_timeout() {
+    let mut node = healthy();
+    set(&mut node, objects::OUTPUT_1, objects::OUTPUT_BRAKE);
+    set(&mut node, objects::OUTPUT_MASK, 1 << 2);
+    set(&mut node, objects::STANDSTILL_TIME, 5_000);
+    set(&mut node, objects::STANDSTILL_TIMEOUT, 200);
+    enable(&mut node);
+    command(&mut node, control::SWITCH_ON);
+    let took = until(&mut node, 1_000, |node| node.brake() == Brake::Closed);
+    assert!((200..203).contains(&took), "{took}");
+    // A fault reaction that ramps takes the same way.
+    until(&mut node, 100, |node| state(node) == State::SwitchedOn);
+    set(&mut node, objects::STANDSTILL_TIME, 50);
+    command(&mut node, control::ENABLE_OPERATION);
+    until(&mut node, 100, |node| {
+        state(node) == State::OperationEnabled
+    });
+    node.inject(DeviceError::FOLLOWING);
+    let took = until(&mut node, 1_000, |node| state(node) == State::Fault);
+    // Standstill and the brake's 10 ms.
+    assert!((60..64).contains(&took), "{took}");
 }

@@ -2,10 +2,14 @@
 
 mod access;
 mod anything;
+mod blocked;
+mod golden;
 mod homing;
 mod limits;
 mod position;
 mod states;
+mod storage;
+mod velocity;
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{State, control, status};

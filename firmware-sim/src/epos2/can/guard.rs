@@ -1,0 +1,103 @@
+//! Error control: the node's own heartbeat (1017), the heartbeats it listens for (1016), and answers to guarding requests.
+
+use protocol::canopen::heartbeat::ConsumerEntry;
+use protocol::canopen::{CanFrame, Channel, NodeId};
+use protocol::epos2::DeviceError;
+use protocol::epos2::objects::{self, Address};
+
+use crate::epos2::node::Node;
+
+/// The node's heartbeat.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Beat {
+    period_ms: u16,
+    last_us: u64,
+}
+
+impl Beat {
+    /// The first is a period after the boot-up message.
+    pub fn from_now(node: &Node) -> Self {
+        Self {
+            period_ms: node.dictionary.get(objects::PRODUCER_HEARTBEAT),
+            last_us: node.time_us(),
+        }
+    }
+
+    /// Whether it is to be sent now: a period after the last, and at once when the period changes (CiA 301).
+    pub fn is_due(&mut self, node: &Node, now_us: u64) -> bool {
+        let period_ms = node.dictionary.get(objects::PRODUCER_HEARTBEAT);
+        let changed = core::mem::replace(&mut self.period_ms, period_ms) != period_ms;
+        let next_us = self.last_us + 1000 * u64::from(period_ms);
+        if period_ms == 0 || !changed && now_us < next_us {
+            return false;
+        }
+        // From when it was due, so that no delay adds up, unless whole periods were missed.
+        let late = changed || now_us >= next_us + 1000 * u64::from(period_ms);
+        self.last_us = if late { now_us } else { next_us };
+        true
+    }
+}
+
+/// Node guarding: the toggle bit of the next answer.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Guarding {
+    toggle: bool,
+}
+
+impl Guarding {
+    /// The answer to a request; none where the heartbeat is on, which excludes guarding.
+    pub fn answer(&mut self, node: &Node, id: NodeId) -> Option<CanFrame> {
+        if node.dictionary.get(objects::PRODUCER_HEARTBEAT) != 0 {
+            return None;
+        }
+        let toggle = if self.toggle { 0x80 } else { 0 };
+        self.toggle = !self.toggle;
+        let state = node.nmt_state().to_u8();
+        Some(CanFrame::of(
+            Channel::Heartbeat(id).cob_id(),
+            [state | toggle],
+        ))
+    }
+}
+
+/// One entry of 1016 at work.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Listener {
+    entry: Option<ConsumerEntry>,
+    /// When the last heartbeat came; the first begins the watch.
+    last_us: Option<u64>,
+}
+
+impl Listener {
+    pub fn hear(&mut self, node: &Node, sub: u8, from: NodeId, now_us: u64) {
+        self.look(node, sub);
+        if self.entry.is_some_and(|entry| entry.node == from) {
+            self.last_us = Some(now_us);
+        }
+    }
+
+    /// Error 8130 where the heartbeat has stopped: the drive ramps down and switches off.
+    pub fn watch(&mut self, node: &mut Node, sub: u8, now_us: u64) {
+        self.look(node, sub);
+        let (Some(entry), Some(last_us)) = (self.entry, self.last_us) else {
+            return;
+        };
+        if now_us.saturating_sub(last_us) > 1000 * u64::from(entry.time_ms) {
+            self.last_us = None;
+            node.fail(DeviceError::CAN_LIFE_GUARD);
+            node.leave_operational();
+        }
+    }
+
+    /// A changed entry begins anew.
+    fn look(&mut self, node: &Node, sub: u8) {
+        let index = objects::CONSUMER_HEARTBEAT.address.index;
+        let entry = ConsumerEntry::from_u32(node.dictionary.raw(Address::new(index, sub)));
+        if entry != self.entry {
+            *self = Self {
+                entry,
+                last_us: None,
+            };
+        }
+    }
+}

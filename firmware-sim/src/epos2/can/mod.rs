@@ -1,0 +1,214 @@
+//! The unit's CAN interface: a CANopen slave without I/O (CiA 301; Communication Guide, "CANopen Communication").
+//!
+//! [`CanServer`] joins the services, one file each: NMT and error control here and in [`guard`], SDO, transmit and receive PDOs. Left
+//! out: bit timing and arbitration, LSS, SDO block transfer, life guarding (100C, 100D; guarding requests are answered) and the
+//! abort connection option (6007): a lost master is error 8130 with the reaction that 605E gives.
+
+mod guard;
+mod receive;
+mod sdo;
+mod transmit;
+
+use protocol::canopen::emcy::Emergency;
+use protocol::canopen::heartbeat::Heartbeat;
+use protocol::canopen::nmt::{Nmt, NmtState};
+use protocol::canopen::sdo::Request;
+use protocol::canopen::sync::Sync;
+use protocol::canopen::{CanFrame, Channel, CobId, NodeId, PdoNumber};
+use protocol::epos2::objects::Address;
+
+use self::guard::{Beat, Guarding, Listener};
+use self::receive::ReceivePdo;
+use self::sdo::SdoServer;
+use self::transmit::TransmitPdo;
+use super::node::Node;
+
+/// Identifier of emergency messages; bit 31 set is out of use.
+const EMCY_ID: Address = Address::new(0x1014, 0);
+
+/// The CAN side of a unit.
+#[derive(Clone, Debug, Default)]
+pub struct CanServer {
+    /// Which start of the node the bus has been told of.
+    started: Option<u32>,
+    /// The NMT state when it was last looked at.
+    state: Option<NmtState>,
+    beat: Beat,
+    guarding: Guarding,
+    listeners: [Listener; 2],
+    sdo: SdoServer,
+    transmit: [TransmitPdo; 4],
+    receive: [ReceivePdo; 4],
+}
+
+impl CanServer {
+    /// An interface that has just been powered: its first frame is the boot-up message.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Sends what is due at the node's present instant: boot-up, emergency messages, heartbeat, process data that has changed, the
+    /// abort of a transfer whose client went away. To be called after each [`Node::tick`].
+    pub fn poll(&mut self, node: &mut Node, out: &mut impl FnMut(&CanFrame)) {
+        let Some(id) = self.attend(node, out) else {
+            return;
+        };
+        let now_us = node.time_us();
+        for (sub, listener) in (1..).zip(&mut self.listeners) {
+            listener.watch(node, sub, now_us);
+        }
+        // A listener may have changed it.
+        self.note_state(node);
+        if node.nmt_state() != NmtState::Stopped {
+            tell_news(node, id, out);
+        }
+        if self.beat.is_due(node, now_us) {
+            out(&life_sign(id, node.nmt_state()));
+        }
+        if let Some(abort) = self.sdo.expire(now_us) {
+            out(&abort.to_frame(id));
+        }
+        if node.nmt_state() == NmtState::Operational {
+            for (number, pdo) in PdoNumber::ALL.into_iter().zip(&mut self.transmit) {
+                pdo.on_event(node, number, now_us, out);
+            }
+        }
+    }
+
+    /// Takes any frame of the bus at the node's present instant; what the unit sends goes to `out`.
+    pub fn input(&mut self, node: &mut Node, frame: &CanFrame, out: &mut impl FnMut(&CanFrame)) {
+        let Some(id) = self.attend(node, out) else {
+            return;
+        };
+        let Some(cob_id) = frame.cob_id() else {
+            return;
+        };
+        if frame.is_remote() {
+            self.asked(node, id, cob_id, out);
+        } else {
+            self.told(node, id, frame, out);
+        }
+        // What the frame did shows at once: boot-up, emergency, process data.
+        self.poll(node, out);
+    }
+
+    /// The node as it is now: after a start everything begins anew. `None` for a node without an id.
+    fn attend(&mut self, node: &Node, out: &mut impl FnMut(&CanFrame)) -> Option<NodeId> {
+        let id = NodeId::new(node.node_id())?;
+        let starts = node.network.starts();
+        if self.started != Some(starts) {
+            *self = Self {
+                started: Some(starts),
+                beat: Beat::from_now(node),
+                ..Self::default()
+            };
+            out(&life_sign(id, NmtState::BootUp));
+        }
+        self.note_state(node);
+        Some(id)
+    }
+
+    /// Process data begins anew when the node becomes operational.
+    fn note_state(&mut self, node: &Node) {
+        let state = node.nmt_state();
+        if self.state.replace(state) != Some(state) {
+            self.transmit = Default::default();
+            self.receive = Default::default();
+        }
+    }
+
+    /// A remote frame.
+    fn asked(&mut self, node: &Node, id: NodeId, cob_id: CobId, out: &mut impl FnMut(&CanFrame)) {
+        if cob_id == Channel::Heartbeat(id).cob_id() {
+            if let Some(answer) = self.guarding.answer(node, id) {
+                out(&answer);
+            }
+        } else if node.nmt_state() == NmtState::Operational {
+            for (number, pdo) in PdoNumber::ALL.into_iter().zip(&mut self.transmit) {
+                pdo.on_request(node, number, cob_id, out);
+            }
+        }
+    }
+
+    /// A data frame. What is no proper message of its service is ignored.
+    fn told(
+        &mut self,
+        node: &mut Node,
+        id: NodeId,
+        frame: &CanFrame,
+        out: &mut impl FnMut(&CanFrame),
+    ) {
+        let now_us = node.time_us();
+        match frame.cob_id().map(Channel::of) {
+            Some(Channel::Nmt) => {
+                if let Ok(command) = Nmt::parse(frame)
+                    && command.is_for(id)
+                {
+                    node.nmt(command.command.into());
+                }
+            }
+            Some(Channel::Sync) if Sync::parse(frame).is_ok() => self.sync(node, out),
+            Some(Channel::Heartbeat(other)) => {
+                for (sub, listener) in (1..).zip(&mut self.listeners) {
+                    listener.hear(node, sub, other, now_us);
+                }
+            }
+            Some(Channel::SdoRequest(to)) if to == id => {
+                if node.nmt_state() != NmtState::Stopped
+                    && let Ok((_, request)) = Request::parse(frame)
+                    && let Some(answer) = self.sdo.execute(node, &request, now_us)
+                {
+                    out(&answer.to_frame(id));
+                }
+            }
+            _ if node.nmt_state() == NmtState::Operational => {
+                for (number, pdo) in PdoNumber::ALL.into_iter().zip(&mut self.receive) {
+                    pdo.on_frame(node, number, frame);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// A beat: process data is sampled and sent first, then what came before it takes effect.
+    fn sync(&mut self, node: &mut Node, out: &mut impl FnMut(&CanFrame)) {
+        if node.nmt_state() != NmtState::Operational {
+            return;
+        }
+        for (number, pdo) in PdoNumber::ALL.into_iter().zip(&mut self.transmit) {
+            pdo.on_sync(node, number, out);
+        }
+        for (number, pdo) in PdoNumber::ALL.into_iter().zip(&mut self.receive) {
+            pdo.on_sync(node, number);
+        }
+    }
+}
+
+fn life_sign(node: NodeId, state: NmtState) -> CanFrame {
+    Heartbeat { node, state }.to_frame()
+}
+
+/// Emergency messages of all that has happened since the last.
+fn tell_news(node: &mut Node, id: NodeId, out: &mut impl FnMut(&CanFrame)) {
+    const OUT_OF_USE: u32 = 1 << 31;
+    let cob_id = node.dictionary.raw(EMCY_ID);
+    while let Some(news) = node.errors.next_news() {
+        let frame = Emergency::new(id, news.error, news.register).to_frame();
+        let moved = u16::try_from(cob_id & 0x7FF).ok().and_then(CobId::new);
+        if cob_id & OUT_OF_USE == 0
+            && let Some(moved) = moved
+            && let Ok(frame) = CanFrame::new(moved, frame.data())
+        {
+            out(&frame);
+        }
+    }
+}
+
+/// Index of a PDO's parameters.
+const fn parameters(first: u16, number: PdoNumber) -> u16 {
+    first + number.offset()
+}
+
+#[cfg(test)]
+mod tests;

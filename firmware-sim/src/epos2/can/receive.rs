@@ -1,0 +1,63 @@
+//! Process data to the node: RPDO 1 to 4 (1400, 1600 and on), in effect at once or at the next SYNC.
+
+use protocol::canopen::pdo::{Layout, MAX_ENTRIES, TransmissionType};
+use protocol::canopen::{CanFrame, PdoNumber};
+use protocol::epos2::objects::Address;
+use protocol::epos2::{Bounded, DeviceError};
+
+use super::parameters;
+use crate::epos2::mapping;
+use crate::epos2::node::Node;
+
+/// Where the parameters of the first stand.
+const FIRST: u16 = 0x1400;
+
+/// The values of a PDO.
+type Values = Bounded<u64, MAX_ENTRIES>;
+
+/// One of them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ReceivePdo {
+    /// Waits for the next SYNC.
+    pending: Option<Values>,
+}
+
+impl ReceivePdo {
+    /// Any data frame of the bus. One that is shorter than what is mapped is error 8210.
+    pub fn on_frame(&mut self, node: &mut Node, number: PdoNumber, frame: &CanFrame) {
+        let index = parameters(FIRST, number);
+        let id = mapping::identifier(&node.dictionary, index);
+        if !id.valid || id.id != frame.id() {
+            return;
+        }
+        let layout = mapping::layout(&node.dictionary, index);
+        let Ok(values) = layout.unpack(frame.data()) else {
+            node.fail(DeviceError::PDO_LENGTH);
+            return;
+        };
+        let kind = node.dictionary.raw(Address::new(index, 2)) as u8;
+        match TransmissionType::from_u8(kind) {
+            TransmissionType::EverySync(_) | TransmissionType::SyncOnEvent => {
+                self.pending = Some(values);
+            }
+            _ => apply(node, &layout, &values),
+        }
+    }
+
+    /// A SYNC.
+    pub fn on_sync(&mut self, node: &mut Node, number: PdoNumber) {
+        if let Some(values) = self.pending.take() {
+            let layout = mapping::layout(&node.dictionary, parameters(FIRST, number));
+            apply(node, &layout, &values);
+        }
+    }
+}
+
+/// Writes the values in the order of the mapping. A PDO has no way to say that one was refused.
+fn apply(node: &mut Node, layout: &Layout, values: &[u64]) {
+    for (entry, value) in layout.entries().iter().zip(values) {
+        let bytes = value.to_le_bytes();
+        let len = usize::from(entry.bits / 8);
+        let _ = node.write_bytes(entry.address, bytes.get(..len).unwrap_or_default());
+    }
+}

@@ -1,0 +1,196 @@
+//! The SDO server: reads and writes of the object dictionary, in one exchange or in segments (CiA 301, "SDO services").
+
+use protocol::canopen::sdo::{Answer, Expedited, Initiate, Request, Segment};
+use protocol::epos2::objects::Address;
+use protocol::epos2::{Bounded, CommError};
+
+use crate::epos2::Abort;
+use crate::epos2::dictionary::Dictionary;
+use crate::epos2::node::Node;
+use crate::epos2::value::Value;
+
+/// How long a client may be silent in the middle of a transfer. The time of a real unit is not documented.
+const PATIENCE_US: u64 = 1_000_000;
+/// The longest value that can be written.
+const LONGEST: usize = 8;
+
+/// The server of one channel.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SdoServer {
+    transfer: Option<Transfer>,
+    /// When the client was last heard.
+    heard_us: u64,
+}
+
+/// A segmented transfer under way.
+#[derive(Clone, Copy, Debug)]
+enum Transfer {
+    Upload {
+        address: Address,
+        value: Value,
+        sent: usize,
+        toggle: bool,
+    },
+    Download {
+        address: Address,
+        bytes: Bounded<u8, LONGEST>,
+        /// Bytes announced.
+        size: Option<u32>,
+        toggle: bool,
+    },
+}
+
+impl Transfer {
+    const fn address(&self) -> Address {
+        match self {
+            Self::Upload { address, .. } | Self::Download { address, .. } => *address,
+        }
+    }
+}
+
+impl SdoServer {
+    /// Executes a request; an abort by the client has no answer.
+    pub fn execute(&mut self, node: &mut Node, request: &Request, now_us: u64) -> Option<Answer> {
+        self.heard_us = now_us;
+        let under_way = self.transfer.take();
+        let at = under_way.map_or(Address::default(), |transfer| transfer.address());
+        let (address, outcome) = match request {
+            Request::InitiateUpload { address } => (*address, self.upload(node, *address)),
+            Request::InitiateDownload { address, transfer } => {
+                (*address, self.download(node, *address, transfer))
+            }
+            Request::UploadSegment { toggle } => (at, self.give(under_way, *toggle)),
+            Request::DownloadSegment(segment) => (at, self.take(node, under_way, segment)),
+            Request::Abort { .. } => return None,
+            // Block transfer, which names its object where the others do.
+            Request::Unknown([_, low, high, sub, ..]) => {
+                let index = u16::from_le_bytes([*low, *high]);
+                (Address::new(index, *sub), Err(Abort::COMMAND))
+            }
+        };
+        Some(outcome.unwrap_or_else(|error| Answer::Abort { address, error }))
+    }
+
+    /// Gives a transfer up whose client is silent.
+    pub fn expire(&mut self, now_us: u64) -> Option<Answer> {
+        let silent = now_us.saturating_sub(self.heard_us) > PATIENCE_US;
+        let transfer = self.transfer.take_if(|_| silent)?;
+        Some(Answer::Abort {
+            address: transfer.address(),
+            error: CommError::TIMEOUT,
+        })
+    }
+
+    fn upload(&mut self, node: &Node, address: Address) -> Result<Answer, Abort> {
+        let value = node.read(address)?;
+        let transfer = match Expedited::new(value.bytes()) {
+            Some(data) => Initiate::Expedited(data),
+            None => {
+                self.transfer = Some(Transfer::Upload {
+                    address,
+                    value,
+                    sent: 0,
+                    toggle: false,
+                });
+                Initiate::Segmented {
+                    size: u32::try_from(value.bytes().len()).ok(),
+                }
+            }
+        };
+        Ok(Answer::InitiateUpload { address, transfer })
+    }
+
+    fn give(&mut self, under_way: Option<Transfer>, asked: bool) -> Result<Answer, Abort> {
+        let Some(Transfer::Upload {
+            address,
+            value,
+            sent,
+            toggle,
+        }) = under_way
+        else {
+            return Err(Abort::COMMAND);
+        };
+        if asked != toggle {
+            return Err(Abort::TOGGLE);
+        }
+        let segment = Segment::cut(value.bytes(), sent, toggle);
+        if !segment.last {
+            self.transfer = Some(Transfer::Upload {
+                address,
+                value,
+                sent: sent + segment.bytes.len(),
+                toggle: !toggle,
+            });
+        }
+        Ok(Answer::UploadSegment(segment))
+    }
+
+    fn download(
+        &mut self,
+        node: &mut Node,
+        address: Address,
+        transfer: &Initiate,
+    ) -> Result<Answer, Abort> {
+        match transfer {
+            Initiate::Expedited(data) => node.write_bytes(address, data.as_slice())?,
+            // The object says how many of the four count.
+            Initiate::Unsized(bytes) => {
+                let len = Dictionary::entry(address)?.ty.bytes();
+                let bytes = bytes.get(..len).ok_or(Abort::TOO_SHORT)?;
+                node.write_bytes(address, bytes)?;
+            }
+            Initiate::Segmented { size } => {
+                match size {
+                    Some(size) => node.check_download(address, *size as usize)?,
+                    None => Dictionary::entry(address)?.check_access()?,
+                }
+                self.transfer = Some(Transfer::Download {
+                    address,
+                    bytes: Bounded::new(),
+                    size: *size,
+                    toggle: false,
+                });
+            }
+        }
+        Ok(Answer::InitiateDownload { address })
+    }
+
+    fn take(
+        &mut self,
+        node: &mut Node,
+        under_way: Option<Transfer>,
+        segment: &Segment,
+    ) -> Result<Answer, Abort> {
+        let Some(Transfer::Download {
+            address,
+            mut bytes,
+            size,
+            toggle,
+        }) = under_way
+        else {
+            return Err(Abort::COMMAND);
+        };
+        if segment.toggle != toggle {
+            return Err(Abort::TOGGLE);
+        }
+        let len = bytes.len() + segment.bytes.len();
+        if len > size.map_or(LONGEST, |size| size as usize).min(LONGEST) {
+            return Err(Abort::TOO_LONG);
+        }
+        bytes.extend(segment.bytes.iter().copied());
+        if segment.last {
+            if size.is_some_and(|size| len < size as usize) {
+                return Err(Abort::TOO_SHORT);
+            }
+            node.write_bytes(address, &bytes)?;
+        } else {
+            self.transfer = Some(Transfer::Download {
+                address,
+                bytes,
+                size,
+                toggle: !toggle,
+            });
+        }
+        Ok(Answer::DownloadSegment { toggle })
+    }
+}

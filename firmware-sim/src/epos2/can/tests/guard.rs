@@ -1,0 +1,129 @@
+//! NMT, boot-up, heartbeats both ways, guarding.
+
+extern crate std;
+use std::vec::Vec;
+
+use protocol::canopen::nmt::{NmtCommand, NmtState};
+
+use super::Bus;
+
+#[test]
+fn the_way_through_the_nmt_states() {
+    let mut bus = Bus::new();
+    assert_eq!(bus.node.nmt_state(), NmtState::PreOperational);
+    for (command, state) in [
+        (NmtCommand::Start, NmtState::Operational),
+        (NmtCommand::Stop, NmtState::Stopped),
+        (NmtCommand::Start, NmtState::Operational),
+        (NmtCommand::EnterPreOperational, NmtState::PreOperational),
+        (NmtCommand::Unknown(0x55), NmtState::PreOperational),
+    ] {
+        bus.nmt(command);
+        assert_eq!(bus.node.nmt_state(), state);
+        assert_eq!(
+            bus.read(0x6041, 0) & 0x0200 != 0,
+            state == NmtState::Operational
+        );
+    }
+    bus.send(0, &[0x01, 2]); // another node
+    assert_eq!(bus.node.nmt_state(), NmtState::PreOperational);
+    bus.send(0, &[0x01, 0]); // all
+    assert_eq!(bus.node.nmt_state(), NmtState::Operational);
+    for reset in [NmtCommand::ResetNode, NmtCommand::ResetCommunication] {
+        bus.take();
+        bus.nmt(reset);
+        assert_eq!(bus.take(), [(0x701, Vec::from([0]))]);
+        assert_eq!(bus.node.nmt_state(), NmtState::PreOperational);
+    }
+    bus.node.power_cycle();
+    bus.poll();
+    assert_eq!(bus.take(), [(0x701, Vec::from([0]))]);
+}
+
+#[test]
+fn the_heartbeat_tells_the_state_evenly() {
+    let mut bus = Bus::new();
+    bus.ticks(500);
+    assert_eq!(bus.take(), [], "off from the factory");
+    bus.write(0x1017, 0, 50);
+    bus.poll();
+    assert_eq!(bus.with(0x701), [[0x7F]], "at once");
+    bus.ticks(499);
+    assert_eq!(bus.with(0x701), [[0x7F]; 9]);
+    bus.nmt(NmtCommand::Start);
+    bus.take();
+    bus.ticks(100);
+    assert_eq!(bus.with(0x701), [[5]; 2]);
+    bus.nmt(NmtCommand::Stop);
+    bus.ticks(50);
+    assert_eq!(bus.with(0x701), [[4]]);
+    bus.write(0x1017, 0, 0);
+    bus.ticks(200);
+    assert_eq!(bus.with(0x701), Vec::<Vec<u8>>::new());
+}
+
+#[test]
+fn a_saved_heartbeat_begins_a_period_after_boot_up() {
+    let mut bus = Bus::new();
+    bus.write(0x1017, 0, 50);
+    bus.write(0x1010, 1, u32::from_le_bytes(*b"save"));
+    bus.nmt(NmtCommand::ResetNode);
+    assert_eq!(bus.with(0x701).last().unwrap(), &[0]);
+    bus.ticks(49);
+    assert_eq!(bus.with(0x701), Vec::<Vec<u8>>::new());
+    bus.ticks(1);
+    assert_eq!(bus.with(0x701), [[0x7F]]);
+}
+
+#[test]
+fn the_axis_stops_when_the_masters_heartbeat_does() {
+    let mut bus = Bus::new();
+    bus.write(0x1016, 1, 0x007F_0064); // node 127, 100 ms
+    bus.nmt(NmtCommand::Start);
+    bus.go(100_000);
+    bus.ticks(200);
+    assert_eq!(
+        bus.read(0x6041, 0) & 0x417F,
+        0x0137,
+        "the first heartbeat begins the watch"
+    );
+    for _ in 0..5 {
+        bus.send(0x77F, &[5]);
+        bus.ticks(90);
+        bus.send(0x77E, &[5]);
+    }
+    assert_eq!(bus.read(0x6041, 0) & 0x417F, 0x0137);
+    bus.take();
+    bus.ticks(11);
+    assert_eq!(bus.read(0x6041, 0) & 0x417F, 0x011F, "ramping down");
+    assert_eq!(bus.node.nmt_state(), NmtState::PreOperational);
+    assert_eq!(bus.with(0x081), [[0x30, 0x81, 0x11, 0, 0, 0, 0, 0]]);
+    bus.ticks(150);
+    assert_eq!(
+        (bus.read(0x6041, 0) & 0x417F, bus.read(0x606C, 0)),
+        (0x0108, 0)
+    );
+    assert_eq!(bus.read(0x1003, 1), 0x8130);
+    // Told once; a heartbeat begins it anew.
+    bus.ticks(500);
+    assert_eq!(bus.take(), []);
+    bus.send(0x77F, &[5]);
+    bus.ticks(110);
+    assert_eq!(bus.with(0x081).len(), 1);
+}
+
+#[test]
+fn guarding_requests_are_answered_with_a_toggle() {
+    let mut bus = Bus::new();
+    bus.ask(0x701);
+    bus.ask(0x701);
+    bus.nmt(NmtCommand::Stop);
+    bus.ask(0x701);
+    bus.ask(0x702);
+    assert_eq!(bus.with(0x701), [[0x7F], [0xFF], [0x04]]);
+    bus.write(0x1017, 0, 1000);
+    bus.ticks(1);
+    bus.take();
+    bus.ask(0x701);
+    assert_eq!(bus.take(), [], "heartbeat excludes guarding");
+}

@@ -1,0 +1,137 @@
+//! The unit as a master on its bus sees it.
+
+extern crate std;
+use std::vec::Vec;
+
+mod errors;
+mod guard;
+mod pdo;
+mod sdo;
+
+use protocol::canopen::nmt::{Nmt, NmtCommand};
+use protocol::canopen::{CanFrame, CobId, NodeId};
+use protocol::epos2::DeviceError;
+use protocol::epos2::objects::Address;
+
+use super::CanServer;
+use crate::epos2::{Node, NodeConfig};
+
+/// Identifier and data.
+type Heard = Vec<(u16, Vec<u8>)>;
+
+/// A unit and its bus.
+struct Bus {
+    node: Node,
+    server: CanServer,
+    heard: Heard,
+}
+
+fn note(heard: &mut Heard, frame: &CanFrame) {
+    assert!(!frame.is_remote());
+    heard.push((frame.cob_id().unwrap().get(), frame.data().to_vec()));
+}
+
+impl Bus {
+    /// Just switched on: the boot-up message has been heard.
+    fn new() -> Self {
+        Self::of(NodeConfig {
+            fault_at_power_on: DeviceError::NONE,
+            initial_position: 0,
+            ..NodeConfig::default()
+        })
+    }
+
+    fn of(config: NodeConfig) -> Self {
+        let mut bus = Self {
+            node: Node::new(config),
+            server: CanServer::new(),
+            heard: Vec::new(),
+        };
+        bus.poll();
+        assert_eq!(bus.take().first(), Some(&(0x701, Vec::from([0]))));
+        bus
+    }
+
+    fn poll(&mut self) {
+        let heard = &mut self.heard;
+        self.server
+            .poll(&mut self.node, &mut |frame| note(heard, frame));
+    }
+
+    fn frame(&mut self, frame: &CanFrame) {
+        let heard = &mut self.heard;
+        self.server
+            .input(&mut self.node, frame, &mut |frame| note(heard, frame));
+    }
+
+    fn send(&mut self, id: u16, data: &[u8]) {
+        self.frame(&CanFrame::new(CobId::new(id).unwrap(), data).unwrap());
+    }
+
+    fn ask(&mut self, id: u16) {
+        self.frame(&CanFrame::remote(CobId::new(id).unwrap(), 8).unwrap());
+    }
+
+    fn nmt(&mut self, command: NmtCommand) {
+        let node = NodeId::new(1);
+        self.frame(&Nmt { node, command }.to_frame());
+    }
+
+    fn ticks(&mut self, n: usize) {
+        for _ in 0..n {
+            self.node.tick();
+            self.poll();
+        }
+    }
+
+    fn take(&mut self) -> Heard {
+        core::mem::take(&mut self.heard)
+    }
+
+    /// What was heard with an identifier.
+    fn with(&mut self, id: u16) -> Vec<Vec<u8>> {
+        let heard = self.take().into_iter();
+        heard
+            .filter(|(from, _)| *from == id)
+            .map(|(_, data)| data)
+            .collect()
+    }
+
+    fn write(&mut self, index: u16, sub: u8, raw: u32) {
+        self.node.write(Address::new(index, sub), raw).unwrap();
+    }
+
+    fn read(&self, index: u16, sub: u8) -> u32 {
+        self.node
+            .read(Address::new(index, sub))
+            .unwrap()
+            .raw()
+            .unwrap()
+    }
+
+    /// TPDO 1 becomes position and time stamp, sent by `kind`.
+    fn stream_angle(&mut self, kind: u32, inhibit_100us: u32) {
+        for (index, sub, raw) in [
+            (0x1800, 1, 0xC000_0181),
+            (0x1800, 2, kind),
+            (0x1800, 3, inhibit_100us),
+            (0x1A00, 0, 0),
+            (0x1A00, 1, 0x6064_0020),
+            (0x1A00, 2, 0x1013_0020),
+            (0x1A00, 0, 2),
+            (0x1800, 1, 0x4000_0181),
+        ] {
+            self.write(index, sub, raw);
+        }
+    }
+
+    /// Through the states, and off to a target.
+    fn go(&mut self, target: i32) {
+        self.write(0x607A, 0, target as u32);
+        for word in [0x06, 0x0F] {
+            self.write(0x6040, 0, word);
+        }
+        self.ticks(5);
+        self.write(0x6040, 0, 0x1F);
+    }
+}

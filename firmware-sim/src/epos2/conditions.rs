@@ -1,0 +1,87 @@
+//! When a write is refused although type, access and limits would allow it.
+
+use protocol::canopen::nmt::NmtState;
+use protocol::epos2::cia402::mode;
+use protocol::epos2::objects::{self, Address};
+
+use super::Abort;
+use super::dictionary::Dictionary;
+use super::entry::{Entry, Type};
+use super::homing_method;
+use super::mapping;
+use super::node::Node;
+use super::storage::{RESTORE_COB_IDS, check_signature};
+
+/// Firmware download.
+const DOWNLOAD: u16 = 0x2FFF;
+
+/// Modes that are simulated; the others of a real unit are out of range here.
+const MODES: [i8; 3] = [mode::PROFILE_POSITION, mode::PROFILE_VELOCITY, mode::HOMING];
+
+impl Node {
+    /// Entries that nothing can be stored in: a download needs the service mode, which the unit never enters; the interpolation
+    /// buffer and the recorder's need a mode that is not simulated.
+    pub(super) fn check_storable(&self, entry: &Entry) -> Result<(), Abort> {
+        if entry.address.index == DOWNLOAD {
+            Err(Abort::SERVICE_MODE)
+        } else if matches!(entry.ty, Type::U64 | Type::Text | Type::Domain) {
+            Err(Abort::STATE)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Conditions beyond type and limits.
+    pub(super) fn check(&self, address: Address, number: i64) -> Result<(), Abort> {
+        // "Changes only in disable state": the specification does not give the code; this one exists for nothing else.
+        if self.is_powered() && needs_power_off(address) {
+            return Err(Abort::STATE);
+        }
+        if mapping::is_pdo(address) || address == RESTORE_COB_IDS {
+            self.check_pre_operational()?;
+        }
+        if mapping::is_pdo(address) {
+            return mapping::check(&self.dictionary, address, number as u32);
+        }
+        if let Some(signed) = check_signature(address, number) {
+            return signed;
+        }
+        let limit = |object| i64::from(self.dictionary.get::<i32>(object));
+        let allowed = match address {
+            a if a == objects::MIN_POSITION.address && number > limit(objects::MAX_POSITION)
+                || a == objects::MAX_POSITION.address && number < limit(objects::MIN_POSITION) =>
+            {
+                return Err(Abort::MAX_BELOW_MIN);
+            }
+            a if a == objects::ERROR_COUNT.address => number == 0,
+            a if a == objects::NODE_ID.address => (1..=127).contains(&number),
+            a if a.index == 0x2070 || a.index == 0x2079 => (0..=15).contains(&number),
+            a if a == objects::MODE.address => MODES.map(i64::from).contains(&number),
+            a if a == objects::HOMING_METHOD.address => homing_method::exists(number),
+            // The sinusoidal profile, 1, is not simulated.
+            a if a == objects::PROFILE_TYPE.address => number == 0,
+            _ => true,
+        };
+        if allowed { Ok(()) } else { Err(Abort::RANGE) }
+    }
+
+    fn check_pre_operational(&self) -> Result<(), Abort> {
+        if self.nmt_state() == NmtState::PreOperational {
+            Ok(())
+        } else {
+            Err(Abort::NMT_STATE)
+        }
+    }
+
+    /// Whether a write of so many bytes may begin; what the value must be is looked at when it is there.
+    pub(super) fn check_download(&self, address: Address, bytes: usize) -> Result<(), Abort> {
+        let entry = Dictionary::entry(address)?;
+        entry.check_access()?;
+        entry.check_length(bytes)
+    }
+}
+
+/// Configuration that a unit takes only while its power stage is off: 1011, 2008, 2210, 6402, 6410.
+fn needs_power_off(address: Address) -> bool {
+    [0x1011, 0x2008, 0x2210, 0x6402, 0x6410].contains(&address.index)
+}

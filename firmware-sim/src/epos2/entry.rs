@@ -1,0 +1,162 @@
+//! What is fixed about an entry of the object dictionary: type, access, limits, factory value, whether a PDO may carry it.
+
+use protocol::epos2::objects::Address;
+
+use super::Abort;
+
+/// Data types of entries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Type {
+    U8,
+    U16,
+    U32,
+    U64,
+    I8,
+    I16,
+    I32,
+    Text,
+    Domain,
+}
+
+impl Type {
+    /// Bytes of a number of this type; 0 for texts and domains, which have no fixed length.
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::U8 | Self::I8 => 1,
+            Self::U16 | Self::I16 => 2,
+            Self::U32 | Self::I32 => 4,
+            Self::U64 => 8,
+            Self::Text | Self::Domain => 0,
+        }
+    }
+
+    /// The number in the low bytes of `raw`.
+    pub const fn number(self, raw: u32) -> i64 {
+        match self {
+            Self::U8 => raw as u8 as i64,
+            Self::U16 => raw as u16 as i64,
+            Self::U32 | Self::U64 | Self::Text | Self::Domain => raw as i64,
+            Self::I8 => raw as i8 as i64,
+            Self::I16 => raw as i16 as i64,
+            Self::I32 => raw as i32 as i64,
+        }
+    }
+}
+
+/// Who may do what with an entry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Access {
+    /// Read; never changes.
+    Const,
+    /// Read.
+    Ro,
+    /// Read and write.
+    Rw,
+    /// Read and write, the writing by PDO too.
+    Rww,
+    /// Write.
+    Wo,
+}
+
+/// One entry.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub address: Address,
+    pub ty: Type,
+    pub access: Access,
+    /// As from the factory.
+    pub default: i64,
+    /// The factory value has the node id added.
+    pub plus_node_id: bool,
+    pub low: i64,
+    pub high: i64,
+    /// A PDO may carry it.
+    pub mappable: bool,
+}
+
+/// An entry without limits of its own.
+pub(super) const fn entry(index: u16, sub: u8, ty: Type, access: Access, default: i64) -> Entry {
+    Entry {
+        address: Address { index, sub },
+        ty,
+        access,
+        default,
+        plus_node_id: false,
+        low: i64::MIN,
+        high: i64::MAX,
+        mappable: false,
+    }
+}
+
+impl Entry {
+    pub const fn within(self, low: i64, high: i64) -> Self {
+        Self { low, high, ..self }
+    }
+
+    pub const fn plus_node_id(self) -> Self {
+        Self {
+            plus_node_id: true,
+            ..self
+        }
+    }
+
+    pub const fn mappable(self) -> Self {
+        Self {
+            mappable: true,
+            ..self
+        }
+    }
+
+    pub const fn factory(&self, node_id: u8) -> u32 {
+        let plus = if self.plus_node_id { node_id as i64 } else { 0 };
+        (self.default + plus) as u32
+    }
+
+    pub fn check_read(&self) -> Result<(), Abort> {
+        match self.access {
+            Access::Wo => Err(Abort::WRITE_ONLY),
+            Access::Const | Access::Ro | Access::Rw | Access::Rww => Ok(()),
+        }
+    }
+
+    pub fn check_access(&self) -> Result<(), Abort> {
+        match self.access {
+            Access::Const | Access::Ro => Err(Abort::READ_ONLY),
+            Access::Rw | Access::Rww | Access::Wo => Ok(()),
+        }
+    }
+
+    /// Whether so many bytes are a value of this entry.
+    pub fn check_length(&self, bytes: usize) -> Result<(), Abort> {
+        match self.ty.bytes() {
+            // Of texts and domains none is written; they are refused for other reasons.
+            0 => Ok(()),
+            wanted if bytes > wanted => Err(Abort::TOO_LONG),
+            wanted if bytes < wanted => Err(Abort::TOO_SHORT),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the low bytes of `raw` may be written.
+    pub fn check_write(&self, raw: u32) -> Result<(), Abort> {
+        self.check_access()?;
+        let value = self.ty.number(raw);
+        if value > self.high {
+            Err(Abort::TOO_HIGH)
+        } else if value < self.low {
+            Err(Abort::TOO_LOW)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Whether a PDO that the node sends may carry it.
+    pub const fn is_sendable(&self) -> bool {
+        self.mappable && !matches!(self.access, Access::Wo)
+    }
+
+    /// Whether a PDO that the node receives may carry it.
+    pub const fn is_receivable(&self) -> bool {
+        self.mappable && matches!(self.access, Access::Rww | Access::Wo)
+    }
+}

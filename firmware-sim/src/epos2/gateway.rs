@@ -1,0 +1,133 @@
+//! The gateway: what a serial interface is asked about other nodes goes to the CAN bus (Communication Guide, "Gateway").
+//!
+//! A node that does not answer is a timeout. How long a real unit waits for one is the link's business: here the answer to the
+//! serial request comes at once.
+
+use protocol::canopen::nmt::{Nmt, NmtCommand};
+use protocol::canopen::sdo::{Outcome, SdoClient, TransferError};
+use protocol::canopen::{CanFrame, CobId, NodeId};
+use protocol::epos2::message::{RequestCanFrame, SendCanFrame};
+use protocol::epos2::objects::Address;
+use units::{Host, Span, Stamp};
+
+use super::Abort;
+use super::bus::Bus;
+use super::value::{LONGEST, Value};
+
+/// The client has no clock of its own: it waits until the bus has nothing more to say.
+type Client = SdoClient<LONGEST>;
+const NOW: Stamp<Host> = Stamp::from_nanos(0);
+const WAITED: Stamp<Host> = Stamp::from_nanos(1);
+
+/// Reads an object of another node.
+pub(super) fn read(bus: &mut impl Bus, node: u8, address: Address) -> Result<Value, Abort> {
+    let outcome = transfer(bus, node, |client| client.read(address).is_ok())?;
+    outcome
+        .result
+        .map(|value| Value::of_bytes(&value.bytes))
+        .map_err(code)
+}
+
+/// Writes an object of another node.
+pub(super) fn write(
+    bus: &mut impl Bus,
+    node: u8,
+    address: Address,
+    bytes: &[u8],
+) -> Result<(), Abort> {
+    let outcome = transfer(bus, node, |client| client.write(address, bytes).is_ok())?;
+    outcome.result.map(|_| ()).map_err(code)
+}
+
+fn transfer(
+    bus: &mut impl Bus,
+    node: u8,
+    begin: impl FnOnce(&mut Client) -> bool,
+) -> Result<Outcome<LONGEST>, Abort> {
+    let id = NodeId::new(node).ok_or(Abort::CAN_ID)?;
+    let mut client = Client::new(id, Span::from_nanos(1));
+    if !begin(&mut client) {
+        return Err(Abort::TOO_LONG);
+    }
+    // Each frame that is answered leads to the next one or to the end; segments may be empty, so there is a bound.
+    for _ in 0..=2 * LONGEST {
+        let Some(frame) = client.poll_transmit(NOW) else {
+            break;
+        };
+        bus.send(&frame, &mut |answer| {
+            client.handle_frame(answer);
+        });
+    }
+    client.handle_timeout(WAITED);
+    let outcome = client.poll_outcome();
+    // A transfer that failed on this side is aborted.
+    if let Some(frame) = client.poll_transmit(NOW) {
+        bus.send(&frame, &mut |_| {});
+    }
+    outcome.ok_or(Abort::TIMEOUT)
+}
+
+/// What the serial client is told of a failed transfer.
+fn code(error: TransferError) -> Abort {
+    match error {
+        TransferError::Aborted(code) => code,
+        TransferError::Timeout { .. } => Abort::TIMEOUT,
+        TransferError::Toggle { .. } => Abort::TOGGLE,
+        TransferError::Size { .. } => Abort::LENGTH,
+        TransferError::TooLong { .. } => Abort::MEMORY,
+        _ => Abort::COMMAND,
+    }
+}
+
+/// Network management for other nodes; 0 is all.
+pub(super) fn nmt(bus: &mut impl Bus, node: u16, specifier: u16) {
+    let (Ok(node), Ok(specifier)) = (u8::try_from(node), u8::try_from(specifier)) else {
+        return;
+    };
+    let meant = NodeId::new(node);
+    if meant.is_none() && node != 0 {
+        return;
+    }
+    let command = NmtCommand::from_u8(specifier);
+    let frame = Nmt {
+        node: meant,
+        command,
+    }
+    .to_frame();
+    bus.send(&frame, &mut |_| {});
+}
+
+/// Puts a frame on the bus; what comes back because of it nobody has asked for.
+pub(super) fn send(bus: &mut impl Bus, request: &SendCanFrame) -> Result<(), Abort> {
+    let id = CobId::new(request.cob_id).ok_or(Abort::CAN_ID)?;
+    let data = request.data.get(..usize::from(request.len));
+    let frame = data
+        .and_then(|data| CanFrame::new(id, data).ok())
+        .ok_or(Abort::LENGTH)?;
+    bus.send(&frame, &mut |_| {});
+    Ok(())
+}
+
+/// Asks for a frame and returns its data, filled up with zeros.
+pub(super) fn request(bus: &mut impl Bus, request: &RequestCanFrame) -> Result<[u8; 8], Abort> {
+    let id = CobId::new(request.cob_id).ok_or(Abort::CAN_ID)?;
+    let frame = u8::try_from(request.len)
+        .ok()
+        .and_then(|len| CanFrame::remote(id, len).ok())
+        .ok_or(Abort::LENGTH)?;
+    let mut found = None;
+    bus.send(&frame, &mut |answer| {
+        if answer.cob_id() == Some(id) && !answer.is_remote() {
+            let mut data = [0; 8];
+            for (to, from) in data.iter_mut().zip(answer.data()) {
+                *to = *from;
+            }
+            found.get_or_insert(data);
+        }
+    });
+    found.ok_or(Abort::TIMEOUT)
+}
+
+#[cfg(test)]
+#[path = "gateway_tests.rs"]
+mod tests;

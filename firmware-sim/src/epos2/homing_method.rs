@@ -1,0 +1,61 @@
+//! Homing methods (6098): what each looks for, in which direction (Firmware Specification, "Homing Mode"; numbers as in CiA 402).
+
+use protocol::epos2::objects::input;
+
+/// How a reference is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Method {
+    /// What is looked for first.
+    pub search: Option<Search>,
+    /// Direction of the way to the index pulse, which is the reference then.
+    pub index: Option<i32>,
+}
+
+/// What is looked for; directions are 1 and -1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Search {
+    /// A switch: its bit in 2071. Its edge is met on the way back.
+    Switch { bit: u16, direction: i32 },
+    /// A mechanical stop.
+    Stop { direction: i32 },
+}
+
+impl Method {
+    /// The switch that is looked for; 0 for none.
+    pub const fn switch_bit(&self) -> u16 {
+        match self.search {
+            Some(Search::Switch { bit, .. }) => bit,
+            Some(Search::Stop { .. }) | None => 0,
+        }
+    }
+}
+
+/// The method of a number; `None` for one that the unit does not have.
+pub(super) fn method(number: i8) -> Option<Method> {
+    let switch = |bit, direction| Some(Search::Switch { bit, direction });
+    let stop = |direction| Some(Search::Stop { direction });
+    let (search, index) = match number {
+        0 | 35 => (None, None),
+        1 => (switch(input::NEGATIVE_LIMIT, -1), Some(1)),
+        2 => (switch(input::POSITIVE_LIMIT, 1), Some(-1)),
+        7 => (switch(input::HOME_SWITCH, 1), Some(-1)),
+        11 => (switch(input::HOME_SWITCH, -1), Some(1)),
+        17 => (switch(input::NEGATIVE_LIMIT, -1), None),
+        18 => (switch(input::POSITIVE_LIMIT, 1), None),
+        23 => (switch(input::HOME_SWITCH, 1), None),
+        27 => (switch(input::HOME_SWITCH, -1), None),
+        33 => (None, Some(-1)),
+        34 => (None, Some(1)),
+        -1 => (stop(1), Some(-1)),
+        -2 => (stop(-1), Some(1)),
+        -3 => (stop(1), None),
+        -4 => (stop(-1), None),
+        _ => return None,
+    };
+    Some(Method { search, index })
+}
+
+/// Whether a value may be written to 6098.
+pub(super) fn exists(number: i64) -> bool {
+    i8::try_from(number).is_ok_and(|number| method(number).is_some())
+}

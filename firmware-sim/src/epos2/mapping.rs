@@ -1,0 +1,102 @@
+//! Configuration of process data: which writes to 140x, 160x, 180x and 1A0x are taken (CiA 301, "PDO mapping procedure").
+//!
+//! A PDO must be out of use (bit 31 of its identifier) while its mapping changes, and the mapping's count must be 0 while its
+//! entries do; then the count puts them in force. Whether a real unit insists on the order is not documented; a client that
+//! keeps it works with both.
+
+use protocol::canopen::CanId;
+use protocol::canopen::pdo::{CommunicationId, Layout, LayoutError, MAX_ENTRIES, Mapping};
+use protocol::epos2::Bounded;
+use protocol::epos2::objects::Address;
+
+use super::Abort;
+use super::dictionary::Dictionary;
+
+/// First indices; each object is there four times.
+const RECEIVE: u16 = 0x1400;
+const RECEIVE_MAPPING: u16 = 0x1600;
+const TRANSMIT: u16 = 0x1800;
+const TRANSMIT_MAPPING: u16 = 0x1A00;
+/// From a PDO's parameters to its mapping.
+const TO_MAPPING: u16 = RECEIVE_MAPPING - RECEIVE;
+
+/// Whether an object configures a PDO.
+pub(super) fn is_pdo(address: Address) -> bool {
+    [RECEIVE, RECEIVE_MAPPING, TRANSMIT, TRANSMIT_MAPPING].contains(&(address.index & !3))
+}
+
+/// Identifier of the PDO whose parameters stand at `index`.
+pub(super) fn identifier(dictionary: &Dictionary, index: u16) -> CommunicationId {
+    CommunicationId::from_u32(dictionary.raw(Address::new(index, 1)))
+}
+
+/// What the PDO whose parameters stand at `index` carries: nothing, if its entries do not go together.
+pub(super) fn layout(dictionary: &Dictionary, index: u16) -> Layout {
+    let mapping = index + TO_MAPPING;
+    let count = dictionary.raw(Address::new(mapping, 0)) as u8;
+    Layout::new(&entries(dictionary, mapping, count)).unwrap_or_default()
+}
+
+fn entries(dictionary: &Dictionary, mapping: u16, count: u8) -> Bounded<Mapping, MAX_ENTRIES> {
+    let mut entries = Bounded::new();
+    let raw = (1..=count).map(|sub| dictionary.raw(Address::new(mapping, sub)));
+    entries.extend(raw.map(Mapping::from_u32));
+    entries
+}
+
+/// Whether the value may be written to one of these objects.
+pub(super) fn check(dictionary: &Dictionary, address: Address, raw: u32) -> Result<(), Abort> {
+    let Address { index, sub } = address;
+    match (index & !3, sub) {
+        (RECEIVE | TRANSMIT, 1) => check_identifier(identifier(dictionary, index), raw),
+        // 241 to 251 are reserved.
+        (RECEIVE | TRANSMIT, 2) if (241..=251).contains(&raw) => Err(Abort::RANGE),
+        (RECEIVE | TRANSMIT, _) => Ok(()),
+        _ if identifier(dictionary, index - TO_MAPPING).valid => Err(Abort::STATE),
+        (_, 0) => {
+            let entries = entries(dictionary, index, raw as u8);
+            match Layout::new(&entries) {
+                Ok(_) => Ok(()),
+                Err(LayoutError::Empty { .. }) => Err(Abort::PDO_MAPPING),
+                Err(_) => Err(Abort::PDO_LENGTH),
+            }
+        }
+        _ if dictionary.raw(Address::new(index, 0)) != 0 => Err(Abort::STATE),
+        (direction, _) => check_entry(Mapping::from_u32(raw), direction == TRANSMIT_MAPPING),
+    }
+}
+
+/// While a PDO is in use its identifier does not change, and it is never one of those that CiA 301 keeps for other services.
+fn check_identifier(old: CommunicationId, raw: u32) -> Result<(), Abort> {
+    let new = CommunicationId::from_u32(raw);
+    let is_free = match new.id {
+        CanId::Standard(id) => {
+            matches!(id.get(), 0x081..=0x0FF | 0x181..=0x580 | 0x680..=0x6DF)
+        }
+        CanId::Extended(_) => false,
+    };
+    let moves = old.valid && new.valid && old.id != new.id;
+    if (is_free || !new.valid) && !moves && new.to_u32() == raw {
+        Ok(())
+    } else {
+        Err(Abort::RANGE)
+    }
+}
+
+/// Whether an object may be mapped, in its whole length; 0 is no object.
+fn check_entry(mapping: Mapping, sent: bool) -> Result<(), Abort> {
+    if mapping.to_u32() == 0 {
+        return Ok(());
+    }
+    let entry = Dictionary::entry(mapping.address)?;
+    let allowed = if sent {
+        entry.is_sendable()
+    } else {
+        entry.is_receivable()
+    };
+    if allowed && usize::from(mapping.bits) == 8 * entry.ty.bytes() {
+        Ok(())
+    } else {
+        Err(Abort::PDO_MAPPING)
+    }
+}

@@ -1,0 +1,127 @@
+//! The shaft behind the demand: an ideal servo that follows exactly, until something is in its way.
+//!
+//! A hard stop or a jam holds the shaft while the demand goes on; free again, it catches up no faster than any motor of this drive
+//! turns. The current follows the distance between the two, as that of a proportional position controller. Inertia, friction,
+//! lag and ripple are left out.
+
+use super::fixed::{FINE_PER_QC, Fine, Speed, fine};
+
+/// Current for each quadcount that the shaft is off its demand, mA.
+const MA_PER_QC: i64 = 5;
+/// The fastest a shaft catches up, rpm: above what any demand has (607F), so that it never binds while nothing is in the way.
+const FASTEST_RPM: i64 = 26_000;
+
+/// Shaft, motor and encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Shaft {
+    position: Fine,
+    jammed: bool,
+    /// Hard stops, world qc: below, above.
+    stops: [Option<i32>; 2],
+    /// In the last millisecond.
+    moved: Fine,
+    /// It could not follow in the last millisecond, or has not caught up.
+    behind: bool,
+}
+
+impl Shaft {
+    pub const fn new(position: Fine, stops: [Option<i32>; 2]) -> Self {
+        Self {
+            position,
+            jammed: false,
+            stops,
+            moved: 0,
+            behind: false,
+        }
+    }
+
+    /// The drive has lost its power; the mechanics have not changed.
+    pub const fn at_power_on(self) -> Self {
+        Self {
+            moved: 0,
+            behind: false,
+            ..self
+        }
+    }
+
+    pub const fn position(&self) -> Fine {
+        self.position
+    }
+
+    pub const fn is_behind(&self) -> bool {
+        self.behind
+    }
+
+    pub fn jam(&mut self, jammed: bool) {
+        self.jammed = jammed;
+    }
+
+    /// One millisecond towards `demand`.
+    pub fn follow(&mut self, demand: Fine, qc_per_turn: u32) {
+        let [low, high] = self.stops;
+        let low = low.map_or(Fine::MIN, |qc| fine(qc.into()));
+        let high = high.map_or(Fine::MAX, |qc| fine(qc.into()));
+        let wanted = demand.max(low).min(high);
+        // A millirpm is twice the quadcounts of a turn, in position units a millisecond.
+        let most = FASTEST_RPM * 1000 * 2 * i64::from(qc_per_turn);
+        self.moved = if self.jammed {
+            0
+        } else {
+            wanted.saturating_sub(self.position).clamp(-most, most)
+        };
+        self.position = self.position.saturating_add(self.moved);
+        self.behind = self.position != demand;
+    }
+
+    /// Speed in the last millisecond.
+    pub fn speed(&self, qc_per_turn: u32) -> Speed {
+        let per_rpm = 2000 * i64::from(qc_per_turn.max(1));
+        // Below the fastest, so far within an i32.
+        Speed::from_rpm((self.moved / per_rpm) as i32)
+    }
+
+    /// How far the demand is ahead, qc; its sign is the direction.
+    pub const fn following_error(&self, demand: Fine) -> i64 {
+        demand.saturating_sub(self.position) / FINE_PER_QC
+    }
+
+    /// The current it takes, mA, at most `most_ma`.
+    pub fn current_ma(&self, demand: Fine, most_ma: u16) -> i16 {
+        let most = i64::from(most_ma).min(i16::MAX.into());
+        let wanted = self.following_error(demand).saturating_mul(MA_PER_QC);
+        wanted.clamp(-most, most) as i16
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_follows_until_a_stop_and_comes_back_from_it() {
+        let mut shaft = Shaft::new(0, [Some(-10), Some(10)]);
+        shaft.follow(fine(7), 2000);
+        assert_eq!((shaft.position(), shaft.is_behind()), (fine(7), false));
+        shaft.follow(fine(15), 2000);
+        assert_eq!((shaft.position(), shaft.is_behind()), (fine(10), true));
+        assert_eq!(shaft.following_error(fine(15)), 5);
+        assert_eq!(shaft.current_ma(fine(15), 1000), 25);
+        assert_eq!(shaft.current_ma(fine(1500), 1000), 1000);
+        shaft.follow(fine(-15), 2000);
+        assert_eq!(shaft.position(), fine(-10));
+        assert_eq!(shaft.current_ma(fine(-15), 1000), -25);
+    }
+
+    #[test]
+    fn a_jam_lets_go_no_faster_than_a_motor_turns() {
+        let mut shaft = Shaft::new(0, [None; 2]);
+        shaft.jam(true);
+        shaft.follow(fine(100_000), 2000);
+        assert_eq!(shaft.position(), 0);
+        shaft.jam(false);
+        shaft.follow(fine(100_000), 2000);
+        // 26,000 rpm are 866 qc a ms.
+        assert_eq!(shaft.position() / FINE_PER_QC, 866);
+        assert_eq!(shaft.speed(2000), Speed::from_rpm(26_000));
+    }
+}

@@ -1,0 +1,135 @@
+//! A serial CAN adapter (SLCAN, Lawicel ASCII) with the unit on its bus.
+//!
+//! Answers are those of a CANUSB: CR, BEL for a refusal, `z` for a frame that was taken. Nothing else is on the bus, and any bit rate
+//! is the unit's. Left out: filters, bit timing registers, the adapter's queue.
+
+use protocol::canopen::CanFrame;
+use protocol::canopen::CanId;
+use protocol::canopen::slcan::{Command, CommandDecoder, Line, Reply};
+use protocol::epos2::Bounded;
+
+use super::can::CanServer;
+use super::node::Node;
+
+/// Milliseconds after which an adapter's time stamps begin anew.
+const STAMP_PERIOD_MS: u64 = 60_000;
+/// Bytes of the longest reply: a line and its CR.
+const LONGEST_REPLY: usize = 128;
+
+/// The adapter and the unit's CAN interface behind it.
+#[derive(Clone, Debug, Default)]
+pub struct SlcanServer {
+    decoder: CommandDecoder,
+    channel: Channel,
+    stamps: bool,
+    can: CanServer,
+}
+
+/// Whether frames pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Channel {
+    #[default]
+    Closed,
+    /// From the bus only.
+    Listening,
+    Open,
+}
+
+impl SlcanServer {
+    /// An adapter whose channel is closed. Whatever the unit sends meanwhile, its boot-up message included, is lost.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes bytes from the host at the node's present instant; each reply goes to `out` as one whole line.
+    pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
+        for &byte in bytes {
+            match self.decoder.push(byte) {
+                None => {}
+                Some(Ok(command)) => self.execute(node, &command, out),
+                Some(Err(_)) => reply(&Reply::Refused, out),
+            }
+        }
+    }
+
+    /// Passes on what the unit sends at its present instant. To be called after each [`Node::tick`].
+    pub fn poll(&mut self, node: &mut Node, out: &mut impl FnMut(&[u8])) {
+        let stamp_ms = self.stamp_ms(node);
+        let channel = self.channel;
+        self.can
+            .poll(node, &mut |frame| receive(channel, frame, stamp_ms, out));
+    }
+
+    fn execute(&mut self, node: &mut Node, command: &Command, out: &mut impl FnMut(&[u8])) {
+        let closed = self.channel == Channel::Closed;
+        let answer = match command {
+            Command::Empty => Reply::Done,
+            Command::Bitrate(_) if closed => Reply::Done,
+            Command::Stamps(on) if closed => {
+                self.stamps = *on;
+                Reply::Done
+            }
+            Command::Open if closed => self.switch(Channel::Open),
+            Command::OpenListening if closed => self.switch(Channel::Listening),
+            Command::Close if !closed => self.switch(Channel::Closed),
+            Command::Status if !closed => Reply::Status(0),
+            Command::Version => Reply::Version(line(b"1013")),
+            Command::SerialNumber => Reply::SerialNumber(line(b"EPOS")),
+            Command::Transmit(frame) if self.channel == Channel::Open => {
+                reply(
+                    match frame.id() {
+                        CanId::Standard(_) => &Reply::Sent,
+                        CanId::Extended(_) => &Reply::SentExtended,
+                    },
+                    out,
+                );
+                return self.transmit(node, frame, out);
+            }
+            _ => Reply::Refused,
+        };
+        reply(&answer, out);
+    }
+
+    fn switch(&mut self, channel: Channel) -> Reply {
+        self.channel = channel;
+        Reply::Done
+    }
+
+    fn transmit(&mut self, node: &mut Node, frame: &CanFrame, out: &mut impl FnMut(&[u8])) {
+        let stamp_ms = self.stamp_ms(node);
+        self.can.input(node, frame, &mut |frame| {
+            receive(Channel::Open, frame, stamp_ms, out);
+        });
+    }
+
+    fn stamp_ms(&self, node: &Node) -> Option<u16> {
+        // Below a minute, so below 16 bits.
+        let ms = node.time_us() / 1000 % STAMP_PERIOD_MS;
+        self.stamps.then_some(ms as u16)
+    }
+}
+
+/// A frame came from the bus.
+fn receive(channel: Channel, frame: &CanFrame, stamp_ms: Option<u16>, out: &mut impl FnMut(&[u8])) {
+    if channel != Channel::Closed {
+        let frame = *frame;
+        reply(&Reply::Received { frame, stamp_ms }, out);
+    }
+}
+
+fn reply(reply: &Reply, out: &mut impl FnMut(&[u8])) {
+    let mut bytes = Bounded::<u8, LONGEST_REPLY>::new();
+    reply.encode(&mut bytes);
+    out(&bytes);
+}
+
+fn line(text: &[u8]) -> Line {
+    let mut line = Line::new();
+    line.extend(text.iter().copied());
+    line
+}
+
+#[cfg(test)]
+#[path = "slcan_tests.rs"]
+mod tests;

@@ -1,0 +1,83 @@
+//! What outlives power-off: save (1010) and the three ways of loading (1011).
+
+use protocol::epos2::objects::{self, Address, Object};
+
+use super::Abort;
+use super::config::NodeConfig;
+use super::dictionary::Dictionary;
+use super::fixed::MAX_QC_PER_TURN;
+use super::node::Node;
+
+/// Restore of factory defaults, as 1011:1.
+pub(super) const RESTORE_FACTORY: Address = Address::new(0x1011, 4);
+/// Restore of the default PDO identifiers.
+pub(super) const RESTORE_COB_IDS: Address = Address::new(0x1011, 5);
+
+/// Process values: not parameters, so never saved.
+const VOLATILE: [Address; 8] = [
+    objects::TIMESTAMP.address,
+    CURRENT_SETTING.address,
+    POSITION_SETTING.address,
+    VELOCITY_SETTING.address,
+    objects::OUTPUT_STATE.address,
+    objects::CONTROLWORD.address,
+    objects::TARGET_POSITION.address,
+    objects::TARGET_VELOCITY.address,
+];
+const CURRENT_SETTING: Object<i16> = Object::new(0x2030, 0, "Current Mode Setting Value");
+const POSITION_SETTING: Object<i32> = Object::new(0x2062, 0, "Position Mode Setting Value");
+const VELOCITY_SETTING: Object<i32> = Object::new(0x206B, 0, "Velocity Mode Setting Value");
+
+/// Factory values, with the encoder that the unit is built in with.
+pub(super) fn factory(config: &NodeConfig) -> Dictionary {
+    let mut dictionary = Dictionary::factory(config.node_id);
+    let qc_per_turn = config.qc_per_turn.clamp(4, MAX_QC_PER_TURN);
+    dictionary.set(objects::ENCODER_LINES.address, qc_per_turn / 4);
+    dictionary
+}
+
+/// A write to one of the four objects takes a signature.
+pub(super) fn check_signature(address: Address, number: i64) -> Option<Result<(), Abort>> {
+    const SAVES: Address = objects::STORE_ALL.address;
+    const LOADS: [Address; 3] = [
+        objects::RESTORE_ALL.address,
+        RESTORE_FACTORY,
+        RESTORE_COB_IDS,
+    ];
+    let signature = match address {
+        SAVES => objects::SAVE,
+        a if LOADS.contains(&a) => objects::LOAD,
+        _ => return None,
+    };
+    Some(if number == i64::from(signature) {
+        Ok(())
+    } else {
+        Err(Abort::STORE)
+    })
+}
+
+impl Node {
+    /// 1010:1.
+    pub(super) fn save(&mut self) {
+        self.saved = self.dictionary.clone();
+        for address in VOLATILE {
+            self.saved.reset(address, self.node_id());
+        }
+    }
+
+    /// 1011:1 and 1011:4: back to factory values, at once. Saved they are only by a save after it.
+    pub(super) fn restore(&mut self) {
+        self.dictionary = factory(&self.config);
+        self.mode = self.dictionary.get(objects::MODE);
+        let lines = self.dictionary.get(objects::ENCODER_LINES);
+        self.generator.set_qc_per_turn(lines.saturating_mul(4));
+    }
+
+    /// 1011:5: the identifiers of all PDOs become those of the predefined connection set for the present node id.
+    pub(super) fn restore_cob_ids(&mut self) {
+        let id = self.node_id();
+        for index in (0x1400..0x1404).chain(0x1800..0x1804) {
+            self.dictionary.reset(Address::new(index, 1), id);
+        }
+    }
+}

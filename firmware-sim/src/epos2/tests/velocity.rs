@@ -1,0 +1,175 @@
+//! Profile velocity mode.
+
+use protocol::epos2::cia402::{State, control, mode, status};
+use protocol::epos2::objects::{self, Object};
+
+use super::super::Node;
+use super::{command, enable, enabled, get, go, has, healthy, position, set, state, ticks, until};
+
+const WINDOW: Object<u32> = Object::new(0x606D, 0, "Velocity Window");
+const WINDOW_TIME: Object<u16> = Object::new(0x606E, 0, "Velocity Window Time");
+const SPEED_IS_ZERO: u16 = 1 << 12;
+
+fn turning(rpm: i32) -> Node {
+    let mut node = enabled();
+    set(&mut node, objects::MODE, mode::PROFILE_VELOCITY);
+    assert_eq!(get(&node, objects::MODE_DISPLAY), mode::PROFILE_VELOCITY);
+    set(&mut node, objects::TARGET_VELOCITY, rpm);
+    node
+}
+
+fn velocity(node: &Node) -> i32 {
+    get(node, objects::VELOCITY_ACTUAL)
+}
+
+#[test]
+fn it_ramps_to_its_speed_and_keeps_it() {
+    let mut node = turning(-600);
+    set(&mut node, objects::PROFILE_ACCELERATION, 6_000);
+    assert!(has(&node, SPEED_IS_ZERO));
+    ticks(&mut node, 50);
+    assert_eq!(velocity(&node), -300);
+    assert!(!has(&node, status::TARGET_REACHED) && !has(&node, SPEED_IS_ZERO));
+    let took = until(&mut node, 200, |node| has(node, status::TARGET_REACHED));
+    assert!((50..53).contains(&took), "{took}");
+    let from = position(&node);
+    ticks(&mut node, 1000);
+    // 600 rpm are 20 qc a ms.
+    assert_eq!(position(&node) - from, -20_000);
+    assert_eq!(velocity(&node), -600);
+}
+
+#[test]
+fn a_reversal_brakes_with_6084_and_starts_with_6083() {
+    let mut node = turning(1_000);
+    ticks(&mut node, 200);
+    set(&mut node, objects::PROFILE_DECELERATION, 20_000);
+    set(&mut node, objects::PROFILE_ACCELERATION, 5_000);
+    set(&mut node, objects::TARGET_VELOCITY, -1_000);
+    let down = until(&mut node, 500, |node| velocity(node) <= 0);
+    assert!((50..53).contains(&down), "{down}");
+    let up = until(&mut node, 500, |node| has(node, status::TARGET_REACHED));
+    assert!((199..203).contains(&up), "{up}");
+}
+
+#[test]
+fn speed_keeps_to_607f_and_acceleration_to_60c5() {
+    let mut node = turning(20_000);
+    set(&mut node, objects::MAX_PROFILE_VELOCITY, 500);
+    set(&mut node, objects::MAX_ACCELERATION, 1_000);
+    let took = until(&mut node, 1_000, |node| has(node, status::TARGET_REACHED));
+    assert!((500..503).contains(&took), "{took}");
+    assert_eq!(velocity(&node), 500);
+}
+
+#[test]
+fn halt_stops_and_goes_on_when_it_is_lifted() {
+    let mut node = turning(1_000);
+    ticks(&mut node, 200);
+    command(&mut node, control::HALT_MOTION);
+    let took = until(&mut node, 500, |node| velocity(node) == 0);
+    assert!((100..103).contains(&took), "{took}");
+    ticks(&mut node, 2);
+    assert!(has(&node, status::TARGET_REACHED | SPEED_IS_ZERO));
+    assert_eq!(state(&node), State::OperationEnabled);
+    command(&mut node, control::ENABLE_OPERATION);
+    until(&mut node, 500, |node| velocity(node) == 1_000);
+}
+
+#[test]
+fn quick_stop_and_disable_take_their_ramps() {
+    for (word, object, to) in [
+        (
+            control::QUICK_STOP,
+            objects::QUICK_STOP_DECELERATION,
+            State::QuickStopActive,
+        ),
+        (
+            control::SWITCH_ON,
+            objects::PROFILE_DECELERATION,
+            State::SwitchedOn,
+        ),
+    ] {
+        let mut node = turning(1_000);
+        ticks(&mut node, 200);
+        set(&mut node, object, 5_000);
+        command(&mut node, word);
+        let took = until(&mut node, 500, |node| velocity(node) == 0);
+        assert!((200..203).contains(&took), "{took}");
+        ticks(&mut node, 2);
+        assert_eq!(state(&node), to);
+    }
+}
+
+#[test]
+fn the_velocity_window_counts_its_time() {
+    let mut node = turning(1_000);
+    set(&mut node, WINDOW, 100);
+    set(&mut node, WINDOW_TIME, 20);
+    let took = until(&mut node, 500, |node| has(node, status::TARGET_REACHED));
+    // 900 rpm after 90 ms, then 20 more.
+    assert!((110..114).contains(&took), "{took}");
+}
+
+#[test]
+fn a_software_limit_stops_it_and_an_acceleration_of_0_is_6320() {
+    let mut node = turning(1_000);
+    set(&mut node, objects::MAX_POSITION, 5_000);
+    until(&mut node, 2_000, |node| state(node) == State::Fault);
+    assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0xFF09);
+    let mut node = turning(0);
+    ticks(&mut node, 5);
+    set(&mut node, objects::PROFILE_ACCELERATION, 0);
+    set(&mut node, objects::TARGET_VELOCITY, 100);
+    ticks(&mut node, 3);
+    assert_eq!(state(&node), State::Fault);
+    assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0x6320);
+}
+
+#[test]
+fn positions_follow_on_when_the_mode_changes_back() {
+    let mut node = turning(1_000);
+    ticks(&mut node, 500);
+    set(&mut node, objects::MODE, mode::PROFILE_POSITION);
+    until(&mut node, 500, |node| velocity(node) == 0);
+    go(&mut node, 0, control::START_ABSOLUTE);
+    until(&mut node, 5_000, |node| has(node, status::TARGET_REACHED));
+    assert_eq!(position(&node), 0);
+}
+
+#[test]
+fn a_held_shaft_takes_the_limit_current_and_no_following_error() {
+    let mut node = turning(1_000);
+    ticks(&mut node, 300);
+    node.block();
+    let at = position(&node);
+    ticks(&mut node, 2_000);
+    assert!((position(&node) - at).abs() <= 34);
+    assert_eq!(velocity(&node), 0);
+    assert_eq!(state(&node), State::OperationEnabled);
+    assert_eq!(get(&node, objects::CURRENT_ACTUAL), 25_000);
+    let held = position(&node);
+    node.unblock();
+    ticks(&mut node, 30);
+    // No jump: on from where it was held, 33.3 qc a ms.
+    assert!((950..1_050).contains(&(position(&node) - held)));
+    assert_eq!(
+        (velocity(&node), get(&node, objects::CURRENT_ACTUAL)),
+        (1_000, 0)
+    );
+}
+
+#[test]
+fn modes_that_are_not_simulated_are_out_of_range() {
+    let mut node = healthy();
+    for number in [-6, -5, -4, -3, -2, -1, 0, 2, 4, 5, 7, 8] {
+        let raw = objects::MODE.encode(number);
+        assert_eq!(
+            node.write(objects::MODE.address, raw),
+            Err(super::super::Abort::RANGE)
+        );
+    }
+    assert_eq!(get(&node, objects::SUPPORTED_MODES), 0x25);
+    enable(&mut node);
+    assert_eq!(get(&node, objects::MODE_DISPLAY), mode::PROFILE_POSITION);
+}

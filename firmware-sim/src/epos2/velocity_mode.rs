@@ -1,0 +1,94 @@
+//! Profile velocity mode (Firmware Specification, "Profile Velocity Mode"): a speed reached by a ramp and kept.
+//!
+//! As in CiA 402 the target (60FF) is in effect as long as operation is enabled and the halt bit is clear. Whether a real unit
+//! waits for a controlword after a new target is not documented; clients write one, and find the same here.
+
+use protocol::epos2::DeviceError;
+use protocol::epos2::cia402::{control, status};
+use protocol::epos2::objects::{self, Object};
+
+use super::fixed::Speed;
+use super::node::Node;
+
+/// How close to its target a speed counts as reached, rpm; FFFFFFFF: at the end of the ramp.
+const VELOCITY_WINDOW: Object<u32> = Object::new(0x606D, 0, "Velocity Window");
+/// For how long it must be so close, ms.
+const VELOCITY_WINDOW_TIME: Object<u16> = Object::new(0x606E, 0, "Velocity Window Time");
+/// Bit 12 of the statusword in this mode: standing still.
+const SPEED_IS_ZERO: u16 = 1 << 12;
+
+/// What the mode has under way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct VelocityMode {
+    /// The speed that is ramped to; `None` before the first.
+    target: Option<Speed>,
+    /// Bit 10.
+    reached: bool,
+    in_window_ms: u16,
+    /// The shaft could not turn in this direction in the last control cycle; 0 if it could.
+    pub held: i16,
+}
+
+impl VelocityMode {
+    pub const fn status_bits(&self, actual_rpm: i32) -> u16 {
+        let reached = if self.reached {
+            status::TARGET_REACHED
+        } else {
+            0
+        };
+        let zero = if actual_rpm == 0 { SPEED_IS_ZERO } else { 0 };
+        reached | zero
+    }
+
+    /// No target any more.
+    pub fn abandon(&mut self) {
+        *self = Self::default();
+    }
+}
+
+impl Node {
+    /// One millisecond of the mode.
+    pub(super) fn advance_velocity_mode(&mut self) {
+        let target = self.velocity_target();
+        if self.velocity_mode.target != Some(target) {
+            let acceleration = self.acceleration(objects::PROFILE_ACCELERATION);
+            let deceleration = self.acceleration(objects::PROFILE_DECELERATION);
+            if acceleration == 0 || deceleration == 0 {
+                self.fail(DeviceError::SOFTWARE_PARAMETER);
+                return;
+            }
+            self.velocity_mode = VelocityMode {
+                target: Some(target),
+                ..VelocityMode::default()
+            };
+            self.generator.run_at(target, acceleration, deceleration);
+        }
+        self.velocity_mode.reached = self.is_at_speed(target);
+    }
+
+    /// 60FF within its limits (607F, 6410:4), nothing at a halt.
+    fn velocity_target(&self) -> Speed {
+        if self.controlword & control::HALT != 0 {
+            return Speed::ZERO;
+        }
+        let rpm = self.dictionary.get(objects::TARGET_VELOCITY);
+        let Speed(limited) = self.speed_within_limits(rpm.unsigned_abs());
+        Speed(limited * i64::from(rpm.signum()))
+    }
+
+    fn is_at_speed(&mut self, target: Speed) -> bool {
+        let actual = self.velocity_actual_rpm();
+        let window = self.dictionary.get(VELOCITY_WINDOW);
+        if window == u32::MAX {
+            return self.generator.speed() == target && !self.shaft.is_behind();
+        }
+        let off = actual.abs_diff(target.to_rpm());
+        let waited = &mut self.velocity_mode.in_window_ms;
+        *waited = if off <= window {
+            waited.saturating_add(1)
+        } else {
+            0
+        };
+        *waited > self.dictionary.get(VELOCITY_WINDOW_TIME)
+    }
+}
