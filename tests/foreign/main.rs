@@ -5,8 +5,14 @@
 
 use std::path::Path;
 use std::process::Command;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use firmware_sim::epos2::SlcanServer;
 use serde_json::Value;
+use velomotion::config::Axis;
+use velomotion::software_drive::{self, Interface};
+use velomotion::{devices, simulated};
 use velomotion_tests::capture::{Captured, Setting};
 
 /// What the program printed, or `None`, said aloud, where it or one of its modules is not there.
@@ -147,4 +153,46 @@ fn laspy_reads_our_laz_with_the_right_count_and_bounds() {
             "{name}: {dimensions:?}"
         );
     }
+}
+
+#[test]
+fn python_canopen_runs_our_software_drive_over_slcan() {
+    let pty = io::port::Pty::open().unwrap();
+    let port = pty.path().to_owned();
+    let stop = Arc::new(AtomicBool::new(false));
+    let stopping = Arc::clone(&stop);
+    let axis = devices::axis(&Axis::default()).unwrap();
+    let node = simulated::node(&axis);
+    let drive = std::thread::spawn(move || {
+        let interface = Interface::Slcan(SlcanServer::new(), pty);
+        software_drive::run(node, interface, &stopping)
+    });
+    let said = python(
+        "canopen_master.py",
+        &[&port, Path::new("-10000")],
+        "canopen, can, serial",
+    );
+    stop.store(true, Ordering::Relaxed);
+    drive.join().unwrap().unwrap();
+    let Some(seen) = said else {
+        return;
+    };
+    assert_eq!(seen["name"], "EPOS2", "{seen}");
+    assert_eq!(seen["vendor"], 0xFB, "{seen}");
+    assert_eq!(seen["device_type"], 0x0002_0192, "{seen}");
+    assert_eq!(seen["abort"], 0x0602_0000, "{seen}");
+    assert_eq!(seen["states"].as_array().unwrap().len(), 3, "{seen}");
+    assert_eq!(seen["homed_at"], 0, "{seen}");
+    assert!(
+        (seen["arrived_at"].as_i64().unwrap() + 10_000).abs() < 3,
+        "{seen}"
+    );
+    assert_eq!(seen["tpdos"], 200, "{seen}");
+    assert_eq!(seen["tpdo_times_increase"], true, "{seen}");
+    assert!(
+        seen["tpdo_positions_distinct"].as_u64().unwrap() > 100,
+        "{seen}"
+    );
+    assert_eq!(seen["emcy"], 0xFF09, "{seen}");
+    assert_eq!(seen["history"], 0xFF09, "{seen}");
 }

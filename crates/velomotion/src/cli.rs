@@ -167,8 +167,14 @@ pub struct FirmwareSim {
     /// Speak EPOS2 RS232 frames on a pseudo-terminal
     #[arg(long, group = "interface")]
     pub rs232: bool,
+    /// Speak CANopen behind an SLCAN adapter on a pseudo-terminal
+    #[arg(long, group = "interface")]
+    pub slcan: bool,
+    /// Speak CANopen on a CAN interface of the kernel
+    #[arg(long, group = "interface", value_name = "IFACE")]
+    pub can: Option<String>,
     /// Make a symbolic link to the port
-    #[arg(long, value_name = "PATH")]
+    #[arg(long, value_name = "PATH", conflicts_with = "can")]
     pub link: Option<PathBuf>,
 }
 

@@ -5,44 +5,61 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use firmware_sim::epos2::{Rs232Server, UsbServer};
+use firmware_sim::epos2::{CanServer, Rs232Server, SlcanServer, UsbServer};
+use io::can::SocketCan;
 use io::port::Pty;
 
 use super::Said;
 use crate::cli::{self, Common};
 use crate::failure::{Failure, Kind};
-use crate::software_drive::{self, Server};
+use crate::software_drive::{self, Interface};
 use crate::{config, devices, signals, simulated};
 
 /// Runs the command: the first line on stdout is the port; it ends when stdin closes or at SIGTERM.
 ///
 /// # Errors
-/// Where the machine gives no pseudo-terminal, or the link cannot be made.
+/// Where the machine gives no pseudo-terminal or has no such CAN interface, or the link cannot be made.
 pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<Said, Failure> {
     let config = config::load(common.config.as_deref())?;
     let axis = devices::axis(&config.axis)?;
-    let failed = |error: io::port::PortError| {
-        Failure::new(Kind::NoDevice, error.to_string())
-            .help("see whether this machine gives out pseudo-terminals (/dev/ptmx)")
+    let stop = signals::interrupt_flag()?;
+    until_stdin_closes(&stop)?;
+    let (interface, link) = match &arguments.can {
+        Some(name) => {
+            let bus = SocketCan::open(name).map_err(|error| failed(&error))?;
+            announce(Path::new(name))?;
+            (Interface::Can(CanServer::new(), bus), None)
+        }
+        None => on_terminal(arguments)?,
     };
-    let mut pty = Pty::open().map_err(failed)?;
+    let ended = software_drive::run(simulated::node(&axis), interface, &stop);
+    drop(link);
+    ended.map_err(|error| failed(&error))?;
+    Ok(Said::nothing())
+}
+
+/// One of the interfaces that are a pseudo-terminal, with the link to it.
+fn on_terminal(arguments: &cli::FirmwareSim) -> Result<(Interface, Option<Link>), Failure> {
+    let pty = Pty::open().map_err(|error| failed(&error))?;
     let link = arguments
         .link
         .as_deref()
         .map(|link| Link::make(link, pty.path()))
         .transpose()?;
-    let stop = signals::interrupt_flag()?;
-    until_stdin_closes(&stop)?;
     announce(pty.path())?;
-    let server = if arguments.rs232 {
-        Server::Rs232(Rs232Server::new(1))
+    let interface = if arguments.rs232 {
+        Interface::Rs232(Rs232Server::new(1), pty)
+    } else if arguments.slcan {
+        Interface::Slcan(SlcanServer::new(), pty)
     } else {
-        Server::Usb(UsbServer::new(1))
+        Interface::Usb(UsbServer::new(1), pty)
     };
-    let node = simulated::node(&axis);
-    software_drive::run(node, server, &mut pty, &stop).map_err(failed)?;
-    drop(link);
-    Ok(Said::nothing())
+    Ok((interface, link))
+}
+
+fn failed(error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(Kind::NoDevice, error.to_string())
+        .help("velomotion doctor lists the CAN interfaces; pseudo-terminals come from /dev/ptmx")
 }
 
 fn announce(port: &Path) -> Result<(), Failure> {

@@ -1,0 +1,123 @@
+"""A CANopen master that is not ours (PyPI canopen and python-can, over SLCAN) runs the software EPOS2.
+
+usage: canopen_master.py PORT QC_OF_TARGET
+Prints one JSON object with what it saw.
+"""
+
+import json
+import sys
+import time
+
+import can
+import canopen
+
+port, target = sys.argv[1], int(sys.argv[2])
+bus = can.Bus(interface="slcan", channel=port, bitrate=1_000_000, sleep_after_open=0.05)
+network = canopen.Network(bus)
+network.connect()
+node = network.add_node(canopen.RemoteNode(1, None))
+node.sdo.RESPONSE_TIMEOUT = 2.0
+seen = {}
+
+
+def read(index, sub=0, signed=False):
+    return int.from_bytes(node.sdo.upload(index, sub), "little", signed=signed)
+
+
+def write(index, value, size, sub=0):
+    node.sdo.download(index, sub, value.to_bytes(size, "little", signed=value < 0))
+
+
+def wait(what, condition, seconds=20.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > end:
+            raise SystemExit(f"waited {seconds} s for {what}; statusword {read(0x6041):04X}")
+
+
+def control(word, bits, mask, what):
+    write(0x6040, word, 2)
+    wait(what, lambda: read(0x6041) & mask == bits)
+
+
+# Who it is: a string by segmented transfer, numbers by expedited.
+seen["name"] = node.sdo.upload(0x1008, 0).decode().rstrip("\0")
+seen["vendor"] = read(0x1018, 1)
+seen["device_type"] = read(0x1000)
+
+# An object that is not there.
+try:
+    node.sdo.upload(0x5FFF, 0)
+except canopen.SdoAbortedError as error:
+    seen["abort"] = error.code
+
+# Up to operation enabled, the state machine of CiA 402.
+node.nmt.send_command(0x01)
+write(0x6040, 0x80, 2)
+states = []
+for word, bits, what in [(0x06, 0x21, "ready"), (0x07, 0x23, "switched on"), (0x0F, 0x27, "operation enabled")]:
+    control(word, bits, 0x6F, what)
+    states.append(what)
+seen["states"] = states
+
+# Homing on the positive limit switch.
+for index, value, size, sub in [
+    (0x6060, 6, 1, 0),
+    (0x6098, 18, 1, 0),
+    (0x6099, 400, 4, 1),
+    (0x6099, 40, 4, 2),
+    (0x609A, 5000, 4, 0),
+]:
+    write(index, value, size, sub)
+control(0x0F, 0x27, 0x6F, "enabled in homing mode")
+write(0x6040, 0x1F, 2)
+wait("homing attained", lambda: read(0x6041) & 0x3400 == 0x1400)
+seen["homed_at"] = read(0x6064, signed=True)
+
+# The angle and its time on SYNC: map TPDO1 in pre-operational, then run.
+node.nmt.send_command(0x80)
+time.sleep(0.05)
+write(0x1800, 0x40000181 | 0x80000000, 4, 1)
+write(0x1800, 1, 1, 2)
+write(0x1A00, 0, 1)
+write(0x1A00, 0x60640020, 4, 1)
+write(0x1A00, 0x10130020, 4, 2)
+write(0x1A00, 2, 1)
+write(0x1800, 0x40000181, 4, 1)
+stream = []
+network.subscribe(0x181, lambda cob, data, stamp: stream.append(bytes(data)))
+node.nmt.send_command(0x01)
+time.sleep(0.05)
+
+# A move in profile position, with 200 SYNCs while it runs.
+for index, value, size, sub in [(0x6060, 1, 1, 0), (0x6081, 1000, 4, 0), (0x6083, 10000, 4, 0), (0x6084, 10000, 4, 0)]:
+    write(index, value, size, sub)
+write(0x6040, 0x0F, 2)
+write(0x607A, target, 4)
+write(0x6040, 0x1F, 2)
+for _ in range(200):
+    network.sync.transmit()
+    time.sleep(0.002)
+wait("target reached", lambda: read(0x6041) & 0x0400 != 0 and abs(read(0x6064, signed=True) - target) < 3)
+seen["arrived_at"] = read(0x6064, signed=True)
+positions = [int.from_bytes(d[:4], "little", signed=True) for d in stream]
+times = [int.from_bytes(d[4:8], "little") for d in stream]
+seen["tpdos"] = len(stream)
+seen["tpdo_positions_distinct"] = len(set(positions))
+seen["tpdo_times_increase"] = all(b > a for a, b in zip(times, times[1:]))
+
+# An emergency: a target outside the software limits. Heard, and in the history.
+heard = []
+node.emcy.add_callback(lambda error: heard.append(error.code))
+write(0x607D, -100, 4, 1)
+write(0x607D, 100, 4, 2)
+write(0x6040, 0x0F, 2)
+write(0x607A, target, 4)
+write(0x6040, 0x1F, 2)
+wait("an emergency message", lambda: bool(heard))
+seen["emcy"] = heard[0]
+seen["history"] = read(0x1003, 1) & 0xFFFF
+seen["error_register"] = read(0x1001)
+
+network.disconnect()
+print(json.dumps(seen))
