@@ -8,10 +8,11 @@ use std::sync::atomic::AtomicBool;
 
 use analysis::truth::TruthReport;
 use cloud::{Fields, Points};
-use drive::Client;
+use drive::{Client, Observation};
 use io::files::Overwrite;
 use io::log::{LogConfig, LogWriter};
 use io::port::Recorder;
+use protocol::epos2::message::WriteObject;
 use protocol::record::{DriveLink, Record, Wire};
 use scanner::{ScanConfig, TiltSource};
 use sim::Rig;
@@ -27,6 +28,7 @@ use velomotion::session::{Session, SessionError};
 use velomotion::setup::scan_config;
 use velomotion::{Failure, devices, simulated};
 
+use crate::inject::{Fault, FaultInjector};
 use crate::port::{Arrived, Links, VirtualPort};
 
 /// What to capture, and over what.
@@ -40,6 +42,8 @@ pub struct Setting {
     pub start: Stamp<Host>,
     /// The lidar's clock then, microseconds past the hour.
     pub lidar_clock_us: u32,
+    /// What goes wrong, and how long after the begin.
+    pub fault: Option<(Fault, Span)>,
     /// How long after the begin the user presses Ctrl-C.
     pub interrupt_after: Option<Span>,
 }
@@ -64,6 +68,7 @@ impl Default for Setting {
             },
             start: Stamp::from_nanos(1_795_226_733_000_000_000),
             lidar_clock_us: 1_234_567_890,
+            fault: None,
             interrupt_after: None,
         }
     }
@@ -106,7 +111,16 @@ impl Captured {
 
         let drive: Rc<RefCell<Vec<Owned>>> = Rc::default();
         let sink = Rc::clone(&drive);
-        let recorder = Recorder::new(port.clone(), DriveLink::Usb, move |record: &Record<'_>| {
+        let (fault, fault_after) = setting
+            .fault
+            .unwrap_or((Fault::AnswersLost(Span::ZERO), Span::ZERO));
+        let hurt = FaultInjector::new(
+            port.clone(),
+            fault,
+            setting.start + fault_after,
+            setting.links.seed,
+        );
+        let recorder = Recorder::new(hurt, DriveLink::Usb, move |record: &Record<'_>| {
             if let Wire::Drive {
                 link,
                 direction,
@@ -126,7 +140,7 @@ impl Captured {
         if let Some(after) = setting.interrupt_after {
             port.interrupt_at(setting.start + after, Arc::clone(&interrupt));
         }
-        let now = |recorder: &Recorder<VirtualPort, _>| recorder.port().now();
+        let now = |recorder: &Recorder<FaultInjector, _>| recorder.port().port().now();
         let mut session = Session::new(client, recorder, now, interrupt);
         let ended = motion::run(&mut session, &steps, &mut |_| {});
         drop(session);
@@ -177,8 +191,57 @@ impl Captured {
     /// Whether the last statusword in the log says that the power stage is off, so that the brake holds.
     #[must_use]
     pub fn brake_is_set(&self) -> bool {
-        let mut listener = drive::Listener::new(1);
+        use drive::cia402::State;
         let mut last = None;
+        self.listen(&mut |seen| {
+            if let Observation::Statusword { value, .. } = seen {
+                last = State::from_statusword(value);
+            }
+        });
+        // An axis that was interrupted before its power stage was first on has nothing to set.
+        !matches!(
+            last,
+            Some(State::OperationEnabled | State::QuickStopActive | State::FaultReactionEnabled)
+        )
+    }
+
+    /// When a quick stop was first sent after `begin`, whether it was answered or not.
+    #[must_use]
+    pub fn stop_sent(&self, begin: Stamp<Host>) -> Option<Stamp<Host>> {
+        let stop = [
+            drive::cia402::control::QUICK_STOP,
+            drive::cia402::control::DISABLE_VOLTAGE,
+        ];
+        let wanted = stop.map(|word| {
+            let write = WriteObject {
+                node: 1,
+                address: drive::objects::CONTROLWORD.address,
+                value: u32::from(word),
+            };
+            protocol::epos2::usb::to_bytes(&write.to_frame()).to_vec()
+        });
+        let mut recording = io::recording::Recording::open(self.log()).unwrap();
+        while let Some(record) = recording.next_record().unwrap() {
+            if let Wire::Drive { frame, .. } = record.wire
+                && record.host >= begin
+                && wanted.iter().any(|wanted| wanted == frame)
+            {
+                return Some(record.host);
+            }
+        }
+        None
+    }
+
+    /// From when to when the (first) sweep went.
+    #[must_use]
+    pub fn sweep_span(&self) -> (Stamp<Host>, Stamp<Host>) {
+        let cloud = self.cloud();
+        let times = cloud.time();
+        (*times.first().unwrap(), *times.last().unwrap())
+    }
+
+    fn listen(&self, emit: &mut impl FnMut(Observation)) {
+        let mut listener = drive::Listener::new(1);
         let mut recording = io::recording::Recording::open(self.log()).unwrap();
         while let Some(record) = recording.next_record().unwrap() {
             if let Wire::Drive {
@@ -187,19 +250,9 @@ impl Captured {
                 frame,
             } = record.wire
             {
-                listener.observe(link, direction, frame, record.host, &mut |seen| {
-                    if let drive::Observation::Statusword { value, .. } = seen {
-                        last = drive::cia402::State::from_statusword(value);
-                    }
-                });
+                listener.observe(link, direction, frame, record.host, emit);
             }
         }
-        // An axis that was interrupted before its power stage was first on has nothing to set.
-        use drive::cia402::State;
-        !matches!(
-            last,
-            Some(State::OperationEnabled | State::QuickStopActive | State::FaultReactionEnabled)
-        )
     }
 
     /// What truly happened.

@@ -3,4 +3,5 @@
 //! What takes the program real seconds takes a test milliseconds, and comes out the same every time.
 
 pub mod capture;
+pub mod inject;
 pub mod port;

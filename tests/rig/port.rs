@@ -78,6 +78,11 @@ impl VirtualPort {
         self.0.borrow_mut().interrupt = Some((at, flag));
     }
 
+    /// Does something to the drive that no client can.
+    pub fn with_drive(&self, act: impl FnOnce(&mut firmware_sim::epos2::Node)) {
+        act(self.0.borrow_mut().rig.drive_mut());
+    }
+
     /// The world's end: its packets in order of arrival and what truly happened.
     #[must_use]
     pub fn end(&self) -> (Vec<Arrived>, sim::Truth) {

@@ -5,7 +5,7 @@
 //! the starting place, homing and returns drop out without marks in the log. A sweep that was cut short stays one, with the angle it reached.
 
 use drive::objects::{self, Address};
-use units::{DegPerS, Degrees, Gearing, Host, Quadcounts, Stamp};
+use units::{DegPerS, Degrees, Gearing, Host, Quadcounts, Rpm, Stamp};
 
 use crate::config::SweepPlan;
 use crate::trajectory::AngleSample;
@@ -30,6 +30,7 @@ pub struct Sweep {
 struct Move {
     commanded: Stamp<Host>,
     target: Degrees,
+    speed: DegPerS,
 }
 
 /// Follows the writes that start profile moves.
@@ -37,6 +38,7 @@ struct Move {
 pub struct MoveWatch {
     gearing: Gearing,
     target: Option<Quadcounts>,
+    speed: Rpm,
     controlword: u16,
     mode: u32,
     moves: Vec<Move>,
@@ -47,6 +49,9 @@ const NEW_SETPOINT: u16 = 0x0010;
 const RELATIVE: u16 = 0x0040;
 /// How far a move may start or aim from the plan's ends and still be one of its sweeps.
 const END_TOLERANCE_DEG: f64 = 0.1;
+/// A jump is more than this and than the way at three times the commanded speed.
+const JUMP_DEG: f64 = 0.1;
+const JUMP_SPEEDS: f64 = 3.0;
 /// The axis is at rest while it stays within this of its place: an encoder at an edge flickers by one count.
 const REST_QC: f64 = 1.5;
 
@@ -57,6 +62,7 @@ impl MoveWatch {
         Self {
             gearing,
             target: None,
+            speed: Rpm(0),
             controlword: 0,
             mode: PROFILE_POSITION,
             moves: Vec::new(),
@@ -67,6 +73,8 @@ impl MoveWatch {
     pub fn wrote(&mut self, address: Address, value: u32, host: Stamp<Host>) {
         if address == objects::TARGET_POSITION.address {
             self.target = Some(Quadcounts(value as i32));
+        } else if address == objects::PROFILE_VELOCITY.address {
+            self.speed = Rpm(value);
         } else if address == objects::MODE.address {
             self.mode = value & 0xFF;
         } else if address == objects::CONTROLWORD.address {
@@ -83,6 +91,7 @@ impl MoveWatch {
             self.moves.push(Move {
                 commanded: host,
                 target: self.gearing.angle(target),
+                speed: self.gearing.rate(self.speed),
             });
         }
     }
@@ -137,6 +146,7 @@ fn sweep(
         .saturating_sub(1);
     let last = samples.partition_point(|s| s.host < end);
     let window = samples.get(first..last)?;
+    let window = window.get(..unbroken(window, command.speed))?;
     let (from, to) = (window.first()?.angle, window.last()?.angle);
     let leaves = window
         .iter()
@@ -158,6 +168,19 @@ fn sweep(
         end: stop,
     };
     Some((sweep, command.target))
+}
+
+/// How many samples there are before the angle jumps farther than the axis can have gone: a drive that lost its supply counts from
+/// zero again, and what follows is no angle of this axis.
+fn unbroken(window: &[AngleSample], speed: DegPerS) -> usize {
+    let jump = window.windows(2).position(|pair| match pair {
+        [a, b] => {
+            let time = b.host.saturating_since(a.host) + a.bound + b.bound;
+            (b.angle.0 - a.angle.0).abs() > JUMP_DEG + JUMP_SPEEDS * speed.0 * time.as_secs_f64()
+        }
+        _ => false,
+    });
+    jump.map_or(window.len(), |before| before + 1)
 }
 
 /// Measured speed over the middle half of the way, by least squares: ramps stay outside unless they take over half of it.
@@ -237,6 +260,8 @@ mod tests {
         }
 
         fn command(&mut self, target: f64, word: u16) {
+            self.watch
+                .wrote(objects::PROFILE_VELOCITY.address, 1_125, ms(self.now));
             let qc = (target / 0.0015).round() as i32;
             self.watch
                 .wrote(objects::TARGET_POSITION.address, qc as u32, ms(self.now));
@@ -330,6 +355,19 @@ mod tests {
         axis.travel(-12.0, 45.0);
         let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN));
         assert!((sweeps[0].to.0 + 12.0).abs() < 1e-9, "{sweeps:?}");
+    }
+
+    #[test]
+    fn a_drive_that_forgot_its_position_ends_the_sweep_where_it_last_knew_it() {
+        let mut axis = Axis::new();
+        axis.command(-45.0, 0x1F);
+        axis.travel(-20.0, 45.0);
+        let known = axis.now;
+        axis.angle = 0.0;
+        axis.stay(100);
+        let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+        assert!((sweeps[0].to.0 + 20.0).abs() < 1e-9, "{sweeps:?}");
+        assert!(sweeps[0].end < ms(known), "{sweeps:?}");
     }
 
     #[test]

@@ -200,6 +200,11 @@ impl Rig {
         }
     }
 
+    /// The drive, to do things to it that no client can: block its motor, cut its power, give it an error.
+    pub const fn drive_mut(&mut self) -> &mut Node {
+        &mut self.node
+    }
+
     /// The time that the world has reached.
     #[must_use]
     pub const fn now(&self) -> Stamp<Host> {

@@ -1,0 +1,233 @@
+//! Faults on purpose: a wrapper around a port that hurts what passes, and things done to the drive behind it.
+//!
+//! Everything is seeded and happens in virtual time, so that a fault that breaks something breaks it again.
+
+use std::collections::VecDeque;
+
+use io::port::{Port, PortError};
+use protocol::epos2::DeviceError;
+use units::{Host, Span, Stamp};
+
+use crate::port::VirtualPort;
+
+/// What goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fault {
+    /// Answers are lost for a span.
+    AnswersLost(Span),
+    /// Requests are lost for a span.
+    RequestsLost(Span),
+    /// Answers come this much later, for a span.
+    AnswersLate(Span, Span),
+    /// Answers have a flipped bit, for a span.
+    AnswersFlipped(Span),
+    /// Requests have a flipped bit, for a span.
+    RequestsFlipped(Span),
+    /// The last bytes of answers are missing, for a span.
+    AnswersCut(Span),
+    /// Answers come twice, for a span.
+    AnswersDoubled(Span),
+    /// Instead of an answer the one before it comes again, for a span.
+    AnswersStale(Span),
+    /// Answers come a byte at a time, for a span.
+    AnswersInBytes(Span),
+    /// Random bytes stand before every answer, for a span.
+    Noise(Span),
+    /// Random bytes with frame starts among them stand before every answer, for a span.
+    NoiseWithFrameStarts(Span),
+    /// The port is gone: every call fails.
+    Unplugged,
+    /// The port takes no bytes, for ever.
+    WriteBlocked,
+    /// The drive loses and regains its supply.
+    PowerCycle,
+    /// The drive reports an error.
+    Device(DeviceError),
+    /// The motor is held.
+    Blocked,
+}
+
+/// A port on which one fault begins at a given time.
+pub struct FaultInjector {
+    port: VirtualPort,
+    fault: Fault,
+    from: Stamp<Host>,
+    done: bool,
+    /// Bytes on their way to the client, with when they come.
+    pending: VecDeque<(Stamp<Host>, Vec<u8>)>,
+    last_answer: Vec<u8>,
+    random: u64,
+}
+
+impl FaultInjector {
+    /// `fault` begins at `from`; what is random about it follows from `seed`.
+    #[must_use]
+    pub fn new(port: VirtualPort, fault: Fault, from: Stamp<Host>, seed: u64) -> Self {
+        Self {
+            port,
+            fault,
+            from,
+            done: false,
+            pending: VecDeque::new(),
+            last_answer: Vec::new(),
+            random: seed | 1,
+        }
+    }
+
+    /// The port behind it.
+    #[must_use]
+    pub fn port(&self) -> &VirtualPort {
+        &self.port
+    }
+
+    /// Whether a fault of this length is on.
+    fn on(&self, span: Span) -> bool {
+        let now = self.port.now();
+        self.from <= now && now < self.from + span
+    }
+
+    fn next(&mut self) -> u64 {
+        self.random ^= self.random << 13;
+        self.random ^= self.random >> 7;
+        self.random ^= self.random << 17;
+        self.random
+    }
+
+    fn flip(&mut self, bytes: &mut [u8]) {
+        if !bytes.is_empty() {
+            let at = usize::try_from(self.next()).unwrap() % bytes.len();
+            bytes[at] ^= 1 << (self.next() % 8);
+        }
+    }
+
+    /// What happens to the drive itself happens once, when its time has come.
+    fn hurt_the_drive(&mut self) {
+        if self.done || self.port.now() < self.from {
+            return;
+        }
+        self.done = true;
+        match self.fault {
+            Fault::PowerCycle => self.port.with_drive(|node| node.power_cycle()),
+            Fault::Device(error) => self.port.with_drive(|node| node.inject(error)),
+            Fault::Blocked => self.port.with_drive(|node| node.block()),
+            _ => {}
+        }
+    }
+
+    fn unplugged(&self) -> Result<(), PortError> {
+        let gone = self.fault == Fault::Unplugged && self.port.now() >= self.from;
+        if gone {
+            return Err(PortError::Disconnected {
+                port: "virtual".to_owned(),
+                reason: "unplugged by the test".to_owned(),
+            });
+        }
+        Ok(())
+    }
+
+    /// An answer as it reaches the client: when, and in which pieces.
+    fn hurt(&mut self, at: Stamp<Host>, mut bytes: Vec<u8>) -> Vec<(Stamp<Host>, Vec<u8>)> {
+        let before = std::mem::replace(&mut self.last_answer, bytes.clone());
+        match self.fault {
+            Fault::AnswersLost(span) if self.on(span) => Vec::new(),
+            Fault::AnswersLate(span, late) if self.on(span) => vec![(at + late, bytes)],
+            Fault::AnswersFlipped(span) if self.on(span) => {
+                self.flip(&mut bytes);
+                vec![(at, bytes)]
+            }
+            Fault::AnswersCut(span) if self.on(span) => {
+                let keep = usize::try_from(self.next()).unwrap() % bytes.len();
+                bytes.truncate(keep);
+                vec![(at, bytes)]
+            }
+            Fault::AnswersDoubled(span) if self.on(span) => vec![(at, bytes.repeat(2))],
+            Fault::AnswersStale(span) if self.on(span) => vec![(at, before)],
+            Fault::AnswersInBytes(span) if self.on(span) => {
+                let step = Span::from_micros(87); // a byte at 115,200 baud
+                let mut when = at;
+                bytes
+                    .into_iter()
+                    .map(|byte| {
+                        when += step;
+                        (when, vec![byte])
+                    })
+                    .collect()
+            }
+            Fault::Noise(span) if self.on(span) => {
+                let noise: Vec<u8> = (0..7).map(|_| (self.next() >> 24) as u8 & 0x7F).collect();
+                vec![(at, noise), (at, bytes)]
+            }
+            Fault::NoiseWithFrameStarts(span) if self.on(span) => {
+                let noise = vec![(self.next() >> 24) as u8, 0x90, 0x02, 0x00];
+                vec![(at, noise), (at, bytes)]
+            }
+            _ => vec![(at, bytes)],
+        }
+    }
+}
+
+impl Port for FaultInjector {
+    fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
+        self.hurt_the_drive();
+        self.unplugged()?;
+        let now = self.port.now();
+        match self.fault {
+            Fault::WriteBlocked if now >= self.from => Err(PortError::WriteTimeout {
+                port: "virtual".to_owned(),
+                expected: frame.len(),
+                got: 0,
+            }),
+            Fault::RequestsLost(span) if self.on(span) => Ok(now),
+            Fault::RequestsFlipped(span) if self.on(span) => {
+                let mut frame = frame.to_vec();
+                self.flip(&mut frame);
+                self.port.write_frame(&frame)
+            }
+            _ => self.port.write_frame(frame),
+        }
+    }
+
+    fn read(
+        &mut self,
+        buffer: &mut [u8],
+        timeout: Span,
+    ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
+        self.hurt_the_drive();
+        self.unplugged()?;
+        let until = self.port.now() + timeout;
+        // Everything that arrives by then, hurt, in order of when it reaches the client.
+        while self
+            .pending
+            .front()
+            .is_none_or(|(at, _)| *at > self.port.now())
+        {
+            let left = until.saturating_since(self.port.now());
+            let next = self
+                .pending
+                .front()
+                .map(|(at, _)| at.saturating_since(self.port.now()));
+            let wait = next.map_or(left, |next| next.min(left));
+            match self.port.read(buffer, wait)? {
+                Some((count, at)) => {
+                    let pieces = self.hurt(at, buffer[..count].to_vec());
+                    for (at, piece) in pieces {
+                        // A serial line keeps its order: what is late holds up what follows.
+                        let after = self.pending.back().map_or(at, |(last, _)| at.max(*last));
+                        self.pending.push_back((after, piece));
+                    }
+                }
+                None if self.port.now() >= until => break,
+                None => {}
+            }
+        }
+        match self.pending.front() {
+            Some((at, _)) if *at <= self.port.now() => {}
+            _ => return Ok(None),
+        }
+        let Some((at, bytes)) = self.pending.pop_front() else {
+            return Ok(None);
+        };
+        buffer[..bytes.len()].copy_from_slice(&bytes);
+        Ok(Some((bytes.len(), at.max(self.port.now()))))
+    }
+}
