@@ -12,8 +12,11 @@ use std::pin::Pin;
 use std::sync::{Arc, Mutex};
 use std::task::{Context, Poll, Waker};
 
+use protocol::canopen::NodeId;
+use protocol::record::DriveLink;
 use units::{Host, Stamp};
 
+use crate::bus::Bus;
 use crate::codec::Codec;
 use crate::command::{Command, CommandKind};
 use crate::config::AxisConfig;
@@ -25,21 +28,34 @@ use crate::procedures;
 
 type Procedure = Pin<Box<dyn Future<Output = Result<Outcome, DriveError>> + Send>>;
 
-/// A client of one EPOS2 axis on a USB link.
+/// A client of one EPOS2 axis.
+///
+/// On USB and RS232 it takes and gives bytes; on a CAN bus the 16 bytes of a `struct can_frame` each, as in a log's records.
 pub struct Client {
     config: Arc<AxisConfig>,
     core: Shared,
     running: Option<(CommandKind, Procedure)>,
     connected: bool,
+    attached: DriveLink,
 }
 
 impl Client {
-    /// A client for an axis; nothing is sent before a command starts.
+    /// A client for an axis on USB; nothing is sent before a command starts.
     #[must_use]
     pub fn new(config: AxisConfig) -> Self {
+        Self::with_link(config, DriveLink::Usb)
+    }
+
+    /// A client for an axis on any of its links; nothing is sent before a command starts.
+    #[must_use]
+    pub fn with_link(config: AxisConfig, link: DriveLink) -> Self {
+        let bus = NodeId::new(config.node).filter(|_| link == DriveLink::Can);
         let core = Core {
-            link: Link::new(Codec::usb(config.node)),
+            link: Link::new(Codec::new(link, config.node)),
+            bus: bus.map(|node| Bus::new(node, config.can)),
+            referenced: false,
             now: Stamp::from_nanos(0),
+            begins: false,
             wake: None,
             events: VecDeque::new(),
         };
@@ -48,7 +64,14 @@ impl Client {
             core: Arc::new(Mutex::new(core)),
             running: None,
             connected: false,
+            attached: link,
         }
+    }
+
+    /// How the axis is attached.
+    #[must_use]
+    pub fn link(&self) -> DriveLink {
+        self.attached
     }
 
     /// Starts a command. [`Command::Stop`] cancels whatever runs (that command then ends without an event of its own); any other
@@ -86,8 +109,10 @@ impl Client {
         };
         self.cancel();
         self.running = Some((kind, procedure));
+        let mut core = lock(&self.core);
+        core.begins = true;
         let started = Event::Progress(Progress::Started(kind));
-        lock(&self.core).events.push_back(started);
+        core.events.push_back(started);
         Ok(())
     }
 
@@ -97,15 +122,30 @@ impl Client {
         self.running.as_ref().map(|(kind, _)| *kind)
     }
 
-    /// The next frame to write to the port; `now` becomes the request's time.
+    /// The next bytes to write to the port, on CAN a frame; `now` becomes the request's time.
     pub fn poll_transmit(&mut self, now: Stamp<Host>) -> Option<Vec<u8>> {
         self.advance(now);
-        lock(&self.core).link.transmit(now)
+        let mut core = lock(&self.core);
+        let period = self.config.timing.poll_period;
+        let frame = core.bus.as_mut().and_then(|bus| bus.transmit(now, period));
+        match frame {
+            Some(frame) => Some(frame.to_socketcan().to_vec()),
+            None => core.link.transmit(now),
+        }
     }
 
-    /// Takes bytes that were read from the port, in any portions; `now` becomes the time of the answer they complete.
+    /// Takes bytes that were read from the port, in any portions, on CAN whole frames of 16 bytes; `now` becomes the time of the
+    /// answer they complete.
     pub fn handle_input(&mut self, bytes: &[u8], now: Stamp<Host>) {
-        lock(&self.core).link.input(bytes, now);
+        {
+            let mut core = lock(&self.core);
+            core.begin(now);
+            core.link.input(bytes, now);
+            while let Some(frame) = core.link.take_frame() {
+                let sample = core.bus.as_mut().and_then(|bus| bus.handle(&frame, now));
+                core.events.extend(sample.map(Event::Sample));
+            }
+        }
         self.advance(now);
     }
 
@@ -113,8 +153,13 @@ impl Client {
     #[must_use]
     pub fn poll_timeout(&self) -> Option<Stamp<Host>> {
         let core = lock(&self.core);
-        let wake = core.wake.filter(|_| self.running.is_some());
-        [core.link.deadline(), wake].into_iter().flatten().min()
+        let runs = self.running.is_some();
+        let wake = core.wake.filter(|_| runs);
+        let bus = core.bus.as_ref().and_then(Bus::deadline).filter(|_| runs);
+        [core.link.deadline(), wake, bus]
+            .into_iter()
+            .flatten()
+            .min()
     }
 
     /// Lets time pass.
@@ -142,7 +187,7 @@ impl Client {
     fn cancel(&mut self) {
         if self.running.take().is_some() {
             let mut core = lock(&self.core);
-            core.wake = None;
+            core.end();
             core.link.abandon();
         }
     }
@@ -151,7 +196,11 @@ impl Client {
         {
             let mut core = lock(&self.core);
             core.now = now;
+            core.begin(now);
             core.link.expire(now);
+            if let (true, Some(bus)) = (self.running.is_some(), &mut core.bus) {
+                bus.expire(now);
+            }
         }
         let Some((kind, procedure)) = self.running.as_mut() else {
             return;
@@ -165,7 +214,7 @@ impl Client {
         }
         self.running = None;
         let mut core = lock(&self.core);
-        core.wake = None;
+        core.end();
         core.events.push_back(match result {
             Ok(outcome) => Event::Done(outcome),
             Err(error) => Event::Failed(error),

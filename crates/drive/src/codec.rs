@@ -1,32 +1,101 @@
 //! The one place that knows which bytes a transport uses: a request to a frame, bytes to replies.
 //!
-//! The USB frames of the EPOS2 for now; each further transport is another variant here. Timing, pairing and retries are the
-//! link's business.
+//! EPOS2 frames on USB, the same messages in the handshake of RS232 ([`rs232`]), and SDO on CAN ([`sdo`]). Timing, pairing and
+//! retries are the link's business; what else passes on a CAN bus is [`crate::bus`]'s.
 
-use protocol::epos2::message::{Answer, ReadObject, WriteObject};
+mod rs232;
+mod sdo;
+
+use protocol::canopen::{CanFrame, NodeId, SOCKETCAN_LEN};
+use protocol::epos2::message::{
+    Answer, InitiateSegmentedRead, ReadObject, SegmentedRead, WriteObject,
+};
 use protocol::epos2::objects::Address;
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{CommError, Frame, FrameError};
+use protocol::epos2::{Bounded, CommError, Frame, FrameError};
+use protocol::record::DriveLink;
+use units::{Host, Stamp};
 
-use crate::pairing::Access;
+use crate::pairing::{Access, Asked};
+use rs232::Dialogue;
+
+pub(crate) use sdo::{asked as sdo_asked, decode as sdo_decode};
 
 /// An answer, not yet paired.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reply {
     pub error: CommError,
-    /// Data words after the error code.
+    /// Data words after the error code, on a serial link.
     pub words: usize,
     /// The first two of them as a number; above the object's width it is garbage.
     pub value: Option<u32>,
+    /// The data as a segment, where it can be one.
+    pub segment: Option<Segment>,
+    /// What the answer says it is an answer to, on CAN.
+    pub about: Option<About>,
+}
+
+/// Part of an object that is read in segments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Segment {
+    pub toggle: bool,
+    pub last: bool,
+    pub bytes: Bounded<u8, 63>,
+}
+
+/// What an SDO answer says of the request it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct About {
+    /// Segments name no object.
+    pub address: Option<Address>,
+    pub kind: Kind,
+}
+
+/// Which request an SDO answer is the answer to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Upload,
+    UploadSegment,
+    Download,
+    DownloadSegment,
+    Abort,
+}
+
+impl About {
+    /// Whether this can be the answer to a request.
+    pub fn fits(&self, asked: &Asked) -> bool {
+        let same = self.address.is_none_or(|address| address == asked.address);
+        let kind = match asked.access {
+            _ if self.kind == Kind::Abort => true,
+            Access::Read | Access::Open => self.kind == Kind::Upload,
+            Access::Write(_) => self.kind == Kind::Download,
+            Access::Segment { .. } => self.kind == Kind::UploadSegment,
+            Access::Other => matches!(self.kind, Kind::Download | Kind::DownloadSegment),
+        };
+        same && kind
+    }
+}
+
+impl Reply {
+    /// Whether this is a value or an error, no announcement of segments.
+    pub fn is_value(&self) -> bool {
+        self.value.is_some() || !self.error.is_none()
+    }
 }
 
 /// What a run of bytes turned out to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Decoded {
     Reply(Reply),
+    /// RS232: the unit refused the request (`F`); it was not carried out.
+    Refused,
+    /// A frame of the bus that is no SDO answer of this node.
+    Bus(CanFrame),
     /// A good frame that answers nothing, such as an echo.
     Foreign,
-    /// Began like a frame and was none.
+    /// No frame, yet nothing that could have been an answer.
+    Noise,
+    /// Began like an answer and was none.
     Damaged,
 }
 
@@ -40,38 +109,121 @@ pub(crate) struct Codec {
 #[derive(Clone, Debug)]
 enum Transport {
     Usb(UsbDecoder),
+    Rs232(Dialogue),
+    Can(NodeId),
+}
+
+/// Bytes to write now.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Outgoing {
+    pub bytes: Vec<u8>,
+    /// The request is executed no earlier than now.
+    pub is_body: bool,
 }
 
 impl Codec {
-    pub fn usb(node: u8) -> Self {
-        Self {
-            node,
-            transport: Transport::Usb(UsbDecoder::new()),
-        }
-    }
-
-    /// The bytes that ask for `access` to an object.
-    pub fn encode(&self, address: Address, access: Access) -> Vec<u8> {
-        let node = self.node;
-        let frame = match access {
-            Access::Write(value) => WriteObject {
-                node,
-                address,
-                value,
-            }
-            .to_frame(),
-            Access::Read | Access::Other => ReadObject { node, address }.to_frame(),
+    pub fn new(link: DriveLink, node: u8) -> Self {
+        let transport = match link {
+            DriveLink::Usb => Transport::Usb(UsbDecoder::new()),
+            DriveLink::Rs232 => Transport::Rs232(Dialogue::new()),
+            // A configuration with another node is refused before anything is sent.
+            DriveLink::Can => Transport::Can(NodeId::new(node).unwrap_or(NodeId::MAX)),
         };
-        match &self.transport {
+        Self { node, transport }
+    }
+
+    #[cfg(test)]
+    pub fn usb(node: u8) -> Self {
+        Self::new(DriveLink::Usb, node)
+    }
+
+    /// The bytes that ask for `access` to an object of so many bytes; on RS232 the first of them.
+    pub fn encode(
+        &mut self,
+        address: Address,
+        access: Access,
+        width: u8,
+        deadline: Stamp<Host>,
+    ) -> Vec<u8> {
+        let frame = message(self.node, address, access);
+        match &mut self.transport {
             Transport::Usb(_) => usb::to_bytes(&frame).as_slice().to_vec(),
+            Transport::Rs232(dialogue) => dialogue.begin(&frame, deadline),
+            Transport::Can(node) => {
+                let request = sdo::request(address, access, width);
+                request.to_frame(*node).to_socketcan().to_vec()
+            }
         }
     }
 
-    /// Takes a byte from the device.
-    pub fn push(&mut self, byte: u8) -> Option<Decoded> {
-        match &mut self.transport {
-            Transport::Usb(decoder) => decoder.push(byte).map(|frame| decoded(&frame)),
+    /// How many bytes from the device [`Codec::push`] takes at a time.
+    pub fn piece(&self) -> usize {
+        match self.transport {
+            Transport::Usb(_) | Transport::Rs232(_) => 1,
+            Transport::Can(_) => SOCKETCAN_LEN,
         }
+    }
+
+    /// Takes a byte, or on CAN a frame, from the device.
+    pub fn push(&mut self, piece: &[u8], now: Stamp<Host>) -> Option<Decoded> {
+        match &mut self.transport {
+            Transport::Can(node) => Some(sdo::received(*node, piece)),
+            Transport::Usb(decoder) => decoder.push(*piece.first()?).map(|frame| decoded(&frame)),
+            Transport::Rs232(dialogue) => dialogue.push(*piece.first()?, now),
+        }
+    }
+
+    /// What a dialogue under way has to say next.
+    pub fn outgoing(&mut self, now: Stamp<Host>) -> Option<Outgoing> {
+        match &mut self.transport {
+            Transport::Rs232(dialogue) => dialogue.outgoing(now),
+            Transport::Usb(_) | Transport::Can(_) => None,
+        }
+    }
+
+    /// Whether a request may be sent.
+    pub fn is_ready(&self) -> bool {
+        match &self.transport {
+            Transport::Rs232(dialogue) => dialogue.is_idle(),
+            Transport::Usb(_) | Transport::Can(_) => true,
+        }
+    }
+
+    /// The request under way is given up.
+    pub fn give_up(&mut self, now: Stamp<Host>) {
+        if let Transport::Rs232(dialogue) = &mut self.transport {
+            dialogue.give_up(now);
+        }
+    }
+
+    /// When [`Codec::expire`] is due.
+    pub fn deadline(&self) -> Option<Stamp<Host>> {
+        match &self.transport {
+            Transport::Rs232(dialogue) => dialogue.deadline(),
+            Transport::Usb(_) | Transport::Can(_) => None,
+        }
+    }
+
+    /// Lets time pass.
+    pub fn expire(&mut self, now: Stamp<Host>) {
+        if let Transport::Rs232(dialogue) = &mut self.transport {
+            dialogue.expire(now);
+        }
+    }
+}
+
+/// The message of the serial links.
+fn message(node: u8, address: Address, access: Access) -> Frame {
+    match access {
+        Access::Write(value) => WriteObject {
+            node,
+            address,
+            value,
+        }
+        .to_frame(),
+        Access::Open => InitiateSegmentedRead { node, address }.to_frame(),
+        Access::Segment { toggle } => SegmentedRead { toggle }.to_frame(),
+        Access::Read | Access::Other => ReadObject { node, address }.to_frame(),
     }
 }
 
@@ -79,21 +231,30 @@ fn decoded(frame: &Result<Frame, FrameError>) -> Decoded {
     let Ok(frame) = frame else {
         return Decoded::Damaged;
     };
-    match Answer::parse(frame) {
-        Ok(answer) => Decoded::Reply(Reply::from(&answer)),
+    match Reply::parse(frame) {
+        Ok(reply) => Decoded::Reply(reply),
         Err(FrameError::Opcode { .. }) => Decoded::Foreign,
         Err(_) => Decoded::Damaged,
     }
 }
 
-impl From<&Answer> for Reply {
-    fn from(answer: &Answer) -> Self {
+impl Reply {
+    /// The answer in a frame of a serial link.
+    pub fn parse(frame: &Frame) -> Result<Self, FrameError> {
+        let answer = Answer::parse(frame)?;
         let words = answer.data.as_slice().len();
-        Self {
+        let segment = SegmentedRead::parse_answer(frame).ok().and_then(Result::ok);
+        Ok(Self {
             error: answer.error,
             words,
             value: answer.value().ok().filter(|_| words == VALUE_WORDS),
-        }
+            segment: segment.map(|segment| Segment {
+                toggle: segment.toggle,
+                last: !segment.more,
+                bytes: segment.bytes,
+            }),
+            about: None,
+        })
     }
 }
 
@@ -101,68 +262,4 @@ impl From<&Answer> for Reply {
 const VALUE_WORDS: usize = 2;
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    const STATUSWORD: Address = Address::new(0x6041, 0);
-    const CONTROLWORD: Address = Address::new(0x6040, 0);
-
-    fn decode(bytes: &[u8]) -> Vec<Decoded> {
-        let mut codec = Codec::usb(1);
-        bytes.iter().filter_map(|&b| codec.push(b)).collect()
-    }
-
-    /// Frames of the Communication Guide's format, CRC worked out by hand.
-    #[test]
-    fn golden_requests() {
-        let codec = Codec::usb(1);
-        assert_eq!(
-            codec.encode(STATUSWORD, Access::Read),
-            [0x90, 2, 0x10, 2, 0x41, 0x60, 0, 1, 0x64, 0xCF]
-        );
-        assert_eq!(
-            codec.encode(CONTROLWORD, Access::Write(0x0F)),
-            [
-                0x90, 2, 0x11, 4, 0x40, 0x60, 0, 1, 0x0F, 0, 0, 0, 0x2D, 0x2C
-            ]
-        );
-    }
-
-    #[test]
-    fn golden_answers() {
-        let read = [0x90, 2, 0, 4, 0, 0, 0, 0, 0x37, 2, 0, 0, 0x68, 0];
-        let reply = |error, words, value| {
-            vec![Decoded::Reply(Reply {
-                error: CommError(error),
-                words,
-                value,
-            })]
-        };
-        assert_eq!(decode(&read), reply(0, 2, Some(0x237)));
-        let written = [0x90, 2, 0, 2, 0, 0, 0, 0, 0x40, 0x8B];
-        assert_eq!(decode(&written), reply(0, 0, None));
-        let absent = [0x90, 2, 0, 2, 0, 0, 2, 6, 0xA4, 1];
-        assert_eq!(decode(&absent), reply(0x0602_0000, 0, None));
-    }
-
-    #[test]
-    fn an_echo_is_no_answer() {
-        let codec = Codec::usb(1);
-        let echo = codec.encode(STATUSWORD, Access::Read);
-        assert_eq!(decode(&echo), [Decoded::Foreign]);
-    }
-
-    #[test]
-    fn a_wrong_checksum_is_told() {
-        let read = [0x90, 2, 0, 4, 0, 0, 0, 0, 0x36, 2, 0, 0, 0x68, 0];
-        assert_eq!(decode(&read), [Decoded::Damaged]);
-    }
-
-    proptest! {
-        #[test]
-        fn any_bytes_are_taken(bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
-            decode(&bytes);
-        }
-    }
-}
+mod tests;

@@ -34,6 +34,23 @@ pub struct AxisConfig {
     pub homing: Homing,
     /// Periods and time limits.
     pub timing: Timing,
+    /// What is said on a CAN bus beside requests; the other links have none of it.
+    pub can: CanBus,
+}
+
+/// Signs of life on a CAN bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CanBus {
+    /// Node id under which the host sends its heartbeat while the axis may move, 1..=127, not the drive's.
+    pub host_node: u8,
+    /// How often it does.
+    pub host_heartbeat: Span,
+    /// Silence of the host after which the drive stops (whole milliseconds, 1016:1).
+    pub host_limit: Span,
+    /// How often the drive sends its heartbeat (whole milliseconds, 1017).
+    pub node_heartbeat: Span,
+    /// Silence of the drive after which it counts as lost.
+    pub node_limit: Span,
 }
 
 /// A closed range of tilt angles.
@@ -130,6 +147,21 @@ impl Default for AxisConfig {
             brake: Some(Brake::default()),
             homing: Homing::default(),
             timing: Timing::default(),
+            can: CanBus::default(),
+        }
+    }
+}
+
+impl Default for CanBus {
+    /// Heartbeats every 50 ms; the drive waits for four of the host's, whose threads may be held up, the host for two and a
+    /// half of the drive's.
+    fn default() -> Self {
+        Self {
+            host_node: 127,
+            host_heartbeat: Span::from_millis(50),
+            host_limit: Span::from_millis(200),
+            node_heartbeat: Span::from_millis(50),
+            node_limit: Span::from_millis(125),
         }
     }
 }
@@ -235,7 +267,8 @@ impl AxisConfig {
             brake.check()?;
         }
         self.homing.check(self)?;
-        self.timing.check()
+        self.timing.check()?;
+        self.can.check(self.node)
     }
 
     /// The limits in quadcounts, rounded to the nearest.
@@ -359,6 +392,29 @@ impl Timing {
     }
 }
 
+impl CanBus {
+    fn check(&self, node: u8) -> Result<(), DriveError> {
+        within("can.host_node", self.host_node, 1, 127)?;
+        if self.host_node == node {
+            return Err(DriveError::Config {
+                field: "can.host_node",
+                expected: "another node than the drive's".into(),
+                got: node.to_string(),
+            });
+        }
+        for (field, span, more_than) in [
+            ("can.host_heartbeat", self.host_heartbeat, Span::ZERO),
+            ("can.host_limit", self.host_limit, self.host_heartbeat),
+            ("can.node_heartbeat", self.node_heartbeat, Span::ZERO),
+            ("can.node_limit", self.node_limit, self.node_heartbeat),
+        ] {
+            let least = whole_ms(more_than).saturating_add(1);
+            within(field, whole_ms(span), least, i64::from(u16::MAX))?;
+        }
+        Ok(())
+    }
+}
+
 /// An hour: nothing here is meant to wait longer, and sums of such spans stay far from overflow.
 const MAX_SPAN_MS: i64 = 3_600_000;
 
@@ -425,6 +481,11 @@ mod tests {
             "brake.output"
         );
         assert_eq!(field(|c| c.timing.timeout = Span::ZERO), "timing.timeout");
+        assert_eq!(field(|c| c.can.host_node = 1), "can.host_node");
+        assert_eq!(
+            field(|c| c.can.node_limit = Span::from_millis(50)),
+            "can.node_limit"
+        );
         assert_eq!(
             field(|c| c.timing.hold = Span::from_nanos(-1)),
             "timing.hold"

@@ -4,6 +4,7 @@
 
 use std::fmt;
 
+use protocol::canopen::nmt::NmtState;
 use protocol::epos2::cia402::State;
 use protocol::epos2::objects::Address;
 use protocol::epos2::{CommError, DeviceError};
@@ -89,6 +90,46 @@ pub enum DriveError {
         operation: Operation,
         /// How long nothing came.
         silent: Span,
+    },
+    /// The unit refuses a request before it looks at it (RS232: `F` instead of `O`).
+    #[error("{operation} on the drive link: expected the handshake O, got F {attempts} time(s)")]
+    Handshake {
+        /// What was asked.
+        operation: Operation,
+        /// How often.
+        attempts: u8,
+    },
+    /// A segment of a long object came out of turn.
+    #[error("{operation} in segments: expected toggle bit {}, got {}", u8::from(*expected), u8::from(*got))]
+    Toggle {
+        /// What was asked.
+        operation: Operation,
+        /// As in the request.
+        expected: bool,
+        /// As in the answer.
+        got: bool,
+    },
+    /// The drive sends no heartbeat any more (CAN).
+    #[error("node {node} on the CAN bus: expected a heartbeat, got none for {:.0} ms", silence.as_secs_f64() * 1e3)]
+    NodeSilent {
+        /// Its node id.
+        node: u8,
+        /// Since the last one.
+        silence: Span,
+    },
+    /// The drive left the operational state of the network: somebody else commands it (CAN).
+    #[error("node {node} on the CAN bus: expected the state operational, got {state}")]
+    NodeLeft {
+        /// Its node id.
+        node: u8,
+        /// The state it is in.
+        state: NmtState,
+    },
+    /// The drive has restarted: settings and position are forgotten.
+    #[error("the drive has restarted{}: it has forgotten its settings and its position", cause_text(*error))]
+    Restarted {
+        /// The newest entry of its error history (1003:1), if it has one.
+        error: Option<DeviceError>,
     },
     /// The drive refused a request.
     #[error("{operation} refused by the drive: {error}")]
@@ -214,6 +255,15 @@ pub struct Operation {
     pub wrote: Option<u32>,
 }
 
+impl Operation {
+    pub(crate) fn read(address: Address) -> Self {
+        Self {
+            address,
+            wrote: None,
+        }
+    }
+}
+
 impl fmt::Display for Operation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.wrote {
@@ -226,6 +276,10 @@ impl fmt::Display for Operation {
 fn state_text(statusword: u16) -> String {
     State::from_statusword(statusword)
         .map_or_else(|| "no known state".into(), |state| state.to_string())
+}
+
+fn cause_text(error: Option<DeviceError>) -> String {
+    error.map_or_else(String::new, |error| format!(" (it reports {error})"))
 }
 
 fn fault_text(error: Option<DeviceError>) -> String {
@@ -264,6 +318,22 @@ impl DriveError {
                 "Check the drive's supply, the cable, the port and the node id. \
                  If the axis was moving, treat it as moving still."
                     .into()
+            }
+            Self::Handshake { .. } => {
+                "Check the baud rate, and the cable and its shield; no other program may use the port.".into()
+            }
+            Self::Toggle { .. } => {
+                "An answer was lost or came twice: try again; if it stays, check that no other master asks this drive.".into()
+            }
+            Self::NodeSilent { .. } => {
+                "Check the drive's supply, the CAN wiring and termination. If the axis was moving, treat it as moving still                  until a stop has been confirmed."
+                    .into()
+            }
+            Self::NodeLeft { .. } => {
+                "Another master on the CAN bus changed the drive's state: stop it, then connect again.".into()
+            }
+            Self::Restarted { .. } => {
+                "Check the drive's supply (a weak one resets the drive under load), then connect and home again.".into()
             }
             Self::Refused { .. } | Self::NotTaken { .. } => {
                 "Check the firmware version; the axis is left disabled. \

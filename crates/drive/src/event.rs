@@ -1,5 +1,7 @@
 //! What the client tells: samples, progress, and how a command ended.
 
+use std::fmt;
+
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::State;
 use units::{Degrees, Host, Quadcounts, Stamp};
@@ -9,9 +11,11 @@ use crate::error::DriveError;
 use crate::plan::Plan;
 
 /// A position of the shaft with the times between which the drive read it.
+///
+/// In the stream of a CAN bus the drive latches its position at the host's SYNC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaftSample {
-    /// When the request was handed out.
+    /// When the request was handed out: on RS232 its body, on a CAN bus's stream the SYNC.
     pub request: Stamp<Host>,
     /// When the answer had been read.
     pub answer: Stamp<Host>,
@@ -84,6 +88,8 @@ pub enum Outcome {
 /// What the drive says it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Identity {
+    /// Device name (1008), "EPOS2".
+    pub name: DeviceName,
     /// Vendor (1018:1), 0xFB for maxon.
     pub vendor: u32,
     /// Product code (1018:2); its upper half is the hardware version.
@@ -98,6 +104,50 @@ pub struct Identity {
     pub hardware: u16,
 }
 
+/// The name a device gives itself: up to 16 bytes of ASCII, empty where it tells none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DeviceName {
+    bytes: [u8; 16],
+    len: usize,
+}
+
+impl DeviceName {
+    /// The name in the bytes of an object: up to the first that is no printable ASCII, 16 at most.
+    pub(crate) fn new(bytes: &[u8]) -> Self {
+        let mut name = Self::default();
+        let printable = bytes
+            .iter()
+            .take_while(|byte| byte.is_ascii_graphic() || **byte == b' ');
+        for (to, from) in name.bytes.iter_mut().zip(printable) {
+            *to = *from;
+            name.len += 1;
+        }
+        name
+    }
+
+    /// The name.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        let bytes = self.bytes.get(..self.len).unwrap_or_default();
+        std::str::from_utf8(bytes).unwrap_or_default()
+    }
+}
+
+impl fmt::Display for DeviceName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// Where the angle comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AngleSource {
+    /// The position is asked for, again and again.
+    Polls,
+    /// The drive sends it at each SYNC, with its own time (CAN).
+    Stream,
+}
+
 /// A drive that is ready to be used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Connected {
@@ -109,6 +159,11 @@ pub struct Connected {
     pub referenced: bool,
     /// Where it stands; an angle only if referenced.
     pub position: Quadcounts,
+    /// Where the angle will come from.
+    pub angle: AngleSource,
+    /// Whether the drive stops by itself when the host falls silent during a motion (CAN: heartbeat, object 1016). Where it does
+    /// not, an axis whose host dies ends its move.
+    pub watches_host: bool,
 }
 
 /// A completed move.
@@ -131,12 +186,41 @@ pub struct Arrived {
 pub struct Stopped {
     /// Where it stands.
     pub position: Quadcounts,
-    /// The same as an angle; `None` if the axis is not referenced.
+    /// What that position is worth.
+    pub place: Place,
+    /// The same as an angle; `None` unless the place is known.
     pub angle: Option<Degrees>,
     /// Whether the drive is in fault (power off and brake set all the same).
     pub fault: bool,
     /// Whether an output of the drive holds a brake.
     pub brake: bool,
+}
+
+/// Whether an axis at rest still knows where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// It does: the encoder was read all the time.
+    Known,
+    /// It has not been homed.
+    NotHomed,
+    /// It has been homed, and does not know any more: home again.
+    Lost {
+        /// The device error that says so; `None` where the drive restarted or gave its reference up.
+        error: Option<DeviceError>,
+    },
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Known => f.write_str("position known"),
+            Self::NotHomed => f.write_str("not homed"),
+            Self::Lost { error: None } => f.write_str("position lost: home again"),
+            Self::Lost { error: Some(error) } => {
+                write!(f, "position lost by error {:04X}: home again", error.0)
+            }
+        }
+    }
 }
 
 /// State, position and errors.

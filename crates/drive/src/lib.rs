@@ -3,6 +3,8 @@
 //! [`Client`] is a machine: bytes and times in, frames and events out. [`Listener`] only looks on. Neither opens a port, reads a
 //! clock, or knows about lidars; what the angles are good for is decided elsewhere.
 
+mod beat;
+mod bus;
 mod client;
 mod codec;
 mod command;
@@ -23,10 +25,12 @@ pub use command::{Command, CommandKind, Move};
 pub use config::AxisConfig;
 pub use error::{DriveError, Operation};
 pub use event::{
-    Arrived, Connected, Event, Identity, Outcome, Progress, ShaftSample, Status, Stopped,
+    AngleSource, Arrived, Connected, DeviceName, Event, Identity, Outcome, Place, Progress,
+    ShaftSample, Status, Stopped,
 };
 pub use link::LinkStats;
 pub use listener::{Listener, Observation};
 pub use plan::Plan;
+pub use protocol::canopen::nmt::NmtState;
 pub use protocol::epos2::{CommError, DeviceError, cia402, objects};
-pub use protocol::record;
+pub use protocol::record::{self, DriveLink};

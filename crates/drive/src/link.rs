@@ -6,63 +6,21 @@
 //! that the drive itself refused for its checksum was not, and goes out again.
 //! What is asked, and what a failure means for the motion, is decided elsewhere.
 
+mod request;
+
+use std::collections::VecDeque;
+
+use protocol::canopen::CanFrame;
 use protocol::epos2::CommError;
 use protocol::epos2::objects::Address;
 use units::{Host, Span, Stamp};
 
 use crate::codec::{Codec, Decoded, Reply};
 use crate::pairing::{Access, Asked, MARKERS, Paired, Pairing};
+use request::Job;
 
-/// A question to the drive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Request {
-    pub address: Address,
-    pub access: Access,
-    /// How long each attempt waits.
-    pub timeout: Span,
-    /// How often it is repeated after a lost answer.
-    pub retries: u8,
-    /// Goes out even while the link is out of step, and again once it is in step: for what must not wait.
-    pub urgent: bool,
-}
-
-/// An answer, with the times at which the question was handed out and the answer read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Answered {
-    pub reply: Reply,
-    pub request: Stamp<Host>,
-    pub answer: Stamp<Host>,
-}
-
-/// Why there is no answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Lost {
-    /// The link works, but every attempt's answer was lost.
-    Answer {
-        attempts: u8,
-        /// Whether the last one came back damaged rather than not at all.
-        damaged: bool,
-    },
-    /// Nothing at all came back within this time, markers included.
-    Link { silent: Span },
-}
-
-/// What the link went through.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LinkStats {
-    /// Requests handed out, repeats and markers included.
-    pub requests: u64,
-    /// Answers given to the request they belong to.
-    pub answers: u64,
-    /// Attempts whose answer did not come in time or came damaged.
-    pub lost: u64,
-    /// Answers that belonged to no request, or to one that had been given up.
-    pub strays: u64,
-    /// Frames with a wrong checksum or an impossible length.
-    pub damaged: u64,
-    /// Frames that are no answers at all, such as an echo of our own.
-    pub foreign: u64,
-}
+pub use request::LinkStats;
+pub(crate) use request::{Answered, Lost, Request};
 
 /// The state of the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,18 +33,6 @@ enum Line {
     OutOfStep { markers: u8 },
     /// Out of step, marker under way.
     Marker { markers: u8, deadline: Stamp<Host> },
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Job {
-    request: Request,
-    /// The latest copy on the wire.
-    id: Option<u64>,
-    attempts: u8,
-    rejected: u8,
-    damaged: bool,
-    first: Option<Stamp<Host>>,
-    hastened: bool,
 }
 
 /// The link with its one request.
@@ -104,6 +50,8 @@ pub(crate) struct Link {
     /// The request under way has no owner any more: do not wait long for it.
     hurry: bool,
     last_id: u64,
+    /// Frames of the bus that are no answers to this client.
+    frames: VecDeque<CanFrame>,
     stats: LinkStats,
 }
 
@@ -126,6 +74,7 @@ impl Link {
             heard: false,
             hurry: false,
             last_id: 0,
+            frames: VecDeque::new(),
             stats: LinkStats::default(),
         }
     }
@@ -133,15 +82,7 @@ impl Link {
     /// Asks; replaces whatever was asked before.
     pub fn submit(&mut self, request: Request) {
         self.done = None;
-        self.job = Some(Job {
-            request,
-            id: None,
-            attempts: 0,
-            rejected: 0,
-            damaged: false,
-            first: None,
-            hastened: false,
-        });
+        self.job = Some(Job::new(request));
     }
 
     /// The answer, once.
@@ -160,18 +101,39 @@ impl Link {
         self.stats
     }
 
+    /// A frame of the bus that is no answer to this client, oldest first.
+    pub fn take_frame(&mut self) -> Option<CanFrame> {
+        self.frames.pop_front()
+    }
+
     /// When something has to happen without input.
     pub fn deadline(&self) -> Option<Stamp<Host>> {
-        match self.line {
+        let line = match self.line {
             Line::Asked { deadline } | Line::Marker { deadline, .. } => Some(deadline),
             Line::InStep | Line::OutOfStep { .. } => None,
-        }
+        };
+        let last_call = self.job.and_then(|job| job.last_call());
+        [line, last_call, self.codec.deadline()]
+            .into_iter()
+            .flatten()
+            .min()
     }
 
     /// The next frame to write, if one is due.
     pub fn transmit(&mut self, now: Stamp<Host>) -> Option<Vec<u8>> {
         self.expire(now);
-        let job = self.job?;
+        if let Some(out) = self.codec.outgoing(now) {
+            if out.is_body {
+                self.pairing.restamp(self.last_id, now);
+            }
+            return Some(out.bytes);
+        }
+        let job = self.job.as_mut()?;
+        job.first.get_or_insert(now);
+        let job = *job;
+        if !self.codec.is_ready() {
+            return None;
+        }
         match self.line {
             Line::InStep => {
                 self.line = Line::Asked {
@@ -186,36 +148,46 @@ impl Link {
             Line::OutOfStep { markers } => {
                 self.line = Line::Marker {
                     markers: markers.saturating_add(1),
-                    deadline: now.saturating_add(job.request.timeout),
+                    deadline: now.saturating_add(job.request.marker_timeout),
                 };
-                Some(self.send_marker(now))
+                Some(self.send_marker(now, job.request.marker_timeout))
             }
             Line::Asked { .. } | Line::Marker { .. } => None,
         }
     }
 
-    /// Takes bytes from the port.
+    /// Takes bytes from the port; on CAN whole frames.
     pub fn input(&mut self, bytes: &[u8], now: Stamp<Host>) {
-        for &byte in bytes {
-            match self.codec.push(byte) {
+        for piece in bytes.chunks(self.codec.piece()) {
+            match self.codec.push(piece, now) {
                 None => {}
-                Some(Decoded::Reply(reply)) => self.reply(reply, now),
+                Some(Decoded::Reply(reply)) => self.reply(&reply, now),
+                Some(Decoded::Refused) => self.refused(now),
+                Some(Decoded::Bus(frame)) => self.frames.push_back(frame),
                 Some(Decoded::Foreign) => self.stats.foreign += 1,
-                Some(Decoded::Damaged) => self.damaged(),
+                Some(Decoded::Noise) => self.stats.damaged += 1,
+                Some(Decoded::Damaged) => self.damaged(now),
             }
         }
     }
 
     /// Acts on deadlines that have passed.
     pub fn expire(&mut self, now: Stamp<Host>) {
-        if let (true, Line::Asked { deadline }) = (self.hurry, self.line) {
+        self.codec.expire(now);
+        if self.hurry {
+            let soon = now.saturating_add(PATIENCE);
+            if let Line::Asked { deadline } | Line::Marker { deadline, .. } = &mut self.line {
+                *deadline = soon.min(*deadline);
+            }
             self.hurry = false;
-            self.line = Line::Asked {
-                deadline: deadline.min(now.saturating_add(PATIENCE)),
-            };
+        }
+        if let Some(job) = self.job
+            && job.last_call().is_some_and(|end| end <= now)
+        {
+            self.lose_link(&job, now);
         }
         match self.line {
-            Line::Asked { deadline } if deadline <= now => self.fall_out_of_step(false),
+            Line::Asked { deadline } if deadline <= now => self.fall_out_of_step(false, now),
             Line::Marker { markers, deadline } if deadline <= now => self.silence(markers, now),
             _ => {}
         }
@@ -228,35 +200,47 @@ impl Link {
         job.first.get_or_insert(now);
         job.hastened = true;
         job.attempts = job.attempts.saturating_add(u8::from(counts));
-        let (address, access) = (job.request.address, job.request.access);
-        let frame = self.send(address, access, now);
+        let request = job.request;
+        let frame = self.send(&request, now);
         if let Some(job) = self.job.as_mut() {
             job.id = Some(self.last_id);
         }
         frame
     }
 
-    fn send_marker(&mut self, now: Stamp<Host>) -> Vec<u8> {
+    fn send_marker(&mut self, now: Stamp<Host>, timeout: Span) -> Vec<u8> {
         let [(this, _), (other, _)] = MARKERS;
         self.marker = if self.marker == this { other } else { this };
-        self.send(self.marker, Access::Read, now)
+        let marker = Request {
+            address: self.marker,
+            access: Access::Read,
+            width: 4,
+            timeout,
+            marker_timeout: timeout,
+            retries: 0,
+            urgent: false,
+            last: false,
+        };
+        self.send(&marker, now)
     }
 
-    fn send(&mut self, address: Address, access: Access, now: Stamp<Host>) -> Vec<u8> {
+    fn send(&mut self, request: &Request, now: Stamp<Host>) -> Vec<u8> {
         self.last_id += 1;
         self.stats.requests += 1;
         self.pairing.sent(Asked {
-            address,
-            access,
+            address: request.address,
+            access: request.access,
             at: now,
             id: self.last_id,
         });
-        self.codec.encode(address, access)
+        let deadline = now.saturating_add(request.timeout);
+        self.codec
+            .encode(request.address, request.access, request.width, deadline)
     }
 
-    fn reply(&mut self, reply: Reply, now: Stamp<Host>) {
+    fn reply(&mut self, reply: &Reply, now: Stamp<Host>) {
         self.heard = true;
-        match self.pairing.received(&reply) {
+        match self.pairing.received(reply) {
             Paired::Stray => self.stats.strays += 1,
             Paired::Marker => self.still_coming(now),
             Paired::To(asked) if self.job.and_then(|job| job.id) == Some(asked.id) => {
@@ -277,12 +261,12 @@ impl Link {
         if let (Line::Marker { markers, .. }, Some(job)) = (self.line, self.job) {
             self.line = Line::Marker {
                 markers,
-                deadline: now.saturating_add(job.request.timeout),
+                deadline: now.saturating_add(job.request.marker_timeout),
             };
         }
     }
 
-    fn answer(&mut self, asked: Asked, reply: Reply, now: Stamp<Host>) {
+    fn answer(&mut self, asked: Asked, reply: &Reply, now: Stamp<Host>) {
         self.stats.answers += 1;
         if let Some(job) = self.job.as_mut()
             && reply.error == CommError::CRC
@@ -296,24 +280,57 @@ impl Link {
         }
         self.job = None;
         self.done = Some(Ok(Answered {
-            reply,
+            reply: *reply,
             request: asked.at,
             answer: now,
         }));
     }
 
-    fn damaged(&mut self) {
+    fn damaged(&mut self, now: Stamp<Host>) {
         self.stats.damaged += 1;
         self.heard = true;
         // The frame may have been our answer: no use in waiting for the timeout.
         if matches!(self.line, Line::Asked { .. }) {
-            self.fall_out_of_step(true);
+            self.fall_out_of_step(true, now);
+            return;
+        }
+        self.codec.give_up(now);
+        if let (Line::Marker { markers, .. }, false) = (self.line, self.codec.is_ready()) {
+            // A dialogue that broke off has no answer any more.
+            self.silence(markers, now);
         }
     }
 
-    fn fall_out_of_step(&mut self, damaged: bool) {
+    /// The unit did not take what was sent. As the refusal may be an older one's, the line is out of step.
+    fn refused(&mut self, now: Stamp<Host>) {
+        self.heard = true;
+        let was_marker = match self.line {
+            Line::Marker { markers, .. } => Some(markers),
+            _ => None,
+        };
+        if let Some(markers) = was_marker {
+            self.silence(markers, now);
+            return;
+        }
+        self.fall_out_of_step(true, now);
+        let Some(job) = self.job.as_mut() else {
+            return;
+        };
+        if job.rejected < REJECTIONS {
+            // It was not carried out, so this attempt does not count.
+            job.rejected += 1;
+            job.attempts = job.attempts.saturating_sub(1);
+        } else {
+            let attempts = job.attempts.saturating_add(job.rejected);
+            self.job = None;
+            self.done = Some(Err(Lost::Handshake { attempts }));
+        }
+    }
+
+    fn fall_out_of_step(&mut self, damaged: bool, now: Stamp<Host>) {
         self.stats.lost += 1;
         self.heard = false;
+        self.codec.give_up(now);
         if let Some(job) = self.job.as_mut() {
             job.damaged = damaged;
             job.hastened = false;
@@ -324,24 +341,34 @@ impl Link {
     /// A marker was not answered.
     fn silence(&mut self, markers: u8, now: Stamp<Host>) {
         self.stats.lost += 1;
+        self.codec.give_up(now);
         if markers < TRIES {
             self.line = Line::OutOfStep { markers };
             return;
         }
         self.line = Line::OutOfStep { markers: 0 };
-        if let Some(job) = self.job.take() {
-            let first = job.first.unwrap_or(now);
-            self.done = Some(Err(if self.heard {
-                Lost::Answer {
-                    attempts: job.attempts.max(1),
-                    damaged: job.damaged,
-                }
-            } else {
-                Lost::Link {
-                    silent: now.saturating_since(first),
-                }
+        let Some(job) = self.job else {
+            return;
+        };
+        if self.heard {
+            self.job = None;
+            self.done = Some(Err(Lost::Answer {
+                attempts: job.attempts.max(1),
+                damaged: job.damaged,
             }));
+        } else {
+            self.lose_link(&job, now);
         }
+    }
+
+    fn lose_link(&mut self, job: &Job, now: Stamp<Host>) {
+        self.job = None;
+        if let Line::Asked { .. } = self.line {
+            self.fall_out_of_step(false, now);
+        }
+        self.done = Some(Err(Lost::Link {
+            silent: now.saturating_since(job.first.unwrap_or(now)),
+        }));
     }
 
     fn back_in_step(&mut self) {

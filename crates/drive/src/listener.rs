@@ -1,12 +1,15 @@
 //! What a log's drive records say: shaft samples, object writes and statuswords, reconstructed by looking on.
 //!
-//! The listener pairs answers with requests by the same rules as the live client, so it sees what the client saw; frames
-//! that are none, answers that never came and answers to nobody lead to fewer observations, never to wrong ones.
-//! It understands USB frames; records of other links are passed over, as nothing writes them yet. Segmented transfers are paired but not told.
+//! The listener pairs answers with requests, and process data with SYNC, by the same rules as the live client, so it sees what the
+//! client saw; frames that are none, answers that never came and answers to nobody lead to fewer observations, never to
+//! wrong ones. USB, RS232 and CAN records give the same observations. Segmented transfers are paired but not told.
 
-use protocol::epos2::message::{Answer, Request};
+mod bus;
+mod rs232;
+
+use protocol::epos2::message::Request;
 use protocol::epos2::usb::UsbDecoder;
-use protocol::epos2::{CommError, Frame, FrameError};
+use protocol::epos2::{CommError, DeviceError, Frame, FrameError};
 use protocol::record::{Direction, DriveLink};
 use units::{Host, Quadcounts, Stamp};
 
@@ -14,11 +17,14 @@ use crate::codec::Reply;
 use crate::event::ShaftSample;
 use crate::objects::{self, Address};
 use crate::pairing::{Access, Asked, Paired, Pairing};
+use bus::BusWatch;
+use rs232::{Rs232Watch, Said};
 
 /// Something that the traffic shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Observation {
-    /// The shaft's position was read (6064).
+    /// The shaft's position was read (6064), or came at a SYNC. In the latter case an observation of the drive's own time
+    /// (1013) with the same stamps goes ahead, if the stream carries it.
     Sample(ShaftSample),
     /// The statusword was read (6041).
     Statusword {
@@ -62,6 +68,18 @@ pub enum Observation {
         /// When the refusal had been read.
         answer: Stamp<Host>,
     },
+    /// The drive told of an error the moment it happened (CAN).
+    Emergency {
+        /// The error; [`DeviceError::NONE`] where one is over.
+        error: DeviceError,
+        /// When the message came.
+        host: Stamp<Host>,
+    },
+    /// The drive has just started: its position and settings are forgotten (CAN).
+    Restarted {
+        /// When the message came.
+        host: Stamp<Host>,
+    },
     /// An answer that belongs to no request for certain, or a frame that is damaged or makes no sense in its direction.
     Noise {
         /// Which way it went.
@@ -77,6 +95,8 @@ pub struct Listener {
     node: u8,
     to_device: UsbDecoder,
     from_device: UsbDecoder,
+    rs232: Rs232Watch,
+    bus: BusWatch,
     pairing: Pairing,
     last_id: u64,
 }
@@ -89,12 +109,14 @@ impl Listener {
             node,
             to_device: UsbDecoder::new(),
             from_device: UsbDecoder::new(),
+            rs232: Rs232Watch::new(),
+            bus: BusWatch::new(node),
             pairing: Pairing::default(),
             last_id: 0,
         }
     }
 
-    /// Takes the bytes of one record (one frame, as logs are written; a part or several do no harm) that passed at `host`.
+    /// Takes a record; what it completes goes to `emit`.
     pub fn observe(
         &mut self,
         link: DriveLink,
@@ -103,10 +125,21 @@ impl Listener {
         host: Stamp<Host>,
         emit: &mut impl FnMut(Observation),
     ) {
-        if link != DriveLink::Usb {
-            return;
+        match link {
+            DriveLink::Usb => self.usb(direction, frame, host, emit),
+            DriveLink::Rs232 => self.rs232(direction, frame, host, emit),
+            DriveLink::Can => self.can(direction, frame, host, emit),
         }
-        for &byte in frame {
+    }
+
+    fn usb(
+        &mut self,
+        direction: Direction,
+        bytes: &[u8],
+        host: Stamp<Host>,
+        emit: &mut impl FnMut(Observation),
+    ) {
+        for &byte in bytes {
             let decoder = match direction {
                 Direction::ToDevice => &mut self.to_device,
                 Direction::FromDevice => &mut self.from_device,
@@ -118,12 +151,45 @@ impl Listener {
                 Direction::ToDevice => self.request(&frame, host),
                 Direction::FromDevice => self.answer(&frame),
             };
-            match seen {
-                Seen::Nothing => {}
-                Seen::Noise => emit(Observation::Noise { direction, host }),
-                Seen::Pair(asked, reply) => emit(observation(&asked, &reply, host)),
-            }
+            tell(seen, direction, host, emit);
         }
+    }
+
+    fn rs232(
+        &mut self,
+        direction: Direction,
+        bytes: &[u8],
+        host: Stamp<Host>,
+        emit: &mut impl FnMut(Observation),
+    ) {
+        for &byte in bytes {
+            let seen = match self.rs232.hear(direction, byte) {
+                Said::Nothing => Seen::Nothing,
+                Said::Noise => Seen::Noise,
+                Said::Request(frame) => self.request(&frame, host),
+                Said::Answer(frame) => self.answer(&frame),
+            };
+            tell(seen, direction, host, emit);
+        }
+    }
+
+    fn can(
+        &mut self,
+        direction: Direction,
+        bytes: &[u8],
+        host: Stamp<Host>,
+        emit: &mut impl FnMut(Observation),
+    ) {
+        let seen = match self.bus.hear(bytes, host, emit) {
+            bus::Said::Nothing => Seen::Nothing,
+            bus::Said::Noise => Seen::Noise,
+            bus::Said::Request(address, access) => self.asked(address, access, host),
+            bus::Said::Answer(reply) => self.paired(&reply),
+        };
+        if let Seen::Pair(asked, reply) = &seen {
+            self.bus.learn(asked, reply);
+        }
+        tell(seen, direction, host, emit);
     }
 
     fn request(&mut self, frame: &Result<Frame, FrameError>, host: Stamp<Host>) -> Seen {
@@ -135,31 +201,67 @@ impl Listener {
             Ok(Some(Request::WriteObject(write))) => {
                 (write.node, write.address, Access::Write(write.value))
             }
+            Ok(Some(Request::InitiateSegmentedRead(open))) => {
+                (open.node, open.address, Access::Open)
+            }
+            Ok(Some(Request::SegmentedRead(segment))) => (
+                self.node,
+                Address::default(),
+                Access::Segment {
+                    toggle: segment.toggle,
+                },
+            ),
             Ok(Some(_)) => (self.node, Address::default(), Access::Other),
             Ok(None) | Err(_) => return Seen::Noise,
         };
-        self.last_id += 1;
         let ours = node == self.node || node == 0;
+        if ours {
+            return self.asked(address, access, host);
+        }
         self.pairing.sent(Asked {
             address,
             access,
             at: host,
-            id: if ours { self.last_id } else { 0 },
+            id: 0,
+        });
+        Seen::Nothing
+    }
+
+    fn asked(&mut self, address: Address, access: Access, at: Stamp<Host>) -> Seen {
+        self.last_id += 1;
+        self.pairing.sent(Asked {
+            address,
+            access,
+            at,
+            id: self.last_id,
         });
         Seen::Nothing
     }
 
     fn answer(&mut self, frame: &Result<Frame, FrameError>) -> Seen {
-        let Ok(Ok(answer)) = frame.as_ref().map(Answer::parse) else {
-            return Seen::Noise;
-        };
-        let reply = Reply::from(&answer);
-        match self.pairing.received(&reply) {
-            Paired::To(asked) if asked.id != 0 && asked.access != Access::Other => {
-                Seen::Pair(asked, reply)
-            }
+        match frame.as_ref().map(Reply::parse) {
+            Ok(Ok(reply)) => self.paired(&reply),
+            Ok(Err(_)) | Err(_) => Seen::Noise,
+        }
+    }
+
+    fn paired(&mut self, reply: &Reply) -> Seen {
+        match self.pairing.received(reply) {
+            Paired::To(asked) if asked.id != 0 => Seen::Pair(asked, *reply),
             Paired::To(_) | Paired::Marker => Seen::Nothing,
             Paired::Stray => Seen::Noise,
+        }
+    }
+}
+
+fn tell(seen: Seen, direction: Direction, host: Stamp<Host>, emit: &mut impl FnMut(Observation)) {
+    match seen {
+        Seen::Nothing => {}
+        Seen::Noise => emit(Observation::Noise { direction, host }),
+        Seen::Pair(asked, reply) => {
+            if let Some(observation) = observation(&asked, &reply, host) {
+                emit(observation);
+            }
         }
     }
 }
@@ -170,27 +272,28 @@ enum Seen {
     Pair(Asked, Reply),
 }
 
-fn observation(asked: &Asked, reply: &Reply, answer: Stamp<Host>) -> Observation {
+fn observation(asked: &Asked, reply: &Reply, answer: Stamp<Host>) -> Option<Observation> {
     let (address, request) = (asked.address, asked.at);
-    if !reply.error.is_none() {
-        return Observation::Refused {
+    match asked.access {
+        Access::Segment { .. } | Access::Other => None,
+        _ if !reply.error.is_none() => Some(Observation::Refused {
             address,
             error: reply.error,
             request,
             answer,
-        };
+        }),
+        Access::Write(value) => Some(Observation::Wrote {
+            address,
+            value,
+            request,
+            answer,
+        }),
+        Access::Read | Access::Open => Some(value(address, reply.value?, request, answer)),
     }
-    let value = match asked.access {
-        Access::Write(value) => {
-            return Observation::Wrote {
-                address,
-                value,
-                request,
-                answer,
-            };
-        }
-        Access::Read | Access::Other => reply.value.unwrap_or_default(),
-    };
+}
+
+/// A value of an object as an observation.
+fn value(address: Address, value: u32, request: Stamp<Host>, answer: Stamp<Host>) -> Observation {
     if address == objects::POSITION_ACTUAL.address {
         Observation::Sample(ShaftSample {
             request,

@@ -4,6 +4,9 @@
 //! driven from outside by [`crate::Client`]; there is no runtime, no I/O and no clock here, and a procedure that is
 //! dropped in the middle leaves nothing behind but perhaps one answer still under way.
 
+mod stream;
+mod transfer;
+
 use std::collections::VecDeque;
 use std::future::poll_fn;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -12,6 +15,7 @@ use std::task::Poll;
 use protocol::epos2::objects::{self, Address, Object, Scalar};
 use units::{Host, Quadcounts, Span, Stamp};
 
+use crate::bus::{Alarm, Bus};
 use crate::config::AxisConfig;
 use crate::error::{DriveError, Operation};
 use crate::event::{Event, Progress, ShaftSample};
@@ -22,7 +26,13 @@ use crate::pairing::Access;
 #[derive(Debug)]
 pub(crate) struct Core {
     pub link: Link,
+    /// What there is on a CAN bus beside requests.
+    pub bus: Option<Bus>,
+    /// The axis has known its position since it was connected.
+    pub referenced: bool,
     pub now: Stamp<Host>,
+    /// A command was started at a time that is not known yet.
+    pub begins: bool,
     /// The running procedure waits for this instant.
     pub wake: Option<Stamp<Host>>,
     pub events: VecDeque<Event>,
@@ -42,8 +52,15 @@ pub(crate) struct Ops {
     pub config: Arc<AxisConfig>,
     /// The axis may be moving: do not wait long for answers.
     moving: bool,
+    /// An alarm of the bus ends the procedure.
+    watching: bool,
     next_sample: Option<Stamp<Host>>,
 }
+
+/// How long a marker waits while the axis moves: a link that has lost an answer must soon be known to work or not.
+const MARKER_MOVING: Span = Span::from_millis(40);
+/// How long a quick stop waits for its answer on a link that seems dead.
+const LAST_TRY: Span = Span::from_millis(80);
 
 impl Ops {
     pub fn new(core: Shared, config: Arc<AxisConfig>) -> Self {
@@ -51,6 +68,7 @@ impl Ops {
             core,
             config,
             moving: false,
+            watching: false,
             next_sample: None,
         }
     }
@@ -58,6 +76,26 @@ impl Ops {
     /// Whether the axis may be moving, so that a lost answer is noticed sooner.
     pub fn set_moving(&mut self, moving: bool) {
         self.moving = moving;
+    }
+
+    /// Whether what the bus reports beside answers (an emergency, a restart) ends the procedure.
+    pub fn watch(&mut self, watching: bool) {
+        self.watching = watching;
+    }
+
+    /// What there is on a CAN bus beside requests; `None` on other links.
+    pub fn on_bus<R>(&self, act: impl FnOnce(&mut Bus, Stamp<Host>) -> R) -> Option<R> {
+        let mut core = lock(&self.core);
+        let now = core.now;
+        core.bus.as_mut().map(|bus| act(bus, now))
+    }
+
+    pub fn was_referenced(&self) -> bool {
+        lock(&self.core).referenced
+    }
+
+    pub fn set_referenced(&self, referenced: bool) {
+        lock(&self.core).referenced = referenced;
     }
 
     pub fn now(&self) -> Stamp<Host> {
@@ -74,7 +112,7 @@ impl Ops {
     }
 
     async fn read_timed<T: Scalar>(&self, object: Object<T>) -> Result<(T, Answered), DriveError> {
-        let request = self.request(object.address, Access::Read);
+        let request = self.request(object.address, Access::Read, T::BYTES);
         let answered = self.ask(request).await?;
         let raw = answered.reply.value.unwrap_or_default();
         Ok((T::from_raw(raw), answered))
@@ -82,7 +120,18 @@ impl Ops {
 
     /// Writes an object.
     pub async fn write<T: Scalar>(&self, object: Object<T>, value: T) -> Result<(), DriveError> {
-        let request = self.request(object.address, Access::Write(value.to_raw()));
+        self.write_raw(object.address, value.to_raw(), T::BYTES)
+            .await
+    }
+
+    /// Writes an object of `width` bytes.
+    pub async fn write_raw(
+        &self,
+        address: Address,
+        value: u32,
+        width: u8,
+    ) -> Result<(), DriveError> {
+        let request = self.request(address, Access::Write(value), width);
         self.ask(request).await.map(drop)
     }
 
@@ -127,13 +176,37 @@ impl Ops {
             timeout: self.config.timing.timeout_moving,
             retries: self.config.timing.read_retries,
             urgent: true,
-            ..self.request(object.address, Access::Write(value.to_raw()))
+            ..self.request(object.address, Access::Write(value.to_raw()), T::BYTES)
         };
         self.ask(request).await.map(drop)
     }
 
-    /// Samples the shaft's position on the grid of the poll period.
+    /// The same where the link seems dead: sent for a drive that may hear without being heard, and given up soon.
+    pub async fn write_at_last<T: Scalar>(
+        &self,
+        object: Object<T>,
+        value: T,
+    ) -> Result<(), DriveError> {
+        let request = Request {
+            timeout: self.config.timing.timeout_moving.min(LAST_TRY),
+            retries: 0,
+            urgent: true,
+            last: true,
+            ..self.request(object.address, Access::Write(value.to_raw()), T::BYTES)
+        };
+        self.ask(request).await.map(drop)
+    }
+
+    /// The next sample of the shaft's position: of the stream where there is one, else asked for on the grid of the poll period.
     pub async fn sample(&mut self) -> Result<ShaftSample, DriveError> {
+        if let Some(sample) = self.streamed().await {
+            self.next_sample = None;
+            return Ok(sample);
+        }
+        self.poll().await
+    }
+
+    async fn poll(&mut self) -> Result<ShaftSample, DriveError> {
         if let Some(due) = self.next_sample {
             self.sleep_until(due).await;
         }
@@ -163,10 +236,11 @@ impl Ops {
         self.sleep_until(self.now().saturating_add(span)).await;
     }
 
+    /// An alarm ends it early; whatever is asked next tells of it.
     pub async fn sleep_until(&self, until: Stamp<Host>) {
         poll_fn(|_| {
             let mut core = lock(&self.core);
-            if core.now >= until {
+            if core.now >= until || (self.watching && core.has_alarm()) {
                 core.wake = None;
                 return Poll::Ready(());
             }
@@ -176,36 +250,52 @@ impl Ops {
         .await;
     }
 
-    fn request(&self, address: Address, access: Access) -> Request {
+    fn request(&self, address: Address, access: Access, width: u8) -> Request {
         let timing = &self.config.timing;
         Request {
             address,
             access,
+            width,
             timeout: if self.moving {
                 timing.timeout_moving
             } else {
                 timing.timeout
             },
+            marker_timeout: if self.moving {
+                timing.timeout_moving.min(MARKER_MOVING)
+            } else {
+                timing.timeout
+            },
             retries: match access {
                 Access::Read => timing.read_retries,
-                Access::Write(_) | Access::Other => 0,
+                Access::Write(_) | Access::Open | Access::Segment { .. } | Access::Other => 0,
             },
             urgent: false,
+            last: false,
         }
     }
 
     async fn ask(&self, request: Request) -> Result<Answered, DriveError> {
         lock(&self.core).link.submit(request);
-        let result = poll_fn(|_| match lock(&self.core).link.take() {
-            Some(result) => Poll::Ready(result),
-            None => Poll::Pending,
+        let result = poll_fn(|_| {
+            let mut core = lock(&self.core);
+            if self.watching
+                && let Some(alarm) = core.bus.as_mut().and_then(Bus::take_alarm)
+            {
+                core.link.abandon();
+                return Poll::Ready(Err(self.alarmed(alarm)));
+            }
+            match core.link.take() {
+                Some(result) => Poll::Ready(Ok(result)),
+                None => Poll::Pending,
+            }
         })
-        .await;
+        .await?;
         let operation = Operation {
             address: request.address,
             wrote: match request.access {
                 Access::Write(value) => Some(value),
-                Access::Read | Access::Other => None,
+                _ => None,
             },
         };
         match result {
@@ -220,6 +310,43 @@ impl Ops {
                 damaged,
             }),
             Err(Lost::Link { silent }) => Err(DriveError::LinkLost { operation, silent }),
+            Err(Lost::Handshake { attempts }) => Err(DriveError::Handshake {
+                operation,
+                attempts,
+            }),
         }
+    }
+
+    fn alarmed(&self, alarm: Alarm) -> DriveError {
+        let node = self.config.node;
+        match alarm {
+            Alarm::Emergency(error) => DriveError::Fault { error: Some(error) },
+            Alarm::Restarted => DriveError::Restarted { error: None },
+            Alarm::Silent(silence) => DriveError::NodeSilent { node, silence },
+            Alarm::Left(state) => DriveError::NodeLeft { node, state },
+        }
+    }
+}
+
+impl Core {
+    /// Does what the start of a command asks for, once its time is known.
+    pub fn begin(&mut self, now: Stamp<Host>) {
+        if std::mem::take(&mut self.begins)
+            && let Some(bus) = &mut self.bus
+        {
+            bus.begin(now);
+        }
+    }
+
+    /// A command has ended.
+    pub fn end(&mut self) {
+        self.wake = None;
+        if let Some(bus) = &mut self.bus {
+            bus.end();
+        }
+    }
+
+    fn has_alarm(&self) -> bool {
+        self.bus.as_ref().is_some_and(Bus::has_alarm)
     }
 }

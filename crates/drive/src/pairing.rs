@@ -1,7 +1,8 @@
 //! Which request an answer belongs to.
 //!
 //! A serial answer of the EPOS2 names neither object nor request, so it can only be told by order and shape: answers come in
-//! the order of the requests, some may be lost, and a read answers four words where a write answers two. An answer that
+//! the order of the requests, some may be lost, and a read answers four words where a write answers two. An SDO answer names
+//! its object (but for segments), which tells more, yet not which of two reads of one object it belongs to. An answer that
 //! fits more than one outstanding request is given to none. After a loss the client asks for an object that does not
 //! exist (a marker): its error comes after whatever was still under way, and from there on both sides are in step again.
 //! There are two markers with different errors, taken in turn, so that a late answer to one is not taken for the other's.
@@ -30,6 +31,13 @@ pub(crate) enum Access {
     Read,
     /// WriteObject of this value.
     Write(u32),
+    /// Begins a read in segments.
+    Open,
+    /// The next segment of the read that was begun last.
+    Segment {
+        /// Alternates, beginning with `false`.
+        toggle: bool,
+    },
     /// Any other command; only the listener meets them.
     Other,
 }
@@ -77,15 +85,22 @@ impl Pairing {
         self.outstanding.push_back(asked);
     }
 
+    /// The request is executed no earlier than at this time, later than it was asked.
+    pub fn restamp(&mut self, id: u64, at: Stamp<Host>) {
+        if let Some(asked) = self.outstanding.iter_mut().find(|asked| asked.id == id) {
+            asked.at = at;
+        }
+    }
+
     /// An answer came in.
     pub fn received(&mut self, reply: &Reply) -> Paired {
-        if let Some(marker) = self.marker(reply.error) {
+        if let Some(marker) = self.marker(reply) {
             self.outstanding.drain(..=marker);
             return Paired::Marker;
         }
         let mut fitting = (0..)
             .zip(&self.outstanding)
-            .filter(|(_, asked)| marker_error(asked).is_none() && fits(asked.access, reply));
+            .filter(|(_, asked)| marker_error(asked).is_none() && fits(asked, reply));
         match (fitting.next(), fitting.next()) {
             (Some((index, &asked)), None) => {
                 self.outstanding.drain(..=index);
@@ -96,16 +111,18 @@ impl Pairing {
     }
 
     /// The oldest marker that an error answers. Where only markers are out, an unexpected error answers the first of them.
-    fn marker(&self, error: CommError) -> Option<usize> {
-        if error.is_none() {
+    fn marker(&self, reply: &Reply) -> Option<usize> {
+        if reply.error.is_none() {
             return None;
         }
-        let expected = |asked| marker_error(asked) == Some(error);
+        let about = |asked: &Asked| reply.about.is_none_or(|about| about.fits(asked));
+        let expected = |asked: &Asked| marker_error(asked) == Some(reply.error) && about(asked);
         let only_markers = || self.outstanding.iter().all(|a| marker_error(a).is_some());
-        self.outstanding
-            .iter()
-            .position(expected)
-            .or_else(|| (!self.in_step() && only_markers()).then_some(0))
+        self.outstanding.iter().position(expected).or_else(|| {
+            only_markers()
+                .then(|| self.outstanding.iter().position(about))
+                .flatten()
+        })
     }
 
     /// Whether nothing is outstanding.
@@ -118,16 +135,22 @@ impl Pairing {
 fn marker_error(asked: &Asked) -> Option<CommError> {
     MARKERS
         .iter()
-        .find(|(address, _)| asked.access == Access::Read && asked.address == *address)
+        .find(|(address, _)| {
+            matches!(asked.access, Access::Read | Access::Open) && asked.address == *address
+        })
         .map(|(_, error)| *error)
 }
 
-/// Whether a reply has the shape of an answer to `access`. An error may answer anything.
-fn fits(access: Access, reply: &Reply) -> bool {
-    match access {
+/// Whether a reply has the shape of an answer to a request. An error may answer anything.
+fn fits(asked: &Asked, reply: &Reply) -> bool {
+    if let Some(about) = reply.about {
+        return about.fits(asked) && (asked.access != Access::Read || reply.is_value());
+    }
+    match asked.access {
         _ if !reply.error.is_none() => true,
         Access::Read => reply.value.is_some(),
-        Access::Write(_) => reply.words == 0,
+        Access::Write(_) | Access::Open => reply.words == 0,
+        Access::Segment { .. } => reply.segment.is_some(),
         Access::Other => true,
     }
 }
@@ -135,21 +158,28 @@ fn fits(access: Access, reply: &Reply) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::codec::{About, Kind};
 
     const READ_OK: Reply = Reply {
         error: CommError::NONE,
         words: 2,
         value: Some(7),
+        segment: None,
+        about: None,
     };
     const WRITE_OK: Reply = Reply {
         error: CommError::NONE,
         words: 0,
         value: None,
+        segment: None,
+        about: None,
     };
     const ABSENT: Reply = Reply {
         error: CommError::NO_OBJECT,
         words: 0,
         value: None,
+        segment: None,
+        about: None,
     };
 
     fn asked(id: u64, access: Access) -> Asked {
@@ -250,5 +280,54 @@ mod tests {
         let late = asked(3_000, Access::Read);
         let mut pairing = pairing(&[asked(1, Access::Read), late]);
         assert_eq!(pairing.received(&READ_OK), Paired::To(late));
+    }
+
+    /// An SDO answer about an object.
+    fn about(sub: u8, kind: Kind, reply: Reply) -> Reply {
+        let address = Some(Address::new(0x6064, sub));
+        Reply {
+            about: Some(About { address, kind }),
+            ..reply
+        }
+    }
+
+    #[test]
+    fn an_sdo_answer_belongs_to_its_object_and_direction() {
+        let read = asked(1, Access::Read);
+        for other in [
+            about(1, Kind::Upload, READ_OK),
+            about(0, Kind::Download, WRITE_OK),
+            about(1, Kind::Abort, ABSENT),
+        ] {
+            assert_eq!(pairing(&[read]).received(&other), Paired::Stray);
+        }
+        for own in [
+            about(0, Kind::Upload, READ_OK),
+            about(0, Kind::Abort, ABSENT),
+        ] {
+            assert_eq!(pairing(&[read]).received(&own), Paired::To(read));
+        }
+    }
+
+    #[test]
+    fn an_abort_of_another_object_is_no_marker() {
+        let mut pairing = pairing(&[marker(1, 0)]);
+        let other = about(0, Kind::Abort, ABSENT);
+        assert_eq!(pairing.received(&other), Paired::Stray);
+        let own = Reply {
+            about: Some(About {
+                address: Some(MARKERS[0].0),
+                kind: Kind::Abort,
+            }),
+            ..ABSENT
+        };
+        assert_eq!(pairing.received(&own), Paired::Marker);
+    }
+
+    #[test]
+    fn two_reads_of_one_object_are_not_told_apart_on_can_either() {
+        let mut pairing = pairing(&[asked(1, Access::Read), asked(2, Access::Read)]);
+        let answer = about(0, Kind::Upload, READ_OK);
+        assert_eq!(pairing.received(&answer), Paired::Stray);
     }
 }

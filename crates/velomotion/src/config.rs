@@ -41,8 +41,12 @@ pub struct Devices {
 pub struct Device {
     /// How the drive is attached.
     pub kind: DeviceKind,
-    /// Path of the drive's serial port; needed unless the device is software.
+    /// Path of the drive's serial port, or the SLCAN adapter's.
     pub port: Option<PathBuf>,
+    /// Name of the CAN interface of a drive of kind `can`.
+    pub interface: Option<String>,
+    /// Speed of the serial port, where it is not the factory's.
+    pub baud: Option<u32>,
     /// Local address on which the lidar's packets arrive.
     #[serde(default = "any_address")]
     pub lidar: Ipv4Addr,
@@ -59,6 +63,12 @@ pub enum DeviceKind {
     Sim,
     /// EPOS2 on USB.
     Usb,
+    /// EPOS2 on RS232.
+    Rs232,
+    /// EPOS2 on CAN, behind an SLCAN adapter on a serial port.
+    Slcan,
+    /// EPOS2 on CAN, on an interface of the kernel.
+    Can,
 }
 
 /// The tilt axis: encoder, gear, limits.
@@ -152,6 +162,8 @@ impl Device {
         Self {
             kind: DeviceKind::Sim,
             port: None,
+            interface: None,
+            baud: None,
             lidar: Ipv4Addr::LOCALHOST,
             accel_deg_s2: 5000.0,
         }
@@ -163,6 +175,8 @@ impl Device {
         Self {
             kind: DeviceKind::Usb,
             port: Some(port),
+            interface: None,
+            baud: None,
             lidar: any_address(),
             accel_deg_s2: gentle(),
         }

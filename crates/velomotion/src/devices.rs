@@ -1,6 +1,6 @@
 //! From a device profile to an open drive port and a lidar address.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use drive::config::{Brake, Homing, LimitSwitches, Limits, Timing};
 use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
@@ -114,25 +114,6 @@ pub fn axis(axis: &Axis) -> Result<drive::AxisConfig, Failure> {
     };
     config.check().map_err(|error| wrong(&error))?;
     Ok(config)
-}
-
-/// The drive's port path of a device that is hardware.
-///
-/// # Errors
-/// [`Kind::BadInput`] where the profile names none.
-pub fn port_path<'a>(name: &str, device: &'a Device) -> Result<&'a Path, Failure> {
-    device.port.as_deref().ok_or_else(|| {
-        Failure::new(
-            Kind::BadInput,
-            format!(
-                "device {name} is of kind {:?} but names no port",
-                device.kind
-            ),
-        )
-        .help(format!(
-            "add port = \"/dev/ttyUSB0\" (or what it is) to [device.{name}] of the configuration"
-        ))
-    })
 }
 
 /// Whether the device is software.

@@ -1,11 +1,105 @@
-//! The drive's serial port: its speed, and what to do where it cannot be had.
+//! The drive's port, whatever it is: opened by the device's profile, and what to do where it cannot be had.
 
-use io::port::PortError;
+use std::path::{Path, PathBuf};
 
+use io::can::{CanError, CanPort, Slcan, SocketCan};
+use io::port::{LatencyTimer, Port, PortError, SerialPort};
+use protocol::canopen::CanFrame;
+use protocol::canopen::slcan::Bitrate;
+use protocol::record::DriveLink;
+use units::{Host, Span, Stamp};
+
+use crate::config::{Device, DeviceKind};
 use crate::failure::{Failure, Kind};
 
 /// EPOS2 on USB: 1 Mbaud by the Communication Guide.
-pub const USB_BAUD: u32 = 1_000_000;
+const USB_BAUD: u32 = 1_000_000;
+/// EPOS2 on RS232 from the factory; older firmware has 38,400.
+const RS232_BAUD: u32 = 115_200;
+/// The serial side of SLCAN adapters on USB does not care; those on a real line mostly have this.
+const SLCAN_BAUD: u32 = 115_200;
+
+/// A drive's port, open.
+pub struct Opened {
+    /// Bytes of a serial line, or 16 bytes a frame of a bus.
+    pub port: Box<dyn Port>,
+    /// How the drive is attached.
+    pub link: DriveLink,
+    /// What may be wrong with it.
+    pub warning: Option<String>,
+}
+
+/// What the drive of a profile is reached by: a serial port's path, or the name of a CAN interface.
+///
+/// # Errors
+/// [`Kind::BadInput`] where the profile names none.
+pub fn place(name: &str, device: &Device) -> Result<PathBuf, Failure> {
+    let (found, key, example) = match device.kind {
+        DeviceKind::Can => (
+            device.interface.as_ref().map(PathBuf::from),
+            "interface",
+            "can0",
+        ),
+        _ => (device.port.clone(), "port", "/dev/ttyUSB0"),
+    };
+    found.ok_or_else(|| {
+        Failure::new(
+            Kind::BadInput,
+            format!(
+                "device {name} is of kind {:?} but names no {key}",
+                device.kind
+            ),
+        )
+        .help(format!(
+            "add {key} = \"{example}\" (or what it is) to [device.{name}] of the configuration"
+        ))
+    })
+}
+
+/// Opens the port of a device at `place`. The software scanner's is a USB drive on a pseudo-terminal.
+///
+/// # Errors
+/// [`Kind::NoDevice`].
+pub fn open(device: &Device, place: &Path) -> Result<Opened, Failure> {
+    let serial = |baud: u32| {
+        SerialPort::open(place, device.baud.unwrap_or(baud)).map_err(|error| failure(&error))
+    };
+    let opened = |port: Box<dyn Port>, link| Opened {
+        port,
+        link,
+        warning: None,
+    };
+    Ok(match device.kind {
+        DeviceKind::Sim | DeviceKind::Usb => {
+            let port = serial(USB_BAUD)?;
+            let warning = slow_answers(port.latency_timer());
+            Opened {
+                warning,
+                ..opened(Box::new(port), DriveLink::Usb)
+            }
+        }
+        DeviceKind::Rs232 => opened(Box::new(serial(RS232_BAUD)?), DriveLink::Rs232),
+        DeviceKind::Slcan => {
+            let bus = Slcan::open(serial(SLCAN_BAUD)?, Bitrate::Kbit1000)
+                .map_err(|error| can_failure(&error))?;
+            opened(Box::new(BusLine(bus)), DriveLink::Can)
+        }
+        DeviceKind::Can => {
+            let bus =
+                SocketCan::open(&place.to_string_lossy()).map_err(|error| can_failure(&error))?;
+            opened(Box::new(BusLine(bus)), DriveLink::Can)
+        }
+    })
+}
+
+fn slow_answers(timer: LatencyTimer) -> Option<String> {
+    match timer {
+        LatencyTimer::High { ms } => Some(format!(
+            "the adapter's latency timer is {ms} ms and cannot be set: every angle is that much less certain (velomotion doctor)"
+        )),
+        LatencyTimer::Unknown | LatencyTimer::Low => None,
+    }
+}
 
 /// A port that cannot be had, with what to do about it.
 #[must_use]
@@ -23,4 +117,57 @@ pub fn failure(error: &PortError) -> Failure {
         }
     };
     Failure::new(Kind::NoDevice, error.to_string()).help(help)
+}
+
+fn can_failure(error: &CanError) -> Failure {
+    match error {
+        CanError::Port(error) => failure(error),
+        error => Failure::new(Kind::NoDevice, error.to_string())
+            .help("velomotion doctor lists the CAN interfaces and says how to bring them up"),
+    }
+}
+
+/// A CAN bus as the drive client and the log know it: a `struct can_frame` of 16 bytes a frame.
+struct BusLine<C>(C);
+
+impl<C: CanPort> Port for BusLine<C> {
+    fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
+        let frame = CanFrame::from_socketcan(frame)
+            .map_err(|error| bus_error("write", &error.to_string()))?;
+        match self.0.write_frame(&frame) {
+            Ok(at) => Ok(at),
+            // Lost on its way, as frames can be: the client asks again.
+            Err(CanError::NotSent) => Ok(io::clock::now()),
+            Err(CanError::Port(error)) => Err(error),
+            Err(error) => Err(bus_error("write", &error.to_string())),
+        }
+    }
+
+    fn read(
+        &mut self,
+        buffer: &mut [u8],
+        timeout: Span,
+    ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
+        match self.0.read(timeout) {
+            Ok(None) | Err(CanError::NotSent) => Ok(None),
+            Ok(Some((frame, at))) => {
+                let bytes = frame.to_socketcan();
+                let Some(room) = buffer.get_mut(..bytes.len()) else {
+                    return Err(bus_error("read", "a buffer shorter than a frame"));
+                };
+                room.copy_from_slice(&bytes);
+                Ok(Some((bytes.len(), at)))
+            }
+            Err(CanError::Port(error)) => Err(error),
+            Err(error) => Err(bus_error("read", &error.to_string())),
+        }
+    }
+}
+
+fn bus_error(action: &'static str, what: &str) -> PortError {
+    PortError::Io {
+        port: "CAN".to_owned(),
+        action,
+        source: std::io::Error::other(what.to_owned()),
+    }
 }

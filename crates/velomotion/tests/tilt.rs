@@ -28,7 +28,8 @@ impl Bench {
         said.read_line(&mut port).unwrap();
         assert_eq!(link.canonicalize().unwrap(), PathBuf::from(port.trim()));
         let config = format!(
-            "[device]\ndefault = 'soft'\n[device.soft]\nkind = 'usb'\nport = '{}'\n",
+            "[device]\ndefault = 'soft'\n[device.soft]\nkind = '{}'\nport = '{}'\n",
+            interface.trim_start_matches('-'),
             link.display()
         );
         std::fs::write(folder.path().join("velomotion.toml"), config).unwrap();
@@ -110,6 +111,23 @@ fn the_axis_is_looked_at_homed_moved_and_its_faults_explained() {
 
     let outside = bench.run("tilt goto -46");
     assert_eq!(outside.status.code(), Some(2));
+}
+
+#[test]
+fn every_link_homes_and_moves_the_same_axis() {
+    for interface in ["--usb", "--rs232", "--slcan"] {
+        let bench = Bench::new(interface);
+        let homed = bench.json("tilt home");
+        assert_eq!(
+            (&homed["referenced"], &homed["angle_deg"]),
+            (&true.into(), &0.0.into()),
+            "{interface}: {homed}"
+        );
+        let moved = bench.json("tilt goto -20 --speed 40");
+        let angle = moved["angle_deg"].as_f64().unwrap();
+        assert!((angle + 20.0).abs() < 0.001, "{interface}: {moved}");
+        assert_eq!(moved["state"], "switch-on disabled", "{interface}: {moved}");
+    }
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::objects::{self, Object};
 use crate::ops::Ops;
 use protocol::epos2::cia402::mode;
 
+use super::network;
 use super::power::set_mode;
 
 /// Writes every setting and reads it back. The axis must be disabled.
@@ -57,7 +58,16 @@ pub(super) async fn verify_safety(ops: &Ops) -> Result<(), DriveError> {
     }
     let limits = ops.config.limits_qc()?;
     ops.expect(objects::MIN_POSITION, limits.min.0).await?;
-    ops.expect(objects::MAX_POSITION, limits.max.0).await
+    ops.expect(objects::MAX_POSITION, limits.max.0).await?;
+    network::verify(ops).await
+}
+
+/// Whether the drive has lost what it was told when it was connected: only a restart does that.
+pub(super) async fn has_forgotten(ops: &Ops) -> Result<bool, DriveError> {
+    let limits = ops.config.limits_qc()?;
+    let min = ops.read(objects::MIN_POSITION).await?;
+    let max = ops.read(objects::MAX_POSITION).await?;
+    Ok(min != limits.min.0 && max != limits.max.0)
 }
 
 /// By default a limit switch does not stop the axis: only a bit in 2071:4 makes it run its error routine.

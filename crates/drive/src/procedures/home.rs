@@ -9,11 +9,13 @@ use crate::objects;
 use crate::ops::Ops;
 
 use super::configure::verify_safety;
+use super::network;
 use super::power::{check_enabled, enable, is_referenced, set_mode};
 use super::stop::make_safe;
 
 /// [`crate::Command::Home`]
 pub(crate) async fn home(mut ops: Ops) -> Result<Outcome, DriveError> {
+    ops.watch(true);
     match search(&mut ops).await {
         Ok(outcome) => Ok(outcome),
         Err(cause) => Err(make_safe(&mut ops, cause).await),
@@ -26,8 +28,10 @@ async fn search(ops: &mut Ops) -> Result<Outcome, DriveError> {
     ops.write(objects::CONTROLWORD, control::SHUTDOWN).await?;
     set_mode(ops, mode::HOMING).await?;
     set_up(ops).await?;
+    network::arm(ops).await?;
     enable(ops).await?;
     ops.set_moving(true);
+    ops.set_referenced(false);
     ops.write(objects::CONTROLWORD, control::START_HOMING)
         .await?;
     ops.tell(Progress::Homing);
@@ -36,7 +40,9 @@ async fn search(ops: &mut Ops) -> Result<Outcome, DriveError> {
     ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
         .await?;
     set_mode(ops, mode::PROFILE_POSITION).await?;
-    check(ops).await
+    let outcome = check(ops).await?;
+    network::disarm(ops).await?;
+    Ok(outcome)
 }
 
 async fn set_up(ops: &Ops) -> Result<(), DriveError> {
@@ -93,6 +99,7 @@ async fn check(ops: &Ops) -> Result<Outcome, DriveError> {
     if !is_referenced(got) {
         return Err(DriveError::NotReferenced { got });
     }
+    ops.set_referenced(true);
     let position = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
     let angle = ops.config.gearing.angle(position);
     let limits = ops.config.limits_qc()?;

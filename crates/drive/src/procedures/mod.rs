@@ -7,6 +7,7 @@ mod configure;
 mod connect;
 mod home;
 mod motion;
+mod network;
 mod power;
 mod report;
 mod stop;

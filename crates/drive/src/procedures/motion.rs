@@ -13,6 +13,7 @@ use crate::ops::Ops;
 use crate::plan::{Aim, Plan};
 
 use super::configure::verify_safety;
+use super::network;
 use super::power::{check_enabled, enable, is_referenced, set_mode, wait_for};
 use super::stop::make_safe;
 
@@ -29,6 +30,7 @@ pub(crate) async fn sweep(ops: Ops, aim: Aim) -> Result<Outcome, DriveError> {
 
 /// [`crate::Command::Hold`]
 pub(crate) async fn hold(mut ops: Ops, until: Stamp<Host>) -> Result<Outcome, DriveError> {
+    ops.watch(true);
     let mut watch = Watch::new(&ops);
     while ops.now() < until {
         let looked = match ops.sample().await {
@@ -43,6 +45,7 @@ pub(crate) async fn hold(mut ops: Ops, until: Stamp<Host>) -> Result<Outcome, Dr
 }
 
 async fn guarded(mut ops: Ops, aim: Aim, hold: Span) -> Result<Outcome, DriveError> {
+    ops.watch(true);
     match move_to(&mut ops, aim, hold).await {
         Ok(arrived) => Ok(Outcome::Arrived(arrived)),
         Err(cause) => Err(make_safe(&mut ops, cause).await),
@@ -55,7 +58,9 @@ async fn move_to(ops: &mut Ops, aim: Aim, hold: Span) -> Result<Arrived, DriveEr
     if !is_referenced(got) {
         return Err(DriveError::NotReferenced { got });
     }
+    ops.set_referenced(true);
     set_mode(ops, mode::PROFILE_POSITION).await?;
+    network::arm(ops).await?;
     enable(ops).await?;
     set_up(ops, aim).await?;
     sample_for(ops, hold).await?;
@@ -67,6 +72,7 @@ async fn move_to(ops: &mut Ops, aim: Aim, hold: Span) -> Result<Arrived, DriveEr
     let (position, arrived) = follow(ops, aim.target, &plan, started).await?;
     ops.set_moving(false);
     sample_for(ops, hold).await?;
+    network::disarm(ops).await?;
     Ok(Arrived {
         plan,
         position,
@@ -204,7 +210,7 @@ impl Watch {
         }
         let word = ops.read(objects::STATUSWORD).await?;
         if super::power::is_fault(word) {
-            return Err(super::power::fault(ops).await);
+            return Err(DriveError::Fault { error: None });
         }
         Ok(())
     }

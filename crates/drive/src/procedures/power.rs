@@ -136,14 +136,14 @@ pub(super) async fn enable(ops: &Ops) -> Result<(), DriveError> {
     Ok(())
 }
 
-/// Reads the statusword of an axis that must be enabled.
+/// Reads the statusword of an axis that must be enabled. Which fault it is is asked once the axis has been made safe.
 ///
 /// # Errors
 /// [`DriveError::Fault`], or [`DriveError::State`] for any other state.
 pub(super) async fn check_enabled(ops: &Ops) -> Result<u16, DriveError> {
     let got = ops.read(objects::STATUSWORD).await?;
     if is_fault(got) {
-        return Err(fault(ops).await);
+        return Err(DriveError::Fault { error: None });
     }
     if State::from_statusword(got) != Some(State::OperationEnabled) {
         return Err(DriveError::State {

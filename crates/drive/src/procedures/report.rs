@@ -5,7 +5,7 @@ use protocol::epos2::cia402::State;
 use units::Quadcounts;
 
 use crate::error::DriveError;
-use crate::event::{Identity, Outcome, Status};
+use crate::event::{DeviceName, Identity, Outcome, Status};
 use crate::objects::{self, error_history};
 use crate::ops::Ops;
 
@@ -36,6 +36,7 @@ pub(super) async fn identify(ops: &Ops) -> Result<Identity, DriveError> {
         return Err(wrong(objects::VENDOR_ID, MAXON, vendor));
     }
     Ok(Identity {
+        name: name(ops).await?,
         vendor,
         product: ops.read(objects::PRODUCT_CODE).await?,
         revision: ops.read(objects::REVISION).await?,
@@ -43,6 +44,15 @@ pub(super) async fn identify(ops: &Ops) -> Result<Identity, DriveError> {
         software: ops.read(objects::SOFTWARE_VERSION).await?,
         hardware: ops.read(objects::HARDWARE_VERSION).await?,
     })
+}
+
+/// The device's name; empty where it keeps it for itself.
+async fn name(ops: &Ops) -> Result<DeviceName, DriveError> {
+    match ops.read_bytes(objects::DEVICE_NAME).await {
+        Ok(bytes) => Ok(DeviceName::new(&bytes)),
+        Err(DriveError::Refused { .. }) => Ok(DeviceName::default()),
+        Err(error) => Err(error),
+    }
 }
 
 /// The error history, newest first.

@@ -3,15 +3,19 @@
 //! Rest is judged by the encoder: 606C is no finer than the encoder counts of a control cycle (30 rpm at 2000 qc a turn), while a position
 //! that stays within some counts for 50 ms stands.
 
+use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::control;
 use units::{Quadcounts, Span};
 
 use crate::error::DriveError;
-use crate::event::{Outcome, Progress, Stopped};
+use crate::event::{Outcome, Place, Progress, Stopped};
 use crate::objects;
 use crate::ops::Ops;
 
+use super::configure::has_forgotten;
+use super::network;
 use super::power::{is_fault, is_off, is_referenced, wait_for};
+use super::report::history;
 
 /// Counts within which a shaft at rest may flicker.
 const REST_QC: u32 = 3;
@@ -29,10 +33,16 @@ pub(crate) async fn brake(mut ops: Ops) -> Result<Outcome, DriveError> {
     }
 }
 
-/// Brings the axis to rest after a failure and tells how that went.
+/// Brings the axis to rest after a failure and tells how that went. The quick stop comes first, questions later.
 pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
-    match halt(ops).await {
+    ops.watch(false);
+    let halted = match cause {
+        DriveError::LinkLost { .. } | DriveError::NodeSilent { .. } => halt_unheard(ops).await,
+        _ => halt(ops).await,
+    };
+    match halted {
         Ok(stopped) => {
+            let cause = explain(ops, cause).await;
             ops.tell(Progress::MadeSafe(stopped));
             cause
         }
@@ -51,6 +61,39 @@ pub(super) async fn halt(ops: &mut Ops) -> Result<Stopped, DriveError> {
     rest(ops).await
 }
 
+/// The same where nothing was heard any more: tried once, so that it is soon known whether the axis stops.
+async fn halt_unheard(ops: &mut Ops) -> Result<Stopped, DriveError> {
+    ops.set_moving(true);
+    ops.write_at_last(objects::CONTROLWORD, control::QUICK_STOP)
+        .await?;
+    rest(ops).await
+}
+
+/// What lies behind a failure, asked of an axis at rest: which fault, and whether the drive has restarted.
+async fn explain(ops: &Ops, cause: DriveError) -> DriveError {
+    let known = match cause {
+        DriveError::Fault { error } => error,
+        DriveError::State { .. } | DriveError::NotReferenced { .. } => None,
+        DriveError::NotTaken { .. } | DriveError::Restarted { error: None } => None,
+        other => return other,
+    };
+    let newest = match known {
+        Some(error) => Some(error),
+        // A history that cannot be read says nothing.
+        None => newest_error(ops).await.unwrap_or_default(),
+    };
+    match cause {
+        DriveError::Restarted { .. } => DriveError::Restarted { error: newest },
+        _ if has_forgotten(ops).await == Ok(true) => DriveError::Restarted { error: newest },
+        DriveError::Fault { .. } => DriveError::Fault { error: newest },
+        other => other,
+    }
+}
+
+async fn newest_error(ops: &Ops) -> Result<Option<DeviceError>, DriveError> {
+    Ok(history(ops).await?.first().copied())
+}
+
 /// Waits for standstill, then power off and brake.
 async fn rest(ops: &mut Ops) -> Result<Stopped, DriveError> {
     ops.set_moving(true);
@@ -63,12 +106,45 @@ async fn rest(ops: &mut Ops) -> Result<Stopped, DriveError> {
     ops.sleep(brake.map_or(Span::ZERO, |brake| brake.fall))
         .await;
     let position = ops.sample().await?.position;
+    let fault = is_fault(statusword);
+    let error = if fault {
+        newest_error(ops).await?
+    } else {
+        None
+    };
+    // The power is off: whether the host is heard does not matter any more.
+    let _ = network::disarm(ops).await;
+    let place = place(ops, statusword, error);
     Ok(Stopped {
         position,
-        angle: is_referenced(statusword).then(|| ops.config.gearing.angle(position)),
-        fault: is_fault(statusword),
+        place,
+        angle: (place == Place::Known).then(|| ops.config.gearing.angle(position)),
+        fault,
         brake: brake.is_some(),
     })
+}
+
+/// What the position of an axis at rest is worth.
+fn place(ops: &Ops, statusword: u16, error: Option<DeviceError>) -> Place {
+    let referenced = is_referenced(statusword);
+    match error {
+        _ if !referenced && !ops.was_referenced() => Place::NotHomed,
+        Some(error) if loses_position(error) => Place::Lost { error: Some(error) },
+        _ if referenced => Place::Known,
+        _ => Place::Lost { error: None },
+    }
+}
+
+/// Errors after which counts may be missing, whatever the statusword says.
+fn loses_position(error: DeviceError) -> bool {
+    matches!(
+        error,
+        DeviceError::POSITION_SENSOR
+            | DeviceError::INDEX
+            | DeviceError::ENCODER_RESOLUTION
+            | DeviceError::HALL_ANGLE
+            | DeviceError::SENSOR_BREACH
+    )
 }
 
 async fn standstill(ops: &mut Ops) -> Result<(), DriveError> {

@@ -3,11 +3,17 @@
 
 use std::collections::BTreeMap;
 
-use protocol::epos2::message::{Answer, ReadObject, Request, WriteObject};
+use protocol::epos2::message::{
+    Answer, InitiateSegmentedRead, ReadObject, ReadSegment, Request, SegmentedRead, WriteObject,
+};
 use protocol::epos2::objects::Address;
-use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{CommError, Frame};
+use protocol::epos2::{Bounded, CommError, Frame};
+use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
+
+use protocol::canopen::nmt::NmtState;
+
+use super::wire::{FakeBus, Wire};
 
 /// What happens to one answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +40,14 @@ struct Motion {
 }
 
 pub struct Fake {
-    decoder: UsbDecoder,
+    wire: Wire,
+    /// What there is on a CAN bus beside answers.
+    pub bus: FakeBus,
+    pub name: Vec<u8>,
+    /// Bytes of the name that have been read, while it is.
+    name_at: usize,
+    /// Segments come with the wrong toggle bit.
+    pub wrong_toggle: bool,
     pub objects: BTreeMap<(u16, u8), u32>,
     /// State bits of the statusword.
     pub state: u16,
@@ -52,6 +65,8 @@ pub struct Fake {
     pub faults_that_stay: bool,
     /// Objects that take no value.
     pub stubborn: Vec<(u16, u8)>,
+    /// Objects that refuse to be written.
+    pub refuses: Vec<(u16, u8)>,
     pub hand: Hand,
     pub turnaround: Span,
     answers: Vec<(Stamp<Host>, Vec<u8>)>,
@@ -64,13 +79,18 @@ pub const READY: u16 = 0x0121;
 pub const ENABLED: u16 = 0x0137;
 pub const QUICK_STOP: u16 = 0x0117;
 pub const FAULT: u16 = 0x0108;
+const REMOTE: u16 = 1 << 9;
 const REACHED: u16 = 1 << 10;
 const ACKNOWLEDGED: u16 = 1 << 12;
 const REFERENCED: u16 = 1 << 15;
 
 impl Fake {
-    /// A drive as it comes from the factory, with an 8120 from lying on the shelf without a CAN bus.
     pub fn new() -> Self {
+        Self::on(DriveLink::Usb)
+    }
+
+    /// A drive as it comes from the factory, with an 8120 from lying on the shelf without a CAN bus.
+    pub fn on(link: DriveLink) -> Self {
         let objects = [
             (0x1000, 0, 0x0002_0192),
             (0x1003, 0, 1),
@@ -79,6 +99,14 @@ impl Fake {
             (0x1018, 2, 0x6420_0000),
             (0x1018, 3, 0x2126_0000),
             (0x1018, 4, 0x9090_9090),
+            (0x1016, 1, 0),
+            (0x1017, 0, 0),
+            (0x1800, 1, 0x4000_0181),
+            (0x1800, 2, 0xFF),
+            (0x1800, 3, 10),
+            (0x1A00, 0, 1),
+            (0x1A00, 1, 0x6041_0010),
+            (0x1A00, 2, 0),
             (0x2003, 1, 0x2126),
             (0x2003, 2, 0x6420),
             (0x2070, 4, 2),
@@ -114,7 +142,11 @@ impl Fake {
             (0x60C5, 0, u32::MAX),
         ];
         Self {
-            decoder: UsbDecoder::new(),
+            wire: Wire::new(link),
+            bus: FakeBus::default(),
+            name: b"EPOS2".to_vec(),
+            name_at: 0,
+            wrong_toggle: false,
             objects: objects.map(|(index, sub, v)| ((index, sub), v)).into(),
             state: FAULT,
             flags: 0x0200,
@@ -128,6 +160,7 @@ impl Fake {
             fault_at: None,
             faults_that_stay: false,
             stubborn: Vec::new(),
+            refuses: Vec::new(),
             hand: Box::new(|_, _| Fate::Sent),
             turnaround: Span::from_micros(800),
             answers: Vec::new(),
@@ -139,43 +172,65 @@ impl Fake {
     /// Takes bytes from the host.
     pub fn input(&mut self, bytes: &[u8], now: Stamp<Host>) {
         self.live(now);
-        for &byte in bytes {
-            let Some(Ok(frame)) = self.decoder.push(byte) else {
-                continue;
-            };
-            let request = Request::parse(&frame).unwrap().unwrap();
-            let fate = (self.hand)(self.requests.len(), &request);
-            self.requests.push((now, request));
-            let answer = if fate == Fate::Rejected {
-                Answer::bare(CommError::CRC).to_frame()
-            } else {
-                self.serve(&request, now)
-            };
-            self.send(&answer, fate, now);
-        }
+        let mut wire = std::mem::replace(&mut self.wire, Wire::Gone);
+        wire.input(self, bytes, now);
+        self.wire = wire;
     }
 
-    fn send(&mut self, answer: &Frame, fate: Fate, now: Stamp<Host>) {
-        let mut bytes = usb::to_bytes(answer).to_vec();
+    /// Carries a request out; its answer, and what is to become of it. A rejected one is not carried out.
+    pub fn execute(&mut self, request: Request, now: Stamp<Host>) -> (Frame, Fate) {
+        let fate = (self.hand)(self.requests.len(), &request);
+        self.requests.push((now, request));
+        let answer = if fate == Fate::Rejected {
+            Answer::bare(CommError::CRC).to_frame()
+        } else {
+            self.serve(&request, now)
+        };
+        (answer, fate)
+    }
+
+    /// Sends bytes after the turnaround and `by`, behind what is under way.
+    pub fn send(&mut self, bytes: Vec<u8>, by: Span, now: Stamp<Host>) {
         let earliest = now + self.turnaround;
-        // Answers keep their order.
         let at = self.answers.last().map_or(earliest, |a| a.0.max(earliest));
-        match fate {
-            Fate::Lost => return,
-            Fate::Late(by) => return self.answers.push((at + by, bytes)),
-            Fate::Damaged => *bytes.last_mut().unwrap() ^= 0x55,
-            Fate::Twice => self.answers.push((at, bytes.clone())),
-            Fate::Sent | Fate::Rejected => {}
-        }
+        self.answers.push((at + by, bytes));
+    }
+
+    /// Sends a frame of its own accord.
+    pub fn send_at(&mut self, bytes: Vec<u8>, at: Stamp<Host>) {
         self.answers.push((at, bytes));
+        self.answers.sort_by_key(|a| a.0);
     }
 
     pub fn next_answer(&self) -> Option<Stamp<Host>> {
-        self.answers.first().map(|a| a.0)
+        let answer = self.answers.first().map(|a| a.0);
+        [answer, self.next_of_bus()].into_iter().flatten().min()
     }
 
     pub fn take_answer(&mut self, now: Stamp<Host>) -> Option<Vec<u8>> {
-        (self.next_answer()? <= now).then(|| self.answers.remove(0).1)
+        self.live(now);
+        (self.answers.first()?.0 <= now).then(|| self.answers.remove(0).1)
+    }
+
+    /// Everything on its way is lost.
+    pub fn unplug(&mut self) {
+        self.answers.clear();
+    }
+
+    /// It restarts: settings, reference and network state are gone.
+    pub fn restart(&mut self, now: Stamp<Host>) {
+        let link = self.wire.link();
+        let fresh = Self::on(link);
+        self.place = 0.0;
+        self.motion = None;
+        self.homing_until = None;
+        self.objects = fresh.objects;
+        self.state = fresh.state;
+        self.flags = fresh.flags;
+        self.controlword = 0;
+        self.wire = Wire::new(link);
+        self.unplug();
+        self.start_bus(now);
     }
 
     /// Where the shaft is.
@@ -194,11 +249,38 @@ impl Fake {
             Request::WriteObject(write) => {
                 WriteObject::answer(self.put(write.address, write.value, now))
             }
+            Request::InitiateSegmentedRead(InitiateSegmentedRead { address, .. }) => {
+                let known = (address.index, address.sub) == (0x1008, 0);
+                self.name_at = 0;
+                Answer::bare(if known {
+                    CommError::NONE
+                } else {
+                    CommError::NO_OBJECT
+                })
+                .to_frame()
+            }
+            Request::SegmentedRead(SegmentedRead { toggle }) => {
+                let segment = self.segment(*toggle, 3);
+                SegmentedRead::answer(&Ok(segment))
+            }
             _ => Answer::bare(CommError::COMMAND).to_frame(),
         }
     }
 
-    fn get(&mut self, address: Address, now: Stamp<Host>) -> Result<u32, CommError> {
+    /// The next bytes of the name.
+    pub fn segment(&mut self, toggle: bool, max: usize) -> ReadSegment {
+        let rest = &self.name[self.name_at..];
+        let mut bytes = Bounded::new();
+        bytes.extend(rest.iter().copied().take(max));
+        self.name_at += bytes.len();
+        ReadSegment {
+            toggle: toggle != self.wrong_toggle,
+            more: self.name_at < self.name.len(),
+            bytes,
+        }
+    }
+
+    pub fn get(&mut self, address: Address, now: Stamp<Host>) -> Result<u32, CommError> {
         self.junk = self
             .junk
             .wrapping_mul(1_664_525)
@@ -209,6 +291,7 @@ impl Fake {
             (0x6041, 0) => junk << 16 | u32::from(self.statusword(now)),
             (0x6061, 0) => junk << 8 | self.objects[&(0x6060, 0)] & 0xFF,
             (0x6064, 0) => self.position(now).floor() as i32 as u32,
+            (0x1013, 0) => device_us(now),
             _ => {
                 let absent = if address.sub == 0xFF {
                     CommError::NO_SUB
@@ -231,6 +314,9 @@ impl Fake {
             self.control(value as u16, now);
             return Ok(());
         }
+        if self.refuses.contains(&entry) {
+            return Err(CommError::PDO_MAPPING);
+        }
         let stubborn = self.stubborn.contains(&entry);
         let old = self.objects.get_mut(&entry).ok_or(CommError::NO_OBJECT)?;
         if !stubborn {
@@ -242,10 +328,15 @@ impl Fake {
     fn statusword(&self, now: Stamp<Host>) -> u16 {
         let target = f64::from(self.objects[&(0x607A, 0)] as i32);
         let there = self.homing_until.is_none() && self.position(now) == target && !self.blocked;
-        self.state | self.flags | if there { REACHED } else { 0 }
+        let flags = match self.wire.link() {
+            DriveLink::Can if self.bus.state != NmtState::Operational => self.flags & !REMOTE,
+            _ => self.flags,
+        };
+        self.state | flags | if there { REACHED } else { 0 }
     }
 
-    fn live(&mut self, now: Stamp<Host>) {
+    pub fn live(&mut self, now: Stamp<Host>) {
+        self.live_on_bus(now);
         if let Some((at, code)) = self.fault_at
             && at <= now
         {
@@ -261,7 +352,8 @@ impl Fake {
         }
     }
 
-    fn fault(&mut self, code: u16, now: Stamp<Host>) {
+    pub fn fault(&mut self, code: u16, now: Stamp<Host>) {
+        self.emergency(code, now);
         self.freeze(now);
         self.state = FAULT;
         self.objects.insert((0x1003, 0), 1);
@@ -326,10 +418,17 @@ impl Fake {
     }
 }
 
+/// The drive's clock, which is of no zero in particular and runs 40 ppm fast.
+pub fn device_us(now: Stamp<Host>) -> u32 {
+    let us = now.as_nanos() / 1_000;
+    (us + us / 25_000) as u32
+}
+
 /// Bytes of the objects that are narrower than 32 bits.
-fn width(address: Address) -> u8 {
+pub fn width(address: Address) -> u8 {
     match (address.index, address.sub) {
-        (0x1003, 0) | (0x6060 | 0x6098, _) => 1,
+        (0x1003 | 0x1A00, 0) | (0x1800, 2) | (0x6060 | 0x6061 | 0x6098, _) => 1,
+        (0x1017 | 0x6040 | 0x6041, _) | (0x1800, 3) => 2,
         (0x2003 | 0x2070 | 0x2071 | 0x2078 | 0x2079 | 0x2080 | 0x2100 | 0x6086, _) => 2,
         _ => 4,
     }

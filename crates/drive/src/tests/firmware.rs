@@ -1,41 +1,107 @@
 //! The client against the software EPOS2 of firmware-sim, in virtual time: two machines that share nothing but the frames.
 
-use firmware_sim::epos2::{Brake, Node, NodeConfig, UsbServer};
+use std::collections::VecDeque;
+
+use firmware_sim::epos2::{Brake, CanServer, Node, NodeConfig, Rs232Server, UsbServer};
+use protocol::canopen::CanFrame;
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::State;
+use protocol::record::DriveLink;
 use units::{Host, Rpm, Span, Stamp};
 
 use super::rig::to;
-use crate::{AxisConfig, Client, Command, DriveError, Event, Move, Outcome, Plan, ShaftSample};
+use crate::{
+    AngleSource, AxisConfig, Client, Command, DriveError, Event, Move, Outcome, Place, Plan,
+    Progress, ShaftSample, Stopped,
+};
 
-/// Wire and USB one way.
-const DELAY: Span = Span::from_micros(300);
+const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
+
+#[allow(clippy::large_enum_variant)] // one or two of them in a test
+enum Server {
+    Usb(UsbServer),
+    Rs232(Rs232Server),
+    Can(Box<CanServer>),
+}
+
+impl Server {
+    fn new(link: DriveLink) -> Self {
+        match link {
+            DriveLink::Usb => Self::Usb(UsbServer::new(7)),
+            DriveLink::Rs232 => Self::Rs232(Rs232Server::new(7)),
+            DriveLink::Can => Self::Can(Box::default()),
+        }
+    }
+
+    /// One way: wire, adapter and unit.
+    fn delay(&self, bytes: usize) -> Span {
+        match self {
+            Self::Usb(_) => Span::from_micros(300),
+            // 115,200 baud, 8N1.
+            Self::Rs232(_) => Span::from_micros(200 + 87 * bytes as i64),
+            Self::Can(_) => Span::from_micros(160),
+        }
+    }
+
+    fn input(&mut self, node: &mut Node, bytes: &[u8]) -> Vec<Vec<u8>> {
+        let mut answers = Vec::new();
+        match self {
+            Self::Usb(server) => server.input(node, bytes, &mut |b| answers.push(b.to_vec())),
+            Self::Rs232(server) => server.input(node, bytes, &mut |b| answers.push(b.to_vec())),
+            Self::Can(server) => {
+                let frame = CanFrame::from_socketcan(bytes).unwrap();
+                server.input(node, &frame, &mut |f| {
+                    answers.push(f.to_socketcan().to_vec())
+                });
+            }
+        }
+        answers
+    }
+
+    fn poll(&mut self, node: &mut Node) -> Vec<Vec<u8>> {
+        let mut said = Vec::new();
+        if let Self::Can(server) = self {
+            server.poll(node, &mut |f| said.push(f.to_socketcan().to_vec()));
+        }
+        said
+    }
+}
 
 struct World {
     client: Client,
     node: Node,
-    server: UsbServer,
+    server: Server,
     now: Stamp<Host>,
     next_tick: Stamp<Host>,
-    to_node: Option<(Stamp<Host>, Vec<u8>)>,
-    to_host: Option<(Stamp<Host>, Vec<u8>)>,
+    to_node: VecDeque<(Stamp<Host>, Vec<u8>)>,
+    to_host: VecDeque<(Stamp<Host>, Vec<u8>)>,
     events: Vec<Event>,
+    /// When the client was heard to order a quick stop.
+    quick_stops: Vec<Stamp<Host>>,
+    /// The cable is cut.
+    cut: bool,
     /// Beginning of each control cycle, and the shaft's way through it, world qc.
     truth: Vec<(Stamp<Host>, f64, f64)>,
 }
 
 impl World {
     fn new(config: NodeConfig) -> Self {
+        Self::on(DriveLink::Usb, config)
+    }
+
+    fn on(link: DriveLink, config: NodeConfig) -> Self {
         let now = Stamp::from_nanos(1_795_000_000_000_000_000);
         Self {
-            client: Client::new(AxisConfig::default()),
+            client: Client::with_link(AxisConfig::default(), link),
             node: Node::new(config),
-            server: UsbServer::new(7),
+            server: Server::new(link),
             now,
             next_tick: now + Span::from_micros(370),
-            to_node: None,
-            to_host: None,
+            to_node: VecDeque::new(),
+            to_host: VecDeque::new(),
             events: Vec::new(),
+            quick_stops: Vec::new(),
+            cut: false,
             truth: Vec::new(),
         }
     }
@@ -56,9 +122,16 @@ impl World {
     }
 
     fn step(&mut self) -> Option<Result<Outcome, DriveError>> {
-        if let Some(frame) = self.client.poll_transmit(self.now) {
-            assert!(self.to_node.is_none(), "one request at a time");
-            self.to_node = Some((self.now + DELAY, frame));
+        while let Some(frame) = self.client.poll_transmit(self.now) {
+            if is_quick_stop(&frame) {
+                self.quick_stops.push(self.now);
+            }
+            let delay = self.server.delay(frame.len());
+            let free = self.to_node.back().map_or(self.now, |m| m.0);
+            if !self.cut {
+                self.to_node
+                    .push_back(((self.now + delay).max(free), frame));
+            }
         }
         while let Some(event) = self.client.poll_event() {
             self.events.push(event.clone());
@@ -72,10 +145,28 @@ impl World {
         None
     }
 
+    fn run_for(&mut self, span: Span) {
+        let until = self.now + span;
+        while self.now < until {
+            assert_eq!(self.step(), None);
+        }
+    }
+
+    fn say(&mut self, said: Vec<Vec<u8>>) {
+        for bytes in said {
+            let delay = self.server.delay(bytes.len());
+            let free = self.to_host.back().map_or(self.now, |m| m.0);
+            if !self.cut {
+                self.to_host
+                    .push_back(((self.now + delay).max(free), bytes));
+            }
+        }
+    }
+
     /// On to the next thing that happens.
     fn wait(&mut self) {
-        let to_node = self.to_node.as_ref().map(|m| m.0);
-        let to_host = self.to_host.as_ref().map(|m| m.0);
+        let to_node = self.to_node.front().map(|m| m.0);
+        let to_host = self.to_host.front().map(|m| m.0);
         let next = [to_node, to_host, self.client.poll_timeout()];
         let next = next.into_iter().flatten().min().unwrap_or(self.next_tick);
         self.now = next.min(self.next_tick).max(self.now);
@@ -85,16 +176,16 @@ impl World {
             let way = self.node.segment();
             let [start, end] = [way.start, way.end].map(|q32| q32 as f64 / 2f64.powi(32));
             self.truth.push((self.now, start, end));
+            let said = self.server.poll(&mut self.node);
+            self.say(said);
         }
-        if let Some((_, frame)) = self.to_node.take_if(|m| m.0 <= self.now) {
+        if let Some((_, frame)) = self.to_node.pop_front_if(|m| m.0 <= self.now) {
             let into = 1000 - (self.next_tick - self.now).as_nanos() / 1000;
             self.node.set_phase_us(into as u32);
-            let mut answer = Vec::new();
-            let out = &mut |bytes: &[u8]| answer.extend_from_slice(bytes);
-            self.server.input(&mut self.node, &frame, out);
-            self.to_host = Some((self.now + DELAY, answer));
+            let said = self.server.input(&mut self.node, &frame);
+            self.say(said);
         }
-        if let Some((_, bytes)) = self.to_host.take_if(|m| m.0 <= self.now) {
+        if let Some((_, bytes)) = self.to_host.pop_front_if(|m| m.0 <= self.now) {
             self.client.handle_input(&bytes, self.now);
         }
         if self.client.poll_timeout().is_some_and(|t| t <= self.now) {
@@ -102,12 +193,33 @@ impl World {
         }
     }
 
-    fn homed() -> Self {
-        let mut world = Self::new(NodeConfig::default());
+    /// In mid-sweep.
+    fn moving_on(link: DriveLink) -> Self {
+        let mut world = Self::homed_on(link);
+        world.client.start(Command::Sweep(to(45.0))).unwrap();
+        world.run_for(Span::from_millis(1_000));
+        world.quick_stops.clear();
+        world
+    }
+
+    fn homed_on(link: DriveLink) -> Self {
+        let mut world = Self::on(link, NodeConfig::default());
         world.run(Command::Connect).unwrap();
         world.run(Command::Home).unwrap();
         world.events.clear();
         world
+    }
+
+    /// What the client said about bringing the axis to rest.
+    fn made_safe(&self) -> Option<Stopped> {
+        self.events.iter().find_map(|event| match event {
+            Event::Progress(Progress::MadeSafe(stopped)) => Some(*stopped),
+            _ => None,
+        })
+    }
+
+    fn homed() -> Self {
+        Self::homed_on(DriveLink::Usb)
     }
 
     fn samples(&self) -> Vec<ShaftSample> {
@@ -126,6 +238,12 @@ impl World {
         let (t0, p0, p1) = self.truth[after - 1];
         p0 + (p1 - p0) * (at - t0).as_secs_f64() / 1e-3
     }
+}
+
+/// Whether bytes order a quick stop: controlword (6040) 000B, as a frame of USB or CAN, or a body of RS232.
+fn is_quick_stop(bytes: &[u8]) -> bool {
+    let has = |wanted: &[u8]| bytes.windows(wanted.len()).any(|w| w == wanted);
+    has(&[0x40, 0x60, 0, 1, 0x0B, 0]) || has(&[0x2B, 0x40, 0x60, 0, 0x0B, 0])
 }
 
 fn from_home(world: &World, angle_deg: f64) -> Plan {
@@ -176,19 +294,30 @@ fn connect_home_sweep_brake() {
 
 #[test]
 fn samples_are_the_shaft_at_a_time_between_their_stamps() {
-    let mut world = World::homed();
-    world.run(Command::Sweep(to(45.0))).unwrap();
-    let samples = world.samples();
-    assert!(samples.len() > 1_800, "{}", samples.len());
-    // Drive zero and world zero differ by a constant of whole counts.
-    let origin = {
-        let first = samples[0];
-        world.world_qc(first.request + DELAY).floor() - f64::from(first.position.0)
-    };
-    for s in &samples {
-        let truth = world.world_qc(s.request + DELAY) - origin;
-        let off = truth - f64::from(s.position.0);
-        assert!((-0.01..1.01).contains(&off), "{off} qc at {:?}", s.request);
+    for link in LINKS {
+        let mut world = World::homed_on(link);
+        world.run(Command::Sweep(to(45.0))).unwrap();
+        let samples = world.samples();
+        let least = match link {
+            DriveLink::Usb => 1_800,
+            DriveLink::Rs232 => 300,
+            DriveLink::Can => 1_900,
+        };
+        assert!(samples.len() > least, "{link:?}: {}", samples.len());
+        // Drive zero and world zero differ by a constant of whole counts.
+        let origin = {
+            let first = samples[0];
+            world.world_qc(first.request).floor() - f64::from(first.position.0)
+        };
+        for s in &samples {
+            let [before, after] = [s.request, s.answer].map(|at| world.world_qc(at) - origin);
+            let got = f64::from(s.position.0);
+            assert!(
+                before.floor() <= got && got <= after + 0.01,
+                "{link:?}: {before} {got} {after} at {:?}",
+                s.request
+            );
+        }
     }
 }
 
@@ -257,22 +386,117 @@ fn a_limit_switch_in_mid_sweep_is_named() {
 }
 
 #[test]
-fn a_reset_in_mid_sweep_is_noticed() {
-    let mut world = World::homed();
-    world.client.start(Command::Sweep(to(45.0))).unwrap();
-    let until = world.now + Span::from_millis(800);
-    while world.now < until {
-        assert_eq!(world.step(), None);
+fn a_restart_in_mid_sweep_is_noticed() {
+    for link in LINKS {
+        let mut world = World::moving_on(link);
+        world.node.power_cycle();
+        world.server = Server::new(link);
+        let error = world.finish().unwrap_err();
+        assert!(
+            matches!(error, DriveError::Restarted { .. }),
+            "{link:?}: {error}"
+        );
+        let stopped = world.made_safe().unwrap();
+        assert_eq!(stopped.place, Place::Lost { error: None });
+        // It has forgotten its limits: no move before it is connected again.
+        assert!(matches!(
+            world.run(Command::Goto(to(0.0))),
+            Err(DriveError::Restarted { .. })
+        ));
     }
-    world.node.power_cycle();
-    let error = world.finish().unwrap_err();
-    assert!(
-        matches!(error, DriveError::Fault { .. } | DriveError::State { .. }),
-        "{error}"
-    );
-    // It has forgotten its limits: no move before it is connected again.
-    assert!(matches!(
-        world.run(Command::Goto(to(0.0))),
-        Err(DriveError::NotTaken { .. })
-    ));
+}
+
+#[test]
+fn the_whole_story_on_each_link() {
+    for link in LINKS {
+        let mut world = World::on(link, NodeConfig::default());
+        let Ok(Outcome::Connected(connected)) = world.run(Command::Connect) else {
+            panic!("{link:?}: {:?}", world.events.last())
+        };
+        assert_eq!(connected.identity.name.as_str(), "EPOS2", "{link:?}");
+        assert_eq!(connected.watches_host, link == DriveLink::Can);
+        let streams = connected.angle == AngleSource::Stream;
+        assert_eq!(streams, link == DriveLink::Can);
+        world.run(Command::Home).unwrap();
+        let Ok(Outcome::Arrived(arrived)) = world.run(Command::Sweep(to(-15.0))) else {
+            panic!("{link:?}: {:?}", world.events.last())
+        };
+        assert_eq!(arrived.position.0, -10_000);
+        let Ok(Outcome::Stopped(stopped)) = world.run(Command::Brake) else {
+            panic!("{link:?}: {:?}", world.events.last())
+        };
+        assert_eq!((stopped.place, stopped.fault), (Place::Known, false));
+        let stats = world.client.link_stats();
+        assert_eq!((stats.lost, stats.strays), (0, 0), "{link:?}");
+    }
+}
+
+/// From the fault to the quick stop that the client orders, though the drive has reacted by itself.
+#[test]
+fn faults_in_mid_sweep_are_named_and_answered_within_100_ms() {
+    for link in LINKS {
+        for error in [
+            DeviceError::FOLLOWING,
+            DeviceError::OVERCURRENT,
+            DeviceError::POSITIVE_LIMIT,
+            DeviceError::POSITION_SENSOR,
+        ] {
+            let mut world = World::moving_on(link);
+            let at = world.now;
+            world.node.inject(error);
+            assert_eq!(
+                world.finish(),
+                Err(DriveError::Fault { error: Some(error) }),
+                "{link:?}"
+            );
+            let reaction = world.quick_stops[0] - at;
+            assert!(reaction < Span::from_millis(100), "{link:?}: {reaction:?}");
+            if link == DriveLink::Can {
+                assert!(reaction < Span::from_millis(5), "{reaction:?}");
+            }
+            let lost = error == DeviceError::POSITION_SENSOR;
+            let stopped = world.made_safe().unwrap();
+            assert!(stopped.fault);
+            assert_eq!(matches!(stopped.place, Place::Lost { .. }), lost);
+        }
+    }
+}
+
+#[test]
+fn a_blocked_motor_is_a_following_error() {
+    for link in LINKS {
+        let mut world = World::moving_on(link);
+        world.node.block();
+        let error = Some(DeviceError::FOLLOWING);
+        assert_eq!(world.finish(), Err(DriveError::Fault { error }), "{link:?}");
+        assert_eq!(world.made_safe().unwrap().place, Place::Known);
+        // And it goes on from there once it is free.
+        world.node.unblock();
+        world.run(Command::ClearFaults).unwrap();
+        assert!(world.run(Command::Goto(to(0.0))).is_ok(), "{link:?}");
+    }
+}
+
+#[test]
+fn a_cut_cable_in_mid_sweep_is_told_and_on_can_stops_the_axis() {
+    for link in LINKS {
+        let mut world = World::moving_on(link);
+        let at = world.now;
+        world.cut = true;
+        world.to_host.clear();
+        let error = world.finish().unwrap_err();
+        assert!(matches!(error, DriveError::NotStopped { .. }), "{error}");
+        let said = world.now - world.quick_stops.first().copied().unwrap_or(world.now);
+        assert!(said < Span::from_millis(100), "{link:?}: {said:?}");
+        assert!(world.now - at < Span::from_millis(400), "{link:?}");
+        if link == DriveLink::Can {
+            while world.now - at < Span::from_millis(300) {
+                world.now = world.next_tick;
+                world.wait();
+            }
+            assert_eq!(world.node.state(), State::Fault);
+            let way = world.node.segment();
+            assert_eq!(way.start, way.end, "it stands");
+        }
+    }
 }

@@ -1,10 +1,13 @@
 //! The link against every kind of loss, and against anything at all on the wire.
 
 use proptest::prelude::*;
+use protocol::canopen::CanFrame;
+use protocol::canopen::sdo::{self, Expedited, Initiate};
 use protocol::epos2::CommError;
 use protocol::epos2::message::{Answer, ReadObject, Request as Wire, WriteObject};
 use protocol::epos2::objects::Address;
 use protocol::epos2::usb::{self, UsbDecoder};
+use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
 use crate::codec::Codec;
@@ -18,9 +21,12 @@ fn request(index: u16, access: Access) -> Request {
     Request {
         address: Address::new(index, 0),
         access,
+        width: 4,
         timeout: TIMEOUT,
+        marker_timeout: TIMEOUT,
         retries: 2,
         urgent: false,
+        last: false,
     }
 }
 
@@ -42,7 +48,7 @@ fn absent(kind: usize) -> Vec<u8> {
 }
 
 fn marker(kind: usize) -> Vec<u8> {
-    Codec::usb(1).encode(MARKERS[kind].0, Access::Read)
+    Codec::usb(1).encode(MARKERS[kind].0, Access::Read, 4, at(0))
 }
 
 fn value(link: &mut Link) -> Option<u32> {
@@ -139,7 +145,7 @@ fn an_urgent_request_does_not_wait_for_the_marker() {
         urgent: true,
         ..stop
     });
-    let frame = Codec::usb(1).encode(stop.address, stop.access);
+    let frame = Codec::usb(1).encode(stop.address, stop.access, 2, at(0));
     assert_eq!(link.transmit(at(101)), Some(frame.clone()));
     assert_eq!(link.transmit(at(101)), None, "once");
     link.input(&absent(0), at(102));
@@ -252,6 +258,33 @@ fn serve(frame: &[u8]) -> Vec<u8> {
     usb::to_bytes(&answer).to_vec()
 }
 
+/// A device that answers with the number of the request.
+fn count(attached: DriveLink, frame: &[u8], number: u32) -> Vec<u8> {
+    let outcome = |address| match MARKERS.iter().find(|(marker, _)| *marker == address) {
+        Some((_, error)) => Err(*error),
+        None => Ok(number),
+    };
+    if attached == DriveLink::Usb {
+        let mut decoder = UsbDecoder::new();
+        let frame = frame.iter().find_map(|&b| decoder.push(b)).unwrap();
+        let read = ReadObject::parse(&frame.unwrap()).unwrap();
+        return usb::to_bytes(&ReadObject::answer(outcome(read.address))).to_vec();
+    }
+    let frame = CanFrame::from_socketcan(frame).unwrap();
+    let (node, request) = sdo::Request::parse(&frame).unwrap();
+    let sdo::Request::InitiateUpload { address } = request else {
+        panic!("{request:?}")
+    };
+    let answer = match outcome(address) {
+        Ok(number) => sdo::Answer::InitiateUpload {
+            address,
+            transfer: Initiate::Expedited(Expedited::of(number)),
+        },
+        Err(error) => sdo::Answer::Abort { address, error },
+    };
+    answer.to_frame(node).to_socketcan().to_vec()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
@@ -309,6 +342,62 @@ proptest! {
         }
     }
 
+    /// The same object asked again and again, on both links that have no handshake: the value given was read for the very
+    /// request whose time it is given.
+    #[test]
+    fn no_value_is_older_than_its_request(
+        fates in proptest::collection::vec(fate(), 1..80),
+        on_can in any::<bool>(),
+        abandons in proptest::collection::vec(prop::bool::weighted(0.3), 16),
+    ) {
+        let attached = if on_can { DriveLink::Can } else { DriveLink::Usb };
+        let mut link = Link::new(Codec::new(attached, 1));
+        let mut wire: Vec<(Stamp<Host>, Vec<u8>)> = Vec::new();
+        let mut fates = fates.into_iter().cycle();
+        let mut sent: Vec<Stamp<Host>> = Vec::new();
+        let mut now = at(0);
+        for abandon in abandons {
+            link.submit(read(0x6064));
+            let began = now;
+            for _ in 0..400 {
+                if let Some(frame) = link.transmit(now) {
+                    let earliest = wire.last().map_or(now, |w| w.0.max(now));
+                    sent.push(now);
+                    let mut bytes = count(attached, &frame, sent.len() as u32);
+                    match fates.next().unwrap() {
+                        Fate::Arrives => wire.push((earliest + Span::from_millis(1), bytes)),
+                        Fate::IsLost => {}
+                        Fate::IsDamaged => {
+                            bytes[4] ^= 0x41;
+                            wire.push((earliest + Span::from_millis(1), bytes));
+                        }
+                        Fate::TakesMs(ms) => wire.push((earliest + Span::from_millis(ms.into()), bytes)),
+                    }
+                }
+                if let Some(end) = link.take() {
+                    if let Ok(answered) = end {
+                        let value = answered.reply.value.unwrap() as usize;
+                        prop_assert_eq!(sent[value - 1], answered.request);
+                        prop_assert!(answered.request >= began);
+                    }
+                    break;
+                }
+                if abandon && now > began + Span::from_millis(30) {
+                    link.abandon();
+                    break;
+                }
+                let next = [wire.first().map(|w| w.0), link.deadline()];
+                now = next.into_iter().flatten().min().unwrap().max(now);
+                while wire.first().is_some_and(|w| w.0 <= now) {
+                    let (_, bytes) = wire.remove(0);
+                    link.input(&bytes, now);
+                }
+                link.expire(now);
+            }
+            prop_assert!(now - began < Span::from_secs(3));
+        }
+    }
+
     /// Any bytes at any time: no panic, no request beside the one that is out, and an end.
     #[test]
     fn a_client_survives_any_bytes(
@@ -324,8 +413,10 @@ proptest! {
             0..60,
         ),
         stop_after in 0..60usize,
+        on_can in any::<bool>(),
     ) {
-        let mut client = Client::new(AxisConfig::default());
+        let attached = if on_can { DriveLink::Can } else { DriveLink::Usb };
+        let mut client = Client::with_link(AxisConfig::default(), attached);
         client.start(Command::Connect).unwrap();
         let mut now = at(0);
         for (n, bytes) in inputs.iter().enumerate() {

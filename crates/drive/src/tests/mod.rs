@@ -1,10 +1,14 @@
 //! Tests of the whole client against a scripted drive, in virtual time.
 
+mod can;
 mod fake;
 mod faults;
 mod firmware;
 mod link;
+mod links;
 mod listener;
 mod procedures;
 mod rig;
+mod rs232;
 mod script;
+mod wire;

@@ -1,5 +1,6 @@
 //! Client and scripted drive in virtual time, with everything on the wire kept.
 
+use protocol::epos2::message::Request;
 use protocol::record::{Direction, DriveLink};
 use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
 
@@ -19,9 +20,13 @@ pub struct Rig {
 
 impl Rig {
     pub fn new(config: AxisConfig) -> Self {
+        Self::on(DriveLink::Usb, config)
+    }
+
+    pub fn on(link: DriveLink, config: AxisConfig) -> Self {
         Self {
-            client: Client::new(config),
-            fake: Fake::new(),
+            client: Client::with_link(config, link),
+            fake: Fake::on(link),
             now: Stamp::from_nanos(1_795_000_000_000_000_000),
             events: Vec::new(),
             log: Vec::new(),
@@ -30,7 +35,11 @@ impl Rig {
 
     /// A rig that is connected and homed, with the record of that forgotten.
     pub fn homed() -> Self {
-        let mut rig = Self::new(AxisConfig::default());
+        Self::homed_on(DriveLink::Usb)
+    }
+
+    pub fn homed_on(link: DriveLink) -> Self {
+        let mut rig = Self::on(link, AxisConfig::default());
         rig.run(Command::Connect).unwrap();
         rig.run(Command::Home).unwrap();
         rig.forget();
@@ -102,6 +111,13 @@ impl Rig {
         None
     }
 
+    /// When the drive was first told to stop.
+    pub fn quick_stop(&self) -> Option<Stamp<Host>> {
+        let is_stop = |request: &Request| matches!(request, Request::WriteObject(w) if w.address.index == 0x6040 && w.value == 0x0B);
+        let stop = self.fake.requests.iter().find(|(_, r)| is_stop(r));
+        stop.map(|(at, _)| *at)
+    }
+
     pub fn samples(&self) -> Vec<ShaftSample> {
         self.events
             .iter()
@@ -128,9 +144,7 @@ impl Rig {
             .requests
             .iter()
             .filter_map(|(_, request)| match request {
-                protocol::epos2::message::Request::WriteObject(w) => {
-                    Some((w.address.index, w.address.sub, w.value))
-                }
+                Request::WriteObject(w) => Some((w.address.index, w.address.sub, w.value)),
                 _ => None,
             })
             .collect()
@@ -141,7 +155,8 @@ impl Rig {
         let mut listener = Listener::new(1);
         let mut heard = Vec::new();
         for (direction, frame, host) in &self.log {
-            listener.observe(DriveLink::Usb, *direction, frame, *host, &mut |seen| {
+            let link = self.client.link();
+            listener.observe(link, *direction, frame, *host, &mut |seen| {
                 heard.push(seen);
             });
         }

@@ -8,9 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use drive::{Client, Event, ShaftSample};
-use io::port::{LatencyTimer, Recorder, SerialPort};
+use io::port::Recorder;
 use io::udp::ListenConfig;
-use protocol::record::DriveLink;
 use scanner::TiltSource;
 use sim::Truth;
 
@@ -62,8 +61,11 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
             address: setup.device.lidar,
             ..ListenConfig::default()
         })?;
-        let path = devices::port_path(&setup.name, &setup.device)?;
-        (None, record(&setup, ear, path, &interrupt, &mut progress)?)
+        let place = ports::place(&setup.name, &setup.device)?;
+        (
+            None,
+            record(&setup, ear, &place, &interrupt, &mut progress)?,
+        )
     };
     // The stop is over; from here on Ctrl-C means the making of the cloud.
     interrupt.store(false, Ordering::Relaxed);
@@ -107,27 +109,25 @@ fn simulate(
 fn record(
     setup: &Setup,
     ear: Ear,
-    path: &Path,
+    place: &Path,
     interrupt: &Arc<AtomicBool>,
     progress: &mut Progress,
 ) -> Result<Ended, Failure> {
-    let port = SerialPort::open(path, ports::USB_BAUD).map_err(|error| ports::failure(&error))?;
-    if let LatencyTimer::High { ms } = port.latency_timer() {
-        progress.say(&format!(
-            "warning: the adapter's latency timer is {ms} ms and cannot be set: every angle is that much less certain (docs: wiring)"
-        ));
+    let opened = ports::open(&setup.device, place)?;
+    if let Some(warning) = &opened.warning {
+        progress.say(&format!("warning: {warning}"));
     }
-    let recording = Recording::start(ear, &setup.log, &setup.scan, DriveLink::Usb)?;
+    let recording = Recording::start(ear, &setup.log, &setup.scan, opened.link)?;
     if let Err(failure) = await_lidar(&recording, setup, interrupt) {
         // Nothing has moved and nothing is recorded.
         let _ = recording.finish();
         let _ = std::fs::remove_file(&setup.log);
         return Err(failure);
     }
-    let control = Control::listen(path, interrupt);
+    let control = Control::listen(place, interrupt);
     let log = recording.handle();
-    let port = Recorder::new(port, DriveLink::Usb, move |record| log.record(record));
-    let client = Client::new(setup.axis.clone());
+    let port = Recorder::new(opened.port, opened.link, move |record| log.record(record));
+    let client = Client::with_link(setup.axis.clone(), opened.link);
     let mut session = Session::new(client, port, |_| io::clock::now(), Arc::clone(interrupt));
     let gearing = setup.axis.gearing;
     let motion = motion::run(&mut session, &setup.steps, &mut |told| {

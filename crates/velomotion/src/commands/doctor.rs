@@ -156,6 +156,11 @@ fn profiles(config: &Config) -> Vec<Finding> {
         let what = format!("[device.{name}]");
         findings.push(match (&device.kind, &device.port) {
             (DeviceKind::Sim, _) => finding(what, Verdict::Ok, "software devices"),
+            (DeviceKind::Can, _) => match &device.interface {
+                Some(interface) => finding(what, Verdict::Ok, format!("CAN interface {interface}")),
+                None => finding(what, Verdict::Problem, "names no interface")
+                    .todo("add interface = \"can0\" (or what it is)"),
+            },
             (_, Some(port)) if port.exists() => {
                 finding(what, Verdict::Ok, port.display().to_string())
             }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use drive::{Client, Command, DeviceError, Outcome, Status};
-use io::port::SerialPort;
+use io::port::Port;
 use serde::Serialize;
 use units::{DegPerS, DegPerS2, Degrees};
 
@@ -70,11 +70,18 @@ pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<Said, Failure> {
             },
         )?;
         let path = scanner.port().to_owned();
-        let said = with_port(arguments, &config, &name, &path, &commands, interrupt, true);
+        let said = with_port(
+            arguments,
+            &config,
+            (&name, &device),
+            &path,
+            &commands,
+            interrupt,
+        );
         drop(scanner.stop());
         return said;
     }
-    let path = devices::port_path(&name, &device)?.to_owned();
+    let path = ports::place(&name, &device)?;
     if matches!(arguments.verb, TiltVerb::Stop) {
         match control::ask_to_stop(&path) {
             Asked::Nobody => {}
@@ -89,7 +96,12 @@ pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<Said, Failure> {
         }
     }
     with_port(
-        arguments, &config, &name, &path, &commands, interrupt, false,
+        arguments,
+        &config,
+        (&name, &device),
+        &path,
+        &commands,
+        interrupt,
     )
 }
 
@@ -125,16 +137,16 @@ fn commands(verb: &TiltVerb, config: &Config, device: &Device) -> Result<Vec<Com
 fn with_port(
     arguments: &cli::Tilt,
     config: &Config,
-    name: &str,
-    path: &Path,
+    (name, device): (&str, &Device),
+    place: &Path,
     commands: &[Command],
     interrupt: Arc<AtomicBool>,
-    simulated: bool,
 ) -> Result<Said, Failure> {
-    let port = SerialPort::open(path, ports::USB_BAUD).map_err(|error| ports::failure(&error))?;
-    let client = Client::new(devices::axis(&config.axis)?);
-    let control = control::Control::listen(path, &interrupt);
-    let mut session = Session::new(client, port, |_| io::clock::now(), interrupt);
+    let simulated = devices::simulated(device);
+    let opened = ports::open(device, place)?;
+    let client = Client::with_link(devices::axis(&config.axis)?, opened.link);
+    let control = control::Control::listen(place, &interrupt);
+    let mut session = Session::new(client, opened.port, |_| io::clock::now(), interrupt);
     let done = ask(&mut session, commands, simulated);
     if let Some(control) = control {
         control.ended(!matches!(
@@ -153,7 +165,7 @@ fn with_port(
 
 /// Runs the commands and asks how the axis then stands. A software drive is homed first where a move is asked: it was born a moment ago.
 fn ask(
-    session: &mut Session<SerialPort>,
+    session: &mut Session<Box<dyn Port>>,
     commands: &[Command],
     simulated: bool,
 ) -> Result<Status, SessionError> {

@@ -1,0 +1,313 @@
+//! What only a CAN bus has: the stream at SYNC, network states, heartbeats both ways, boot-up.
+
+use protocol::canopen::nmt::NmtState;
+use protocol::epos2::message::Request;
+use protocol::record::DriveLink;
+use units::{Host, Span, Stamp};
+
+use super::fake::{FAULT, Fate};
+use super::rig::{Rig, to};
+use crate::{
+    AngleSource, AxisConfig, Command, DriveError, Observation, Outcome, Progress, ShaftSample,
+};
+
+fn can() -> Rig {
+    Rig::on(DriveLink::Can, AxisConfig::default())
+}
+
+fn homed() -> Rig {
+    Rig::homed_on(DriveLink::Can)
+}
+
+#[test]
+fn the_stream_is_sampled_at_1_khz_with_none_lost() {
+    let mut rig = homed();
+    let until = rig.now + Span::from_secs(60);
+    let before = rig.fake.bus.syncs.len();
+    rig.run(Command::Hold { until }).unwrap();
+    let syncs = &rig.fake.bus.syncs[before..];
+    let samples = rig.samples();
+    assert!(samples.len() > 59_500, "{}", samples.len());
+    assert!(
+        syncs.len() - samples.len() <= 1,
+        "the last may be under way"
+    );
+    for (sample, sync) in samples.iter().zip(syncs) {
+        assert_eq!(sample.request, *sync);
+        assert_eq!(sample.answer - sample.request, Span::from_micros(300));
+    }
+}
+
+#[test]
+fn the_stream_goes_on_while_the_state_is_asked_for() {
+    let mut rig = homed();
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    let moving: Vec<_> = rig
+        .samples()
+        .into_iter()
+        .filter(|s| !matches!(s.position.0, -40_000 | -10_000))
+        .collect();
+    for pair in moving.windows(2) {
+        let apart = pair[1].request - pair[0].request;
+        assert!(apart <= Span::from_micros(1_001), "{apart:?}");
+    }
+    assert!((795..=805).contains(&moving.len()), "{}", moving.len());
+    // Nobody asked for the position meanwhile.
+    let asked = |(_, request): &(Stamp<Host>, Request)| matches!(request, Request::ReadObject(r) if r.address.index == 0x6064);
+    assert!(!rig.fake.requests.iter().any(asked));
+}
+
+#[test]
+fn a_drive_that_refuses_the_mapping_is_polled() {
+    for refused in [(0x1A00, 2), (0x1A00, 0), (0x1800, 1), (0x1800, 2)] {
+        let mut rig = can();
+        rig.fake.refuses = vec![refused];
+        let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+            panic!("{:?}", rig.events.last())
+        };
+        assert_eq!(connected.angle, AngleSource::Polls);
+        rig.run(Command::Home).unwrap();
+        rig.forget();
+        rig.run(Command::Sweep(to(-15.0))).unwrap();
+        assert!(rig.samples().len() > 700, "{}", rig.samples().len());
+    }
+}
+
+#[test]
+fn a_refused_inhibit_time_does_not_cost_the_stream() {
+    let mut rig = can();
+    rig.fake.refuses = vec![(0x1800, 3)];
+    let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+        panic!("{:?}", rig.events.last())
+    };
+    assert_eq!(connected.angle, AngleSource::Stream);
+}
+
+#[test]
+fn a_drive_that_cannot_watch_the_host_is_said_not_to() {
+    let mut rig = can();
+    rig.fake.refuses = vec![(0x1016, 1)];
+    let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+        panic!("{:?}", rig.events.last())
+    };
+    assert!(!connected.watches_host);
+    rig.run(Command::Home).unwrap();
+    assert!(rig.run(Command::Goto(to(0.0))).is_ok());
+}
+
+#[test]
+fn a_stream_that_falls_silent_is_helped_along_by_asking() {
+    let mut rig = homed();
+    rig.fake.bus.copies = Box::new(|n| usize::from(!(300..600).contains(&n)));
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    let samples = rig.samples();
+    for pair in samples.windows(2) {
+        let apart = pair[1].request - pair[0].request;
+        assert!(apart < Span::from_millis(25), "{apart:?}");
+    }
+    assert!(samples.len() > 800);
+}
+
+#[test]
+fn lost_and_repeated_frames_of_the_stream_leave_the_others_right() {
+    let mut rig = homed();
+    rig.fake.bus.copies = Box::new(|n| match n % 17 {
+        3 => 0,
+        9 => 2,
+        _ => 1,
+    });
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    let samples = rig.samples();
+    for sample in &samples {
+        assert_eq!(sample.answer - sample.request, Span::from_micros(300));
+    }
+    let heard: Vec<ShaftSample> = rig
+        .heard()
+        .into_iter()
+        .filter_map(|seen| match seen {
+            Observation::Sample(sample) => Some(sample),
+            _ => None,
+        })
+        .collect();
+    assert!(heard.len() >= samples.len());
+}
+
+#[test]
+fn the_drives_own_time_goes_with_each_sample_of_a_log() {
+    let mut rig = homed();
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    let heard = rig.heard();
+    let mut timed = 0;
+    for pair in heard.windows(2) {
+        if let [
+            Observation::Read {
+                address,
+                value,
+                request,
+                ..
+            },
+            Observation::Sample(sample),
+        ] = pair
+        {
+            assert_eq!(address.index, 0x1013);
+            assert_eq!(*request, sample.request);
+            let latched = sample.request + Span::from_micros(120);
+            assert_eq!(*value, super::fake::device_us(latched));
+            timed += 1;
+        }
+    }
+    assert_eq!(timed, rig.samples().len());
+}
+
+#[test]
+fn a_log_without_the_mapping_gives_no_samples() {
+    let mut rig = homed();
+    let until = rig.now + Span::from_millis(200);
+    rig.run(Command::Hold { until }).unwrap();
+    let sampled = rig
+        .heard()
+        .iter()
+        .any(|seen| matches!(seen, Observation::Sample(_)));
+    assert!(!rig.samples().is_empty() && !sampled);
+}
+
+#[test]
+fn the_drive_stops_when_the_host_dies() {
+    let mut rig = homed();
+    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    assert_eq!(rig.run_for(Span::from_millis(600)), None);
+    assert_eq!(rig.fake.objects[&(0x1016, 1)], 127 << 16 | 200);
+    // Nobody turns the crank any more.
+    let died = rig.now;
+    while rig.fake.state != FAULT {
+        rig.now += Span::from_millis(1);
+        rig.fake.live(rig.now);
+        assert!(rig.now - died < Span::from_millis(250));
+    }
+    assert_eq!(rig.fake.objects[&(0x1003, 1)], 0x8130);
+}
+
+#[test]
+fn the_host_is_heard_until_a_stop_is_over() {
+    let mut rig = homed();
+    rig.client
+        .start(Command::Goto(crate::Move {
+            speed: units::Rpm(300),
+            ..to(45.0)
+        }))
+        .unwrap();
+    assert_eq!(rig.run_for(Span::from_secs(2)), None);
+    rig.client.start(Command::Stop).unwrap();
+    let Ok(Outcome::Stopped(stopped)) = rig.finish() else {
+        panic!("{:?}", rig.events.last())
+    };
+    assert!(!stopped.fault);
+}
+
+#[test]
+fn between_commands_the_host_need_not_be_heard() {
+    let mut rig = homed();
+    rig.run(Command::Goto(to(0.0))).unwrap();
+    rig.now += Span::from_secs(30);
+    rig.fake.live(rig.now);
+    assert_ne!(rig.fake.state, FAULT);
+    assert!(rig.run(Command::Goto(to(10.0))).is_ok());
+}
+
+#[test]
+fn a_silent_heartbeat_in_mid_sweep_stops_it() {
+    let mut rig = homed();
+    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    assert_eq!(rig.run_for(Span::from_millis(600)), None);
+    let at = rig.now;
+    rig.fake.bus.mute = true;
+    let error = rig.finish().unwrap_err();
+    assert!(
+        matches!(error, DriveError::NodeSilent { node: 1, .. }),
+        "{error}"
+    );
+    let reaction = rig.quick_stop().unwrap() - at;
+    assert!(reaction < Span::from_millis(140), "{reaction:?}");
+    let safe = |p: &Progress| matches!(p, Progress::MadeSafe(_));
+    assert!(rig.progress().iter().any(safe));
+}
+
+#[test]
+fn a_node_that_another_master_takes_away_is_told() {
+    let mut rig = homed();
+    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    assert_eq!(rig.run_for(Span::from_millis(600)), None);
+    rig.fake.bus.state = NmtState::PreOperational;
+    let error = rig.finish().unwrap_err();
+    assert!(matches!(error, DriveError::NodeLeft { .. }), "{error}");
+}
+
+#[test]
+fn a_restart_between_commands_prevents_the_next_move() {
+    let mut rig = homed();
+    rig.fake.restart(rig.now);
+    rig.now += Span::from_millis(5);
+    let error = rig.run(Command::Goto(to(0.0))).unwrap_err();
+    assert!(matches!(error, DriveError::Restarted { .. }), "{error}");
+    assert!(!rig.writes().iter().any(|w| w.0 == 0x607A));
+}
+
+#[test]
+fn answers_about_another_object_or_of_another_node_are_passed_over() {
+    use protocol::canopen::NodeId;
+    use protocol::canopen::sdo::{Answer, Expedited, Initiate};
+    use protocol::epos2::objects::Address;
+    let mut rig = can();
+    let answer = |index, node| {
+        let transfer = Initiate::Expedited(Expedited::of(0x1234_5678_u32));
+        let address = Address::new(index, 0);
+        Answer::InitiateUpload { address, transfer }
+            .to_frame(NodeId::new(node).unwrap())
+            .to_socketcan()
+            .to_vec()
+    };
+    rig.client.start(Command::Connect).unwrap();
+    for n in 0..2_000 {
+        let frame = match n % 3 {
+            0 => answer(0x6064, 1),
+            1 => answer(0x1000, 2),
+            _ => answer(0x607D, 1),
+        };
+        rig.client.handle_input(&frame, rig.now);
+        if let Some(end) = rig.step() {
+            assert!(end.is_ok(), "{end:?}");
+            assert!(rig.client.link_stats().strays > 50);
+            return;
+        }
+    }
+    panic!("no end: {:?}", rig.client);
+}
+
+#[test]
+fn a_late_answer_is_not_taken_for_the_next_one_of_the_same_object() {
+    let mut rig = can();
+    rig.fake.refuses = vec![(0x1A00, 0)];
+    rig.run(Command::Connect).unwrap();
+    rig.run(Command::Home).unwrap();
+    rig.forget();
+    rig.fake.hand = Box::new(|n, request| match request {
+        Request::ReadObject(read) if read.address.index == 0x6064 && n % 37 == 0 => {
+            Fate::Late(Span::from_millis(150))
+        }
+        _ => Fate::Sent,
+    });
+    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    // 37,500 qc/s: an answer of another time would be off by thousands.
+    let moving: Vec<_> = rig
+        .samples()
+        .into_iter()
+        .filter(|s| !matches!(s.position.0, -40_000 | -10_000))
+        .collect();
+    assert!(moving.len() > 20);
+    for pair in moving.windows(2) {
+        let way = f64::from(pair[1].position.0 - pair[0].position.0);
+        let least = 37_500.0 * (pair[1].request - pair[0].answer).as_secs_f64() - 1.0;
+        let most = 37_500.0 * (pair[1].answer - pair[0].request).as_secs_f64() + 1.0;
+        assert!((least..=most).contains(&way), "{least} {way} {most}");
+    }
+}

@@ -1,0 +1,322 @@
+//! The same story on each link: what the client does and what becomes of faults does not depend on how the drive is attached.
+
+use protocol::epos2::DeviceError;
+use protocol::epos2::message::Request;
+use protocol::record::DriveLink;
+use units::{Quadcounts, Span, Stamp};
+
+use super::fake::{DISABLED, FAULT, Fate};
+use super::rig::{Rig, to};
+use crate::{
+    AngleSource, AxisConfig, Command, DriveError, Observation, Outcome, Place, Progress,
+    ShaftSample, Stopped,
+};
+
+const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
+/// From seeing that something is wrong to the quick stop, or to saying that the axis cannot be stopped.
+const REACTION: Span = Span::from_millis(100);
+
+fn moving_on(link: DriveLink) -> Rig {
+    let mut rig = Rig::homed_on(link);
+    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    assert_eq!(rig.run_for(Span::from_millis(600)), None, "{link:?}");
+    let moved = rig.fake.position(rig.now) + 40_000.0;
+    assert!(moved > 5_000.0, "{link:?}: {moved}");
+    rig
+}
+
+fn made_safe(rig: &Rig) -> Option<Stopped> {
+    rig.progress().iter().find_map(|p| match p {
+        Progress::MadeSafe(stopped) => Some(*stopped),
+        _ => None,
+    })
+}
+
+#[test]
+fn the_whole_story() {
+    for link in LINKS {
+        let mut rig = Rig::on(link, AxisConfig::default());
+        let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+            panic!("{link:?}: {:?}", rig.events.last())
+        };
+        assert_eq!(connected.identity.name.as_str(), "EPOS2", "{link:?}");
+        assert_eq!(connected.identity.serial, 0x9090_9090);
+        assert_eq!(connected.history, [DeviceError::CAN_PASSIVE]);
+        let on_can = link == DriveLink::Can;
+        assert_eq!(connected.watches_host, on_can);
+        assert_eq!(connected.angle == AngleSource::Stream, on_can);
+        rig.run(Command::Home).unwrap();
+        let Ok(Outcome::Arrived(arrived)) = rig.run(Command::Sweep(to(-15.0))) else {
+            panic!("{link:?}: {:?}", rig.events.last())
+        };
+        assert_eq!(arrived.position, Quadcounts(-10_000));
+        let Ok(Outcome::Stopped(stopped)) = rig.run(Command::Brake) else {
+            panic!("{link:?}: {:?}", rig.events.last())
+        };
+        assert_eq!((stopped.place, stopped.fault), (Place::Known, false));
+        let stats = rig.client.link_stats();
+        assert_eq!(
+            (stats.lost, stats.strays, stats.damaged),
+            (0, 0, 0),
+            "{link:?}"
+        );
+        assert_eq!(rig.fake.objects[&(0x1016, 1)], 0, "the host may go");
+    }
+}
+
+#[test]
+fn a_log_tells_the_same_on_each_link() {
+    for link in LINKS {
+        let mut rig = Rig::on(link, AxisConfig::default());
+        rig.run(Command::Connect).unwrap();
+        rig.run(Command::Home).unwrap();
+        rig.run(Command::Sweep(to(-15.0))).unwrap();
+        rig.run(Command::Brake).unwrap();
+        let heard = rig.heard();
+        let sampled: Vec<ShaftSample> = heard
+            .iter()
+            .filter_map(|seen| match seen {
+                Observation::Sample(sample) => Some(*sample),
+                _ => None,
+            })
+            .collect();
+        // The client also reads the position where it needs no sample.
+        let samples = rig.samples();
+        let mut rest = sampled.iter();
+        assert!(
+            samples.iter().all(|s| rest.any(|other| other == s)),
+            "{link:?}"
+        );
+        assert!(sampled.len() < samples.len() + 10);
+        let wrote: Vec<_> = heard
+            .iter()
+            .filter_map(|seen| match seen {
+                Observation::Wrote { address, value, .. } => {
+                    Some((address.index, address.sub, *value))
+                }
+                _ => None,
+            })
+            .collect();
+        assert_eq!(wrote, rig.writes(), "{link:?}");
+        let is_noise = |seen: &&Observation| matches!(seen, Observation::Noise { .. });
+        assert_eq!(heard.iter().find(is_noise), None, "{link:?}");
+    }
+}
+
+#[test]
+fn samples_lie_between_their_stamps_on_each_link() {
+    for link in LINKS {
+        let mut rig = Rig::homed_on(link);
+        rig.run(Command::Sweep(to(-15.0))).unwrap();
+        let samples = rig.samples();
+        let moving: Vec<_> = samples
+            .iter()
+            .filter(|s| !matches!(s.position.0, -40_000 | -10_000))
+            .collect();
+        assert!(moving.len() > if link == DriveLink::Rs232 { 200 } else { 650 });
+        // 37,500 qc/s from a start that all samples must agree on.
+        let began =
+            |at: Stamp<_>, qc: i32| at.as_nanos() as f64 / 1e9 - f64::from(qc + 40_000) / 37_500.0;
+        let base = moving[0].request.as_nanos() as f64 / 1e9;
+        let earliest = moving.iter().map(|s| began(s.answer, s.position.0) - base);
+        let latest = moving
+            .iter()
+            .map(|s| began(s.request, s.position.0 + 1) - base);
+        let (least, most) = (
+            earliest.fold(f64::MAX, f64::min),
+            latest.fold(f64::MIN, f64::max),
+        );
+        assert!(most <= least + 1e-6, "{link:?}: {most} {least}");
+    }
+}
+
+#[test]
+fn a_fault_in_mid_sweep_stops_it() {
+    for link in LINKS {
+        for (code, place) in [
+            (0x8611, Place::Known),
+            (0xFF07, Place::Known),
+            (
+                0x7320,
+                Place::Lost {
+                    error: Some(DeviceError::POSITION_SENSOR),
+                },
+            ),
+        ] {
+            let mut rig = moving_on(link);
+            let at = rig.now + Span::from_millis(3);
+            rig.fake.fault_at = Some((at, code));
+            let error = Some(DeviceError(code));
+            assert_eq!(rig.finish(), Err(DriveError::Fault { error }), "{link:?}");
+            let stopped = made_safe(&rig).unwrap();
+            assert_eq!((stopped.place, stopped.fault), (place, true));
+            assert_eq!(stopped.angle.is_some(), place == Place::Known);
+            assert_eq!(rig.fake.state, FAULT);
+            let reaction = rig.quick_stop().unwrap() - at;
+            // On CAN an emergency says it at once; else a look at the statusword does.
+            let limit = if link == DriveLink::Can { 3 } else { 40 };
+            assert!(
+                reaction < Span::from_millis(limit),
+                "{link:?}: {reaction:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_restart_in_mid_sweep_is_told_and_the_position_is_lost() {
+    for link in LINKS {
+        let mut rig = moving_on(link);
+        let at = rig.now;
+        rig.fake.restart(at);
+        let error = rig.finish().unwrap_err();
+        assert!(
+            matches!(error, DriveError::Restarted { .. }),
+            "{link:?}: {error}"
+        );
+        assert!(error.help().contains("home again"));
+        let stopped = made_safe(&rig).unwrap();
+        assert_eq!(stopped.place, Place::Lost { error: None });
+        assert_eq!(stopped.angle, None);
+        let reaction = rig.quick_stop().unwrap() - at;
+        // On CAN the boot-up message says it; else what was asked last is not answered, and its time has to pass first.
+        let limit = if link == DriveLink::Can { 3 } else { 200 };
+        assert!(
+            reaction < Span::from_millis(limit),
+            "{link:?}: {reaction:?}"
+        );
+        // No move before it has been connected again.
+        assert!(rig.run(Command::Goto(to(0.0))).is_err());
+        rig.run(Command::Connect).unwrap();
+        rig.run(Command::Home).unwrap();
+        assert!(rig.run(Command::Goto(to(0.0))).is_ok(), "{link:?}");
+    }
+}
+
+#[test]
+fn a_lost_link_in_mid_sweep_is_told_in_time() {
+    for link in LINKS {
+        let mut rig = moving_on(link);
+        let died = rig.now;
+        rig.fake.hand = Box::new(|_, _| Fate::Lost);
+        rig.fake.bus.mute = true;
+        rig.fake.bus.copies = Box::new(|_| 0);
+        let error = rig.finish().unwrap_err();
+        let DriveError::NotStopped { cause, stop } = &error else {
+            panic!("{link:?}: {error:?}")
+        };
+        assert!(
+            matches!(
+                **cause,
+                DriveError::LinkLost { .. } | DriveError::NodeSilent { .. }
+            ),
+            "{cause:?}"
+        );
+        assert!(matches!(**stop, DriveError::LinkLost { .. }), "{stop:?}");
+        // The quick stop went out all the same, for a drive that hears but cannot be heard.
+        if link != DriveLink::Rs232 {
+            assert_eq!(rig.fake.state, super::fake::QUICK_STOP, "{link:?}");
+            let seen = rig.quick_stop().unwrap();
+            assert!(rig.now - seen < REACTION, "{link:?}");
+        }
+        // The time of one answer, and of the markers after it; then the last try.
+        assert!(
+            rig.now - died < Span::from_millis(500),
+            "{link:?} {:?}",
+            rig.now - died
+        );
+    }
+}
+
+#[test]
+fn an_axis_that_does_not_follow_is_given_up() {
+    for link in LINKS {
+        let mut rig = Rig::homed_on(link);
+        rig.fake.blocked = true;
+        let error = rig.run(Command::Goto(to(45.0))).unwrap_err();
+        assert!(
+            matches!(error, DriveError::NotArrived { .. }),
+            "{link:?}: {error}"
+        );
+        assert_eq!(rig.fake.state, DISABLED);
+    }
+}
+
+#[test]
+fn loss_damage_repetition_and_refusal_are_survived() {
+    for link in LINKS {
+        for (fate, every) in [
+            (Fate::Lost, 41),
+            (Fate::Damaged, 23),
+            (Fate::Twice, 17),
+            (Fate::Rejected, 19),
+            (Fate::Late(Span::from_millis(3)), 13),
+            (Fate::Late(Span::from_millis(130)), 47),
+        ] {
+            let mut rig = Rig::on(link, AxisConfig::default());
+            // Reads and rejected writes are repeated; a write whose answer is lost is not. Segments are begun anew by the whole.
+            rig.fake.hand = Box::new(move |n, request| {
+                let repeated = match request {
+                    Request::ReadObject(_) => true,
+                    _ => {
+                        matches!(fate, Fate::Rejected | Fate::Twice)
+                            || fate == Fate::Late(Span::from_millis(3))
+                    }
+                };
+                // An answer of CAN cannot be refused but by name.
+                let possible = !(link == DriveLink::Can && fate == Fate::Rejected);
+                if n % every == 0 && repeated && possible {
+                    fate
+                } else {
+                    Fate::Sent
+                }
+            });
+            for command in [
+                Command::Connect,
+                Command::Home,
+                Command::Sweep(to(-15.0)),
+                Command::Brake,
+            ] {
+                let result = rig.run(command);
+                assert!(result.is_ok(), "{link:?} {fate:?} {command:?}: {result:?}");
+            }
+            assert_eq!(rig.fake.position(rig.now), -10_000.0);
+        }
+    }
+}
+
+#[test]
+fn a_wrong_toggle_bit_is_told() {
+    for link in LINKS {
+        let mut rig = Rig::on(link, AxisConfig::default());
+        rig.fake.wrong_toggle = true;
+        let error = rig.run(Command::Connect).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "reading object 1008:00 in segments: expected toggle bit 0, got 1",
+            "{link:?}"
+        );
+        assert!(rig.writes().is_empty());
+    }
+}
+
+#[test]
+fn a_stop_from_mid_sweep_is_immediate_and_keeps_the_position() {
+    for link in LINKS {
+        let mut rig = moving_on(link);
+        let asked = rig.now;
+        rig.client.start(Command::Stop).unwrap();
+        let Ok(Outcome::Stopped(stopped)) = rig.finish() else {
+            panic!("{link:?}: {:?}", rig.events.last())
+        };
+        assert_eq!(stopped.place, Place::Known);
+        assert_eq!(
+            f64::from(stopped.position.0),
+            rig.fake.position(rig.now).floor()
+        );
+        let reaction = rig.quick_stop().unwrap() - asked;
+        assert!(reaction < Span::from_millis(10), "{link:?}: {reaction:?}");
+        assert_eq!(rig.fake.state, DISABLED);
+        assert_eq!(rig.fake.objects[&(0x1016, 1)], 0);
+    }
+}

@@ -1,0 +1,375 @@
+//! The scripted drive's side of each link: bytes to requests, answers and their fates to bytes; and what it says on a CAN bus of its
+//! own accord.
+
+use protocol::canopen::emcy::Emergency;
+use protocol::canopen::heartbeat::Heartbeat;
+use protocol::canopen::nmt::{NmtCommand, NmtState};
+use protocol::canopen::pdo::{Mapping, Pdo};
+use protocol::canopen::sdo::{self, Expedited, Initiate};
+use protocol::canopen::{CanFrame, Message, NodeId, PdoNumber};
+use protocol::epos2::message::{
+    Answer, InitiateSegmentedRead, ReadObject, Request, SegmentedRead, WriteObject,
+};
+use protocol::epos2::objects::Address;
+use protocol::epos2::rs232::{BodyDecoder, FAILED, OKAY, encode_body};
+use protocol::epos2::usb::{self, UsbDecoder};
+use protocol::epos2::{CommError, DeviceError, Frame};
+use protocol::record::DriveLink;
+use units::{Host, Span, Stamp};
+
+use super::fake::{Fake, Fate, device_us, width};
+
+pub enum Wire {
+    Usb(UsbDecoder),
+    Rs232(Turn),
+    Can,
+    /// While it is in use.
+    Gone,
+}
+
+/// Whose turn it is, and for what.
+pub enum Turn {
+    Opcode,
+    Body(BodyDecoder),
+    Ready(Frame, Fate),
+    Receipt,
+}
+
+/// What a drive has on a CAN bus beside its answers.
+pub struct FakeBus {
+    pub state: NmtState,
+    next_heartbeat: Option<Stamp<Host>>,
+    /// It no longer sends its heartbeat.
+    pub mute: bool,
+    host_heard: Option<Stamp<Host>>,
+    /// From SYNC to the latched position, and to the frame's arrival.
+    pub forth: Span,
+    pub back: Span,
+    /// Decides whether the n-th frame of the stream is sent, and how often.
+    pub copies: Box<dyn FnMut(usize) -> usize + Send>,
+    streamed: usize,
+    pub syncs: Vec<Stamp<Host>>,
+}
+
+impl Default for FakeBus {
+    fn default() -> Self {
+        Self {
+            state: NmtState::PreOperational,
+            next_heartbeat: None,
+            mute: false,
+            host_heard: None,
+            forth: Span::from_micros(120),
+            back: Span::from_micros(180),
+            copies: Box::new(|_| 1),
+            streamed: 0,
+            syncs: Vec::new(),
+        }
+    }
+}
+
+const NODE: u8 = 1;
+
+fn node() -> NodeId {
+    NodeId::new(NODE).unwrap()
+}
+
+impl Wire {
+    pub fn new(link: DriveLink) -> Self {
+        match link {
+            DriveLink::Usb => Self::Usb(UsbDecoder::new()),
+            DriveLink::Rs232 => Self::Rs232(Turn::Opcode),
+            DriveLink::Can => Self::Can,
+        }
+    }
+
+    pub fn link(&self) -> DriveLink {
+        match self {
+            Self::Usb(_) => DriveLink::Usb,
+            Self::Rs232(_) => DriveLink::Rs232,
+            Self::Can | Self::Gone => DriveLink::Can,
+        }
+    }
+
+    pub fn input(&mut self, fake: &mut Fake, bytes: &[u8], now: Stamp<Host>) {
+        match self {
+            Self::Usb(decoder) => {
+                for &byte in bytes {
+                    if let Some(Ok(frame)) = decoder.push(byte) {
+                        let request = Request::parse(&frame).unwrap().unwrap();
+                        let (answer, fate) = fake.execute(request, now);
+                        usb_answer(fake, &answer, fate, now);
+                    }
+                }
+            }
+            Self::Rs232(turn) => {
+                for &byte in bytes {
+                    let was = std::mem::replace(turn, Turn::Opcode);
+                    *turn = rs232(was, fake, byte, now);
+                }
+            }
+            Self::Can => {
+                for bytes in bytes.chunks(16) {
+                    can(fake, &CanFrame::from_socketcan(bytes).unwrap(), now);
+                }
+            }
+            Self::Gone => {}
+        }
+    }
+}
+
+fn usb_answer(fake: &mut Fake, answer: &Frame, fate: Fate, now: Stamp<Host>) {
+    let mut bytes = usb::to_bytes(answer).to_vec();
+    let by = match fate {
+        Fate::Lost => return,
+        Fate::Late(by) => by,
+        _ => Span::ZERO,
+    };
+    if fate == Fate::Damaged {
+        *bytes.last_mut().unwrap() ^= 0x55;
+    }
+    if fate == Fate::Twice {
+        fake.send(bytes.clone(), by, now);
+    }
+    fake.send(bytes, by, now);
+}
+
+fn rs232(turn: Turn, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> Turn {
+    match turn {
+        Turn::Opcode if [0x10, 0x11, 0x12, 0x14].contains(&byte) => {
+            fake.send(vec![OKAY], Span::ZERO, now);
+            Turn::Body(BodyDecoder::new(byte))
+        }
+        Turn::Opcode => {
+            fake.send(vec![FAILED], Span::ZERO, now);
+            Turn::Opcode
+        }
+        Turn::Body(mut decoder) => match decoder.push(byte) {
+            None => Turn::Body(decoder),
+            Some(Err(_)) => {
+                fake.send(vec![FAILED], Span::ZERO, now);
+                Turn::Opcode
+            }
+            Some(Ok(frame)) => {
+                let request = Request::parse(&frame).unwrap().unwrap();
+                let (answer, fate) = fake.execute(request, now);
+                match fate {
+                    Fate::Rejected => {
+                        fake.send(vec![FAILED], Span::ZERO, now);
+                        return Turn::Opcode;
+                    }
+                    Fate::Lost => {}
+                    Fate::Late(by) => fake.send(vec![OKAY, 0], by, now),
+                    _ => fake.send(vec![OKAY, 0], Span::ZERO, now),
+                }
+                Turn::Ready(answer, fate)
+            }
+        },
+        Turn::Ready(answer, fate) if byte == OKAY => {
+            let mut body = Vec::new();
+            encode_body(&answer, &mut body).unwrap();
+            if fate == Fate::Damaged {
+                *body.last_mut().unwrap() ^= 0x55;
+            }
+            if fate == Fate::Twice {
+                fake.send(body.clone(), Span::ZERO, now);
+            }
+            fake.send(body, Span::ZERO, now);
+            Turn::Receipt
+        }
+        Turn::Ready(..) | Turn::Receipt => Turn::Opcode,
+    }
+}
+
+fn can(fake: &mut Fake, frame: &CanFrame, now: Stamp<Host>) {
+    match Message::parse(frame).unwrap() {
+        Message::Nmt(nmt) => match nmt.command {
+            NmtCommand::Start => fake.bus.state = NmtState::Operational,
+            NmtCommand::EnterPreOperational => fake.bus.state = NmtState::PreOperational,
+            other => panic!("{other:?}"),
+        },
+        Message::Sync(_) => fake.sync(now),
+        Message::Heartbeat(beat) => {
+            assert_eq!(beat.node.get(), 127);
+            fake.bus.host_heard = Some(now);
+        }
+        Message::SdoRequest(to, request) => {
+            assert_eq!(to, node());
+            sdo_request(fake, &request, now);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+fn sdo_request(fake: &mut Fake, request: &sdo::Request, now: Stamp<Host>) {
+    let (wire, address) = match *request {
+        sdo::Request::InitiateUpload { address } if address.index == 0x1008 => {
+            let open = InitiateSegmentedRead {
+                node: NODE,
+                address,
+            };
+            (Request::InitiateSegmentedRead(open), address)
+        }
+        sdo::Request::InitiateUpload { address } => {
+            let node = NODE;
+            (Request::ReadObject(ReadObject { node, address }), address)
+        }
+        sdo::Request::InitiateDownload {
+            address,
+            transfer: Initiate::Expedited(data),
+        } => {
+            assert_eq!(
+                data.as_slice().len(),
+                usize::from(width(address)),
+                "{address}"
+            );
+            let write = WriteObject {
+                node: NODE,
+                address,
+                value: data.to_u32(),
+            };
+            (Request::WriteObject(write), address)
+        }
+        sdo::Request::UploadSegment { toggle } => (
+            Request::SegmentedRead(SegmentedRead { toggle }),
+            Address::new(0x1008, 0),
+        ),
+        sdo::Request::Abort { .. } => return,
+        other => panic!("{other:?}"),
+    };
+    let (answer, fate) = fake.execute(wire, now);
+    let answer = sdo_answer(&wire, address, &answer);
+    let mut bytes = answer.to_frame(node()).to_socketcan().to_vec();
+    let by = match fate {
+        Fate::Lost => return,
+        Fate::Late(by) => by,
+        _ => Span::ZERO,
+    };
+    match fate {
+        // A wrong frame on CAN does not arrive; one of the wrong length is the nearest to it.
+        Fate::Damaged => bytes[4] = 7,
+        Fate::Twice => fake.send(bytes.clone(), by, now),
+        _ => {}
+    }
+    fake.send(bytes, by, now);
+}
+
+fn sdo_answer(request: &Request, address: Address, answer: &Frame) -> sdo::Answer {
+    let parsed = Answer::parse(answer).unwrap();
+    let error = parsed.error;
+    if !error.is_none() {
+        return sdo::Answer::Abort { address, error };
+    }
+    match request {
+        Request::WriteObject(_) => sdo::Answer::InitiateDownload { address },
+        Request::InitiateSegmentedRead(_) => sdo::Answer::InitiateUpload {
+            address,
+            transfer: Initiate::Segmented { size: None },
+        },
+        Request::SegmentedRead(_) => {
+            let read = SegmentedRead::parse_answer(answer).unwrap().unwrap();
+            let mut segment = sdo::Segment::cut(&read.bytes, 0, read.toggle);
+            segment.last = !read.more;
+            sdo::Answer::UploadSegment(segment)
+        }
+        _ => {
+            let value = parsed.value().unwrap().to_le_bytes();
+            let data = Expedited::new(&value[..usize::from(width(address))]).unwrap();
+            sdo::Answer::InitiateUpload {
+                address,
+                transfer: Initiate::Expedited(data),
+            }
+        }
+    }
+}
+
+impl Fake {
+    /// What it says of its own accord before anything else.
+    pub fn start_bus(&mut self, now: Stamp<Host>) {
+        let state = self.bus.state;
+        self.bus = FakeBus::default();
+        if state != NmtState::PreOperational {
+            self.say(
+                &Heartbeat {
+                    node: node(),
+                    state: NmtState::BootUp,
+                }
+                .to_frame(),
+                now,
+            );
+        }
+    }
+
+    pub fn next_of_bus(&self) -> Option<Stamp<Host>> {
+        self.bus.next_heartbeat.or(self.fault_at.map(|(at, _)| at))
+    }
+
+    pub fn live_on_bus(&mut self, now: Stamp<Host>) {
+        let period = i64::from(self.objects[&(0x1017, 0)]);
+        if period == 0 || self.bus.mute {
+            self.bus.next_heartbeat = None;
+        } else if self.bus.next_heartbeat.is_none_or(|at| at <= now) {
+            self.bus.next_heartbeat = Some(now + Span::from_millis(period));
+            let state = self.bus.state;
+            self.say(
+                &Heartbeat {
+                    node: node(),
+                    state,
+                }
+                .to_frame(),
+                now,
+            );
+        }
+        let entry = self.objects[&(0x1016, 1)];
+        let limit = Span::from_millis(i64::from(entry & 0xFFFF));
+        let heard = self.bus.host_heard;
+        if entry == 0 {
+            self.bus.host_heard = None;
+        } else if heard.is_some_and(|at| now - at > limit) {
+            self.bus.host_heard = None;
+            self.fault(0x8130, now);
+        }
+    }
+
+    pub fn emergency(&mut self, code: u16, now: Stamp<Host>) {
+        if self.bus.state == NmtState::Operational {
+            self.say(
+                &Emergency::new(node(), DeviceError(code), 1).to_frame(),
+                now,
+            );
+        }
+    }
+
+    pub fn say(&mut self, frame: &CanFrame, now: Stamp<Host>) {
+        let at = now + Span::from_micros(150);
+        self.send_at(frame.to_socketcan().to_vec(), at);
+    }
+
+    fn sync(&mut self, now: Stamp<Host>) {
+        self.bus.syncs.push(now);
+        let object = |entry| self.objects[&entry];
+        let in_use = object((0x1800, 1)) & 1 << 31 == 0 && object((0x1800, 2)) == 1;
+        if !in_use || self.bus.state != NmtState::Operational {
+            return;
+        }
+        let at = now + self.bus.forth;
+        let mut data = Vec::new();
+        for sub in 1..=object((0x1A00, 0)) as u8 {
+            let entry = Mapping::from_u32(self.objects[&(0x1A00, sub)]);
+            let value = match (entry.address.index, entry.address.sub) {
+                (0x1013, 0) => device_us(at),
+                _ => self
+                    .get(entry.address, at)
+                    .unwrap_or_else(|e: CommError| panic!("{e}")),
+            };
+            data.extend_from_slice(&value.to_le_bytes()[..usize::from(entry.bits / 8)]);
+        }
+        let id = Pdo::Transmit(PdoNumber::One).channel(node()).cob_id();
+        let frame = CanFrame::new(id, &data).unwrap();
+        let n = self.bus.streamed;
+        self.bus.streamed += 1;
+        for copy in 0..(self.bus.copies)(n) {
+            let at = at + self.bus.back + Span::from_micros(100 * copy as i64);
+            self.send_at(frame.to_socketcan().to_vec(), at);
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! The software EPOS2 on a CAN interface of the kernel, `velomotion firmware-sim --can vcan0`, and a CANopen master that
+//! talks to it through another socket.
+//!
+//! Where the kernel has no CAN, the test runs its own program again inside an emulated machine (`in-vm` beside this file).
+//! It says why it is skipped where that cannot be; with `VELOMOTION_VCAN=required` that is a failure. The project's client
+//! of the drive and SLCAN are tested elsewhere: here it is the kernel between two programs' sockets that counts.
+
+mod bus;
+mod stream;
+
+use std::path::Path;
+use std::process::Command;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+
+use firmware_sim::epos2::CanServer;
+use io::can::SocketCan;
+use io::clock;
+use protocol::canopen::emcy::Emergency;
+use protocol::canopen::heartbeat::{HeartbeatConsumer, HeartbeatEvent};
+use protocol::canopen::nmt::{Nmt, NmtCommand, NmtState};
+use protocol::canopen::sdo::TransferError;
+use protocol::canopen::{CanFrame, Channel, NodeId, PdoNumber};
+use protocol::epos2::cia402::{State, control};
+use protocol::epos2::objects::{self, Address};
+use protocol::epos2::{CommError, DeviceError};
+use units::Span;
+use velomotion::config::Axis;
+use velomotion::software_drive::{self, Interface, SoftwareDriveError};
+use velomotion::{devices, simulated};
+
+use bus::Master;
+
+const BUS: &str = "vcan0";
+/// Set where the bus is there.
+const INSIDE: &str = "VELOMOTION_VCAN_INSIDE";
+/// The exit status by which `in-vm` says that something is missing.
+const MISSING: i32 = 77;
+/// Of the node's heartbeat, ms.
+const BEAT_MS: u16 = 50;
+/// A node that has been silent for so long is lost.
+const LOST: Span = Span::from_secs(2);
+
+#[test]
+fn the_software_drive_and_a_master_meet_on_a_bus_of_the_kernel() {
+    if std::env::var_os(INSIDE).is_some() {
+        meet();
+    } else {
+        run_inside("the_software_drive_and_a_master_meet_on_a_bus_of_the_kernel");
+    }
+}
+
+/// Runs this program's test `name` where the bus is there.
+fn run_inside(name: &str) {
+    let runner = Path::new(env!("CARGO_MANIFEST_DIR")).join("vcan/in-vm");
+    let output = Command::new(&runner)
+        .args(["--env", &format!("{INSIDE}=1"), "--"])
+        .arg(std::env::current_exe().unwrap())
+        .args(["--exact", name, "--nocapture"])
+        .output();
+    let (status, said) = match &output {
+        Ok(output) => (
+            output.status.code(),
+            [&output.stdout[..], &output.stderr].concat(),
+        ),
+        // No python3.
+        Err(error) => (Some(MISSING), format!("{runner:?}: {error}").into_bytes()),
+    };
+    let said = String::from_utf8_lossy(&said);
+    if status == Some(MISSING) {
+        let required = std::env::var_os("VELOMOTION_VCAN").is_some_and(|v| v == "required");
+        assert!(!required, "required here: {said}");
+        eprintln!("skipped: {said}");
+        return;
+    }
+    println!("{said}");
+    assert!(status == Some(0), "{status:?}");
+    assert!(said.contains("1 passed"), "no test of that name ran");
+}
+
+/// The software drive on the bus, in a thread of its own.
+struct SoftwareDrive {
+    stop: Arc<AtomicBool>,
+    thread: JoinHandle<Result<(), SoftwareDriveError>>,
+}
+
+impl SoftwareDrive {
+    fn start() -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopping = Arc::clone(&stop);
+        let node = simulated::node(&devices::axis(&Axis::default()).unwrap());
+        let interface = Interface::Can(CanServer::new(), SocketCan::open(BUS).unwrap());
+        let thread = std::thread::spawn(move || software_drive::run(node, interface, &stopping));
+        Self { stop, thread }
+    }
+
+    fn stop(self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.thread.join().unwrap().unwrap();
+    }
+}
+
+fn meet() {
+    let node = NodeId::new(1).unwrap();
+    let mut master = Master::open(BUS, node);
+    let mut consumer = HeartbeatConsumer::new(node, LOST);
+    let drive = SoftwareDrive::start();
+    expect_state(&mut master, &mut consumer, NmtState::BootUp);
+    identity(&mut master);
+    aborts(&mut master);
+    stream::map_angle(&mut master, node);
+    master.write(objects::PRODUCER_HEARTBEAT, BEAT_MS);
+    expect_state(&mut master, &mut consumer, NmtState::PreOperational);
+    let command = NmtCommand::Start;
+    let start = Nmt {
+        node: Some(node),
+        command,
+    };
+    master.send(&start.to_frame());
+    expect_state(&mut master, &mut consumer, NmtState::Operational);
+    stream::enable_and_turn(&mut master);
+    println!("{}", stream::one_second(&mut master, node));
+    stream::halt(&mut master);
+    emergency(&mut master, node);
+    drive.stop();
+    heartbeat_is_lost(&mut master, &mut consumer);
+}
+
+/// Waits until the node says that it is in `wanted`.
+fn expect_state(master: &mut Master, consumer: &mut HeartbeatConsumer, wanted: NmtState) {
+    let consumer = std::cell::RefCell::new(consumer);
+    let event = master.wait_for(&format!("a heartbeat: {wanted}"), |(frame, host)| {
+        consumer.borrow_mut().handle_frame(frame, *host)
+    });
+    match event {
+        HeartbeatEvent::BootUp => assert_eq!(wanted, NmtState::BootUp),
+        HeartbeatEvent::State { to, .. } => assert_eq!(to, wanted),
+        HeartbeatEvent::Lost { silence } => panic!("{silence:?}"),
+    }
+}
+
+/// Numbers in one exchange; the name in one segment, the serial number in two.
+fn identity(master: &mut Master) {
+    assert_eq!(master.read(objects::DEVICE_TYPE), 0x0002_0192);
+    assert_eq!(master.read(objects::VENDOR_ID), 0xFB);
+    assert_eq!(master.read(objects::PRODUCT_CODE), 0x6420_0000);
+    assert_eq!(master.read(objects::REVISION), 0x2126_0000);
+    let name = master.read_raw(objects::DEVICE_NAME).unwrap();
+    assert_eq!(name.bytes.as_slice(), b"EPOS2");
+    let serial = master.read_raw(objects::SERIAL_NUMBER_64).unwrap();
+    let low = master.read(objects::SERIAL_NUMBER);
+    assert_eq!(serial.bytes.len(), 8);
+    assert_eq!(serial.bytes[..4], low.to_le_bytes());
+}
+
+/// What the node refuses it refuses with a reason (CiA 301, "SDO abort codes"), and the next transfer is as good as any.
+fn aborts(master: &mut Master) {
+    let refused = |error| Err(TransferError::Aborted(error));
+    let read = master.read_raw(Address::new(0x5FFF, 0)).map(drop);
+    assert_eq!(read, refused(CommError::NO_OBJECT));
+    let device_type = objects::DEVICE_TYPE.address;
+    let written = master.write_raw(device_type, &[0; 4]);
+    assert_eq!(written, refused(CommError::READ_ONLY));
+    let written = master.write_raw(device_type, &[0; 12]);
+    assert!(
+        matches!(written, Err(TransferError::Aborted(_))),
+        "{written:?}"
+    );
+    assert_eq!(master.read(objects::DEVICE_TYPE), 0x0002_0192);
+}
+
+/// Process data that is too short is error 8210: told at once, kept in the history, and its end told, too.
+fn emergency(master: &mut Master, node: NodeId) {
+    let told = |(frame, _): &bus::Heard| Emergency::parse(frame).ok();
+    master.take_heard();
+    let id = Channel::ReceivePdo(PdoNumber::One, node).cob_id();
+    master.send(&CanFrame::of(id, [0x06]));
+    let emergency = master.wait_for("an emergency message", told);
+    assert_eq!(emergency.node, node);
+    assert_eq!(emergency.error, DeviceError::PDO_LENGTH);
+    assert_ne!(emergency.register, 0);
+    assert_eq!(master.read(objects::ERROR_REGISTER), emergency.register);
+    let latest = master.read(objects::ERROR_HISTORY_1);
+    assert_eq!(latest & 0xFFFF, u32::from(DeviceError::PDO_LENGTH.0));
+    stream::wait_for_state(master, State::Fault);
+    master.write(objects::CONTROLWORD, control::FAULT_RESET);
+    assert!(master.wait_for("the end of the error", told).is_reset());
+    stream::wait_for_state(master, State::SwitchOnDisabled);
+}
+
+/// A node that is gone is missed.
+fn heartbeat_is_lost(master: &mut Master, consumer: &mut HeartbeatConsumer) {
+    master.listen(clock::now());
+    for (frame, host) in master.take_heard() {
+        assert_eq!(consumer.handle_frame(&frame, host), None, "{frame}");
+    }
+    let end = consumer.poll_timeout().unwrap();
+    master.listen(end);
+    assert_eq!(master.take_heard(), []);
+    assert!(matches!(
+        consumer.handle_timeout(end),
+        Some(HeartbeatEvent::Lost { silence }) if silence == LOST
+    ));
+}
