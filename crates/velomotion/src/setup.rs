@@ -36,8 +36,8 @@ impl Setup {
     /// Checks what was asked for against the axis, and plans the moves.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for what this axis cannot do or names that clash, [`Kind::BadInput`] for a wrong configuration,
-    /// [`Kind::NoDevice`] where none is plugged in.
+    /// [`Kind::Usage`](crate::failure::Kind::Usage) for what this axis cannot do or names that clash, [`Kind::BadInput`](crate::failure::Kind::BadInput) for a wrong configuration,
+    /// [`Kind::NoDevice`](crate::failure::Kind::NoDevice) where none is plugged in.
     pub fn new(arguments: &cli::Capture, common: &Common) -> Result<Self, Failure> {
         let start = SystemTime::now();
         let config = config::load(common.config.as_deref())?;
