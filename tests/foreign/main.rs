@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use firmware_sim::epos2::SlcanServer;
 use serde_json::Value;
+use sim::Attached;
 use velomotion::config::Axis;
 use velomotion::software_drive::{self, Interface};
 use velomotion::{devices, simulated};
@@ -122,6 +123,32 @@ fn tshark_reads_our_log_without_a_malformed_record() {
             "_ws.malformed || udp.checksum.status == 0 || ip.checksum.status == 0",
         ]);
     assert_eq!(run(command, "Debian's tshark").as_deref(), Some(""));
+}
+
+/// The drive's traffic of a capture over CAN, dissected by somebody else's CANopen.
+#[test]
+fn tshark_reads_the_can_traffic_of_a_capture_as_canopen() {
+    let scan = Captured::new(Setting::over(Attached::Can));
+    let tshark = |arguments: &[&str]| {
+        let mut command = Command::new("tshark");
+        command
+            .args(["-n", "-r"])
+            .arg(scan.log())
+            .args(["-d", "can.subdissector,canopen"])
+            .args(arguments);
+        run(command, "Debian's tshark")
+    };
+    let fields = ["-T", "fields", "-e", "frame.protocols"];
+    let Some(said) = tshark(&[&["-Y", "can"], &fields[..]].concat()) else {
+        return;
+    };
+    let frames = said.lines().count();
+    assert!(frames > 2_000, "{frames}");
+    assert!(
+        said.lines().all(|line| line.contains("can:canopen")),
+        "{said}"
+    );
+    assert_eq!(tshark(&["-Y", "_ws.malformed"]).as_deref(), Some(""));
 }
 
 #[test]

@@ -9,20 +9,23 @@ use std::sync::atomic::AtomicBool;
 use analysis::truth::TruthReport;
 use cloud::{Fields, Points};
 use drive::{Client, Observation};
+use io::can::Slcan;
 use io::files::Overwrite;
 use io::log::{LogConfig, LogWriter};
-use io::port::Recorder;
+use io::port::{Port, Recorder};
+use protocol::canopen::slcan::Bitrate;
+use protocol::epos2::DeviceError;
 use protocol::epos2::message::WriteObject;
 use protocol::record::{DriveLink, Record, Wire};
 use scanner::{ScanConfig, TiltSource};
-use sim::Rig;
-use sim::link::LinkModel;
+use sim::{Attached, Rig};
 use tempfile::TempDir;
 use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
 use velomotion::commands::replay::{self, Request};
 use velomotion::config::{Axis, Config};
 use velomotion::motion::{self, Wish};
 use velomotion::output::Target;
+use velomotion::ports::BusLine;
 use velomotion::report::Scan;
 use velomotion::session::{Session, SessionError};
 use velomotion::setup::scan_config;
@@ -60,12 +63,7 @@ impl Default for Setting {
                 sweeps: 1,
                 both_ways: false,
             },
-            links: Links {
-                request: LinkModel::USB,
-                answer: LinkModel::USB,
-                lidar: LinkModel::ETHERNET,
-                seed: 1,
-            },
+            links: Links::usual(Attached::Usb, 1),
             start: Stamp::from_nanos(1_795_226_733_000_000_000),
             lidar_clock_us: 1_234_567_890,
             fault: None,
@@ -74,8 +72,29 @@ impl Default for Setting {
     }
 }
 
+impl Setting {
+    /// The card's command over another way to the drive.
+    #[must_use]
+    pub fn over(attached: Attached) -> Self {
+        Self {
+            links: Links::usual(attached, 1),
+            ..Self::default()
+        }
+    }
+}
+
+/// How the log calls a way to the drive.
+fn link(attached: Attached) -> DriveLink {
+    match attached {
+        Attached::Usb => DriveLink::Usb,
+        Attached::Rs232 => DriveLink::Rs232,
+        Attached::Slcan | Attached::Can => DriveLink::Can,
+    }
+}
+
 /// A capture that has been made.
 pub struct Captured {
+    link: DriveLink,
     folder: TempDir,
     records: usize,
     data_packets: u64,
@@ -107,6 +126,11 @@ impl Captured {
         let config = scan_config(&Config::default(), "sim", true, &setting.wish, &steps);
         let mut rig = simulated::rig(&axis, &config, setting.start);
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;
+        rig.attached = setting.links.attached;
+        if setting.links.attached != Attached::Usb && setting.links.attached != Attached::Rs232 {
+            // A unit on a CAN bus has nothing to complain of at power-on.
+            rig.drive.fault_at_power_on = DeviceError::NONE;
+        }
         let port = VirtualPort::new(Rig::new(rig), setting.start, setting.links);
 
         let drive: Rc<RefCell<Vec<Owned>>> = Rc::default();
@@ -116,11 +140,17 @@ impl Captured {
             .unwrap_or((Fault::AnswersLost(Span::ZERO), Span::ZERO));
         let hurt = FaultInjector::new(
             port.clone(),
+            setting.links.attached,
             fault,
             setting.start + fault_after,
             setting.links.seed,
         );
-        let recorder = Recorder::new(hurt, DriveLink::Usb, move |record: &Record<'_>| {
+        let link = link(setting.links.attached);
+        let line: Box<dyn Port> = match setting.links.attached {
+            Attached::Slcan => Box::new(BusLine(Slcan::open(hurt, Bitrate::Kbit1000).unwrap())),
+            Attached::Usb | Attached::Rs232 | Attached::Can => Box::new(hurt),
+        };
+        let recorder = Recorder::new(line, link, move |record: &Record<'_>| {
             if let Wire::Drive {
                 link,
                 direction,
@@ -135,13 +165,12 @@ impl Captured {
                 });
             }
         });
-        let client = Client::new(axis);
+        let client = Client::with_link(axis, link);
         let interrupt = Arc::new(AtomicBool::new(false));
         if let Some(after) = setting.interrupt_after {
             port.interrupt_at(setting.start + after, Arc::clone(&interrupt));
         }
-        let now = |recorder: &Recorder<FaultInjector, _>| recorder.port().port().now();
-        let mut session = Session::new(client, recorder, now, interrupt);
+        let mut session = Session::new(client, recorder, interrupt);
         let ended = motion::run(&mut session, &steps, &mut |_| {});
         drop(session);
         // The lidar goes on for a moment, as in a capture.
@@ -154,6 +183,7 @@ impl Captured {
         let records = write_log(
             &folder.path().join("scan.pcapng"),
             &config,
+            link,
             &drive,
             &packets,
         );
@@ -162,6 +192,7 @@ impl Captured {
             .filter(|p| p.datagram.port == sim::DATA_PORT)
             .count() as u64;
         let captured = Self {
+            link,
             folder,
             records,
             data_packets,
@@ -212,24 +243,36 @@ impl Captured {
             drive::cia402::control::QUICK_STOP,
             drive::cia402::control::DISABLE_VOLTAGE,
         ];
-        let wanted = stop.map(|word| {
-            let write = WriteObject {
-                node: 1,
-                address: drive::objects::CONTROLWORD.address,
-                value: u32::from(word),
-            };
-            protocol::epos2::usb::to_bytes(&write.to_frame()).to_vec()
-        });
+        let wanted = stop.map(|word| self.controlword_frame(word));
         let mut recording = io::recording::Recording::open(self.log()).unwrap();
         while let Some(record) = recording.next_record().unwrap() {
             if let Wire::Drive { frame, .. } = record.wire
                 && record.host >= begin
-                && wanted.iter().any(|wanted| wanted == frame)
+                && wanted.iter().any(|wanted| frame.ends_with(wanted))
             {
                 return Some(record.host);
             }
         }
         None
+    }
+
+    /// How a frame ends that writes the controlword.
+    fn controlword_frame(&self, word: u16) -> Vec<u8> {
+        let write = WriteObject {
+            node: 1,
+            address: drive::objects::CONTROLWORD.address,
+            value: u32::from(word),
+        };
+        match self.link {
+            DriveLink::Usb => protocol::epos2::usb::to_bytes(&write.to_frame()).to_vec(),
+            // The rest follows when the unit is ready for it; nothing else is written while the axis moves.
+            DriveLink::Rs232 => vec![WriteObject::OPCODE],
+            // SDO download of two bytes (CiA 301, 7.2.4.3.3).
+            DriveLink::Can => {
+                let [low, high] = word.to_le_bytes();
+                vec![0x2B, 0x40, 0x60, 0x00, low, high, 0, 0]
+            }
+        }
     }
 
     /// From when to when the (first) sweep went.
@@ -322,7 +365,13 @@ impl Captured {
 }
 
 /// Writes both devices' records in order of time; their number.
-fn write_log(path: &Path, config: &ScanConfig, drive: &[Owned], packets: &[Arrived]) -> usize {
+fn write_log(
+    path: &Path,
+    config: &ScanConfig,
+    link: DriveLink,
+    drive: &[Owned],
+    packets: &[Arrived],
+) -> usize {
     let drive = drive.iter().map(|owned| Record {
         host: owned.host,
         wire: Wire::Drive {
@@ -343,7 +392,7 @@ fn write_log(path: &Path, config: &ScanConfig, drive: &[Owned], packets: &[Arriv
     records.sort_by_key(|record| record.host);
     let head = LogConfig {
         metadata: toml::to_string(config).unwrap(),
-        drive: Some(DriveLink::Usb),
+        drive: Some(link),
     };
     let mut writer = LogWriter::create(path, &head, Overwrite::Refuse).unwrap();
     for record in &records {

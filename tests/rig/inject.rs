@@ -1,11 +1,15 @@
 //! Faults on purpose: a wrapper around a port that hurts what passes, and things done to the drive behind it.
 //!
+//! On a serial line bytes are hurt. A CAN controller lets no damaged frame through: it destroys it on the bus and has it sent
+//! again, so there what a serial line would corrupt comes late, or never if it never passes whole.
 //! Everything is seeded and happens in virtual time, so that a fault that breaks something breaks it again.
 
 use std::collections::VecDeque;
 
 use io::port::{Port, PortError};
+use protocol::canopen::{CanFrame, CobId};
 use protocol::epos2::DeviceError;
+use sim::Attached;
 use units::{Host, Span, Stamp};
 
 use crate::port::VirtualPort;
@@ -55,6 +59,8 @@ pub struct FaultInjector {
     done: bool,
     /// Bytes on their way to the client, with when they come.
     pending: VecDeque<(Stamp<Host>, Vec<u8>)>,
+    /// Whether what passes are frames of a CAN bus.
+    bus: bool,
     last_answer: Vec<u8>,
     random: u64,
 }
@@ -62,13 +68,20 @@ pub struct FaultInjector {
 impl FaultInjector {
     /// `fault` begins at `from`; what is random about it follows from `seed`.
     #[must_use]
-    pub fn new(port: VirtualPort, fault: Fault, from: Stamp<Host>, seed: u64) -> Self {
+    pub fn new(
+        port: VirtualPort,
+        attached: Attached,
+        fault: Fault,
+        from: Stamp<Host>,
+        seed: u64,
+    ) -> Self {
         Self {
             port,
             fault,
             from,
             done: false,
             pending: VecDeque::new(),
+            bus: attached == Attached::Can,
             last_answer: Vec::new(),
             random: seed | 1,
         }
@@ -128,6 +141,9 @@ impl FaultInjector {
     /// An answer as it reaches the client: when, and in which pieces.
     fn hurt(&mut self, at: Stamp<Host>, mut bytes: Vec<u8>) -> Vec<(Stamp<Host>, Vec<u8>)> {
         let before = std::mem::replace(&mut self.last_answer, bytes.clone());
+        if self.bus {
+            return self.hurt_frame(at, bytes, before);
+        }
         match self.fault {
             Fault::AnswersLost(span) if self.on(span) => Vec::new(),
             Fault::AnswersLate(span, late) if self.on(span) => vec![(at + late, bytes)],
@@ -166,6 +182,53 @@ impl FaultInjector {
     }
 }
 
+/// Longer than this a fault lasts for ever.
+const FOR_EVER: Span = Span::from_secs(100);
+
+impl FaultInjector {
+    /// A frame of a bus as it reaches the client.
+    fn hurt_frame(
+        &mut self,
+        at: Stamp<Host>,
+        frame: Vec<u8>,
+        before: Vec<u8>,
+    ) -> Vec<(Stamp<Host>, Vec<u8>)> {
+        match self.fault {
+            Fault::AnswersLost(span) if self.on(span) => Vec::new(),
+            Fault::AnswersLate(span, late) if self.on(span) => vec![(at + late, frame)],
+            Fault::AnswersFlipped(span) | Fault::AnswersCut(span) if self.on(span) => {
+                if span >= FOR_EVER {
+                    return Vec::new();
+                }
+                vec![(at.max(self.from + span), frame)]
+            }
+            Fault::AnswersDoubled(span) if self.on(span) => vec![(at, frame.clone()), (at, frame)],
+            Fault::AnswersStale(span) if self.on(span) => vec![(at, before)],
+            Fault::Noise(span) | Fault::NoiseWithFrameStarts(span) if self.on(span) => {
+                let other = self.other_nodes_frame();
+                vec![(at, other), (at, frame)]
+            }
+            _ => vec![(at, frame)],
+        }
+    }
+
+    /// What another node on the bus might say: any service, any bytes.
+    fn other_nodes_frame(&mut self) -> Vec<u8> {
+        let services = [0x080, 0x180, 0x280, 0x380, 0x480, 0x580, 0x700];
+        let service = services[usize::try_from(self.next() % 7).unwrap()];
+        let id = CobId::new(service | 0x33).unwrap();
+        let data = self.next().to_le_bytes();
+        let length = usize::try_from(self.next() % 9).unwrap();
+        let frame = CanFrame::new(id, &data[..length]).unwrap();
+        frame.to_socketcan().to_vec()
+    }
+
+    /// When a request that is hurt gets through after all, on a bus; `None` for never.
+    fn request_repeated(&self, span: Span) -> Option<Span> {
+        (span < FOR_EVER).then(|| (self.from + span).saturating_since(self.port.now()))
+    }
+}
+
 impl Port for FaultInjector {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
         self.hurt_the_drive();
@@ -178,6 +241,12 @@ impl Port for FaultInjector {
                 got: 0,
             }),
             Fault::RequestsLost(span) if self.on(span) => Ok(now),
+            Fault::RequestsFlipped(span) if self.on(span) && self.bus => {
+                Ok(match self.request_repeated(span) {
+                    Some(late) => self.port.write_late(frame, late),
+                    None => now,
+                })
+            }
             Fault::RequestsFlipped(span) if self.on(span) => {
                 let mut frame = frame.to_vec();
                 self.flip(&mut frame);
@@ -229,5 +298,9 @@ impl Port for FaultInjector {
         };
         buffer[..bytes.len()].copy_from_slice(&bytes);
         Ok(Some((bytes.len(), at.max(self.port.now()))))
+    }
+
+    fn now(&self) -> Stamp<Host> {
+        self.port.now()
     }
 }

@@ -1,4 +1,6 @@
 //! A drive port whose other end is a [`Rig`] and whose time stands still until somebody waits.
+//!
+//! Whatever connects the two: bytes of a serial line, or 16 bytes a frame of a CAN bus.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -8,12 +10,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use io::port::{Port, PortError};
 use sim::link::{Link, LinkModel};
-use sim::{Datagram, Rig};
+use sim::{Attached, Datagram, Rig};
 use units::{Host, Span, Stamp};
 
-/// Delays of the three links.
+/// How the drive is attached, and the delays of the three links.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Links {
+    /// What the host speaks with the drive.
+    pub attached: Attached,
+    /// Wire time of a byte to or from the drive.
+    pub byte: Span,
     /// Requests to the drive.
     pub request: LinkModel,
     /// Answers of the drive.
@@ -23,6 +29,37 @@ pub struct Links {
     /// What their delays are drawn from.
     pub seed: u64,
 }
+
+impl Links {
+    /// Usual delays of a way to the drive; the lidar's over Ethernet.
+    #[must_use]
+    pub fn usual(attached: Attached, seed: u64) -> Self {
+        let (model, byte_ns) = match attached {
+            // USB, and an adapter on USB.
+            Attached::Usb | Attached::Slcan => (LinkModel::USB, 0),
+            // A UART of the machine itself at 115,200 baud: ten bits a byte.
+            Attached::Rs232 => (QUICK, 86_806),
+            // A controller of the machine itself at 1 Mbit/s: eight bits a byte, and the rest of the frame.
+            Attached::Can => (QUICK, 8_000),
+        };
+        Self {
+            attached,
+            byte: Span::from_nanos(byte_ns),
+            request: model,
+            answer: model,
+            lidar: LinkModel::ETHERNET,
+            seed,
+        }
+    }
+}
+
+/// Interrupt to program: 20..100 us, one in a hundred up to 2 ms more.
+const QUICK: LinkModel = LinkModel {
+    min: Span::from_micros(20),
+    max: Span::from_micros(100),
+    spike_probability: 0.01,
+    spike: Span::from_millis(2),
+};
 
 /// A lidar packet with the time at which the host's kernel would have stamped it.
 #[derive(Clone, Debug)]
@@ -37,6 +74,7 @@ pub struct Arrived {
 pub struct World {
     rig: Rig,
     now: Stamp<Host>,
+    links: Links,
     request: Link,
     answer: Link,
     lidar: Link,
@@ -58,6 +96,7 @@ impl VirtualPort {
         Self(Rc::new(RefCell::new(World {
             rig,
             now: start,
+            links,
             request: Link::new(links.request, links.seed),
             answer: Link::new(links.answer, links.seed + 1),
             lidar: Link::new(links.lidar, links.seed + 2),
@@ -65,12 +104,6 @@ impl VirtualPort {
             packets: Vec::new(),
             interrupt: None,
         })))
-    }
-
-    /// The time.
-    #[must_use]
-    pub fn now(&self) -> Stamp<Host> {
-        self.0.borrow().now
     }
 
     /// Sets `flag` when the time comes to `at`.
@@ -103,21 +136,73 @@ impl World {
             let host = self.lidar.deliver(datagram.at);
             self.packets.push(Arrived { host, datagram });
         }
+        self.collect();
+    }
+
+    /// Sends what the drive has said on its way to the host.
+    fn collect(&mut self) {
+        while let Some(sent) = self.rig.drive_output() {
+            let at = self
+                .answer
+                .deliver(sent.at + self.links.wire_time(&sent.bytes));
+            self.incoming.push_back((at, sent.bytes));
+        }
+    }
+
+    /// When the next bytes come, if by `until`; the devices live on at least to then.
+    fn await_incoming(&mut self, until: Stamp<Host>) -> Option<Stamp<Host>> {
+        let mut to = self.now;
+        loop {
+            let next = self.incoming.front().map(|(at, _)| *at);
+            if let Some(at) = next.filter(|at| *at <= to) {
+                return Some(at);
+            }
+            if to >= until {
+                return None;
+            }
+            // Never far beyond what comes next, as it may be answered. What is sent later arrives later.
+            to = (to + STEP).min(until).min(next.unwrap_or(until));
+            self.advance(to);
+        }
+    }
+}
+
+/// How finely it is looked whether the drive says something by itself.
+const STEP: Span = Span::from_micros(100);
+
+/// A data frame with a standard identifier and no data, without stuff bits, at 1 Mbit/s.
+const EMPTY_CAN_FRAME: Span = Span::from_micros(47);
+/// Where a `struct can_frame` has the length of its data.
+const CAN_LENGTH_AT: usize = 4;
+
+impl Links {
+    fn wire_time(&self, bytes: &[u8]) -> Span {
+        let times =
+            |count: usize| Span::from_nanos(self.byte.as_nanos() * i64::try_from(count).unwrap());
+        match self.attached {
+            Attached::Can => EMPTY_CAN_FRAME + times(bytes[CAN_LENGTH_AT].into()),
+            _ => times(bytes.len()),
+        }
+    }
+}
+
+impl VirtualPort {
+    /// Writes a frame that reaches the drive `late` after its usual time.
+    pub fn write_late(&self, frame: &[u8], late: Span) -> Stamp<Host> {
+        let mut world = self.0.borrow_mut();
+        let sent = world.now;
+        let wire = world.links.wire_time(frame);
+        let received = world.request.deliver(sent + wire + late);
+        world.advance(received);
+        world.rig.drive_input(frame);
+        world.collect();
+        sent
     }
 }
 
 impl Port for VirtualPort {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
-        let mut world = self.0.borrow_mut();
-        let sent = world.now;
-        let received = world.request.deliver(sent);
-        world.advance(received);
-        world.rig.drive_input(frame);
-        while let Some(bytes) = world.rig.drive_output() {
-            let at = world.answer.deliver(received);
-            world.incoming.push_back((at, bytes));
-        }
-        Ok(sent)
+        Ok(self.write_late(frame, Span::ZERO))
     }
 
     fn read(
@@ -127,10 +212,9 @@ impl Port for VirtualPort {
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
         let mut world = self.0.borrow_mut();
         let until = world.now + timeout;
-        let due = matches!(world.incoming.front(), Some((at, _)) if *at <= until);
-        let Some((at, bytes)) = due.then(|| world.incoming.pop_front()).flatten() else {
+        let due = world.await_incoming(until);
+        let Some((at, bytes)) = due.and_then(|_| world.incoming.pop_front()) else {
             world.now = until;
-            world.advance(until);
             return Ok(None);
         };
         world.now = world.now.max(at);
@@ -140,5 +224,9 @@ impl Port for VirtualPort {
             world.incoming.push_front((at, bytes[count..].to_vec()));
         }
         Ok(Some((count, world.now)))
+    }
+
+    fn now(&self) -> Stamp<Host> {
+        self.0.borrow().now
     }
 }

@@ -36,6 +36,12 @@ pub trait CanPort {
     /// # Errors
     /// [`CanError`]. After [`CanError::NotSent`] the port goes on.
     fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError>;
+
+    /// The time by which whoever uses this port keeps deadlines: it never steps ([`crate::clock::steady`]). Ports of a virtual
+    /// world have their own.
+    fn now(&self) -> Stamp<Host> {
+        crate::clock::steady()
+    }
 }
 
 impl<P: CanPort + ?Sized> CanPort for Box<P> {
@@ -45,6 +51,10 @@ impl<P: CanPort + ?Sized> CanPort for Box<P> {
 
     fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError> {
         (**self).read(timeout)
+    }
+
+    fn now(&self) -> Stamp<Host> {
+        (**self).now()
     }
 }
 

@@ -1,8 +1,10 @@
-//! The host's clock, read in one place. No steering, no monotonic clock: a step of the system time shows in the log.
+//! The host's clock, read in one place. Two ways: [`now`] is the system's time, which the kernel's stamps are of too and whose
+//! steps show in the log; [`steady`] never steps, and is what deadlines are kept by. No steering.
 
-use std::time::SystemTime;
+use std::sync::OnceLock;
+use std::time::{Instant, SystemTime};
 
-use units::{Host, Stamp};
+use units::{Host, Span, Stamp};
 
 /// Nanoseconds of `CLOCK_REALTIME` now; held at the ends of the range of `i64` nanoseconds (years 1677 and 2262).
 #[must_use]
@@ -12,6 +14,17 @@ pub fn now() -> Stamp<Host> {
         Err(before) => i64::try_from(before.duration().as_nanos()).map_or(i64::MIN, |ns| -ns),
     };
     Stamp::from_nanos(ns)
+}
+
+/// The system's time when this was first called, carried on by the monotonic clock: a step of the system time does not move it.
+///
+/// For deadlines and spans. Once the system time has stepped it is not the time of the log's records.
+#[must_use]
+pub fn steady() -> Stamp<Host> {
+    static BEGIN: OnceLock<(Instant, Stamp<Host>)> = OnceLock::new();
+    let (instant, stamp) = *BEGIN.get_or_init(|| (Instant::now(), now()));
+    let since = i64::try_from(instant.elapsed().as_nanos()).unwrap_or(i64::MAX);
+    stamp.saturating_add(Span::from_nanos(since))
 }
 
 #[cfg(test)]
@@ -26,5 +39,14 @@ mod tests {
         let after = now();
         let between = time.tv_sec() * 1_000_000_000 + time.tv_nsec();
         assert!(before.as_nanos() <= between && between <= after.as_nanos());
+    }
+
+    #[test]
+    fn the_steady_clock_goes_with_the_monotonic_one() {
+        let (begin, first) = (Instant::now(), steady());
+        let second = steady();
+        let elapsed = i64::try_from(begin.elapsed().as_nanos()).unwrap();
+        let went = (second - first).as_nanos();
+        assert!((0..=elapsed).contains(&went), "{went} of {elapsed} ns");
     }
 }

@@ -34,6 +34,12 @@ pub trait Port {
         buffer: &mut [u8],
         timeout: Span,
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError>;
+
+    /// The time by which whoever uses this port keeps deadlines: it never steps ([`crate::clock::steady`]). Ports of a virtual
+    /// world have their own.
+    fn now(&self) -> Stamp<Host> {
+        crate::clock::steady()
+    }
 }
 
 impl<P: Port + ?Sized> Port for Box<P> {
@@ -47,6 +53,10 @@ impl<P: Port + ?Sized> Port for Box<P> {
         timeout: Span,
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
         (**self).read(buffer, timeout)
+    }
+
+    fn now(&self) -> Stamp<Host> {
+        (**self).now()
     }
 }
 

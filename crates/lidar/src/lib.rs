@@ -7,6 +7,7 @@
 //! came from.
 
 mod continuity;
+mod corrections;
 mod decoder;
 mod firing;
 mod geometry;
@@ -16,6 +17,7 @@ mod plan;
 mod stats;
 mod timekeeper;
 
+pub use corrections::{Corrections, LaserCorrection};
 pub use decoder::{Decoder, Options};
 pub use firing::{Duplicates, Echo, Firing, Return, SensorPoint};
 pub use stats::{Conflict, Stats};

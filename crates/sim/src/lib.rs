@@ -8,6 +8,7 @@
 //! Left out: effects of the real world (range noise, beam divergence, loss, jitter of the sensor's own clock). What is not
 //! here costs nothing.
 
+mod attached;
 mod clock;
 mod head;
 pub mod link;
@@ -20,9 +21,10 @@ mod spinning;
 mod truth;
 mod world;
 
+pub use attached::Attached;
 pub use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT};
 pub use head::{Head, LASERS, Laser, MAX_RANGE_M, MIN_RANGE_M};
-pub use rig::{Datagram, LidarConfig, Rig, RigConfig};
+pub use rig::{Datagram, LidarConfig, Rig, RigConfig, Sent};
 pub use scene::{Hit, Scene};
 pub use shapes::{Cuboid, Cylinder, Plane, Shape, Sphere, TurnedCuboid};
 pub use truth::Truth;

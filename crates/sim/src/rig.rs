@@ -8,10 +8,11 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use firmware_sim::epos2::{Node, NodeConfig, UsbServer};
+use firmware_sim::epos2::{Node, NodeConfig};
 use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT};
 use units::{Degrees, Gearing, Host, Metres, Stamp};
 
+use crate::attached::{Attached, Server};
 use crate::clock::LidarClock;
 use crate::scene::Scene;
 use crate::scenes;
@@ -29,6 +30,8 @@ pub struct RigConfig {
     pub mount: Metres,
     /// The drive.
     pub drive: NodeConfig,
+    /// How the host reaches it.
+    pub attached: Attached,
     /// From the motor's shaft to the platform; tilt 0 (level) is the shaft's position 0.
     pub gearing: Gearing,
     /// The lidar.
@@ -72,6 +75,7 @@ impl RigConfig {
             scene: Arc::new(scenes::hall()),
             mount: Metres(0.06),
             drive: NodeConfig::default(),
+            attached: Attached::Usb,
             gearing: GEARING,
             lidar: LidarConfig::default(),
             start,
@@ -97,6 +101,15 @@ pub struct Datagram {
     pub payload: Vec<u8>,
 }
 
+/// Bytes that the drive sent: a frame, a handshake, a line of its adapter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sent {
+    /// When they left the drive.
+    pub at: Stamp<Host>,
+    /// The bytes.
+    pub bytes: Vec<u8>,
+}
+
 /// The two devices and the world around them.
 ///
 /// Whoever pumps it calls [`Rig::advance`] with the time, hands over what the host sent, and takes what the devices sent.
@@ -106,11 +119,11 @@ pub struct Rig {
     world: World,
     shaft: Shaft,
     node: Node,
-    usb: UsbServer,
+    server: Server,
     lidar: Spinning,
     now: Stamp<Host>,
     datagrams: VecDeque<Datagram>,
-    answers: VecDeque<Vec<u8>>,
+    sent: VecDeque<Sent>,
 }
 
 impl Rig {
@@ -121,6 +134,7 @@ impl Rig {
             scene,
             mount,
             drive,
+            attached,
             gearing,
             lidar,
             start,
@@ -136,11 +150,11 @@ impl Rig {
             world: World::new(scene, mount, clock, spin),
             shaft: Shaft::new(start, gearing, node.segment().start),
             node,
-            usb: UsbServer::new(seed),
+            server: Server::new(attached, seed),
             lidar: Spinning::default(),
             now: start,
             datagrams: VecDeque::new(),
-            answers: VecDeque::new(),
+            sent: VecDeque::new(),
         };
         // The first control cycle begins at the start, whether or not anyone advances to it.
         rig.cycle();
@@ -174,15 +188,17 @@ impl Rig {
         // Between two cycles, so below 1000.
         self.node
             .set_phase_us(u32::try_from(phase_us).unwrap_or_default());
-        let answers = &mut self.answers;
-        self.usb.input(&mut self.node, bytes, &mut |answer: &[u8]| {
-            answers.push_back(answer.to_vec());
-        });
+        let (at, sent) = (self.now, &mut self.sent);
+        self.server
+            .input(&mut self.node, bytes, &mut |bytes: &[u8]| {
+                let bytes = bytes.to_vec();
+                sent.push_back(Sent { at, bytes });
+            });
     }
 
-    /// The next bytes that the drive sent, if any.
-    pub fn drive_output(&mut self) -> Option<Vec<u8>> {
-        self.answers.pop_front()
+    /// The next bytes that the drive sent, if any: answers, and on a CAN bus what it sends by itself.
+    pub fn drive_output(&mut self) -> Option<Sent> {
+        self.sent.pop_front()
     }
 
     /// The next datagram that the lidar has sent, if any.
@@ -193,7 +209,7 @@ impl Rig {
     /// Until when nothing comes out of the devices by itself; now, if something is waiting to be taken.
     #[must_use]
     pub fn next_event(&self) -> Stamp<Host> {
-        if self.datagrams.is_empty() && self.answers.is_empty() {
+        if self.datagrams.is_empty() && self.sent.is_empty() {
             self.lidar.release(&self.world)
         } else {
             self.now
@@ -221,6 +237,11 @@ impl Rig {
     fn cycle(&mut self) {
         self.node.tick();
         self.shaft.push(self.node.segment().end);
+        let (at, sent) = (self.now, &mut self.sent);
+        self.server.poll(&mut self.node, &mut |bytes: &[u8]| {
+            let bytes = bytes.to_vec();
+            sent.push_back(Sent { at, bytes });
+        });
     }
 
     fn send_packets(&mut self) {

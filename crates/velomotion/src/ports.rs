@@ -128,7 +128,7 @@ fn can_failure(error: &CanError) -> Failure {
 }
 
 /// A CAN bus as the drive client and the log know it: a `struct can_frame` of 16 bytes a frame.
-struct BusLine<C>(C);
+pub struct BusLine<C>(pub C);
 
 impl<C: CanPort> Port for BusLine<C> {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
@@ -161,6 +161,10 @@ impl<C: CanPort> Port for BusLine<C> {
             Err(CanError::Port(error)) => Err(error),
             Err(error) => Err(bus_error("read", &error.to_string())),
         }
+    }
+
+    fn now(&self) -> Stamp<Host> {
+        self.0.now()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Runs the drive client over a port: bytes and the time go in, frames come out.
 //!
-//! The client is a machine without I/O; this loop is all that stands between it and a wire. Time comes from the caller, so
+//! The client is a machine without I/O; this loop is all that stands between it and a wire. Time comes from the port, so
 //! that the same loop runs against the clock and, in tests, in virtual time.
 //! Whatever ends a procedure early (Ctrl-C, a fault, a panic in whoever watches), the axis is stopped before this returns, or
 //! the error says that it could not be.
@@ -49,7 +49,6 @@ impl SessionError {
 pub struct Session<P: Port> {
     client: Client,
     port: P,
-    now: fn(&P) -> Stamp<Host>,
     interrupt: Arc<AtomicBool>,
     /// Whether a command was begun that can move or power the axis, and none has ended since that leaves it disabled.
     unsafe_to_leave: bool,
@@ -63,17 +62,11 @@ const STOP_TRIES: u32 = 5;
 const LAST_RESORT: Span = Span::from_secs(1);
 
 impl<P: Port> Session<P> {
-    /// A session over `port`, whose time is `now`, that stops the axis when `interrupt` becomes true.
-    pub fn new(
-        client: Client,
-        port: P,
-        now: fn(&P) -> Stamp<Host>,
-        interrupt: Arc<AtomicBool>,
-    ) -> Self {
+    /// A session over `port`, whose time it keeps, that stops the axis when `interrupt` becomes true.
+    pub fn new(client: Client, port: P, interrupt: Arc<AtomicBool>) -> Self {
         Self {
             client,
             port,
-            now,
             interrupt,
             unsafe_to_leave: false,
         }
@@ -146,7 +139,7 @@ impl<P: Port> Session<P> {
     ) -> Result<Ended, PortError> {
         let mut buffer = [0; 512];
         loop {
-            while let Some(frame) = self.client.poll_transmit((self.now)(&self.port)) {
+            while let Some(frame) = self.client.poll_transmit(self.port.now()) {
                 self.port.write_frame(&frame)?;
             }
             while let Some(event) = self.client.poll_event() {
@@ -157,7 +150,7 @@ impl<P: Port> Session<P> {
                     _ => {}
                 }
             }
-            let now = (self.now)(&self.port);
+            let now = self.port.now();
             if (interruptible && self.interrupt.load(Ordering::Relaxed))
                 || until.is_some_and(|until| now >= until)
             {
@@ -169,11 +162,12 @@ impl<P: Port> Session<P> {
                 .map_or(LOOK_UP, |at| at.saturating_since(now))
                 .clamp(Span::ZERO, LOOK_UP);
             match self.port.read(&mut buffer, wait)? {
-                Some((count, at)) => {
+                // The stamp that came with them is of a clock that may step; the log has it.
+                Some((count, _)) => {
                     let bytes = buffer.get(..count).unwrap_or_default();
-                    self.client.handle_input(bytes, at);
+                    self.client.handle_input(bytes, self.port.now());
                 }
-                None => self.client.handle_timeout((self.now)(&self.port)),
+                None => self.client.handle_timeout(self.port.now()),
             }
         }
     }
@@ -191,7 +185,7 @@ impl<P: Port> Drop for Session<P> {
     /// After a panic, or an error of the port: the stop is sent all the same, and its end waited for where one can come.
     fn drop(&mut self) {
         if self.unsafe_to_leave && self.client.start(Command::Stop).is_ok() {
-            let until = (self.now)(&self.port).saturating_add(LAST_RESORT);
+            let until = self.port.now().saturating_add(LAST_RESORT);
             // There is nobody left to tell; whoever dropped the session has the error that led here.
             let _ = self.pump(&mut |_| {}, false, Some(until));
         }

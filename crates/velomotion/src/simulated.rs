@@ -109,8 +109,8 @@ fn run(
         let read = pty.read(&mut buffer, nap)?.map_or(0, |(count, _)| count);
         rig.advance(io::clock::now());
         rig.drive_input(buffer.get(..read).unwrap_or_default());
-        while let Some(bytes) = rig.drive_output() {
-            pty.write_frame(&bytes)?;
+        while let Some(sent) = rig.drive_output() {
+            pty.write_frame(&sent.bytes)?;
         }
         while let Some(datagram) = rig.poll_datagram() {
             let port = if datagram.port == DATA_PORT {

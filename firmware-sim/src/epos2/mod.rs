@@ -47,6 +47,7 @@ pub use bus::{Bus, Neighbour};
 pub use can::CanServer;
 pub use config::{Identity, MAX_SWITCHES, NodeConfig, Region, Switch};
 pub use node::{Node, Segment};
+pub use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
 pub use rs232::Rs232Server;
 pub use slcan::SlcanServer;
 pub use usb::UsbServer;

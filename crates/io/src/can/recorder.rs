@@ -55,6 +55,10 @@ impl<P: CanPort, S: FnMut(&Record<'_>)> CanPort for Recorder<P, S> {
         }
         Ok(read)
     }
+
+    fn now(&self) -> Stamp<Host> {
+        self.port.now()
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@
 //! that of the read which brought its line: an adapter's own time stamps are milliseconds, and stay switched off.
 
 use std::collections::VecDeque;
-use std::time::Instant;
 
 use protocol::canopen::CanFrame;
 use protocol::canopen::slcan::{Bitrate, Command, Line, Reply, ReplyDecoder};
@@ -80,6 +79,10 @@ impl<P: Port> Slcan<P> {
         &self.port
     }
 
+    fn since(&self, begin: Stamp<Host>) -> Span {
+        self.port.now().saturating_since(begin)
+    }
+
     fn send(&mut self, command: &Command) -> Result<Stamp<Host>, CanError> {
         let mut line = Line::new();
         command.encode(&mut line);
@@ -88,8 +91,8 @@ impl<P: Port> Slcan<P> {
 
     /// Waits until the adapter has said what it had to say to the close command, and forgets it.
     fn drain(&mut self) -> Result<(), CanError> {
-        let begin = Instant::now();
-        while elapsed(begin) < DRAIN_TIMEOUT && self.receive(QUIET)? {
+        let begin = self.port.now();
+        while self.since(begin) < DRAIN_TIMEOUT && self.receive(QUIET)? {
             while let Some((reply, _)) = self.replies.pop_front() {
                 self.answers |= matches!(reply, Reply::Done | Reply::Refused);
             }
@@ -102,8 +105,10 @@ impl<P: Port> Slcan<P> {
     /// Sends a command and waits for its answer; some adapters give none.
     fn command(&mut self, command: &Command) -> Result<(), CanError> {
         self.send(command)?;
-        let begin = Instant::now();
-        while elapsed(begin) < ANSWER_TIMEOUT && self.receive(span_left(ANSWER_TIMEOUT, begin))? {
+        let begin = self.port.now();
+        while self.since(begin) < ANSWER_TIMEOUT
+            && self.receive(ANSWER_TIMEOUT - self.since(begin))?
+        {
             while let Some((reply, host)) = self.replies.pop_front() {
                 match reply {
                     Reply::Done => {
@@ -165,7 +170,7 @@ impl<P: Port> CanPort for Slcan<P> {
     }
 
     fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError> {
-        let begin = Instant::now();
+        let begin = self.port.now();
         let mut left = timeout;
         loop {
             while let Some((reply, host)) = self.replies.pop_front() {
@@ -179,8 +184,12 @@ impl<P: Port> CanPort for Slcan<P> {
             if over || !self.receive(left)? {
                 return Ok(None);
             }
-            left = span_left(timeout, begin);
+            left = timeout - self.since(begin);
         }
+    }
+
+    fn now(&self) -> Stamp<Host> {
+        self.port.now()
     }
 }
 
@@ -189,14 +198,6 @@ impl<P: Port> Drop for Slcan<P> {
         // The port may be gone; there is nobody to tell.
         drop(self.send(&Command::Close));
     }
-}
-
-fn elapsed(begin: Instant) -> Span {
-    Span::from_nanos(i64::try_from(begin.elapsed().as_nanos()).unwrap_or(i64::MAX))
-}
-
-fn span_left(timeout: Span, begin: Instant) -> Span {
-    Span::from_nanos(timeout.as_nanos().saturating_sub(elapsed(begin).as_nanos()))
 }
 
 /// The command as it stands in its line.

@@ -118,6 +118,10 @@ impl<P: Port, S: FnMut(&Record<'_>)> Port for Recorder<P, S> {
         }
         Ok(read)
     }
+
+    fn now(&self) -> Stamp<Host> {
+        self.port.now()
+    }
 }
 
 impl<P, S: FnMut(&Record<'_>)> Drop for Recorder<P, S> {

@@ -72,7 +72,7 @@ fn answer(bytes: &[u8]) -> (u32, i32) {
 
 fn ask(rig: &mut Rig, request: &[u8]) -> i32 {
     rig.drive_input(request);
-    let (error, value) = answer(&rig.drive_output().unwrap());
+    let (error, value) = answer(&rig.drive_output().unwrap().bytes);
     assert_eq!((error, rig.drive_output()), (0, None));
     value
 }
@@ -229,7 +229,7 @@ fn outcome(
     inputs: &[(i64, Vec<u8>)],
     stops: &[i64],
     end: i64,
-) -> (Vec<Vec<u8>>, Vec<Datagram>, String, f64) {
+) -> (Vec<Sent>, Vec<Datagram>, String, f64) {
     let mut rig = Rig::new(RigConfig {
         seed: 5,
         ..RigConfig::new(START)

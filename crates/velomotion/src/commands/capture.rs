@@ -128,7 +128,7 @@ fn record(
     let log = recording.handle();
     let port = Recorder::new(opened.port, opened.link, move |record| log.record(record));
     let client = Client::with_link(setup.axis.clone(), opened.link);
-    let mut session = Session::new(client, port, |_| io::clock::now(), Arc::clone(interrupt));
+    let mut session = Session::new(client, port, Arc::clone(interrupt));
     let gearing = setup.axis.gearing;
     let motion = motion::run(&mut session, &setup.steps, &mut |told| {
         if recording.failed() {

@@ -146,7 +146,7 @@ fn with_port(
     let opened = ports::open(device, place)?;
     let client = Client::with_link(devices::axis(&config.axis)?, opened.link);
     let control = control::Control::listen(place, &interrupt);
-    let mut session = Session::new(client, opened.port, |_| io::clock::now(), interrupt);
+    let mut session = Session::new(client, opened.port, interrupt);
     let done = ask(&mut session, commands, simulated);
     if let Some(control) = control {
         control.ended(!matches!(

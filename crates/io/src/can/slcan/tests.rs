@@ -5,11 +5,15 @@ use crate::port::{PortError, Pty, SerialPort};
 
 use std::sync::mpsc;
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use protocol::canopen::CobId;
 use protocol::canopen::slcan::CommandDecoder;
 use protocol::record::Record;
+
+fn elapsed(begin: Instant) -> Span {
+    Span::from_nanos(i64::try_from(begin.elapsed().as_nanos()).unwrap())
+}
 
 /// How an adapter behaves towards commands and frames.
 #[derive(Clone, Copy, PartialEq)]
