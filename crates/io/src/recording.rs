@@ -1,15 +1,24 @@
 //! Recordings read back: pcap and pcapng into [`Record`]s in file order, with bounded memory.
 //!
-//! Whatever can be read is yielded. A packet that makes no sense is counted and passed over; a file cut off in mid-record
-//! yields everything before the cut and then says where it was cut ([`End`]). Only a file that is no recording at all,
-//! or that the system cannot read, is an error. Fragments are counted and not put together: a lidar's packets fit one
-//! frame. TCP, ARP, IPv6 and whatever else shared the wire is counted as other.
+//! Whatever can be read is yielded. A packet that makes no sense is counted and passed over; damage in the middle of a pcapng file is
+//! counted and reading goes on at the next sound block; a file cut off in mid-record yields everything before the cut and then says
+//! where it was cut ([`End`]). Only a file that is no recording at all, or that the system cannot read, is an error.
+//!
+//! The lidar's datagrams are known by their content ([`DatagramKind`]), on any port and from any address; what else shared the wire is
+//! counted. Not here: what the packets say, checksums, and more than one sensor's worth of meaning ([`Sensors`] tells them apart).
 
+mod classify;
 mod counts;
 mod error;
+mod fragments;
+mod input;
+mod lidar;
 mod link;
+mod pace;
 mod pcap;
 mod pcapng;
+mod resync;
+mod sensors;
 mod window;
 
 use std::fs::File;
@@ -22,8 +31,13 @@ use units::{Host, Stamp};
 
 pub use counts::{Counts, Malformed};
 pub use error::{End, Fault, RecordingError};
+pub use input::{Input, SPOOL_LIMIT};
+pub use lidar::DatagramKind;
+pub use pace::{Gap, PaceError, Paced, Pacer, SteadyTimer, Timer, Turn};
+pub use sensors::{Sensor, Sensors, sensors, source_of};
 
-use link::{Content, LinkType};
+use fragments::Joiner;
+use link::LinkType;
 pub(crate) use link::{RS232_NAME, USB_NAME};
 use window::Window;
 
@@ -54,6 +68,8 @@ pub struct Recording<R = File> {
     end: Option<End>,
     /// A CAN frame shorter than `struct can_frame`, filled up with zeros.
     can_frame: [u8; link::CAN_FRAME_LEN],
+    joiner: Joiner,
+    keep_foreign: bool,
 }
 
 #[derive(Debug)]
@@ -69,6 +85,12 @@ enum Step {
     Packet(Packet),
     /// A packet whose frame in the file is sound but which cannot be used.
     Malformed { length: usize, fault: Fault },
+    /// Bytes that are no record; the window is behind them already.
+    Damaged {
+        offset: u64,
+        bytes: u64,
+        fault: Fault,
+    },
     /// Not a packet.
     Skip { length: usize },
     /// Nothing more.
@@ -83,6 +105,8 @@ struct Packet {
     data: Range<usize>,
     link: LinkType,
     direction: Option<Direction>,
+    /// Bytes it had on the wire.
+    original: u32,
 }
 
 /// What `next_record` found, in positions rather than borrows.
@@ -96,6 +120,7 @@ enum FoundWire {
         source: [u8; 4],
         port: u16,
         payload: Range<usize>,
+        place: Place,
     },
     Serial {
         link: DriveLink,
@@ -107,19 +132,24 @@ enum FoundWire {
     },
 }
 
+/// Where the bytes of a datagram are.
+#[derive(Clone, Copy)]
+enum Place {
+    Window,
+    /// Put together of fragments.
+    Joiner,
+}
+
 impl Recording<File> {
-    /// Opens a recording and reads its header.
+    /// Opens a recording and reads its header. `-` is the standard input; that, and a pipe by its name, can be read once only: see
+    /// [`Input`] for more passes.
     ///
     /// # Errors
     /// [`RecordingError`]: the file is missing or unreadable, empty, too short for a header, of another kind, or of a
     /// link type that carries neither IP nor CAN.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         let path = path.as_ref();
-        let file = File::open(path).map_err(|source| RecordingError::Open {
-            path: path.to_owned(),
-            source,
-        })?;
-        Self::new(file, path)
+        Self::new(input::open(path)?, path)
     }
 }
 
@@ -159,7 +189,16 @@ impl<R: Read> Recording<R> {
             held: 0,
             end: None,
             can_frame: [0; link::CAN_FRAME_LEN],
+            joiner: Joiner::default(),
+            keep_foreign: false,
         })
+    }
+
+    /// Yields every UDP datagram, a lidar's or not. They are counted as before.
+    #[must_use]
+    pub fn keep_foreign(mut self) -> Self {
+        self.keep_foreign = true;
+        self
     }
 
     /// What kind of file this is.
@@ -203,10 +242,15 @@ impl<R: Read> Recording<R> {
                 source,
                 port,
                 payload,
+                place,
             } => Wire::Lidar {
                 source,
                 port,
-                payload: bytes.get(payload).unwrap_or_default(),
+                payload: match place {
+                    Place::Window => bytes.get(payload),
+                    Place::Joiner => self.joiner.bytes().get(payload),
+                }
+                .unwrap_or_default(),
             },
             FoundWire::Serial {
                 link,
@@ -254,6 +298,16 @@ impl<R: Read> Recording<R> {
                     self.counts.packet();
                     self.counts.malformed(offset, fault);
                 }
+                Step::Damaged {
+                    offset,
+                    bytes,
+                    fault,
+                } => {
+                    self.counts.packet();
+                    self.counts.malformed(offset, fault);
+                    self.counts.damaged += 1;
+                    self.counts.damaged_bytes += bytes;
+                }
                 Step::Packet(packet) => {
                     self.held = packet.length;
                     self.counts.packet();
@@ -263,62 +317,6 @@ impl<R: Read> Recording<R> {
                 }
             }
         }
-    }
-
-    /// Looks inside a packet and counts it.
-    fn classify(&mut self, packet: &Packet, offset: u64) -> Option<Found> {
-        let data = self
-            .window
-            .bytes()
-            .get(packet.data.clone())
-            .unwrap_or_default();
-        let within = |range: Range<usize>| {
-            packet.data.start.saturating_add(range.start)
-                ..packet.data.start.saturating_add(range.end)
-        };
-        let wire = match link::look_inside(packet.link, packet.direction, data) {
-            Ok(Content::Datagram {
-                source,
-                port,
-                payload,
-            }) => {
-                self.counts.datagram(port, payload.len());
-                FoundWire::Datagram {
-                    source,
-                    port,
-                    payload: within(payload),
-                }
-            }
-            Ok(Content::Serial { link, direction }) => {
-                self.counts.drive(direction);
-                FoundWire::Serial {
-                    link,
-                    direction,
-                    frame: packet.data.clone(),
-                }
-            }
-            Ok(Content::Can { direction, frame }) => {
-                self.counts.drive(direction);
-                self.can_frame = frame;
-                FoundWire::Can { direction }
-            }
-            Ok(Content::Fragment) => {
-                self.counts.fragments += 1;
-                return None;
-            }
-            Ok(Content::Other) => {
-                self.counts.other += 1;
-                return None;
-            }
-            Err(fault) => {
-                self.counts.malformed(offset, fault);
-                return None;
-            }
-        };
-        Some(Found {
-            host: packet.host,
-            wire,
-        })
     }
 }
 

@@ -1,7 +1,8 @@
 //! The lidar's datagrams with the kernel's receive time, and a count of those the kernel dropped.
 //!
 //! The kernel's time is taken when the packet comes out of the network stack; a time read by the program can be late by
-//! many milliseconds when the machine is busy. IPv4 only, as the VLP-16 is. Nothing here looks into a payload.
+//! many milliseconds when the machine is busy. IPv4 only, as the lidars of this family are. A payload is looked into only to count whose
+//! it is; every datagram from a wanted source is given on.
 
 mod listener;
 mod socket;
@@ -38,7 +39,7 @@ pub enum UdpError {
     Io {
         /// What was to be bound, or is.
         address: SocketAddrV4,
-        /// `bind`, `configure`, `wait` or `receive`.
+        /// `bind`, `configure`, `join`, `wait` or `receive`.
         action: &'static str,
         /// The system's reason.
         source: io::Error,

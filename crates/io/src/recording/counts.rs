@@ -1,6 +1,7 @@
 //! What a recording holds, by number. Meaning (which port is the lidar's) is the reader's to add.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use protocol::record::Direction;
 
@@ -18,57 +19,86 @@ pub struct Malformed {
     pub fault: Fault,
 }
 
-/// Numbers of packets by kind. `records` is the sum of all the others but `first_malformed`.
+/// Numbers of packets by kind. `records` is the sum of `datagrams`, `more_datagrams`, `to_drive`, `from_drive`, `other`, `fragments`,
+/// `joined` and `malformed`; the rest tells more of these.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Packets in the file, of whatever kind.
+    /// Packets in the file, of whatever kind; a damaged stretch is one.
     pub records: u64,
-    /// UDP over IPv4 by destination port and payload size in bytes; the first 1024 such pairs.
+    /// The lidar's datagrams ([`DatagramKind::is_lidar`](super::DatagramKind::is_lidar)) by destination port and payload size in bytes;
+    /// the first 1024 such pairs.
     pub datagrams: BTreeMap<(u16, usize), u64>,
-    /// UDP over IPv4 beyond those pairs.
+    /// The lidar's datagrams beyond those pairs.
     pub more_datagrams: u64,
     /// Frames from the host to the drive.
     pub to_drive: u64,
     /// Frames from the drive to the host.
     pub from_drive: u64,
-    /// Sound packets that are neither UDP over IPv4 nor the drive's.
+    /// Sound packets that are neither the lidar's nor the drive's.
     pub other: u64,
-    /// Fragments of IP packets; not put together.
+    /// Of `other`: UDP, by destination port and payload size in bytes; the first 1024 such pairs.
+    pub foreign: BTreeMap<(u16, usize), u64>,
+    /// Fragments of IP packets that were not put together.
     pub fragments: u64,
+    /// Fragments of datagrams that were put together, the last of each excepted: that one counts as the datagram.
+    pub joined: u64,
+    /// Datagrams that were put together of fragments, whatever they were then counted as.
+    pub reassembled: u64,
     /// Packets that could not be used.
     pub malformed: u64,
     /// The first of those.
     pub first_malformed: Option<Malformed>,
+    /// Of `malformed`: packets of which the capture kept too little (snap length).
+    pub snapped: u64,
+    /// Of `malformed`: packets without a time (pcapng simple packet blocks).
+    pub timeless: u64,
+    /// Of `malformed`: stretches of the file that are no records; reading went on behind them.
+    pub damaged: u64,
+    /// Bytes in those stretches.
+    pub damaged_bytes: u64,
 }
 
 impl Counts {
-    /// Datagrams to `port`, whatever their size.
+    /// Datagrams to `port`, whatever their size and content.
     #[must_use]
     pub fn to_port(&self, port: u16) -> u64 {
-        self.datagrams
-            .range((port, 0)..=(port, usize::MAX))
+        [&self.datagrams, &self.foreign]
+            .into_iter()
+            .flat_map(|kinds| kinds.range((port, 0)..=(port, usize::MAX)))
             .map(|(_, n)| n)
             .sum()
     }
 
-    /// Datagrams of `size` bytes to `port`.
+    /// Datagrams of `size` bytes to `port`, whatever their content.
     #[must_use]
     pub fn to_port_of_size(&self, port: u16, size: usize) -> u64 {
-        self.datagrams.get(&(port, size)).copied().unwrap_or(0)
+        [&self.datagrams, &self.foreign]
+            .into_iter()
+            .filter_map(|kinds| kinds.get(&(port, size)))
+            .sum()
     }
 
     pub(super) fn packet(&mut self) {
         self.records += 1;
     }
 
-    pub(super) fn datagram(&mut self, port: u16, size: usize) {
-        if let Some(n) = self.datagrams.get_mut(&(port, size)) {
-            *n += 1;
-        } else if self.datagrams.len() < MAX_KINDS {
-            self.datagrams.insert((port, size), 1);
-        } else {
+    pub(super) fn lidar(&mut self, port: u16, size: usize) {
+        if !tally(&mut self.datagrams, port, size) {
             self.more_datagrams += 1;
         }
+    }
+
+    pub(super) fn foreign(&mut self, port: u16, size: usize) {
+        self.other += 1;
+        tally(&mut self.foreign, port, size);
+    }
+
+    /// The last of `parts` fragments came; the others were taken for lone ones before.
+    pub(super) fn reassembled(&mut self, parts: u64) {
+        let before = parts.saturating_sub(1);
+        self.fragments = self.fragments.saturating_sub(before);
+        self.joined += before;
+        self.reassembled += 1;
     }
 
     pub(super) fn drive(&mut self, direction: Direction) {
@@ -80,10 +110,28 @@ impl Counts {
 
     pub(super) fn malformed(&mut self, offset: u64, fault: Fault) {
         self.malformed += 1;
+        match fault {
+            Fault::Snapped { .. } => self.snapped += 1,
+            Fault::Timeless => self.timeless += 1,
+            _ => {}
+        }
         if self.first_malformed.is_none() {
             self.first_malformed = Some(Malformed { offset, fault });
         }
     }
+}
+
+/// Whether there was room to count it.
+fn tally(kinds: &mut BTreeMap<(u16, usize), u64>, port: u16, size: usize) -> bool {
+    let room = kinds.len() < MAX_KINDS;
+    match kinds.entry((port, size)) {
+        Entry::Occupied(mut n) => *n.get_mut() += 1,
+        Entry::Vacant(place) if room => {
+            place.insert(1);
+        }
+        Entry::Vacant(_) => return false,
+    }
+    true
 }
 
 #[cfg(test)]
@@ -94,14 +142,17 @@ mod tests {
     fn kinds_beyond_the_limit_are_still_counted() {
         let mut counts = Counts::default();
         for port in 0..2000 {
-            counts.datagram(port, 7);
+            counts.lidar(port, 7);
+            counts.foreign(port, 9);
         }
-        counts.datagram(3, 7);
-        counts.datagram(3, 8);
+        counts.lidar(3, 7);
+        counts.lidar(3, 8);
         assert_eq!(counts.datagrams.len(), MAX_KINDS);
         assert_eq!(counts.more_datagrams, 2000 - 1024 + 1);
+        assert_eq!((counts.foreign.len(), counts.other), (MAX_KINDS, 2000));
         assert_eq!(counts.to_port_of_size(3, 7), 2);
-        assert_eq!(counts.to_port(3), 2);
+        assert_eq!(counts.to_port_of_size(3, 9), 1);
+        assert_eq!(counts.to_port(3), 3);
         assert_eq!(counts.to_port(1999), 0);
     }
 }

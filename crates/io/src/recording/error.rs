@@ -50,7 +50,7 @@ pub enum RecordingError {
         got: String,
     },
     /// A recording of something else than Ethernet, IP or CAN.
-    #[error("{}: at byte {offset}: expected link type Ethernet (1), Linux cooked (113, 276), raw IP (101, 228), loopback (0, 108) or SocketCAN (227), got {got}", path.display())]
+    #[error("{}: at byte {offset}: expected link type Ethernet (1), Linux cooked (113, 276), raw IP (101, 228, 229), loopback (0, 108) or SocketCAN (227), got {got}", path.display())]
     Link {
         /// The file.
         path: PathBuf,
@@ -75,7 +75,7 @@ pub enum End {
         /// Bytes of it that are there.
         got: u64,
     },
-    /// Before a record whose length cannot be true; nothing behind it can be found.
+    /// Before a record whose length cannot be true; nothing sound was found behind it.
     Unreadable {
         /// Where that record starts, in bytes from the start of the file.
         offset: u64,
@@ -119,7 +119,7 @@ pub enum Fault {
     Short {
         /// Which header or payload.
         layer: String,
-        /// Bytes from the start of the packet (of its network layer, on cooked and loopback links).
+        /// Bytes from the start of the packet.
         offset: usize,
         /// Bytes it should have.
         expected: usize,
@@ -159,11 +159,16 @@ pub enum Fault {
         /// Interfaces described so far.
         described: usize,
     },
-    /// A packet without a time (pcapng Simple Packet Block) or of the withdrawn Packet Block.
-    #[error("a packet block of type {kind}, which tells no usable time")]
-    Timeless {
-        /// The block type: 2 or 3.
-        kind: u32,
+    /// A packet without a time.
+    #[error("a pcapng simple packet block, which has no time")]
+    Timeless,
+    /// A record that would reach beyond the end of the file, though sound ones follow within it.
+    #[error("record length: {expected} bytes, where the file has {got} more")]
+    Cut {
+        /// Bytes the record claims to have.
+        expected: u64,
+        /// Bytes to the end of the file.
+        got: u64,
     },
     /// A frame of the drive of which the direction is not recorded.
     #[error("a frame of the drive without a direction")]

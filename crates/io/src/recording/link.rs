@@ -1,14 +1,18 @@
 //! From a captured packet to what it carries: link, network and transport headers by etherparse, CAN frames by hand.
 
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::ops::Range;
 
 use etherparse::err::packet::SliceError;
 use etherparse::{
-    EtherType, LaxNetSlice, LaxSlicedPacket, NetSlice, SlicedPacket, TransportSlice, UdpHeader,
+    EtherType, IpNumber, Ipv4Slice, Ipv6ExtensionSlice, Ipv6Slice, LaxNetSlice, LaxSlicedPacket,
+    NetSlice, SlicedPacket, TransportSlice, UdpHeader,
 };
 use protocol::record::{Direction, DriveLink};
 
 use super::Fault;
+use super::fragments::{Fragment, Key};
+use super::sensors::source_of;
 
 /// Bytes of a `struct can_frame`: id (big-endian), length, three reserved, eight of data.
 pub(super) const CAN_FRAME_LEN: usize = 16;
@@ -26,9 +30,9 @@ pub(super) enum LinkType {
     Cooked1,
     /// Linux cooked, version 2: the protocol in the first two bytes of 20.
     Cooked2,
-    /// Starts with the IP header.
+    /// Starts with the IP header, of either version.
     Ip,
-    /// Four bytes of address family in either byte order, then the IP header.
+    /// BSD's: four bytes of address family in either byte order, then the IP header.
     Loopback,
     Can,
     /// Our own: the drive's serial frames.
@@ -44,7 +48,7 @@ impl LinkType {
             0 | 108 => Self::Loopback,
             1 => Self::Ethernet,
             // 12 and 14: what some systems write for 101.
-            12 | 14 | 101 | 228 => Self::Ip,
+            12 | 14 | 101 | 228 | 229 => Self::Ip,
             113 => Self::Cooked1,
             276 => Self::Cooked2,
             227 => Self::Can,
@@ -61,7 +65,7 @@ impl LinkType {
 /// What a packet carries.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Content {
-    /// UDP over IPv4; `payload` counts from the start of the packet.
+    /// UDP; `payload` counts from the start of the packet.
     Datagram {
         source: [u8; 4],
         port: u16,
@@ -76,8 +80,10 @@ pub(super) enum Content {
         direction: Direction,
         frame: [u8; CAN_FRAME_LEN],
     },
-    /// A part of an IP packet.
-    Fragment,
+    /// A part of a UDP datagram.
+    Fragment(Fragment),
+    /// A part of another IP packet.
+    OtherFragment,
     Other,
 }
 
@@ -87,13 +93,13 @@ pub(super) fn look_inside(
     direction: Option<Direction>,
     data: &[u8],
 ) -> Result<Content, Fault> {
-    let sliced = match link {
-        LinkType::Ethernet => SlicedPacket::from_ethernet(data),
-        LinkType::Cooked1 => cooked(data, 14, 16)?,
-        LinkType::Cooked2 => cooked(data, 0, 20)?,
-        LinkType::Ip => SlicedPacket::from_ip(data),
+    let network = match link {
+        LinkType::Ethernet => behind(data, "Ethernet header", 12, 14)?,
+        LinkType::Cooked1 => behind(data, "Linux cooked header", 14, 16)?,
+        LinkType::Cooked2 => behind(data, "Linux cooked header", 0, 20)?,
+        LinkType::Ip => bare(data)?,
         LinkType::Loopback => match loopback(data)? {
-            Some(packet) => SlicedPacket::from_ip(packet),
+            Some(network) => network,
             None => return Ok(Content::Other),
         },
         LinkType::Can => return can(data, direction),
@@ -103,24 +109,147 @@ pub(super) fn look_inside(
         }
         LinkType::Unused => return Ok(Content::Other),
     };
-    let sliced = match sliced {
-        Ok(sliced) => sliced,
-        Err(error) => return by_udp_length(link, data).ok_or_else(|| fault(error)),
-    };
-    let Some(NetSlice::Ipv4(ip)) = sliced.net else {
-        return Ok(Content::Other);
-    };
-    if ip.is_payload_fragmented() {
-        return Ok(Content::Fragment);
+    match SlicedPacket::from_ether_type(network.kind, network.packet) {
+        Ok(sliced) => Ok(content(&sliced, data)),
+        Err(error) => {
+            let start = data.len() - network.packet.len();
+            by_udp_length(&network, data).ok_or_else(|| fault(error, start))
+        }
     }
-    let Some(TransportSlice::Udp(udp)) = sliced.transport else {
-        return Ok(Content::Other);
+}
+
+/// What follows the link's own header. VLAN tags are still in front of it.
+struct Network<'a> {
+    kind: EtherType,
+    packet: &'a [u8],
+}
+
+/// Behind a header of `header_len` bytes with the EtherType at `at`.
+fn behind<'a>(
+    data: &'a [u8],
+    layer: &'static str,
+    at: usize,
+    header_len: usize,
+) -> Result<Network<'a>, Fault> {
+    let kind = data.get(at..).and_then(|bytes| bytes.first_chunk());
+    match (kind, data.get(header_len..)) {
+        (Some(&kind), Some(packet)) => Ok(Network {
+            kind: EtherType(u16::from_be_bytes(kind)),
+            packet,
+        }),
+        _ => Err(short(layer, header_len, data)),
+    }
+}
+
+/// An IP packet with nothing in front: its first four bits tell the version.
+fn bare(packet: &[u8]) -> Result<Network<'_>, Fault> {
+    let first = packet
+        .first()
+        .ok_or_else(|| short("IP header", 20, packet))?;
+    let kind = match first >> 4 {
+        4 => EtherType::IPV4,
+        6 => EtherType::IPV6,
+        got => {
+            return Err(Fault::Header(format!(
+                "IP version: expected 4 or 6, got {got}"
+            )));
+        }
     };
-    Ok(Content::Datagram {
-        source: ip.header().source(),
-        port: udp.destination_port(),
-        payload: within(data, udp.payload()),
+    Ok(Network { kind, packet })
+}
+
+/// The IP packet behind a loopback header, or `None` for another address family.
+fn loopback(data: &[u8]) -> Result<Option<Network<'_>>, Fault> {
+    let Some((family, packet)) = data.split_first_chunk::<4>() else {
+        return Err(short("loopback header", 4, data));
+    };
+    // Its bytes stand in the order of the capturing machine (LINKTYPE_NULL) or the network's (LINKTYPE_LOOP).
+    let little = u32::from_le_bytes(*family);
+    let kind = match little.min(little.swap_bytes()) {
+        // AF_INET is 2 everywhere; AF_INET6 is 10 on Linux, 24 on NetBSD and OpenBSD, 28 on FreeBSD, 30 on macOS.
+        2 => EtherType::IPV4,
+        10 | 24 | 28 | 30 => EtherType::IPV6,
+        _ => return Ok(None),
+    };
+    Ok(Some(Network { kind, packet }))
+}
+
+fn short(layer: &str, expected: usize, data: &[u8]) -> Fault {
+    Fault::Short {
+        layer: layer.to_owned(),
+        offset: 0,
+        expected,
+        got: data.len(),
+    }
+}
+
+/// What a packet that etherparse has taken apart carries.
+fn content(sliced: &SlicedPacket<'_>, data: &[u8]) -> Content {
+    let source = match &sliced.net {
+        Some(NetSlice::Ipv4(ip)) if ip.is_payload_fragmented() => return fragment_v4(ip, data),
+        Some(NetSlice::Ipv6(ip)) if ip.is_payload_fragmented() => return fragment_v6(ip, data),
+        Some(NetSlice::Ipv4(ip)) => ip.header().source(),
+        Some(NetSlice::Ipv6(ip)) => source_of(Ipv6Addr::from(ip.header().source()).into()),
+        _ => return Content::Other,
+    };
+    match &sliced.transport {
+        Some(TransportSlice::Udp(udp)) => Content::Datagram {
+            source,
+            port: udp.destination_port(),
+            payload: within(data, udp.payload()),
+        },
+        _ => Content::Other,
+    }
+}
+
+fn fragment_v4(ip: &Ipv4Slice<'_>, data: &[u8]) -> Content {
+    let header = ip.header();
+    if header.protocol() != IpNumber::UDP {
+        return Content::OtherFragment;
+    }
+    Content::Fragment(Fragment {
+        key: Key {
+            source: IpAddr::V4(Ipv4Addr::from(header.source())),
+            destination: IpAddr::V4(Ipv4Addr::from(header.destination())),
+            identification: header.identification().into(),
+        },
+        offset: usize::from(header.fragments_offset().value()) * 8,
+        more: header.more_fragments(),
+        payload: within(data, ip.payload().payload),
     })
+}
+
+fn fragment_v6(ip: &Ipv6Slice<'_>, data: &[u8]) -> Content {
+    let part = ip.extensions().clone().into_iter().find_map(|e| match e {
+        Ipv6ExtensionSlice::Fragment(part) => Some(part),
+        _ => None,
+    });
+    let Some(part) = part.filter(|part| part.next_header() == IpNumber::UDP) else {
+        return Content::OtherFragment;
+    };
+    let header = ip.header();
+    Content::Fragment(Fragment {
+        key: Key {
+            source: IpAddr::V6(Ipv6Addr::from(header.source())),
+            destination: IpAddr::V6(Ipv6Addr::from(header.destination())),
+            identification: part.identification(),
+        },
+        offset: usize::from(part.fragment_offset().value()) * 8,
+        more: part.more_fragments(),
+        payload: within(data, ip.payload().payload),
+    })
+}
+
+/// The port and payload of a UDP datagram that was put together of fragments; the payload counts from its start.
+pub(super) fn udp(datagram: &[u8]) -> Result<(u16, Range<usize>), Fault> {
+    let Some((&[_, _, p0, p1, l0, l1, _, _], _)) = datagram.split_first_chunk::<8>() else {
+        return Err(short("UDP header", UdpHeader::LEN, datagram));
+    };
+    let length = usize::from(u16::from_be_bytes([l0, l1]));
+    if !(UdpHeader::LEN..=datagram.len()).contains(&length) {
+        return Err(short("UDP payload", length, datagram));
+    }
+    Ok((u16::from_be_bytes([p0, p1]), UdpHeader::LEN..length))
 }
 
 /// Where a part lies in the whole it was sliced from.
@@ -131,12 +260,8 @@ fn within(whole: &[u8], part: &[u8]) -> Range<usize> {
 
 /// A datagram whose IP header claims more than there is while its UDP length is all there: VLP-16 firmware of 2014 gives its
 /// position packets the IP length of a data packet. A packet that was cut short does not pass: its UDP length is missing bytes too.
-fn by_udp_length(link: LinkType, data: &[u8]) -> Option<Content> {
-    let lax = match link {
-        LinkType::Ethernet => LaxSlicedPacket::from_ethernet(data).ok()?,
-        LinkType::Ip => LaxSlicedPacket::from_ip(data).ok()?,
-        _ => return None,
-    };
+fn by_udp_length(network: &Network<'_>, data: &[u8]) -> Option<Content> {
+    let lax = LaxSlicedPacket::from_ether_type(network.kind, network.packet);
     match (&lax.net, &lax.transport) {
         (Some(LaxNetSlice::Ipv4(ip)), Some(TransportSlice::Udp(udp)))
             if usize::from(udp.length()) == udp.payload().len() + UdpHeader::LEN =>
@@ -151,52 +276,10 @@ fn by_udp_length(link: LinkType, data: &[u8]) -> Option<Content> {
     }
 }
 
-/// A packet behind a Linux cooked header of `header_len` bytes with the EtherType at `at`.
-fn cooked(
-    data: &[u8],
-    at: usize,
-    header_len: usize,
-) -> Result<Result<SlicedPacket<'_>, SliceError>, Fault> {
-    let protocol = data
-        .get(at..at + 2)
-        .and_then(|bytes| bytes.first_chunk())
-        .map(|&bytes| EtherType(u16::from_be_bytes(bytes)));
-    match (protocol, data.get(header_len..)) {
-        (Some(protocol), Some(packet)) => Ok(SlicedPacket::from_ether_type(protocol, packet)),
-        _ => Err(Fault::Short {
-            layer: "Linux cooked header".to_owned(),
-            offset: 0,
-            expected: header_len,
-            got: data.len(),
-        }),
-    }
-}
-
-/// The IPv4 packet behind a loopback header, or `None` for another address family.
-fn loopback(data: &[u8]) -> Result<Option<&[u8]>, Fault> {
-    let Some((family, packet)) = data.split_first_chunk::<4>() else {
-        return Err(Fault::Short {
-            layer: "loopback header".to_owned(),
-            offset: 0,
-            expected: 4,
-            got: data.len(),
-        });
-    };
-    // AF_INET is 2 everywhere; its bytes stand in the order of the capturing machine.
-    let ipv4 = [2_u32.to_le_bytes(), 2_u32.to_be_bytes()].contains(family);
-    Ok(ipv4.then_some(packet))
-}
-
 /// A classic CAN frame, filled up to the full structure.
 fn can(data: &[u8], direction: Option<Direction>) -> Result<Content, Fault> {
-    let short = |expected| Fault::Short {
-        layer: "CAN frame".to_owned(),
-        offset: 0,
-        expected,
-        got: data.len(),
-    };
     let Some((head, _)) = data.split_first_chunk::<8>() else {
-        return Err(short(8));
+        return Err(short("CAN frame", 8, data));
     };
     let [id @ .., length, _, _, _] = *head;
     if length > 8 {
@@ -207,7 +290,7 @@ fn can(data: &[u8], direction: Option<Direction>) -> Result<Content, Fault> {
     let mut frame = [0; CAN_FRAME_LEN];
     match (frame.get_mut(..used), data.get(..used)) {
         (Some(to), Some(from)) => to.copy_from_slice(from),
-        _ => return Err(short(used)),
+        _ => return Err(short("CAN frame", used, data)),
     }
     Ok(Content::Can {
         direction: direction.unwrap_or_else(|| direction_of_can(u32::from_be_bytes(id))),
@@ -225,11 +308,12 @@ fn direction_of_can(id: u32) -> Direction {
     }
 }
 
-fn fault(error: SliceError) -> Fault {
+/// The same in our words, for a network layer that starts `start` bytes into the packet.
+fn fault(error: SliceError, start: usize) -> Fault {
     match error {
         SliceError::Len(e) => Fault::Short {
             layer: e.layer.to_string(),
-            offset: e.layer_start_offset,
+            offset: start.saturating_add(e.layer_start_offset),
             expected: e.required_len,
             got: e.len,
         },

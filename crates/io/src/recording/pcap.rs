@@ -109,13 +109,6 @@ impl Header {
         let Ok((_, frame)) = parse(record) else {
             return Ok(truncated(length, bytes.len()));
         };
-        if frame.caplen < frame.origlen {
-            let fault = Fault::Snapped {
-                captured: frame.caplen,
-                original: frame.origlen,
-            };
-            return Ok(Step::Malformed { length, fault });
-        }
         let fraction_ns = if self.nanoseconds { 1 } else { 1_000 };
         let ns = i64::from(frame.ts_sec) * 1_000_000_000 + i64::from(frame.ts_usec) * fraction_ns;
         Ok(Step::Packet(Packet {
@@ -124,6 +117,7 @@ impl Header {
             data: header_len..length,
             link: self.link,
             direction: None,
+            original: frame.origlen,
         }))
     }
 }

@@ -1,12 +1,13 @@
 //! pcapng: sections of blocks, each framed by its length in front and behind, so that a block whose inside is wrong can
-//! be passed over. Only section headers, interface descriptions and enhanced packets are looked into.
+//! be passed over. Only section headers, interface descriptions and packets are looked into. Where the framing itself is wrong, reading
+//! goes on at the next block that is sound.
 
 use std::io::{self, Read};
 use std::path::Path;
 
 use pcap_parser::pcapng::{
-    EPB_MAGIC, EnhancedPacketBlock, IDB_MAGIC, InterfaceDescriptionBlock, OptionCode, PcapNGOption,
-    SHB_MAGIC, SPB_MAGIC, parse_enhancedpacketblock_be, parse_enhancedpacketblock_le,
+    EPB_MAGIC, IDB_MAGIC, InterfaceDescriptionBlock, OptionCode, PcapNGOption, SHB_MAGIC,
+    SPB_MAGIC, parse_enhancedpacketblock_be, parse_enhancedpacketblock_le,
     parse_interfacedescriptionblock_be, parse_interfacedescriptionblock_le,
     parse_sectionheaderblock,
 };
@@ -15,19 +16,22 @@ use units::{Host, Stamp};
 
 use super::error::{End, Fault, RecordingError};
 use super::link::LinkType;
+use super::resync::resync;
 use super::window::Window;
 use super::{Packet, Step};
 
 /// The longest block believed; Wireshark's limit.
 const MAX_BLOCK_LEN: u32 = 16 << 20;
 /// Type and two lengths.
-const FRAMING_LEN: u32 = 12;
+pub(super) const FRAMING_LEN: u32 = 12;
+/// Reads the same in both byte orders.
+pub(super) const SECTION_HEADER: u32 = SHB_MAGIC;
 /// Byte-order magic of a section in this machine-independent order (draft-ietf-opsawg-pcapng, section 4.1).
-const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
-/// The withdrawn Packet Block.
-const PACKET_BLOCK: u32 = 2;
+pub(super) const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
+/// The obsolete packet block: as an enhanced one, but for 16 bits of interface and 16 of a drop counter in front.
+pub(super) const PACKET_BLOCK: u32 = 2;
 /// Packet data in an enhanced packet block starts behind type, length, interface, two halves of the time, two lengths.
-const PACKET_DATA_OFFSET: usize = 28;
+pub(super) const PACKET_DATA_OFFSET: usize = 28;
 /// Option codes of the draft that pcap-parser does not name for this block.
 const EPB_FLAGS: OptionCode = OptionCode(2);
 
@@ -49,6 +53,22 @@ struct Interface {
     resolution: u8,
     /// `if_tsoffset`, s.
     offset_s: i64,
+}
+
+/// What cannot be understood, in the place of its number.
+const UNKNOWN: Interface = Interface {
+    link: None,
+    resolution: 6,
+    offset_s: 0,
+};
+
+/// The fixed fields of an enhanced or obsolete packet block.
+#[derive(Clone, Copy, Debug)]
+struct Fields {
+    interface: u32,
+    units: u64,
+    captured: u32,
+    original: u32,
 }
 
 /// Whether a file that starts so is pcapng. The block type reads the same in both byte orders.
@@ -105,7 +125,8 @@ impl Section {
     pub(super) fn step<R: Read>(&mut self, window: &mut Window<R>) -> io::Result<Step> {
         let (kind, length) = match self.frame(window)? {
             Ok(framed) => framed,
-            Err(end) => return Ok(Step::End(end)),
+            Err(End::Complete) => return Ok(Step::End(End::Complete)),
+            Err(end) => return self.go_on_behind(window, end),
         };
         let block = window.bytes().get(..length).unwrap_or_default();
         Ok(match kind {
@@ -117,15 +138,47 @@ impl Section {
                 self.describe(block);
                 Step::Skip { length }
             }
-            EPB_MAGIC => match self.packet(block) {
+            EPB_MAGIC | PACKET_BLOCK => match self.packet(kind, block) {
                 Ok(packet) => Step::Packet(packet),
                 Err(fault) => Step::Malformed { length, fault },
             },
-            PACKET_BLOCK | SPB_MAGIC => Step::Malformed {
+            SPB_MAGIC => Step::Malformed {
                 length,
-                fault: Fault::Timeless { kind },
+                fault: Fault::Timeless,
             },
             _ => Step::Skip { length },
+        })
+    }
+
+    /// Where no block can be framed: to the next that can. A file that was merely cut off has none, and ends as `end` says.
+    fn go_on_behind<R: Read>(&mut self, window: &mut Window<R>, end: End) -> io::Result<Step> {
+        let (offset, fault) = match &end {
+            End::Complete => return Ok(Step::End(end)),
+            &End::Truncated {
+                offset,
+                expected,
+                got,
+            } => (offset, Fault::Cut { expected, got }),
+            End::Unreadable { offset, fault } => (*offset, fault.clone()),
+        };
+        // A damaged description keeps its number, so that those behind it keep theirs; a damaged section is a section.
+        match words(window.bytes()).map(|[kind, _, _]| self.u32(kind)) {
+            Some(IDB_MAGIC) => self.keep(UNKNOWN),
+            Some(SHB_MAGIC) => self.interfaces.clear(),
+            _ => {}
+        }
+        let Some(found) = resync(window, self.big_endian)? else {
+            return Ok(Step::End(end));
+        };
+        if found.big_endian != self.big_endian {
+            // The header of a section in the other byte order was among what is damaged.
+            self.big_endian = found.big_endian;
+            self.interfaces.clear();
+        }
+        Ok(Step::Damaged {
+            offset,
+            bytes: found.skipped,
+            fault,
         })
     }
 
@@ -179,9 +232,6 @@ impl Section {
     }
 
     fn describe(&mut self, block: &[u8]) {
-        if self.interfaces.len() >= MAX_INTERFACES {
-            return;
-        }
         let parse = if self.big_endian {
             parse_interfacedescriptionblock_be
         } else {
@@ -190,13 +240,15 @@ impl Section {
         // An interface that cannot be understood keeps its number, so that those behind it keep theirs.
         let interface = match parse(block) {
             Ok((_, described)) => self.interface(&described),
-            Err(_) => Interface {
-                link: None,
-                resolution: 6,
-                offset_s: 0,
-            },
+            Err(_) => UNKNOWN,
         };
-        self.interfaces.push(interface);
+        self.keep(interface);
+    }
+
+    fn keep(&mut self, interface: Interface) {
+        if self.interfaces.len() < MAX_INTERFACES {
+            self.interfaces.push(interface);
+        }
     }
 
     fn interface(&self, described: &InterfaceDescriptionBlock<'_>) -> Interface {
@@ -222,35 +274,66 @@ impl Section {
         }
     }
 
-    fn packet(&self, block: &[u8]) -> Result<Packet, Fault> {
+    fn packet(&self, kind: u32, block: &[u8]) -> Result<Packet, Fault> {
+        let (fields, direction) = if kind == EPB_MAGIC {
+            self.enhanced(block)
+        } else {
+            self.obsolete(block).map(|fields| (fields, None))
+        }
+        .ok_or(Fault::Block { kind })?;
+        let interface = usize::try_from(fields.interface)
+            .ok()
+            .and_then(|id| self.interfaces.get(id))
+            .ok_or(Fault::Interface {
+                got: fields.interface,
+                described: self.interfaces.len(),
+            })?;
+        Ok(Packet {
+            host: interface.time(fields.units),
+            length: block.len(),
+            data: PACKET_DATA_OFFSET..PACKET_DATA_OFFSET.saturating_add(fields.captured as usize),
+            link: interface.link.unwrap_or(LinkType::Unused),
+            direction,
+            original: fields.original,
+        })
+    }
+
+    fn enhanced(&self, block: &[u8]) -> Option<(Fields, Option<Direction>)> {
         let parse = if self.big_endian {
             parse_enhancedpacketblock_be
         } else {
             parse_enhancedpacketblock_le
         };
-        let Ok((_, packet)) = parse(block) else {
-            return Err(Fault::Block { kind: EPB_MAGIC });
+        let (_, packet) = parse(block).ok()?;
+        let fields = Fields {
+            interface: packet.if_id,
+            units: (u64::from(packet.ts_high) << 32) | u64::from(packet.ts_low),
+            captured: packet.caplen,
+            original: packet.origlen,
         };
-        let interface = usize::try_from(packet.if_id)
-            .ok()
-            .and_then(|id| self.interfaces.get(id))
-            .ok_or(Fault::Interface {
-                got: packet.if_id,
-                described: self.interfaces.len(),
-            })?;
-        if packet.caplen < packet.origlen {
-            return Err(Fault::Snapped {
-                captured: packet.caplen,
-                original: packet.origlen,
-            });
-        }
-        Ok(Packet {
-            host: interface.time(&packet),
-            length: block.len(),
-            data: PACKET_DATA_OFFSET..PACKET_DATA_OFFSET.saturating_add(packet.caplen as usize),
-            link: interface.link.unwrap_or(LinkType::Unused),
-            direction: self.direction(&packet.options),
-        })
+        Some((fields, self.direction(&packet.options)))
+    }
+
+    /// pcap-parser does not know this one (draft-ietf-opsawg-pcapng, appendix A).
+    fn obsolete(&self, block: &[u8]) -> Option<Fields> {
+        let word = |at: usize| {
+            let field = *block.get(at..)?.first_chunk()?;
+            Some(self.u32(field))
+        };
+        let &[i0, i1] = block.get(8..)?.first_chunk()?;
+        let interface = if self.big_endian {
+            u16::from_be_bytes([i0, i1])
+        } else {
+            u16::from_le_bytes([i0, i1])
+        };
+        let fields = Fields {
+            interface: interface.into(),
+            units: (u64::from(word(12)?) << 32) | u64::from(word(16)?),
+            captured: word(20)?,
+            original: word(24)?,
+        };
+        let room = block.len().checked_sub(PACKET_DATA_OFFSET + 4)?;
+        (fields.captured as usize <= room).then_some(fields)
     }
 
     /// Bits 0 and 1 of `epb_flags`: 1 inbound, 2 outbound.
@@ -274,8 +357,8 @@ impl Section {
 
 impl Interface {
     /// The packet's time, held at the ends of the range of `i64` nanoseconds.
-    fn time(&self, packet: &EnhancedPacketBlock<'_>) -> Stamp<Host> {
-        let units = (u128::from(packet.ts_high) << 32) | u128::from(packet.ts_low);
+    fn time(&self, units: u64) -> Stamp<Host> {
+        let units = u128::from(units);
         let exponent = u32::from(self.resolution & 0x7F);
         let ns = if self.resolution & 0x80 != 0 {
             (units * 1_000_000_000) >> exponent

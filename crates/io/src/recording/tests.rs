@@ -1,5 +1,9 @@
 use super::*;
 use proptest::prelude::*;
+use protocol::vlp16::DATA_LEN;
+
+mod damage;
+mod dialects;
 
 use crate::files::Overwrite;
 use crate::log::{LogConfig, LogWriter, OwnedRecord};
@@ -111,9 +115,18 @@ fn packet(big: bool, interface: u32, time: u64, data: &[u8], flags: Option<u32>)
     block(6, big, &body)
 }
 
-/// Everything in a recording, how it ended, and the counts.
+/// A data packet as far as it is known by: `FF EE` in front of each block, and the blocks filled with something.
+fn data_packet(fill: u8) -> Vec<u8> {
+    let mut data = vec![fill; DATA_LEN];
+    for block in data.chunks_exact_mut(100) {
+        block[..2].copy_from_slice(&[0xFF, 0xEE]);
+    }
+    data
+}
+
+/// Everything in a recording, foreign datagrams included, how it ended, and the counts.
 fn read(bytes: &[u8]) -> (Vec<OwnedRecord>, End, Counts) {
-    let mut recording = Recording::new(bytes, "test").unwrap();
+    let mut recording = Recording::new(bytes, "test").unwrap().keep_foreign();
     let mut records = Vec::new();
     while let Some(record) = recording.next_record().unwrap() {
         records.push(OwnedRecord::from(&record));
@@ -231,7 +244,7 @@ fn what_is_not_a_datagram_is_counted_by_kind() {
             (2, 0, None, &first_fragment),
             (3, 0, None, &last_fragment),
             (4, 0, None, &lldp),
-            (5, 0, Some(1248), &good), // cut by a snap length
+            (5, 0, Some(1248), &good[..44]), // cut by a snap length
             (6, 0, None, &lies),
             (7, 0, None, &good[..20]),
             (8, 0, None, &[]),
@@ -248,7 +261,7 @@ fn what_is_not_a_datagram_is_counted_by_kind() {
             counts.fragments,
             counts.malformed
         ),
-        (9, 2, 2, 4)
+        (9, 2 + 1, 2, 4)
     );
     let first = counts.first_malformed.unwrap();
     let before: usize = [&arp, &first_fragment, &last_fragment, &lldp]
@@ -256,10 +269,8 @@ fn what_is_not_a_datagram_is_counted_by_kind() {
         .map(|data| 16 + data.len())
         .sum();
     assert_eq!(first.offset, 24 + before as u64);
-    assert_eq!(
-        first.fault.to_string(),
-        format!("the capture kept {} bytes of 1248", good.len())
-    );
+    assert_eq!(first.fault.to_string(), "the capture kept 44 bytes of 1248");
+    assert_eq!(counts.snapped, 1);
 }
 
 #[test]
@@ -602,7 +613,7 @@ impl Read for Endless {
 
 #[test]
 fn a_long_recording_does_not_grow_in_memory() {
-    let data = ethernet(&[], &ip(2368, &[7; 1206]));
+    let data = ethernet(&[], &ip(2368, &data_packet(7)));
     let file = pcap(0xA1B2_C3D4, false, 1, &[(1, 0, None, &data)]);
     let records = 100_000;
     let endless = Endless {
@@ -669,18 +680,34 @@ fn sound_files() -> Vec<Vec<u8>> {
     files
 }
 
-/// Reads whatever it is to its end.
+/// Reads whatever it is to its end, at once and as a pipe gives it.
 fn exhaust(bytes: &[u8]) -> u64 {
-    let Ok(mut recording) = Recording::new(bytes, "noise") else {
-        return 0;
-    };
+    let pieces = exhaust_from(Pieces(bytes));
+    let whole = exhaust_from(bytes);
+    assert_eq!(whole, pieces);
+    whole.map_or(0, |(counts, _)| counts.records)
+}
+
+/// Gives a few bytes at a time.
+struct Pieces<'a>(&'a [u8]);
+
+impl Read for Pieces<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let n = buffer.len().min(self.0.len()).min(37);
+        self.0.read(&mut buffer[..n])
+    }
+}
+
+fn exhaust_from(reader: impl Read) -> Option<(Counts, End)> {
+    let mut recording = Recording::new(reader, "noise").ok()?.keep_foreign();
     while recording.next_record().unwrap().is_some() {}
     let counts = recording.counts();
     let udp = counts.datagrams.values().sum::<u64>() + counts.more_datagrams;
     let parts = udp + counts.to_drive + counts.from_drive + counts.other;
-    assert_eq!(counts.records, parts + counts.fragments + counts.malformed);
-    assert!(recording.end().is_some());
-    counts.records
+    let fragments = counts.fragments + counts.joined;
+    assert_eq!(counts.records, parts + fragments + counts.malformed);
+    assert!(counts.snapped + counts.timeless + counts.damaged <= counts.malformed);
+    Some((counts.clone(), recording.end().cloned().unwrap()))
 }
 
 #[test]
@@ -739,7 +766,7 @@ fn our_own_log_reads_back_with_its_configuration() {
         writer.write(&record.as_record()).unwrap();
     }
     writer.finish().unwrap();
-    let mut recording = Recording::open(&path).unwrap();
+    let mut recording = Recording::open(&path).unwrap().keep_foreign();
     assert_eq!(recording.metadata(), Some(config.metadata.as_str()));
     assert_eq!(recording.format(), Format::PcapNg);
     for expected in &records {

@@ -12,6 +12,8 @@ pub(super) struct Window<R> {
     start: usize,
     end: usize,
     offset: u64,
+    /// The reader has said that there is no more; it is not asked again.
+    ended: bool,
 }
 
 impl<R> std::fmt::Debug for Window<R> {
@@ -56,25 +58,30 @@ impl<R: Read> Window<R> {
             start: 0,
             end: 0,
             offset: 0,
+            ended: false,
         }
     }
 
     /// Reads until `wanted` bytes are in the window or the stream ends; the window, which may hold more.
     pub(super) fn fill(&mut self, wanted: usize) -> io::Result<&[u8]> {
-        if self.end - self.start < wanted {
+        // Moved only where the rest of the buffer is too short, so that a slow reader does not cost a move a byte.
+        let short = self.end - self.start < wanted && !self.ended;
+        if short && self.buffer.len() - self.start < wanted {
             self.buffer.copy_within(self.start..self.end, 0);
             self.end -= self.start;
             self.start = 0;
-            if self.buffer.len() < wanted {
-                self.buffer.resize(wanted, 0);
+            // Twice, so that moving what is left costs no more than reading it did, however often so much is asked for.
+            let room = wanted.saturating_mul(2);
+            if self.buffer.len() < room {
+                self.buffer.resize(room, 0);
             }
         }
-        while self.end - self.start < wanted {
+        while self.end - self.start < wanted && !self.ended {
             let Some(space) = self.buffer.get_mut(self.end..) else {
                 break;
             };
             match self.reader.read(space) {
-                Ok(0) => break,
+                Ok(0) => self.ended = true,
                 Ok(n) => self.end = (self.end + n).min(self.buffer.len()),
                 Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
                 Err(e) => return Err(e),

@@ -1,7 +1,7 @@
 //! One UDP socket: kernel receive times (SO_TIMESTAMPNS), drop counter (SO_RXQ_OVFL), a large receive buffer.
 
 use std::io::{self, IoSliceMut};
-use std::net::{SocketAddr, SocketAddrV4, UdpSocket as StdSocket};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket as StdSocket};
 use std::os::fd::AsRawFd;
 use std::task::{Context, Poll};
 
@@ -49,6 +49,30 @@ impl LidarSocket {
     /// # Errors
     /// [`UdpError`].
     pub fn bind(address: SocketAddrV4, receive_buffer: usize) -> Result<Self, UdpError> {
+        Self::open(address, receive_buffer, None)
+    }
+
+    /// Binds `port` on every interface and joins a multicast group on the interface that has the address `interface` (0.0.0.0: the
+    /// one that the routes say). Other programs on this machine may listen to the same port and group. What is sent to this machine
+    /// alone, or to all, is heard as well. Otherwise as [`LidarSocket::bind`].
+    ///
+    /// # Errors
+    /// [`UdpError`]; [`UdpError::Io`] with `join` where the group is none, or no interface has that address.
+    pub fn bind_group(
+        group: Ipv4Addr,
+        interface: Ipv4Addr,
+        port: u16,
+        receive_buffer: usize,
+    ) -> Result<Self, UdpError> {
+        let address = SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, port);
+        Self::open(address, receive_buffer, Some((group, interface)))
+    }
+
+    fn open(
+        address: SocketAddrV4,
+        receive_buffer: usize,
+        group: Option<(Ipv4Addr, Ipv4Addr)>,
+    ) -> Result<Self, UdpError> {
         if tokio::runtime::Handle::try_current().is_err() {
             return Err(UdpError::NoRuntime { address });
         }
@@ -66,6 +90,16 @@ impl LidarSocket {
             .and_then(|()| setsockopt(&socket, sockopt::RxqOvfl, &1))
             .map_err(|e| failed("configure")(e.into()))?;
         socket.set_nonblocking(true).map_err(failed("configure"))?;
+        if let Some((group, interface)) = group {
+            socket
+                .set_reuse_address(true)
+                // Not what other programs have joined.
+                .and_then(|()| socket.set_multicast_all_v4(false))
+                .map_err(failed("configure"))?;
+            socket
+                .join_multicast_v4(&group, &interface)
+                .map_err(failed("join"))?;
+        }
         socket
             .bind(&SocketAddr::V4(address).into())
             .map_err(|source| match source.kind() {

@@ -20,7 +20,7 @@ fn record(ns: i64, frame: &[u8]) -> Record<'_> {
 }
 
 fn times(path: &std::path::Path) -> (Vec<i64>, End) {
-    let mut recording = Recording::open(path).unwrap();
+    let mut recording = Recording::open(path).unwrap().keep_foreign();
     let mut times = Vec::new();
     while let Some(record) = recording.next_record().unwrap() {
         times.push(record.host.as_nanos());
@@ -68,7 +68,9 @@ fn records_of_one_time_keep_the_order_of_their_arrival() {
     }
     recorder.finish().unwrap();
     let file = sink.0.lock().unwrap().clone();
-    let mut recording = Recording::new(file.as_slice(), "log").unwrap();
+    let mut recording = Recording::new(file.as_slice(), "log")
+        .unwrap()
+        .keep_foreign();
     for n in 0..100 {
         let record = recording.next_record().unwrap().unwrap();
         assert_eq!(

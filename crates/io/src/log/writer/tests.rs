@@ -59,7 +59,9 @@ fn twenty_thousand_records_come_back_as_they_were() {
     assert_eq!((counts.lidar, counts.drive), (6667, 13_333));
     assert_eq!(counts.bytes, file.len() as u64);
 
-    let mut recording = Recording::new(file.as_slice(), "log").unwrap();
+    let mut recording = Recording::new(file.as_slice(), "log")
+        .unwrap()
+        .keep_foreign();
     for (n, expected) in records.iter().enumerate() {
         let record = recording.next_record().unwrap().unwrap();
         assert_eq!(OwnedRecord::from(&record), *expected, "record {n}");
@@ -106,7 +108,7 @@ proptest! {
             writer.write(&record.as_record()).unwrap();
         }
         let (_, file) = writer.finish().unwrap();
-        let mut recording = Recording::new(file.as_slice(), "log").unwrap();
+        let mut recording = Recording::new(file.as_slice(), "log").unwrap().keep_foreign();
         prop_assert_eq!(recording.metadata().unwrap_or(""), metadata);
         for expected in &records {
             let record = recording.next_record().unwrap().unwrap();
@@ -165,7 +167,9 @@ fn impossible_records_are_refused_and_the_log_goes_on() {
     writer.write(&lidar(1, &long[..65_507])).unwrap();
     let (counts, file) = writer.finish().unwrap();
     assert_eq!((counts.lidar, counts.drive), (1, 0));
-    let mut recording = Recording::new(file.as_slice(), "log").unwrap();
+    let mut recording = Recording::new(file.as_slice(), "log")
+        .unwrap()
+        .keep_foreign();
     assert!(recording.next_record().unwrap().is_some());
     assert!(recording.next_record().unwrap().is_none());
     assert_eq!(recording.end(), Some(&End::Complete));
@@ -215,7 +219,9 @@ fn a_full_disk_is_said_once_and_the_rest_of_the_log_is_readable() {
     ));
     assert!(matches!(writer.flush(), Err(LogError::Failed)));
 
-    let mut recording = Recording::new(writer.out.bytes.as_slice(), "log").unwrap();
+    let mut recording = Recording::new(writer.out.bytes.as_slice(), "log")
+        .unwrap()
+        .keep_foreign();
     let mut n = 0;
     while recording.next_record().unwrap().is_some() {
         n += 1;

@@ -16,6 +16,7 @@ fn local(receive_buffer: usize) -> ListenConfig {
         data_port: 0,
         position_port: Some(0),
         receive_buffer,
+        ..ListenConfig::default()
     }
 }
 
@@ -82,8 +83,8 @@ fn both_ports_are_heard_with_kernel_times() {
         ListenCounts {
             data: 180,
             position: 20,
-            dropped: 0,
-            without_kernel_time: 0
+            foreign: 199, // the first position packet can be one
+            ..ListenCounts::default()
         }
     );
     assert_eq!(listener.counts().data, 180);
@@ -185,4 +186,115 @@ fn one_port_for_both_is_one_socket() {
         ..local(65_536)
     };
     assert_eq!(Listener::bind(&config).unwrap().sockets().len(), 1);
+}
+
+/// A data packet as far as it is known by.
+fn data_packet() -> Vec<u8> {
+    let mut data = vec![1; 1206];
+    for block in data.chunks_exact_mut(100) {
+        block[..2].copy_from_slice(&[0xFF, 0xEE]);
+    }
+    data
+}
+
+/// Everything in `heard` by source, port and length.
+fn heard(listener: &mut Listener) -> Vec<([u8; 4], u16, usize)> {
+    let mut heard = Vec::new();
+    listener
+        .run(&AtomicBool::new(true), |record| match record.wire {
+            Wire::Lidar {
+                source,
+                port,
+                payload,
+            } => heard.push((source, port, payload.len())),
+            Wire::Drive { .. } => panic!("{record:?}"),
+        })
+        .unwrap();
+    heard
+}
+
+#[test]
+fn sensors_on_one_port_and_on_several_are_told_apart_by_source() {
+    let config = ListenConfig {
+        more_ports: vec![0],
+        ..local(1 << 20)
+    };
+    let mut listener = Listener::bind(&config).unwrap();
+    let [data, position, more] = [0, 1, 2].map(|n: usize| listener.sockets()[n].address());
+    let sensors = ["127.0.0.2:0", "127.0.0.3:0"].map(|at| UdpSocket::bind(at).unwrap());
+    sensors[0].send_to(&data_packet(), data).unwrap();
+    sensors[1].send_to(&data_packet(), data).unwrap();
+    sensors[1].send_to(&data_packet(), data).unwrap();
+    sensors[1].send_to(&data_packet(), more).unwrap();
+    sensors[0].send_to(&[0; 512], position).unwrap();
+    sensors[0].send_to(b"hello", data).unwrap();
+    assert_eq!(heard(&mut listener).len(), 6);
+    let counts = listener.counts();
+    assert_eq!((counts.data, counts.position, counts.foreign), (5, 1, 1));
+    let said: Vec<_> = listener
+        .sensors()
+        .iter()
+        .map(|s| (s.source[3], s.data_port, s.data, s.position))
+        .collect();
+    let mut expected = [
+        (2, Some(data.port()), 1, 1),
+        (3, Some(data.port()), 2, 0),
+        (3, Some(more.port()), 1, 0),
+    ];
+    expected.sort_unstable();
+    assert_eq!(said, expected);
+}
+
+#[test]
+fn only_wanted_sources_are_given_on() {
+    let config = ListenConfig {
+        sources: vec![Ipv4Addr::new(127, 0, 0, 3)],
+        ..local(1 << 20)
+    };
+    let mut listener = Listener::bind(&config).unwrap();
+    let data = listener.sockets()[0].address();
+    for from in ["127.0.0.2:0", "127.0.0.3:0", "127.0.0.4:0"] {
+        let sensor = UdpSocket::bind(from).unwrap();
+        sensor.send_to(&data_packet(), data).unwrap();
+    }
+    assert_eq!(heard(&mut listener), [([127, 0, 0, 3], data.port(), 1206)]);
+    let counts = listener.counts();
+    assert_eq!((counts.data, counts.unwanted), (1, 2));
+}
+
+#[test]
+fn a_multicast_group_is_joined_on_the_interface_of_an_address() {
+    let group = Ipv4Addr::new(239, 255, 76, 68);
+    let config = ListenConfig {
+        group: Some(group),
+        ..local(1 << 20)
+    };
+    let mut listener = Listener::bind(&config).unwrap();
+    let port = listener.sockets()[0].address().port();
+    let sender = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::DGRAM, None).unwrap();
+    sender.set_multicast_if_v4(&Ipv4Addr::LOCALHOST).unwrap();
+    let sender = UdpSocket::from(sender);
+    sender.send_to(&data_packet(), (group, port)).unwrap();
+    let other = Ipv4Addr::new(239, 255, 76, 69);
+    sender.send_to(&[1; 7], (other, port)).unwrap();
+    sender
+        .send_to(&[0; 512], (Ipv4Addr::LOCALHOST, port))
+        .unwrap();
+    let heard = heard(&mut listener);
+    let lengths: Vec<usize> = heard.iter().map(|h| h.2).collect();
+    assert_eq!(
+        lengths,
+        [1206, 512],
+        "the group's and our own, not another group's"
+    );
+
+    let nonsense = ListenConfig {
+        group: Some(Ipv4Addr::new(192, 168, 1, 1)),
+        ..local(1 << 20)
+    };
+    let error = Listener::bind(&nonsense).unwrap_err();
+    assert!(
+        matches!(error, UdpError::Io { action: "join", .. }),
+        "{error}"
+    );
 }

@@ -1,0 +1,224 @@
+//! Where a recording comes from: a file, a pipe by its name, or the standard input (`-`).
+//!
+//! A pipe gives its bytes once. For more passes over it [`Input`] keeps a copy in a temporary file, up to a limit, and removes it in the
+//! end. A file is read where it lies.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::os::fd::AsFd;
+use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, NamedTempFile};
+
+use super::{Recording, RecordingError};
+
+/// Bytes kept of a pipe where nothing else is said: some hours of a sensor.
+pub const SPOOL_LIMIT: u64 = 16 << 30;
+/// The standard input's name as an argument.
+const STDIN: &str = "-";
+/// And as a file.
+const DEV_STDIN: &str = "/dev/stdin";
+/// Copied at a time, in bytes.
+const CHUNK_LEN: usize = 256 << 10;
+
+/// A recording that can be read any number of times.
+#[derive(Debug)]
+pub struct Input {
+    /// What errors call it.
+    name: PathBuf,
+    /// What is opened for a pass, unless there is a copy.
+    path: PathBuf,
+    copy: Option<NamedTempFile>,
+}
+
+impl Input {
+    /// Takes a file as it is. Anything that can be read only once is read now, to its end, into a temporary file of at most `limit`
+    /// bytes: in `$TMPDIR`, or else in `/var/tmp`, which unlike `/tmp` is no memory.
+    ///
+    /// # Errors
+    /// [`RecordingError::Open`]; [`RecordingError::Read`] where the pipe cannot be read or copied, or holds more than `limit` bytes.
+    pub fn open(path: impl AsRef<Path>, limit: u64) -> Result<Self, RecordingError> {
+        let name = path.as_ref();
+        let file = open(name)?;
+        let path = match name.to_str() {
+            Some(STDIN) => Path::new(DEV_STDIN),
+            _ => name,
+        };
+        let lies_still = |metadata: std::fs::Metadata| metadata.is_file() || metadata.is_dir();
+        let again = file.metadata().is_ok_and(lies_still);
+        let copy = if again {
+            None
+        } else {
+            Some(copy(name, file, &folder(), limit)?)
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            path: path.to_owned(),
+            copy,
+        })
+    }
+
+    /// A pass over it from the start, independent of others.
+    ///
+    /// # Errors
+    /// As [`Recording::open`].
+    pub fn recording(&self) -> Result<Recording, RecordingError> {
+        let file = match &self.copy {
+            Some(copy) => copy.reopen(),
+            None => File::open(&self.path),
+        };
+        let file = file.map_err(|source| RecordingError::Open {
+            path: self.name.clone(),
+            source,
+        })?;
+        Recording::new(file, &self.name)
+    }
+
+    /// Whether a copy is kept.
+    #[must_use]
+    pub fn is_copied(&self) -> bool {
+        self.copy.is_some()
+    }
+}
+
+/// A file, or the standard input.
+pub(super) fn open(path: &Path) -> Result<File, RecordingError> {
+    let file = if path.to_str() == Some(STDIN) {
+        io::stdin().as_fd().try_clone_to_owned().map(File::from)
+    } else {
+        File::open(path)
+    };
+    file.map_err(|source| RecordingError::Open {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn folder() -> PathBuf {
+    match std::env::var_os("TMPDIR") {
+        Some(folder) => folder.into(),
+        None if Path::new("/var/tmp").is_dir() => "/var/tmp".into(),
+        None => std::env::temp_dir(),
+    }
+}
+
+/// All that `from` gives, in a temporary file.
+fn copy(
+    name: &Path,
+    mut from: impl Read,
+    folder: &Path,
+    limit: u64,
+) -> Result<NamedTempFile, RecordingError> {
+    let mut offset = 0;
+    let failed = |offset, source| RecordingError::Read {
+        path: name.to_owned(),
+        offset,
+        source,
+    };
+    let mut file = Builder::new()
+        .prefix("velomotion-")
+        .tempfile_in(folder)
+        .map_err(|e| failed(0, said("no temporary file for a second pass", folder, &e)))?;
+    let mut chunk = vec![0; CHUNK_LEN];
+    loop {
+        let n = match from.read(&mut chunk) {
+            Ok(0) => return Ok(file),
+            Ok(n) => n,
+            Err(e) if e.kind() == io::ErrorKind::Interrupted => continue,
+            Err(e) => return Err(failed(offset, e)),
+        };
+        if offset + n as u64 > limit {
+            let what = format!(
+                "a pipe is kept for a second pass up to {limit} bytes, and this one holds more: write it to a file first"
+            );
+            return Err(failed(
+                limit,
+                io::Error::new(io::ErrorKind::FileTooLarge, what),
+            ));
+        }
+        file.write_all(chunk.get(..n).unwrap_or_default())
+            .map_err(|e| failed(offset, said("cannot keep a copy", folder, &e)))?;
+        offset += n as u64;
+    }
+}
+
+fn said(what: &str, folder: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(
+        error.kind(),
+        format!("{what} in {}: {error}", folder.display()),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pipe_is_copied_up_to_the_limit() {
+        let folder = tempfile::tempdir().unwrap();
+        let bytes: Vec<u8> = (0..600_000_u32).map(|n| n as u8).collect();
+        let name = Path::new("pipe");
+        let kept = copy(name, bytes.as_slice(), folder.path(), 600_000).unwrap();
+        for _ in 0..2 {
+            let mut back = Vec::new();
+            kept.reopen().unwrap().read_to_end(&mut back).unwrap();
+            assert_eq!(back, bytes);
+        }
+        drop(kept);
+        let error = copy(name, bytes.as_slice(), folder.path(), 599_999).unwrap_err();
+        assert!(error.to_string().contains("599999 bytes"), "{error}");
+        let left = std::fs::read_dir(folder.path()).unwrap().count();
+        assert_eq!(left, 0, "nothing is left behind");
+        let nowhere = copy(name, bytes.as_slice(), Path::new("/nonexistent"), 1).unwrap_err();
+        assert!(nowhere.to_string().contains("/nonexistent"), "{nowhere}");
+    }
+
+    #[test]
+    fn a_file_is_read_where_it_lies_and_a_fifo_is_copied() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file.pcap");
+        let header = [
+            &[0xD4, 0xC3, 0xB2, 0xA1, 2, 0, 4, 0][..],
+            &[0; 8],
+            &[0, 0, 1, 0, 1, 0, 0, 0],
+        ]
+        .concat();
+        std::fs::write(&file, &header).unwrap();
+        let input = Input::open(&file, 1).unwrap();
+        assert!(!input.is_copied());
+        assert!(input.recording().unwrap().next_record().unwrap().is_none());
+
+        let fifo = folder.path().join("fifo");
+        nix::unistd::mkfifo(&fifo, nix::sys::stat::Mode::S_IRWXU).unwrap();
+        let writer = {
+            let fifo = fifo.clone();
+            std::thread::spawn(move || std::fs::write(fifo, header).unwrap())
+        };
+        let input = Input::open(&fifo, SPOOL_LIMIT).unwrap();
+        writer.join().unwrap();
+        assert!(input.is_copied());
+        for _ in 0..2 {
+            let mut recording = input.recording().unwrap();
+            assert!(recording.next_record().unwrap().is_none());
+        }
+        let missing = Input::open(folder.path().join("missing"), 1).unwrap_err();
+        assert!(matches!(missing, RecordingError::Open { .. }), "{missing}");
+    }
+
+    #[test]
+    fn a_fifo_is_read_in_one_pass_without_a_copy() {
+        let folder = tempfile::tempdir().unwrap();
+        let fifo = folder.path().join("fifo");
+        nix::unistd::mkfifo(&fifo, nix::sys::stat::Mode::S_IRWXU).unwrap();
+        let writer = {
+            let fifo = fifo.clone();
+            std::thread::spawn(move || std::fs::write(fifo, [0x0A, 0x0D, 0x0D]).unwrap())
+        };
+        let error = Recording::open(&fifo).unwrap_err();
+        writer.join().unwrap();
+        assert!(
+            matches!(error, RecordingError::Short { got: 3, .. }),
+            "{error}"
+        );
+    }
+}
