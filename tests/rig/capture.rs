@@ -16,6 +16,7 @@ use io::port::{Port, Recorder};
 use protocol::canopen::slcan::Bitrate;
 use protocol::epos2::DeviceError;
 use protocol::epos2::message::WriteObject;
+use protocol::epos2::rs232;
 use protocol::record::{DriveLink, Record, Wire};
 use scanner::{ScanConfig, TiltSource};
 use sim::{Attached, Rig};
@@ -101,6 +102,23 @@ pub struct Captured {
     truth: sim::Truth,
 }
 
+/// What a record is known by.
+enum Mark {
+    /// All of it.
+    Whole(Vec<u8>),
+    /// Part of it.
+    Within(Vec<u8>),
+}
+
+impl Mark {
+    fn is_in(&self, frame: &[u8]) -> bool {
+        match self {
+            Self::Whole(bytes) => bytes == frame,
+            Self::Within(bytes) => frame.windows(bytes.len()).any(|part| part == bytes),
+        }
+    }
+}
+
 /// A record that owns its bytes.
 #[derive(Clone, Debug)]
 struct Owned {
@@ -123,7 +141,8 @@ impl Captured {
     pub fn run(setting: Setting) -> (Self, Result<(), SessionError>) {
         let axis = devices::axis(&Axis::default()).unwrap();
         let steps = motion::steps(&setting.wish, &axis, Degrees(0.0)).unwrap();
-        let config = scan_config(&Config::default(), "sim", true, &setting.wish, &steps);
+        let mut config = scan_config(&Config::default(), "sim", true, &setting.wish, &steps);
+        config.rs232_baud = (setting.links.attached == Attached::Rs232).then_some(115_200);
         let mut rig = simulated::rig(&axis, &config, setting.start);
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;
         rig.attached = setting.links.attached;
@@ -243,12 +262,12 @@ impl Captured {
             drive::cia402::control::QUICK_STOP,
             drive::cia402::control::DISABLE_VOLTAGE,
         ];
-        let wanted = stop.map(|word| self.controlword_frame(word));
+        let wanted: Vec<_> = stop.iter().flat_map(|word| self.control(*word)).collect();
         let mut recording = io::recording::Recording::open(self.log()).unwrap();
         while let Some(record) = recording.next_record().unwrap() {
             if let Wire::Drive { frame, .. } = record.wire
                 && record.host >= begin
-                && wanted.iter().any(|wanted| frame.ends_with(wanted))
+                && wanted.iter().any(|wanted| wanted.is_in(frame))
             {
                 return Some(record.host);
             }
@@ -256,21 +275,29 @@ impl Captured {
         None
     }
 
-    /// How a frame ends that writes the controlword.
-    fn controlword_frame(&self, word: u16) -> Vec<u8> {
+    /// By what a record is known that writes the controlword.
+    fn control(&self, word: u16) -> Vec<Mark> {
         let write = WriteObject {
             node: 1,
             address: drive::objects::CONTROLWORD.address,
             value: u32::from(word),
         };
         match self.link {
-            DriveLink::Usb => protocol::epos2::usb::to_bytes(&write.to_frame()).to_vec(),
-            // The rest follows when the unit is ready for it; nothing else is written while the axis moves.
-            DriveLink::Rs232 => vec![WriteObject::OPCODE],
+            DriveLink::Usb => {
+                let bytes = protocol::epos2::usb::to_bytes(&write.to_frame());
+                vec![Mark::Whole(bytes.to_vec())]
+            }
+            // Where the unit takes part in the dialogue the body follows; nothing else is written while the axis moves. Where it does not,
+            // the body goes out unasked.
+            DriveLink::Rs232 => {
+                let mut body = Vec::new();
+                rs232::encode_body(&write.to_frame(), &mut body).unwrap();
+                vec![Mark::Whole(vec![WriteObject::OPCODE]), Mark::Within(body)]
+            }
             // SDO download of two bytes (CiA 301, 7.2.4.3.3).
             DriveLink::Can => {
                 let [low, high] = word.to_le_bytes();
-                vec![0x2B, 0x40, 0x60, 0x00, low, high, 0, 0]
+                vec![Mark::Within(vec![0x2B, 0x40, 0x60, 0x00, low, high, 0, 0])]
             }
         }
     }

@@ -279,6 +279,7 @@ impl Bus {
             request,
             answer: now,
             position: Quadcounts(position),
+            device_us: Some(device_us),
         };
         self.mute = false;
         self.fresh = Some(sample);

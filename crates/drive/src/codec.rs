@@ -156,6 +156,15 @@ impl Codec {
         }
     }
 
+    /// The bytes of a request that goes out whatever state the link is in, where that takes more than sending it: on RS232, with its
+    /// dialogue. Its answer does not count.
+    pub fn shout(&mut self, address: Address, access: Access, now: Stamp<Host>) -> Option<Vec<u8>> {
+        let Transport::Rs232(dialogue) = &mut self.transport else {
+            return None;
+        };
+        Some(dialogue.shout(&message(self.node, address, access), now))
+    }
+
     /// How many bytes from the device [`Codec::push`] takes at a time.
     pub fn piece(&self) -> usize {
         match self.transport {

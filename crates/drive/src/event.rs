@@ -17,10 +17,13 @@ use crate::plan::Plan;
 pub struct ShaftSample {
     /// When the request was handed out: on RS232 its body, on a CAN bus's stream the SYNC.
     pub request: Stamp<Host>,
-    /// When the answer had been read.
+    /// When the answer had been read; seen by a listener on RS232, when it was announced.
     pub answer: Stamp<Host>,
     /// Position actual value (6064).
     pub position: Quadcounts,
+    /// The drive's own time (1013, microseconds, wraps after 71 minutes) at which it latched the position at the SYNC; `None` where the
+    /// position was asked for.
+    pub device_us: Option<u32>,
 }
 
 /// Something that happened.

@@ -131,6 +131,15 @@ impl Link {
         let job = self.job.as_mut()?;
         job.first.get_or_insert(now);
         let job = *job;
+        let out_of_step = matches!(self.line, Line::OutOfStep { .. } | Line::Marker { .. });
+        if job.request.urgent && !job.hastened && out_of_step {
+            let Request {
+                address, access, ..
+            } = job.request;
+            if let Some(bytes) = self.codec.shout(address, access, now) {
+                return Some(self.shouted(bytes));
+            }
+        }
         if !self.codec.is_ready() {
             return None;
         }
@@ -206,6 +215,18 @@ impl Link {
             job.id = Some(self.last_id);
         }
         frame
+    }
+
+    /// A request that may have been heard goes out again once the link is in step.
+    fn shouted(&mut self, bytes: Vec<u8>) -> Vec<u8> {
+        self.stats.requests += 1;
+        if let Some(job) = self.job.as_mut() {
+            job.hastened = true;
+        }
+        if let Line::Marker { .. } = self.line {
+            self.line = Line::OutOfStep { markers: 0 };
+        }
+        bytes
     }
 
     fn send_marker(&mut self, now: Stamp<Host>, timeout: Span) -> Vec<u8> {

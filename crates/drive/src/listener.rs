@@ -96,6 +96,8 @@ pub struct Listener {
     to_device: UsbDecoder,
     from_device: UsbDecoder,
     rs232: Rs232Watch,
+    /// When the answer on RS232 was announced.
+    announced: Stamp<Host>,
     bus: BusWatch,
     pairing: Pairing,
     last_id: u64,
@@ -110,6 +112,7 @@ impl Listener {
             to_device: UsbDecoder::new(),
             from_device: UsbDecoder::new(),
             rs232: Rs232Watch::new(),
+            announced: Stamp::from_nanos(0),
             bus: BusWatch::new(node),
             pairing: Pairing::default(),
             last_id: 0,
@@ -167,7 +170,15 @@ impl Listener {
                 Said::Nothing => Seen::Nothing,
                 Said::Noise => Seen::Noise,
                 Said::Request(frame) => self.request(&frame, host),
-                Said::Answer(frame) => self.answer(&frame),
+                Said::Announced => {
+                    self.announced = host;
+                    Seen::Nothing
+                }
+                Said::Answer(frame) => {
+                    // The words that follow take longer than the drive took over the question.
+                    tell(self.answer(&frame), direction, self.announced, emit);
+                    Seen::Nothing
+                }
             };
             tell(seen, direction, host, emit);
         }
@@ -299,6 +310,7 @@ fn value(address: Address, value: u32, request: Stamp<Host>, answer: Stamp<Host>
             request,
             answer,
             position: Quadcounts(objects::POSITION_ACTUAL.decode(value)),
+            device_us: None,
         })
     } else if address == objects::STATUSWORD.address {
         Observation::Statusword {

@@ -215,6 +215,7 @@ impl Ops {
             request: answered.request,
             answer: answered.answer,
             position: Quadcounts(position),
+            device_us: None,
         };
         self.pace(answered.request);
         lock(&self.core).events.push_back(Event::Sample(sample));

@@ -2,7 +2,7 @@
 
 use cloud::mount::Mount;
 use serde::{Deserialize, Serialize};
-use units::{Degrees, Gearing, GearingError, Metres};
+use units::{Degrees, Gearing, GearingError, Metres, Span};
 
 /// The configuration of a scan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,8 +18,25 @@ pub struct ScanConfig {
     pub mount: MountConfig,
     /// The tilt axis.
     pub axis: AxisConfig,
+    /// Speed of the drive's RS232 line, baud; absent on every other link.
+    pub rs232_baud: Option<u32>,
     /// What was to be swept; absent where nothing was.
     pub sweep: Option<SweepPlan>,
+}
+
+/// Bytes of the body that asks for an object on RS232 (Communication Guide: length, two words, checksum), and bits of a byte.
+const READ_BODY_BITS: i64 = 7 * 10;
+
+impl ScanConfig {
+    /// How long the question for a position is under way on an RS232 line before the drive has all of it; nothing elsewhere.
+    pub(crate) fn question(&self) -> Span {
+        let baud = i64::from(self.rs232_baud.unwrap_or(0));
+        Span::from_nanos(
+            (READ_BODY_BITS * 1_000_000_000)
+                .checked_div(baud)
+                .unwrap_or(0),
+        )
+    }
 }
 
 /// How the lidar sits on the tilt axis.
@@ -68,6 +85,7 @@ impl Default for ScanConfig {
             simulated: false,
             mount: MountConfig::default(),
             axis: AxisConfig::default(),
+            rs232_baud: None,
             sweep: None,
         }
     }

@@ -6,8 +6,10 @@
 pub mod clock;
 pub mod config;
 pub mod error;
+mod plausible;
 pub mod polls;
 pub mod scanner;
+mod stream;
 pub mod sweeps;
 pub mod tilt;
 pub mod trajectory;

@@ -1,4 +1,5 @@
-//! Polled shaft positions to angle samples: the middle of request and answer, slow polls left out where they are not needed.
+//! Shaft samples to angle samples. What came at SYNC with the drive's own time goes by that ([`crate::stream`]); what was asked
+//! for stands in the middle of request and answer, slow polls left out where they are not needed.
 //!
 //! A poll that took unusually long was held up on one side or the other, and which side cannot be known: its
 //! middle may be off by half the excess. In steady motion its neighbours tell the angle better than it does. On a ramp they may not: a slow
@@ -7,16 +8,29 @@
 use drive::ShaftSample;
 use units::{Gearing, Span};
 
+use crate::stream;
 use crate::trajectory::AngleSample;
 
 /// Polls with a round trip above this quantile are slow.
 const QUICK_QUANTILE: f64 = 0.9;
 
-/// Angle samples of `polls`, in their order. The gearing turns quadcounts into degrees.
+/// Angle samples of `samples`, in order of time. The gearing turns quadcounts into degrees.
 #[must_use]
-pub fn angle_samples(polls: &[ShaftSample], gearing: Gearing) -> Vec<AngleSample> {
-    let (least, limit) = round_trips(polls);
-    let samples: Vec<AngleSample> = polls.iter().map(|poll| sample(poll, gearing)).collect();
+pub fn angle_samples(samples: &[ShaftSample], gearing: Gearing) -> Vec<AngleSample> {
+    let (latched, polls): (Vec<_>, Vec<_>) = samples
+        .iter()
+        .partition(|sample| sample.device_us.is_some());
+    let mut angles: Vec<AngleSample> = polls.iter().map(|poll| sample(poll, gearing)).collect();
+    if !latched.is_empty() {
+        angles.extend(stream::angle_samples(&latched, gearing));
+        angles.sort_by_key(|sample| sample.host);
+    }
+    without_slow(&angles)
+}
+
+/// Leaves the slow ones out where they are not needed.
+fn without_slow(samples: &[AngleSample]) -> Vec<AngleSample> {
+    let (least, limit) = round_trips(samples);
     let quick = |s: &AngleSample| s.bound + s.bound <= limit;
     let mut kept = Vec::with_capacity(samples.len());
     for (i, this) in samples.iter().enumerate() {
@@ -90,11 +104,8 @@ fn speed(a: &AngleSample, b: &AngleSample) -> f64 {
 }
 
 /// The least round trip, and the one above which polls are slow.
-fn round_trips(polls: &[ShaftSample]) -> (Span, Span) {
-    let mut trips: Vec<Span> = polls
-        .iter()
-        .map(|poll| poll.answer.saturating_since(poll.request))
-        .collect();
+fn round_trips(samples: &[AngleSample]) -> (Span, Span) {
+    let mut trips: Vec<Span> = samples.iter().map(|s| s.bound + s.bound).collect();
     trips.sort_unstable();
     let rank = (trips.len() as f64 * QUICK_QUANTILE) as usize;
     let least = trips.first().copied().unwrap_or(Span::ZERO);
@@ -111,6 +122,7 @@ mod tests {
             request: Stamp::from_nanos(request_us * 1_000),
             answer: Stamp::from_nanos((request_us + round_trip_us) * 1_000),
             position: Quadcounts(-2),
+            device_us: None,
         }
     }
 

@@ -9,11 +9,12 @@ use cloud::{Fields, Point, Points, Sink, SinkError};
 use drive::record::{DriveLink, Record, Wire};
 use drive::{Listener, Observation, ShaftSample};
 use lidar::{Decoder, Firing, Options, Stats, Timekeeper};
-use units::{Degrees, Gearing, Host, Metres, Stamp};
+use units::{Degrees, Gearing, Host, Metres, Span, Stamp};
 
 use crate::clock::{Arrival, LidarClock};
 use crate::config::ScanConfig;
 use crate::error::ScanError;
+use crate::plausible;
 use crate::polls::angle_samples;
 use crate::sweeps::{MoveWatch, Sweep};
 use crate::tilt::TiltSource;
@@ -27,6 +28,7 @@ pub struct Survey {
     arrivals: Vec<Arrival>,
     polls: Vec<ShaftSample>,
     moves: MoveWatch,
+    question: Span,
     link: Option<DriveLink>,
 }
 
@@ -41,6 +43,8 @@ pub struct Alignment {
     pub sweeps: Vec<Sweep>,
     /// How the lidar sits on the axis.
     pub mount: Mount,
+    /// Shaft samples that no platform can have given and that were left out.
+    pub implausible: u64,
     /// Only firings within one of these spans become points.
     spans: Vec<(Stamp<Host>, Stamp<Host>)>,
 }
@@ -59,6 +63,7 @@ impl Survey {
             arrivals: Vec::new(),
             polls: Vec::new(),
             moves: MoveWatch::new(gearing),
+            question: config.question(),
             link: None,
         })
     }
@@ -80,14 +85,17 @@ impl Survey {
                 frame,
             } => {
                 self.link = Some(link);
-                let (polls, moves) = (&mut self.polls, &mut self.moves);
+                let (polls, moves, question) = (&mut self.polls, &mut self.moves, self.question);
                 self.listener.observe(
                     link,
                     direction,
                     frame,
                     record.host,
                     &mut |seen| match seen {
-                        Observation::Sample(poll) => polls.push(poll),
+                        Observation::Sample(mut poll) => {
+                            poll.request = poll.answer.min(poll.request + question);
+                            polls.push(poll);
+                        }
                         Observation::Wrote {
                             address,
                             value,
@@ -113,8 +121,13 @@ impl Survey {
     /// [`ScanError`] where the records hold no lidar packet, or tilt was asked of them and they hold none, or no sweep.
     pub fn solve(self, config: &ScanConfig, tilt: &TiltSource) -> Result<Alignment, ScanError> {
         let clock = LidarClock::fit(&self.arrivals).ok_or(ScanError::NoLidarPackets)?;
+        let mut implausible = 0;
         let samples = match tilt {
-            TiltSource::Log => angle_samples(&self.polls, self.gearing),
+            TiltSource::Log => {
+                let mut samples = angle_samples(&self.polls, self.gearing);
+                implausible = plausible::leave_out(&mut samples);
+                samples
+            }
             TiltSource::None => Vec::new(),
             TiltSource::Table(table) => table.samples(&self.arrivals)?,
         };
@@ -146,6 +159,7 @@ impl Survey {
                 TiltSource::None => Mount::new(Metres(0.0)),
                 TiltSource::Log | TiltSource::Table(_) => config.mount.mount(),
             },
+            implausible,
             spans,
         })
     }

@@ -25,6 +25,8 @@ pub struct Opened {
     pub port: Box<dyn Port>,
     /// How the drive is attached.
     pub link: DriveLink,
+    /// Speed of an RS232 line.
+    pub rs232_baud: Option<u32>,
     /// What may be wrong with it.
     pub warning: Option<String>,
 }
@@ -67,6 +69,7 @@ pub fn open(device: &Device, place: &Path) -> Result<Opened, Failure> {
     let opened = |port: Box<dyn Port>, link| Opened {
         port,
         link,
+        rs232_baud: None,
         warning: None,
     };
     Ok(match device.kind {
@@ -78,7 +81,10 @@ pub fn open(device: &Device, place: &Path) -> Result<Opened, Failure> {
                 ..opened(Box::new(port), DriveLink::Usb)
             }
         }
-        DeviceKind::Rs232 => opened(Box::new(serial(RS232_BAUD)?), DriveLink::Rs232),
+        DeviceKind::Rs232 => Opened {
+            rs232_baud: Some(device.baud.unwrap_or(RS232_BAUD)),
+            ..opened(Box::new(serial(RS232_BAUD)?), DriveLink::Rs232)
+        },
         DeviceKind::Slcan => {
             let bus = Slcan::open(serial(SLCAN_BAUD)?, Bitrate::Kbit1000)
                 .map_err(|error| can_failure(&error))?;

@@ -7,6 +7,9 @@
 //! an answer to what comes next. The guide itself only promises that the unit forgets an unfinished frame after 500 ms of
 //! silence, and what it makes of an unknown opcode it does not say; so where that has failed twice the line is
 //! left silent for as long as the guide says.
+//!
+//! What must not wait, a stop on a line that does not answer, is shouted: flush, opcode, body and both handshakes in one go. A unit
+//! that hears but cannot be heard carries it out.
 
 use std::collections::VecDeque;
 
@@ -77,6 +80,21 @@ impl Dialogue {
         self.turn = Turn::Ready;
         self.deadline = deadline;
         vec![frame.opcode]
+    }
+
+    /// The whole of a request at once, to a unit that may be anywhere in a dialogue and may not be heard; what it says to that is
+    /// passed over.
+    pub fn shout(&mut self, frame: &Frame, now: Stamp<Host>) -> Vec<u8> {
+        self.out.clear();
+        let span = QUIET;
+        let until = now.saturating_add(FLUSH_TIME).saturating_add(span);
+        self.turn = Turn::Quiet { span, until };
+        let mut bytes = vec![FAILED; FLUSH];
+        bytes.push(frame.opcode);
+        // Every request has words.
+        let _ = rs232::encode_body(frame, &mut bytes);
+        bytes.extend([OKAY; 2]);
+        bytes
     }
 
     pub fn outgoing(&mut self, now: Stamp<Host>) -> Option<Outgoing> {

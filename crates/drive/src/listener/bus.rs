@@ -128,7 +128,11 @@ impl BusWatch {
             .filter(|(entry, _)| is_time(entry))
             .chain(entries().filter(|(entry, _)| !is_time(entry)));
         for (entry, content) in ordered.filter(|(entry, _)| entry.bits <= 32) {
-            emit(value(entry.address, *content as u32, beat, host));
+            let mut seen = value(entry.address, *content as u32, beat, host);
+            if let Observation::Sample(sample) = &mut seen {
+                sample.device_us = Some(device_us);
+            }
+            emit(seen);
         }
         Said::Nothing
     }

@@ -52,6 +52,8 @@ pub(super) enum Said {
     Nothing,
     Noise,
     Request(Result<Frame, FrameError>),
+    /// An answer is ready: what was asked for has been done.
+    Announced,
     Answer(Result<Frame, FrameError>),
 }
 
@@ -92,7 +94,10 @@ impl Rs232Watch {
         match (&mut self.turn, byte) {
             (Turn::Ready(opcode), OKAY) => self.turn = Turn::Body(BodyDecoder::new(*opcode)),
             (Turn::Accepted, OKAY) => self.turn = Turn::Lead,
-            (Turn::Lead, Frame::ANSWER) => self.turn = Turn::Announced,
+            (Turn::Lead, Frame::ANSWER) => {
+                self.turn = Turn::Announced;
+                return Said::Announced;
+            }
             (Turn::Ready(_) | Turn::Accepted, FAILED) => self.turn = Turn::Opcode,
             (Turn::Answer(decoder), _) => {
                 if let Some(frame) = decoder.push(byte) {

@@ -10,6 +10,7 @@ use std::time::Duration;
 use drive::{Client, Event, ShaftSample};
 use io::port::Recorder;
 use io::udp::ListenConfig;
+use scanner::ScanConfig;
 use scanner::TiltSource;
 use sim::Truth;
 
@@ -117,7 +118,11 @@ fn record(
     if let Some(warning) = &opened.warning {
         progress.say(&format!("warning: {warning}"));
     }
-    let recording = Recording::start(ear, &setup.log, &setup.scan, opened.link)?;
+    let scan = ScanConfig {
+        rs232_baud: opened.rs232_baud,
+        ..setup.scan.clone()
+    };
+    let recording = Recording::start(ear, &setup.log, &scan, opened.link)?;
     if let Err(failure) = await_lidar(&recording, setup, interrupt) {
         // Nothing has moved and nothing is recorded.
         let _ = recording.finish();

@@ -189,6 +189,12 @@ fn doubts(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
             bound.to_radians() * 10e3
         ));
     }
+    if alignment.implausible > 0 {
+        doubts.push(format!(
+            "{} shaft positions were far beside their neighbours and were left out: the drive's link corrupts data",
+            alignment.implausible
+        ));
+    }
     let Some(plan) = config.sweep.filter(|_| !alignment.sweeps.is_empty()) else {
         return doubts;
     };

@@ -1,0 +1,102 @@
+//! Samples that no platform can have given: a position far beside its neighbours for one sample.
+//!
+//! A link without a checksum (SLCAN on a serial line) may hand on a flipped bit as a position. What a motor does between two
+//! samples is bounded by what it does around them and by how hard it can be accelerated; beyond that a lone sample is
+//! left out. Runs of wrong samples are not found here.
+
+use crate::trajectory::AngleSample;
+
+/// Beside its neighbours by less is never implausible.
+const ALWAYS_DEG: f64 = 0.1;
+/// More than any tilting platform's acceleration.
+const HARDEST_DEG_S2: f64 = 20_000.0;
+
+/// Leaves out samples that cannot be, of samples in order of time; how many.
+pub(crate) fn leave_out(samples: &mut Vec<AngleSample>) -> u64 {
+    let before = samples.len();
+    let mut kept: Vec<AngleSample> = Vec::with_capacity(before);
+    for (i, this) in samples.iter().enumerate() {
+        let plausible = match (kept.last(), samples.get(i + 1)) {
+            (Some(last), Some(next)) => is_plausible(last, this, next),
+            // The first and the last have nothing on one side to be held against.
+            _ => true,
+        };
+        if plausible {
+            kept.push(*this);
+        }
+    }
+    *samples = kept;
+    (before - samples.len()) as u64
+}
+
+fn is_plausible(last: &AngleSample, this: &AngleSample, next: &AngleSample) -> bool {
+    let (since, until) = (
+        this.host.saturating_since(last.host).as_secs_f64(),
+        next.host.saturating_since(this.host).as_secs_f64(),
+    );
+    let whole = since + until;
+    let across = next.angle.0 - last.angle.0;
+    let share = if whole > 0.0 { since / whole } else { 0.5 };
+    let beside = (this.angle.0 - last.angle.0 - across * share).abs();
+    // Motion one way is never farther beside the line than its ends are apart. Half of a turn back and forth under full acceleration; samples stand where they are within their bounds.
+    let slack = (last.bound + this.bound + next.bound).as_secs_f64();
+    let hard = 0.5 * HARDEST_DEG_S2 * (whole + slack).powi(2);
+    beside <= ALWAYS_DEG + across.abs() + hard
+}
+
+#[cfg(test)]
+mod tests {
+    use units::{Degrees, Span, Stamp};
+
+    use super::*;
+
+    fn samples(angles: impl IntoIterator<Item = f64>, step_us: i64) -> Vec<AngleSample> {
+        let sample = |(i, angle)| AngleSample {
+            host: Stamp::from_nanos(i as i64 * step_us * 1_000),
+            bound: Span::from_micros(50),
+            angle: Degrees(angle),
+        };
+        angles.into_iter().enumerate().map(sample).collect()
+    }
+
+    #[test]
+    fn a_flipped_bit_is_left_out_wherever_it_moves_the_platform() {
+        for bit in 8..31 {
+            let mut stream = samples((0..100).map(|i| -0.05625 * f64::from(i)), 1_000);
+            stream[40].angle.0 += 0.0015 * f64::from(1 << bit);
+            let clean = stream.clone();
+            assert_eq!(leave_out(&mut stream), 1, "bit {bit}");
+            assert!(!stream.contains(&clean[40]));
+        }
+    }
+
+    #[test]
+    fn the_hardest_motion_is_left_alone() {
+        // Triangles at 15,000 deg/s2, polled every 5 ms, 60 ms and at random.
+        for step_us in [1_000, 5_000, 60_000] {
+            let angle = |t: f64| {
+                let t = t.rem_euclid(0.4);
+                let half = |t: f64| 0.5 * 15_000.0 * t * t;
+                if t < 0.1 {
+                    half(t)
+                } else if t < 0.3 {
+                    2.0 * half(0.1) - half(0.2 - t)
+                } else {
+                    half(0.4 - t)
+                }
+            };
+            let mut moving = samples(
+                (0..500).map(|i| angle(f64::from(i) * step_us as f64 * 1e-6)),
+                step_us,
+            );
+            assert_eq!(leave_out(&mut moving), 0, "{step_us}");
+        }
+    }
+
+    #[test]
+    fn a_jump_that_stays_is_no_flipped_bit() {
+        let mut jumped = samples((0..50).map(|i| if i < 20 { 0.0 } else { 30.0 }), 1_000);
+        assert_eq!(leave_out(&mut jumped), 0);
+        assert_eq!(leave_out(&mut Vec::new()), 0);
+    }
+}

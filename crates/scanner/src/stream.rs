@@ -1,0 +1,236 @@
+//! Positions that came at SYNC, with the drive's own time, to angle samples.
+//!
+//! The drive latches position (6064) and time (1013) together, after the SYNC was sent and before the frame that carries them
+//! came in. So every pair bounds the drive's clock from both sides: the upper envelope of the SYNC times and the lower one of
+//! the arrivals, each free of what single frames suffered on their way, hold the clock between them. It is taken in the
+//! middle, as a bus is no slower one way than the other, and half of what is between them is the bound.
+//! The drive's time wraps after 71 minutes and begins anew when the drive does; a run between two starts has a clock of its own.
+
+use drive::ShaftSample;
+use units::{Gearing, Host, Lidar, Span, Stamp};
+
+use crate::clock::{Arrival, LidarClock};
+use crate::trajectory::AngleSample;
+
+/// Fewer pairs than this tell no clock; they stand in the middle of SYNC and arrival, as polls do.
+const FEWEST: usize = 8;
+/// The drive's clock and the host's may differ by this over a pause before the drive counts as started anew, and by as much
+/// again of the pause.
+const RESTART: Span = Span::from_secs(1);
+const RESTART_SHARE: i64 = 1_000;
+/// What quantisation of the drive's time, 1 us, adds to a bound.
+const QUANTUM: Span = Span::from_micros(1);
+
+/// A sample with the drive's time, nanoseconds since its clock's run began.
+#[derive(Clone, Copy, Debug)]
+struct Latched {
+    sample: ShaftSample,
+    device_ns: i64,
+}
+
+/// Angle samples of what came at SYNC, in its order. Samples without the drive's time are passed over.
+pub(crate) fn angle_samples(stream: &[ShaftSample], gearing: Gearing) -> Vec<AngleSample> {
+    let mut samples = Vec::with_capacity(stream.len());
+    for run in runs(stream) {
+        let clock = (run.len() >= FEWEST)
+            .then(|| DriveClock::fit(&run))
+            .flatten();
+        samples.extend(run.iter().map(|latched| {
+            let (early, late) = match &clock {
+                Some(clock) => clock.bounds(latched.device_ns),
+                None => (latched.sample.request, latched.sample.answer),
+            };
+            let half = late.saturating_since(early).half();
+            AngleSample {
+                host: early.saturating_add(half),
+                bound: half.max(-half) + QUANTUM,
+                angle: gearing.angle(latched.sample.position),
+            }
+        }));
+    }
+    samples
+}
+
+/// The samples cut where the drive's clock began anew, its wraps undone.
+fn runs(stream: &[ShaftSample]) -> Vec<Vec<Latched>> {
+    let mut runs: Vec<Vec<Latched>> = Vec::new();
+    let mut last: Option<(u32, Latched)> = None;
+    for sample in stream {
+        let Some(device_us) = sample.device_us else {
+            continue;
+        };
+        let went_on = last.and_then(|(before_us, before)| {
+            let host = sample.answer.saturating_since(before.sample.answer);
+            Some(before.device_ns + went(before_us, device_us, host)?.as_nanos())
+        });
+        let latched = Latched {
+            sample: *sample,
+            device_ns: went_on.unwrap_or(0),
+        };
+        match runs.last_mut() {
+            Some(run) if went_on.is_some() => run.push(latched),
+            _ => runs.push(vec![latched]),
+        }
+        last = Some((device_us, latched));
+    }
+    runs
+}
+
+/// How far the drive's clock went while the host's went by `host`; `None` where it cannot have gone on.
+fn went(before_us: u32, after_us: u32, host: Span) -> Option<Span> {
+    const WRAP_US: i64 = 1 << 32;
+    let least = i64::from(after_us) - i64::from(before_us);
+    let host_us = host.as_nanos() / 1_000;
+    let wraps = (host_us - least + WRAP_US / 2).div_euclid(WRAP_US);
+    let device = Span::from_micros(least.checked_add(wraps.checked_mul(WRAP_US)?)?);
+    let apart = (device - host).as_nanos().abs();
+    let allowed = RESTART.as_nanos() + (host.as_nanos() / RESTART_SHARE).abs();
+    (apart <= allowed).then_some(device)
+}
+
+/// The drive's clock, from both sides. [`LidarClock`]'s envelope does the work: it is any device's clock, and from above the
+/// envelope is that of times counted backwards.
+struct DriveClock {
+    early: LidarClock,
+    late: LidarClock,
+}
+
+impl DriveClock {
+    fn fit(run: &[Latched]) -> Option<Self> {
+        let arrivals = |device: fn(i64) -> Stamp<Lidar>, host: fn(&ShaftSample) -> Stamp<Host>| {
+            let arrivals: Vec<Arrival> = run
+                .iter()
+                .map(|latched| Arrival {
+                    device: device(latched.device_ns),
+                    host: host(&latched.sample),
+                })
+                .collect();
+            LidarClock::fit(&arrivals)
+        };
+        Some(Self {
+            early: arrivals(backwards, |sample| backwards(sample.request.as_nanos()))?,
+            late: arrivals(Stamp::from_nanos, |sample| sample.answer)?,
+        })
+    }
+
+    /// Between which times of the host the drive's clock read `device_ns`.
+    fn bounds(&self, device_ns: i64) -> (Stamp<Host>, Stamp<Host>) {
+        let early = self.early.host(backwards(device_ns));
+        let late = self.late.host(Stamp::from_nanos(device_ns));
+        (backwards(early.as_nanos()), late)
+    }
+}
+
+fn backwards<C>(ns: i64) -> Stamp<C> {
+    Stamp::from_nanos(ns.saturating_neg())
+}
+
+#[cfg(test)]
+mod tests {
+    use units::Quadcounts;
+
+    use super::*;
+
+    /// 2100-01-01, when nanoseconds no longer fit the 53 bits of a double.
+    const EPOCH: i64 = 4_102_444_800_000_000_000;
+
+    fn gearing() -> Gearing {
+        Gearing::new(500, 120, 1).unwrap()
+    }
+
+    /// A stream at 1 kHz on a drive whose clock is 60 ppm slow and reads `first_us` at the start; the SYNC takes `there` and the
+    /// answer `back` microseconds in sample i. Position i.
+    fn stream(
+        count: i64,
+        first_us: i64,
+        there: impl Fn(i64) -> i64,
+        back: impl Fn(i64) -> i64,
+    ) -> (Vec<ShaftSample>, Vec<i64>) {
+        let mut truth = Vec::new();
+        let samples = (0..count).map(|i| {
+            let request = EPOCH + i * 1_000_000;
+            let taken = request + there(i) * 1_000;
+            truth.push(taken);
+            let device_us = first_us + (taken - EPOCH) / 1_000 * 999_940 / 1_000_000;
+            ShaftSample {
+                request: Stamp::from_nanos(request),
+                answer: Stamp::from_nanos(taken + back(i) * 1_000),
+                position: Quadcounts(i as i32),
+                device_us: Some(device_us as u32),
+            }
+        });
+        (samples.collect(), truth)
+    }
+
+    fn worst_us(stream: &[ShaftSample], truth: &[i64]) -> f64 {
+        let samples = angle_samples(stream, gearing());
+        assert_eq!(samples.len(), truth.len());
+        let off = samples.iter().zip(truth).map(|(sample, truth)| {
+            let off = sample.host.as_nanos() - truth;
+            let bound = sample.bound.as_nanos();
+            assert!(off.abs() <= bound + 1_500, "{off} ns off, {bound} ns bound");
+            off.abs() as f64 / 1e3
+        });
+        off.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn delays_of_single_frames_do_not_show() {
+        // One in seven SYNCs and one in five answers is held up by a millisecond or more.
+        let there = |i| if i % 7 == 3 { 1_900 } else { 70 + i % 3 };
+        let back = |i| if i % 5 == 2 { 4_000 } else { 72 + i % 2 };
+        let (stream, truth) = stream(3_000, 17, there, back);
+        let worst = worst_us(&stream, &truth);
+        assert!(worst < 5.0, "{worst} us");
+        // The middle of SYNC and arrival is off by two milliseconds.
+        let middle = |s: &ShaftSample| (s.request.as_nanos() + s.answer.as_nanos()) / 2;
+        assert!(
+            stream
+                .iter()
+                .zip(&truth)
+                .any(|(s, t)| (middle(s) - t).abs() > 1_900_000)
+        );
+    }
+
+    #[test]
+    fn the_drives_time_wraps_in_mid_stream() {
+        let (stream, truth) = stream(3_000, (1 << 32) - 1_500_000, |_| 70, |_| 70);
+        assert!(stream.iter().any(|s| s.device_us.unwrap() < 1_000_000));
+        assert!(worst_us(&stream, &truth) < 3.0);
+    }
+
+    #[test]
+    fn a_drive_that_starts_anew_has_a_new_clock() {
+        let (mut samples, mut truth) = stream(500, 3_000_000_000, |_| 70, |_| 70);
+        let (mut after, after_truth) = stream(500, 17, |_| 70, |_| 70);
+        for sample in &mut after {
+            let later = Span::from_secs(3);
+            sample.request += later;
+            sample.answer += later;
+        }
+        samples.extend(after);
+        truth.extend(after_truth.iter().map(|t| t + 3_000_000_000));
+        assert_eq!(runs(&samples).len(), 2);
+        assert!(worst_us(&samples, &truth) < 3.0);
+    }
+
+    #[test]
+    fn a_bus_that_is_slower_one_way_shows_in_the_bound() {
+        let (stream, truth) = stream(1_000, 17, |_| 70, |_| 30_000);
+        let samples = angle_samples(&stream, gearing());
+        assert!(
+            samples
+                .iter()
+                .all(|s| (s.bound.as_nanos() - 15_035_000).abs() < 10_000)
+        );
+        assert!(worst_us(&stream, &truth) > 14_000.0);
+    }
+
+    #[test]
+    fn a_few_samples_stand_in_the_middle() {
+        let (stream, _) = stream(3, 17, |_| 70, |_| 90);
+        let samples = angle_samples(&stream, gearing());
+        assert_eq!(samples[1].host.as_nanos(), EPOCH + 1_080_000);
+        assert!(angle_samples(&[], gearing()).is_empty());
+    }
+}
