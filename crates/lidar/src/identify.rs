@@ -49,6 +49,10 @@ pub(crate) struct Identifier {
     told: Option<&'static Model>,
     /// Set by spacing; holds for the named model it was set against.
     found: Option<Finding>,
+    /// Whether a spacing was exactly that of the model that holds.
+    confirmed: bool,
+    /// What the last spacing said against a confirmed model.
+    doubt: Option<&'static Model>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +63,12 @@ struct Finding {
 
 impl Identifier {
     pub(crate) const fn new(told: Option<&'static Model>) -> Self {
-        Self { told, found: None }
+        Self {
+            told,
+            found: None,
+            confirmed: false,
+            doubt: None,
+        }
     }
 
     /// The model after this packet, `spacing` after the packet that arrived before it. `None` until anything says which.
@@ -71,43 +80,100 @@ impl Identifier {
         let named = self.told.or_else(|| Model::of(packet.product()));
         if self.found.is_some_and(|found| !same(found.named, named)) {
             self.found = None;
+            self.confirmed = false;
         }
         let mut conflict = None;
         if let Some(spacing) = spacing
-            && let Some(model) = told_by(spacing, named, is_dual(packet))
-            && !same(self.found.map(|found| found.model), Some(model))
+            && let Some(model) = self.weigh(spacing, named, is_dual(packet))
         {
-            conflict = Some(Conflict {
-                product: packet.product(),
-                told: self.told,
-                spacing,
-                spacing_of: model,
-            });
-            self.found = Some(Finding { named, model });
+            self.confirmed = false;
+            self.found = if same(Some(model), named) {
+                None
+            } else {
+                conflict = Some(Conflict {
+                    product: packet.product(),
+                    told: self.told,
+                    spacing,
+                    spacing_of: model,
+                });
+                Some(Finding { named, model })
+            };
         }
         // What the user said stands, though it is reported.
         let model = self.told.or(self.found.map(|found| found.model)).or(named);
         (model, conflict)
     }
+
+    /// Another model than the one that holds, if this spacing is reason enough.
+    ///
+    /// At first one spacing is: no packet before it had the time to say anything else. Against a model that spacings have
+    /// confirmed it takes two in a row: one can be chance, where a clock was set or the sensor looked away.
+    fn weigh(
+        &mut self,
+        spacing: Span,
+        named: Option<&'static Model>,
+        dual: bool,
+    ) -> Option<&'static Model> {
+        let holds = self.found.map(|found| found.model).or(named);
+        match told_by(spacing, holds, named, dual, self.confirmed)? {
+            Said::Holds => {
+                self.confirmed = true;
+                self.doubt = None;
+                None
+            }
+            Said::Other(model) if self.confirmed && !same(self.doubt, Some(model)) => {
+                self.doubt = Some(model);
+                None
+            }
+            Said::Other(model) => {
+                self.doubt = None;
+                Some(model)
+            }
+        }
+    }
 }
 
-/// The model that fills a packet in `spacing`, unless the named one does, once or several times over.
-fn told_by(spacing: Span, named: Option<&'static Model>, dual: bool) -> Option<&'static Model> {
+/// What a spacing says of the model that holds.
+#[derive(Clone, Copy, Debug)]
+enum Said {
+    /// It is exactly its spacing.
+    Holds,
+    /// It is another's, and no multiple of its own.
+    Other(&'static Model),
+}
+
+/// Whose spacing this is. `None` for what any loss, gap or setting of the clock could be.
+fn told_by(
+    spacing: Span,
+    holds: Option<&'static Model>,
+    named: Option<&'static Model>,
+    dual: bool,
+    confirmed: bool,
+) -> Option<Said> {
     if spacing < Span::ZERO || LONGEST < spacing {
         return None;
     }
     let spacing_ns = spacing.as_nanos();
-    let off_by = |model: &Model, packets: i64| {
-        (spacing_ns - packets * i64::from(model.packet_period_ns(dual))).abs()
+    let is = |model: &Model, packets: i64| {
+        let off_by = spacing_ns - packets * i64::from(model.packet_period_ns(dual));
+        off_by.abs() <= TOLERANCE_NS
     };
-    let explained =
-        named.is_some_and(|named| (1..=MOST_LOST).any(|n| off_by(named, n) <= TOLERANCE_NS));
-    if explained {
-        return None;
+    if let Some(holds) = holds {
+        if is(holds, 1) {
+            return Some(Said::Holds);
+        }
+        if (2..=MOST_LOST).any(|packets| is(holds, packets)) {
+            return None;
+        }
     }
-    [&VLP_16, &HDL_32E, &VLP_32C]
-        .into_iter()
-        .find(|model| off_by(model, 1) <= TOLERANCE_NS)
+    // The named model goes before others of its timing.
+    let models = named.into_iter().chain([&VLP_16, &HDL_32E, &VLP_32C]);
+    // Packets may be missing right at the start as well; fewer are likelier than more.
+    let most = if confirmed { 1 } else { MOST_LOST };
+    (1..=most).find_map(|packets| {
+        let mut models = models.clone();
+        models.find(|model| is(model, packets)).map(Said::Other)
+    })
 }
 
 fn same(a: Option<&'static Model>, b: Option<&'static Model>) -> bool {
@@ -124,8 +190,12 @@ mod tests {
 
     use super::*;
 
+    /// What the very first spacing says against the named model.
     fn told(us: i64, named: &'static Model, dual: bool) -> Option<&'static str> {
-        told_by(Span::from_micros(us), Some(named), dual).map(|model| model.name)
+        match told_by(Span::from_micros(us), Some(named), Some(named), dual, false)? {
+            Said::Holds => None,
+            Said::Other(model) => Some(model.name),
+        }
     }
 
     #[test]
@@ -151,10 +221,113 @@ mod tests {
 
     #[test]
     fn a_product_that_is_not_listed_is_found_by_spacing() {
-        let by = |us, dual| told_by(Span::from_micros(us), None, dual).map(|model| model.name);
+        let by = |us, dual| match told_by(Span::from_micros(us), None, None, dual, false)? {
+            Said::Holds => None,
+            Said::Other(model) => Some(model.name),
+        };
         assert_eq!(by(1_327, false), Some("VLP-16"));
         assert_eq!(by(553, false), Some("HDL-32E"));
+        assert_eq!(by(276, true), Some("HDL-32E"));
         assert_eq!(by(332, true), Some("VLP-32C"));
         assert_eq!(by(1_000, false), None);
+        // A packet lost before the second arrived.
+        assert_eq!(by(1_106, false), Some("HDL-32E"));
+        assert_eq!(by(2_654, false), Some("VLP-16"));
+    }
+
+    #[test]
+    fn each_model_is_told_from_each_other_at_any_rounding_of_the_stamps() {
+        let modes = [false, true];
+        for (real, dual) in [&VLP_16, &HDL_32E, &VLP_32C]
+            .into_iter()
+            .flat_map(|m| modes.map(|d| (m, d)))
+        {
+            let period_ns = i64::from(real.packet_period_ns(dual));
+            for first_ns in 0..1_000 {
+                // Both stamps are cut to whole microseconds.
+                let us = (first_ns + period_ns) / 1_000;
+                for named in [&VLP_16, &PUCK_HI_RES, &HDL_32E, &VLP_32C] {
+                    let timing = |model: &Model| model.packet_period_ns(dual);
+                    let is_multiple = timing(real).is_multiple_of(timing(named));
+                    // A VLP-32C that loses every second packet is all that a VLP-16 can be taken for.
+                    assert!(
+                        !is_multiple || timing(real) == timing(named) || named.name == "VLP-32C"
+                    );
+                    let expected = (!is_multiple).then_some(real.name);
+                    assert_eq!(told(us, named, dual), expected, "{us} us, {}", named.name);
+                }
+            }
+        }
+    }
+
+    /// A packet of this product and mode with nothing in it.
+    fn bytes(mode: u8, product: u8) -> [u8; 1_206] {
+        let mut bytes = [0; 1_206];
+        for block in bytes.chunks_mut(100).take(12) {
+            block[..2].copy_from_slice(&[0xFF, 0xEE]);
+        }
+        bytes[1_204..].copy_from_slice(&[mode, product]);
+        bytes
+    }
+
+    /// The models that hold after packets that follow each other at these spacings, and how many conflicts were reported.
+    fn follow(product: u8, spacings_us: &[i64]) -> (Vec<&'static str>, usize) {
+        let bytes = bytes(0x37, product);
+        let packet = DataPacket::new(&bytes).unwrap();
+        let mut identifier = Identifier::new(None);
+        let mut conflicts = 0;
+        let first = [None].into_iter();
+        let spacings = first.chain(spacings_us.iter().map(|&us| Some(Span::from_micros(us))));
+        let models = spacings.map(|spacing| {
+            let (model, conflict) = identifier.observe(&packet, spacing);
+            conflicts += usize::from(conflict.is_some());
+            model.map_or("?", |model| model.name)
+        });
+        (models.collect(), conflicts)
+    }
+
+    #[test]
+    fn loss_at_the_start_does_not_mislead() {
+        let named_hdl = follow(0x21, &[2_654, 1_327, 1_328]);
+        assert_eq!(
+            named_hdl,
+            (vec!["HDL-32E", "VLP-16", "VLP-16", "VLP-16"], 1)
+        );
+        let named_vlp = follow(0x22, &[2_654, 1_327, 1_328]);
+        assert_eq!(named_vlp, (vec!["VLP-16"; 4], 0));
+        let not_named = follow(0x99, &[1_659, 553, 553]);
+        assert_eq!(not_named, (vec!["?", "HDL-32E", "HDL-32E", "HDL-32E"], 1));
+        // Two packets of a VLP-32C are one of a VLP-16; the third packet tells.
+        let not_named = follow(0x99, &[1_327, 664, 663, 664]);
+        assert_eq!(
+            not_named,
+            (vec!["?", "VLP-16", "VLP-32C", "VLP-32C", "VLP-32C"], 2)
+        );
+    }
+
+    #[test]
+    fn one_spacing_by_chance_changes_nothing() {
+        // A clock that was set, or a gap of a limited field of view, may look like another model's packet once.
+        let chance = follow(0x22, &[1_327, 1_327, 553, 1_327, 1_328, 664, 553, 1_327]);
+        assert_eq!(chance, (vec!["VLP-16"; 9], 0));
+        let hdl = follow(0x21, &[553, 1_327, 553, 553]);
+        assert_eq!(hdl, (vec!["HDL-32E"; 5], 0));
+    }
+
+    #[test]
+    fn a_first_spacing_that_misled_is_taken_back() {
+        // The first spacing by chance another's; the named model's own two times over.
+        let (models, conflicts) = follow(0x21, &[1_327, 553, 553, 553]);
+        assert_eq!(
+            models,
+            ["HDL-32E", "VLP-16", "HDL-32E", "HDL-32E", "HDL-32E"]
+        );
+        assert_eq!(conflicts, 1);
+    }
+
+    #[test]
+    fn a_sensor_swapped_for_another_is_followed() {
+        let (models, _) = follow(0x99, &[1_327, 1_327, 553, 553, 553]);
+        assert_eq!(models[4..], ["HDL-32E"; 2]);
     }
 }

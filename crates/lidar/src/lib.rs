@@ -3,22 +3,30 @@
 //! [`Decoder`] takes the payloads of one sensor in order of arrival and emits [`Firing`]s in order of device time. It never
 //! guesses across a gap. [`Timekeeper`] says when packets were fired without decoding them, by the code that the decoder
 //! itself uses, so that a first pass over a log agrees with the second to the nanosecond.
-//! Left out on purpose: host time (a clock model's), the tilt of the platform, frames, and which port or address bytes
-//! came from.
+//! Beside them: [`FrameCutter`] and [`OrganisedFrame`] (turns of the head), [`UtcClock`] (UTC from position packets), and
+//! [`calibration`] (a sensor's own angles from a file).
+//! Left out on purpose: host time (a clock model's), the tilt of the platform, and which port or address bytes came from.
 
+pub mod calibration;
 mod continuity;
 mod corrections;
 mod decoder;
 mod firing;
+mod frames;
 mod geometry;
 mod hours;
 mod identify;
+mod organised;
 mod plan;
 mod stats;
 mod timekeeper;
+mod utc;
 
 pub use corrections::{Corrections, LaserCorrection};
 pub use decoder::{Decoder, Options};
 pub use firing::{Duplicates, Echo, Firing, Return, SensorPoint};
+pub use frames::{Frame, FrameCutter, FrameError};
+pub use organised::{Column, OrganisedFrame};
 pub use stats::{Conflict, Stats};
 pub use timekeeper::{PacketTiming, Timekeeper};
+pub use utc::{NoUtc, Utc, UtcChange, UtcClock, UtcState};

@@ -15,4 +15,4 @@ pub use data::{
 };
 pub use error::PacketError;
 pub use models::{Laser, Model};
-pub use position::{POSITION_LEN, PositionPacket, Pps};
+pub use position::{NmeaError, POSITION_LEN, PositionPacket, Pps, Rmc, UtcTime};

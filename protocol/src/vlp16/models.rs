@@ -101,7 +101,11 @@ pub static PUCK_HI_RES: Model = Model {
     distance_unit_m: 0.002,
 };
 
-/// HDL-32E (its manual, "Laser firing sequence"): 4/3 degree steps, printed to two decimals and used as printed.
+/// HDL-32E (its manual, "Laser firing sequence"): 4/3 degree steps, printed to two decimals and used as printed; no azimuth offsets.
+///
+/// Appendix E of the manual's early editions gives a laser's time as -542.592 us + 46.08 us x block + 1.152 us x laser: one
+/// after the other, not in pairs, and from a timestamp written when the packet ended. The times here count from the first
+/// firing, like the other models' and as the maker's viewer has it.
 pub static HDL_32E: Model = Model {
     name: "HDL-32E",
     product: Product::Hdl32e,
@@ -228,6 +232,11 @@ const _: () = assert!(adds_up(&PUCK_HI_RES, 16, 18_432));
 const _: () = assert!(adds_up(&HDL_32E, 32, 9_216));
 const _: () = assert!(adds_up(&VLP_32C, 16, 18_432));
 const _: () = assert!(VLP_16.block_period_ns() == 110_592);
+// HDL-32E, appendix E: from a packet's first laser to its last.
+const _: () = assert!(11 * HDL_32E.block_period_ns() + HDL_32E_LASERS[31].delay_ns == 542_592);
+const _: () = assert!(HDL_32E.packet_period_ns(true) == 276_480);
+const _: () = assert!(VLP_32C.packet_period_ns(false) == 663_552);
+const _: () = assert!(VLP_32C.packet_period_ns(true) == 331_776);
 // 753.5 packets a second, the manual's 754 rounded.
 const _: () = assert!(VLP_16.packet_period_ns(false) == 1_327_104);
 const _: () = assert!(VLP_16.packet_period_ns(true) == 663_552);

@@ -1,0 +1,705 @@
+//! The lidar: its clock, its rotor, its link.
+
+use ::lidar::{Decoder, Duplicates, Echo, Firing, Options, Stats, Timekeeper, UtcClock, UtcState};
+use firmware_sim::vlp16::{
+    DualPacketBuilder, HOUR_US, LASERS, PacketBuilder, Pps, Returns, SEQUENCE_PERIOD_NS,
+    position_packet,
+};
+use protocol::vlp16::PositionPacket;
+use units::{Host, Span, Stamp};
+
+const HOUR_NS: i64 = HOUR_US as i64 * 1_000;
+/// Two sequences share a block, and its azimuth.
+const BLOCK_NS: i64 = 2 * SEQUENCE_PERIOD_NS;
+/// Some hour of 2023.
+const BEGIN_NS: i64 = 470_000 * HOUR_NS;
+/// Azimuths are whole hundredths of a degree on the wire.
+const WIRE_DEG: f64 = 0.005;
+/// Stamps are whole microseconds.
+const WIRE_NS: i64 = 1_000;
+
+/// A head whose angle is a function of time, and where it fires.
+struct Head<A, S> {
+    /// Degrees after so many seconds, not brought back below 360.
+    angle_deg: A,
+    /// Whether it fires at an azimuth.
+    sees: S,
+    /// Device time of its first block.
+    begin_ns: i64,
+    dual: bool,
+}
+
+/// A UDP payload and when it arrives.
+#[derive(Clone)]
+struct Packet {
+    host: Stamp<Host>,
+    bytes: Vec<u8>,
+}
+
+/// What the decoder made of one firing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Seen {
+    ns: i64,
+    azimuth_deg: f64,
+    laser_15_deg: f64,
+    range_m: f64,
+}
+
+/// A head at a steady speed that fires all round.
+fn steady(rpm: f64, begin_ns: i64) -> Head<impl Fn(f64) -> f64, impl Fn(f64) -> bool> {
+    Head {
+        angle_deg: move |s: f64| 6.0 * rpm * s,
+        sees: |_: f64| true,
+        begin_ns,
+        dual: false,
+    }
+}
+
+impl<A: Fn(f64) -> f64, S: Fn(f64) -> bool> Head<A, S> {
+    fn azimuth_deg(&self, ns: i64) -> f64 {
+        (self.angle_deg)((ns - self.begin_ns) as f64 * 1e-9).rem_euclid(360.0)
+    }
+
+    /// The first packets, and device time of every sequence in them.
+    fn packets(&self, count: usize) -> (Vec<Packet>, Vec<i64>) {
+        let blocks = if self.dual { 6 } else { 12 };
+        let ticks = (0..).map(|k| self.begin_ns + k * BLOCK_NS);
+        let fired = ticks.filter(|&t| (self.sees)(self.azimuth_deg(t)));
+        let times: Vec<i64> = fired.take(blocks * count).collect();
+        let packets = times.chunks(blocks).map(|times| self.packet(times));
+        let sequences = times.iter().flat_map(|&t| [t, t + SEQUENCE_PERIOD_NS]);
+        (packets.collect(), sequences.collect())
+    }
+
+    fn packet(&self, times: &[i64]) -> Packet {
+        let us = (times[0] / 1_000).rem_euclid(i64::from(HOUR_US)) as u32;
+        let cdeg = |t| (self.azimuth_deg(t) * 100.0).round() as u16 % 36_000;
+        let (mut one, mut two) = (PacketBuilder::new(), DualPacketBuilder::new());
+        for &t in times {
+            for t in [t, t + SEQUENCE_PERIOD_NS] {
+                let returns = [(range_raw(t - self.begin_ns), 9); LASERS];
+                one.firing(cdeg(t), &returns);
+                two.firing(cdeg(t), &returns, &returns);
+            }
+        }
+        let bytes = if self.dual {
+            two.finish(us)
+        } else {
+            one.finish(us)
+        };
+        let last = times.last().unwrap();
+        Packet {
+            // Filled, sent, received.
+            host: Stamp::from_nanos(last + BLOCK_NS + 150_000),
+            bytes: bytes.to_vec(),
+        }
+    }
+}
+
+/// A distance that is different for each sequence of half a second.
+fn range_raw(since_ns: i64) -> u16 {
+    (1_000 + since_ns / SEQUENCE_PERIOD_NS % 9_000) as u16
+}
+
+fn decode<'a>(packets: impl IntoIterator<Item = &'a Packet>) -> (Vec<Seen>, Stats) {
+    let mut seen = Vec::new();
+    let mut keep = |firing: &Firing<'_>| {
+        seen.push(Seen {
+            ns: firing.start.as_nanos(),
+            azimuth_deg: firing.azimuth_deg,
+            laser_15_deg: firing.laser_azimuth_deg(15).unwrap(),
+            range_m: firing.points().next().unwrap().range_m,
+        });
+    };
+    let mut decoder = Decoder::new(Options::default());
+    for packet in packets {
+        decoder.packet(packet.host, &packet.bytes, &mut keep);
+    }
+    decoder.finish(&mut keep);
+    (seen, decoder.stats().clone())
+}
+
+fn apart_deg(a: f64, b: f64) -> f64 {
+    let apart = (a - b).rem_euclid(360.0);
+    apart.min(360.0 - apart)
+}
+
+/// Every firing when, where and of the range that it was; device time forwards.
+fn assert_true<A: Fn(f64) -> f64, S: Fn(f64) -> bool>(
+    head: &Head<A, S>,
+    seen: &[Seen],
+    truth: &[i64],
+    slack_ns: i64,
+) {
+    assert_eq!(seen.len(), truth.len());
+    assert!(seen.is_sorted_by(|a, b| a.ns < b.ns));
+    let per_packet = if head.dual { 12 } else { 24 };
+    for (i, (seen, &truth)) in seen.iter().zip(truth).enumerate() {
+        assert!(
+            (seen.ns - truth).abs() <= WIRE_NS + slack_ns,
+            "firing {i}: {seen:?}, {truth}"
+        );
+        let raw = (seen.range_m / 0.002).round() as u16;
+        assert_eq!(raw, range_raw(truth - head.begin_ns), "firing {i}");
+        // Between two azimuths of the wire their rounding is all. Behind the last of a packet whose successor is missing, or before
+        // a gap, the step of the block before is carried on, a hundredth off at most, for up to 0.82 of a block.
+        let carried_on = i % per_packet >= per_packet - 2 || slack_ns > 0;
+        let tolerance_deg = if carried_on {
+            2.7 * WIRE_DEG
+        } else {
+            1.02 * WIRE_DEG
+        };
+        let off = apart_deg(seen.azimuth_deg, head.azimuth_deg(truth));
+        assert!(off <= tolerance_deg, "firing {i}: {off} deg");
+        let off = apart_deg(seen.laser_15_deg, head.azimuth_deg(truth + 15 * 2_304));
+        assert!(off <= tolerance_deg, "firing {i}, laser 15: {off} deg");
+    }
+}
+
+fn nothing_amiss(stats: &Stats) {
+    let odd = [
+        stats.malformed,
+        stats.other,
+        stats.unidentified,
+        stats.duplicates,
+        stats.reordered,
+        stats.late,
+        stats.clock_steps,
+        stats.lost_packets,
+    ];
+    assert_eq!(odd, [0; 8], "{stats:?}");
+}
+
+/// The stamp counts microseconds of the hour and drops to nearly nothing: with "it decreased, so add an hour" this one works,
+/// the next ones do not.
+#[test]
+fn the_hour_turns_between_two_packets() {
+    // Ten packets end exactly on the hour.
+    let head = steady(600.0, BEGIN_NS - 120 * BLOCK_NS);
+    let (packets, truth) = head.packets(20);
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    nothing_amiss(&stats);
+}
+
+/// The packet's stamp is of the old hour, most of its firings of the new one: their times exceed an hour and must not be
+/// wrapped firing by firing.
+#[test]
+fn the_hour_turns_inside_a_packet() {
+    for blocks_before in 1..12 {
+        let head = steady(600.0, BEGIN_NS - (60 + blocks_before) * BLOCK_NS - 300);
+        let (packets, truth) = head.packets(12);
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        nothing_amiss(&stats);
+    }
+}
+
+/// The packet that straddles the gap is stamped before the hour, its trailing blocks and the next packet lie after it; the
+/// length of the gap comes from the difference of the two stamps, which is negative.
+#[test]
+fn the_hour_turns_in_the_gap_of_a_limited_view() {
+    let view = |azimuth: f64| !(41.0..320.0).contains(&azimuth);
+    // 5 Hz from 320 deg: the first gap is 45 to 200 ms on.
+    for before_ms in [46, 60, 100, 199] {
+        let head = Head {
+            angle_deg: |s: f64| 320.0 + 1_800.0 * s,
+            sees: view,
+            begin_ns: BEGIN_NS - before_ms * 1_000_000,
+            dual: false,
+        };
+        let (packets, truth) = head.packets(100);
+        let (seen, stats) = decode(&packets);
+        let known = seen.len() - 24;
+        assert_true(&head, &seen[..known], &truth[..known], 15_000);
+        nothing_amiss(&stats);
+    }
+}
+
+/// The packets on both sides of the hour are missing: nothing shows the turn but the difference of stamps half a packet or
+/// many packets apart, which has to be counted as loss and not as a step of the clock.
+#[test]
+fn the_hour_turns_while_packets_are_lost() {
+    for lost in [1, 2, 7, 40, 700] {
+        let head = steady(600.0, BEGIN_NS - 127 * BLOCK_NS);
+        let (mut packets, mut truth) = head.packets(720);
+        packets.drain(8..8 + lost);
+        truth.drain(8 * 24..(8 + lost) * 24);
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        assert_eq!((stats.lost_packets, stats.clock_steps), (lost as u64, 0));
+    }
+}
+
+/// Devices have been seen to count on past the hour before they wrap: 3600.06 s, then 0.061 s.
+#[test]
+fn the_counter_runs_past_the_hour_before_it_wraps() {
+    let head = steady(600.0, BEGIN_NS - 120 * BLOCK_NS);
+    let (mut packets, truth) = head.packets(80);
+    for (packet, first) in packets.iter_mut().zip(truth.iter().step_by(24)) {
+        if (BEGIN_NS..BEGIN_NS + 60_000_000).contains(first) {
+            let us = HOUR_US + ((first - BEGIN_NS) / 1_000) as u32;
+            packet.bytes[1_200..1_204].copy_from_slice(&us.to_le_bytes());
+        }
+    }
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    nothing_amiss(&stats);
+}
+
+/// The host joins within a second of the hour and its clock is minutes off, on the other side of it.
+#[test]
+fn the_first_packet_is_just_beside_the_hour() {
+    for (device_ms, host_off_s) in [(-3, 20), (-3, -20), (3, -1_700), (3, 1_700), (-3, 1_700)] {
+        let head = steady(600.0, BEGIN_NS + device_ms * 1_000_000);
+        let (mut packets, truth) = head.packets(20);
+        for packet in &mut packets {
+            packet.host += Span::from_secs(host_off_s);
+        }
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        nothing_amiss(&stats);
+    }
+}
+
+/// 36000 is not a legal azimuth by the manual, and sensors send it; it is 0, not 360 beside 0.01.
+#[test]
+fn azimuth_36000_is_0() {
+    // 0.36 deg a block: every thousandth azimuth is exactly 0.
+    let head = steady(0.36 / 6.0 / (BLOCK_NS as f64 * 1e-9), BEGIN_NS);
+    let (mut packets, truth) = head.packets(170);
+    let mut replaced = 0;
+    for packet in &mut packets {
+        for block in packet.bytes.chunks_exact_mut(100) {
+            if block[2..4] == [0, 0] {
+                block[2..4].copy_from_slice(&36_000u16.to_le_bytes());
+                replaced += 1;
+            }
+        }
+    }
+    assert!(replaced >= 2);
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    assert!(
+        seen.iter()
+            .all(|seen| (0.0..360.0).contains(&seen.azimuth_deg))
+    );
+    nothing_amiss(&stats);
+}
+
+/// The step from 359.9 to 0.1 deg is 0.2, wherever in the packet it falls, or between two.
+#[test]
+fn azimuth_wraps_anywhere_in_a_packet() {
+    for blocks_before in 0..14 {
+        let angle_deg = move |s: f64| {
+            359.9 - 0.4 * f64::from(blocks_before) + 0.4 * s / (BLOCK_NS as f64 * 1e-9)
+        };
+        let head = Head {
+            angle_deg,
+            sees: |_: f64| true,
+            begin_ns: BEGIN_NS,
+            dual: blocks_before % 2 == 0,
+        };
+        let (packets, truth) = head.packets(4);
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        let rpm = stats.rpm.unwrap();
+        assert!(
+            (rpm - 0.4 / 6.0 / (BLOCK_NS as f64 * 1e-9)).abs() < 1.0,
+            "{rpm}"
+        );
+        nothing_amiss(&stats);
+    }
+}
+
+/// A packet goes on filling behind the gap, 155 ms later than its place in the packet says; interpolating over the jump smears
+/// azimuths over the part of the turn that was never seen.
+#[test]
+fn blocks_behind_the_gap_of_a_limited_view_fired_a_gap_later() {
+    for (dual, rpm) in [(false, 300.0), (true, 300.0), (false, 1_200.0)] {
+        let head = Head {
+            angle_deg: |s: f64| 320.0 + 6.0 * rpm * s,
+            sees: |azimuth: f64| !(41.0..320.0).contains(&azimuth),
+            begin_ns: BEGIN_NS,
+            dual,
+        };
+        let (packets, truth) = head.packets(200);
+        let (seen, stats) = decode(&packets);
+        // The last packet may straddle a gap that no successor measures.
+        let known = seen.len() - 24;
+        assert_true(&head, &seen[..known], &truth[..known], 15_000);
+        assert!(
+            seen.iter()
+                .all(|seen| !(41.5..319.9).contains(&seen.azimuth_deg))
+        );
+        nothing_amiss(&stats);
+    }
+}
+
+/// One laser sees two surfaces, one sees only a last return, one only a strongest, one both at one distance, one nothing.
+#[test]
+fn dual_returns_may_be_missing_on_either_side() {
+    let mut last: Returns = [(0, 0); LASERS];
+    let mut strongest = last;
+    (last[0], strongest[0]) = ((5_000, 10), (4_000, 90));
+    last[1] = (5_001, 11);
+    strongest[2] = (4_002, 92);
+    (last[3], strongest[3]) = ((5_003, 93), (5_003, 93));
+    let mut builder = DualPacketBuilder::new();
+    let packets: Vec<Packet> = (0..3u32)
+        .map(|k| {
+            for sequence in 0..12 {
+                builder.firing(1_000 + (12 * k as u16 + sequence) * 20, &last, &strongest);
+            }
+            let us = (i64::from(k) * 12 * SEQUENCE_PERIOD_NS / 1_000) as u32;
+            let host = Stamp::from_nanos(BEGIN_NS + i64::from(us) * 1_000 + 900_000);
+            Packet {
+                host,
+                bytes: builder.finish(us).to_vec(),
+            }
+        })
+        .collect();
+    for (duplicates, laser_3) in [(Duplicates::Unique, 1), (Duplicates::All, 2)] {
+        let mut decoder = Decoder::new(Options {
+            duplicates,
+            ..Options::default()
+        });
+        let mut expected = vec![
+            (0, 10.0, 10, Echo::Last),
+            (0, 8.0, 90, Echo::StrongestOrSecond),
+            (1, 10.002, 11, Echo::Last),
+            (2, 8.004, 92, Echo::StrongestOrSecond),
+        ];
+        expected.extend(
+            [(3, 10.006, 93, Echo::LastAndStrongest); 2]
+                .into_iter()
+                .take(laser_3),
+        );
+        let mut firings = 0;
+        let mut check = |firing: &Firing<'_>| {
+            let got: Vec<_> = firing
+                .points()
+                .map(|p| (p.laser, p.range_m, p.reflectivity, p.echo))
+                .collect();
+            assert_eq!(got.len(), expected.len());
+            for (got, expected) in got.iter().zip(&expected) {
+                assert_eq!((got.0, got.2, got.3), (expected.0, expected.2, expected.3));
+                assert!((got.1 - expected.1).abs() < 1e-9);
+            }
+            let pair: Vec<_> = firing.points().take(2).map(|p| p.time).collect();
+            assert_eq!(pair[0], pair[1], "one pulse, one time");
+            firings += 1;
+        };
+        for packet in &packets {
+            decoder.packet(packet.host, &packet.bytes, &mut check);
+        }
+        decoder.finish(&mut check);
+        let stats = decoder.stats();
+        assert_eq!(
+            (firings, stats.returns, stats.unique_returns),
+            (36, 36 * 6, 36 * 5)
+        );
+        nothing_amiss(stats);
+    }
+}
+
+/// A switch that mirrors a port, or a recording of two interfaces, has every packet twice.
+#[test]
+fn every_packet_twice_is_every_packet_once() {
+    let head = steady(600.0, BEGIN_NS - 40 * BLOCK_NS);
+    let (packets, truth) = head.packets(20);
+    let twice = packets.iter().flat_map(|packet| [packet, packet]);
+    let (seen, stats) = decode(twice);
+    assert_true(&head, &seen, &truth, 0);
+    assert_eq!(
+        (stats.duplicates, stats.data, stats.lost_packets),
+        (20, 40, 0)
+    );
+}
+
+/// Neighbours change places on the way, also over the hour, where the later one has the smaller stamp.
+#[test]
+fn packets_out_of_order_are_put_back() {
+    let head = steady(600.0, BEGIN_NS - 121 * BLOCK_NS);
+    let (mut packets, truth) = head.packets(20);
+    for i in [3, 7, 9, 15] {
+        packets.swap(i, i + 1);
+    }
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    assert_eq!((stats.reordered, stats.lost_packets, stats.late), (4, 0, 0));
+}
+
+/// Too late to be put back: left out and said, so that device time never runs backwards.
+#[test]
+fn a_packet_that_comes_too_late_is_left_out() {
+    let head = steady(600.0, BEGIN_NS - 121 * BLOCK_NS);
+    let (mut packets, mut truth) = head.packets(20);
+    let late = packets.remove(6);
+    packets.insert(11, late);
+    truth.drain(6 * 24..7 * 24);
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    assert_eq!((stats.late, stats.reordered, stats.lost_packets), (1, 0, 1));
+}
+
+/// Other programs' datagrams, cut ones, an HDL-64E's, and position packets between the data change nothing but counts.
+#[test]
+fn foreign_packets_change_nothing() {
+    let head = steady(600.0, BEGIN_NS);
+    let (packets, truth) = head.packets(20);
+    let mut mixed = Vec::new();
+    for (i, packet) in packets.iter().enumerate() {
+        mixed.push(packet.clone());
+        let bytes = match i {
+            2 => b"NTP?".to_vec(),
+            3 => Vec::new(),
+            5 => packet.bytes[..1_205].to_vec(),
+            8 => {
+                let mut upper = packet.bytes.clone();
+                upper[1] = 0xDD;
+                upper
+            }
+            9 => {
+                let mut beyond = packet.bytes.clone();
+                beyond[2..4].copy_from_slice(&36_001u16.to_le_bytes());
+                beyond
+            }
+            12 => position_packet(17, Pps::Absent, b"").to_vec(),
+            _ => continue,
+        };
+        mixed.push(Packet {
+            host: packet.host,
+            bytes,
+        });
+    }
+    let (seen, stats) = decode(&mixed);
+    assert_true(&head, &seen, &truth, 0);
+    let counts = (
+        stats.data,
+        stats.other,
+        stats.malformed,
+        stats.position,
+        stats.lost_packets,
+    );
+    assert_eq!(counts, (20, 2, 3, 1, 0));
+}
+
+/// Firmware before 3.0.29 has no factory bytes, and what stands there is the HDL-32E's: with its timing every azimuth between
+/// blocks and every elevation would be wrong. Spacing tells, also where packets are lost right at the start.
+#[test]
+fn a_vlp16_of_2014_calls_itself_an_hdl32e() {
+    for lost in [0, 1, 2] {
+        let head = steady(1_200.0, BEGIN_NS);
+        let (mut packets, mut truth) = head.packets(20);
+        for packet in &mut packets {
+            packet.bytes[1_205] = 0x21;
+        }
+        packets.drain(1..1 + lost);
+        truth.drain(24..24 * (1 + lost));
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        assert_eq!(
+            (stats.model.unwrap().name, stats.conflicts.len()),
+            ("VLP-16", 1)
+        );
+        assert_eq!((stats.lost_packets, stats.unidentified), (lost as u64, 0));
+    }
+}
+
+/// A host whose clock says 2100: beyond 32 bits of seconds, and half a microsecond an ulp in f64 seconds.
+#[test]
+fn the_year_2100_is_exact() {
+    // 2100-01-01 00:00:00 UTC.
+    let midnight_ns = 4_102_444_800 * 1_000_000_000;
+    let head = steady(600.0, midnight_ns - 60 * BLOCK_NS);
+    let (packets, truth) = head.packets(20);
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    nothing_amiss(&stats);
+    let first = seen[0].ns;
+    assert!(
+        seen.iter()
+            .take(24)
+            .enumerate()
+            .all(|(i, seen)| seen.ns - first == i as i64 * SEQUENCE_PERIOD_NS)
+    );
+}
+
+/// The first sentence of a receiver sets minutes and seconds of a clock that ran free: device time jumps while the rotor does
+/// not. Nothing is lost, and the firings on both sides keep their own times.
+#[test]
+fn nmea_sets_the_device_clock() {
+    for step_s in [-1_500, -61, -1, 3, 59, 1_500] {
+        let head = steady(600.0, BEGIN_NS + 30 * 60 * 1_000_000_000);
+        let (mut packets, mut truth) = head.packets(40);
+        for (packet, times) in packets.iter_mut().zip(truth.chunks_mut(24)).skip(20) {
+            times.iter_mut().for_each(|t| *t += step_s * 1_000_000_000);
+            let us = (times[0] / 1_000).rem_euclid(i64::from(HOUR_US)) as u32;
+            packet.bytes[1_200..1_204].copy_from_slice(&us.to_le_bytes());
+        }
+        let (seen, stats) = decode(&packets);
+        assert_eq!(seen.len(), truth.len());
+        for (i, (seen, truth)) in seen.iter().zip(&truth).enumerate() {
+            assert!(
+                (seen.ns - truth).abs() <= WIRE_NS,
+                "{step_s} s, firing {i}: {seen:?}"
+            );
+            let rotor = truth
+                - if i < 20 * 24 {
+                    0
+                } else {
+                    step_s * 1_000_000_000
+                };
+            let off = apart_deg(seen.azimuth_deg, head.azimuth_deg(rotor));
+            assert!(off <= 2.0 * WIRE_DEG, "{step_s} s, firing {i}: {off} deg");
+        }
+        assert_eq!(
+            (stats.clock_steps, stats.lost_packets, stats.late),
+            (1, 0, 0),
+            "{step_s} s"
+        );
+    }
+}
+
+/// The rotor spins up: a mean rate, or the last packet's, puts azimuths off by more than a step of the wire.
+#[test]
+fn the_rotor_changes_its_speed() {
+    for spin_up in [-600.0, -100.0, 100.0, 600.0] {
+        let head = Head {
+            angle_deg: move |s: f64| 6.0 * (700.0 * s + spin_up * s * s / 2.0),
+            sees: |_: f64| true,
+            begin_ns: BEGIN_NS,
+            dual: false,
+        };
+        let (packets, truth) = head.packets(700);
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        nothing_amiss(&stats);
+    }
+}
+
+/// A packet's last block has no successor in it. Its second sequence is half a step on, not at the block's own azimuth, and where
+/// the next packet is there its azimuth is used: here the rotor halves its speed in mid-packet, so that a packet's mean is wrong.
+#[test]
+fn the_last_block_turns_at_the_rate_of_the_next_packet() {
+    let knee_s = 23.0 * SEQUENCE_PERIOD_NS as f64 * 1e-9 - 55.296e-6;
+    let head = Head {
+        angle_deg: move |s: f64| 7_200.0 * s.min(knee_s) + 3_600.0 * (s - knee_s).max(0.0),
+        sees: |_: f64| true,
+        begin_ns: BEGIN_NS,
+        dual: false,
+    };
+    let (packets, truth) = head.packets(3);
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    nothing_amiss(&stats);
+    // Alone, it goes on at the pace of the block before.
+    let (alone, _) = decode(&packets[1..2]);
+    let step_deg = apart_deg(alone[23].azimuth_deg, alone[22].azimuth_deg);
+    assert!(
+        (step_deg - 3_600.0 * 55.296e-6).abs() <= WIRE_DEG,
+        "{step_deg}"
+    );
+}
+
+/// The host's stack hands over packets in batches of 15 ms and more: arrival says nothing of firing.
+#[test]
+fn packets_arrive_in_batches() {
+    let head = steady(600.0, BEGIN_NS - 60 * BLOCK_NS);
+    let (mut packets, truth) = head.packets(60);
+    for batch in packets.chunks_mut(12) {
+        let host = batch.last().unwrap().host;
+        batch.iter_mut().for_each(|packet| packet.host = host);
+    }
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    nothing_amiss(&stats);
+    // The pass that reads times alone says the same to the nanosecond.
+    let mut timekeeper = Timekeeper::new(Options::default());
+    for (packet, firings) in packets.iter().zip(seen.chunks(24)) {
+        let timing = timekeeper.packet(packet.host, &packet.bytes).unwrap();
+        assert_eq!(timing.first_firing.as_nanos(), firings[0].ns);
+    }
+}
+
+/// The host's clock is set by NTP in mid-scan, by seconds or by an hour and more; the sensor's is not.
+#[test]
+fn the_hosts_clock_is_set() {
+    for step_s in [-7_200, -40, 2, 1_800, 90_000] {
+        let head = steady(600.0, BEGIN_NS - 60 * BLOCK_NS);
+        let (mut packets, truth) = head.packets(40);
+        for packet in packets.iter_mut().skip(17) {
+            packet.host += Span::from_secs(step_s);
+        }
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        nothing_amiss(&stats);
+    }
+}
+
+/// Packets are missing and the rotor has turned on: what is behind the gap is neither moved nor joined to what was before.
+#[test]
+fn nothing_is_guessed_across_lost_packets() {
+    for lost in [1, 3, 75, 150] {
+        let head = steady(600.0, BEGIN_NS);
+        let (mut packets, mut truth) = head.packets(200);
+        packets.drain(20..20 + lost);
+        truth.drain(20 * 24..(20 + lost) * 24);
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        assert_eq!(stats.lost_packets, lost as u64);
+    }
+}
+
+/// A `$GPRMC` sentence of a whole second of 2024-02-29.
+fn rmc(second_of_day: i64) -> Vec<u8> {
+    let (h, m, s) = (
+        second_of_day / 3_600,
+        second_of_day / 60 % 60,
+        second_of_day % 60,
+    );
+    let body = format!("GPRMC,{h:02}{m:02}{s:02}.00,A,5004.9,N,01425.2,E,0.0,0.0,290224,,,A");
+    let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+    format!("${body}*{sum:02X}\r\n").into_bytes()
+}
+
+/// The receiver's sentence is a second late, so that around the hour it names the old one while the sensor counts the new; the
+/// host's clock is days off. UTC must not jump by an hour.
+#[test]
+fn utc_across_the_hour_with_a_late_sentence() {
+    // 2024-02-29 00:00:00 UTC, a leap day (`date -u -d`).
+    let midnight_ns = 1_709_164_800 * 1_000_000_000;
+    let hour = 14;
+    let begin_ns = midnight_ns + hour * HOUR_NS - 2_000_000_000;
+    let head = steady(600.0, begin_ns);
+    let (packets, truth) = head.packets(3_000);
+    let host_off = Span::from_secs(-100 * 3_600);
+    let mut clock = UtcClock::new();
+    let mut decoder = Decoder::new(Options::default());
+    let (mut utc, mut changes) = (Vec::new(), Vec::new());
+    for (i, packet) in packets.iter().enumerate() {
+        let host = packet.host + host_off;
+        let mut last = None;
+        decoder.packet(host, &packet.bytes, &mut |firing| {
+            utc.push(clock.utc(firing.start).map(Stamp::as_nanos));
+            last = Some(firing.start);
+        });
+        changes.extend(last.and_then(|at| clock.data(at)));
+        if i % 8 == 3 {
+            let now = truth[24 * i] + 800_000;
+            let us = (now / 1_000).rem_euclid(i64::from(HOUR_US)) as u32;
+            let second = (now - midnight_ns) / 1_000_000_000 - 1;
+            let bytes = position_packet(us, Pps::Locked, &rmc(second));
+            let position = PositionPacket::new(&bytes).unwrap();
+            changes.extend(clock.position(host, &position));
+        }
+    }
+    let states: Vec<UtcState> = changes.iter().map(|change| change.state).collect();
+    assert_eq!(states, [UtcState::Locked { hours: 100 }]);
+    for (utc, truth) in utc.iter().zip(&truth).skip(5 * 24) {
+        let off = utc.unwrap() - truth;
+        assert!(off.abs() <= WIRE_NS, "{off}");
+    }
+    assert_eq!(utc[0], None);
+}
