@@ -169,16 +169,21 @@ proptest! {
         let seen = |azimuth: f64| (azimuth - first_deg).rem_euclid(360.0) < width_deg;
         let packets = packets(9_000, turned, seen, false);
         let (frames, firings) = cut(&packets, cut_deg);
-        // Times across a gap are right to some microseconds.
-        assert_frames(&firings, cut_deg, turned, 0.1);
-        let at: Vec<i64> = firings.iter().map(|firing| firing.0).collect();
+        // Times across a gap are right to some microseconds, except in the last packet: nothing after it measures its gap.
+        let measured = &firings[..firings.len() - 24];
+        assert_frames(measured, cut_deg, turned, 0.1);
+        let at: Vec<i64> = measured.iter().map(|firing| firing.0).collect();
         for frame in &frames[1..] {
             let first = frame.first.as_nanos() - BEGIN_NS;
-            let i = at.binary_search(&first).unwrap();
+            let Ok(i) = at.binary_search(&first) else {
+                prop_assert!(first > at[at.len() - 1]);
+                continue;
+            };
             let into_deg = (turned(at[i]) - first_deg).rem_euclid(360.0);
             let cut_into_deg = (cut_deg - first_deg).rem_euclid(360.0);
             let step_deg = 12.0 * rpm * FIRING_NS as f64 * 1e-9;
-            if cut_into_deg > width_deg + 0.1 {
+            // A block that begins within the view ends up to a block beyond it.
+            if cut_into_deg > width_deg + step_deg {
                 prop_assert!(into_deg < step_deg + 0.5 || into_deg > 359.5, "{into_deg}");
             }
         }
