@@ -1,6 +1,7 @@
 //! From the devices' bytes to the cloud, in virtual time, held against what truly happened.
 
 mod links;
+mod sensors;
 
 use units::{DegPerS, DegPerS2, Host, Span, Stamp};
 use velomotion::session::SessionError;

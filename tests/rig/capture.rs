@@ -27,6 +27,7 @@ use velomotion::config::{Axis, Config};
 use velomotion::motion::{self, Wish};
 use velomotion::output::Target;
 use velomotion::ports::BusLine;
+use velomotion::recordings::Source;
 use velomotion::report::Scan;
 use velomotion::session::{Session, SessionError};
 use velomotion::setup::scan_config;
@@ -350,8 +351,10 @@ impl Captured {
     pub fn try_scan(&self) -> Result<(Scan, Points), Failure> {
         let mut points = Points::new(Fields::ALL);
         let request = Request {
-            recording: &self.log(),
+            recording: &Source::open(&self.log(), None).unwrap(),
             tilt: TiltSource::Log,
+            options: lidar::Options::default(),
+            pace: None,
             truth: None,
             interrupt: &AtomicBool::new(false),
         };
@@ -381,8 +384,10 @@ impl Captured {
     fn file(&self, name: &str, tilt: TiltSource) -> PathBuf {
         let path = self.folder.path().join(name);
         let request = Request {
-            recording: &self.log(),
+            recording: &Source::open(&self.log(), None).unwrap(),
             tilt,
+            options: lidar::Options::default(),
+            pace: None,
             truth: None,
             interrupt: &AtomicBool::new(false),
         };

@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use protocol::vlp16::{Model, models};
+
+use crate::recordings::SensorName;
 
 /// Dense point clouds from a multi-beam lidar on a tilting platform.
 #[derive(Debug, Parser)]
@@ -85,15 +88,71 @@ pub struct Capture {
 /// `replay`.
 #[derive(Clone, Debug, Args)]
 pub struct Replay {
-    /// Log of a capture, or any pcap or pcapng with lidar packets
+    /// Log of a capture, or any pcap or pcapng with lidar packets; - is stdin
     #[arg(value_name = "LOG|PCAP")]
     pub input: PathBuf,
     /// Where tilt angles come from: the log, nowhere (the sensor's own frame), or a CSV of time_s,angle_deg
     #[arg(long, value_name = "log|none|ANGLES.csv", default_value = "log")]
     pub tilt: String,
+    /// Hand the points on at the times at which they were recorded, or FACTOR times as fast
+    #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1")]
+    pub realtime: Option<f64>,
+    /// How the lidar's packets are read
+    #[command(flatten)]
+    pub lidar: Lidar,
     /// Where the cloud goes
     #[command(flatten)]
     pub output: Output,
+}
+
+/// How a lidar's packets are read.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Lidar {
+    /// Which lidar, where the recording holds several
+    #[arg(long, value_name = "ADDRESS[:PORT]")]
+    pub sensor: Option<SensorName>,
+    /// The lidar's model, where neither its packets' factory byte nor their spacing tells it right
+    #[arg(long, value_enum)]
+    pub model: Option<ModelName>,
+    /// Dual return: both returns of a pulse where they are equal, or one of them
+    #[arg(long, value_enum, default_value_t = Equal::Once)]
+    pub equal_returns: Equal,
+}
+
+/// The models by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ModelName {
+    /// VLP-16, Puck, Puck LITE
+    Vlp16,
+    /// Puck Hi-Res
+    HiRes,
+    /// HDL-32E
+    Hdl32e,
+    /// VLP-32C, Ultra Puck
+    Vlp32c,
+}
+
+/// What becomes of two equal returns of one pulse.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Equal {
+    /// One point
+    #[default]
+    Once,
+    /// Two points
+    Twice,
+}
+
+impl ModelName {
+    /// The model.
+    #[must_use]
+    pub const fn model(self) -> &'static Model {
+        match self {
+            Self::Vlp16 => &models::VLP_16,
+            Self::HiRes => &models::PUCK_HI_RES,
+            Self::Hdl32e => &models::HDL_32E,
+            Self::Vlp32c => &models::VLP_32C,
+        }
+    }
 }
 
 /// Where a cloud goes.
@@ -110,9 +169,12 @@ pub struct Output {
 /// `info`.
 #[derive(Clone, Debug, Args)]
 pub struct Info {
-    /// Log, pcap or pcapng
+    /// Log, pcap or pcapng; - is stdin
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
+    /// The lidars' model, where neither their packets' factory byte nor their spacing tells it right
+    #[arg(long, value_enum)]
+    pub model: Option<ModelName>,
 }
 
 /// `tilt`.

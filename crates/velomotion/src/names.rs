@@ -25,6 +25,9 @@ pub fn log_of(cloud: &Path, start: SystemTime, simulated: bool) -> PathBuf {
 /// The cloud of a recording, in the working directory.
 #[must_use]
 pub fn cloud_of(recording: &Path) -> PathBuf {
+    if recording == Path::new("-") {
+        return PathBuf::from("recording.ply");
+    }
     let mut name = recording
         .file_stem()
         .unwrap_or(recording.as_os_str())
@@ -61,6 +64,7 @@ mod tests {
             cloud_of(Path::new("/data/hall.pcap")),
             Path::new("hall.ply")
         );
+        assert_eq!(cloud_of(Path::new("-")), Path::new("recording.ply"));
         assert_eq!(cloud_of(Path::new("a.b.pcapng")), Path::new("a.b.ply"));
     }
 }

@@ -1,12 +1,32 @@
-//! Reading recordings: passes over a file, its configuration, and its errors in the program's words.
+//! Reading recordings: passes over a file or a pipe, one sensor of it, its configuration, and its errors in the program's words.
 
-use std::path::Path;
+use std::fmt;
+use std::net::Ipv4Addr;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
-use io::recording::{Counts, End, Recording, RecordingError};
-use protocol::record::Record;
+use io::recording::{
+    Counts, DatagramKind, End, Input, Recording, RecordingError, SPOOL_LIMIT, Sensor, Sensors,
+};
+use protocol::record::{Record, Wire};
 use scanner::ScanConfig;
 
 use crate::failure::{Failure, Kind};
+
+/// A recording and which of its sensors is meant.
+#[derive(Debug)]
+pub struct Source {
+    path: PathBuf,
+    input: Input,
+    wanted: Option<SensorName>,
+}
+
+/// How a user names a sensor: its address, and its data port where one address has several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SensorName {
+    address: Ipv4Addr,
+    port: Option<u16>,
+}
 
 /// What one pass over a recording found.
 #[derive(Clone, Debug)]
@@ -15,69 +35,217 @@ pub struct Pass {
     pub counts: Counts,
     /// Where and why the file ends too early.
     pub truncated: Option<String>,
+    /// The sensors in it, whichever was meant.
+    pub sensors: Vec<Sensor>,
 }
 
-/// Opens a recording.
-///
-/// # Errors
-/// [`Kind::BadInput`] for what is missing, empty or no recording.
-pub fn open(path: &Path) -> Result<Recording, Failure> {
-    Recording::open(path).map_err(|error| failure(&error))
-}
+impl FromStr for SensorName {
+    type Err = String;
 
-/// The configuration that a log carries; what is built in for recordings of others.
-///
-/// # Errors
-/// [`Kind::BadInput`] where the file cannot be read, or carries a configuration of ours that cannot be understood.
-pub fn config(path: &Path) -> Result<ScanConfig, Failure> {
-    let recording = open(path)?;
-    // Other programs comment their recordings too.
-    let Some(text) = recording
-        .metadata()
-        .filter(|text| text.trim_start().starts_with("velomotion = "))
-    else {
-        return Ok(ScanConfig::default());
-    };
-    let wrong = |what: String| {
-        Failure::new(
-            Kind::BadInput,
-            format!(
-                "{}: the log's configuration cannot be understood:\n{what}",
-                path.display()
-            ),
-        )
-        .help("replay the log with the version that its first line names")
-    };
-    let config: ScanConfig = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
-    if !config.mount.d_m.is_finite() {
-        return Err(wrong(format!("mount.d_m is {}", config.mount.d_m)));
+    /// `ADDRESS` or `ADDRESS:PORT`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (address, port) = match text.split_once(':') {
+            None => (text, None),
+            Some((address, port)) => {
+                let port = port
+                    .parse()
+                    .map_err(|_| format!("expected a port from 0 to 65535, got {port:?}"))?;
+                (address, Some(port))
+            }
+        };
+        let address = address
+            .parse()
+            .map_err(|_| format!("expected an IPv4 address, got {address:?}"))?;
+        Ok(Self { address, port })
     }
-    Ok(config)
 }
 
-/// Gives every record to `take`, in file order.
-///
-/// # Errors
-/// Where the file cannot be read, and whatever `take` returns.
-pub fn read(
-    path: &Path,
-    mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
-) -> Result<Pass, Failure> {
-    let mut recording = open(path)?;
-    while let Some(record) = recording.next_record().map_err(|error| failure(&error))? {
-        take(&record)?;
+impl fmt::Display for SensorName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.address)?;
+        match self.port {
+            Some(port) => write!(f, ":{port}"),
+            None => Ok(()),
+        }
     }
-    Ok(Pass {
-        counts: recording.counts().clone(),
-        truncated: recording.end().and_then(cut_off),
-    })
+}
+
+/// A sensor as a user can name it.
+#[must_use]
+pub fn name(sensor: &Sensor) -> SensorName {
+    SensorName {
+        address: Ipv4Addr::from(sensor.source),
+        port: sensor.data_port,
+    }
+}
+
+/// Which records of a pass are the wanted sensor's: where none is named, those of the first that sends data.
+#[derive(Clone, Copy, Debug)]
+struct Filter {
+    source: Option<[u8; 4]>,
+    port: Option<u16>,
+}
+
+impl Filter {
+    fn takes(&mut self, record: &Record<'_>) -> bool {
+        let Wire::Lidar {
+            source,
+            port,
+            payload,
+        } = record.wire
+        else {
+            return true;
+        };
+        let is_data = match DatagramKind::of(payload) {
+            DatagramKind::Data | DatagramKind::Damaged => true,
+            DatagramKind::Position => false,
+            DatagramKind::Foreign => return true,
+        };
+        if !is_data {
+            return self.source.is_none_or(|wanted| wanted == source);
+        }
+        *self.source.get_or_insert(source) == source && *self.port.get_or_insert(port) == port
+    }
+}
+
+impl Source {
+    /// Opens a recording, `-` for the standard input. What can be read only once is copied to a temporary file.
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] for what is missing, empty or no recording.
+    pub fn open(path: &Path, wanted: Option<SensorName>) -> Result<Self, Failure> {
+        let input = Input::open(path, SPOOL_LIMIT).map_err(|error| failure(&error))?;
+        let source = Self {
+            path: path.to_owned(),
+            input,
+            wanted,
+        };
+        drop(source.recording()?);
+        Ok(source)
+    }
+
+    /// What it is called.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn recording(&self) -> Result<Recording, Failure> {
+        self.input.recording().map_err(|error| failure(&error))
+    }
+
+    /// The configuration that a log carries; what is built in for recordings of others.
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] where the file cannot be read, or carries a configuration of ours that cannot be understood.
+    pub fn config(&self) -> Result<ScanConfig, Failure> {
+        let recording = self.recording()?;
+        // Other programs comment their recordings too.
+        let Some(text) = recording
+            .metadata()
+            .filter(|text| text.trim_start().starts_with("velomotion = "))
+        else {
+            return Ok(ScanConfig::default());
+        };
+        let wrong = |what: String| {
+            Failure::new(
+                Kind::BadInput,
+                format!(
+                    "{}: the log's configuration cannot be understood:\n{what}",
+                    self.path.display()
+                ),
+            )
+            .help("replay the log with the version that its first line names")
+        };
+        let config: ScanConfig = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        if !config.mount.d_m.is_finite() {
+            return Err(wrong(format!("mount.d_m is {}", config.mount.d_m)));
+        }
+        Ok(config)
+    }
+
+    /// Gives every record of the wanted sensor and of the drive to `take`, in file order.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, where it holds several sensors and none is named or not the named one, and whatever `take` returns.
+    pub fn read(
+        &self,
+        mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
+    ) -> Result<Pass, Failure> {
+        let mut filter = Filter {
+            source: self.wanted.map(|wanted| wanted.address.octets()),
+            port: self.wanted.and_then(|wanted| wanted.port),
+        };
+        let pass = self.read_all(|record| {
+            if filter.takes(record) {
+                take(record)?;
+            }
+            Ok(())
+        })?;
+        self.check(&pass.sensors)?;
+        Ok(pass)
+    }
+
+    /// Gives every record to `take`, whichever sensor's, in file order.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, and whatever `take` returns.
+    pub fn read_all(
+        &self,
+        mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
+    ) -> Result<Pass, Failure> {
+        let mut recording = self.recording()?;
+        let mut sensors = Sensors::default();
+        while let Some(record) = recording.next_record().map_err(|error| failure(&error))? {
+            sensors.observe(&record);
+            take(&record)?;
+        }
+        Ok(Pass {
+            counts: recording.counts().clone(),
+            truncated: recording.end().and_then(cut_off),
+            sensors: sensors.list(),
+        })
+    }
+
+    /// One sensor must be meant, and be there.
+    fn check(&self, sensors: &[Sensor]) -> Result<(), Failure> {
+        let sending = || sensors.iter().filter(|sensor| sensor.data > 0);
+        let list = || {
+            let names: Vec<String> = sending().map(|sensor| name(sensor).to_string()).collect();
+            names.join(", ")
+        };
+        let is_meant = |sensor: &&Sensor| {
+            self.wanted.is_none_or(|wanted| {
+                wanted.address.octets() == sensor.source
+                    && wanted
+                        .port
+                        .is_none_or(|port| sensor.data_port == Some(port))
+            })
+        };
+        let path = self.path.display();
+        match (sending().filter(is_meant).count(), self.wanted) {
+            (1, _) | (0, None) => Ok(()),
+            (0, Some(wanted)) => Err(Failure::new(
+                Kind::BadInput,
+                format!("{path}: no lidar at {wanted}; there is: {}", list()),
+            )
+            .help("name one of these with --sensor")),
+            (several, _) => Err(Failure::new(
+                Kind::BadInput,
+                format!("{path}: {several} lidars in one recording: {}", list()),
+            )
+            .help("choose one with --sensor ADDRESS or --sensor ADDRESS:PORT; info tells more of each")),
+        }
+    }
 }
 
 fn cut_off(end: &End) -> Option<String> {
     (*end != End::Complete).then(|| end.to_string())
 }
 
-fn failure(error: &RecordingError) -> Failure {
+/// A recording's error in the program's words.
+#[must_use]
+pub fn failure(error: &RecordingError) -> Failure {
     let help = match error {
         RecordingError::Open { .. } => "see whether the name is right and the file may be read",
         RecordingError::Read { .. } => {
@@ -94,4 +262,19 @@ fn failure(error: &RecordingError) -> Failure {
         }
     };
     Failure::new(Kind::BadInput, error.to_string()).help(help)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sensors_are_named_by_address_and_port() {
+        for text in ["192.168.1.201", "10.0.0.7:2369"] {
+            assert_eq!(text.parse::<SensorName>().unwrap().to_string(), text);
+        }
+        for text in ["", "lidar", "10.0.0.7:", "10.0.0.7:70000", "10.0.0:2368"] {
+            assert!(text.parse::<SensorName>().is_err(), "{text}");
+        }
+    }
 }

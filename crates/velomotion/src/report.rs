@@ -26,6 +26,67 @@ pub struct Tilt {
     pub transport: String,
 }
 
+/// What is known of a lidar's satellite receiver.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Gps {
+    /// State of the pulse per second: absent, synchronising, locked or error.
+    pub pps: String,
+    /// Whether the lidar's time is UTC: pulse and fix are good.
+    pub locked: bool,
+    /// The same in words, with the reason.
+    pub state: String,
+}
+
+/// One of several lidars in a file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SensorReport {
+    /// Address and data port.
+    pub name: String,
+    /// Model.
+    pub model: Option<String>,
+    /// strongest, last or dual.
+    pub return_mode: Option<String>,
+    /// Data packets.
+    pub data: u64,
+    /// Channels with a distance.
+    pub returns: u64,
+    /// Data packets missing by device time.
+    pub lost_packets: u64,
+    /// Rotation.
+    pub rpm: Option<f64>,
+    /// What is known of its satellite receiver.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gps: Option<Gps>,
+}
+
+impl SensorReport {
+    /// The report on what a decoder saw.
+    #[must_use]
+    pub fn new(name: String, stats: &lidar::Stats, gps: Option<Gps>) -> Self {
+        Self {
+            name,
+            model: stats.model.map(|model| model.name.to_owned()),
+            return_mode: stats
+                .return_mode
+                .map(crate::commands::info::return_mode_name),
+            data: stats.data,
+            returns: stats.returns,
+            lost_packets: stats.lost_packets,
+            rpm: stats.rpm,
+            gps,
+        }
+    }
+
+    fn line(&self) -> String {
+        let model = self.model.as_deref().unwrap_or("unknown model");
+        let mode = self.return_mode.as_deref().unwrap_or("unknown");
+        format!(
+            "{}: {model}, {mode} return, {} packets, {} returns, {} lost",
+            self.name, self.data, self.returns, self.lost_packets
+        )
+    }
+}
+
 /// What a file holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Contents {
@@ -43,6 +104,12 @@ pub struct Contents {
     pub duration_s: f64,
     /// Rotation of the lidar.
     pub rpm: Option<f64>,
+    /// What is known of the lidar's satellite receiver.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gps: Option<Gps>,
+    /// Each lidar, where there are several; the rest of the report is of the first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sensors: Vec<SensorReport>,
     /// What a log holds of the drive.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tilt: Option<Tilt>,
@@ -139,6 +206,10 @@ impl Contents {
             ("lost packets", self.lost_packets.to_string()),
             ("duration", format!("{:.3} s", self.duration_s)),
         ];
+        if let Some(gps) = &self.gps {
+            rows.push(("gps", format!("{}; pulse {}", gps.state, gps.pps)));
+        }
+        rows.extend(self.sensors.iter().map(|s| ("sensor", s.line())));
         if let Some(tilt) = &self.tilt {
             let tilt = format!("{} samples over {}", tilt.samples, tilt.transport);
             rows.push(("tilt", tilt));

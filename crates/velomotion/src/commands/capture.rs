@@ -23,6 +23,7 @@ use crate::motion::{self, Told};
 use crate::output::{self, Aside, Target};
 use crate::progress::Progress;
 use crate::recording::{Ear, Recorded, Recording};
+use crate::recordings::Source;
 use crate::report::Scan;
 use crate::session::{Session, SessionError};
 use crate::setup::Setup;
@@ -72,9 +73,12 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
     interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
     let stdout = target.is_stdout();
+    let source = Source::open(&setup.log, None)?;
     let request = Request {
-        recording: &setup.log,
+        recording: &source,
         tilt: TiltSource::Log,
+        options: lidar::Options::default(),
+        pace: None,
         truth: truth.as_ref(),
         interrupt: &interrupt,
     };

@@ -1,35 +1,40 @@
 //! `velomotion info`: what a log or recording holds.
 
-use lidar::{Decoder, Stats};
-use protocol::record::{DriveLink, Wire};
-use protocol::vlp16::ReturnMode;
+use io::recording::{DatagramKind, Sensor};
+use lidar::{Decoder, Options, Stats, UtcClock, UtcState};
+use protocol::record::{DriveLink, Record, Wire};
+use protocol::vlp16::{PositionPacket, Pps, ReturnMode};
 use scanner::{ScanConfig, Survey};
 
 use super::Said;
 use crate::cli;
 use crate::failure::{Failure, Kind};
-use crate::recordings::{self, Pass};
-use crate::report::{Contents, Packets, Tilt};
+use crate::recordings::{self, Pass, Source};
+use crate::report::{Contents, Gps, Packets, SensorReport, Tilt};
 
 /// Runs the command.
 ///
 /// # Errors
 /// [`Kind::BadInput`] for a file that is no recording.
 pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
-    let path = &arguments.file;
-    let config = recordings::config(path)?;
-    let mut decoder = Decoder::new(lidar::Options::default());
-    let mut survey = Survey::new(&config, lidar::Options::default())
-        .map_err(|error| super::replay::scan_failure(path, &error))?;
-    let pass = recordings::read(path, |record| {
-        if let Wire::Lidar { payload, .. } = record.wire {
-            decoder.packet(record.host, payload, &mut |_| {});
+    let source = Source::open(&arguments.file, None)?;
+    let path = source.path();
+    let config = source.config()?;
+    let options = Options {
+        model: arguments.model.map(cli::ModelName::model),
+        ..Options::default()
+    };
+    let mut ears = Ears::new(options);
+    let mut survey =
+        Survey::new(&config, options).map_err(|error| super::replay::scan_failure(path, &error))?;
+    let pass = source.read_all(|record| {
+        ears.hear(record);
+        if let Wire::Drive { .. } = record.wire {
+            survey.observe(record);
         }
-        survey.observe(record);
         Ok(())
     })?;
-    decoder.finish(&mut |_| {});
-    let contents = contents(&config, decoder.stats(), survey.drive(), &pass);
+    let contents = ears.contents(&config, survey.drive(), &pass);
     let failure = pass.truncated.map(|truncated| {
         Failure::new(
             Kind::Incomplete,
@@ -43,6 +48,151 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
         failure,
         stdout_taken: false,
     })
+}
+
+/// One ear a sensor.
+struct Ears {
+    options: Options,
+    ears: Vec<Ear>,
+    /// For what is no sensor's.
+    rest: Decoder,
+}
+
+/// Listens to one sensor.
+struct Ear {
+    source: [u8; 4],
+    port: u16,
+    decoder: Decoder,
+    utc: UtcClock,
+    pps: Option<Pps>,
+}
+
+/// Sensors that are listened to; of more, only the packets are counted.
+const MOST_SENSORS: usize = 64;
+
+impl Ears {
+    fn new(options: Options) -> Self {
+        Self {
+            options,
+            ears: Vec::new(),
+            rest: Decoder::new(options),
+        }
+    }
+
+    fn hear(&mut self, record: &Record<'_>) {
+        let Wire::Lidar {
+            source,
+            port,
+            payload,
+        } = record.wire
+        else {
+            return;
+        };
+        match DatagramKind::of(payload) {
+            DatagramKind::Position => {
+                for ear in self.ears.iter_mut().filter(|ear| ear.source == source) {
+                    ear.position(record, payload);
+                }
+            }
+            DatagramKind::Data | DatagramKind::Damaged => match self.ear(source, port) {
+                Some(ear) => ear.data(record, payload),
+                None => self.rest.packet(record.host, payload, &mut |_| {}),
+            },
+            DatagramKind::Foreign => self.rest.packet(record.host, payload, &mut |_| {}),
+        }
+    }
+
+    fn ear(&mut self, source: [u8; 4], port: u16) -> Option<&mut Ear> {
+        let known = |ear: &Ear| ear.source == source && ear.port == port;
+        if let Some(at) = self.ears.iter().position(known) {
+            return self.ears.get_mut(at);
+        }
+        if self.ears.len() >= MOST_SENSORS {
+            return None;
+        }
+        self.ears.push(Ear {
+            source,
+            port,
+            decoder: Decoder::new(self.options),
+            utc: UtcClock::new(),
+            pps: None,
+        });
+        self.ears.last_mut()
+    }
+
+    /// What was heard: of the first sensor, and where there are several, of each.
+    fn contents(
+        mut self,
+        config: &ScanConfig,
+        drive: Option<(DriveLink, u64)>,
+        pass: &Pass,
+    ) -> Contents {
+        for ear in &mut self.ears {
+            ear.decoder.finish(&mut |_| {});
+        }
+        let sensor = |ear: &Ear| -> Option<Sensor> {
+            let known = |s: &&Sensor| s.source == ear.source && s.data_port == Some(ear.port);
+            pass.sensors.iter().find(known).cloned()
+        };
+        let nothing = Stats::default();
+        let first = self.ears.first();
+        let mut contents = contents(
+            config,
+            first.map_or(&nothing, |ear| ear.decoder.stats()),
+            drive,
+            pass,
+        );
+        contents.gps = first.and_then(Ear::gps);
+        if self.ears.len() > 1 {
+            contents.sensors = self
+                .ears
+                .iter()
+                .filter_map(|ear| {
+                    let name = recordings::name(&sensor(ear)?).to_string();
+                    Some(SensorReport::new(name, ear.decoder.stats(), ear.gps()))
+                })
+                .collect();
+        }
+        contents
+    }
+}
+
+impl Ear {
+    fn data(&mut self, record: &Record<'_>, payload: &[u8]) {
+        let utc = &mut self.utc;
+        self.decoder.packet(record.host, payload, &mut |firing| {
+            utc.data(firing.start);
+        });
+    }
+
+    fn position(&mut self, record: &Record<'_>, payload: &[u8]) {
+        self.decoder.packet(record.host, payload, &mut |_| {});
+        if let Ok(packet) = PositionPacket::new(payload) {
+            self.pps = Some(packet.pps());
+            self.utc.position(record.host, &packet);
+        }
+    }
+
+    /// What is known of the receiver; `None` without position packets.
+    fn gps(&self) -> Option<Gps> {
+        let pps = self.pps?;
+        let state = self.utc.state();
+        Some(Gps {
+            pps: pps_name(pps),
+            locked: matches!(state, UtcState::Locked { .. }),
+            state: state.to_string(),
+        })
+    }
+}
+
+fn pps_name(pps: Pps) -> String {
+    match pps {
+        Pps::Absent => "absent".to_owned(),
+        Pps::Synchronising => "synchronising".to_owned(),
+        Pps::Locked => "locked".to_owned(),
+        Pps::Error => "error".to_owned(),
+        Pps::Unknown(byte) => format!("unknown (0x{byte:02x})"),
+    }
 }
 
 /// What was found, for the report.
@@ -60,13 +210,15 @@ pub fn contents(
     });
     Contents {
         model: stats.model.map(|model| model.name.to_owned()),
-        return_mode: stats.return_mode.map(return_mode),
+        return_mode: stats.return_mode.map(return_mode_name),
         packets: Packets {
             data: stats.data,
             position: stats.position,
             malformed: stats.malformed + counts.malformed,
             other: stats.other + counts.other + counts.fragments,
         },
+        gps: None,
+        sensors: Vec::new(),
         returns: stats.returns,
         lost_packets: stats.lost_packets,
         duration_s: stats.duration.as_secs_f64(),
@@ -92,9 +244,40 @@ fn warnings(stats: &Stats, pass: &Pass) -> Vec<String> {
             stats.malformed
         ));
     }
-    if stats.lost_packets > 0 {
-        warnings.push(format!("{} lidar packets are missing", stats.lost_packets));
-    }
+    let said = [
+        (stats.lost_packets, "lidar packets are missing"),
+        (
+            stats.duplicates,
+            "lidar packets came twice and were used once",
+        ),
+        (
+            stats.reordered,
+            "lidar packets came out of order and were put back",
+        ),
+        (
+            stats.late,
+            "lidar packets came too late to be put back in order and were left out",
+        ),
+        (
+            stats.unidentified,
+            "lidar packets are of a model that nothing tells and were left out: give --model",
+        ),
+        (stats.clock_steps, "times the lidar's clock was set"),
+        (
+            pass.counts.fragments,
+            "IP fragments could not be put together",
+        ),
+        (
+            pass.counts.snapped,
+            "packets were recorded only in part: record again with the full snap length",
+        ),
+        (
+            pass.counts.damaged,
+            "stretches of the file are damaged and were left out",
+        ),
+    ];
+    let said = said.iter().filter(|(count, _)| *count > 0);
+    warnings.extend(said.map(|(count, what)| format!("{count} {what}")));
     warnings
 }
 
@@ -106,7 +289,9 @@ fn transport(link: DriveLink) -> &'static str {
     }
 }
 
-fn return_mode(mode: ReturnMode) -> String {
+/// A return mode as reports call it.
+#[must_use]
+pub fn return_mode_name(mode: ReturnMode) -> String {
     match mode {
         ReturnMode::Strongest => "strongest".to_owned(),
         ReturnMode::Last => "last".to_owned(),

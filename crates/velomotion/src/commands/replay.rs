@@ -5,10 +5,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use analysis::truth::Comparison;
 use cloud::{Metadata, Sink, SinkError};
+use io::recording::{Gap, Pacer, Turn};
+use lidar::{Duplicates, Options};
+use protocol::record::Record;
 use scanner::{
     Alignment, AngleTable, Placer, ScanConfig, ScanError, Survey, TableTime, TiltSource,
 };
 use sim::Truth;
+use units::Span;
 
 use super::Said;
 use super::info::contents;
@@ -17,16 +21,20 @@ use crate::failure::{Failure, Kind};
 use crate::names;
 use crate::output::{self, Target, sink_failure};
 use crate::progress::Progress;
-use crate::recordings;
+use crate::recordings::Source;
 use crate::report::{self, Scan, Sync};
 use crate::signals;
 
 /// What to make a cloud of.
 pub struct Request<'a> {
     /// Log or plain recording.
-    pub recording: &'a Path,
+    pub recording: &'a Source,
     /// Where angles come from.
     pub tilt: TiltSource,
+    /// How the lidar's packets are read.
+    pub options: Options,
+    /// How many times as fast as they were recorded points are handed on; `None`: as fast as they are made.
+    pub pace: Option<f64>,
     /// What truly happened, where a simulator knows.
     pub truth: Option<&'a Truth>,
     /// Set where the user wants no more of it.
@@ -39,9 +47,13 @@ pub struct Request<'a> {
 /// [`Failure`] where no cloud came of it.
 pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
     let interrupt = signals::interrupt_flag()?;
+    // The input is looked at before an output is opened.
+    let source = Source::open(&arguments.input, arguments.lidar.sensor)?;
     let request = Request {
-        recording: &arguments.input,
+        recording: &source,
         tilt: tilt_source(&arguments.tilt)?,
+        options: options(&arguments.lidar),
+        pace: arguments.realtime,
         truth: None,
         interrupt: &interrupt,
     };
@@ -55,8 +67,6 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
         });
     }
     output::one_for_stdout(arguments.output.output.as_deref(), common.json)?;
-    // The input is looked at before an output is opened.
-    drop(recordings::open(&arguments.input)?);
     let cloud = arguments
         .output
         .output
@@ -107,9 +117,10 @@ pub fn make(request: &Request<'_>, mut target: Target) -> Result<Scan, Failure> 
 /// # Errors
 /// As for [`make`].
 pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result<Scan, Failure> {
-    let path = request.recording;
-    let config = recordings::config(path)?;
-    let options = lidar::Options::default();
+    let (source, options) = (request.recording, request.options);
+    let path = source.path();
+    let config = source.config()?;
+    let mut pace = pacer(request.pace)?;
     let cannot_scan = |error: ScanError| scan_failure(path, &error);
     let cannot_write = |error: SinkError| sink_failure(output, &error);
 
@@ -118,7 +129,7 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
         true => Err(stopped(path)),
         false => Ok(()),
     };
-    let pass = recordings::read(path, |record| {
+    let pass = source.read(|record| {
         survey.observe(record);
         go_on()
     })?;
@@ -128,7 +139,10 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
     sink.begin(&metadata(&config, &request.tilt))
         .map_err(cannot_write)?;
     let mut placer = Placer::new(&alignment, options, sink);
-    recordings::read(path, |record| {
+    source.read(|record| {
+        if let Some(pace) = &mut pace {
+            wait(pace, record, request.interrupt);
+        }
         placer.observe(record).map_err(cannot_write)?;
         go_on()
     })?;
@@ -162,6 +176,41 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
         lost_records: 0,
         truth: None,
     })
+}
+
+/// How the lidar's packets are to be read.
+fn options(arguments: &cli::Lidar) -> Options {
+    Options {
+        model: arguments.model.map(cli::ModelName::model),
+        duplicates: match arguments.equal_returns {
+            cli::Equal::Once => Duplicates::Unique,
+            cli::Equal::Twice => Duplicates::All,
+        },
+        ..Options::default()
+    }
+}
+
+/// A recording that is silent for longer is not waited for.
+const LONGEST_SILENCE: Span = Span::from_secs(10);
+
+fn pacer(factor: Option<f64>) -> Result<Option<Pacer>, Failure> {
+    let pacer = factor.map(|factor| Pacer::new(factor, LONGEST_SILENCE));
+    pacer.transpose().map_err(|error| {
+        Failure::new(Kind::Usage, format!("--realtime: {error}"))
+            .help("1 is as fast as it was recorded, 2 twice as fast")
+    })
+}
+
+/// Waits until a record is due. What is not waited for is said.
+fn wait(pace: &mut Pacer, record: &Record<'_>, interrupt: &AtomicBool) {
+    if let Turn::Anew(gap) = pace.wait(record.host, interrupt) {
+        let (what, span) = match gap {
+            Gap::Silence(span) => ("not waited for: the recording is silent for", span),
+            Gap::Backwards(span) => ("the recording's time goes back by", span),
+            Gap::Behind(span) => ("behind the recording's time by", span),
+        };
+        tracing::warn!("{what} {:.1} s", span.as_secs_f64());
+    }
 }
 
 fn stopped(path: &Path) -> Failure {
