@@ -3,6 +3,7 @@
 //! Logs do not go through here: a log must be readable while it grows. Formats are written by others through
 //! [`std::io::Write`] and [`std::io::Seek`].
 
+use std::env;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -227,6 +228,30 @@ fn create_temporary(path: &Path) -> io::Result<(File, PathBuf)> {
         }
     }
     Err(taken)
+}
+
+/// A file without a name for what does not fit memory, in [`scratch_folder`]; it is gone when it is closed.
+///
+/// # Errors
+/// Where none can be made there; the error names the folder.
+pub fn scratch() -> io::Result<File> {
+    let folder = scratch_folder();
+    tempfile::tempfile_in(&folder).map_err(|error| {
+        io::Error::new(
+            error.kind(),
+            format!("no scratch file in {}: {error}", folder.display()),
+        )
+    })
+}
+
+/// `$TMPDIR`, or else `/var/tmp`, which unlike `/tmp` is no memory.
+#[must_use]
+pub fn scratch_folder() -> PathBuf {
+    match env::var_os("TMPDIR") {
+        Some(folder) => folder.into(),
+        None if Path::new("/var/tmp").is_dir() => "/var/tmp".into(),
+        None => env::temp_dir(),
+    }
 }
 
 #[cfg(test)]

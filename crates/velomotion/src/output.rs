@@ -1,12 +1,13 @@
 //! Where a cloud goes: a file that takes its name when it is complete, or stdout.
 
-use std::io::{self as stdio, BufWriter, Seek, SeekFrom, Write};
+use std::fs::File;
+use std::io::{self as stdio, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ::io::files::{FileError, NewFile, Overwrite};
 use cloud::formats::Format;
-use cloud::formats::ply::PlyWriter;
+use cloud::formats::ply::PlyPipe;
 use cloud::{Sink, SinkError};
 
 use crate::failure::{Failure, Kind};
@@ -26,10 +27,15 @@ impl Target {
     /// cannot be made.
     pub fn open(path: &Path, force: bool) -> Result<Self, Failure> {
         if path == Path::new("-") {
+            let scratch = ::io::files::scratch().map_err(|error| {
+                Failure::new(Kind::BadInput, format!("cannot write to stdout: {error}"))
+                    .help("set TMPDIR to a folder with room for the cloud, or name a file with -o")
+            })?;
+            let scratch = BufWriter::with_capacity(1 << 20, scratch);
             return Ok(Self {
                 path: path.to_owned(),
                 file: None,
-                sink: Box::new(PlyWriter::<stdio::Empty>::to_pipe(stdio::stdout())),
+                sink: Box::new(PlyPipe::new(stdio::stdout(), Scratch(scratch))),
             });
         }
         let format = Format::from_path(path).map_err(|error| {
@@ -218,11 +224,45 @@ pub fn file_failure(error: &FileError) -> Failure {
 /// A cloud that cannot be written, with what to do about it.
 #[must_use]
 pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
+    if let SinkError::Write { source, .. } = error
+        && source.kind() == stdio::ErrorKind::BrokenPipe
+    {
+        return Failure::new(
+            Kind::Incomplete,
+            "whoever read the cloud from stdout closed it before its end".to_owned(),
+        )
+        .help("read all of it, or write the cloud to a file with -o");
+    }
     Failure::new(
         Kind::Incomplete,
         format!("the cloud {} could not be written: {error}", path.display()),
     )
     .help("free some space or name another place; the cloud can be made again from its log with replay")
+}
+
+/// A buffered scratch file: written first, then read.
+struct Scratch(BufWriter<File>);
+
+impl Write for Scratch {
+    fn write(&mut self, bytes: &[u8]) -> stdio::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> stdio::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl Seek for Scratch {
+    fn seek(&mut self, to: SeekFrom) -> stdio::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
+impl Read for Scratch {
+    fn read(&mut self, buffer: &mut [u8]) -> stdio::Result<usize> {
+        self.0.get_mut().read(buffer)
+    }
 }
 
 /// The file, shared between the writer inside a sink and the commit after it.

@@ -12,7 +12,7 @@
 //!
 //! Left out: faces, ASCII and big-endian PLY, reading.
 
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use super::rows::Rows;
 use super::seconds::seconds;
@@ -31,15 +31,15 @@ pub struct PlyWriter<W> {
     summary: Summary,
 }
 
-/// Writes PLY to an output that does not seek (a pipe): the rows stay in memory (29 bytes a point) until
-/// [`Sink::finish`].
+/// Writes PLY to an output that does not seek (a pipe): as the header has the count, the rows (29 bytes a point) wait in a scratch
+/// file, or in memory (`Cursor<Vec<u8>>`), until [`Sink::finish`].
 #[derive(Debug)]
-pub struct PlyPipe<W> {
+pub struct PlyPipe<W, S> {
     output: W,
+    scratch: S,
     layout: Layout,
     stage: Stage,
     head: String,
-    body: Vec<u8>,
     summary: Summary,
 }
 
@@ -172,11 +172,6 @@ impl<W: Write + Seek> PlyWriter<W> {
         self
     }
 
-    /// [`PlyPipe::new`], which is the shorter way to say it.
-    pub fn to_pipe<P: Write>(output: P) -> PlyPipe<P> {
-        PlyPipe::new(output)
-    }
-
     /// Gives the output back.
     pub fn into_inner(self) -> W {
         self.output
@@ -229,15 +224,15 @@ impl<W: Write + Seek> Sink for PlyWriter<W> {
     }
 }
 
-impl<W: Write> PlyPipe<W> {
-    /// A writer into `output` with the columns of [`Fields::FILE`].
-    pub fn new(output: W) -> Self {
+impl<W: Write, S: Read + Write + Seek> PlyPipe<W, S> {
+    /// A writer into `output` with the columns of [`Fields::FILE`]; `scratch` is empty.
+    pub fn new(output: W, scratch: S) -> Self {
         Self {
             output,
+            scratch,
             layout: Layout::new(Fields::FILE),
             stage: Stage::default(),
             head: String::new(),
-            body: Vec::new(),
             summary: Summary::default(),
         }
     }
@@ -262,15 +257,20 @@ impl<W: Write> PlyPipe<W> {
             self.layout.tail()
         );
         self.output.write_all(header.as_bytes())?;
-        self.output.write_all(&self.body)?;
+        self.scratch.rewind()?;
+        io::copy(&mut self.scratch, &mut self.output)?;
         self.output.flush()
     }
 }
 
-impl<W: Write> Sink for PlyPipe<W> {
+impl<W: Write, S: Read + Write + Seek> Sink for PlyPipe<W, S> {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         self.stage.points(FORMAT)?;
-        self.body.extend_from_slice(self.layout.encode(batch)?);
+        let rows = self.layout.encode(batch)?;
+        if let Err(source) = self.scratch.write_all(rows) {
+            self.stage.cut();
+            return Err(failed(self.summary.points)(source));
+        }
         self.summary.add(batch.summary());
         Ok(())
     }

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 use super::{Recording, RecordingError};
+use crate::files::scratch_folder;
 
 /// Bytes kept of a pipe where nothing else is said: some hours of a sensor.
 pub const SPOOL_LIMIT: u64 = 16 << 30;
@@ -49,7 +50,7 @@ impl Input {
         let copy = if again {
             None
         } else {
-            Some(copy(name, file, &folder(), limit)?)
+            Some(copy(name, file, &scratch_folder(), limit)?)
         };
         Ok(Self {
             name: name.to_owned(),
@@ -92,14 +93,6 @@ pub(super) fn open(path: &Path) -> Result<File, RecordingError> {
         path: path.to_owned(),
         source,
     })
-}
-
-fn folder() -> PathBuf {
-    match std::env::var_os("TMPDIR") {
-        Some(folder) => folder.into(),
-        None if Path::new("/var/tmp").is_dir() => "/var/tmp".into(),
-        None => std::env::temp_dir(),
-    }
 }
 
 /// All that `from` gives, in a temporary file.

@@ -72,7 +72,7 @@ fn read(bytes: &[u8]) -> Read {
 
 fn written(fields: Fields, batches: &[Points]) -> (Vec<u8>, Vec<u8>) {
     let mut file = PlyWriter::new(Cursor::new(vec![])).with_fields(fields);
-    let mut pipe = PlyPipe::new(vec![]).with_fields(fields);
+    let mut pipe = PlyPipe::new(vec![], Cursor::new(vec![])).with_fields(fields);
     let mut both = (&mut file, &mut pipe);
     both.begin(&metadata()).unwrap();
     for batch in batches {
