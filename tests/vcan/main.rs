@@ -2,10 +2,11 @@
 //! talks to it through another socket.
 //!
 //! Where the kernel has no CAN, the test runs its own program again inside an emulated machine (`in-vm` beside this file).
-//! It says why it is skipped where that cannot be; with `VELOMOTION_VCAN=required` that is a failure. The project's client
-//! of the drive and SLCAN are tested elsewhere: here it is the kernel between two programs' sockets that counts.
+//! It says why it is skipped where that cannot be; with `VELOMOTION_VCAN=required` that is a failure. Here it is the kernel
+//! between two programs' sockets that counts: a master made for the test, and the project's own client.
 
 mod bus;
+mod client;
 mod stream;
 
 use std::path::Path;
@@ -48,6 +49,17 @@ fn the_software_drive_and_a_master_meet_on_a_bus_of_the_kernel() {
         meet();
     } else {
         run_inside("the_software_drive_and_a_master_meet_on_a_bus_of_the_kernel");
+    }
+}
+
+#[test]
+fn the_client_homes_and_sweeps_on_a_bus_of_the_kernel() {
+    if std::env::var_os(INSIDE).is_some() {
+        let drive = SoftwareDrive::start();
+        client::sweep();
+        drive.stop();
+    } else {
+        run_inside("the_client_homes_and_sweeps_on_a_bus_of_the_kernel");
     }
 }
 

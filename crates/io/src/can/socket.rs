@@ -2,18 +2,20 @@
 //!
 //! Blocking with timeouts, like the serial port: a drive's client waits for one answer at a time, on its own thread. The
 //! kernel's error reports and CAN FD are left switched off. Waiting is `ppoll`'s, since the socket's own timeouts have
-//! the kernel's tick.
+//! the kernel's tick. Frames are received here and not by the crate, as it passes over the kernel's count of those it dropped:
+//! a socket holds some hundred frames, and what does not fit is gone without a word.
 
-use std::io::{self, ErrorKind};
-use std::os::fd::AsFd;
+use std::io::{self, ErrorKind, IoSliceMut};
+use std::os::fd::{AsFd, AsRawFd};
 use std::thread;
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, ppoll};
+use nix::sys::socket::{ControlMessageOwned, MsgFlags, recvmsg, setsockopt, sockopt};
 use nix::sys::time::TimeSpec;
-use protocol::canopen::{CanFrame, CanId, CobId, ExtendedId};
-use socketcan::{CanSocket, EmbeddedFrame as _, Frame as _, Id, Socket as _, SocketOptions as _};
+use protocol::canopen::{CanFrame, CanId, SOCKETCAN_LEN};
+use socketcan::{CanSocket, EmbeddedFrame as _, Id, Socket as _};
 use units::{Host, Span, Stamp};
 
 use super::interfaces::{interfaces, up_command};
@@ -22,6 +24,8 @@ use crate::clock;
 
 /// How long a frame may wait for room in the interface's queue.
 const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
+/// Bytes asked for; a frame takes some 770 of them.
+const RECEIVE_BUFFER: usize = 4 << 20;
 /// Between two tries at a full queue: some frames of the bus.
 const RETRY: Duration = Duration::from_millis(1);
 
@@ -30,6 +34,10 @@ const RETRY: Duration = Duration::from_millis(1);
 pub struct SocketCan {
     socket: CanSocket,
     interface: String,
+    control: Vec<u8>,
+    /// The kernel's counter of dropped frames, as it was last told, and all of them.
+    overflow_counter: u32,
+    dropped: u64,
 }
 
 impl SocketCan {
@@ -42,17 +50,29 @@ impl SocketCan {
         let port = Self {
             socket,
             interface: interface.to_owned(),
+            control: nix::cmsg_space!(TimeSpec, u32),
+            overflow_counter: 0,
+            dropped: 0,
         };
         // Binding to an interface that is down works; the kernel leaves the error at the socket.
         let pending = port.socket.as_raw_socket().take_error();
         if let Some(down) = pending.map_err(|e| port.io_error("open", e))? {
             return Err(port.io_error("open", down));
         }
+        setsockopt(&port.socket, sockopt::ReceiveTimestampns, &true)
+            .and_then(|()| setsockopt(&port.socket, sockopt::RxqOvfl, &1))
+            .map_err(|e| port.io_error("open", e.into()))?;
+        enlarge_buffer(&port.socket);
         port.socket
-            .set_recv_timestamp(true)
-            .and_then(|()| port.socket.set_nonblocking(true))
+            .set_nonblocking(true)
             .map_err(|e| port.io_error("open", e))?;
         Ok(port)
+    }
+
+    /// Frames that the kernel dropped because this program did not read fast enough, as far as those read tell.
+    #[must_use]
+    pub const fn dropped(&self) -> u64 {
+        self.dropped
     }
 
     /// The interface's name.
@@ -78,21 +98,48 @@ impl SocketCan {
     }
 
     /// A frame, if one is there.
-    fn receive(&self) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError> {
+    fn receive(&mut self) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError> {
         loop {
-            match self.socket.read_frame_with_timestamps() {
-                Ok((frame, times)) => {
-                    let host = times.socket.map_or_else(clock::now, stamp);
-                    // An error report, which was not asked for, is no frame.
-                    if let Some(frame) = from_kernel(&frame) {
-                        return Ok(Some((frame, host)));
-                    }
-                }
-                Err(e) if e.kind() == ErrorKind::Interrupted => {}
-                Err(e) if e.kind() == ErrorKind::WouldBlock => return Ok(None),
-                Err(e) => return Err(self.io_error("read", e)),
+            match self.receive_message() {
+                // An error report, which was not asked for, is no frame.
+                Ok((None, _)) => {}
+                Ok((Some(frame), host)) => return Ok(Some((frame, host))),
+                Err(Errno::EINTR) => {}
+                Err(Errno::EAGAIN) => return Ok(None),
+                Err(e) => return Err(self.io_error("read", e.into())),
             }
         }
+    }
+
+    /// One `recvmsg`: the frame and the kernel's time of it; its count of dropped frames is noted.
+    fn receive_message(&mut self) -> Result<(Option<CanFrame>, Stamp<Host>), Errno> {
+        let mut bytes = [0; SOCKETCAN_LEN];
+        let mut parts = [IoSliceMut::new(&mut bytes)];
+        self.control.resize(self.control.capacity(), 0);
+        let fd = self.socket.as_raw_fd();
+        let flags = MsgFlags::empty();
+        let message = recvmsg::<()>(fd, &mut parts, Some(&mut self.control), flags)?;
+        let (mut host, mut overflow) = (None, None);
+        for part in message.cmsgs()? {
+            match part {
+                ControlMessageOwned::ScmTimestampns(time) => host = Some(stamp(time)),
+                ControlMessageOwned::RxqOvfl(counter) => overflow = Some(counter),
+                _ => {}
+            }
+        }
+        if let Some(counter) = overflow {
+            self.dropped += u64::from(counter.wrapping_sub(self.overflow_counter));
+            self.overflow_counter = counter;
+        }
+        Ok((from_kernel(bytes), host.unwrap_or_else(clock::now)))
+    }
+}
+
+/// Room for as many frames as the kernel lets this program have: its limit for users makes that half a second of a stream at
+/// 1 kHz, which is enough, so that a refusal is none of an opening.
+fn enlarge_buffer(socket: &CanSocket) {
+    if setsockopt(socket, sockopt::RcvBufForce, &RECEIVE_BUFFER).is_err() {
+        let _ = setsockopt(socket, sockopt::RcvBuf, &RECEIVE_BUFFER);
     }
 }
 
@@ -175,11 +222,12 @@ fn open_error(interface: &str, source: io::Error) -> CanError {
 }
 
 /// The kernel's time of the system clock.
-fn stamp(time: SystemTime) -> Stamp<Host> {
-    let since = time
-        .duration_since(SystemTime::UNIX_EPOCH)
-        .unwrap_or_default();
-    Stamp::from_nanos(i64::try_from(since.as_nanos()).unwrap_or(i64::MAX))
+fn stamp(time: TimeSpec) -> Stamp<Host> {
+    Stamp::from_nanos(
+        time.tv_sec()
+            .saturating_mul(1_000_000_000)
+            .saturating_add(time.tv_nsec()),
+    )
 }
 
 /// The frame as the kernel's; `None` only for an identifier that `CanFrame` cannot have.
@@ -195,20 +243,11 @@ fn to_kernel(frame: &CanFrame) -> Option<socketcan::CanFrame> {
     }
 }
 
-/// The kernel's frame; `None` for an error report.
-fn from_kernel(frame: &socketcan::CanFrame) -> Option<CanFrame> {
-    if frame.is_error_frame() {
-        return None;
-    }
-    let id: CanId = match frame.hal_id() {
-        Id::Standard(id) => CobId::new(id.as_raw())?.into(),
-        Id::Extended(id) => ExtendedId::new(id.as_raw())?.into(),
-    };
-    if frame.is_remote_frame() {
-        CanFrame::remote(id, u8::try_from(frame.dlc()).ok()?).ok()
-    } else {
-        CanFrame::new(id, frame.data()).ok()
-    }
+/// A `struct can_frame` as the kernel lays it out, with the identifier in this machine's order; `None` for an error report.
+fn from_kernel(mut bytes: [u8; SOCKETCAN_LEN]) -> Option<CanFrame> {
+    let (id, _) = bytes.split_first_chunk_mut::<4>()?;
+    *id = u32::from_ne_bytes(*id).to_be_bytes();
+    CanFrame::from_socketcan(&bytes).ok()
 }
 
 #[cfg(test)]

@@ -1,5 +1,8 @@
 //! On a kernel with CAN and an interface `vcan0` that is up, these send frames; elsewhere they say why they do not, and
-//! fail for it where `VELOMOTION_VCAN` is set in the environment, as a run in a machine made for them does.
+//! fail for it where `VELOMOTION_VCAN_INSIDE` is set in the environment, as a run in a machine made for them does.
+
+use protocol::canopen::{CobId, ExtendedId};
+use socketcan::Frame as _;
 
 use super::*;
 
@@ -7,7 +10,10 @@ const BUS: &str = "vcan0";
 
 /// Says why a test does nothing on this machine.
 fn skip(reason: &str) {
-    assert!(std::env::var_os("VELOMOTION_VCAN").is_none(), "{reason}");
+    assert!(
+        std::env::var_os("VELOMOTION_VCAN_INSIDE").is_none(),
+        "{reason}"
+    );
     eprintln!("skipped: {reason}");
 }
 
@@ -40,11 +46,20 @@ fn frames() -> Vec<CanFrame> {
     ]
 }
 
+/// The bytes of the kernel's `struct can_frame` (linux/can.h).
+fn as_received(frame: &socketcan::CanFrame) -> [u8; SOCKETCAN_LEN] {
+    let mut bytes = [0; SOCKETCAN_LEN];
+    bytes[..4].copy_from_slice(&frame.id_word().to_ne_bytes());
+    bytes[4] = u8::try_from(frame.dlc()).unwrap();
+    bytes[8..8 + frame.data().len()].copy_from_slice(frame.data());
+    bytes
+}
+
 #[test]
 fn frames_become_the_kernels_and_back() {
     for frame in frames() {
         let kernel = to_kernel(&frame).unwrap();
-        assert_eq!(from_kernel(&kernel), Some(frame));
+        assert_eq!(from_kernel(as_received(&kernel)), Some(frame));
         // The crate's view of the frame and our own bytes of a log agree.
         let bytes = frame.to_socketcan();
         let word = u32::from_be_bytes(*bytes.first_chunk().unwrap());
@@ -52,7 +67,7 @@ fn frames_become_the_kernels_and_back() {
         assert_eq!(kernel.data(), frame.data());
     }
     let report = socketcan::CanErrorFrame::new_error(0x40, &[0; 8]).unwrap();
-    assert_eq!(from_kernel(&report.into()), None);
+    assert_eq!(from_kernel(as_received(&report.into())), None);
 }
 
 #[test]
@@ -141,4 +156,25 @@ fn an_interface_that_is_down_says_how_to_bring_it_up() {
             "{list:?}"
         );
     }
+}
+
+/// A socket that nobody reads holds so many frames; the kernel drops the others, and says how many with the next one that it keeps.
+#[test]
+fn dropped_frames_are_counted() {
+    const SENT: u64 = 20_000;
+    let Some((mut one, mut other)) = pair() else {
+        return;
+    };
+    let frame = CanFrame::of(CobId::new(0x181).unwrap(), [7; 8]);
+    for _ in 0..SENT {
+        one.write_frame(&frame).unwrap();
+    }
+    let mut received = 0;
+    while other.read(Span::from_millis(50)).unwrap().is_some() {
+        received += 1;
+    }
+    assert!((100..SENT).contains(&received), "{received}");
+    one.write_frame(&frame).unwrap();
+    assert!(other.read(Span::from_secs(5)).unwrap().is_some());
+    assert_eq!(received + other.dropped(), SENT);
 }

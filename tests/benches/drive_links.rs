@@ -1,0 +1,298 @@
+//! How fast the drive's position can be asked for over each link, and what that costs: real time, real pseudo-terminals, the
+//! software drive in a process of its own.
+//!
+//! `cargo bench -p velomotion-tests --bench drive_links` prints the tables of docs/src/links.md. `-- --seconds N` is how long each
+//! row is measured (60 s for the stream at SYNC), `-- --can IFACE` adds an interface of the kernel.
+//! Left out: wire time, which a pseudo-terminal does not have; the table says what it adds.
+
+use std::cell::RefCell;
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command as Process, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use drive::{AxisConfig, Client, Command, Listener, Observation, ShaftSample};
+use io::port::{Port, Recorder};
+use protocol::canopen::{CanFrame, CobId};
+use protocol::record::{Direction, DriveLink, Record, Wire};
+use units::Span;
+use velomotion::cli::{Common, FirmwareSim};
+use velomotion::config::{Axis, Device, DeviceKind};
+use velomotion::session::Session;
+use velomotion::{devices, ports};
+
+/// First argument of the process that is the software drive.
+const SOFTWARE_DRIVE: &str = "--software-drive";
+
+/// `velomotion firmware-sim` with these arguments.
+fn software_drive(interface: &[String]) {
+    let is = |name: &str| interface.first().is_some_and(|first| first == name);
+    let arguments = FirmwareSim {
+        usb: is("--usb"),
+        rs232: is("--rs232"),
+        slcan: is("--slcan"),
+        can: interface.get(1).cloned(),
+        link: None,
+    };
+    let common = Common {
+        device: None,
+        config: None,
+        json: false,
+        quiet: true,
+        verbose: 0,
+    };
+    velomotion::commands::firmware_sim::run(&arguments, &common)
+        .map(drop)
+        .unwrap();
+}
+
+/// The software drive in a process of its own.
+struct SoftwareDrive {
+    process: Child,
+    port: String,
+}
+
+impl SoftwareDrive {
+    fn start(interface: &[&str]) -> Self {
+        let mut process = Process::new(std::env::current_exe().unwrap())
+            .arg(SOFTWARE_DRIVE)
+            .args(interface)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut port = String::new();
+        BufReader::new(process.stdout.take().unwrap())
+            .read_line(&mut port)
+            .unwrap();
+        let port = port.trim().to_owned();
+        Self { process, port }
+    }
+}
+
+impl Drop for SoftwareDrive {
+    fn drop(&mut self) {
+        // It ends when its standard input closes.
+        drop(self.process.stdin.take());
+        let _ = self.process.wait();
+    }
+}
+
+/// CPU seconds of a process so far, user and system (proc(5)).
+fn cpu_s(process: &str) -> f64 {
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
+    let after_name = stat.rsplit_once(')').unwrap().1;
+    let fields: Vec<f64> = after_name
+        .split_whitespace()
+        .map(|field| field.parse().unwrap_or(0.0))
+        .collect();
+    const TICKS_A_SECOND: f64 = 100.0;
+    (fields[11] + fields[12]) / TICKS_A_SECOND
+}
+
+/// What a stretch of sampling gave.
+struct Measured {
+    samples: Vec<ShaftSample>,
+    /// SYNCs sent.
+    beats: u64,
+    seconds: f64,
+    client_share: f64,
+    drive_share: f64,
+}
+
+fn device(kind: DeviceKind) -> Device {
+    Device {
+        kind,
+        ..Device::simulator()
+    }
+}
+
+/// Samples for so long at the axis's poll period.
+fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f64) -> Measured {
+    let opened = ports::open(&device(kind), drive.port.as_ref()).unwrap();
+    // As in a log: what was sent and received is what counts, not what the client made of it.
+    let heard = RefCell::new(Heard::new(&axis));
+    let port = Recorder::new(opened.port, opened.link, |record: &Record<'_>| {
+        heard.borrow_mut().hear(record);
+    });
+    let client = Client::with_link(axis, opened.link);
+    let mut session = Session::new(client, port, Arc::new(AtomicBool::new(false)));
+    session.run(Command::Connect, &mut |_| {}).unwrap();
+    session.run(Command::Home, &mut |_| {}).unwrap();
+    let before = heard.borrow().listener.clone();
+    *heard.borrow_mut() = Heard {
+        listener: before,
+        ..Heard::new(&AxisConfig::default())
+    };
+    let child = drive.process.id().to_string();
+    let (begin, client_s, drive_s) = (Instant::now(), cpu_s("self"), cpu_s(&child));
+    let until = session.port().now() + Span::from_secs_f64(seconds);
+    session.run(Command::Hold { until }, &mut |_| {}).unwrap();
+    let took = begin.elapsed().as_secs_f64();
+    let (samples, beats) = {
+        let mut heard = heard.borrow_mut();
+        (std::mem::take(&mut heard.samples), heard.beats)
+    };
+    let measured = Measured {
+        samples,
+        beats,
+        seconds: took,
+        client_share: (cpu_s("self") - client_s) / took,
+        drive_share: (cpu_s(&child) - drive_s) / took,
+    };
+    session.run(Command::Brake, &mut |_| {}).unwrap();
+    measured
+}
+
+/// What a log of the session tells.
+struct Heard {
+    listener: Listener,
+    samples: Vec<ShaftSample>,
+    beats: u64,
+}
+
+impl Heard {
+    fn new(axis: &AxisConfig) -> Self {
+        Self {
+            listener: Listener::new(axis.node),
+            samples: Vec::new(),
+            beats: 0,
+        }
+    }
+
+    fn hear(&mut self, record: &Record<'_>) {
+        self.beats += u64::from(is_sync(record));
+        let Wire::Drive {
+            link,
+            direction,
+            frame,
+        } = record.wire
+        else {
+            return;
+        };
+        let samples = &mut self.samples;
+        self.listener
+            .observe(link, direction, frame, record.host, &mut |seen| {
+                if let Observation::Sample(sample) = seen {
+                    samples.push(sample);
+                }
+            });
+    }
+}
+
+/// Whether this is a SYNC to the bus.
+fn is_sync(record: &Record<'_>) -> bool {
+    let Wire::Drive {
+        link: DriveLink::Can,
+        direction: Direction::ToDevice,
+        frame,
+    } = record.wire
+    else {
+        return false;
+    };
+    CanFrame::from_socketcan(frame).is_ok_and(|frame| frame.cob_id() == Some(CobId::SYNC))
+}
+
+/// The q-th part of the round trips, in microseconds.
+fn trip_us(samples: &[ShaftSample], q: f64) -> f64 {
+    let mut trips: Vec<f64> = samples
+        .iter()
+        .map(|sample| (sample.answer - sample.request).as_micros_f64())
+        .collect();
+    trips.sort_by(f64::total_cmp);
+    trips[((trips.len() - 1) as f64 * q) as usize]
+}
+
+fn row(name: &str, pace: &str, measured: &Measured) {
+    let samples = &measured.samples;
+    println!(
+        "| {name} | {pace} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1} % | {:.1} % |",
+        samples.len() as f64 / measured.seconds,
+        trip_us(samples, 0.5),
+        trip_us(samples, 0.99),
+        trip_us(samples, 1.0),
+        measured.client_share * 100.0,
+        measured.drive_share * 100.0,
+    );
+}
+
+/// The stream at SYNC, 1 kHz: by the drive's own time nothing is missing in between.
+fn stream(name: &str, measured: &Measured) {
+    let times: Vec<u32> = measured
+        .samples
+        .iter()
+        .filter_map(|s| s.device_us)
+        .collect();
+    let spacings: Vec<f64> = times
+        .windows(2)
+        .map(|w| f64::from(w[1].wrapping_sub(w[0])) / 1e3)
+        .collect();
+    let worst = spacings.iter().copied().fold(0.0, f64::max);
+    println!(
+        "| {name} | {:.1} s | {} | {} | {} | {worst:.2} ms | {:.1} % | {:.1} % |",
+        measured.seconds,
+        measured.beats,
+        times.len(),
+        measured.beats.saturating_sub(times.len() as u64),
+        measured.client_share * 100.0,
+        measured.drive_share * 100.0,
+    );
+}
+
+fn option(name: &str) -> Option<String> {
+    let mut arguments = std::env::args();
+    arguments.find(|argument| argument == name)?;
+    arguments.next()
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let Some((SOFTWARE_DRIVE, interface)) = arguments
+        .split_first()
+        .map(|(first, rest)| (first.as_str(), rest))
+    {
+        software_drive(interface);
+        return;
+    }
+    let seconds = option("--seconds").map(|text| text.parse::<f64>().unwrap());
+    let can = option("--can");
+    let mut links = vec![
+        ("USB", DeviceKind::Usb, vec!["--usb"]),
+        ("RS232", DeviceKind::Rs232, vec!["--rs232"]),
+        ("SLCAN", DeviceKind::Slcan, vec!["--slcan"]),
+    ];
+    if let Some(interface) = &can {
+        links.push(("SocketCAN", DeviceKind::Can, vec!["--can", interface]));
+    }
+    let axis = || devices::axis(&Axis::default()).unwrap();
+    println!(
+        "| link | poll period | samples/s | round trip us: median | 99 % | worst | client, of a core | software drive |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    // On a CAN bus nothing is polled: the drive is to send at SYNC.
+    for (name, kind, interface) in links.iter().take(2) {
+        for (pace, period) in [("1 ms", Span::from_millis(1)), ("none", Span::ZERO)] {
+            let drive = SoftwareDrive::start(interface);
+            let mut axis = axis();
+            axis.timing.poll_period = period;
+            row(
+                name,
+                pace,
+                &measure(*kind, &drive, axis, seconds.unwrap_or(10.0)),
+            );
+        }
+    }
+    println!();
+    println!(
+        "| stream at 1 kHz SYNC | time | SYNCs sent | samples | lost | worst spacing | client, of a core | software drive |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    for (name, kind, interface) in links.iter().skip(2) {
+        let drive = SoftwareDrive::start(interface);
+        stream(
+            name,
+            &measure(*kind, &drive, axis(), seconds.unwrap_or(60.0)),
+        );
+    }
+}
