@@ -17,7 +17,7 @@ use units::{Host, Quadcounts, Span, Stamp};
 
 use crate::beat::Beats;
 use crate::config::CanBus;
-use crate::event::ShaftSample;
+use crate::event::{ShaftSample, Taken};
 
 /// Something that ends a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -234,6 +234,11 @@ impl Bus {
                 self.beats.forget();
                 self.alarm = Some(Alarm::Restarted);
             }
+            // A byte that CiA 301 does not know says that it was damaged on the way: SLCAN lines have no checksum.
+            Some(HeartbeatEvent::State {
+                to: NmtState::Unknown(_),
+                ..
+            }) => {}
             Some(HeartbeatEvent::State { to, .. }) => {
                 let was = self.operational;
                 self.operational = to == NmtState::Operational;
@@ -279,6 +284,7 @@ impl Bus {
             request,
             answer: now,
             position: Quadcounts(position),
+            taken: Taken::AtSync,
             device_us: Some(device_us),
         };
         self.mute = false;

@@ -79,7 +79,7 @@ impl Client {
     ///
     /// # Errors
     /// Before a byte is sent: [`DriveError::Config`], [`DriveError::Busy`], [`DriveError::NotConnected`], and for moves
-    /// [`DriveError::Limits`], [`DriveError::Speed`] and [`DriveError::Acceleration`].
+    /// [`DriveError::Limits`], [`DriveError::Speed`] and [`DriveError::Acceleration`], for writes [`DriveError::Reserved`].
     pub fn start(&mut self, command: Command) -> Result<(), DriveError> {
         let kind = command.kind();
         self.config.check()?;
@@ -106,6 +106,11 @@ impl Client {
             Command::Brake => Box::pin(procedures::brake(ops)),
             Command::ClearFaults => Box::pin(procedures::clear_faults(ops)),
             Command::Status => Box::pin(procedures::status(ops)),
+            Command::Read(address) => Box::pin(procedures::read(ops, address)),
+            Command::Write { address, bytes } => {
+                procedures::check_writable(address)?;
+                Box::pin(procedures::write(ops, address, bytes))
+            }
         };
         self.cancel();
         self.running = Some((kind, procedure));

@@ -8,7 +8,8 @@ mod sdo;
 
 use protocol::canopen::{CanFrame, NodeId, SOCKETCAN_LEN};
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, ReadObject, SegmentedRead, WriteObject,
+    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, SegmentedRead,
+    SegmentedWrite, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::Address;
 use protocol::epos2::usb::{self, UsbDecoder};
@@ -35,13 +36,18 @@ pub(crate) struct Reply {
     pub about: Option<About>,
 }
 
-/// Part of an object that is read in segments.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Part of an object that is read or written in segments; empty where it only confirms one that was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Segment {
     pub toggle: bool,
     pub last: bool,
-    pub bytes: Bounded<u8, 63>,
+    pub bytes: Bounded<u8, SEGMENT_BYTES>,
 }
+
+/// The longest segment, that of the serial links.
+const SEGMENT_BYTES: usize = 63;
+/// The longest of a CAN bus.
+const SDO_SEGMENT_BYTES: usize = 7;
 
 /// What an SDO answer says of the request it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,9 +74,10 @@ impl About {
         let kind = match asked.access {
             _ if self.kind == Kind::Abort => true,
             Access::Read | Access::Open => self.kind == Kind::Upload,
-            Access::Write(_) => self.kind == Kind::Download,
+            Access::Write(_) | Access::OpenWrite { .. } => self.kind == Kind::Download,
             Access::Segment { .. } => self.kind == Kind::UploadSegment,
-            Access::Other => matches!(self.kind, Kind::Download | Kind::DownloadSegment),
+            Access::WriteSegment(_) => self.kind == Kind::DownloadSegment,
+            Access::Other => self.kind == Kind::Download,
         };
         same && kind
     }
@@ -87,6 +94,8 @@ impl Reply {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Decoded {
     Reply(Reply),
+    /// RS232: a handshake in its place; it says nothing of the answer.
+    Step,
     /// RS232: the unit refused the request (`F`); it was not carried out.
     Refused,
     /// A frame of the bus that is no SDO answer of this node.
@@ -165,6 +174,14 @@ impl Codec {
         Some(dialogue.shout(&message(self.node, address, access), now))
     }
 
+    /// Bytes of the longest segment.
+    pub fn segment_len(&self) -> usize {
+        match self.transport {
+            Transport::Usb(_) | Transport::Rs232(_) => SEGMENT_BYTES,
+            Transport::Can(_) => SDO_SEGMENT_BYTES,
+        }
+    }
+
     /// How many bytes from the device [`Codec::push`] takes at a time.
     pub fn piece(&self) -> usize {
         match self.transport {
@@ -173,7 +190,7 @@ impl Codec {
         }
     }
 
-    /// Takes a byte, or on CAN a frame, from the device.
+    /// Takes a byte, or on CAN a frame, from the device; `None` for part of what may become an answer.
     pub fn push(&mut self, piece: &[u8], now: Stamp<Host>) -> Option<Decoded> {
         match &mut self.transport {
             Transport::Can(node) => Some(sdo::received(*node, piece)),
@@ -231,6 +248,10 @@ fn message(node: u8, address: Address, access: Access) -> Frame {
         }
         .to_frame(),
         Access::Open => InitiateSegmentedRead { node, address }.to_frame(),
+        Access::OpenWrite { len } => InitiateSegmentedWrite { node, address, len }.to_frame(),
+        Access::WriteSegment(Segment { toggle, bytes, .. }) => {
+            SegmentedWrite(WriteSegment { toggle, bytes }).to_frame()
+        }
         Access::Segment { toggle } => SegmentedRead { toggle }.to_frame(),
         Access::Read | Access::Other => ReadObject { node, address }.to_frame(),
     }

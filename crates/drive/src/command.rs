@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use protocol::epos2::Bounded;
+use protocol::epos2::objects::Address;
 use units::{Degrees, Host, Rpm, RpmPerS, Stamp};
 
 /// A procedure to run.
@@ -28,7 +30,20 @@ pub enum Command {
     ClearFaults,
     /// Report state, position and errors; changes nothing.
     Status,
+    /// Read any object, of whatever length up to 256 bytes.
+    Read(Address),
+    /// Write any object but the controlword (6040) while the power stage is off. What is written is not looked at, and stays until the
+    /// drive restarts or is connected to.
+    Write {
+        /// The object.
+        address: Address,
+        /// Its bytes, low byte first, as many as the object has: up to four go in one exchange, more in segments.
+        bytes: ObjectBytes,
+    },
 }
+
+/// Bytes of an object. The longest that an EPOS2 lets anybody write have eight, but for the memory of its data recorder.
+pub type ObjectBytes = Bounded<u8, 64>;
 
 /// An absolute move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +77,10 @@ pub enum CommandKind {
     ClearFaults,
     /// [`Command::Status`]
     Status,
+    /// [`Command::Read`]
+    Read,
+    /// [`Command::Write`]
+    Write,
 }
 
 impl Command {
@@ -78,6 +97,8 @@ impl Command {
             Self::Brake => CommandKind::Brake,
             Self::ClearFaults => CommandKind::ClearFaults,
             Self::Status => CommandKind::Status,
+            Self::Read(_) => CommandKind::Read,
+            Self::Write { .. } => CommandKind::Write,
         }
     }
 }
@@ -94,6 +115,8 @@ impl fmt::Display for CommandKind {
             Self::Brake => "brake",
             Self::ClearFaults => "clear faults",
             Self::Status => "status",
+            Self::Read => "read",
+            Self::Write => "write",
         })
     }
 }

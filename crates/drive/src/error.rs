@@ -109,6 +109,20 @@ pub enum DriveError {
         /// As in the answer.
         got: bool,
     },
+    /// An object is longer than this client takes.
+    #[error("{operation}: expected up to {most} bytes, got more")]
+    TooLong {
+        /// What was asked.
+        operation: Operation,
+        /// Bytes that are taken.
+        most: usize,
+    },
+    /// The object is written by commands that watch over what comes of it, and by nobody else; nothing was sent.
+    #[error("object {address} is not written by hand: the commands do it")]
+    Reserved {
+        /// The object.
+        address: Address,
+    },
     /// The drive sends no heartbeat any more (CAN).
     #[error("node {node} on the CAN bus: expected a heartbeat, got none for {:.0} ms", silence.as_secs_f64() * 1e3)]
     NodeSilent {
@@ -251,8 +265,17 @@ pub enum DriveError {
 pub struct Operation {
     /// The object.
     pub address: Address,
-    /// The value, if it was a write.
-    pub wrote: Option<u32>,
+    /// What was written, if it was a write.
+    pub wrote: Option<Wrote>,
+}
+
+/// What was written, for messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wrote {
+    /// A number of up to four bytes.
+    Value(u32),
+    /// So many bytes, in segments.
+    Bytes(usize),
 }
 
 impl Operation {
@@ -268,7 +291,8 @@ impl fmt::Display for Operation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.wrote {
             None => write!(f, "reading object {}", self.address),
-            Some(value) => write!(f, "writing {value:#X} to object {}", self.address),
+            Some(Wrote::Value(value)) => write!(f, "writing {value:#X} to object {}", self.address),
+            Some(Wrote::Bytes(len)) => write!(f, "writing {len} bytes to object {}", self.address),
         }
     }
 }
@@ -325,8 +349,13 @@ impl DriveError {
             Self::Toggle { .. } => {
                 "An answer was lost or came twice: try again; if it stays, check that no other master asks this drive.".into()
             }
+            Self::TooLong { .. } => {
+                "Read the object with the drive's own tool; no object of a tilt axis is that long.".into()
+            }
+            Self::Reserved { .. } => "Use home, goto, sweep, stop or brake.".into(),
             Self::NodeSilent { .. } => {
-                "Check the drive's supply, the CAN wiring and termination. If the axis was moving, treat it as moving still                  until a stop has been confirmed."
+                "Check the drive's supply, the CAN wiring and termination. If the axis was moving, treat it as moving still \
+                 until a stop has been confirmed."
                     .into()
             }
             Self::NodeLeft { .. } => {

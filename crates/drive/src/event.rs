@@ -4,15 +4,14 @@ use std::fmt;
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::State;
+use protocol::epos2::objects::Address;
 use units::{Degrees, Host, Quadcounts, Stamp};
 
 use crate::command::CommandKind;
 use crate::error::DriveError;
 use crate::plan::Plan;
 
-/// A position of the shaft with the times between which the drive read it.
-///
-/// In the stream of a CAN bus the drive latches its position at the host's SYNC.
+/// A position of the shaft with the times between which the drive read it, and how far the drive itself narrows that down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaftSample {
     /// When the request was handed out: on RS232 its body, on a CAN bus's stream the SYNC.
@@ -21,9 +20,22 @@ pub struct ShaftSample {
     pub answer: Stamp<Host>,
     /// Position actual value (6064).
     pub position: Quadcounts,
-    /// The drive's own time (1013, microseconds, wraps after 71 minutes) at which it latched the position at the SYNC; `None` where the
-    /// position was asked for.
+    /// What made the drive read it.
+    pub taken: Taken,
+    /// The drive's own clock as it latched the position (1013), in us: of no zero in particular, wrapping every 71 minutes. `None`
+    /// where the answer does not carry it.
     pub device_us: Option<u32>,
+}
+
+/// What made the drive read its position, and so where between the two stamps it did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taken {
+    /// It was asked for object 6064: anywhere between request and answer.
+    Asked,
+    /// It got a SYNC (CAN): `request` is when that was sent, and the position was latched within a control cycle of its
+    /// arrival; `answer` is when the process data had come. Should it not be certain which SYNC it answers, `request` is of an
+    /// older one, never of a later.
+    AtSync,
 }
 
 /// Something that happened.
@@ -86,6 +98,15 @@ pub enum Outcome {
     FaultsCleared(Vec<DeviceError>),
     /// [`crate::Command::Status`]
     Status(Status),
+    /// [`crate::Command::Read`]
+    Read {
+        /// The object.
+        address: Address,
+        /// All of it, low byte first.
+        bytes: Vec<u8>,
+    },
+    /// [`crate::Command::Write`]; the object.
+    Written(Address),
 }
 
 /// What the drive says it is.

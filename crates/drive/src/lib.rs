@@ -21,12 +21,12 @@ mod procedures;
 mod tests;
 
 pub use client::Client;
-pub use command::{Command, CommandKind, Move};
+pub use command::{Command, CommandKind, Move, ObjectBytes};
 pub use config::AxisConfig;
-pub use error::{DriveError, Operation};
+pub use error::{DriveError, Operation, Wrote};
 pub use event::{
     AngleSource, Arrived, Connected, DeviceName, Event, Identity, Outcome, Place, Progress,
-    ShaftSample, Status, Stopped,
+    ShaftSample, Status, Stopped, Taken,
 };
 pub use link::LinkStats;
 pub use listener::{Listener, Observation};

@@ -6,7 +6,9 @@
 //! that the drive itself refused for its checksum was not, and goes out again.
 //! What is asked, and what a failure means for the motion, is decided elsewhere.
 
+mod patience;
 mod request;
+mod resync;
 
 use std::collections::VecDeque;
 
@@ -16,7 +18,8 @@ use protocol::epos2::objects::Address;
 use units::{Host, Span, Stamp};
 
 use crate::codec::{Codec, Decoded, Reply};
-use crate::pairing::{Access, Asked, MARKERS, Paired, Pairing};
+use crate::pairing::{Asked, Paired, Pairing};
+use patience::Patience;
 use request::Job;
 
 pub use request::LinkStats;
@@ -27,8 +30,11 @@ pub(crate) use request::{Answered, Lost, Request};
 enum Line {
     /// Nothing is under way.
     InStep,
-    /// A request is under way.
-    Asked { deadline: Stamp<Host> },
+    /// A request is under way, awaited until the deadline, and no longer than the limit.
+    Asked {
+        deadline: Stamp<Host>,
+        limit: Stamp<Host>,
+    },
     /// Out of step, marker yet to be sent.
     OutOfStep { markers: u8 },
     /// Out of step, marker under way.
@@ -47,6 +53,7 @@ pub(crate) struct Link {
     marker: Address,
     /// Something came in since the line went out of step.
     heard: bool,
+    patience: Patience,
     /// The request under way has no owner any more: do not wait long for it.
     hurry: bool,
     last_id: u64,
@@ -55,10 +62,6 @@ pub(crate) struct Link {
     stats: LinkStats,
 }
 
-/// Markers tried before a request is given up.
-const TRIES: u8 = 2;
-/// Repeats of a request that the drive refused for its checksum.
-const REJECTIONS: u8 = 2;
 /// How long a request is awaited after its owner gave it up.
 const PATIENCE: Span = Span::from_millis(50);
 
@@ -72,6 +75,7 @@ impl Link {
             done: None,
             marker: Address::default(),
             heard: false,
+            patience: Patience::default(),
             hurry: false,
             last_id: 0,
             frames: VecDeque::new(),
@@ -82,6 +86,7 @@ impl Link {
     /// Asks; replaces whatever was asked before.
     pub fn submit(&mut self, request: Request) {
         self.done = None;
+        self.patience = Patience::default();
         self.job = Some(Job::new(request));
     }
 
@@ -97,6 +102,11 @@ impl Link {
         self.hurry = true;
     }
 
+    /// Bytes of the longest segment.
+    pub fn segment_len(&self) -> usize {
+        self.codec.segment_len()
+    }
+
     pub fn stats(&self) -> LinkStats {
         self.stats
     }
@@ -109,7 +119,7 @@ impl Link {
     /// When something has to happen without input.
     pub fn deadline(&self) -> Option<Stamp<Host>> {
         let line = match self.line {
-            Line::Asked { deadline } | Line::Marker { deadline, .. } => Some(deadline),
+            Line::Asked { deadline, .. } | Line::Marker { deadline, .. } => Some(deadline),
             Line::InStep | Line::OutOfStep { .. } => None,
         };
         let last_call = self.job.and_then(|job| job.last_call());
@@ -132,6 +142,9 @@ impl Link {
         job.first.get_or_insert(now);
         let job = *job;
         let out_of_step = matches!(self.line, Line::OutOfStep { .. } | Line::Marker { .. });
+        if out_of_step {
+            self.patience.wait(now);
+        }
         if job.request.urgent && !job.hastened && out_of_step {
             let Request {
                 address, access, ..
@@ -145,8 +158,10 @@ impl Link {
         }
         match self.line {
             Line::InStep => {
+                let limit = now.saturating_add(job.request.timeout);
                 self.line = Line::Asked {
-                    deadline: now.saturating_add(job.request.timeout),
+                    deadline: limit,
+                    limit,
                 };
                 self.hurry = false;
                 Some(self.send_job(now, true))
@@ -169,12 +184,16 @@ impl Link {
     pub fn input(&mut self, bytes: &[u8], now: Stamp<Host>) {
         for piece in bytes.chunks(self.codec.piece()) {
             match self.codec.push(piece, now) {
-                None => {}
+                None => self.began(now),
+                Some(Decoded::Step) => {}
                 Some(Decoded::Reply(reply)) => self.reply(&reply, now),
                 Some(Decoded::Refused) => self.refused(now),
                 Some(Decoded::Bus(frame)) => self.frames.push_back(frame),
                 Some(Decoded::Foreign) => self.stats.foreign += 1,
-                Some(Decoded::Noise) => self.stats.damaged += 1,
+                Some(Decoded::Noise) => {
+                    self.stats.damaged += 1;
+                    self.patience.hear(now);
+                }
                 Some(Decoded::Damaged) => self.damaged(now),
             }
         }
@@ -185,7 +204,7 @@ impl Link {
         self.codec.expire(now);
         if self.hurry {
             let soon = now.saturating_add(PATIENCE);
-            if let Line::Asked { deadline } | Line::Marker { deadline, .. } = &mut self.line {
+            if let Line::Asked { deadline, .. } | Line::Marker { deadline, .. } = &mut self.line {
                 *deadline = soon.min(*deadline);
             }
             self.hurry = false;
@@ -193,10 +212,10 @@ impl Link {
         if let Some(job) = self.job
             && job.last_call().is_some_and(|end| end <= now)
         {
-            self.lose_link(&job, now);
+            self.last_call(&job, now);
         }
         match self.line {
-            Line::Asked { deadline } if deadline <= now => self.fall_out_of_step(false, now),
+            Line::Asked { deadline, .. } if deadline <= now => self.fall_out_of_step(false, now),
             Line::Marker { markers, deadline } if deadline <= now => self.silence(markers, now),
             _ => {}
         }
@@ -229,22 +248,6 @@ impl Link {
         bytes
     }
 
-    fn send_marker(&mut self, now: Stamp<Host>, timeout: Span) -> Vec<u8> {
-        let [(this, _), (other, _)] = MARKERS;
-        self.marker = if self.marker == this { other } else { this };
-        let marker = Request {
-            address: self.marker,
-            access: Access::Read,
-            width: 4,
-            timeout,
-            marker_timeout: timeout,
-            retries: 0,
-            urgent: false,
-            last: false,
-        };
-        self.send(&marker, now)
-    }
-
     fn send(&mut self, request: &Request, now: Stamp<Host>) -> Vec<u8> {
         self.last_id += 1;
         self.stats.requests += 1;
@@ -261,9 +264,17 @@ impl Link {
 
     fn reply(&mut self, reply: &Reply, now: Stamp<Host>) {
         self.heard = true;
-        match self.pairing.received(reply) {
-            Paired::Stray => self.stats.strays += 1,
-            Paired::Marker => self.still_coming(now),
+        let paired = self.pairing.received(reply);
+        match paired {
+            Paired::Stray => {
+                self.stats.strays += 1;
+                self.patience.hear(now);
+            }
+            Paired::Marker(_) | Paired::To(_) => self.patience.is_well(),
+        }
+        match paired {
+            Paired::Stray => {}
+            Paired::Marker(marker) => self.passed(marker, now),
             Paired::To(asked) if self.job.and_then(|job| job.id) == Some(asked.id) => {
                 self.answer(asked, reply, now);
             }
@@ -277,24 +288,14 @@ impl Link {
         }
     }
 
-    /// An older answer came while a marker is awaited: the marker's is still to come, and gets its full time from here.
-    fn still_coming(&mut self, now: Stamp<Host>) {
-        if let (Line::Marker { markers, .. }, Some(job)) = (self.line, self.job) {
-            self.line = Line::Marker {
-                markers,
-                deadline: now.saturating_add(job.request.marker_timeout),
-            };
-        }
-    }
-
     fn answer(&mut self, asked: Asked, reply: &Reply, now: Stamp<Host>) {
         self.stats.answers += 1;
         if let Some(job) = self.job.as_mut()
             && reply.error == CommError::CRC
-            && job.rejected < REJECTIONS
+            && job.may_be_rejected(now)
         {
             // It was not carried out, so this attempt does not count.
-            job.rejected += 1;
+            job.rejected = job.rejected.saturating_add(1);
             job.attempts = job.attempts.saturating_sub(1);
             job.id = None;
             return;
@@ -305,107 +306,5 @@ impl Link {
             request: asked.at,
             answer: now,
         }));
-    }
-
-    fn damaged(&mut self, now: Stamp<Host>) {
-        self.stats.damaged += 1;
-        self.heard = true;
-        // The frame may have been our answer: no use in waiting for the timeout.
-        if matches!(self.line, Line::Asked { .. }) {
-            self.fall_out_of_step(true, now);
-            return;
-        }
-        self.codec.give_up(now);
-        if let (Line::Marker { markers, .. }, false) = (self.line, self.codec.is_ready()) {
-            // A dialogue that broke off has no answer any more.
-            self.silence(markers, now);
-        }
-    }
-
-    /// The unit did not take what was sent. As the refusal may be an older one's, the line is out of step.
-    fn refused(&mut self, now: Stamp<Host>) {
-        self.heard = true;
-        let was_marker = match self.line {
-            Line::Marker { markers, .. } => Some(markers),
-            _ => None,
-        };
-        if let Some(markers) = was_marker {
-            self.silence(markers, now);
-            return;
-        }
-        self.fall_out_of_step(true, now);
-        let Some(job) = self.job.as_mut() else {
-            return;
-        };
-        if job.rejected < REJECTIONS {
-            // It was not carried out, so this attempt does not count.
-            job.rejected += 1;
-            job.attempts = job.attempts.saturating_sub(1);
-        } else {
-            let attempts = job.attempts.saturating_add(job.rejected);
-            self.job = None;
-            self.done = Some(Err(Lost::Handshake { attempts }));
-        }
-    }
-
-    fn fall_out_of_step(&mut self, damaged: bool, now: Stamp<Host>) {
-        self.stats.lost += 1;
-        self.heard = false;
-        self.codec.give_up(now);
-        if let Some(job) = self.job.as_mut() {
-            job.damaged = damaged;
-            job.hastened = false;
-        }
-        self.line = Line::OutOfStep { markers: 0 };
-    }
-
-    /// A marker was not answered.
-    fn silence(&mut self, markers: u8, now: Stamp<Host>) {
-        self.stats.lost += 1;
-        self.codec.give_up(now);
-        if markers < TRIES {
-            self.line = Line::OutOfStep { markers };
-            return;
-        }
-        self.line = Line::OutOfStep { markers: 0 };
-        let Some(job) = self.job else {
-            return;
-        };
-        if self.heard {
-            self.job = None;
-            self.done = Some(Err(Lost::Answer {
-                attempts: job.attempts.max(1),
-                damaged: job.damaged,
-            }));
-        } else {
-            self.lose_link(&job, now);
-        }
-    }
-
-    fn lose_link(&mut self, job: &Job, now: Stamp<Host>) {
-        self.job = None;
-        if let Line::Asked { .. } = self.line {
-            self.fall_out_of_step(false, now);
-        }
-        self.done = Some(Err(Lost::Link {
-            silent: now.saturating_since(job.first.unwrap_or(now)),
-        }));
-    }
-
-    fn back_in_step(&mut self) {
-        self.line = Line::InStep;
-        let Some(job) = self.job.as_mut() else {
-            return;
-        };
-        // Its answer can no longer come.
-        job.id = None;
-        if job.attempts > job.request.retries {
-            let lost = Lost::Answer {
-                attempts: job.attempts,
-                damaged: job.damaged,
-            };
-            self.job = None;
-            self.done = Some(Err(lost));
-        }
     }
 }

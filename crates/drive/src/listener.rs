@@ -7,14 +7,14 @@
 mod bus;
 mod rs232;
 
-use protocol::epos2::message::Request;
+use protocol::epos2::message::{Request, SegmentedWrite};
 use protocol::epos2::usb::UsbDecoder;
 use protocol::epos2::{CommError, DeviceError, Frame, FrameError};
 use protocol::record::{Direction, DriveLink};
 use units::{Host, Quadcounts, Stamp};
 
-use crate::codec::Reply;
-use crate::event::ShaftSample;
+use crate::codec::{Reply, Segment};
+use crate::event::{ShaftSample, Taken};
 use crate::objects::{self, Address};
 use crate::pairing::{Access, Asked, Paired, Pairing};
 use bus::BusWatch;
@@ -24,7 +24,7 @@ use rs232::{Rs232Watch, Said};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Observation {
     /// The shaft's position was read (6064), or came at a SYNC. In the latter case an observation of the drive's own time
-    /// (1013) with the same stamps goes ahead, if the stream carries it.
+    /// (1013) with the same stamps goes ahead, besides [`ShaftSample::device_us`].
     Sample(ShaftSample),
     /// The statusword was read (6041).
     Statusword {
@@ -222,6 +222,18 @@ impl Listener {
                     toggle: segment.toggle,
                 },
             ),
+            Ok(Some(Request::InitiateSegmentedWrite(open))) => {
+                (open.node, open.address, Access::OpenWrite { len: open.len })
+            }
+            Ok(Some(Request::SegmentedWrite(SegmentedWrite(segment)))) => {
+                let written = Segment {
+                    toggle: segment.toggle,
+                    last: false,
+                    bytes: segment.bytes,
+                };
+                let access = Access::WriteSegment(written);
+                (self.node, Address::default(), access)
+            }
             Ok(Some(_)) => (self.node, Address::default(), Access::Other),
             Ok(None) | Err(_) => return Seen::Noise,
         };
@@ -259,7 +271,7 @@ impl Listener {
     fn paired(&mut self, reply: &Reply) -> Seen {
         match self.pairing.received(reply) {
             Paired::To(asked) if asked.id != 0 => Seen::Pair(asked, *reply),
-            Paired::To(_) | Paired::Marker => Seen::Nothing,
+            Paired::To(_) | Paired::Marker(_) => Seen::Nothing,
             Paired::Stray => Seen::Noise,
         }
     }
@@ -277,6 +289,10 @@ fn tell(seen: Seen, direction: Direction, host: Stamp<Host>, emit: &mut impl FnM
     }
 }
 
+#[expect(
+    clippy::large_enum_variant,
+    reason = "handed on at once, one at a time"
+)]
 enum Seen {
     Nothing,
     Noise,
@@ -286,7 +302,7 @@ enum Seen {
 fn observation(asked: &Asked, reply: &Reply, answer: Stamp<Host>) -> Option<Observation> {
     let (address, request) = (asked.address, asked.at);
     match asked.access {
-        Access::Segment { .. } | Access::Other => None,
+        Access::Segment { .. } | Access::WriteSegment(_) | Access::Other => None,
         _ if !reply.error.is_none() => Some(Observation::Refused {
             address,
             error: reply.error,
@@ -299,31 +315,54 @@ fn observation(asked: &Asked, reply: &Reply, answer: Stamp<Host>) -> Option<Obse
             request,
             answer,
         }),
-        Access::Read | Access::Open => Some(value(address, reply.value?, request, answer)),
+        Access::OpenWrite { .. } => None,
+        Access::Read | Access::Open => {
+            let given = Given {
+                request,
+                answer,
+                taken: Taken::Asked,
+                device_us: None,
+            };
+            Some(given.value(address, reply.value?))
+        }
     }
 }
 
-/// A value of an object as an observation.
-fn value(address: Address, value: u32, request: Stamp<Host>, answer: Stamp<Host>) -> Observation {
-    if address == objects::POSITION_ACTUAL.address {
-        Observation::Sample(ShaftSample {
-            request,
-            answer,
-            position: Quadcounts(objects::POSITION_ACTUAL.decode(value)),
-            device_us: None,
-        })
-    } else if address == objects::STATUSWORD.address {
-        Observation::Statusword {
-            value: objects::STATUSWORD.decode(value),
-            request,
-            answer,
-        }
-    } else {
-        Observation::Read {
-            address,
-            value,
-            request,
-            answer,
+/// How a value came.
+#[derive(Clone, Copy, Debug)]
+struct Given {
+    request: Stamp<Host>,
+    answer: Stamp<Host>,
+    taken: Taken,
+    /// The drive's time that came with it.
+    device_us: Option<u32>,
+}
+
+impl Given {
+    /// A value of an object as an observation.
+    fn value(self, address: Address, value: u32) -> Observation {
+        let (request, answer) = (self.request, self.answer);
+        if address == objects::POSITION_ACTUAL.address {
+            Observation::Sample(ShaftSample {
+                request,
+                answer,
+                position: Quadcounts(objects::POSITION_ACTUAL.decode(value)),
+                taken: self.taken,
+                device_us: self.device_us,
+            })
+        } else if address == objects::STATUSWORD.address {
+            Observation::Statusword {
+                value: objects::STATUSWORD.decode(value),
+                request,
+                answer,
+            }
+        } else {
+            Observation::Read {
+                address,
+                value,
+                request,
+                answer,
+            }
         }
     }
 }

@@ -17,8 +17,8 @@ use units::{Host, Quadcounts, Span, Stamp};
 
 use crate::bus::{Alarm, Bus};
 use crate::config::AxisConfig;
-use crate::error::{DriveError, Operation};
-use crate::event::{Event, Progress, ShaftSample};
+use crate::error::{DriveError, Operation, Wrote};
+use crate::event::{Event, Progress, ShaftSample, Taken};
 use crate::link::{Answered, Link, Lost, Request};
 use crate::pairing::Access;
 
@@ -181,7 +181,8 @@ impl Ops {
         self.ask(request).await.map(drop)
     }
 
-    /// The same where the link seems dead: sent for a drive that may hear without being heard, and given up soon.
+    /// The same where the link seems dead: sent for a drive that may hear without being heard, and given up soon. Until then it is
+    /// repeated where the link comes back without its answer.
     pub async fn write_at_last<T: Scalar>(
         &self,
         object: Object<T>,
@@ -189,7 +190,7 @@ impl Ops {
     ) -> Result<(), DriveError> {
         let request = Request {
             timeout: self.config.timing.timeout_moving.min(LAST_TRY),
-            retries: 0,
+            retries: self.config.timing.read_retries,
             urgent: true,
             last: true,
             ..self.request(object.address, Access::Write(value.to_raw()), T::BYTES)
@@ -215,6 +216,7 @@ impl Ops {
             request: answered.request,
             answer: answered.answer,
             position: Quadcounts(position),
+            taken: Taken::Asked,
             device_us: None,
         };
         self.pace(answered.request);
@@ -269,7 +271,7 @@ impl Ops {
             },
             retries: match access {
                 Access::Read => timing.read_retries,
-                Access::Write(_) | Access::Open | Access::Segment { .. } | Access::Other => 0,
+                _ => 0,
             },
             urgent: false,
             last: false,
@@ -277,6 +279,18 @@ impl Ops {
     }
 
     async fn ask(&self, request: Request) -> Result<Answered, DriveError> {
+        let operation = Operation {
+            address: request.address,
+            wrote: match request.access {
+                Access::Write(value) => Some(Wrote::Value(value)),
+                _ => None,
+            },
+        };
+        self.ask_as(operation, request).await
+    }
+
+    /// Asks on behalf of an operation that takes more than one request.
+    async fn ask_as(&self, operation: Operation, request: Request) -> Result<Answered, DriveError> {
         lock(&self.core).link.submit(request);
         let result = poll_fn(|_| {
             let mut core = lock(&self.core);
@@ -292,13 +306,6 @@ impl Ops {
             }
         })
         .await?;
-        let operation = Operation {
-            address: request.address,
-            wrote: match request.access {
-                Access::Write(value) => Some(value),
-                _ => None,
-            },
-        };
         match result {
             Ok(answered) if answered.reply.error.is_none() => Ok(answered),
             Ok(answered) => Err(DriveError::Refused {

@@ -15,7 +15,7 @@ use protocol::epos2::CommError;
 use protocol::epos2::objects::Address;
 use units::{Host, Span, Stamp};
 
-use crate::codec::Reply;
+use crate::codec::{Reply, Segment};
 
 /// Entries that no EPOS2 has, with the errors that say so: an index at the end of the manufacturer's range of CiA 301, and a
 /// subindex of an object that each device has.
@@ -38,6 +38,13 @@ pub(crate) enum Access {
         /// Alternates, beginning with `false`.
         toggle: bool,
     },
+    /// Begins a write in segments.
+    OpenWrite {
+        /// Bytes to come.
+        len: u32,
+    },
+    /// The next segment of the write that was begun last. Serial links do not say which is the last.
+    WriteSegment(Segment),
     /// Any other command; only the listener meets them.
     Other,
 }
@@ -57,8 +64,8 @@ pub(crate) struct Asked {
 pub(crate) enum Paired {
     /// The answer to this request; requests before it will not be answered any more.
     To(Asked),
-    /// The answer to a marker: all requests before the marker will not be answered any more.
-    Marker,
+    /// The answer to a marker, the oldest with this address: all requests before it will not be answered any more.
+    Marker(Address),
     /// An answer that belongs to no request, or might belong to several.
     Stray,
 }
@@ -70,7 +77,7 @@ pub(crate) struct Pairing {
 }
 
 /// More than this many unanswered requests say nothing any more.
-const MAX_OUTSTANDING: usize = 16;
+const MAX_OUTSTANDING: usize = 32;
 /// No drive answers after this long: its own frame timeout is 500 ms.
 const EXPIRY: Span = Span::from_secs(2);
 
@@ -94,9 +101,9 @@ impl Pairing {
 
     /// An answer came in.
     pub fn received(&mut self, reply: &Reply) -> Paired {
-        if let Some(marker) = self.marker(reply) {
+        if let Some((marker, address)) = self.marker(reply) {
             self.outstanding.drain(..=marker);
-            return Paired::Marker;
+            return Paired::Marker(address);
         }
         let mut fitting = (0..)
             .zip(&self.outstanding)
@@ -111,18 +118,27 @@ impl Pairing {
     }
 
     /// The oldest marker that an error answers. Where only markers are out, an unexpected error answers the first of them.
-    fn marker(&self, reply: &Reply) -> Option<usize> {
+    fn marker(&self, reply: &Reply) -> Option<(usize, Address)> {
         if reply.error.is_none() {
             return None;
         }
         let about = |asked: &Asked| reply.about.is_none_or(|about| about.fits(asked));
         let expected = |asked: &Asked| marker_error(asked) == Some(reply.error) && about(asked);
         let only_markers = || self.outstanding.iter().all(|a| marker_error(a).is_some());
-        self.outstanding.iter().position(expected).or_else(|| {
+        let position = self.outstanding.iter().position(expected).or_else(|| {
             only_markers()
                 .then(|| self.outstanding.iter().position(about))
                 .flatten()
-        })
+        })?;
+        let marker = self.outstanding.get(position)?;
+        Some((position, marker.address))
+    }
+
+    /// Whether a read of this object is outstanding.
+    pub fn awaits(&self, address: Address) -> bool {
+        self.outstanding
+            .iter()
+            .any(|asked| asked.access == Access::Read && asked.address == address)
     }
 
     /// Whether nothing is outstanding.
@@ -149,8 +165,14 @@ fn fits(asked: &Asked, reply: &Reply) -> bool {
     match asked.access {
         _ if !reply.error.is_none() => true,
         Access::Read => reply.value.is_some(),
-        Access::Write(_) | Access::Open => reply.words == 0,
+        Access::Write(_) | Access::Open | Access::OpenWrite { .. } => reply.words == 0,
         Access::Segment { .. } => reply.segment.is_some(),
+        Access::WriteSegment(_) => {
+            reply.words == 1
+                && reply
+                    .segment
+                    .is_some_and(|confirmed| confirmed.bytes.is_empty())
+        }
         Access::Other => true,
     }
 }
@@ -246,7 +268,7 @@ mod tests {
         let mut pairing = pairing(&[read, marker(2, 0)]);
         assert_eq!(pairing.received(&READ_OK), Paired::To(read));
         assert!(!pairing.in_step());
-        assert_eq!(pairing.received(&ABSENT), Paired::Marker);
+        assert_eq!(pairing.received(&ABSENT), Paired::Marker(MARKERS[0].0));
         assert!(pairing.in_step());
     }
 
@@ -254,12 +276,12 @@ mod tests {
     fn each_marker_is_answered_for_itself() {
         let sent = [asked(1, Access::Read), marker(2, 0), marker(3, 1)];
         let mut both = pairing(&sent);
-        assert_eq!(both.received(&ABSENT), Paired::Marker);
+        assert_eq!(both.received(&ABSENT), Paired::Marker(MARKERS[0].0));
         assert!(!both.in_step());
-        assert_eq!(both.received(&NO_SUB), Paired::Marker);
+        assert_eq!(both.received(&NO_SUB), Paired::Marker(MARKERS[1].0));
         assert!(both.in_step());
         let mut second_only = pairing(&sent);
-        assert_eq!(second_only.received(&NO_SUB), Paired::Marker);
+        assert_eq!(second_only.received(&NO_SUB), Paired::Marker(MARKERS[1].0));
         assert!(second_only.in_step());
     }
 
@@ -270,7 +292,10 @@ mod tests {
             ..ABSENT
         };
         let read = asked(1, Access::Read);
-        assert_eq!(pairing(&[marker(1, 1)]).received(&other), Paired::Marker);
+        assert_eq!(
+            pairing(&[marker(1, 1)]).received(&other),
+            Paired::Marker(MARKERS[1].0)
+        );
         let mut with_read = pairing(&[read, marker(2, 1)]);
         assert_eq!(with_read.received(&other), Paired::To(read));
     }
@@ -321,7 +346,7 @@ mod tests {
             }),
             ..ABSENT
         };
-        assert_eq!(pairing.received(&own), Paired::Marker);
+        assert_eq!(pairing.received(&own), Paired::Marker(MARKERS[0].0));
     }
 
     #[test]

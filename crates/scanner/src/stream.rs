@@ -156,7 +156,8 @@ mod tests {
                 request: Stamp::from_nanos(request),
                 answer: Stamp::from_nanos(taken + back(i) * 1_000),
                 position: Quadcounts(i as i32),
-                device_us: Some(device_us as u32),
+                taken: drive::Taken::AtSync,
+            device_us: Some(device_us as u32),
             }
         });
         (samples.collect(), truth)

@@ -5,7 +5,7 @@
 //! handshake they refuse, where it awaits the rest of a body they fill it up to a checksum that cannot hold, and where it awaits an
 //! opcode they are none, which it refuses in turn. Then the line must be quiet for a while, so that nothing said before is taken for
 //! an answer to what comes next. The guide itself only promises that the unit forgets an unfinished frame after 500 ms of
-//! silence, and what it makes of an unknown opcode it does not say; so where that has failed twice the line is
+//! silence, and what it makes of an unknown opcode it does not say; so where a unit stays silent after two of them the line is
 //! left silent for as long as the guide says.
 //!
 //! What must not wait, a stop on a line that does not answer, is shouted: flush, opcode, body and both handshakes in one go. A unit
@@ -26,8 +26,10 @@ pub(super) struct Dialogue {
     body: Vec<u8>,
     out: VecDeque<Outgoing>,
     deadline: Stamp<Host>,
-    /// Dialogues given up one after the other.
+    /// What dialogues given up one after the other cost.
     failures: u32,
+    /// The unit has said something in this one.
+    heard: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -54,8 +56,11 @@ const SILENCE: Span = Span::from_millis(FRAME_TIMEOUT_MS as i64 + 20);
 const FLUSH: usize = 1 + 2 * (FAILED as usize + 1) + 2;
 /// The flush takes 38 ms at 38400 baud, the slowest any EPOS2 is delivered with.
 const FLUSH_TIME: Span = Span::from_millis(40);
-/// Flushes tried before silence.
-const FLUSHES: u32 = 2;
+/// What failures in a row may cost before silence is tried: a unit that does not say anything may be one that flushes do not bring
+/// back, while one that is heard damaged will be back when the line is well again.
+const FAILURES: u32 = 8;
+const UNHEARD: u32 = 4;
+const DAMAGED: u32 = 1;
 
 impl Dialogue {
     pub fn new() -> Self {
@@ -65,6 +70,7 @@ impl Dialogue {
             out: VecDeque::new(),
             deadline: Stamp::from_nanos(0),
             failures: 0,
+            heard: false,
         }
     }
 
@@ -78,6 +84,7 @@ impl Dialogue {
         // Every request has words.
         let _ = rs232::encode_body(frame, &mut self.body);
         self.turn = Turn::Ready;
+        self.heard = false;
         self.deadline = deadline;
         vec![frame.opcode]
     }
@@ -113,11 +120,12 @@ impl Dialogue {
 
     /// Takes a byte from the unit.
     pub fn push(&mut self, byte: u8, now: Stamp<Host>) -> Option<Decoded> {
+        self.heard = true;
         match (&mut self.turn, byte) {
             (Turn::Idle, _) => Some(Decoded::Noise),
             (Turn::Quiet { span, until }, _) => {
                 *until = now.saturating_add(*span);
-                None
+                Some(Decoded::Step)
             }
             (Turn::Ready, OKAY) => {
                 self.turn = Turn::Accepted;
@@ -125,16 +133,16 @@ impl Dialogue {
                     bytes: std::mem::take(&mut self.body),
                     is_body: true,
                 });
-                None
+                Some(Decoded::Step)
             }
             (Turn::Accepted, OKAY) => {
                 self.turn = Turn::Lead;
-                None
+                Some(Decoded::Step)
             }
             (Turn::Lead, Frame::ANSWER) => {
                 self.turn = Turn::Answer(BodyDecoder::new(Frame::ANSWER));
                 self.say(OKAY);
-                None
+                Some(Decoded::Step)
             }
             (Turn::Answer(decoder), _) => {
                 let frame = decoder.push(byte)?;
@@ -162,9 +170,10 @@ impl Dialogue {
         if matches!(self.turn, Turn::Idle | Turn::Quiet { .. }) {
             return;
         }
-        self.failures = self.failures.saturating_add(1);
+        let cost = if self.heard { DAMAGED } else { UNHEARD };
+        self.failures = self.failures.saturating_add(cost);
         self.out.clear();
-        let span = if self.failures > FLUSHES {
+        let span = if self.failures > FAILURES {
             SILENCE
         } else {
             self.out.push_back(Outgoing {

@@ -1,9 +1,9 @@
 //! SDO requests and answers as the link's requests and replies.
 //!
-//! Objects of up to four bytes travel in one exchange; longer ones are read in segments, each an exchange of its own. Writing
-//! in segments is left out: no object of a tilt axis needs it.
+//! Objects of up to four bytes travel in one exchange; longer ones in segments, each an exchange of its own. Block transfer is left
+//! out: no EPOS2 has it.
 
-use protocol::canopen::sdo::{Answer, Expedited, Initiate, Request};
+use protocol::canopen::sdo::{self, Answer, Expedited, Initiate, Request};
 use protocol::canopen::{CanFrame, Channel, NodeId};
 use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, CommError};
@@ -21,6 +21,15 @@ pub(super) fn request(address: Address, access: Access, width: u8) -> Request {
             Request::InitiateDownload { address, transfer }
         }
         Access::Segment { toggle } => Request::UploadSegment { toggle },
+        Access::OpenWrite { len } => {
+            let transfer = Initiate::Segmented { size: Some(len) };
+            Request::InitiateDownload { address, transfer }
+        }
+        Access::WriteSegment(segment) => Request::DownloadSegment(sdo::Segment {
+            toggle: segment.toggle,
+            last: segment.last,
+            ..sdo::Segment::cut(&segment.bytes, 0, segment.toggle)
+        }),
         Access::Read | Access::Open | Access::Other => Request::InitiateUpload { address },
     }
 }
@@ -70,7 +79,13 @@ pub(crate) fn decode(answer: &Answer) -> Option<Reply> {
             ..reply(None, Kind::UploadSegment)
         },
         Answer::InitiateDownload { address } => reply(Some(address), Kind::Download),
-        Answer::DownloadSegment { .. } => reply(None, Kind::DownloadSegment),
+        Answer::DownloadSegment { toggle } => Reply {
+            segment: Some(Segment {
+                toggle,
+                ..whole(&[])
+            }),
+            ..reply(None, Kind::DownloadSegment)
+        },
         Answer::Abort { address, error } => Reply {
             // An abort without a reason is an error all the same.
             error: if error.is_none() {
@@ -104,9 +119,23 @@ pub(crate) fn asked(request: &Request) -> Option<(Address, Access)> {
             address,
             transfer: Initiate::Expedited(data),
         } => Some((address, Access::Write(data.to_u32()))),
+        Request::InitiateDownload {
+            address,
+            transfer: Initiate::Segmented { size },
+        } => {
+            let len = size.unwrap_or_default();
+            Some((address, Access::OpenWrite { len }))
+        }
         Request::InitiateDownload { address, .. } => Some((address, Access::Other)),
         Request::UploadSegment { toggle } => Some((Address::default(), Access::Segment { toggle })),
-        Request::DownloadSegment(_) => Some((Address::default(), Access::Other)),
+        Request::DownloadSegment(segment) => {
+            let written = Segment {
+                toggle: segment.toggle,
+                last: segment.last,
+                ..whole(&segment.bytes)
+            };
+            Some((Address::default(), Access::WriteSegment(written)))
+        }
         Request::Abort { .. } | Request::Unknown(_) => None,
     }
 }

@@ -105,12 +105,12 @@ fn golden_rs232() {
     assert_eq!(encode(&mut codec, STATUSWORD, Access::Read, 2), [0x10]);
     assert!(!codec.is_ready());
     assert_eq!(codec.outgoing(at(0)), None, "not before the unit is ready");
-    assert_eq!(codec.push(&[OKAY], at(1)), None);
+    assert_eq!(codec.push(&[OKAY], at(1)), Some(Decoded::Step));
     let body = codec.outgoing(at(1)).unwrap();
     assert_eq!(body.bytes, [0x01, 0x41, 0x60, 0x00, 0x01, 0xAB, 0xF0]);
     assert!(body.is_body);
-    assert_eq!(codec.push(&[OKAY], at(2)), None);
-    assert_eq!(codec.push(&[0x00], at(2)), None);
+    assert_eq!(codec.push(&[OKAY], at(2)), Some(Decoded::Step));
+    assert_eq!(codec.push(&[0x00], at(2)), Some(Decoded::Step));
     assert_eq!(codec.outgoing(at(2)).unwrap().bytes, [OKAY]);
     let answer = [0x03, 0, 0, 0, 0, 0x37, 2, 0, 0, 0x19, 0x80];
     let decoded: Vec<_> = answer
@@ -165,7 +165,7 @@ fn rs232_comes_back_after_a_flush_and_quiet() {
             assert!(flush.bytes.iter().all(|&b| b == FAILED));
         }
         // The unit's last words do not count, but are waited for.
-        assert_eq!(codec.push(&[OKAY], at(30)), None);
+        assert_eq!(codec.push(&[OKAY], at(30)), Some(Decoded::Step));
         codec.expire(at(49));
         assert!(!codec.is_ready());
         let quiet = if failure < 3 { 50 } else { 550 };

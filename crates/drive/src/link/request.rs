@@ -21,7 +21,7 @@ pub(crate) struct Request {
     pub retries: u8,
     /// Goes out even while the link is out of step, and again once it is in step: for what must not wait.
     pub urgent: bool,
-    /// Sent once and given up after one timeout, markers or not: where a link that seems dead is tried for the last time.
+    /// Given up after one timeout, attempts and markers included: where a link that seems dead is tried for the last time.
     pub last: bool,
 }
 
@@ -79,6 +79,10 @@ pub(super) struct Job {
     pub hastened: bool,
 }
 
+/// Repeats of a request that the drive refused for its checksum, and more of them while this span lasts: bursts of damage end.
+const REJECTIONS: u8 = 2;
+const REJECTED: Span = Span::from_millis(150);
+
 impl Job {
     pub fn new(request: Request) -> Self {
         Self {
@@ -90,6 +94,12 @@ impl Job {
             first: None,
             hastened: false,
         }
+    }
+
+    /// Whether a request that the drive refused for its checksum goes out again.
+    pub fn may_be_rejected(&self, now: Stamp<Host>) -> bool {
+        let since = self.first.map(|first| now.saturating_since(first));
+        self.rejected < REJECTIONS || since.is_some_and(|since| since < REJECTED)
     }
 
     /// When a last attempt is over.

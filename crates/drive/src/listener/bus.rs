@@ -14,10 +14,11 @@ use units::{Host, Stamp};
 use crate::beat::Beats;
 use crate::bus::{STREAM, is_stream};
 use crate::codec::{Reply, sdo_asked, sdo_decode};
+use crate::event::Taken;
 use crate::objects::{Address, TIMESTAMP};
 use crate::pairing::{Access, Asked};
 
-use super::{Observation, value};
+use super::{Given, Observation};
 
 /// Looks on at the bus of one node.
 #[derive(Clone, Debug)]
@@ -98,6 +99,11 @@ impl BusWatch {
         }
         match (asked.access, reply.value) {
             (Access::Write(value), _) | (Access::Open, Some(value)) => {
+                let is_id = asked.address == Address::new(STREAM.communication(), 1);
+                if is_id && !CommunicationId::from_u32(value).valid {
+                    // The stream is switched off to be configured: the client begins with a lone beat, too.
+                    self.beats.forget();
+                }
                 self.known.insert(asked.address, value);
             }
             _ => {}
@@ -121,6 +127,12 @@ impl BusWatch {
         else {
             return Said::Noise;
         };
+        let given = Given {
+            request: beat,
+            answer: host,
+            taken: Taken::AtSync,
+            device_us: Some(device_us),
+        };
         // The drive's time first: whoever takes the sample has it then.
         let entries = || layout.entries().iter().zip(values.iter());
         let is_time = |entry: &Mapping| entry.address == TIMESTAMP.address;
@@ -128,11 +140,7 @@ impl BusWatch {
             .filter(|(entry, _)| is_time(entry))
             .chain(entries().filter(|(entry, _)| !is_time(entry)));
         for (entry, content) in ordered.filter(|(entry, _)| entry.bits <= 32) {
-            let mut seen = value(entry.address, *content as u32, beat, host);
-            if let Observation::Sample(sample) = &mut seen {
-                sample.device_us = Some(device_us);
-            }
-            emit(seen);
+            emit(given.value(entry.address, *content as u32));
         }
         Said::Nothing
     }

@@ -74,6 +74,7 @@ async fn watch(ops: &Ops) -> Result<(), DriveError> {
     let limit = ops.now().saturating_add(homing.time_limit);
     loop {
         ops.sleep(ops.config.timing.status_period).await;
+        let asked = ops.now();
         let got = check_enabled(ops).await?;
         if got & status::HOMING_ERROR != 0 {
             return Err(DriveError::Homing {
@@ -84,7 +85,7 @@ async fn watch(ops: &Ops) -> Result<(), DriveError> {
         if got & DONE == DONE {
             return Ok(());
         }
-        if ops.now() > limit {
+        if asked > limit {
             return Err(DriveError::HomingTime {
                 method: homing.method,
                 limit: homing.time_limit,

@@ -110,11 +110,12 @@ async fn start(ops: &mut Ops, plan: Plan) -> Result<Stamp<Host>, DriveError> {
     loop {
         // The ramp is on and its shape is told by samples alone: every other request is between two of them.
         ops.sample().await?;
+        let asked = ops.now();
         let got = check_enabled(ops).await?;
         if got & status::SETPOINT_ACKNOWLEDGE != 0 {
             break;
         }
-        if ops.now() > limit {
+        if asked > limit {
             return Err(DriveError::State {
                 expected: "setpoint acknowledged (bit 12)",
                 got,
@@ -141,21 +142,30 @@ async fn follow(
     let tolerance = ops.config.arrival_tolerance.0.unsigned_abs();
     let mut watch = Watch::new(ops);
     let mut reached = false;
+    // The statusword, and after it the position, were asked for after the limit: a host that was held up may have slept through
+    // the arrival.
+    let mut late = false;
     loop {
         let sample = ops.sample().await?;
         if reached && sample.position.0.abs_diff(target.0) <= tolerance {
             return Ok((sample.position, sample.answer));
         }
-        if let Some(word) = watch.look(ops).await? {
-            reached = word & status::TARGET_REACHED != 0;
-        }
-        if ops.now() > limit {
+        if late && sample.request > limit {
             return Err(DriveError::NotArrived {
                 target,
                 position: sample.position,
                 waited: ops.now().saturating_since(started),
                 reached,
             });
+        }
+        late = ops.now() > limit;
+        let word = if late {
+            Some(check_enabled(ops).await?)
+        } else {
+            watch.look(ops).await?
+        };
+        if let Some(word) = word {
+            reached = word & status::TARGET_REACHED != 0;
         }
     }
 }

@@ -45,7 +45,7 @@ pub(super) async fn fault(ops: &Ops) -> DriveError {
 /// Reads the statusword until it is as wanted. With `expected` for the error message.
 ///
 /// # Errors
-/// [`DriveError::State`] after the state limit.
+/// [`DriveError::State`] for a statusword that was asked for after the state limit.
 pub(super) async fn wait_for(
     ops: &Ops,
     expected: &'static str,
@@ -53,11 +53,12 @@ pub(super) async fn wait_for(
 ) -> Result<u16, DriveError> {
     let limit = ops.now().saturating_add(ops.config.timing.state_limit);
     loop {
+        let asked = ops.now();
         let got = ops.read(objects::STATUSWORD).await?;
         if wanted(got) {
             return Ok(got);
         }
-        if ops.now() > limit {
+        if asked > limit {
             return Err(DriveError::State { expected, got });
         }
         ops.sleep(LOOK).await;
@@ -159,8 +160,9 @@ pub(super) async fn set_mode(ops: &Ops, mode: i8) -> Result<(), DriveError> {
     ops.write(objects::MODE, mode).await?;
     let limit = ops.now().saturating_add(ops.config.timing.state_limit);
     loop {
+        let asked = ops.now();
         match ops.expect(objects::MODE_DISPLAY, mode).await {
-            Err(DriveError::NotTaken { .. }) if ops.now() <= limit => ops.sleep(LOOK).await,
+            Err(DriveError::NotTaken { .. }) if asked <= limit => ops.sleep(LOOK).await,
             result => return result,
         }
     }

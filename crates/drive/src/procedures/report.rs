@@ -50,7 +50,7 @@ pub(super) async fn identify(ops: &Ops) -> Result<Identity, DriveError> {
 async fn name(ops: &Ops) -> Result<DeviceName, DriveError> {
     match ops.read_bytes(objects::DEVICE_NAME).await {
         Ok(bytes) => Ok(DeviceName::new(&bytes)),
-        Err(DriveError::Refused { .. }) => Ok(DeviceName::default()),
+        Err(DriveError::Refused { .. } | DriveError::TooLong { .. }) => Ok(DeviceName::default()),
         Err(error) => Err(error),
     }
 }

@@ -37,7 +37,9 @@ pub(crate) async fn brake(mut ops: Ops) -> Result<Outcome, DriveError> {
 pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
     ops.watch(false);
     let halted = match cause {
-        DriveError::LinkLost { .. } | DriveError::NodeSilent { .. } => halt_unheard(ops).await,
+        DriveError::LinkLost { .. }
+        | DriveError::NodeSilent { .. }
+        | DriveError::NoAnswer { damaged: true, .. } => halt_unheard(ops).await,
         _ => halt(ops).await,
     };
     match halted {
@@ -61,7 +63,7 @@ pub(super) async fn halt(ops: &mut Ops) -> Result<Stopped, DriveError> {
     rest(ops).await
 }
 
-/// The same where nothing was heard any more: tried once, so that it is soon known whether the axis stops.
+/// The same where nothing was heard any more, or nothing whole: given up soon, so that it is soon known whether the axis stops.
 async fn halt_unheard(ops: &mut Ops) -> Result<Stopped, DriveError> {
     ops.set_moving(true);
     ops.write_at_last(objects::CONTROLWORD, control::QUICK_STOP)
@@ -156,20 +158,25 @@ async fn standstill(ops: &mut Ops) -> Result<(), DriveError> {
         .saturating_add(timing.state_limit);
     let mut place: Option<Quadcounts> = None;
     let mut since = began;
+    let mut late = false;
     loop {
         let sample = ops.sample().await?;
         let stands = place.is_some_and(|p| p.0.abs_diff(sample.position.0) <= REST_QC);
-        if !stands {
-            place = Some(sample.position);
-            since = sample.answer;
-        } else if sample.request.saturating_since(since) >= timing.standstill {
-            return Ok(());
+        if stands {
+            if sample.request.saturating_since(since) >= timing.standstill {
+                return Ok(());
+            }
+            continue;
         }
-        if ops.now() > limit {
+        // Two places, both asked for after the limit: a host that was held up may have slept through the stop.
+        if late {
             return Err(DriveError::StillMoving {
                 position: sample.position,
                 waited: ops.now().saturating_since(began),
             });
         }
+        late = sample.request > limit;
+        place = Some(sample.position);
+        since = sample.answer;
     }
 }

@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, ReadObject, ReadSegment, Request, SegmentedRead, WriteObject,
+    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, ReadSegment, Request,
+    SegmentedRead, SegmentedWrite, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, CommError, Frame};
@@ -25,10 +26,14 @@ pub enum Fate {
     Twice,
     /// The drive saw the request damaged.
     Rejected,
+    /// What comes is an answer to another request, and of another kind.
+    Another,
 }
 
 /// Decides the fate of the answer to the n-th request (from 0).
 pub type Hand = Box<dyn FnMut(usize, &Request) -> Fate>;
+/// What becomes on the way of bytes that arrive at this time.
+pub type Hurt = Box<dyn FnMut(Stamp<Host>, Vec<u8>) -> Vec<u8>>;
 
 #[derive(Clone, Copy, Debug)]
 struct Motion {
@@ -46,6 +51,10 @@ pub struct Fake {
     pub name: Vec<u8>,
     /// Bytes of the name that have been read, while it is.
     name_at: usize,
+    /// Bytes of the name that have been written, and how many are to come, while it is.
+    writing: Option<(Vec<u8>, usize)>,
+    /// Transfers that the client broke off (CAN).
+    pub aborts: Vec<CommError>,
     /// Segments come with the wrong toggle bit.
     pub wrong_toggle: bool,
     pub objects: BTreeMap<(u16, u8), u32>,
@@ -68,6 +77,7 @@ pub struct Fake {
     /// Objects that refuse to be written.
     pub refuses: Vec<(u16, u8)>,
     pub hand: Hand,
+    pub hurt: Hurt,
     pub turnaround: Span,
     answers: Vec<(Stamp<Host>, Vec<u8>)>,
     pub requests: Vec<(Stamp<Host>, Request)>,
@@ -146,6 +156,8 @@ impl Fake {
             bus: FakeBus::default(),
             name: b"EPOS2".to_vec(),
             name_at: 0,
+            writing: None,
+            aborts: Vec::new(),
             wrong_toggle: false,
             objects: objects.map(|(index, sub, v)| ((index, sub), v)).into(),
             state: FAULT,
@@ -162,6 +174,7 @@ impl Fake {
             stubborn: Vec::new(),
             refuses: Vec::new(),
             hand: Box::new(|_, _| Fate::Sent),
+            hurt: Box::new(|_, bytes| bytes),
             turnaround: Span::from_micros(800),
             answers: Vec::new(),
             requests: Vec::new(),
@@ -209,7 +222,8 @@ impl Fake {
 
     pub fn take_answer(&mut self, now: Stamp<Host>) -> Option<Vec<u8>> {
         self.live(now);
-        (self.answers.first()?.0 <= now).then(|| self.answers.remove(0).1)
+        let due = self.answers.first().is_some_and(|(at, _)| *at <= now);
+        due.then(|| (self.hurt)(now, self.answers.remove(0).1))
     }
 
     /// Everything on its way is lost.
@@ -263,8 +277,48 @@ impl Fake {
                 let segment = self.segment(*toggle, 3);
                 SegmentedRead::answer(&Ok(segment))
             }
+            Request::InitiateSegmentedWrite(open) => Answer::bare(self.open_write(open)).to_frame(),
+            Request::SegmentedWrite(SegmentedWrite(segment)) => {
+                SegmentedWrite::answer(self.write_segment(segment))
+            }
             _ => Answer::bare(CommError::COMMAND).to_frame(),
         }
+    }
+
+    /// The name may be written, up to 20 bytes of it.
+    fn open_write(&mut self, open: &InitiateSegmentedWrite) -> CommError {
+        self.writing = None;
+        let len = open.len as usize;
+        match open.address.index {
+            0x1008 if len > 20 => CommError::TOO_LONG,
+            0x1008 => {
+                self.writing = Some((Vec::new(), len));
+                CommError::NONE
+            }
+            _ => CommError::NO_OBJECT,
+        }
+    }
+
+    fn write_segment(&mut self, segment: &WriteSegment) -> Result<bool, CommError> {
+        let (mut bytes, len) = self.writing.take().ok_or(CommError::COMMAND)?;
+        let longest = if self.wire.link() == DriveLink::Can {
+            7
+        } else {
+            63
+        };
+        // Whole segments before it, so the toggle bit follows.
+        if segment.toggle != ((bytes.len() / longest) % 2 == 1) {
+            return Err(CommError::TOGGLE);
+        }
+        bytes.extend_from_slice(&segment.bytes);
+        if bytes.len() < len {
+            self.writing = Some((bytes, len));
+        } else if self.refuses.contains(&(0x1008, 0)) {
+            return Err(CommError::STATE);
+        } else {
+            self.name = bytes;
+        }
+        Ok(segment.toggle != self.wrong_toggle)
     }
 
     /// The next bytes of the name.

@@ -4,11 +4,14 @@ use std::collections::VecDeque;
 
 use firmware_sim::epos2::{Brake, CanServer, Node, NodeConfig, Rs232Server, UsbServer};
 use protocol::canopen::CanFrame;
-use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::State;
+use protocol::epos2::objects::Address;
+use protocol::epos2::{Bounded, CommError, DeviceError};
 use protocol::record::DriveLink;
 use units::{Host, Rpm, Span, Stamp};
 
+use super::bursts::{DAMAGES, hurting};
+use super::fake::Hurt;
 use super::rig::to;
 use crate::{
     AngleSource, AxisConfig, Client, Command, DriveError, Event, Move, Outcome, Place, Plan,
@@ -80,6 +83,8 @@ struct World {
     quick_stops: Vec<Stamp<Host>>,
     /// The cable is cut.
     cut: bool,
+    /// What becomes of answers on their way.
+    hurt: Hurt,
     /// Beginning of each control cycle, and the shaft's way through it, world qc.
     truth: Vec<(Stamp<Host>, f64, f64)>,
 }
@@ -102,6 +107,7 @@ impl World {
             events: Vec::new(),
             quick_stops: Vec::new(),
             cut: false,
+            hurt: Box::new(|_, bytes| bytes),
             truth: Vec::new(),
         }
     }
@@ -186,6 +192,7 @@ impl World {
             self.say(said);
         }
         if let Some((_, bytes)) = self.to_host.pop_front_if(|m| m.0 <= self.now) {
+            let bytes = (self.hurt)(self.now, bytes);
             self.client.handle_input(&bytes, self.now);
         }
         if self.client.poll_timeout().is_some_and(|t| t <= self.now) {
@@ -359,30 +366,35 @@ fn stop_in_mid_sweep_keeps_the_position() {
 
 #[test]
 fn a_limit_switch_in_mid_sweep_is_named() {
-    // The positive switch has slipped to 20 deg.
-    let mut config = NodeConfig::default();
-    if let Some(switch) = &mut config.switches[1] {
-        switch.pressed = firmware_sim::epos2::Region::AtLeast(13_333);
-    }
-    let mut world = World::new(config);
-    world.run(Command::Connect).unwrap();
-    world.run(Command::Home).unwrap();
-    let error = world.run(Command::Sweep(to(45.0))).unwrap_err();
-    assert_eq!(
-        error,
-        DriveError::Fault {
-            error: Some(DeviceError::POSITIVE_LIMIT)
+    for link in LINKS {
+        // The positive switch has slipped to 20 deg.
+        let mut config = NodeConfig::default();
+        if let Some(switch) = &mut config.switches[1] {
+            switch.pressed = firmware_sim::epos2::Region::AtLeast(13_333);
         }
-    );
-    assert!(error.to_string().contains("FF07"), "{error}");
-    let Ok(Outcome::FaultsCleared(found)) = world.run(Command::ClearFaults) else {
-        panic!("{:?}", world.events.last())
-    };
-    assert_eq!(found.first(), Some(&DeviceError::POSITIVE_LIMIT));
-    assert!(
-        world.run(Command::Goto(to(0.0))).is_ok(),
-        "it can leave the switch"
-    );
+        let mut world = World::on(link, config);
+        world.run(Command::Connect).unwrap();
+        world.run(Command::Home).unwrap();
+        let error = world.run(Command::Sweep(to(45.0))).unwrap_err();
+        assert_eq!(
+            error,
+            DriveError::Fault {
+                error: Some(DeviceError::POSITIVE_LIMIT)
+            },
+            "{link:?}"
+        );
+        assert!(error.to_string().contains("FF07"), "{error}");
+        let stopped = world.made_safe().unwrap();
+        assert_eq!(stopped.place, Place::Known, "{link:?}");
+        let Ok(Outcome::FaultsCleared(found)) = world.run(Command::ClearFaults) else {
+            panic!("{:?}", world.events.last())
+        };
+        assert_eq!(found.first(), Some(&DeviceError::POSITIVE_LIMIT));
+        assert!(
+            world.run(Command::Goto(to(0.0))).is_ok(),
+            "{link:?}: it can leave the switch"
+        );
+    }
 }
 
 #[test]
@@ -498,5 +510,66 @@ fn a_cut_cable_in_mid_sweep_is_told_and_on_can_stops_the_axis() {
             let way = world.node.segment();
             assert_eq!(way.start, way.end, "it stands");
         }
+    }
+}
+
+/// It hears, though nothing of what it says can be read.
+#[test]
+fn an_axis_whose_answers_are_all_damaged_is_stopped() {
+    for link in [DriveLink::Usb, DriveLink::Rs232] {
+        for damage in DAMAGES {
+            let mut world = World::moving_on(link);
+            let from = world.now;
+            world.hurt = hurting(damage, from, from + Span::from_secs(100));
+            let error = world.finish().unwrap_err();
+            assert!(matches!(error, DriveError::NotStopped { .. }), "{error}");
+            let way = world.node.segment();
+            assert_eq!(way.start, way.end, "{link:?} {damage:?}: {error}");
+        }
+    }
+}
+
+/// The software EPOS2 has no long object that takes what is written to it, but it walks the whole transfer before it says so.
+#[test]
+fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
+    for link in LINKS {
+        let mut world = World::on(link, NodeConfig::default());
+        world.run(Command::Connect).unwrap();
+        let mut read = |index, sub| match world.run(Command::Read(Address::new(index, sub))) {
+            Ok(Outcome::Read { bytes, .. }) => bytes,
+            other => panic!("{link:?}: {other:?}"),
+        };
+        assert_eq!(read(0x1008, 0), b"EPOS2");
+        assert_eq!(
+            read(0x2004, 0).len(),
+            8,
+            "{link:?}: a serial number of 64 bits"
+        );
+        assert_eq!(read(0x6041, 0).len(), 2);
+        assert_eq!(read(0x6065, 0), 2_000_u32.to_le_bytes());
+        for (index, len, expected) in [
+            (0x20C1, 8, CommError::STATE),
+            (0x20C1, 9, CommError::TOO_LONG),
+            (0x20C1, 7, CommError::TOO_SHORT),
+            (0x2004, 8, CommError::READ_ONLY),
+            (0x5000, 8, CommError::NO_OBJECT),
+        ] {
+            let bytes = Bounded::from_slice(&vec![0x90; len]).unwrap();
+            let address = Address::new(index, 0);
+            let error = world.run(Command::Write { address, bytes }).unwrap_err();
+            assert!(
+                matches!(error, DriveError::Refused { error, .. } if error == expected),
+                "{link:?}: {error}"
+            );
+        }
+        let bytes = Bounded::from_slice(&1_500_u32.to_le_bytes()).unwrap();
+        let address = Address::new(0x6065, 0);
+        world.run(Command::Write { address, bytes }).unwrap();
+        let Ok(Outcome::Read { bytes, .. }) = world.run(Command::Read(address)) else {
+            panic!("{link:?}")
+        };
+        assert_eq!(bytes, 1_500_u32.to_le_bytes());
+        let stats = world.client.link_stats();
+        assert_eq!((stats.lost, stats.strays), (0, 0), "{link:?}");
     }
 }

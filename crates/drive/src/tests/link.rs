@@ -176,8 +176,8 @@ fn silence_is_told_after_two_markers() {
     );
     // The link comes back: what it owed is told apart, then all is well.
     link.submit(read(0x6041));
-    assert_eq!(link.transmit(at(400)), Some(marker(0)));
-    for late in [answer(1), absent(0), absent(1), absent(0)] {
+    assert_eq!(link.transmit(at(400)), Some(marker(1)));
+    for late in [answer(1), absent(0), absent(1), absent(1)] {
         link.input(&late, at(401));
     }
     assert_eq!(link.take(), None);

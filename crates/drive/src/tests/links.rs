@@ -65,7 +65,7 @@ fn the_whole_story() {
 }
 
 /// On RS232 a log tells more narrowly when the position was taken: by when the answer was announced.
-fn same(link: DriveLink, client: &ShaftSample, log: &ShaftSample) -> bool {
+pub fn same(link: DriveLink, client: &ShaftSample, log: &ShaftSample) -> bool {
     let narrowed = ShaftSample {
         answer: log.answer,
         ..*client
@@ -256,6 +256,83 @@ fn an_axis_that_does_not_follow_is_given_up() {
     }
 }
 
+/// The host is held up for longer than the margin, shortly before, at and after the arrival, at any point of a dialogue.
+#[test]
+fn a_host_that_sleeps_through_the_arrival_finds_the_axis_there() {
+    for link in [DriveLink::Usb, DriveLink::Rs232] {
+        let mut usual = Rig::homed_on(link);
+        let began = usual.now;
+        usual.run(Command::Goto(to(-15.0))).unwrap();
+        let took = usual.now - began;
+        for k in 1..60 {
+            let mut rig = Rig::homed_on(link);
+            rig.client.start(Command::Goto(to(-15.0))).unwrap();
+            let before = took - Span::from_micros(970 * k);
+            assert_eq!(rig.run_for(before), None, "{link:?}");
+            rig.sleep(Span::from_millis(1_700));
+            let ended = rig.finish();
+            let Ok(Outcome::Arrived(arrived)) = ended else {
+                panic!("{link:?} {before:?}: {ended:?}")
+            };
+            assert_eq!(arrived.position, Quadcounts(-10_000));
+        }
+    }
+}
+
+/// On CAN the drive does not wait for such a host, and its word stands.
+#[test]
+fn a_host_that_sleeps_on_can_is_told_that_the_drive_stopped() {
+    let mut rig = moving_on(DriveLink::Can);
+    // The drive's own time goes on meanwhile.
+    for _ in 0..1_700 {
+        rig.now += Span::from_millis(1);
+        rig.fake.live(rig.now);
+    }
+    let error = rig.finish().unwrap_err();
+    let error_8130 = DriveError::Fault {
+        error: Some(DeviceError(0x8130)),
+    };
+    assert_eq!(error, error_8130);
+    assert_eq!(made_safe(&rig).unwrap().place, Place::Known);
+}
+
+/// A change of state and a standstill that the host slept through are seen, too.
+#[test]
+fn a_host_that_sleeps_at_any_time_finds_what_has_become_of_it() {
+    for link in [DriveLink::Usb, DriveLink::Rs232] {
+        for k in 0..150 {
+            let mut config = AxisConfig::default();
+            config.homing.time_limit = Span::from_millis(1_500);
+            config.timing.state_limit = Span::from_secs(1);
+            let mut rig = Rig::on(link, config);
+            rig.fake.homing_time = Span::from_millis(300);
+            for command in [
+                Command::Connect,
+                Command::Home,
+                Command::Goto(to(-50.0)),
+                Command::Stop,
+            ] {
+                rig.client.start(command).unwrap();
+                let mut ended = rig.run_for(Span::from_micros(1 + 970 * k));
+                if ended.is_none() {
+                    rig.sleep(Span::from_millis(1_800));
+                    ended = Some(rig.finish());
+                }
+                // A dialogue of RS232 broken off by sleep leaves open what became of a write.
+                let open = matches!(ended, Some(Err(DriveError::NoAnswer { .. })))
+                    && link == DriveLink::Rs232;
+                assert!(
+                    open || matches!(ended, Some(Ok(_))),
+                    "{link:?} {command:?} {k}: {ended:?}"
+                );
+                if open {
+                    break;
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn loss_damage_repetition_and_refusal_are_survived() {
     for link in LINKS {
@@ -332,5 +409,29 @@ fn a_stop_from_mid_sweep_is_immediate_and_keeps_the_position() {
         assert!(reaction < Span::from_millis(10), "{link:?}: {reaction:?}");
         assert_eq!(rig.fake.state, DISABLED);
         assert_eq!(rig.fake.objects[&(0x1016, 1)], 0);
+    }
+}
+
+/// No value of it is taken, and what was asked is asked again.
+#[test]
+fn an_answer_to_another_request_in_mid_sweep_is_passed_over() {
+    for link in LINKS {
+        let mut rig = Rig::homed_on(link);
+        rig.fake.hand = Box::new(|n, request| match request {
+            Request::ReadObject(read) if n % 11 == 5 && read.address.index == 0x6041 => {
+                Fate::Another
+            }
+            Request::ReadObject(read) if n % 17 == 5 && read.address.index == 0x6064 => {
+                Fate::Another
+            }
+            _ => Fate::Sent,
+        });
+        let Ok(Outcome::Arrived(arrived)) = rig.run(Command::Sweep(to(-15.0))) else {
+            panic!("{link:?}: {:?}", rig.events.last())
+        };
+        assert_eq!(arrived.position, Quadcounts(-10_000));
+        let in_order = |pair: &[ShaftSample]| pair[0].position <= pair[1].position;
+        assert!(rig.samples().windows(2).all(in_order), "{link:?}");
+        assert!(rig.client.link_stats().strays > 0, "{link:?}");
     }
 }

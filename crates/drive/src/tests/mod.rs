@@ -1,5 +1,6 @@
 //! Tests of the whole client against a scripted drive, in virtual time.
 
+mod bursts;
 mod can;
 mod fake;
 mod faults;
@@ -7,6 +8,8 @@ mod firmware;
 mod link;
 mod links;
 mod listener;
+mod objects;
+mod onlooker;
 mod procedures;
 mod rig;
 mod rs232;

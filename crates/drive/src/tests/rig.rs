@@ -79,12 +79,22 @@ impl Rig {
         None
     }
 
-    /// One turn of the owner's loop.
-    pub fn step(&mut self) -> Option<Result<Outcome, DriveError>> {
+    fn transmit(&mut self) {
         while let Some(frame) = self.client.poll_transmit(self.now) {
             self.fake.input(&frame, self.now);
             self.log.push((Direction::ToDevice, frame, self.now));
         }
+    }
+
+    /// The host is held up with what it had to say said.
+    pub fn sleep(&mut self, span: Span) {
+        self.transmit();
+        self.now += span;
+    }
+
+    /// One turn of the owner's loop.
+    pub fn step(&mut self) -> Option<Result<Outcome, DriveError>> {
+        self.transmit();
         while let Some(event) = self.client.poll_event() {
             self.events.push(event.clone());
             match event {

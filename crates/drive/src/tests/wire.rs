@@ -8,12 +8,13 @@ use protocol::canopen::pdo::{Mapping, Pdo};
 use protocol::canopen::sdo::{self, Expedited, Initiate};
 use protocol::canopen::{CanFrame, Message, NodeId, PdoNumber};
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, ReadObject, Request, SegmentedRead, WriteObject,
+    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, Request, SegmentedRead,
+    SegmentedWrite, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::Address;
 use protocol::epos2::rs232::{BodyDecoder, FAILED, OKAY, encode_body};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{CommError, DeviceError, Frame};
+use protocol::epos2::{Bounded, CommError, DeviceError, Frame};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -117,7 +118,22 @@ impl Wire {
     }
 }
 
+/// The answer to a request of another kind: a read where it was a write, and the other way round.
+fn another(answer: &Frame) -> Frame {
+    if Answer::parse(answer).unwrap().data.is_empty() {
+        ReadObject::answer(Ok(0x1234))
+    } else {
+        WriteObject::answer(Ok(()))
+    }
+}
+
 fn usb_answer(fake: &mut Fake, answer: &Frame, fate: Fate, now: Stamp<Host>) {
+    let other = another(answer);
+    let answer = if fate == Fate::Another {
+        &other
+    } else {
+        answer
+    };
     let mut bytes = usb::to_bytes(answer).to_vec();
     let by = match fate {
         Fate::Lost => return,
@@ -135,7 +151,7 @@ fn usb_answer(fake: &mut Fake, answer: &Frame, fate: Fate, now: Stamp<Host>) {
 
 fn rs232(turn: Turn, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> Turn {
     match turn {
-        Turn::Opcode if [0x10, 0x11, 0x12, 0x14].contains(&byte) => {
+        Turn::Opcode if [0x10, 0x11, 0x12, 0x13, 0x14, 0x15].contains(&byte) => {
             fake.send(vec![OKAY], Span::ZERO, now);
             Turn::Body(BodyDecoder::new(byte))
         }
@@ -164,7 +180,10 @@ fn rs232(turn: Turn, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> Turn {
                 Turn::Ready(answer, fate)
             }
         },
-        Turn::Ready(answer, fate) if byte == OKAY => {
+        Turn::Ready(mut answer, fate) if byte == OKAY => {
+            if fate == Fate::Another {
+                answer = another(&answer);
+            }
             let mut body = Vec::new();
             encode_body(&answer, &mut body).unwrap();
             if fate == Fate::Damaged {
@@ -233,11 +252,35 @@ fn sdo_request(fake: &mut Fake, request: &sdo::Request, now: Stamp<Host>) {
             Request::SegmentedRead(SegmentedRead { toggle }),
             Address::new(0x1008, 0),
         ),
-        sdo::Request::Abort { .. } => return,
+        sdo::Request::InitiateDownload {
+            address,
+            transfer: Initiate::Segmented { size: Some(len) },
+        } => {
+            let node = NODE;
+            let open = InitiateSegmentedWrite { node, address, len };
+            (Request::InitiateSegmentedWrite(open), address)
+        }
+        sdo::Request::DownloadSegment(segment) => {
+            let mut bytes = Bounded::new();
+            bytes.extend(segment.bytes.iter().copied());
+            let toggle = segment.toggle;
+            let write = SegmentedWrite(WriteSegment { toggle, bytes });
+            (Request::SegmentedWrite(write), Address::new(0x1008, 0))
+        }
+        sdo::Request::Abort { error, .. } => {
+            fake.aborts.push(error);
+            return;
+        }
         other => panic!("{other:?}"),
     };
     let (answer, fate) = fake.execute(wire, now);
-    let answer = sdo_answer(&wire, address, &answer);
+    let mut answer = sdo_answer(&wire, address, &answer);
+    if fate == Fate::Another {
+        // Of the same kind, even.
+        let address = Address::new(address.index + 1, address.sub);
+        let transfer = Initiate::Expedited(Expedited::of(0x1234_u32));
+        answer = sdo::Answer::InitiateUpload { address, transfer };
+    }
     let mut bytes = answer.to_frame(node()).to_socketcan().to_vec();
     let by = match fate {
         Fate::Lost => return,
@@ -260,7 +303,13 @@ fn sdo_answer(request: &Request, address: Address, answer: &Frame) -> sdo::Answe
         return sdo::Answer::Abort { address, error };
     }
     match request {
-        Request::WriteObject(_) => sdo::Answer::InitiateDownload { address },
+        Request::WriteObject(_) | Request::InitiateSegmentedWrite(_) => {
+            sdo::Answer::InitiateDownload { address }
+        }
+        Request::SegmentedWrite(_) => {
+            let toggle = SegmentedWrite::parse_answer(answer).unwrap().unwrap();
+            sdo::Answer::DownloadSegment { toggle }
+        }
         Request::InitiateSegmentedRead(_) => sdo::Answer::InitiateUpload {
             address,
             transfer: Initiate::Segmented { size: None },

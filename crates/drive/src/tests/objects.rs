@@ -1,0 +1,227 @@
+//! Any object by hand, expedited and in segments, both ways, with aborts.
+
+use protocol::epos2::objects::Address;
+use protocol::epos2::{Bounded, CommError};
+use protocol::record::DriveLink;
+
+use super::fake::Fate;
+use super::rig::{Rig, to};
+use crate::{AxisConfig, Command, DriveError, Observation, Outcome};
+
+const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
+const NAME: Address = Address::new(0x1008, 0);
+
+fn rig(link: DriveLink) -> Rig {
+    Rig::on(link, AxisConfig::default())
+}
+
+fn write(address: Address, bytes: &[u8]) -> Command {
+    let bytes = Bounded::from_slice(bytes).unwrap();
+    Command::Write { address, bytes }
+}
+
+fn read(rig: &mut Rig, address: Address) -> Result<Vec<u8>, DriveError> {
+    match rig.run(Command::Read(address))? {
+        Outcome::Read {
+            address: got,
+            bytes,
+        } if got == address => Ok(bytes),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Every length around those of a segment of CAN, and the toggle bit of each.
+#[test]
+fn long_objects_are_written_and_read_back() {
+    for link in LINKS {
+        let mut rig = rig(link);
+        for len in [5, 6, 7, 8, 13, 14, 15, 20] {
+            // 0x90 is what USB doubles.
+            let bytes: Vec<u8> = (0..len).map(|n| 0x90 - n % 3).collect();
+            assert_eq!(
+                rig.run(write(NAME, &bytes)),
+                Ok(Outcome::Written(NAME)),
+                "{link:?} {len}"
+            );
+            assert_eq!(rig.fake.name, bytes, "{link:?}");
+            assert_eq!(read(&mut rig, NAME).unwrap(), bytes, "{link:?}");
+        }
+        assert_eq!(rig.fake.aborts, []);
+        assert_eq!(rig.client.link_stats().lost, 0);
+        // A log is understood all the same.
+        let is_noise = |seen: &&Observation| matches!(seen, Observation::Noise { .. });
+        assert_eq!(rig.heard().iter().find(is_noise), None, "{link:?}");
+    }
+}
+
+#[test]
+fn short_objects_take_one_exchange_of_their_width() {
+    for link in LINKS {
+        let mut rig = rig(link);
+        for (index, sub, bytes) in [
+            (0x6060, 0, &[0xFA_u8][..]),
+            (0x2100, 1, &[0x90, 0x01]),
+            (0x6081, 0, &[0x78, 0x56, 0x34, 0x12]),
+        ] {
+            rig.fake.requests.clear();
+            rig.run(write(Address::new(index, sub), bytes)).unwrap();
+            let mut value = [0; 4];
+            value[..bytes.len()].copy_from_slice(bytes);
+            assert_eq!(rig.fake.objects[&(index, sub)], u32::from_le_bytes(value));
+            assert_eq!(rig.fake.requests.len(), 2, "the statusword, and it");
+        }
+    }
+}
+
+#[test]
+fn the_drives_aborts_are_told_at_the_beginning_and_at_the_end() {
+    for link in LINKS {
+        let mut rig = rig(link);
+        let absent = Address::new(0x5000, 1);
+        for (address, len, expected) in [
+            (absent, 8, CommError::NO_OBJECT),
+            (NAME, 21, CommError::TOO_LONG),
+        ] {
+            let error = rig.run(write(address, &vec![1; len])).unwrap_err();
+            assert!(
+                matches!(error, DriveError::Refused { error, .. } if error == expected),
+                "{link:?}: {error}"
+            );
+            let begin = format!("writing {len} bytes to object {address} refused by the drive");
+            assert!(error.to_string().starts_with(&begin), "{error}");
+        }
+        rig.fake.refuses = vec![(0x1008, 0)];
+        let error = rig.run(write(NAME, b"a longer name")).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                DriveError::Refused {
+                    error: CommError::STATE,
+                    ..
+                }
+            ),
+            "{link:?}: {error}"
+        );
+        assert!(matches!(
+            read(&mut rig, absent),
+            Err(DriveError::Refused { .. })
+        ));
+        // An abort ends the transfer by itself, and the next one is unharmed.
+        assert_eq!(rig.fake.aborts, []);
+        assert_eq!(rig.fake.name, b"EPOS2");
+        assert_eq!(read(&mut rig, NAME).unwrap(), b"EPOS2");
+    }
+}
+
+#[test]
+fn a_wrong_toggle_bit_breaks_a_write_off() {
+    for link in LINKS {
+        let mut rig = rig(link);
+        rig.fake.wrong_toggle = true;
+        let error = rig.run(write(NAME, b"another name")).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "writing 12 bytes to object 1008:00 in segments: expected toggle bit 0, got 1",
+            "{link:?}"
+        );
+        let aborts = if link == DriveLink::Can {
+            vec![CommError::TOGGLE]
+        } else {
+            Vec::new()
+        };
+        // What is still to be said is said with the next command.
+        rig.fake.wrong_toggle = false;
+        assert_eq!(read(&mut rig, NAME).unwrap().len(), rig.fake.name.len());
+        assert_eq!(rig.fake.aborts, aborts, "{link:?}");
+    }
+}
+
+#[test]
+fn a_lost_segment_is_not_repeated() {
+    for link in LINKS {
+        for lost in 1..4 {
+            let mut rig = rig(link);
+            rig.fake.hand = Box::new(move |n, _| if n == lost { Fate::Lost } else { Fate::Sent });
+            let ended = rig.run(write(NAME, b"fourteen bytes"));
+            // On a serial link one segment takes it all.
+            if lost == 3 && link != DriveLink::Can {
+                assert!(ended.is_ok(), "{link:?}");
+                continue;
+            }
+            let error = ended.unwrap_err();
+            assert!(
+                matches!(error, DriveError::NoAnswer { attempts: 1, .. }),
+                "{link:?} {lost}: {error}"
+            );
+            rig.fake.hand = Box::new(|_, _| Fate::Sent);
+            read(&mut rig, NAME).unwrap();
+            let timed_out = rig.fake.aborts == [CommError::TIMEOUT];
+            assert_eq!(timed_out, link == DriveLink::Can, "{link:?} {lost}");
+        }
+    }
+}
+
+#[test]
+fn an_object_beyond_all_bounds_is_not_read_for_ever() {
+    for link in LINKS {
+        let mut rig = rig(link);
+        rig.fake.name = vec![b'x'; 300];
+        let error = read(&mut rig, NAME).unwrap_err();
+        assert!(
+            matches!(error, DriveError::TooLong { most: 256, .. }),
+            "{error}"
+        );
+        rig.fake.name.truncate(256);
+        assert_eq!(read(&mut rig, NAME).unwrap().len(), 256, "{link:?}");
+    }
+}
+
+#[test]
+fn nothing_is_written_by_hand_to_what_moves_the_axis_or_while_it_may() {
+    for link in LINKS {
+        let mut rig = Rig::homed_on(link);
+        let controlword = Address::new(0x6040, 0);
+        let error = rig.run(write(controlword, &[0x1F, 0])).unwrap_err();
+        assert!(matches!(error, DriveError::Reserved { .. }), "{error}");
+        rig.run(Command::Goto(to(-50.0))).unwrap();
+        rig.forget();
+        let error = rig.run(write(NAME, b"a new name")).unwrap_err();
+        assert!(matches!(error, DriveError::State { .. }), "{error}");
+        assert_eq!(rig.fake.requests.len(), 1, "{link:?}: the statusword");
+        rig.run(Command::Brake).unwrap();
+        assert!(rig.run(write(NAME, b"a new name")).is_ok());
+    }
+}
+
+/// What USB doubles, what begins its frames, what RS232 shakes hands with, and what begins its answers: wherever they stand, the last
+/// data byte included.
+#[test]
+fn every_byte_passes_at_every_position() {
+    for link in LINKS {
+        let mut rig = rig(link);
+        for special in [0x90, 0x02, 0x4F, 0x46, 0x00] {
+            for mask in 1..16_u8 {
+                let value = u32::from_le_bytes(std::array::from_fn(|at| {
+                    if mask & 1 << at == 0 { 0x11 } else { special }
+                }));
+                rig.fake.objects.insert((0x1018, 4), value);
+                let Ok(Outcome::Status(status)) = rig.run(Command::Status) else {
+                    panic!("{link:?}: {:?}", rig.events.last())
+                };
+                assert_eq!(status.identity.serial, value, "{link:?}");
+                let object = Address::new(0x6065, 0);
+                rig.run(write(object, &value.to_le_bytes())).unwrap();
+                assert_eq!(rig.fake.objects[&(0x6065, 0)], value, "{link:?}");
+            }
+            for (len, at) in (5..16).flat_map(|len| (0..len).map(move |at| (len, at))) {
+                let mut bytes = vec![0x11; len];
+                bytes[at] = special;
+                rig.run(write(NAME, &bytes)).unwrap();
+                assert_eq!(rig.fake.name, bytes, "{link:?}");
+                assert_eq!(read(&mut rig, NAME).unwrap(), bytes, "{link:?}");
+            }
+        }
+        let stats = rig.client.link_stats();
+        assert_eq!((stats.lost, stats.damaged), (0, 0), "{link:?}");
+    }
+}
