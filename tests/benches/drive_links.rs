@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use drive::{AxisConfig, Client, Command, Listener, Observation, ShaftSample};
 use io::port::{Port, Recorder};
-use protocol::canopen::{CanFrame, CobId};
+use protocol::canopen::{CanFrame, Channel, CobId, NodeId, PdoNumber};
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::Span;
 use velomotion::cli::{Common, FirmwareSim};
@@ -94,8 +94,9 @@ fn cpu_s(process: &str) -> f64 {
 /// What a stretch of sampling gave.
 struct Measured {
     samples: Vec<ShaftSample>,
-    /// SYNCs sent.
+    /// SYNCs sent, and process data that came.
     beats: u64,
+    answers: u64,
     seconds: f64,
     client_share: f64,
     drive_share: f64,
@@ -130,13 +131,18 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
     let until = session.port().now() + Span::from_secs_f64(seconds);
     session.run(Command::Hold { until }, &mut |_| {}).unwrap();
     let took = begin.elapsed().as_secs_f64();
-    let (samples, beats) = {
+    let (samples, beats, answers) = {
         let mut heard = heard.borrow_mut();
-        (std::mem::take(&mut heard.samples), heard.beats)
+        (
+            std::mem::take(&mut heard.samples),
+            heard.beats,
+            heard.answers,
+        )
     };
     let measured = Measured {
         samples,
         beats,
+        answers,
         seconds: took,
         client_share: (cpu_s("self") - client_s) / took,
         drive_share: (cpu_s(&child) - drive_s) / took,
@@ -150,6 +156,9 @@ struct Heard {
     listener: Listener,
     samples: Vec<ShaftSample>,
     beats: u64,
+    answers: u64,
+    /// Identifier of the stream's process data.
+    stream: CobId,
 }
 
 impl Heard {
@@ -158,11 +167,14 @@ impl Heard {
             listener: Listener::new(axis.node),
             samples: Vec::new(),
             beats: 0,
+            answers: 0,
+            stream: Channel::TransmitPdo(PdoNumber::One, NodeId::new(axis.node).unwrap()).cob_id(),
         }
     }
 
     fn hear(&mut self, record: &Record<'_>) {
-        self.beats += u64::from(is_sync(record));
+        self.beats += u64::from(is_frame(record, Direction::ToDevice, CobId::SYNC));
+        self.answers += u64::from(is_frame(record, Direction::FromDevice, self.stream));
         let Wire::Drive {
             link,
             direction,
@@ -181,17 +193,18 @@ impl Heard {
     }
 }
 
-/// Whether this is a SYNC to the bus.
-fn is_sync(record: &Record<'_>) -> bool {
+/// Whether this is a frame of a bus that went this way with this identifier.
+fn is_frame(record: &Record<'_>, way: Direction, id: CobId) -> bool {
     let Wire::Drive {
         link: DriveLink::Can,
-        direction: Direction::ToDevice,
+        direction,
         frame,
     } = record.wire
     else {
         return false;
     };
-    CanFrame::from_socketcan(frame).is_ok_and(|frame| frame.cob_id() == Some(CobId::SYNC))
+    direction == way
+        && CanFrame::from_socketcan(frame).is_ok_and(|frame| frame.cob_id() == Some(id))
 }
 
 /// The q-th part of the round trips, in microseconds.
@@ -230,11 +243,12 @@ fn stream(name: &str, measured: &Measured) {
         .collect();
     let worst = spacings.iter().copied().fold(0.0, f64::max);
     println!(
-        "| {name} | {:.1} s | {} | {} | {} | {worst:.2} ms | {:.1} % | {:.1} % |",
+        "| {name} | {:.1} s | {} | {} | {} | {} | {worst:.2} ms | {:.1} % | {:.1} % |",
         measured.seconds,
         measured.beats,
+        measured.answers,
+        measured.beats.saturating_sub(measured.answers),
         times.len(),
-        measured.beats.saturating_sub(times.len() as u64),
         measured.client_share * 100.0,
         measured.drive_share * 100.0,
     );
@@ -285,9 +299,9 @@ fn main() {
     }
     println!();
     println!(
-        "| stream at 1 kHz SYNC | time | SYNCs sent | samples | lost | worst spacing | client, of a core | software drive |"
+        "| stream at 1 kHz SYNC | time | SYNCs sent | answered | lost | instants | worst spacing | client, of a core | software drive |"
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     for (name, kind, interface) in links.iter().skip(2) {
         let drive = SoftwareDrive::start(interface);
         stream(
