@@ -157,7 +157,7 @@ mod tests {
                 answer: Stamp::from_nanos(taken + back(i) * 1_000),
                 position: Quadcounts(i as i32),
                 taken: drive::Taken::AtSync,
-            device_us: Some(device_us as u32),
+                device_us: Some(device_us as u32),
             }
         });
         (samples.collect(), truth)
