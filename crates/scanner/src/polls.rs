@@ -1,4 +1,4 @@
-//! Shaft samples to angle samples. What came at SYNC with the drive's own time goes by that ([`crate::stream`]); what was asked
+//! Shaft samples to angle samples. What came at SYNC with the drive's own time goes by that (`stream`); what was asked
 //! for stands in the middle of request and answer, slow polls left out where they are not needed.
 //!
 //! A poll that took unusually long was held up on one side or the other, and which side cannot be known: its
