@@ -158,7 +158,7 @@ impl ModelName {
 /// Where a cloud goes.
 #[derive(Clone, Debug, Args)]
 pub struct Output {
-    /// Cloud to write: .ply .las .laz .csv; - is PLY on stdout
+    /// Cloud to write: .ply .pcd .las .laz .csv; - is PLY on stdout
     #[arg(short, long, value_name = "CLOUD")]
     pub output: Option<PathBuf>,
     /// Overwrite files that exist

@@ -1,4 +1,4 @@
-//! Clouds as files: PLY, LAS/LAZ and CSV, each a [`Sink`] over anything that writes (and seeks, where a count
+//! Clouds as files: PLY, PCD, LAS/LAZ and CSV, each a [`Sink`] over anything that writes (and seeks, where a count
 //! goes into a header).
 //!
 //! Nothing here opens, names or renames files, and nothing reads them. A writer stores intensity, ring, time and tilt
@@ -7,11 +7,14 @@
 //! | format | positions | time | order of writing |
 //! |---|---|---|---|
 //! | PLY | f32, within 4 um at 100 m | f64 Unix seconds, within 0.12 us | batch by batch |
+//! | PCD | f32, within 4 um at 100 m | f64 Unix seconds, within 0.12 us | batch by batch |
 //! | LAS, LAZ | 0.1 mm steps, within 0.05 mm | gps_time within 0.03 us until 2028 (then 0.06), and f64 Unix seconds | batch by batch |
 //! | CSV | exact | exact | batch by batch |
 
 pub mod csv;
 pub mod las;
+mod layout;
+pub mod pcd;
 pub mod ply;
 mod rows;
 mod seconds;
@@ -28,6 +31,8 @@ use crate::Sink;
 pub enum Format {
     /// Binary little-endian PLY.
     Ply,
+    /// Binary PCD 0.7.
+    Pcd,
     /// LAS 1.4, point format 6.
     Las,
     /// The same, compressed by LASzip.
@@ -58,13 +63,14 @@ fn expected() -> String {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 4] = [Self::Ply, Self::Las, Self::Laz, Self::Csv];
+    pub const ALL: [Self; 5] = [Self::Ply, Self::Pcd, Self::Las, Self::Laz, Self::Csv];
 
     /// The file name extension, without its dot.
     #[must_use]
     pub const fn extension(self) -> &'static str {
         match self {
             Self::Ply => "ply",
+            Self::Pcd => "pcd",
             Self::Las => "las",
             Self::Laz => "laz",
             Self::Csv => "csv",
@@ -100,6 +106,7 @@ impl Format {
     {
         match self {
             Self::Ply => Box::new(ply::PlyWriter::new(output)),
+            Self::Pcd => Box::new(pcd::PcdWriter::new(output)),
             Self::Las => Box::new(las::LasWriter::las(output)),
             Self::Laz => Box::new(las::LasWriter::laz(output)),
             Self::Csv => Box::new(csv::CsvWriter::new(output)),
@@ -136,7 +143,7 @@ mod tests {
         let error = Format::from_extension("xyz").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "no cloud format for extension .xyz: expected one of .ply .las .laz .csv"
+            "no cloud format for extension .xyz: expected one of .ply .pcd .las .laz .csv"
         );
         let error = Format::from_path(Path::new("cloud")).unwrap_err();
         assert!(error.to_string().contains("without extension"), "{error}");

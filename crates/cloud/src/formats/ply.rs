@@ -8,16 +8,15 @@
 //!
 //! The vertex count is known last but stands first. [`PlyWriter`] seeks back; a comment of matching length
 //! beside the count takes up the slack, so that the count itself is a plain number for every reader. [`PlyPipe`]
-//! keeps the rows in memory instead.
+//! keeps the rows aside instead.
 //!
 //! Left out: faces, ASCII and big-endian PLY, reading.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-use super::rows::Rows;
-use super::seconds::seconds;
+use super::layout::{Kind, Layout};
 use super::stage::Stage;
-use crate::{Column, Fields, Metadata, Points, Sink, SinkError, Summary};
+use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const FORMAT: &str = "ply";
 
@@ -43,98 +42,27 @@ pub struct PlyPipe<W, S> {
     summary: Summary,
 }
 
-/// Which column stands where in a row.
-#[derive(Debug)]
-struct Layout {
-    fields: Fields,
-    rows: Rows,
+/// The header up to the count.
+fn head(metadata: &Metadata) -> String {
+    let mut head = String::from("ply\nformat binary_little_endian 1.0\n");
+    for line in metadata.lines() {
+        head += &format!("comment {line}\n");
+    }
+    head
 }
 
-impl Layout {
-    fn new(fields: Fields) -> Self {
-        let position = 3 * size_of::<f32>();
-        let columns: usize = fields.columns().map(|column| ply_type(column).1).sum();
-        Self {
-            fields,
-            rows: Rows::new(position + columns),
-        }
+/// The header from the count on.
+fn tail(layout: &Layout) -> String {
+    let mut tail = String::new();
+    for (name, kind) in layout.properties() {
+        let kind = match kind {
+            Kind::Float => "float",
+            Kind::Double => "double",
+            Kind::Byte => "uchar",
+        };
+        tail += &format!("property {kind} {name}\n");
     }
-
-    /// The header up to the count.
-    fn head(metadata: &Metadata) -> String {
-        let mut head = String::from("ply\nformat binary_little_endian 1.0\n");
-        for line in metadata.lines() {
-            head += &format!("comment {line}\n");
-        }
-        head
-    }
-
-    /// The header from the count on.
-    fn tail(&self) -> String {
-        let mut tail = String::from("property float x\nproperty float y\nproperty float z\n");
-        for column in self.fields.columns() {
-            tail += &format!("property {} {}\n", ply_type(column).0, column.name());
-        }
-        tail + "end_header\n"
-    }
-
-    /// The rows of a batch.
-    fn encode(&mut self, batch: &Points) -> Result<&[u8], SinkError> {
-        batch.fields().require(self.fields)?;
-        let rows = &mut self.rows;
-        rows.reset(batch.len());
-        let mut at = 0;
-        for axis in [batch.x_m(), batch.y_m(), batch.z_m()] {
-            rows.fill(at, axis.iter().map(|v| (*v as f32).to_le_bytes()));
-            at += size_of::<f32>();
-        }
-        for column in self.fields.columns() {
-            match column {
-                Column::Intensity => {
-                    rows.fill(
-                        at,
-                        batch
-                            .intensity()
-                            .iter()
-                            .map(|v| f32::from(*v).to_le_bytes()),
-                    );
-                }
-                Column::Ring => rows.fill(at, batch.ring().iter().map(|v| [*v])),
-                Column::Time => rows.fill(
-                    at,
-                    batch
-                        .time()
-                        .iter()
-                        .map(|t| seconds(t.as_nanos()).to_le_bytes()),
-                ),
-                Column::Tilt => {
-                    rows.fill(
-                        at,
-                        batch.tilt_deg().iter().map(|v| (*v as f32).to_le_bytes()),
-                    );
-                }
-                Column::Laser => rows.fill(at, batch.laser().iter().map(|v| [*v])),
-                Column::DeviceTime => rows.fill(
-                    at,
-                    batch
-                        .device_time()
-                        .iter()
-                        .map(|t| seconds(t.as_nanos()).to_le_bytes()),
-                ),
-            }
-            at += ply_type(column).1;
-        }
-        Ok(self.rows.bytes())
-    }
-}
-
-/// A column's PLY type and its size in bytes.
-const fn ply_type(column: Column) -> (&'static str, usize) {
-    match column {
-        Column::Intensity | Column::Tilt => ("float", 4),
-        Column::Time | Column::DeviceTime => ("double", 8),
-        Column::Ring | Column::Laser => ("uchar", 1),
-    }
+    tail + "end_header\n"
 }
 
 /// The count as a header line, with a comment before it that makes every count equally long.
@@ -178,9 +106,9 @@ impl<W: Write + Seek> PlyWriter<W> {
     }
 
     fn write_header(&mut self, metadata: &Metadata) -> io::Result<()> {
-        let head = Layout::head(metadata);
+        let head = head(metadata);
         self.count_at = self.output.stream_position()? + head.len() as u64;
-        let header = head + &count_lines(0) + &self.layout.tail();
+        let header = head + &count_lines(0) + &tail(&self.layout);
         self.output.write_all(header.as_bytes())
     }
 
@@ -207,7 +135,7 @@ impl<W: Write + Seek> Sink for PlyWriter<W> {
     }
 
     fn fields(&self) -> Fields {
-        self.layout.fields
+        self.layout.fields()
     }
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
@@ -254,7 +182,7 @@ impl<W: Write, S: Read + Write + Seek> PlyPipe<W, S> {
             "{}element vertex {}\n{}",
             self.head,
             self.summary.points,
-            self.layout.tail()
+            tail(&self.layout)
         );
         self.output.write_all(header.as_bytes())?;
         self.scratch.rewind()?;
@@ -276,12 +204,12 @@ impl<W: Write, S: Read + Write + Seek> Sink for PlyPipe<W, S> {
     }
 
     fn fields(&self) -> Fields {
-        self.layout.fields
+        self.layout.fields()
     }
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
         self.stage.begin(FORMAT)?;
-        self.head = Layout::head(metadata);
+        self.head = head(metadata);
         self.stage.opened();
         Ok(())
     }

@@ -1,0 +1,224 @@
+//! PCD 0.7, binary: the file of the Point Cloud Library, with a grid for organised clouds.
+//!
+//! Unorganised clouds are one row as wide as they have points. An organised one has a row a ring and a column a firing; its cells without
+//! a return are points whose position is not a number. Left out: the compressed and the text form.
+
+use std::io::{self, Seek, SeekFrom, Write};
+
+use super::layout::{Kind, Layout};
+use super::stage::Stage;
+use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
+
+const FORMAT: &str = "pcd";
+/// Of u64::MAX: the counts are written once more when they are known, equally long.
+const DIGITS: usize = 20;
+
+/// Writes PCD.
+#[derive(Debug)]
+pub struct PcdWriter<W> {
+    output: W,
+    layout: Layout,
+    stage: Stage,
+    counts_at: u64,
+    points: u64,
+    summary: Summary,
+    rows: u64,
+}
+
+impl<W: Write + Seek> PcdWriter<W> {
+    /// A writer into `output` from where it stands, with the columns of [`Fields::FILE`].
+    pub fn new(output: W) -> Self {
+        Self {
+            output,
+            layout: Layout::new(Fields::FILE),
+            stage: Stage::default(),
+            counts_at: 0,
+            points: 0,
+            summary: Summary::default(),
+            rows: 1,
+        }
+    }
+
+    /// A writer of an organised cloud of so many rows (at least one), whose points come row by row.
+    pub fn organised(output: W, rows: u64) -> Self {
+        Self {
+            rows: rows.max(1),
+            ..Self::new(output)
+        }
+    }
+
+    /// The same with other columns; only before [`Sink::begin`].
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.layout = Layout::new(fields);
+        self
+    }
+
+    /// Gives the output back.
+    pub fn into_inner(self) -> W {
+        self.output
+    }
+
+    fn write_header(&mut self, metadata: &Metadata) -> io::Result<()> {
+        let mut head = String::from("# .PCD v0.7 - Point Cloud Data file format\n");
+        for line in metadata.lines() {
+            head += &format!("# {line}\n");
+        }
+        let properties: Vec<_> = self.layout.properties().collect();
+        let list = |what: &dyn Fn(&(&'static str, Kind)) -> String| {
+            let values: Vec<String> = properties.iter().map(what).collect();
+            values.join(" ")
+        };
+        head += "VERSION 0.7\n";
+        head += &format!("FIELDS {}\n", list(&|(name, _)| (*name).to_owned()));
+        head += &format!("SIZE {}\n", list(&|(_, kind)| kind.bytes().to_string()));
+        head += &format!("TYPE {}\n", list(&|(_, kind)| letter(*kind).to_owned()));
+        head += &format!("COUNT {}\n", list(&|_| "1".to_owned()));
+        self.counts_at = self.output.stream_position()? + head.len() as u64;
+        head += &self.counts();
+        head += "DATA binary\n";
+        self.output.write_all(head.as_bytes())
+    }
+
+    /// The lines with the counts, always equally long.
+    fn counts(&self) -> String {
+        let (points, rows) = (self.points, self.rows);
+        format!(
+            "WIDTH {:<DIGITS$}\nHEIGHT {rows:<DIGITS$}\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {points:<DIGITS$}\n",
+            points / rows
+        )
+    }
+
+    fn write_counts(&mut self) -> io::Result<()> {
+        if !self.points.is_multiple_of(self.rows) {
+            return Err(io::Error::other(format!(
+                "an organised cloud of {} rows: expected as many points in each, got {} in all",
+                self.rows, self.points
+            )));
+        }
+        self.output.seek(SeekFrom::Start(self.counts_at))?;
+        let counts = self.counts();
+        self.output.write_all(counts.as_bytes())?;
+        self.output.seek(SeekFrom::End(0))?;
+        self.output.flush()
+    }
+}
+
+const fn letter(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Float | Kind::Double => "F",
+        Kind::Byte => "U",
+    }
+}
+
+fn failed(points: u64) -> impl Fn(io::Error) -> SinkError {
+    move |source| SinkError::Write {
+        format: FORMAT,
+        points,
+        source,
+    }
+}
+
+/// After a failed batch, [`Sink::finish`] still makes a whole file of the batches before it.
+impl<W: Write + Seek> Sink for PcdWriter<W> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        let rows = self.layout.encode(batch)?;
+        if let Err(source) = self.output.write_all(rows) {
+            self.stage.cut();
+            return Err(failed(self.points)(source));
+        }
+        self.points += batch.len() as u64;
+        self.summary.add(batch.summary());
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.layout.fields()
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.stage.begin(FORMAT)?;
+        self.write_header(metadata).map_err(failed(0))?;
+        self.stage.opened();
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        self.stage.finish(FORMAT)?;
+        self.write_counts().map_err(failed(self.points))?;
+        Ok(self.summary)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+    use crate::formats::testing::{cloud, metadata};
+
+    fn written(rows: u64, points: &Points) -> Vec<u8> {
+        let mut pcd = PcdWriter::organised(Cursor::new(Vec::new()), rows);
+        pcd.begin(&metadata()).unwrap();
+        pcd.points(points).unwrap();
+        pcd.finish().unwrap();
+        pcd.into_inner().into_inner()
+    }
+
+    /// The header's lines as (name, rest), and the data.
+    fn parsed(bytes: &[u8]) -> (Vec<(String, String)>, &[u8]) {
+        let end = b"DATA binary\n";
+        let at = bytes.windows(end.len()).position(|w| w == end).unwrap() + end.len();
+        let head = std::str::from_utf8(&bytes[..at]).unwrap();
+        let lines = head.lines().filter(|line| !line.starts_with('#'));
+        let lines = lines.map(|line| {
+            let (name, rest) = line.split_once(' ').unwrap();
+            (name.to_owned(), rest.trim().to_owned())
+        });
+        (lines.collect(), &bytes[at..])
+    }
+
+    #[test]
+    fn the_header_says_what_the_rows_are() {
+        let cloud = cloud(12);
+        let bytes = written(1, &cloud);
+        let (head, data) = parsed(&bytes);
+        let expected = [
+            ("VERSION", "0.7"),
+            ("FIELDS", "x y z intensity ring time tilt"),
+            ("SIZE", "4 4 4 4 1 8 4"),
+            ("TYPE", "F F F F U F F"),
+            ("COUNT", "1 1 1 1 1 1 1"),
+            ("WIDTH", "12"),
+            ("HEIGHT", "1"),
+            ("VIEWPOINT", "0 0 0 1 0 0 0"),
+            ("POINTS", "12"),
+            ("DATA", "binary"),
+        ];
+        let head: Vec<_> = head.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
+        assert_eq!(head, expected);
+        assert_eq!(data.len(), 12 * 29);
+        for (i, row) in data.chunks(29).enumerate() {
+            let float = |at: usize| f32::from_le_bytes(row[at..at + 4].try_into().unwrap());
+            assert_eq!(float(0), cloud.x_m()[i] as f32);
+            assert_eq!(float(8), cloud.z_m()[i] as f32);
+            assert_eq!(float(12), f32::from(cloud.intensity()[i]));
+            assert_eq!(row[16], cloud.ring()[i]);
+            let time = f64::from_le_bytes(row[17..25].try_into().unwrap());
+            assert!((time - cloud.time()[i].as_nanos() as f64 * 1e-9).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn an_organised_cloud_has_its_rows() {
+        let (head, _) = parsed(&written(4, &cloud(12)));
+        assert!(head.contains(&("WIDTH".to_owned(), "3".to_owned())));
+        assert!(head.contains(&("HEIGHT".to_owned(), "4".to_owned())));
+        let mut pcd = PcdWriter::organised(Cursor::new(Vec::new()), 5);
+        pcd.begin(&metadata()).unwrap();
+        pcd.points(&cloud(12)).unwrap();
+        let error = pcd.finish().unwrap_err().to_string();
+        assert!(error.contains("5 rows"), "{error}");
+    }
+}
