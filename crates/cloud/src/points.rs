@@ -2,11 +2,17 @@
 //!
 //! The columns are always equally long, which is why they are not public. One `Points` serves as a reusable
 //! batch ([`Points::clear`] keeps the memory) and as a whole cloud ([`Points::append`]). There is no per-point
-//! heap and no row type in storage; [`Point`] exists only on the way in and out.
+//! heap and no row type in storage; [`Point`] exists only on the way in and out. [`Points::spare`] is the fast way in.
+
+mod order;
+mod spare;
 
 use units::{Degrees, Host, Lidar, Stamp};
 
 use crate::{Bounds, Fields, MissingColumns, Summary};
+
+pub use order::Order;
+pub use spare::Spare;
 
 /// One point with every column, as it goes in and comes out. A column that its [`Points`] lacks is dropped on the way
 /// in and has the default's value on the way out.
@@ -44,9 +50,12 @@ impl Default for Point {
 }
 
 /// Columns of points, all of one length.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Points {
     fields: Fields,
+    /// Points there are. The columns asked for are all of one length, which may be greater: the rows beyond are room that is
+    /// written before it is counted.
+    len: usize,
     x_m: Vec<f64>,
     y_m: Vec<f64>,
     z_m: Vec<f64>,
@@ -97,16 +106,8 @@ impl Points {
     }
 
     /// Forgets the points and keeps the memory.
-    pub fn clear(&mut self) {
-        self.x_m.clear();
-        self.y_m.clear();
-        self.z_m.clear();
-        self.intensity.clear();
-        self.ring.clear();
-        self.laser.clear();
-        self.time.clear();
-        self.device_time.clear();
-        self.tilt_deg.clear();
+    pub const fn clear(&mut self) {
+        self.len = 0;
     }
 
     /// The columns beside the position.
@@ -118,40 +119,42 @@ impl Points {
     /// Number of points.
     #[must_use]
     pub const fn len(&self) -> usize {
-        self.x_m.len()
+        self.len
     }
 
     /// Whether there are no points.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
-        self.x_m.is_empty()
+        self.len == 0
     }
 
     /// Adds a point; what it has in columns not asked for is dropped.
     #[inline]
     pub fn push(&mut self, point: Point) {
         let [x, y, z] = point.position_m;
-        self.x_m.push(x);
-        self.y_m.push(y);
-        self.z_m.push(z);
+        let row = self.len;
+        put(&mut self.x_m, row, x);
+        put(&mut self.y_m, row, y);
+        put(&mut self.z_m, row, z);
         if self.fields.contains(Fields::INTENSITY) {
-            self.intensity.push(point.intensity);
+            put(&mut self.intensity, row, point.intensity);
         }
         if self.fields.contains(Fields::RING) {
-            self.ring.push(point.ring);
+            put(&mut self.ring, row, point.ring);
         }
         if self.fields.contains(Fields::LASER) {
-            self.laser.push(point.laser);
+            put(&mut self.laser, row, point.laser);
         }
         if self.fields.contains(Fields::TIME) {
-            self.time.push(point.time);
+            put(&mut self.time, row, point.time);
         }
         if self.fields.contains(Fields::DEVICE_TIME) {
-            self.device_time.push(point.device_time);
+            put(&mut self.device_time, row, point.device_time);
         }
         if self.fields.contains(Fields::TILT) {
-            self.tilt_deg.push(point.tilt.0);
+            put(&mut self.tilt_deg, row, point.tilt.0);
         }
+        self.len += 1;
     }
 
     /// Adds every point of `batch`, column by column; columns of the batch that these points lack are dropped.
@@ -160,82 +163,89 @@ impl Points {
     /// [`MissingColumns`] where the batch lacks a column that these points have; nothing is added then.
     pub fn append(&mut self, batch: &Self) -> Result<(), MissingColumns> {
         batch.fields.require(self.fields)?;
-        self.x_m.extend_from_slice(&batch.x_m);
-        self.y_m.extend_from_slice(&batch.y_m);
-        self.z_m.extend_from_slice(&batch.z_m);
+        let row = self.len;
+        extend(&mut self.x_m, row, batch.x_m());
+        extend(&mut self.y_m, row, batch.y_m());
+        extend(&mut self.z_m, row, batch.z_m());
         if self.fields.contains(Fields::INTENSITY) {
-            self.intensity.extend_from_slice(&batch.intensity);
+            extend(&mut self.intensity, row, batch.intensity());
         }
         if self.fields.contains(Fields::RING) {
-            self.ring.extend_from_slice(&batch.ring);
+            extend(&mut self.ring, row, batch.ring());
         }
         if self.fields.contains(Fields::LASER) {
-            self.laser.extend_from_slice(&batch.laser);
+            extend(&mut self.laser, row, batch.laser());
         }
         if self.fields.contains(Fields::TIME) {
-            self.time.extend_from_slice(&batch.time);
+            extend(&mut self.time, row, batch.time());
         }
         if self.fields.contains(Fields::DEVICE_TIME) {
-            self.device_time.extend_from_slice(&batch.device_time);
+            extend(&mut self.device_time, row, batch.device_time());
         }
         if self.fields.contains(Fields::TILT) {
-            self.tilt_deg.extend_from_slice(&batch.tilt_deg);
+            extend(&mut self.tilt_deg, row, batch.tilt_deg());
         }
+        self.len += batch.len;
         Ok(())
     }
 
     /// x (right), metres.
     #[must_use]
     pub fn x_m(&self) -> &[f64] {
-        &self.x_m
+        self.column(&self.x_m)
     }
 
     /// y (forward), metres.
     #[must_use]
     pub fn y_m(&self) -> &[f64] {
-        &self.y_m
+        self.column(&self.y_m)
     }
 
     /// z (up), metres.
     #[must_use]
     pub fn z_m(&self) -> &[f64] {
-        &self.z_m
+        self.column(&self.z_m)
     }
 
     /// Reflectivity, 0..=255; empty unless asked for.
     #[must_use]
     pub fn intensity(&self) -> &[u8] {
-        &self.intensity
+        self.column(&self.intensity)
     }
 
     /// Ring, 0 = lowest elevation; empty unless asked for.
     #[must_use]
     pub fn ring(&self) -> &[u8] {
-        &self.ring
+        self.column(&self.ring)
     }
 
     /// Laser number in firing order; empty unless asked for.
     #[must_use]
     pub fn laser(&self) -> &[u8] {
-        &self.laser
+        self.column(&self.laser)
     }
 
     /// Time on the host's clock; empty unless asked for.
     #[must_use]
     pub fn time(&self) -> &[Stamp<Host>] {
-        &self.time
+        self.column(&self.time)
     }
 
     /// Time on the lidar's clock; empty unless asked for.
     #[must_use]
     pub fn device_time(&self) -> &[Stamp<Lidar>] {
-        &self.device_time
+        self.column(&self.device_time)
     }
 
     /// Tilt angle, degrees; empty unless asked for.
     #[must_use]
     pub fn tilt_deg(&self) -> &[f64] {
-        &self.tilt_deg
+        self.column(&self.tilt_deg)
+    }
+
+    /// The counted rows; an unwanted column has none.
+    fn column<'a, T>(&self, column: &'a [T]) -> &'a [T] {
+        column.get(..self.len).unwrap_or(column)
     }
 
     /// Point `index` with every column; [`Point::default`]'s value where a column was not asked for.
@@ -244,16 +254,16 @@ impl Points {
         let none = Point::default();
         Some(Point {
             position_m: [
-                *self.x_m.get(index)?,
-                *self.y_m.get(index)?,
-                *self.z_m.get(index)?,
+                *self.x_m().get(index)?,
+                *self.y_m().get(index)?,
+                *self.z_m().get(index)?,
             ],
-            intensity: or(&self.intensity, index, none.intensity),
-            ring: or(&self.ring, index, none.ring),
-            laser: or(&self.laser, index, none.laser),
-            time: or(&self.time, index, none.time),
-            device_time: or(&self.device_time, index, none.device_time),
-            tilt: Degrees(or(&self.tilt_deg, index, none.tilt.0)),
+            intensity: or(self.intensity(), index, none.intensity),
+            ring: or(self.ring(), index, none.ring),
+            laser: or(self.laser(), index, none.laser),
+            time: or(self.time(), index, none.time),
+            device_time: or(self.device_time(), index, none.device_time),
+            tilt: Degrees(or(self.tilt_deg(), index, none.tilt.0)),
         })
     }
 
@@ -264,10 +274,10 @@ impl Points {
 
     /// The positions one by one, metres.
     pub fn positions(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        self.x_m
+        self.x_m()
             .iter()
-            .zip(&self.y_m)
-            .zip(&self.z_m)
+            .zip(self.y_m())
+            .zip(self.z_m())
             .map(|((&x, &y), &z)| [x, y, z])
     }
 
@@ -276,9 +286,40 @@ impl Points {
     pub fn summary(&self) -> Summary {
         Summary {
             points: self.len() as u64,
-            bounds: Bounds::of([&self.x_m, &self.y_m, &self.z_m]),
+            bounds: Bounds::of([self.x_m(), self.y_m(), self.z_m()]),
         }
     }
+}
+
+/// Points are equal where their columns are; room is nothing.
+impl PartialEq for Points {
+    fn eq(&self, other: &Self) -> bool {
+        self.fields == other.fields
+            && self.x_m() == other.x_m()
+            && self.y_m() == other.y_m()
+            && self.z_m() == other.z_m()
+            && self.intensity() == other.intensity()
+            && self.ring() == other.ring()
+            && self.laser() == other.laser()
+            && self.time() == other.time()
+            && self.device_time() == other.device_time()
+            && self.tilt_deg() == other.tilt_deg()
+    }
+}
+
+/// Writes `row` of a column, which has it or ends before it.
+#[inline]
+fn put<T>(column: &mut Vec<T>, row: usize, value: T) {
+    match column.get_mut(row) {
+        Some(cell) => *cell = value,
+        None => column.push(value),
+    }
+}
+
+/// Writes rows from `row` on, where the column's counted rows end.
+fn extend<T: Copy>(column: &mut Vec<T>, row: usize, values: &[T]) {
+    column.truncate(row);
+    column.extend_from_slice(values);
 }
 
 fn or<T: Copy>(column: &[T], index: usize, absent: T) -> T {

@@ -1,19 +1,23 @@
-//! Payloads in, firings out: order, loss, model, and the one packet that is held back.
+//! Payloads in, volleys or firings out: order, loss, model, and the one packet that is held back.
 //!
 //! A packet is decoded when its successor is there, because the rotor's rate in its last block, the length of a gap inside it
 //! and sometimes its model are known only then: 1.3 ms of delay. Left out: anything that looks further ahead.
 
-use core::{iter, ptr};
+use core::ptr;
+use std::sync::Arc;
 
 use protocol::vlp16::{DATA_LEN, DataPacket, Model, PositionPacket, ReturnMode};
 use units::{Host, Lidar, Span, Stamp};
 
 use crate::continuity::{Blind, missing};
-use crate::firing::{Channels, Duplicates, Echo, Firing};
-use crate::geometry::Geometry;
+use crate::corrections::Corrections;
+use crate::firing::{Duplicates, Echo, Firing};
+use crate::geometry::{Geometry, fits};
 use crate::plan::{Link, Slot, Steps, Successor, first_azimuth};
+use crate::rotor::{Compass, Rotor};
 use crate::stats::Stats;
 use crate::timekeeper::Timekeeper;
+use crate::volley::{Counts, Layers, Volley};
 
 /// A packet this much before its predecessor is out of order; further back, the device's clock was set.
 const REORDER: Span = Span::from_millis(10);
@@ -23,7 +27,7 @@ const LONG_GAP: Span = Span::from_secs(1);
 const BLOCK_FLAG: &[u8] = &[0xFF, 0xEE];
 
 /// How to decode.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// The model, where factory byte and packet spacing are not to be asked.
     pub model: Option<&'static Model>,
@@ -31,6 +35,9 @@ pub struct Options {
     pub vertical_offsets: bool,
     /// Dual returns at one distance.
     pub duplicates: Duplicates,
+    /// Where this sensor's lasers truly are and what its ranges are off by, in place of the model's table. Used only where they
+    /// have a laser for each of the model's; [`Stats::corrections_refused`] says where they do not.
+    pub corrections: Option<Arc<Corrections>>,
 }
 
 impl Default for Options {
@@ -39,6 +46,7 @@ impl Default for Options {
             model: None,
             vertical_offsets: true,
             duplicates: Duplicates::Unique,
+            corrections: None,
         }
     }
 }
@@ -68,11 +76,21 @@ struct Held {
 #[derive(Clone, Debug)]
 struct Unpacker {
     options: Options,
-    geometry: Option<Geometry>,
+    /// Some kilobytes, out of its place while it is used.
+    sensor: Option<Box<Sensor>>,
     blind: Option<Blind>,
     stats: Stats,
     turned_cdeg: f64,
     turning_ns: f64,
+}
+
+/// A model's tables.
+#[derive(Clone, Debug)]
+struct Sensor {
+    geometry: Geometry,
+    compass: Compass,
+    rotor: Rotor,
+    counts: Counts,
 }
 
 impl Decoder {
@@ -80,10 +98,10 @@ impl Decoder {
     #[must_use]
     pub fn new(options: Options) -> Self {
         Self {
-            timekeeper: Timekeeper::new(options),
+            timekeeper: Timekeeper::new(options.clone()),
             unpacker: Unpacker {
                 options,
-                geometry: None,
+                sensor: None,
                 blind: None,
                 stats: Stats::default(),
                 turned_cdeg: 0.0,
@@ -104,6 +122,21 @@ impl Decoder {
         payload: &[u8],
         emit: &mut impl FnMut(&Firing<'_>),
     ) {
+        self.volleys(host, payload, &mut |volley| one_by_one(volley, emit));
+    }
+
+    /// Emits the packet held back. The decoder can go on with packets of the same sensor afterwards.
+    pub fn finish(&mut self, emit: &mut impl FnMut(&Firing<'_>)) {
+        self.finish_volleys(&mut |volley| one_by_one(volley, emit));
+    }
+
+    /// As [`Decoder::packet`], the firings of a block at a time.
+    pub fn volleys(
+        &mut self,
+        host: Stamp<Host>,
+        payload: &[u8],
+        emit: &mut impl FnMut(&Volley<'_>),
+    ) {
         let stats = &mut self.unpacker.stats;
         match DataPacket::new(payload) {
             Ok(packet) => self.data(host, payload, &packet, emit),
@@ -121,8 +154,8 @@ impl Decoder {
         }
     }
 
-    /// Emits the packet held back. The decoder can go on with packets of the same sensor afterwards.
-    pub fn finish(&mut self, emit: &mut impl FnMut(&Firing<'_>)) {
+    /// As [`Decoder::finish`], the firings of a block at a time.
+    pub fn finish_volleys(&mut self, emit: &mut impl FnMut(&Volley<'_>)) {
         if let Some(held) = self.held.take() {
             self.emitted = Some(held.start);
             if let Ok(packet) = DataPacket::new(&self.buffer) {
@@ -142,7 +175,7 @@ impl Decoder {
         host: Stamp<Host>,
         payload: &[u8],
         packet: &DataPacket<'_>,
-        emit: &mut impl FnMut(&Firing<'_>),
+        emit: &mut impl FnMut(&Volley<'_>),
     ) {
         let known = self.timekeeper.observe(host, packet);
         let stats = &mut self.unpacker.stats;
@@ -189,7 +222,7 @@ impl Decoder {
         packet: &DataPacket<'_>,
         new: Held,
         held: Held,
-        emit: &mut impl FnMut(&Firing<'_>),
+        emit: &mut impl FnMut(&Volley<'_>),
     ) {
         let Ok(before) = DataPacket::new(&self.buffer) else {
             return;
@@ -214,7 +247,7 @@ impl Decoder {
         packet: &DataPacket<'_>,
         new: Held,
         held: Held,
-        emit: &mut impl FnMut(&Firing<'_>),
+        emit: &mut impl FnMut(&Volley<'_>),
     ) {
         let stats = &mut self.unpacker.stats;
         if self.emitted.is_some_and(|emitted| new.start <= emitted) {
@@ -247,7 +280,7 @@ impl Unpacker {
         packet: &DataPacket<'_>,
         held: Held,
         next: Option<Successor>,
-        emit: &mut impl FnMut(&Firing<'_>),
+        emit: &mut impl FnMut(&Volley<'_>),
     ) {
         let Some(model) = held.model else {
             self.stats.unidentified += 1;
@@ -258,67 +291,76 @@ impl Unpacker {
         self.learn(&steps, link.measured);
         self.tally(model, &steps, link, next);
         let (slots, blocks) = steps.slots(link);
-        let geometry = match self.geometry.take() {
-            Some(geometry) if ptr::eq(geometry.model, model) => geometry,
-            _ => Geometry::new(model, self.options.vertical_offsets),
+        let mut sensor = match self.sensor.take() {
+            Some(sensor) if ptr::eq(sensor.geometry.model, model) => sensor,
+            _ => self.sensor_of(model),
         };
         for (i, slot) in slots.iter().take(blocks).enumerate() {
-            self.unpack_block(packet, held, &geometry, i, slot, emit);
+            self.unpack_block(packet, held, &mut sensor, i, slot, emit);
         }
-        self.geometry = Some(geometry);
+        self.sensor = Some(sensor);
     }
 
-    /// Emits the firings of one block, or of one pair.
+    fn sensor_of(&mut self, model: &'static Model) -> Box<Sensor> {
+        let corrections = self.options.corrections.as_deref();
+        let fitting = corrections.filter(|corrections| fits(corrections, model));
+        self.stats.corrections_refused = match (corrections, fitting) {
+            (Some(corrections), None) => Some(corrections.lasers.len()),
+            _ => None,
+        };
+        let geometry = Geometry::new(model, self.options.vertical_offsets, fitting);
+        let rotor = Rotor::new(&geometry.fan);
+        Box::new(Sensor {
+            geometry,
+            compass: Compass::new(),
+            rotor,
+            counts: Counts::default(),
+        })
+    }
+
+    /// Emits one block, or one pair.
+    #[inline(always)]
     fn unpack_block(
         &mut self,
         packet: &DataPacket<'_>,
         held: Held,
-        geometry: &Geometry,
+        sensor: &mut Sensor,
         i: usize,
         slot: &Slot,
-        emit: &mut impl FnMut(&Firing<'_>),
+        emit: &mut impl FnMut(&Volley<'_>),
     ) {
-        let model = geometry.model;
-        let period_ns = f64::from(model.block_period_ns());
-        let firing_cdeg = slot.pace_cdeg / model.firings_per_block as f64;
         let first = if held.dual { 2 * i } else { i };
-        let (Some(even), odd) = (packet.block(first), packet.block(first + 1)) else {
+        let Some(even) = packet.block(first) else {
             return;
         };
-        let lasers = model.lasers.len();
-        let even = even.raw_channels().chunks_exact(lasers);
-        let odd = odd
-            .map_or(&[][..], |odd| odd.raw_channels())
-            .chunks_exact(lasers);
-        // No block follows the last one; a pair always has both.
-        let odd = odd.map(Some).chain(iter::repeat(None));
-        for (n, (even, odd)) in even.zip(odd).enumerate() {
-            let channels = match odd {
-                Some(strongest) if held.dual => Channels::Two {
-                    last: even,
-                    strongest,
-                    duplicates: self.options.duplicates,
-                },
-                _ => Channels::One {
-                    raw: even,
-                    echo: single_echo(packet.return_mode()),
-                },
-            };
-            let (returns, unique) = channels.count();
-            self.stats.returns += returns;
-            self.stats.unique_returns += unique;
-            self.stats.firings += 1;
-            let after = Span::from_nanos(n as i64 * i64::from(model.firing_period_ns));
-            let azimuth_cdeg = f64::from(slot.azimuth_cdeg) + firing_cdeg * n as f64;
-            emit(&Firing {
-                start: held.start + slot.after + after,
-                azimuth_deg: (azimuth_cdeg / 100.0).rem_euclid(360.0),
-                azimuth_rate_deg_s: slot.pace_cdeg / 100.0 / (period_ns * 1e-9),
-                model,
-                rays: &geometry.rays,
-                channels,
-            });
-        }
+        let returns = match packet.block(first + 1) {
+            // No block follows the last one; a pair always has both.
+            Some(odd) if held.dual => Layers::two(
+                even.raw_channels(),
+                odd.raw_channels(),
+                &mut sensor.counts,
+                self.options.duplicates,
+            ),
+            _ => Layers::one(
+                even.raw_channels(),
+                &mut sensor.counts,
+                single_echo(packet.return_mode()),
+            ),
+        };
+        let (seen, unique) = returns.count();
+        self.stats.returns += seen;
+        self.stats.unique_returns += unique;
+        self.stats.firings += sensor.geometry.model.firings_per_block as u64;
+        let ahead = sensor.rotor.ahead(&sensor.geometry.fan, slot.pace_cdeg);
+        emit(&Volley {
+            start: held.start + slot.after,
+            azimuth_cdeg: slot.azimuth_cdeg,
+            pace_cdeg: slot.pace_cdeg,
+            geometry: &sensor.geometry,
+            azimuth: sensor.compass.azimuth(slot.azimuth_cdeg),
+            ahead,
+            returns,
+        });
     }
 
     /// Keeps where the sensor looks away, until it fires there again.
@@ -349,6 +391,12 @@ impl Unpacker {
             let turns_per_ns = self.turned_cdeg / 36_000.0 / self.turning_ns;
             stats.rpm = Some(turns_per_ns * 60e9);
         }
+    }
+}
+
+fn one_by_one(volley: &Volley<'_>, emit: &mut impl FnMut(&Firing<'_>)) {
+    for firing in volley.firings() {
+        emit(&firing);
     }
 }
 

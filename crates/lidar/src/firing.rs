@@ -53,7 +53,7 @@ pub struct SensorPoint {
     pub time: Stamp<Lidar>,
     /// x right, y forward, z up, from the sensor's origin, in metres.
     pub position_m: [f64; 3],
-    /// Measured distance in metres.
+    /// Measured distance in metres, uncorrected.
     pub range_m: f64,
     /// Place in the firing order, from 0.
     pub laser: u8,
@@ -77,29 +77,6 @@ pub(crate) enum Channels<'a> {
         strongest: &'a [[u8; 3]],
         duplicates: Duplicates,
     },
-}
-
-impl Channels<'_> {
-    /// Channels with a distance, and the same with equal pairs counted once.
-    pub(crate) fn count(&self) -> (u64, u64) {
-        let distance = |raw: &[u8; 3]| Channel::from_bytes(*raw).distance_raw;
-        match self {
-            Self::One { raw, .. } => {
-                let returns = raw.iter().map(|raw| u64::from(distance(raw) != 0)).sum();
-                (returns, returns)
-            }
-            Self::Two {
-                last, strongest, ..
-            } => last
-                .iter()
-                .zip(*strongest)
-                .map(|(a, b)| (distance(a), distance(b)))
-                .fold((0, 0), |(returns, unique), (a, b)| {
-                    let both = u64::from(a != 0) + u64::from(b != 0);
-                    (returns + both, unique + both - u64::from(a != 0 && a == b))
-                }),
-        }
-    }
 }
 
 /// One firing of all lasers.
@@ -131,7 +108,8 @@ impl<'a> Firing<'a> {
     /// The returns as points of the sensor's frame, in firing order.
     ///
     /// x = R cos w sin a, y = R cos w cos a, z = R sin w + vertical offset (manual 9.2; the paper's Eq. 1-3), with the
-    /// azimuth a carried on at the rotor's rate to when each laser fired.
+    /// azimuth a carried on at the rotor's rate to when each laser fired; with corrections by the formula of
+    /// [`crate::LaserCorrection`].
     pub fn points(&self) -> impl Iterator<Item = SensorPoint> + use<'a> {
         let firing = *self;
         self.returns().filter_map(move |seen| {
@@ -153,13 +131,15 @@ impl<'a> Firing<'a> {
     fn place(&self, seen: Return, ray: &Ray) -> SensorPoint {
         let range_m = f64::from(seen.distance_raw) * self.model.distance_unit_m;
         let (sin_azimuth, cos_azimuth) = self.azimuth_of(ray).to_radians().sin_cos();
-        let across_m = range_m * ray.cos_elevation;
+        let corrected_m = range_m + ray.range_offset_m;
+        let across_m = corrected_m * ray.cos_elevation + ray.radial_offset_m;
+        let aside_m = ray.tangential_offset_m;
         SensorPoint {
             time: self.start + Span::from_nanos(ray.delay_ns),
             position_m: [
-                across_m * sin_azimuth,
-                across_m * cos_azimuth,
-                range_m * ray.sin_elevation + ray.vertical_offset_m,
+                across_m * sin_azimuth - aside_m * cos_azimuth,
+                across_m * cos_azimuth + aside_m * sin_azimuth,
+                corrected_m * ray.sin_elevation + ray.vertical_offset_m,
             ],
             range_m,
             laser: seen.laser,
@@ -288,7 +268,7 @@ mod tests {
     #[test]
     fn a_point_is_where_equations_1_to_3_put_it() {
         let raw = raw(&[(5_000, 7); 16]);
-        let geometry = Geometry::new(&VLP_16, true);
+        let geometry = Geometry::new(&VLP_16, true, None);
         let firing = firing(&geometry, &raw);
         let points: Vec<SensorPoint> = firing.points().collect();
         assert_eq!(points.len(), 16);
@@ -313,7 +293,10 @@ mod tests {
     #[test]
     fn vertical_offsets_can_be_left_out() {
         let raw = raw(&[(5_000, 7); 16]);
-        let (with, without) = (Geometry::new(&VLP_16, true), Geometry::new(&VLP_16, false));
+        let (with, without) = (
+            Geometry::new(&VLP_16, true, None),
+            Geometry::new(&VLP_16, false, None),
+        );
         let pairs = firing(&with, &raw)
             .points()
             .zip(firing(&without, &raw).points());
@@ -325,7 +308,7 @@ mod tests {
     #[test]
     fn a_vlp_32c_counts_in_4_mm_and_fires_pairs_off_the_centre_line() {
         let raw = raw(&[(2_500, 7); 32]);
-        let geometry = Geometry::new(&VLP_32C, true);
+        let geometry = Geometry::new(&VLP_32C, true, None);
         let firing = firing(&geometry, &raw);
         let points: Vec<SensorPoint> = firing.points().collect();
         assert_eq!(points.len(), 32);

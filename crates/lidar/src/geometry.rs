@@ -1,19 +1,52 @@
-//! A model's angles as the sines and cosines that its points need, computed once.
+//! Where each laser points and starts, as the sines, cosines and offsets that its points need, computed once a sensor.
 //!
-//! Left out: calibration of a single sensor, which would replace the table here and nothing else.
+//! Twice: a [`Ray`] a laser for the exact path, which follows [`crate::LaserCorrection`]'s formula word by word, and [`Fan`],
+//! a column a term over the 32 channels of a block, for the fast one. Left out: everything that changes while the sensor turns.
 
-use protocol::vlp16::Model;
+use core::array;
+
+use protocol::vlp16::{CHANNELS, Model};
+use units::Span;
+
+use crate::corrections::{Corrections, LaserCorrection};
 
 /// One laser, ready for use.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray {
     pub sin_elevation: f64,
     pub cos_elevation: f64,
-    pub vertical_offset_m: f64,
     pub azimuth_offset_deg: f64,
+    pub range_offset_m: f64,
+    pub radial_offset_m: f64,
+    pub tangential_offset_m: f64,
+    pub vertical_offset_m: f64,
     pub delay_s: f64,
     pub delay_ns: i64,
     pub ring: u8,
+}
+
+/// A value for each channel of a block. Blocks have 32 channels in every model: two firings of 16 lasers, or one of 32.
+pub(crate) type PerChannel<T> = [T; CHANNELS];
+
+/// The lasers by channel: distance counts c become out = `out_per_count` (c + `out_counts`) along the horizon and
+/// up = `up_per_count` c + `up_m`.
+#[derive(Clone, Debug)]
+pub(crate) struct Fan {
+    pub out_per_count: PerChannel<f64>,
+    pub out_counts: PerChannel<f64>,
+    pub up_per_count: PerChannel<f64>,
+    pub up_m: PerChannel<f64>,
+    /// Sideways, over `out_per_count`, where any laser starts beside the line through the origin.
+    pub aside_counts: Option<PerChannel<f64>>,
+    pub azimuth_offset_deg: PerChannel<f64>,
+    /// Time after the block's start, over the block's period.
+    pub part: PerChannel<f64>,
+    pub delay_ns: PerChannel<i64>,
+    pub delay_f64_ns: PerChannel<f64>,
+    /// The longest delay.
+    pub length: Span,
+    pub laser: PerChannel<u8>,
+    pub ring: PerChannel<u8>,
 }
 
 /// A model's lasers in firing order.
@@ -21,29 +54,84 @@ pub(crate) struct Ray {
 pub(crate) struct Geometry {
     pub model: &'static Model,
     pub rays: Vec<Ray>,
+    pub fan: Fan,
 }
 
 impl Geometry {
-    pub(crate) fn new(model: &'static Model, vertical_offsets: bool) -> Self {
-        let rays = model.lasers.iter().map(|laser| {
-            let (sin_elevation, cos_elevation) = laser.elevation_deg.to_radians().sin_cos();
-            Ray {
-                sin_elevation,
-                cos_elevation,
-                vertical_offset_m: if vertical_offsets {
-                    laser.vertical_offset_m
-                } else {
-                    0.0
-                },
-                azimuth_offset_deg: laser.azimuth_offset_deg,
-                delay_s: f64::from(laser.delay_ns) * 1e-9,
-                delay_ns: i64::from(laser.delay_ns),
-                ring: laser.ring,
-            }
+    /// `corrections`, if there are any, must have a laser for each of the model's: see [`fits`].
+    pub(crate) fn new(
+        model: &'static Model,
+        vertical_offsets: bool,
+        corrections: Option<&Corrections>,
+    ) -> Self {
+        let corrected = |laser: usize| corrections.and_then(|c| c.lasers.get(laser)).copied();
+        let rays: Vec<Ray> = model
+            .lasers
+            .iter()
+            .enumerate()
+            .map(|(i, laser)| {
+                let correction = corrected(i).unwrap_or_else(|| LaserCorrection::from(laser));
+                let (sin_elevation, cos_elevation) =
+                    correction.elevation_deg.to_radians().sin_cos();
+                Ray {
+                    sin_elevation,
+                    cos_elevation,
+                    azimuth_offset_deg: correction.azimuth_offset_deg,
+                    range_offset_m: correction.range_offset_m,
+                    radial_offset_m: correction.radial_offset_m,
+                    tangential_offset_m: correction.tangential_offset_m,
+                    vertical_offset_m: if vertical_offsets {
+                        correction.vertical_offset_m
+                    } else {
+                        0.0
+                    },
+                    delay_s: f64::from(laser.delay_ns) * 1e-9,
+                    delay_ns: i64::from(laser.delay_ns),
+                    ring: laser.ring,
+                }
+            })
+            .collect();
+        let fan = Fan::new(model, &rays);
+        Self { model, rays, fan }
+    }
+}
+
+/// Whether corrections are for a sensor of this model.
+pub(crate) fn fits(corrections: &Corrections, model: &Model) -> bool {
+    corrections.lasers.len() == model.lasers.len()
+}
+
+impl Fan {
+    fn new(model: &Model, rays: &[Ray]) -> Self {
+        let lasers = rays.len().max(1);
+        let laser = |channel: usize| channel % lasers;
+        let of = |value: &dyn Fn(&Ray) -> f64| -> PerChannel<f64> {
+            array::from_fn(|channel| rays.get(laser(channel)).map_or(0.0, value))
+        };
+        let unit_m = model.distance_unit_m;
+        // Never 0: no angle in degrees has a cosine of exactly 0.
+        let out_per_count = |ray: &Ray| unit_m * ray.cos_elevation;
+        let aside = of(&|ray| ray.tangential_offset_m / out_per_count(ray));
+        let delay_ns: PerChannel<i64> = array::from_fn(|channel| {
+            let firing = (channel / lasers) as i64 * i64::from(model.firing_period_ns);
+            firing + rays.get(laser(channel)).map_or(0, |ray| ray.delay_ns)
         });
+        let period_ns = f64::from(model.block_period_ns());
         Self {
-            model,
-            rays: rays.collect(),
+            out_per_count: of(&out_per_count),
+            out_counts: of(&|ray| {
+                ray.range_offset_m / unit_m + ray.radial_offset_m / out_per_count(ray)
+            }),
+            up_per_count: of(&|ray| unit_m * ray.sin_elevation),
+            up_m: of(&|ray| ray.range_offset_m * ray.sin_elevation + ray.vertical_offset_m),
+            aside_counts: aside.iter().any(|&aside| aside != 0.0).then_some(aside),
+            azimuth_offset_deg: of(&|ray| ray.azimuth_offset_deg),
+            part: delay_ns.map(|ns| ns as f64 / period_ns),
+            delay_ns,
+            delay_f64_ns: delay_ns.map(|ns| ns as f64),
+            length: Span::from_nanos(delay_ns.into_iter().max().unwrap_or(0)),
+            laser: array::from_fn(|channel| laser(channel) as u8),
+            ring: array::from_fn(|channel| rays.get(laser(channel)).map_or(0, |ray| ray.ring)),
         }
     }
 }

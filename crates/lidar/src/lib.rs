@@ -1,7 +1,8 @@
 //! Velodyne packets to firings to returns: models, azimuth, time, hour unwrap, loss, dual return.
 //!
-//! [`Decoder`] takes the payloads of one sensor in order of arrival and emits [`Firing`]s in order of device time. It never
-//! guesses across a gap. [`Timekeeper`] says when packets were fired without decoding them, by the code that the decoder
+//! [`Decoder`] takes the payloads of one sensor in order of arrival and emits [`Firing`]s in order of device time, or, where
+//! speed matters, [`Volley`]s: the firings of a block at a time. It never guesses across a gap. [`Timekeeper`] says when
+//! packets were fired without decoding them, by the code that the decoder
 //! itself uses, so that a first pass over a log agrees with the second to the nanosecond.
 //! Beside them: [`FrameCutter`] and [`OrganisedFrame`] (turns of the head), [`UtcClock`] (UTC from position packets), and
 //! [`calibration`] (a sensor's own angles from a file).
@@ -18,9 +19,11 @@ mod hours;
 mod identify;
 mod organised;
 mod plan;
+mod rotor;
 mod stats;
 mod timekeeper;
 mod utc;
+mod volley;
 
 pub use corrections::{Corrections, LaserCorrection};
 pub use decoder::{Decoder, Options};
@@ -30,3 +33,4 @@ pub use organised::{Column, OrganisedFrame};
 pub use stats::{Conflict, Stats};
 pub use timekeeper::{PacketTiming, Timekeeper};
 pub use utc::{NoUtc, Utc, UtcChange, UtcClock, UtcState};
+pub use volley::{Layer, Volley};

@@ -52,6 +52,8 @@ pub struct Stats {
     pub duration: Span,
     /// Where sources of the model disagreed, each kind once.
     pub conflicts: Vec<Conflict>,
+    /// How many lasers the corrections asked for have, where the model has another number of them: then none was applied.
+    pub corrections_refused: Option<usize>,
 }
 
 /// The factory byte, or the user, says one model and the packets' spacing another.

@@ -42,7 +42,7 @@ pub(crate) struct Known {
 impl Timekeeper {
     /// For a sensor decoded with `options`.
     #[must_use]
-    pub const fn new(options: Options) -> Self {
+    pub fn new(options: Options) -> Self {
         Self {
             hours: HourUnwrapper::new(),
             identifier: Identifier::new(options.model),

@@ -298,7 +298,7 @@ proptest! {
     ) {
         let duplicates = if options.0 { Duplicates::All } else { Duplicates::Unique };
         let options = Options { duplicates, vertical_offsets: options.1, ..Options::default() };
-        let mut decoder = Decoder::new(options);
+        let mut decoder = Decoder::new(options.clone());
         let mut timekeeper = Timekeeper::new(options);
         let (mut firings, mut points, mut timed) = (0, 0, 0);
         let mut count = |firing: &Firing<'_>| {

@@ -83,15 +83,40 @@ impl LidarClock {
     /// The host time at which the lidar's clock read `device`.
     #[must_use]
     pub fn host(&self, device: Stamp<Lidar>) -> Stamp<Host> {
-        let x = device.saturating_since(self.origin).as_nanos() as f64;
+        self.moment(device).host
+    }
+
+    /// The same with what rounding to nanoseconds takes away.
+    #[must_use]
+    pub fn moment(&self, device: Stamp<Lidar>) -> Moment {
+        let x = self.since_origin(device);
+        self.moment_of(device, self.segment(x).offset_at(x))
+    }
+
+    /// Follows the clock through device times that mostly grow, without a search for each.
+    #[must_use]
+    pub const fn cursor(&self) -> ClockCursor<'_> {
+        ClockCursor {
+            clock: self,
+            segment: None,
+        }
+    }
+
+    fn since_origin(&self, device: Stamp<Lidar>) -> f64 {
+        device.saturating_since(self.origin).as_nanos() as f64
+    }
+
+    fn moment_of(&self, device: Stamp<Lidar>, offset_ns: f64) -> Moment {
         // Only the small remainder goes through floating point: the sum stays exact at any date.
-        let fine = round(self.offset_at(x));
-        Stamp::from_nanos(
-            device
-                .as_nanos()
-                .wrapping_add(self.offset)
-                .wrapping_add(fine),
-        )
+        let fine = round(offset_ns);
+        let host = device
+            .as_nanos()
+            .wrapping_add(self.offset)
+            .wrapping_add(fine);
+        Moment {
+            host: Stamp::from_nanos(host),
+            rest_ns: offset_ns - fine as f64,
+        }
     }
 
     /// Median of how late packets came above the envelope: the link's typical delay beyond its smallest.
@@ -108,18 +133,16 @@ impl LidarClock {
         self.lines.get(middle).map_or(0.0, |line| line.slope * 1e6)
     }
 
-    fn offset_at(&self, x: f64) -> f64 {
+    /// The stretch between two lines' centres, or beyond all of them, that `x` falls into.
+    fn segment(&self, x: f64) -> Segment {
         let next = self.lines.partition_point(|line| line.centre_ns <= x);
-        match (
-            next.checked_sub(1).and_then(|i| self.lines.get(i)),
-            self.lines.get(next),
-        ) {
-            (Some(before), Some(after)) => {
-                let weight = (x - before.centre_ns) / (after.centre_ns - before.centre_ns);
-                before.at(x) * (1.0 - weight) + after.at(x) * weight
-            }
-            (Some(line), None) | (None, Some(line)) => line.at(x),
-            (None, None) => 0.0,
+        let before = next.checked_sub(1).and_then(|i| self.lines.get(i)).copied();
+        let after = self.lines.get(next).copied();
+        Segment {
+            from_ns: before.map_or(f64::NEG_INFINITY, |line| line.centre_ns),
+            to_ns: after.map_or(f64::INFINITY, |line| line.centre_ns),
+            first: before.or(after).unwrap_or(Line::NONE),
+            second: before.and(after),
         }
     }
 
@@ -136,7 +159,129 @@ impl LidarClock {
     }
 }
 
+/// A host time and what is left of it below a nanosecond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// To the nearest nanosecond.
+    pub host: Stamp<Host>,
+    /// The true instant is this many nanoseconds later, -0.5 to 0.5.
+    pub rest_ns: f64,
+}
+
+/// The clock over some microseconds, where it is a straight line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangent {
+    /// Host time at its start.
+    pub at: Moment,
+    /// Nanoseconds that the host gains per nanosecond of the lidar.
+    pub gain: f64,
+}
+
+/// Follows a clock through device times that mostly grow.
+#[derive(Clone, Debug)]
+pub struct ClockCursor<'a> {
+    clock: &'a LidarClock,
+    segment: Option<Segment>,
+}
+
+/// Between two centres, where the clock blends from one line into the other.
+#[derive(Clone, Copy, Debug)]
+struct Segment {
+    from_ns: f64,
+    to_ns: f64,
+    first: Line,
+    second: Option<Line>,
+}
+
+/// A blend may bend away from its tangent by this much: at 1 rad/s it moves a point 100 m away by 0.05 nm.
+const MOST_BEND_NS: f64 = 5e-4;
+
+impl ClockCursor<'_> {
+    /// The clock from `device` on for `length`. `None` where it is no straight line there: ask it instant by instant.
+    #[inline(always)]
+    pub fn tangent(&mut self, device: Stamp<Lidar>, length: Span) -> Option<Tangent> {
+        let x = self.clock.since_origin(device);
+        let segment = match self.segment {
+            Some(segment) if segment.from_ns <= x && x < segment.to_ns => segment,
+            _ => *self.segment.insert(self.clock.segment(x)),
+        };
+        let length_ns = length.as_nanos() as f64;
+        (x + length_ns < segment.to_ns && segment.bend_ns(length_ns) < MOST_BEND_NS).then(|| {
+            Tangent {
+                at: self.clock.moment_of(device, segment.offset_at(x)),
+                gain: segment.slope_at(x),
+            }
+        })
+    }
+}
+
+impl Moment {
+    /// Whether it is `host` or later.
+    #[must_use]
+    pub fn reaches(&self, host: Stamp<Host>) -> bool {
+        self.host > host || (self.host == host && self.rest_ns >= 0.0)
+    }
+}
+
+impl Tangent {
+    /// Host times that are `delays_ns` after the start by the lidar's clock, to the nearest nanosecond.
+    #[inline(always)]
+    pub fn times<const N: usize>(&self, delays_ns: &[f64; N], times: &mut [Stamp<Host>; N]) {
+        let bits = NO_FRACTION.to_bits() as i64;
+        let start = self.at.host.as_nanos().wrapping_sub(bits);
+        let stretch = 1.0 + self.gain;
+        for (time, delay) in times.iter_mut().zip(delays_ns) {
+            let whole = delay * stretch + self.at.rest_ns + NO_FRACTION;
+            *time = Stamp::from_nanos(start.wrapping_add(whole.to_bits() as i64));
+        }
+    }
+}
+
+impl Segment {
+    fn offset_at(&self, x: f64) -> f64 {
+        match self.second {
+            Some(after) => {
+                let weight = self.weight(x);
+                self.first.at(x) * (1.0 - weight) + after.at(x) * weight
+            }
+            None => self.first.at(x),
+        }
+    }
+
+    /// The derivative of [`Segment::offset_at`].
+    fn slope_at(&self, x: f64) -> f64 {
+        match self.second {
+            Some(after) => {
+                let weight = self.weight(x);
+                self.first.slope * (1.0 - weight)
+                    + after.slope * weight
+                    + (after.at(x) - self.first.at(x)) / (self.to_ns - self.from_ns)
+            }
+            None => self.first.slope,
+        }
+    }
+
+    /// How far the blend is from its tangent after `length_ns`: half of the second derivative times the length squared.
+    fn bend_ns(&self, length_ns: f64) -> f64 {
+        self.second.map_or(0.0, |after| {
+            let bend = (after.slope - self.first.slope) / (self.to_ns - self.from_ns);
+            bend.abs() * length_ns * length_ns
+        })
+    }
+
+    fn weight(&self, x: f64) -> f64 {
+        (x - self.from_ns) / (self.to_ns - self.from_ns)
+    }
+}
+
 impl Line {
+    /// Where there is none.
+    const NONE: Self = Self {
+        centre_ns: 0.0,
+        offset_ns: 0.0,
+        slope: 0.0,
+    };
+
     fn at(self, x: f64) -> f64 {
         self.offset_ns + self.slope * (x - self.centre_ns)
     }
@@ -206,8 +351,17 @@ fn lower_hull(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     hull
 }
 
+/// 1.5 x 2^52: with this added a number below 2^51 has no room left for a fraction, and its nearest integer in the low bits.
+const NO_FRACTION: f64 = 6_755_399_441_055_744.0;
+
+/// To the nearest whole number, and to the even one from halfway.
 fn round(x: f64) -> i64 {
-    x.round() as i64
+    // f64::round is a call on most processors.
+    if x.abs() < NO_FRACTION / 4.0 {
+        ((x + NO_FRACTION) - NO_FRACTION) as i64
+    } else {
+        x.round() as i64
+    }
 }
 
 #[cfg(test)]

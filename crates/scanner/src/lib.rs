@@ -13,6 +13,7 @@ mod stream;
 pub mod sweeps;
 pub mod tilt;
 pub mod trajectory;
+mod volleys;
 
 pub use config::{ScanConfig, SweepPlan};
 pub use error::ScanError;

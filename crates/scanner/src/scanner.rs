@@ -2,13 +2,14 @@
 //!
 //! Two passes over the same records. The [`Survey`] reads times alone: packet arrivals for the lidar's clock, polls for the
 //! trajectory. The [`Placer`] then decodes every firing, asks the clock when it happened and the trajectory how the
-//! platform stood, and places its points. Both are pure functions of the records in their order.
+//! platform stood, and places its points. Both are pure functions of the records in their order. What placing a point means is
+//! [`Alignment::place`]; how it is done for millions of them is `volleys`.
 
 use cloud::mount::{Mount, Tilt};
 use cloud::{Fields, Point, Points, Sink, SinkError};
 use drive::record::{DriveLink, Record, Wire};
 use drive::{Listener, Observation, ShaftSample};
-use lidar::{Decoder, Firing, Options, Stats, Timekeeper};
+use lidar::{Decoder, Options, SensorPoint, Stats, Timekeeper};
 use units::{Degrees, Gearing, Host, Metres, Span, Stamp};
 
 use crate::clock::{Arrival, LidarClock};
@@ -19,6 +20,7 @@ use crate::polls::angle_samples;
 use crate::sweeps::{MoveWatch, Sweep};
 use crate::tilt::TiltSource;
 use crate::trajectory::{Linear, Trajectory};
+use crate::volleys::{MOST_POINTS, VolleyPlacer};
 
 /// First pass: what the records say about time and tilt.
 pub struct Survey {
@@ -187,16 +189,61 @@ impl Alignment {
         }
     }
 
+    /// The heart: a point of the sensor's frame, at its own time and tilt, in the frame of the platform (Eq. 4-6). `None` outside
+    /// every sweep, or outside the time for which an angle is known.
+    ///
+    /// This is what placing means. [`Placer`] does it for all points of a block together.
+    #[must_use]
+    pub fn place(&self, point: &SensorPoint) -> Option<Point> {
+        let moment = self.clock.moment(point.time);
+        let tilt = self
+            .trajectory
+            .angle(moment)
+            .filter(|_| self.wants(moment.host))?;
+        Some(Point {
+            position_m: self.mount.place(point.position_m, Tilt::new(tilt)),
+            intensity: point.reflectivity,
+            ring: point.ring,
+            laser: point.laser,
+            time: moment.host,
+            device_time: point.time,
+            tilt,
+        })
+    }
+
     fn wants(&self, host: Stamp<Host>) -> bool {
         self.spans
             .iter()
             .any(|(from, to)| *from <= host && host <= *to)
     }
+
+    /// An alignment of given parts.
+    #[cfg(test)]
+    pub(crate) const fn with_spans(
+        clock: LidarClock,
+        trajectory: Trajectory,
+        mount: Mount,
+        spans: Vec<(Stamp<Host>, Stamp<Host>)>,
+    ) -> Self {
+        Self {
+            clock,
+            trajectory,
+            sweeps: Vec::new(),
+            mount,
+            implausible: 0,
+            spans,
+        }
+    }
+
+    /// Only firings within one of these become points.
+    pub(crate) fn spans(&self) -> &[(Stamp<Host>, Stamp<Host>)] {
+        &self.spans
+    }
 }
 
 /// Second pass: places every firing and hands the points to a sink in batches.
 pub struct Placer<'a> {
-    alignment: &'a Alignment,
+    volleys: VolleyPlacer<'a>,
     decoder: Decoder,
     batch: Points,
     placed: Placed,
@@ -212,16 +259,17 @@ pub struct Placed {
     pub outside: u64,
 }
 
-const BATCH_POINTS: usize = 1 << 14;
+/// Points that a sink gets at a time: few enough to stay in the processor's cache on their way.
+const BATCH_POINTS: usize = 1 << 12;
 
 impl<'a> Placer<'a> {
     /// A placer into `sink`, which has begun.
     pub fn new(alignment: &'a Alignment, options: Options, sink: &'a mut dyn Sink) -> Self {
         let fields: Fields = sink.fields();
         Self {
-            alignment,
+            volleys: VolleyPlacer::new(alignment),
             decoder: Decoder::new(options),
-            batch: Points::with_capacity(fields, BATCH_POINTS),
+            batch: Points::with_capacity(fields, BATCH_POINTS + MOST_POINTS),
             placed: Placed::default(),
             sink,
         }
@@ -235,9 +283,9 @@ impl<'a> Placer<'a> {
         let Wire::Lidar { payload, .. } = record.wire else {
             return Ok(());
         };
-        let (alignment, batch, placed) = (self.alignment, &mut self.batch, &mut self.placed);
-        self.decoder.packet(record.host, payload, &mut |firing| {
-            place(alignment, firing, batch, placed);
+        let (volleys, batch, placed) = (&mut self.volleys, &mut self.batch, &mut self.placed);
+        self.decoder.volleys(record.host, payload, &mut |volley| {
+            volleys.place(volley, batch, placed);
         });
         if self.batch.len() >= BATCH_POINTS {
             self.flush()?;
@@ -250,9 +298,9 @@ impl<'a> Placer<'a> {
     /// # Errors
     /// What the sink reports.
     pub fn finish(mut self) -> Result<(Placed, Stats), SinkError> {
-        let (alignment, batch, placed) = (self.alignment, &mut self.batch, &mut self.placed);
+        let (volleys, batch, placed) = (&mut self.volleys, &mut self.batch, &mut self.placed);
         self.decoder
-            .finish(&mut |firing| place(alignment, firing, batch, placed));
+            .finish_volleys(&mut |volley| volleys.place(volley, batch, placed));
         self.flush()?;
         Ok((self.placed, self.decoder.stats().clone()))
     }
@@ -261,29 +309,5 @@ impl<'a> Placer<'a> {
         self.sink.points(&self.batch)?;
         self.batch.clear();
         Ok(())
-    }
-}
-
-/// The heart: a firing's points in the sensor's frame, each at its own time and tilt, into the frame of the platform (Eq. 4-6).
-fn place(alignment: &Alignment, firing: &Firing<'_>, batch: &mut Points, placed: &mut Placed) {
-    for point in firing.points() {
-        let host = alignment.clock.host(point.time);
-        let tilt = match alignment.trajectory.angle(host) {
-            Some(angle) if alignment.wants(host) => angle,
-            _ => {
-                placed.outside += 1;
-                continue;
-            }
-        };
-        placed.points += 1;
-        batch.push(Point {
-            position_m: alignment.mount.place(point.position_m, Tilt::new(tilt)),
-            intensity: point.reflectivity,
-            ring: point.ring,
-            laser: point.laser,
-            time: host,
-            device_time: point.time,
-            tilt,
-        });
     }
 }

@@ -25,6 +25,8 @@ const TAIL_LEN: usize = 4 + 1 + 1;
 const _: () = assert!(FLAG_LEN + AZIMUTH_LEN + CHANNELS * CHANNEL_LEN == BLOCK_LEN);
 const _: () = assert!(BLOCKS * BLOCK_LEN + TAIL_LEN == DATA_LEN);
 
+const NO_CHANNELS: [[u8; CHANNEL_LEN]; CHANNELS] = [[0; CHANNEL_LEN]; CHANNELS];
+
 /// A full turn in the units of a block's azimuth.
 const FULL_TURN_CDEG: u16 = 36_000;
 
@@ -90,14 +92,23 @@ impl<'a> DataPacket<'a> {
             expected: DATA_LEN,
             got: payload.len(),
         })?;
-        for (i, block) in packet.blocks().enumerate() {
+        // All blocks are nearly always sound: no way out before the last one.
+        let sound = packet
+            .blocks()
+            .fold(true, |sound, block| sound & block.is_sound());
+        if sound { Ok(packet) } else { packet.fault() }
+    }
+
+    /// The first thing that is wrong.
+    #[cold]
+    fn fault(self) -> Result<Self, PacketError> {
+        for (i, block) in self.blocks().enumerate() {
             let offset = i * BLOCK_LEN;
-            let [a, b, ..] = *block.0;
-            if [a, b] != FLAG {
+            if block.flag() != FLAG {
                 return Err(PacketError::BlockFlag {
                     layer: LAYER,
                     offset,
-                    got: [a, b],
+                    got: block.flag(),
                 });
             }
             if block.azimuth_cdeg() > FULL_TURN_CDEG {
@@ -108,7 +119,7 @@ impl<'a> DataPacket<'a> {
                 });
             }
         }
-        Ok(packet)
+        Ok(self)
     }
 
     fn view(payload: &'a [u8]) -> Option<Self> {
@@ -153,6 +164,15 @@ impl<'a> DataPacket<'a> {
 }
 
 impl<'a> Block<'a> {
+    fn is_sound(self) -> bool {
+        (self.flag() == FLAG) & (self.azimuth_cdeg() <= FULL_TURN_CDEG)
+    }
+
+    const fn flag(self) -> [u8; FLAG_LEN] {
+        let [a, b, ..] = *self.0;
+        [a, b]
+    }
+
     /// Azimuth at the block's first firing in hundredths of a degree, clockwise from the y axis seen from above: 0 to
     /// 36000. 36000 itself occurs on the wire and means 0.
     #[must_use]
@@ -173,10 +193,12 @@ impl<'a> Block<'a> {
     }
 
     /// The 32 channels as they are on the wire, three bytes each, for [`Channel::from_bytes`].
+    #[inline]
     #[must_use]
-    pub fn raw_channels(self) -> &'a [[u8; CHANNEL_LEN]] {
+    pub fn raw_channels(self) -> &'a [[u8; CHANNEL_LEN]; CHANNELS] {
         let (_, channels) = self.0.split_at(FLAG_LEN + AZIMUTH_LEN);
-        channels.as_chunks().0
+        // A block is long enough by the assertion above; the compiler sees it too and leaves the other case out.
+        channels.as_chunks().0.first_chunk().unwrap_or(&NO_CHANNELS)
     }
 }
 

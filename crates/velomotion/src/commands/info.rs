@@ -24,7 +24,7 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
         model: arguments.model.map(cli::ModelName::model),
         ..Options::default()
     };
-    let mut ears = Ears::new(options);
+    let mut ears = Ears::new(options.clone());
     let mut survey =
         Survey::new(&config, options).map_err(|error| super::replay::scan_failure(path, &error))?;
     let pass = source.read_all(|record| {
@@ -73,7 +73,7 @@ const MOST_SENSORS: usize = 64;
 impl Ears {
     fn new(options: Options) -> Self {
         Self {
-            options,
+            options: options.clone(),
             ears: Vec::new(),
             rest: Decoder::new(options),
         }
@@ -113,7 +113,7 @@ impl Ears {
         self.ears.push(Ear {
             source,
             port,
-            decoder: Decoder::new(self.options),
+            decoder: Decoder::new(self.options.clone()),
             utc: UtcClock::new(),
             pps: None,
         });

@@ -117,14 +117,14 @@ pub fn make(request: &Request<'_>, mut target: Target) -> Result<Scan, Failure> 
 /// # Errors
 /// As for [`make`].
 pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result<Scan, Failure> {
-    let (source, options) = (request.recording, request.options);
+    let (source, options) = (request.recording, &request.options);
     let path = source.path();
     let config = source.config()?;
     let mut pace = pacer(request.pace)?;
     let cannot_scan = |error: ScanError| scan_failure(path, &error);
     let cannot_write = |error: SinkError| sink_failure(output, &error);
 
-    let mut survey = Survey::new(&config, options).map_err(cannot_scan)?;
+    let mut survey = Survey::new(&config, options.clone()).map_err(cannot_scan)?;
     let go_on = || match request.interrupt.load(Ordering::Relaxed) {
         true => Err(stopped(path)),
         false => Ok(()),
@@ -138,7 +138,7 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
 
     sink.begin(&metadata(&config, &request.tilt))
         .map_err(cannot_write)?;
-    let mut placer = Placer::new(&alignment, options, sink);
+    let mut placer = Placer::new(&alignment, options.clone(), sink);
     source.read(|record| {
         if let Some(pace) = &mut pace {
             wait(pace, record, request.interrupt);

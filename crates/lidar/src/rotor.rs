@@ -1,0 +1,127 @@
+//! Sines and cosines of a turning head without computing one for every firing.
+//!
+//! A block's azimuth is a whole number of hundredths of a degree: a table of whole degrees and one of hundredths, joined by
+//! the addition theorem, give its sine and cosine to 2e-16. How far each channel is ahead of its block depends on the rotor's
+//! pace alone, which takes few values: their sines and cosines are kept by pace. Every value is a function of its key, so
+//! that what was kept before changes no result. Left out: the azimuth itself ([`crate::Firing`] has it).
+
+use core::array;
+
+use protocol::vlp16::CHANNELS;
+
+use crate::geometry::{Fan, PerChannel};
+
+/// Whole degrees of a turn.
+const DEGREES: usize = 360;
+/// Steps of a degree on the wire.
+const HUNDREDTHS: usize = 100;
+/// Paces that are kept; a power of two. A rotor held at one speed shows three or four.
+const PACES: usize = 8;
+
+/// Sine and cosine of an angle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SinCos {
+    pub sin: f64,
+    pub cos: f64,
+}
+
+impl SinCos {
+    fn of_degrees(degrees: f64) -> Self {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        Self { sin, cos }
+    }
+
+    #[inline]
+    fn plus(self, other: Self) -> Self {
+        Self {
+            sin: self.sin * other.cos + self.cos * other.sin,
+            cos: self.cos * other.cos - self.sin * other.sin,
+        }
+    }
+}
+
+/// How far each channel's azimuth is ahead of its block's: sine and cosine, times the way along the horizon of one count.
+#[derive(Clone, Debug)]
+pub(crate) struct Ahead {
+    /// Bits of the pace, so that any two paces differ.
+    pace: u64,
+    pub sin: PerChannel<f64>,
+    pub cos: PerChannel<f64>,
+}
+
+/// Sine and cosine of every azimuth that a packet can say.
+#[derive(Clone, Debug)]
+pub(crate) struct Compass {
+    degrees: Box<[SinCos; DEGREES]>,
+    hundredths: Box<[SinCos; HUNDREDTHS]>,
+}
+
+/// How far channels are ahead, by pace, for one sensor.
+#[derive(Clone, Debug)]
+pub(crate) struct Rotor {
+    paces: Box<[Ahead; PACES]>,
+}
+
+impl Compass {
+    pub(crate) fn new() -> Self {
+        let table = |i: usize, step_deg: f64| SinCos::of_degrees(i as f64 * step_deg);
+        Self {
+            degrees: Box::new(array::from_fn(|i| table(i, 1.0))),
+            hundredths: Box::new(array::from_fn(|i| table(i, 0.01))),
+        }
+    }
+
+    /// Of an azimuth in hundredths of a degree, 0 up to 36000.
+    #[inline]
+    pub(crate) fn azimuth(&self, azimuth_cdeg: i32) -> SinCos {
+        let cdeg = azimuth_cdeg as usize;
+        let whole = self.degrees.get(cdeg / HUNDREDTHS);
+        let rest = self.hundredths.get(cdeg % HUNDREDTHS);
+        match (whole, rest) {
+            (Some(whole), Some(rest)) => whole.plus(*rest),
+            _ => SinCos::default(),
+        }
+    }
+}
+
+impl Rotor {
+    pub(crate) fn new(fan: &Fan) -> Self {
+        Self {
+            paces: Box::new(array::from_fn(|_| Ahead::new(fan, 0.0))),
+        }
+    }
+
+    /// Of the channels at a pace in hundredths of a degree per block period.
+    #[inline]
+    pub(crate) fn ahead(&mut self, fan: &Fan, pace_cdeg: f64) -> &Ahead {
+        // Neighbouring whole paces fall on different places.
+        let place = pace_cdeg as i64 as usize % PACES;
+        let kept = &mut self.paces[place];
+        if kept.pace != pace_cdeg.to_bits() {
+            *kept = Ahead::new(fan, pace_cdeg);
+        }
+        kept
+    }
+}
+
+impl Ahead {
+    #[cold]
+    fn new(fan: &Fan, pace_cdeg: f64) -> Self {
+        let mut ahead = Self {
+            pace: pace_cdeg.to_bits(),
+            sin: [0.0; CHANNELS],
+            cos: [0.0; CHANNELS],
+        };
+        let channels = ahead.sin.iter_mut().zip(&mut ahead.cos);
+        let angles = fan.part.iter().zip(&fan.azimuth_offset_deg);
+        for (((sin, cos), (part, offset_deg)), out_per_count) in
+            channels.zip(angles).zip(&fan.out_per_count)
+        {
+            let degrees = pace_cdeg / 100.0 * part + offset_deg;
+            (*sin, *cos) = degrees.to_radians().sin_cos();
+            *sin *= out_per_count;
+            *cos *= out_per_count;
+        }
+        ahead
+    }
+}
