@@ -47,7 +47,10 @@ pub(crate) struct Steps {
     azimuths: [i32; BLOCKS],
     blocks: usize,
     period_ns: i64,
-    usual_cdeg: i32,
+    /// The least step.
+    least_cdeg: i32,
+    /// The median step, where steps differ so much that it is needed here.
+    usual_cdeg: Option<i32>,
     /// Mean of the steps that are no jumps.
     pub mean_cdeg: f64,
     /// How many those are.
@@ -87,7 +90,8 @@ impl Steps {
             azimuths: [0; BLOCKS],
             blocks: Model::firing_blocks(dual),
             period_ns: i64::from(model.block_period_ns()),
-            usual_cdeg: 0,
+            least_cdeg: 0,
+            usual_cdeg: None,
             mean_cdeg: 0.0,
             count: 0,
         };
@@ -99,7 +103,13 @@ impl Steps {
         {
             *azimuth = i32::from(block.azimuth_cdeg()) % TURN_CDEG;
         }
-        steps.usual_cdeg = steps.median();
+        let (least, most) = steps
+            .inner()
+            .fold((i32::MAX, i32::MIN), |(least, most), step| {
+                (least.min(step), most.max(step))
+            });
+        steps.least_cdeg = least;
+        steps.usual_cdeg = exceeds(most, least).then(|| steps.median());
         let (sum, count) = steps
             .inner()
             .filter(|&step| !steps.is_jump(step))
@@ -141,11 +151,15 @@ impl Steps {
     }
 
     pub(crate) fn is_jump(&self, step_cdeg: i32) -> bool {
-        step_cdeg > 2 * self.usual_cdeg.max(0) + JUMP_CDEG
+        // What is none against the least step is none against the median; finding that takes longer than all the rest.
+        exceeds(step_cdeg, self.least_cdeg)
+            && exceeds(step_cdeg, self.usual_cdeg.unwrap_or_else(|| self.median()))
     }
 
     /// The first jump within the packet.
     pub(crate) fn jump(&self) -> Option<Blind> {
+        // Without a median no step within the packet can be one.
+        self.usual_cdeg?;
         let azimuths = self.azimuths();
         let mut pairs = azimuths.iter().zip(azimuths.iter().skip(1));
         pairs
@@ -173,6 +187,9 @@ impl Steps {
 
     /// Length of the packet's own gaps by the rotor's rate.
     pub(crate) fn gaps_ns(&self) -> f64 {
+        if self.usual_cdeg.is_none() {
+            return 0.0;
+        }
         self.inner().map(|step| self.gap_ns(step)).sum()
     }
 
@@ -222,23 +239,30 @@ impl Steps {
     pub(crate) fn slots(&self, link: Link) -> ([Slot; BLOCKS], usize) {
         let mut slots = [Slot::default(); BLOCKS];
         let mut after_ns = 0;
-        let mut pace = self.mean_cdeg;
         let steps = self.inner().map(Some).chain([link.step_cdeg]);
         for ((slot, &azimuth), step) in slots.iter_mut().zip(self.azimuths()).zip(steps) {
-            // A jump says nothing of the pace: the block before does, or for the first block the packet's mean.
-            if let Some(step) = step.filter(|&step| !self.is_jump(step)) {
-                pace = f64::from(step);
-            }
+            // A jump says nothing of the pace; the packet's mean does, and better than any single step, which is rounded.
+            let even = step.filter(|&step| !self.is_jump(step));
+            let pace = even.map_or(self.mean_cdeg, f64::from);
             *slot = Slot {
                 after: Span::from_nanos(after_ns),
                 azimuth_cdeg: azimuth,
                 pace_cdeg: pace,
             };
             let gap = step.map_or(0.0, |step| self.gap_ns(step));
-            after_ns += self.period_ns + (gap * link.stretch).round() as i64;
+            after_ns += self.period_ns;
+            if gap > 0.0 {
+                after_ns += (gap * link.stretch).round() as i64;
+            }
         }
         (slots, self.blocks)
     }
+}
+
+/// Whether a step is a jump where another is the usual one.
+const fn exceeds(step_cdeg: i32, usual_cdeg: i32) -> bool {
+    let usual_cdeg = if usual_cdeg > 0 { usual_cdeg } else { 0 };
+    step_cdeg > 2 * usual_cdeg + JUMP_CDEG
 }
 
 impl Link {

@@ -1,7 +1,7 @@
 //! Sines and cosines of a turning head without computing one for every firing.
 //!
 //! A block's azimuth is a whole number of hundredths of a degree: a table of whole degrees and one of hundredths, joined by
-//! the addition theorem, give its sine and cosine to 2e-16. How far each channel is ahead of its block depends on the rotor's
+//! the addition theorem, give its sine and cosine as exactly as an angle in radians can say it, some 1e-15. How far each channel is ahead of its block depends on the rotor's
 //! pace alone, which takes few values: their sines and cosines are kept by pace. Every value is a function of its key, so
 //! that what was kept before changes no result. Left out: the azimuth itself ([`crate::Firing`] has it).
 
@@ -123,5 +123,51 @@ impl Ahead {
             *cos *= out_per_count;
         }
         ahead
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::vlp16::models::{VLP_16, VLP_32C};
+
+    use super::*;
+    use crate::geometry::Geometry;
+
+    #[test]
+    fn every_azimuth_of_the_wire_has_its_sine_and_cosine() {
+        let compass = Compass::new();
+        for cdeg in 0..36_000 {
+            let (sin, cos) = (f64::from(cdeg) / 100.0).to_radians().sin_cos();
+            let got = compass.azimuth(cdeg);
+            assert!((got.sin - sin).abs() < 1.5e-15, "{cdeg}: {got:?}");
+            assert!((got.cos - cos).abs() < 1.5e-15, "{cdeg}: {got:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_kept_by_pace_is_what_is_computed_anew() {
+        for model in [&VLP_16, &VLP_32C] {
+            let fan = Geometry::new(model, true, None).fan;
+            let mut rotor = Rotor::new(&fan);
+            // Paces that share a place, come back, stand still, run backwards and are no whole numbers.
+            for pace_cdeg in [
+                39.0, 40.0, 47.0, 39.0, 0.0, -0.0, -40.0, 39.818, 36_000.0, 40.0,
+            ] {
+                let new = Ahead::new(&fan, pace_cdeg);
+                let kept = rotor.ahead(&fan, pace_cdeg);
+                assert_eq!((kept.sin, kept.cos), (new.sin, new.cos), "{pace_cdeg}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_last_channel_is_ahead_by_its_share_of_the_pace() {
+        let fan = Geometry::new(&VLP_16, true, None).fan;
+        let mut rotor = Rotor::new(&fan);
+        // 55.296 and 15 x 2.304 us of 110.592 us: 0.8125 of 0.4 deg; 15 deg up, 2 mm a count.
+        let ahead = rotor.ahead(&fan, 40.0);
+        let across = 0.002 * 15_f64.to_radians().cos();
+        assert!((ahead.sin[31] - across * 0.325_f64.to_radians().sin()).abs() < 1e-18);
+        assert!((ahead.cos[31] - across * 0.325_f64.to_radians().cos()).abs() < 1e-18);
     }
 }

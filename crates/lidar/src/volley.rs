@@ -58,11 +58,8 @@ impl<'a> Layer<'a> {
         for (count, [lo, hi, _]) in counts.iter_mut().zip(raw) {
             *count = u16::from_le_bytes([*lo, *hi]);
         }
-        Self {
-            raw,
-            counts,
-            kept: mask(|channel| counts[channel] != 0),
-        }
+        let kept = nonzero(counts);
+        Self { raw, counts, kept }
     }
 
     /// Bit c is set where channel c has a return that is to become a point.
@@ -101,7 +98,7 @@ impl<'a> Layers<'a> {
         let [even, odd] = counts;
         let (last, mut strongest) = (Layer::new(last, even), Layer::new(strongest, odd));
         if duplicates == Duplicates::Unique {
-            strongest.kept &= mask(|channel| last.counts[channel] != strongest.counts[channel]);
+            strongest.kept &= different(last.counts, strongest.counts);
         }
         Self::Two {
             last,
@@ -115,15 +112,16 @@ impl<'a> Layers<'a> {
     pub(crate) fn count(&self) -> (u64, u64) {
         let ones = |mask: u32| u64::from(mask.count_ones());
         match self {
-            Self::One { only, .. } => (ones(only.kept), ones(only.kept)),
+            Self::One { only, .. } => {
+                let returns = ones(only.kept);
+                (returns, returns)
+            }
             Self::Two {
                 last, strongest, ..
             } => {
-                let (a, b) = (last.counts, strongest.counts);
-                let equal = ones(mask(|channel| a[channel] == b[channel] && a[channel] != 0));
-                let second = ones(mask(|channel| b[channel] != 0));
-                let returns = ones(last.kept) + second;
-                (returns, returns - equal)
+                let equal = last.kept & !different(last.counts, strongest.counts);
+                let returns = ones(last.kept) + ones(nonzero(strongest.counts));
+                (returns, returns - ones(equal))
             }
         }
     }
@@ -266,22 +264,35 @@ impl<'a> Volley<'a> {
     }
 }
 
-/// The channels for which something is so, in a way that compilers make columns of.
-#[inline(always)]
-fn mask(is: impl Fn(usize) -> bool) -> u32 {
-    let mut flags = [0_u8; CHANNELS];
-    for (channel, flag) in flags.iter_mut().enumerate() {
-        *flag = u8::from(is(channel));
-    }
-    let (eights, _) = flags.as_chunks::<8>();
-    eights
-        .iter()
-        .rev()
-        .fold(0, |mask, eight| mask << 8 | bits(*eight))
+/// The channels with a distance.
+#[inline]
+fn nonzero(counts: &[u16; CHANNELS]) -> u32 {
+    different(counts, &[0; CHANNELS])
 }
 
-/// Eight flags of 0 or 1 as bits, the first the lowest: a multiplication moves flag n to bit 56 + n.
+/// The channels in which two returns differ.
+#[inline]
+fn different(a: &[u16; CHANNELS], b: &[u16; CHANNELS]) -> u32 {
+    let (a, b) = (a.as_chunks::<16>().0, b.as_chunks::<16>().0);
+    let halves = a.iter().zip(b).rev();
+    halves.fold(0, |mask, (a, b)| mask << 16 | u32::from(half(a, b)))
+}
+
+/// A bit for each place in which two halves differ, as a sum of columns rather than bit by bit.
 #[inline(always)]
-const fn bits(flags: [u8; 8]) -> u32 {
-    (u64::from_le_bytes(flags).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u32
+fn half(a: &[u16; 16], b: &[u16; 16]) -> u16 {
+    const BITS: [u16; 16] = {
+        let mut bits = [0; 16];
+        let mut i = 0;
+        while i < 16 {
+            bits[i] = 1 << i;
+            i += 1;
+        }
+        bits
+    };
+    let mut mask = 0;
+    for ((a, b), bit) in a.iter().zip(b).zip(&BITS) {
+        mask |= if a == b { 0 } else { *bit };
+    }
+    mask
 }

@@ -7,6 +7,7 @@
 
 use cloud::mount::Tilts;
 use cloud::{Order, Points, Spare};
+use fearless_simd::{Avx2, Level, Simd};
 use lidar::{Layer, Volley};
 use units::{Degrees, Host, Span, Stamp};
 
@@ -30,6 +31,8 @@ pub(crate) struct VolleyPlacer<'a> {
     /// How far the platform turns from the block's start until each channel fires.
     ahead_rad: [f64; N],
     tilts: Tilts<N>,
+    /// Wider registers, where the processor has them. They change no result: the operations are the same in the same order.
+    avx2: Option<Avx2>,
 }
 
 /// When and how a block begins.
@@ -54,11 +57,32 @@ impl<'a> VolleyPlacer<'a> {
             spans: SpanCursor::new(alignment.spans()),
             ahead_rad: [0.0; N],
             tilts: Tilts::default(),
+            avx2: Level::new().as_avx2(),
+        }
+    }
+
+    /// The same without wider registers.
+    #[cfg(test)]
+    fn plain(alignment: &'a Alignment) -> Self {
+        Self {
+            avx2: None,
+            ..Self::new(alignment)
         }
     }
 
     /// Adds the points of a volley to a batch.
     pub(crate) fn place(&mut self, volley: &Volley<'_>, batch: &mut Points, placed: &mut Placed) {
+        match self.avx2 {
+            Some(avx2) => avx2.vectorize(
+                #[inline(always)]
+                || self.place_by(volley, batch, placed),
+            ),
+            None => self.place_by(volley, batch, placed),
+        }
+    }
+
+    #[inline(always)]
+    fn place_by(&mut self, volley: &Volley<'_>, batch: &mut Points, placed: &mut Placed) {
         let (first, second) = volley.layers();
         match self.judge(volley) {
             Verdict::Place(pose) => {

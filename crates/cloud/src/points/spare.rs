@@ -159,3 +159,141 @@ fn gather<T: Copy, const R: usize>(column: &mut [T], row: usize, order: &Order<R
         *to = from[usize::from(row) % R];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{Column, Point};
+    use units::Degrees;
+
+    fn point(n: u8) -> Point {
+        let far = f64::from(n);
+        Point {
+            position_m: [far, far + 0.25, far + 0.5],
+            intensity: n,
+            ring: n ^ 1,
+            laser: n ^ 2,
+            time: Stamp::from_nanos(1_000 + i64::from(n)),
+            device_time: Stamp::from_nanos(2_000 + i64::from(n)),
+            tilt: Degrees(-far),
+        }
+    }
+
+    /// Writes points `first`, `first + 1` and so on into the rows.
+    fn write<const L: usize>(rows: &mut Spare<'_, 32, L>, first: u8) {
+        for row in 0..32 * L {
+            let (layer, place) = (row / 32, row % 32);
+            let point = point(first + row as u8);
+            [
+                rows.x_m[layer][place],
+                rows.y_m[layer][place],
+                rows.z_m[layer][place],
+            ] = point.position_m;
+            let narrow = [
+                (&mut rows.intensity, point.intensity),
+                (&mut rows.ring, point.ring),
+                (&mut rows.laser, point.laser),
+            ];
+            for (column, value) in narrow {
+                if let Some(column) = column {
+                    column[layer][place] = value;
+                }
+            }
+            if let Some(column) = &mut rows.time {
+                column[layer][place] = point.time;
+            }
+            if let Some(column) = &mut rows.device_time {
+                column[layer][place] = point.device_time;
+            }
+            if let Some(column) = &mut rows.tilt_deg {
+                column[layer][place] = point.tilt.0;
+            }
+        }
+    }
+
+    #[derive(Clone, Debug)]
+    enum Step {
+        Push(u8),
+        All(u8),
+        Some(u32),
+        Pairs(u32, u32),
+        Append,
+        Clear,
+    }
+
+    fn any_step() -> impl Strategy<Value = Step> {
+        prop_oneof![
+            any::<u8>().prop_map(Step::Push),
+            (0u8..200).prop_map(Step::All),
+            any::<u32>().prop_map(Step::Some),
+            any::<(u32, u32)>().prop_map(|(a, b)| Step::Pairs(a, b)),
+            Just(Step::Append),
+            Just(Step::Clear),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn rows_that_are_kept_are_points_that_were_pushed(
+            steps in prop::collection::vec(any_step(), 0..12),
+            columns in prop::sample::subsequence(Column::ALL.to_vec(), 0..=Column::ALL.len()),
+        ) {
+            let fields = columns.into_iter().fold(Fields::NONE, |set, column| set | column.field());
+            let (mut fast, mut slow) = (Points::new(fields), Points::new(fields));
+            for step in steps {
+                match step {
+                    Step::Push(n) => {
+                        fast.push(point(n));
+                        slow.push(point(n));
+                    }
+                    Step::All(first) => {
+                        write::<1>(&mut fast.spare().unwrap(), first);
+                        fast.keep_all(32);
+                        (0..32).for_each(|row| slow.push(point(first + row)));
+                    }
+                    Step::Some(mask) => {
+                        write::<1>(&mut fast.spare_beyond().unwrap(), 7);
+                        fast.keep(&Order::of(mask));
+                        (0..32)
+                            .filter(|row| mask >> row & 1 != 0)
+                            .for_each(|row| slow.push(point(7 + row)));
+                    }
+                    Step::Pairs(first, second) => {
+                        write::<2>(&mut fast.spare_beyond().unwrap(), 3);
+                        fast.keep(&Order::of_pairs(first, second));
+                        for row in 0..32 {
+                            if first >> row & 1 != 0 {
+                                slow.push(point(3 + row));
+                            }
+                            if second >> row & 1 != 0 {
+                                slow.push(point(35 + row));
+                            }
+                        }
+                    }
+                    Step::Append => {
+                        let batch = slow.clone();
+                        fast.append(&batch).unwrap();
+                        slow.append(&batch).unwrap();
+                    }
+                    Step::Clear => {
+                        fast.clear();
+                        slow.clear();
+                    }
+                }
+                prop_assert_eq!(&fast, &slow);
+                prop_assert_eq!(fast.summary(), slow.summary());
+            }
+        }
+    }
+
+    #[test]
+    fn room_for_a_column_nobody_asked_for_is_not_made() {
+        let mut points = Points::new(Fields::RING);
+        let rows = points.spare::<32, 2>().unwrap();
+        assert!(rows.ring.is_some() && rows.time.is_none() && rows.tilt_deg.is_none());
+        assert_eq!(points.time.capacity(), 0);
+        assert!(points.is_empty());
+    }
+}

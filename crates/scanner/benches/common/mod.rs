@@ -48,7 +48,11 @@ impl Recording {
             println!("SKIPPED: no recording at {}", path.display());
             return None;
         };
-        let datagrams = datagrams(&bytes);
+        let mut datagrams = datagrams(&bytes);
+        if !datagrams.is_sorted_by_key(|(host, _)| *host) {
+            println!("{name}: its times go back; they are taken from the sensor's own clock here");
+            restamp(&bytes, &mut datagrams);
+        }
         Some(Self {
             name,
             bytes,
@@ -119,6 +123,16 @@ fn datagrams(bytes: &[u8]) -> Vec<(Stamp<Host>, std::ops::Range<usize>)> {
         at = end;
     }
     datagrams
+}
+
+/// Gives every data packet the time that it says itself.
+fn restamp(bytes: &[u8], datagrams: &mut [(Stamp<Host>, std::ops::Range<usize>)]) {
+    for (host, range) in datagrams {
+        if let [.., a, b, c, d, _, _] = bytes[range.clone()] {
+            let us = i64::from(u32::from_le_bytes([a, b, c, d]));
+            *host = Stamp::from_nanos(us * 1_000);
+        }
+    }
 }
 
 /// Seconds that runs of something took.

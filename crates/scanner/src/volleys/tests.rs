@@ -229,6 +229,41 @@ proptest! {
         assert_same(&fast, &slow(&alignment, options, &packets));
     }
 
+    /// A replay is the same on every processor.
+    #[test]
+    fn wider_registers_change_no_bit(
+        product in prop::sample::select(&PRODUCTS),
+        dual: bool,
+        noise in prop::collection::vec(any::<u8>(), 1_000..2_000),
+        trajectory in any_trajectory(),
+    ) {
+        let packets = packets(product, dual, 40, &noise);
+        let always = vec![(Stamp::from_nanos(i64::MIN), Stamp::from_nanos(i64::MAX))];
+        let mount = Mount::new(Metres(0.06));
+        let alignment = Alignment::with_spans(clock(60, &[5, -20, 30, 0]), trajectory, mount, always);
+        let run = |mut placer: VolleyPlacer<'_>| {
+            let (mut points, mut placed) = (Points::new(Fields::ALL), Placed::default());
+            let mut decoder = Decoder::new(Options::default());
+            for (ns, payload) in &packets {
+                decoder.volleys(Stamp::from_nanos(EPOCH + ns), payload, &mut |volley| {
+                    placer.place(volley, &mut points, &mut placed);
+                });
+            }
+            points
+        };
+        let (wide, plain) = (run(VolleyPlacer::new(&alignment)), run(VolleyPlacer::plain(&alignment)));
+        let bits = |points: &Points| -> Vec<[u64; 4]> {
+            let tilts = points.tilt_deg().iter();
+            points
+                .positions()
+                .zip(tilts)
+                .map(|([x, y, z], tilt)| [x, y, z, *tilt].map(f64::to_bits))
+                .collect()
+        };
+        prop_assert_eq!(bits(&wide), bits(&plain));
+        prop_assert_eq!(wide, plain);
+    }
+
     /// What a block becomes depends on nothing that came before it, to the bit.
     #[test]
     fn a_recording_from_its_middle_gives_the_same_points(

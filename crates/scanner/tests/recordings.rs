@@ -1,0 +1,126 @@
+//! The fast path against the definition on real recordings: the same points in the same order, a nanometre and a nanosecond
+//! apart at most, for every model, return mode, field of view, and with corrections.
+//!
+//! The recordings are looked for as the benches do it; where they are absent each test says that it was skipped.
+#![expect(clippy::unwrap_used, reason = "a test of recordings")]
+
+#[path = "../benches/common/mod.rs"]
+mod common;
+
+use std::sync::Arc;
+
+use cloud::{Fields, Points};
+use common::{RECORDINGS, Recording};
+use drive::record::Wire;
+use lidar::{Corrections, Decoder, Duplicates, Options};
+use protocol::vlp16::Model;
+use scanner::{Alignment, Placed, Placer};
+
+fn fast(recording: &Recording, alignment: &Alignment, options: Options) -> (Points, Placed) {
+    let mut points = Points::new(Fields::ALL);
+    let mut placer = Placer::new(alignment, options, &mut points);
+    for record in recording.records() {
+        placer.observe(&record).unwrap();
+    }
+    let (placed, stats) = placer.finish().unwrap();
+    assert_eq!(stats.corrections_refused, None);
+    (points, placed)
+}
+
+fn slow(recording: &Recording, alignment: &Alignment, options: Options) -> (Points, Placed) {
+    let (mut points, mut placed) = (Points::new(Fields::ALL), Placed::default());
+    let mut decoder = Decoder::new(options);
+    let mut each = |firing: &lidar::Firing<'_>| {
+        for point in firing.points() {
+            match alignment.place(&point) {
+                Some(point) => {
+                    placed.points += 1;
+                    points.push(point);
+                }
+                None => placed.outside += 1,
+            }
+        }
+    };
+    for record in recording.records() {
+        if let Wire::Lidar { payload, .. } = record.wire {
+            decoder.packet(record.host, payload, &mut each);
+        }
+    }
+    decoder.finish(&mut each);
+    (points, placed)
+}
+
+fn assert_same(name: &str, recording: &Recording, alignment: &Alignment, options: &Options) {
+    let (fast, fast_placed) = fast(recording, alignment, options.clone());
+    let (slow, slow_placed) = slow(recording, alignment, options.clone());
+    assert_eq!(fast_placed, slow_placed, "{name}");
+    assert_eq!(fast.len(), slow.len(), "{name}");
+    assert_eq!(fast.intensity(), slow.intensity(), "{name}");
+    assert_eq!(fast.ring(), slow.ring(), "{name}");
+    assert_eq!(fast.laser(), slow.laser(), "{name}");
+    assert_eq!(fast.device_time(), slow.device_time(), "{name}");
+    let (mut worst_m, mut worst_ns, mut worst_deg) = (0.0_f64, 0, 0.0_f64);
+    for (a, b) in fast.iter().zip(slow.iter()) {
+        for (a, b) in a.position_m.iter().zip(&b.position_m) {
+            worst_m = worst_m.max((a - b).abs());
+        }
+        worst_ns = worst_ns.max((a.time - b.time).as_nanos().abs());
+        worst_deg = worst_deg.max((a.tilt.0 - b.tilt.0).abs());
+    }
+    println!(
+        "{}, {name}: {} points, worst {worst_m:.1e} m, {worst_ns} ns, {worst_deg:.1e} deg",
+        recording.name,
+        fast.len()
+    );
+    assert!(worst_m < 1e-9 && worst_ns <= 1 && worst_deg < 1e-9);
+}
+
+#[test]
+fn every_recording_becomes_the_points_of_the_definition() {
+    for recording in RECORDINGS.into_iter().filter_map(Recording::read) {
+        let (tilting, at_rest) = (recording.tilting(), recording.at_rest());
+        let default = Options::default();
+        let every = Options {
+            duplicates: Duplicates::All,
+            vertical_offsets: false,
+            ..Options::default()
+        };
+        assert_same("tilting", &recording, &tilting, &default);
+        assert_same("at rest", &recording, &at_rest, &default);
+        assert_same("every return", &recording, &tilting, &every);
+    }
+}
+
+/// Whatever the packets are taken for; and with that model's own table as corrections, moved a little.
+#[test]
+fn every_model_and_its_corrections_place_as_the_definition_does() {
+    for recording in RECORDINGS.into_iter().filter_map(Recording::read) {
+        let tilting = recording.tilting();
+        for model in protocol::vlp16::models::ALL {
+            let told = Options {
+                model: Some(model),
+                ..Options::default()
+            };
+            assert_same(model.name, &recording, &tilting, &told);
+            let corrected = Options {
+                corrections: Some(Arc::new(moved(model))),
+                ..told
+            };
+            assert_same("corrected", &recording, &tilting, &corrected);
+        }
+    }
+}
+
+fn moved(model: &Model) -> Corrections {
+    let mut corrections = Corrections::from(model);
+    for (laser, i) in corrections.lasers.iter_mut().zip(0..) {
+        let i = f64::from(i);
+        laser.elevation_deg += 0.01 * i;
+        laser.azimuth_offset_deg -= 0.02 * i;
+        laser.range_offset_m += 0.003 * i;
+        laser.radial_offset_m = 0.04;
+        laser.tangential_offset_m = 0.02 - 0.001 * i;
+        laser.vertical_offset_m += 0.001 * i;
+    }
+    corrections
+}
