@@ -1,5 +1,6 @@
 //! From the devices' bytes to the cloud, in virtual time, held against what truly happened.
 
+mod frames;
 mod links;
 mod sensors;
 

@@ -51,6 +51,7 @@ fn scan(log: &Path, sensor: Option<&str>) -> Result<Scan, Failure> {
         recording: &Source::open(log, sensor).unwrap(),
         tilt: TiltSource::None,
         options: lidar::Options::default(),
+        time: velomotion::cli::TimeOf::Host,
         pace: None,
         truth: None,
         interrupt: &AtomicBool::new(false),

@@ -97,6 +97,15 @@ pub struct Replay {
     /// Hand the points on at the times at which they were recorded, or FACTOR times as fast
     #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1")]
     pub realtime: Option<f64>,
+    /// Whose clock the points' times are of: the recording host's, or UTC by the lidar's satellite receiver
+    #[arg(long, value_enum, default_value_t = TimeOf::Host)]
+    pub time: TimeOf,
+    /// Make a cloud of each turn of the lidar, cut at this azimuth; -o NAME.ply gives NAME-00000.ply and so on
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub frames: Option<f64>,
+    /// Keep the shots without a return: a row a ring, a column a firing (.pcd)
+    #[arg(long, requires = "frames")]
+    pub organised: bool,
     /// How the lidar's packets are read
     #[command(flatten)]
     pub lidar: Lidar,
@@ -114,9 +123,22 @@ pub struct Lidar {
     /// The lidar's model, where neither its packets' factory byte nor their spacing tells it right
     #[arg(long, value_enum)]
     pub model: Option<ModelName>,
+    /// Calibration of this very lidar: YAML as ROS drivers have it, or TOML
+    #[arg(long, value_name = "FILE")]
+    pub calibration: Option<PathBuf>,
     /// Dual return: both returns of a pulse where they are equal, or one of them
     #[arg(long, value_enum, default_value_t = Equal::Once)]
     pub equal_returns: Equal,
+}
+
+/// Whose clock times are of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum TimeOf {
+    /// The recording host's
+    #[default]
+    Host,
+    /// UTC, where the lidar's clock was locked to a satellite receiver
+    Utc,
 }
 
 /// The models by name.

@@ -17,10 +17,12 @@ pub mod progress;
 pub mod recording;
 pub mod recordings;
 pub mod report;
+pub mod sensing;
 pub mod session;
 pub mod setup;
 pub mod signals;
 pub mod simulated;
 pub mod software_drive;
+pub mod utc;
 
 pub use failure::{Failure, Kind};

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use ::io::files::{FileError, NewFile, Overwrite};
 use cloud::formats::Format;
+use cloud::formats::pcd::PcdWriter;
 use cloud::formats::ply::PlyPipe;
 use cloud::{Sink, SinkError};
 
@@ -42,13 +43,31 @@ impl Target {
             Failure::new(Kind::Usage, format!("{}: {error}", path.display()))
                 .help("give -o a name with one of those extensions, or - for PLY on stdout")
         })?;
+        Self::file(path, force, |buffered| format.writer(buffered))
+    }
+
+    /// Opens `path` for an organised cloud of so many rows: a PCD.
+    ///
+    /// # Errors
+    /// As [`Target::open`].
+    pub fn organised(path: &Path, force: bool, rows: u64) -> Result<Self, Failure> {
+        Self::file(path, force, |buffered| {
+            Box::new(PcdWriter::organised(buffered, rows))
+        })
+    }
+
+    fn file(
+        path: &Path,
+        force: bool,
+        writer: impl FnOnce(BufWriter<Shared>) -> Box<dyn Sink + Send>,
+    ) -> Result<Self, Failure> {
         let file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
         let shared = Shared(Arc::new(Mutex::new(Some(file))));
         let buffered = BufWriter::with_capacity(1 << 20, shared.clone());
         Ok(Self {
             path: path.to_owned(),
             file: Some(shared),
-            sink: format.writer(buffered),
+            sink: writer(buffered),
         })
     }
 

@@ -172,10 +172,7 @@ impl Source {
         &self,
         mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
     ) -> Result<Pass, Failure> {
-        let mut filter = Filter {
-            source: self.wanted.map(|wanted| wanted.address.octets()),
-            port: self.wanted.and_then(|wanted| wanted.port),
-        };
+        let mut filter = self.filter();
         let pass = self.read_all(|record| {
             if filter.takes(record) {
                 take(record)?;
@@ -184,6 +181,28 @@ impl Source {
         })?;
         self.check(&pass.sensors)?;
         Ok(pass)
+    }
+
+    /// Gives records of the wanted sensor and of the drive to `take`, in file order, as long as it wants more.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    pub fn read_until(&self, mut take: impl FnMut(&Record<'_>) -> bool) -> Result<(), Failure> {
+        let mut filter = self.filter();
+        let mut recording = self.recording()?;
+        while let Some(record) = recording.next_record().map_err(|error| failure(&error))? {
+            if filter.takes(&record) && !take(&record) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn filter(&self) -> Filter {
+        Filter {
+            source: self.wanted.map(|wanted| wanted.address.octets()),
+            port: self.wanted.and_then(|wanted| wanted.port),
+        }
     }
 
     /// Gives every record to `take`, whichever sensor's, in file order.

@@ -173,6 +173,9 @@ pub struct Scan {
     pub contents: Contents,
     /// Points of the cloud.
     pub points: u64,
+    /// Clouds, where each turn of the lidar is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clouds: Option<u64>,
     /// Returns left out: fired outside every sweep or where no angle is known.
     pub left_out: u64,
     /// The sweeps.
@@ -256,6 +259,13 @@ impl Contents {
 }
 
 impl Scan {
+    fn cloud(&self) -> String {
+        match self.clouds {
+            None => self.output.clone(),
+            Some(clouds) => format!("{clouds} frames, numbered after the name {}", self.output),
+        }
+    }
+
     /// A table for people.
     #[must_use]
     pub fn table(&self) -> String {
@@ -300,7 +310,7 @@ impl Scan {
                 ),
             ));
         }
-        rows.push(("cloud", self.output.clone()));
+        rows.push(("cloud", self.cloud()));
         rows.push(("log", self.log.clone()));
         rows.extend(self.contents.warning_rows());
         table(rows)

@@ -16,7 +16,7 @@ use sim::Truth;
 
 use super::Said;
 use super::replay::{self, Request};
-use crate::cli::{self, Common};
+use crate::cli::{self, Common, TimeOf};
 use crate::control::Control;
 use crate::failure::{Failure, Kind};
 use crate::motion::{self, Told};
@@ -78,6 +78,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
+        time: TimeOf::Host,
         pace: None,
         truth: truth.as_ref(),
         interrupt: &interrupt,

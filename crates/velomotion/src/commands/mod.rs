@@ -3,6 +3,7 @@
 pub mod capture;
 pub mod doctor;
 pub mod firmware_sim;
+pub mod frames;
 pub mod info;
 pub mod replay;
 pub mod tilt;

@@ -6,24 +6,27 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use analysis::truth::Comparison;
 use cloud::{Metadata, Sink, SinkError};
 use io::recording::{Gap, Pacer, Turn};
-use lidar::{Duplicates, Options};
-use protocol::record::Record;
+use lidar::{Options, Stats, UtcClock};
+use protocol::record::{DriveLink, Record};
 use scanner::{
-    Alignment, AngleTable, Placer, ScanConfig, ScanError, Survey, TableTime, TiltSource,
+    Alignment, AngleTable, Placed, Placer, ScanConfig, ScanError, Survey, TableTime, TiltSource,
 };
 use sim::Truth;
-use units::Span;
+use units::{Degrees, Span};
 
 use super::Said;
+use super::frames::{FramePlan, FrameWriter, Written};
 use super::info::contents;
-use crate::cli::{self, Common};
+use crate::cli::{self, Common, TimeOf};
 use crate::failure::{Failure, Kind};
 use crate::names;
 use crate::output::{self, Target, sink_failure};
 use crate::progress::Progress;
-use crate::recordings::Source;
+use crate::recordings::{Pass, Source};
 use crate::report::{self, Scan, Sync};
+use crate::sensing;
 use crate::signals;
+use crate::utc::{InUtc, UtcSurvey};
 
 /// What to make a cloud of.
 pub struct Request<'a> {
@@ -33,6 +36,8 @@ pub struct Request<'a> {
     pub tilt: TiltSource,
     /// How the lidar's packets are read.
     pub options: Options,
+    /// Whose clock the points' times are of.
+    pub time: TimeOf,
     /// How many times as fast as they were recorded points are handed on; `None`: as fast as they are made.
     pub pace: Option<f64>,
     /// What truly happened, where a simulator knows.
@@ -52,7 +57,8 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
     let request = Request {
         recording: &source,
         tilt: tilt_source(&arguments.tilt)?,
-        options: options(&arguments.lidar),
+        options: sensing::options(&arguments.lidar, &source)?,
+        time: arguments.time,
         pace: arguments.realtime,
         truth: None,
         interrupt: &interrupt,
@@ -73,9 +79,20 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
         .clone()
         .unwrap_or_else(|| names::cloud_of(&arguments.input));
     output::two_files(&arguments.input, &cloud)?;
-    let target = Target::open(&cloud, arguments.output.force)?;
-    let stdout = target.is_stdout();
-    let scan = make(&request, target)?;
+    let plan = arguments.frames.map(|cut| FramePlan {
+        cut: Degrees(cut),
+        organised: arguments.organised,
+        output: cloud.clone(),
+        force: arguments.output.force,
+    });
+    let (scan, stdout) = match &plan {
+        Some(plan) => (frames(&request, plan)?, false),
+        None => {
+            let target = Target::open(&cloud, arguments.output.force)?;
+            let stdout = target.is_stdout();
+            (make(&request, target)?, stdout)
+        }
+    };
     if scan.contents.simulated {
         progress.say("SIMULATED: this log is of software devices");
     }
@@ -112,42 +129,144 @@ pub fn make(request: &Request<'_>, mut target: Target) -> Result<Scan, Failure> 
     Ok(written)
 }
 
+/// What the first pass over a recording found.
+struct Surveyed {
+    config: ScanConfig,
+    drive: Option<(DriveLink, u64)>,
+    pass: Pass,
+    alignment: Alignment,
+    /// UTC by the lidar's receiver, where it was asked for.
+    utc: Option<UtcClock>,
+}
+
+/// The first pass.
+fn survey(request: &Request<'_>) -> Result<Surveyed, Failure> {
+    let source = request.recording;
+    let config = source.config()?;
+    let cannot_scan = |error: ScanError| scan_failure(source.path(), &error);
+    let mut survey = Survey::new(&config, request.options.clone()).map_err(cannot_scan)?;
+    let mut utc = (request.time == TimeOf::Utc).then(|| UtcSurvey::new(request.options.clone()));
+    let pass = source.read(|record| {
+        survey.observe(record);
+        if let Some(utc) = &mut utc {
+            utc.observe(record);
+        }
+        go_on(request)
+    })?;
+    let drive = survey.drive();
+    let alignment = survey.solve(&config, &request.tilt).map_err(cannot_scan)?;
+    Ok(Surveyed {
+        config,
+        drive,
+        pass,
+        alignment,
+        utc: utc.map(UtcSurvey::solve),
+    })
+}
+
+fn go_on(request: &Request<'_>) -> Result<(), Failure> {
+    match request.interrupt.load(Ordering::Relaxed) {
+        true => Err(stopped(request.recording.path())),
+        false => Ok(()),
+    }
+}
+
 /// The two passes.
 ///
 /// # Errors
 /// As for [`make`].
 pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result<Scan, Failure> {
-    let (source, options) = (request.recording, &request.options);
-    let path = source.path();
-    let config = source.config()?;
-    let mut pace = pacer(request.pace)?;
-    let cannot_scan = |error: ScanError| scan_failure(path, &error);
-    let cannot_write = |error: SinkError| sink_failure(output, &error);
-
-    let mut survey = Survey::new(&config, options.clone()).map_err(cannot_scan)?;
-    let go_on = || match request.interrupt.load(Ordering::Relaxed) {
-        true => Err(stopped(path)),
-        false => Ok(()),
+    let surveyed = survey(request)?;
+    let Some(utc) = surveyed.utc.clone() else {
+        let (placed, stats) = place(request, &surveyed, sink, output)?;
+        return report(request, &surveyed, placed, &stats, output);
     };
-    let pass = source.read(|record| {
-        survey.observe(record);
-        go_on()
-    })?;
-    let drive = survey.drive();
-    let alignment = survey.solve(&config, &request.tilt).map_err(cannot_scan)?;
+    let mut sink = InUtc::new(sink, utc);
+    let (mut placed, stats) = place(request, &surveyed, &mut sink, output)?;
+    let without = sink.without();
+    placed.points -= without;
+    if placed.points == 0 {
+        return Err(Failure::new(
+            Kind::BadInput,
+            format!(
+                "{}: the lidar's clock was never locked to UTC while it fired",
+                request.recording.path().display()
+            ),
+        )
+        .help("info says why; without --time utc times are of the recording host's clock"));
+    }
+    let mut scan = report(request, &surveyed, placed, &stats, output)?;
+    if without > 0 {
+        scan.left_out += without;
+        scan.contents.warnings.push(format!(
+            "{without} points were left out: the lidar's clock was not locked to UTC"
+        ));
+    }
+    Ok(scan)
+}
 
-    sink.begin(&metadata(&config, &request.tilt))
+/// The second pass.
+fn place(
+    request: &Request<'_>,
+    surveyed: &Surveyed,
+    sink: &mut dyn Sink,
+    output: &Path,
+) -> Result<(Placed, Stats), Failure> {
+    let mut pace = pacer(request.pace)?;
+    let cannot_write = |error: SinkError| sink_failure(output, &error);
+    sink.begin(&metadata(&surveyed.config, request))
         .map_err(cannot_write)?;
-    let mut placer = Placer::new(&alignment, options.clone(), sink);
-    source.read(|record| {
+    let mut placer = Placer::new(&surveyed.alignment, request.options.clone(), sink);
+    request.recording.read(|record| {
         if let Some(pace) = &mut pace {
             wait(pace, record, request.interrupt);
         }
         placer.observe(record).map_err(cannot_write)?;
-        go_on()
+        go_on(request)
     })?;
-    let (placed, stats) = placer.finish().map_err(cannot_write)?;
+    placer.finish().map_err(cannot_write)
+}
 
+/// The two passes, a cloud a turn of the lidar.
+///
+/// # Errors
+/// As for [`make`], and [`Kind::Usage`] for frames that cannot be.
+pub fn frames(request: &Request<'_>, plan: &FramePlan) -> Result<Scan, Failure> {
+    if request.time == TimeOf::Utc {
+        return Err(Failure::new(
+            Kind::Usage,
+            "--frames and --time utc do not go together yet".to_owned(),
+        )
+        .help("make one cloud in UTC, or frames in the recording host's time"));
+    }
+    let surveyed = survey(request)?;
+    let metadata = metadata(&surveyed.config, request);
+    let mut pace = pacer(request.pace)?;
+    let options = request.options.clone();
+    let mut writer = FrameWriter::new(plan, &surveyed.alignment, options, metadata)?;
+    let mut written = Written::default();
+    request.recording.read(|record| {
+        if let Some(pace) = &mut pace {
+            wait(pace, record, request.interrupt);
+        }
+        writer.observe(record, &mut written)?;
+        go_on(request)
+    })?;
+    let stats = writer.finish(&mut written)?;
+    let mut scan = report(request, &surveyed, written.placed, &stats, &plan.output)?;
+    scan.clouds = Some(written.clouds);
+    Ok(scan)
+}
+
+/// What there is to say of a scan.
+fn report(
+    request: &Request<'_>,
+    surveyed: &Surveyed,
+    placed: Placed,
+    stats: &Stats,
+    output: &Path,
+) -> Result<Scan, Failure> {
+    let (alignment, path) = (&surveyed.alignment, request.recording.path());
     if placed.points == 0 && placed.outside > 0 {
         return Err(Failure::new(
             Kind::BadInput,
@@ -159,35 +278,33 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
         )
         .help("see whether the angles belong to this recording; --tilt none needs none"));
     }
-    let mut contents = contents(&config, &stats, drive, &pass);
-    contents.warnings.extend(doubts(&config, &alignment));
+    if let Some(lasers) = stats.corrections_refused {
+        return Err(Failure::new(
+            Kind::BadInput,
+            format!("the calibration is of {lasers} lasers, the lidar has another number"),
+        )
+        .help("give the calibration of this very lidar"));
+    }
+    let mut contents = contents(&surveyed.config, stats, surveyed.drive, &surveyed.pass);
+    contents
+        .warnings
+        .extend(doubts(&surveyed.config, alignment));
     Ok(Scan {
         contents,
         points: placed.points,
         left_out: placed.outside,
+        clouds: None,
         sweeps: alignment
             .sweeps
             .iter()
             .map(|sweep| report::SweepReport::new(sweep, stats.rpm))
             .collect(),
-        sync: sync(&alignment),
+        sync: sync(alignment),
         output: output.display().to_string(),
         log: path.display().to_string(),
         lost_records: 0,
         truth: None,
     })
-}
-
-/// How the lidar's packets are to be read.
-fn options(arguments: &cli::Lidar) -> Options {
-    Options {
-        model: arguments.model.map(cli::ModelName::model),
-        duplicates: match arguments.equal_returns {
-            cli::Equal::Once => Duplicates::Unique,
-            cli::Equal::Twice => Duplicates::All,
-        },
-        ..Options::default()
-    }
 }
 
 /// A recording that is silent for longer is not waited for.
@@ -277,16 +394,20 @@ fn sync(alignment: &Alignment) -> Sync {
 }
 
 /// What the cloud says about itself. Nothing of the file's name or of today: a log gives the same bytes wherever it lies.
-fn metadata(config: &ScanConfig, tilt: &TiltSource) -> Metadata {
+fn metadata(config: &ScanConfig, request: &Request<'_>) -> Metadata {
     let mut comments = Vec::new();
-    if *tilt == TiltSource::None {
+    if request.tilt == TiltSource::None {
         comments.push("not tilted: the sensor's own frame".to_owned());
     }
     Metadata {
         simulated: config.simulated,
         source: format!("device {}", config.device),
         software: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
-        time_reference: "Unix seconds (UTC) of the recording host's clock".to_owned(),
+        time_reference: match request.time {
+            TimeOf::Host => "Unix seconds (UTC) of the recording host's clock",
+            TimeOf::Utc => "Unix seconds (UTC) by the lidar's satellite receiver",
+        }
+        .to_owned(),
         comments,
     }
 }

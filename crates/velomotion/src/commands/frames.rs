@@ -1,0 +1,245 @@
+//! A cloud for each turn of the lidar, cut at an azimuth, firing by firing; on request organised, with the shots that brought nothing
+//! back.
+
+use std::path::{Path, PathBuf};
+
+use cloud::{Fields, Metadata, Point, Points};
+use lidar::{Decoder, Firing, Frame, FrameCutter, FrameError, Options, OrganisedFrame, Stats};
+use protocol::record::{Record, Wire};
+use scanner::{Alignment, Placed};
+use units::{Degrees, Stamp};
+
+use crate::failure::{Failure, Kind};
+use crate::output::{Target, sink_failure};
+
+/// How frames are wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FramePlan {
+    /// Azimuth at which one ends and the next begins.
+    pub cut: Degrees,
+    /// Whether shots without a return are kept: a row a ring, a column a firing.
+    pub organised: bool,
+    /// Name of the clouds, each with the frame's number before its extension.
+    pub output: PathBuf,
+    /// Whether clouds that exist are overwritten.
+    pub force: bool,
+}
+
+/// Makes clouds of frames.
+pub struct FrameWriter<'a> {
+    plan: &'a FramePlan,
+    metadata: Metadata,
+    decoder: Decoder,
+    filling: Filling<'a>,
+}
+
+/// What was written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// Points, and returns that have no place.
+    pub placed: Placed,
+    /// Clouds.
+    pub clouds: u64,
+}
+
+/// The frame being filled.
+struct Filling<'a> {
+    alignment: &'a Alignment,
+    organised: bool,
+    cutter: FrameCutter,
+    points: Points,
+    grid: OrganisedFrame,
+    placed: Placed,
+    /// Frames that have ended and are not written yet, with their rows.
+    ended: Vec<(Frame, Points, u64)>,
+    error: Option<FrameError>,
+}
+
+impl<'a> FrameWriter<'a> {
+    /// A writer of frames as planned.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for an azimuth that is no number, or an organised cloud of another format than PCD.
+    pub fn new(
+        plan: &'a FramePlan,
+        alignment: &'a Alignment,
+        options: Options,
+        metadata: Metadata,
+    ) -> Result<Self, Failure> {
+        let cutter = FrameCutter::new(plan.cut.0).map_err(|error| {
+            Failure::new(Kind::Usage, error.to_string())
+                .help("give --frames an azimuth in degrees, such as 180")
+        })?;
+        if plan.organised && plan.output.extension().is_none_or(|e| e != "pcd") {
+            return Err(Failure::new(
+                Kind::Usage,
+                format!("{}: an organised cloud is a PCD", plan.output.display()),
+            )
+            .help("give -o a name that ends in .pcd, or leave --organised out"));
+        }
+        Ok(Self {
+            plan,
+            metadata,
+            decoder: Decoder::new(options),
+            filling: Filling {
+                alignment,
+                organised: plan.organised,
+                cutter,
+                points: Points::new(Fields::FILE),
+                grid: OrganisedFrame::new(),
+                placed: Placed::default(),
+                ended: Vec::new(),
+                error: None,
+            },
+        })
+    }
+
+    /// Takes a record.
+    ///
+    /// # Errors
+    /// Where a cloud cannot be written, or the lidar turns into another model in mid-frame.
+    pub fn observe(&mut self, record: &Record<'_>, written: &mut Written) -> Result<(), Failure> {
+        let Wire::Lidar { payload, .. } = record.wire else {
+            return Ok(());
+        };
+        let filling = &mut self.filling;
+        self.decoder
+            .packet(record.host, payload, &mut |firing| filling.firing(firing));
+        self.write(written)
+    }
+
+    /// Writes the last frame.
+    ///
+    /// # Errors
+    /// As [`FrameWriter::observe`].
+    pub fn finish(mut self, written: &mut Written) -> Result<Stats, Failure> {
+        let filling = &mut self.filling;
+        self.decoder.finish(&mut |firing| filling.firing(firing));
+        if let Some(frame) = self.filling.cutter.finish() {
+            self.filling.end(frame);
+        }
+        self.write(written)?;
+        written.placed = self.filling.placed;
+        Ok(self.decoder.stats().clone())
+    }
+
+    fn write(&mut self, written: &mut Written) -> Result<(), Failure> {
+        if let Some(error) = self.filling.error.take() {
+            return Err(Failure::new(Kind::BadInput, error.to_string())
+                .help("say which model it is with --model"));
+        }
+        for (frame, points, rows) in std::mem::take(&mut self.filling.ended) {
+            let path = name(&self.plan.output, frame.index);
+            let mut target = if self.plan.organised {
+                Target::organised(&path, self.plan.force, rows)?
+            } else {
+                Target::open(&path, self.plan.force)?
+            };
+            let mut metadata = self.metadata.clone();
+            metadata.comments.push(said(&frame));
+            if self.plan.organised {
+                metadata.comments.push(
+                    "organised: a row a ring, the lowest first, a column a firing; in dual return the second returns' rings follow"
+                        .to_owned(),
+                );
+            }
+            let sink = target.sink();
+            sink.begin(&metadata)
+                .and_then(|()| sink.points(&points))
+                .map_err(|error| sink_failure(&path, &error))?;
+            target.commit()?;
+            written.clouds += 1;
+        }
+        Ok(())
+    }
+}
+
+impl Filling<'_> {
+    fn firing(&mut self, firing: &Firing<'_>) {
+        if let Some(frame) = self.cutter.firing(firing) {
+            self.end(frame);
+        }
+        if self.organised {
+            if let Err(error) = self.grid.push(firing) {
+                self.error.get_or_insert(error);
+            }
+            return;
+        }
+        for point in firing.points() {
+            match self.alignment.place(&point) {
+                Some(point) => {
+                    self.placed.points += 1;
+                    self.points.push(point);
+                }
+                None => self.placed.outside += 1,
+            }
+        }
+    }
+
+    /// The frame is complete; one without points is not worth a cloud.
+    fn end(&mut self, frame: Frame) {
+        let before = self.placed.points;
+        let mut rows = 1;
+        if self.organised {
+            rows = (self.grid.layers() * self.grid.rings()) as u64;
+            self.lay_out();
+            self.grid.clear();
+        }
+        let points = std::mem::replace(&mut self.points, Points::new(Fields::FILE));
+        let any = if self.organised {
+            self.placed.points > before
+        } else {
+            !points.is_empty()
+        };
+        if any {
+            self.ended.push((frame, points, rows));
+        }
+    }
+
+    /// The grid as points, row by row.
+    fn lay_out(&mut self) {
+        let (grid, alignment) = (&self.grid, self.alignment);
+        for layer in 0..grid.layers() {
+            for ring in 0..grid.rings() {
+                for column in 0..grid.columns().len() {
+                    let seen = grid.cell(layer, ring, column);
+                    let placed = seen.and_then(|seen| alignment.place(seen));
+                    match (seen, placed) {
+                        (_, Some(_)) => self.placed.points += 1,
+                        (Some(_), None) => self.placed.outside += 1,
+                        (None, None) => {}
+                    }
+                    let nothing = || nothing(alignment, grid, ring, column);
+                    self.points.push(placed.unwrap_or_else(nothing));
+                }
+            }
+        }
+    }
+}
+
+/// The point of a shot that brought nothing back: fired then, by that laser, without a place.
+fn nothing(alignment: &Alignment, grid: &OrganisedFrame, ring: usize, column: usize) -> Point {
+    let time = grid
+        .time(ring, column)
+        .map_or(Stamp::from_nanos(0), |time| alignment.clock.host(time));
+    Point {
+        position_m: [f64::NAN; 3],
+        ring: u8::try_from(ring).unwrap_or(u8::MAX),
+        time,
+        tilt: Degrees(f64::NAN),
+        ..Point::default()
+    }
+}
+
+/// What a frame's cloud says of it.
+fn said(frame: &Frame) -> String {
+    let whole = if frame.whole { "whole" } else { "not whole" };
+    format!("frame {}, {whole}: {} firings", frame.index, frame.firings)
+}
+
+/// `scan.pcd` to `scan-00017.pcd`.
+fn name(output: &Path, index: u64) -> PathBuf {
+    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = output.extension().unwrap_or_default().to_string_lossy();
+    output.with_file_name(format!("{stem}-{index:05}.{extension}"))
+}

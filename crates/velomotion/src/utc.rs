@@ -1,0 +1,99 @@
+//! Point times in UTC, by the lidar's satellite receiver, in place of the recording host's clock.
+//!
+//! Only while the lidar's clock was locked: points of other times have no UTC, are left out and counted.
+
+use cloud::{Fields, Metadata, Points, Sink, SinkError, Summary};
+use lidar::{Options, Timekeeper, UtcClock};
+use protocol::record::{Record, Wire};
+use protocol::vlp16::PositionPacket;
+use units::Stamp;
+
+/// Follows one lidar's receiver through a recording.
+pub struct UtcSurvey {
+    timekeeper: Timekeeper,
+    clock: UtcClock,
+}
+
+impl UtcSurvey {
+    /// Reads packets by `options`.
+    #[must_use]
+    pub fn new(options: Options) -> Self {
+        Self {
+            timekeeper: Timekeeper::new(options),
+            clock: UtcClock::new(),
+        }
+    }
+
+    /// Takes a record of the lidar's.
+    pub fn observe(&mut self, record: &Record<'_>) {
+        let Wire::Lidar { payload, .. } = record.wire else {
+            return;
+        };
+        if let Some(timing) = self.timekeeper.packet(record.host, payload) {
+            self.clock.data(timing.first_firing);
+        } else if let Ok(packet) = PositionPacket::new(payload) {
+            self.clock.position(record.host, &packet);
+        }
+    }
+
+    /// What was found.
+    #[must_use]
+    pub fn solve(self) -> UtcClock {
+        self.clock
+    }
+}
+
+/// Hands points on with their times in UTC.
+pub struct InUtc<'a> {
+    sink: &'a mut dyn Sink,
+    clock: UtcClock,
+    batch: Points,
+    without: u64,
+}
+
+impl<'a> InUtc<'a> {
+    /// In front of `sink`, by `clock`.
+    pub fn new(sink: &'a mut dyn Sink, clock: UtcClock) -> Self {
+        let batch = Points::new(sink.fields());
+        Self {
+            sink,
+            clock,
+            batch,
+            without: 0,
+        }
+    }
+
+    /// Points that were left out: the lidar's clock was not locked.
+    #[must_use]
+    pub const fn without(&self) -> u64 {
+        self.without
+    }
+}
+
+impl Sink for InUtc<'_> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.batch.clear();
+        for mut point in batch.iter() {
+            let Some(utc) = self.clock.utc(point.device_time) else {
+                self.without += 1;
+                continue;
+            };
+            point.time = Stamp::from_nanos(utc.as_nanos());
+            self.batch.push(point);
+        }
+        self.sink.points(&self.batch)
+    }
+
+    fn fields(&self) -> Fields {
+        self.sink.fields() | Fields::DEVICE_TIME
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.batch = Points::new(self.sink.fields());
+        self.sink.begin(metadata)
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        self.sink.finish()
+    }
+}

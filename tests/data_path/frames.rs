@@ -1,0 +1,95 @@
+//! Frames of a tilting scan: all of its points, turn by turn, and organised with the shots that brought nothing back.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use scanner::TiltSource;
+use units::Degrees;
+use velomotion::cli::TimeOf;
+use velomotion::commands::frames::FramePlan;
+use velomotion::commands::replay::{self, Request};
+use velomotion::recordings::Source;
+use velomotion::report::Scan;
+use velomotion_tests::capture::{Captured, Setting};
+
+fn frames(log: &Path, output: &Path, organised: bool) -> Scan {
+    let request = Request {
+        recording: &Source::open(log, None).unwrap(),
+        tilt: TiltSource::Log,
+        options: lidar::Options::default(),
+        time: TimeOf::Host,
+        pace: None,
+        truth: None,
+        interrupt: &AtomicBool::new(false),
+    };
+    let plan = FramePlan {
+        cut: Degrees(90.0),
+        organised,
+        output: output.to_owned(),
+        force: false,
+    };
+    replay::frames(&request, &plan).unwrap()
+}
+
+/// The clouds in a folder, in order of their numbers, without what stands before `mark`, and the header up to it.
+fn clouds(folder: &Path, mark: &str) -> Vec<(String, Vec<u8>)> {
+    let mut paths: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    paths.sort();
+    let parted = |path: &std::path::PathBuf| {
+        let bytes = std::fs::read(path).unwrap();
+        let at = bytes
+            .windows(mark.len())
+            .position(|window| window == mark.as_bytes())
+            .unwrap()
+            + mark.len();
+        let head = String::from_utf8(bytes[..at].to_vec()).unwrap();
+        (head, bytes[at..].to_vec())
+    };
+    paths.iter().map(parted).collect()
+}
+
+#[test]
+fn frames_hold_the_whole_cloud_in_its_order() {
+    let captured = Captured::new(Setting::default());
+    let whole = std::fs::read(captured.cloud_file("whole.ply")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let scan = frames(&captured.log(), &folder.path().join("turn.ply"), false);
+    let clouds = clouds(folder.path(), "end_header\n");
+    // 0.81 s at 10 Hz, cut where it falls.
+    assert!((9..=10).contains(&clouds.len()), "{}", clouds.len());
+    assert_eq!(scan.clouds, Some(clouds.len() as u64));
+    let rows: Vec<u8> = clouds.into_iter().flat_map(|(_, rows)| rows).collect();
+    assert_eq!(rows.len() as u64, 29 * scan.points);
+    assert!(whole.ends_with(&rows), "the frames are not the cloud");
+}
+
+#[test]
+fn organised_frames_keep_every_shot() {
+    let captured = Captured::new(Setting::default());
+    let folder = tempfile::tempdir().unwrap();
+    let scan = frames(&captured.log(), &folder.path().join("turn.pcd"), true);
+    let mut returns = 0;
+    for (head, rows) in clouds(folder.path(), "DATA binary\n") {
+        let number = |name: &str| -> usize {
+            let line = head.lines().find(|line| line.starts_with(name)).unwrap();
+            line[name.len()..].trim().parse().unwrap()
+        };
+        let (width, height) = (number("WIDTH"), number("HEIGHT"));
+        assert_eq!((height, rows.len()), (16, 29 * 16 * width));
+        for (i, row) in rows.chunks(29).enumerate() {
+            let float = |at: usize| f32::from_le_bytes(row[at..at + 4].try_into().unwrap());
+            assert_eq!(
+                usize::from(row[16]),
+                i / width,
+                "row by row from the lowest ring"
+            );
+            let finite = float(0).is_finite();
+            assert_eq!(finite, float(4).is_finite() && float(8).is_finite());
+            returns += u64::from(finite);
+        }
+    }
+    assert_eq!(returns, scan.points);
+}
