@@ -1,0 +1,4 @@
+//! Runs `properties::sdo` on whatever libFuzzer thinks of.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| properties::sdo::holds(data));

@@ -1,0 +1,4 @@
+//! Runs `properties::vlp16_position` on whatever libFuzzer thinks of.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| properties::vlp16_position::holds(data));

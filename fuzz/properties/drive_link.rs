@@ -1,0 +1,411 @@
+//! The drive's client on a bad link: a script says what is started, how far time goes, and what is delivered, late, lost or forged.
+//!
+//! Behind the link is the simulated unit. A sample must have been carried by the bytes that completed it, whatever those
+//! were; and as long as nothing was forged, it must be where the shaft was at a time between its stamps, even though requests and
+//! answers are lost and late. So that one look cannot be taken for another, each may see a position of its own ([`Marks`]). A listener that
+//! looks on must not say otherwise. Left out: bytes that a line flips by itself, as a script finds the
+//! one flip in 65536 that a checksum misses.
+
+use std::collections::VecDeque;
+
+use drive::{AxisConfig, Client, Command, Event, Listener, Move, Observation, ShaftSample};
+use firmware_sim::epos2::{CanServer, Node, NodeConfig, Rs232Server, UsbServer};
+use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
+use protocol::epos2::message::{Answer, ReadObject};
+use protocol::epos2::usb::{self, UsbDecoder};
+use protocol::epos2::{DeviceError, Frame, objects};
+use protocol::record::{Direction, DriveLink};
+use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
+
+use super::drive_marks::Marks;
+use super::input::Input;
+
+/// Where a script's time begins.
+const START: Stamp<Host> = Stamp::from_nanos(1_795_000_000_000_000_000);
+/// A script ends after so many control cycles, whatever it still says.
+const MOST_TICKS: u64 = 3_000;
+/// And after so many turns of its owner's loop.
+const MOST_TURNS: u32 = 4_000;
+
+/// Runs a script; how many samples the client gave.
+pub fn holds(input: &mut Input<'_>) -> usize {
+    let head = input.u8();
+    let link = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can][usize::from(head & 0x7F) % 3];
+    let mut world = World::new(link, head & 0x80 != 0);
+    while !input.is_empty() && world.ticks < MOST_TICKS && world.turns < MOST_TURNS {
+        world.act(input);
+        world.look();
+    }
+    world.samples
+}
+
+#[allow(clippy::large_enum_variant)] // there is one of it
+enum Server {
+    Usb(UsbServer),
+    Rs232(Rs232Server),
+    Can(Box<CanServer>),
+}
+
+/// Bytes under way, and since when.
+type Way = VecDeque<(Stamp<Host>, Vec<u8>)>;
+
+struct World {
+    link: DriveLink,
+    client: Client,
+    listener: Listener,
+    node: Node,
+    server: Server,
+    now: Stamp<Host>,
+    ticks: u64,
+    turns: u32,
+    to_node: Way,
+    to_host: Way,
+    /// When the client handed something out.
+    handed_out: Vec<Stamp<Host>>,
+    /// When the unit took something, and where the shaft was.
+    truth: Vec<(Stamp<Host>, i32)>,
+    /// Each look at the shaft gives another position.
+    marks: Option<Marks>,
+    /// Nothing but what the unit said was delivered.
+    honest: bool,
+    /// The last bytes delivered.
+    heard: Vec<u8>,
+    decoder: UsbDecoder,
+    /// Values of the answers among them (USB).
+    values: Vec<i32>,
+    /// What the listener made of them.
+    observed: Vec<ShaftSample>,
+    samples: usize,
+}
+
+impl World {
+    fn new(link: DriveLink, marked: bool) -> Self {
+        let mut axis = AxisConfig::default();
+        // Where it stands is home: a script need not wait for a search.
+        axis.homing.method = 35;
+        axis.homing.offset = Degrees(0.0);
+        axis.homing.home_position = Degrees(0.0);
+        Self {
+            link,
+            listener: Listener::new(axis.node),
+            client: Client::with_link(axis, link),
+            node: Node::new(NodeConfig::default()),
+            server: match link {
+                DriveLink::Usb => Server::Usb(UsbServer::new(7)),
+                DriveLink::Rs232 => Server::Rs232(Rs232Server::new(7)),
+                DriveLink::Can => Server::Can(Box::default()),
+            },
+            now: START,
+            ticks: 0,
+            turns: 0,
+            to_node: Way::new(),
+            to_host: Way::new(),
+            handed_out: Vec::new(),
+            truth: Vec::new(),
+            marks: marked.then(|| Marks::new(link)),
+            honest: true,
+            heard: Vec::new(),
+            decoder: UsbDecoder::new(),
+            values: Vec::new(),
+            observed: Vec::new(),
+            samples: 0,
+        }
+    }
+
+    /// How long bytes may be under way in one direction. The client counts on it: on USB it expects no answer after two
+    /// seconds, on RS232 none after a quiet of 20 ms, on CAN none to a SYNC of 100 ms ago.
+    fn patience(&self) -> Span {
+        Span::from_millis(match self.link {
+            DriveLink::Usb => 900,
+            DriveLink::Rs232 => 8,
+            DriveLink::Can => 40,
+        })
+    }
+
+    fn act(&mut self, input: &mut Input<'_>) {
+        match input.u8() % 16 {
+            0 | 1 => (0..=input.u8()).for_each(|_| self.turn()),
+            2 => {
+                (0..16 * u32::from(input.u8())).for_each(|_| self.turn());
+            }
+            3 | 4 => self.start(input),
+            5 => self.pass(Span::from_micros(input.u8().into())),
+            6 => self.pass(Span::from_millis((input.u8() & 0x3F).into())),
+            7 => self.transmit(),
+            8 => self.reach_node(),
+            9 => self.reach_host(usize::MAX),
+            10 => self.reach_host(input.u8().into()),
+            11 => drop(self.to_node.pop_front()),
+            12 => drop(self.to_host.pop_front()),
+            13 => self.client.handle_timeout(self.now),
+            14 => self.disturb(input),
+            _ => self.forge(input),
+        }
+    }
+
+    fn start(&mut self, input: &mut Input<'_>) {
+        let to = Move {
+            to: Degrees(f64::from(input.u8().cast_signed()) / 2.0),
+            speed: Rpm(1_125),
+            acceleration: RpmPerS(10_000),
+        };
+        let command = match input.u8() % 9 {
+            0 => Command::Connect,
+            1 => Command::Home,
+            2 => Command::Goto(to),
+            3 => Command::Sweep(to),
+            4 => Command::Hold {
+                until: self.now + Span::from_millis(100),
+            },
+            5 => Command::Stop,
+            6 => Command::Brake,
+            7 => Command::ClearFaults,
+            _ => Command::Status,
+        };
+        // Refused where it does not fit; that is no matter here.
+        let _ = self.client.start(command);
+    }
+
+    /// Something happens to the unit.
+    fn disturb(&mut self, input: &mut Input<'_>) {
+        match input.u8() % 4 {
+            0 => self.node.inject(DeviceError::OVERCURRENT),
+            1 => self.node.block(),
+            2 => self.node.unblock(),
+            _ => self.node.power_cycle(),
+        }
+    }
+
+    /// The host hears what the unit never said.
+    fn forge(&mut self, input: &mut Input<'_>) {
+        self.honest = false;
+        let choice = input.u8();
+        let bytes = match (choice & 3, self.link) {
+            (0, DriveLink::Usb) => {
+                let words = [0, 0, input.u16(), input.u16()];
+                let words = &words[..usize::from(choice >> 2) % 5];
+                let frame = Frame::new(Frame::ANSWER, words).expect("few words");
+                usb::to_bytes(&frame).as_slice().to_vec()
+            }
+            (0, DriveLink::Can) => {
+                let frame = super::can_frames::frame(input);
+                frame.to_socketcan().to_vec()
+            }
+            (1, _) => {
+                // What is under way comes damaged.
+                let damaged = self.to_host.pop_front();
+                let mut bytes = damaged.map_or_else(Vec::new, |(_, bytes)| bytes);
+                let at = usize::from(input.u8()) % bytes.len().max(1);
+                let flip = input.u8();
+                bytes.iter_mut().skip(at).take(1).for_each(|b| *b ^= flip);
+                bytes
+            }
+            _ => input.short().to_vec(),
+        };
+        self.hear(&bytes);
+    }
+
+    /// One turn of the owner's loop with nothing in the way.
+    fn turn(&mut self) {
+        if self.ticks >= MOST_TICKS || self.turns >= MOST_TURNS {
+            return;
+        }
+        self.turns += 1;
+        self.transmit();
+        while !self.to_node.is_empty() {
+            self.reach_node();
+        }
+        let soon = self.now + Span::from_micros(100);
+        let later = self.now + Span::from_millis(1);
+        let due = self.client.poll_timeout().unwrap_or(later);
+        let until = if self.to_host.is_empty() {
+            due.max(soon).min(later)
+        } else {
+            soon
+        };
+        self.pass(until.saturating_since(self.now));
+        self.reach_host(usize::MAX);
+        self.client.handle_timeout(self.now);
+        self.look();
+    }
+
+    fn pass(&mut self, span: Span) {
+        self.now = self.now.saturating_add(span);
+        let since_us = self.now.saturating_since(START).as_nanos() / 1_000;
+        let due = u64::try_from(since_us / 1_000).unwrap_or_default();
+        while self.ticks < due.min(MOST_TICKS) {
+            self.ticks += 1;
+            self.node.tick();
+            if let Server::Can(server) = &mut self.server {
+                let (now, to_host) = (self.now, &mut self.to_host);
+                server.poll(&mut self.node, &mut |frame| {
+                    to_host.push_back((now, frame.to_socketcan().to_vec()));
+                });
+            }
+        }
+        self.node.set_phase_us((since_us % 1_000) as u32);
+        let born = self.now.saturating_add(-self.patience());
+        for way in [&mut self.to_node, &mut self.to_host] {
+            while way.front().is_some_and(|(since, _)| *since < born) {
+                way.pop_front();
+            }
+        }
+    }
+
+    fn transmit(&mut self) {
+        while let Some(bytes) = self.client.poll_transmit(self.now) {
+            self.handed_out.push(self.now);
+            self.observe(Direction::ToDevice, &bytes);
+            self.to_node.push_back((self.now, bytes));
+        }
+    }
+
+    fn reach_node(&mut self) {
+        let Some((_, bytes)) = self.to_node.pop_front() else {
+            return;
+        };
+        let mut said = Vec::new();
+        let mut say = |bytes: &[u8]| said.push(bytes.to_vec());
+        let qc = position(&mut self.node);
+        match &mut self.server {
+            Server::Usb(server) => server.input(&mut self.node, &bytes, &mut say),
+            Server::Rs232(server) => server.input(&mut self.node, &bytes, &mut say),
+            Server::Can(server) => {
+                let frame = CanFrame::from_socketcan(&bytes).expect("a frame of the client's");
+                server.input(&mut self.node, &frame, &mut |frame| {
+                    say(&frame.to_socketcan());
+                });
+            }
+        }
+        let qc = self.marks.as_mut().map_or(qc, |marks| {
+            said.iter_mut().for_each(|answer| marks.put(&bytes, answer));
+            marks.next()
+        });
+        self.truth.push((self.now, qc));
+        self.to_host
+            .extend(said.into_iter().map(|bytes| (self.now, bytes)));
+    }
+
+    /// The host reads up to `len` bytes of what is next, or on CAN, whose frames come whole, all of it.
+    fn reach_host(&mut self, len: usize) {
+        let all = len == usize::MAX;
+        while let Some((since, mut bytes)) = self.to_host.pop_front() {
+            if !all && self.link != DriveLink::Can && len < bytes.len() {
+                let rest = bytes.split_off(len);
+                self.to_host.push_front((since, rest));
+            }
+            self.hear(&bytes);
+            if !all {
+                return;
+            }
+        }
+    }
+
+    fn hear(&mut self, bytes: &[u8]) {
+        self.heard.extend(bytes);
+        let pushed = bytes.iter().filter_map(|&byte| self.decoder.push(byte));
+        self.values.extend(
+            pushed
+                .flatten()
+                .filter_map(|frame| Answer::parse(&frame).ok()?.value().ok())
+                .map(u32::cast_signed),
+        );
+        // As a recorder does: one record a frame on a CAN bus.
+        let piece = match self.link {
+            DriveLink::Can => SOCKETCAN_LEN,
+            DriveLink::Usb | DriveLink::Rs232 => bytes.len().max(1),
+        };
+        for record in bytes.chunks(piece) {
+            self.observe(Direction::FromDevice, record);
+        }
+        self.client.handle_input(bytes, self.now);
+        self.look();
+    }
+
+    fn observe(&mut self, direction: Direction, bytes: &[u8]) {
+        let observed = &mut self.observed;
+        self.listener
+            .observe(self.link, direction, bytes, self.now, &mut |seen| {
+                if let Observation::Sample(sample) = seen {
+                    observed.push(sample);
+                }
+            });
+    }
+
+    /// Takes what client and listener say, and holds it against what passed.
+    fn look(&mut self) {
+        while let Some(event) = self.client.poll_event() {
+            if let Event::Sample(sample) = event {
+                self.check(&sample, "client");
+                self.samples += 1;
+                let seen = self.observed.iter().any(|seen| is_same(&sample, seen));
+                assert!(seen || !self.honest, "the listener missed {sample:?}");
+            }
+        }
+        for sample in std::mem::take(&mut self.observed) {
+            self.check(&sample, "listener");
+        }
+        if self.link == DriveLink::Rs232 {
+            // The longest body may come in pieces.
+            let old = self.heard.len().saturating_sub(rs232_memory());
+            self.heard.drain(..old);
+        } else {
+            self.heard.clear();
+        }
+        self.values.clear();
+    }
+
+    fn check(&self, sample: &ShaftSample, who: &str) {
+        let (request, answer, position) = (sample.request, sample.answer, sample.position);
+        // A listener knows on RS232 when the answer was announced.
+        let is_past = self.link == DriveLink::Rs232 && answer < self.now;
+        assert!(answer == self.now || is_past, "{who}: {sample:?}");
+        // Both in the order of time.
+        let asked = self.handed_out.binary_search(&request).is_ok();
+        assert!(asked, "{who}: {sample:?}");
+        let bytes = position.0.to_le_bytes();
+        let carried = match self.link {
+            DriveLink::Usb => self.values.contains(&position.0),
+            DriveLink::Rs232 | DriveLink::Can => self.heard.windows(4).any(|w| w == bytes),
+        };
+        assert!(carried, "{who}: {sample:?} in none of {:X?}", self.heard);
+        if self.honest {
+            let begin = self.truth.partition_point(|&(at, _)| at < request);
+            let held = self.truth.get(begin..).unwrap_or_default();
+            let held = held
+                .iter()
+                .any(|&(at, qc)| at <= answer && qc == position.0);
+            assert!(held, "{who}: {sample:?}, but {:?}", self.truth.last());
+        }
+    }
+}
+
+/// Whether a listener's sample is the client's.
+fn is_same(client: &ShaftSample, listener: &ShaftSample) -> bool {
+    let mut at_latest = *listener;
+    at_latest.answer = at_latest.answer.max(client.answer);
+    at_latest == *client
+}
+
+const fn rs232_memory() -> usize {
+    2 * protocol::epos2::rs232::MAX_BYTES
+}
+
+/// Where the shaft is now, asked over an interface of one's own.
+fn position(node: &mut Node) -> i32 {
+    let read = ReadObject {
+        node: node.node_id(),
+        address: objects::POSITION_ACTUAL.address,
+    };
+    let mut value = None;
+    let mut decoder = UsbDecoder::new();
+    let request = usb::to_bytes(&read.to_frame());
+    UsbServer::new(0).input(node, &request, &mut |bytes| {
+        let frame = bytes.iter().find_map(|&byte| decoder.push(byte));
+        let answer = frame
+            .and_then(Result::ok)
+            .map(|frame| Answer::parse(&frame));
+        value = answer.and_then(Result::ok).and_then(|a| a.value().ok());
+    });
+    value.expect("the unit knows its position").cast_signed()
+}

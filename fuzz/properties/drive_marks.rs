@@ -1,0 +1,124 @@
+//! Positions that no two looks share: what the unit says of its shaft is replaced by a number that counts the looks.
+//!
+//! A shaft at rest hides an answer that was taken for another's; a number does not. Left out: everything else that the unit says.
+
+use protocol::canopen::sdo::{Answer as SdoAnswer, Expedited, Initiate};
+use protocol::canopen::{CanFrame, Channel, NodeId, PdoNumber};
+use protocol::epos2::message::{Answer, ReadObject};
+use protocol::epos2::objects::POSITION_ACTUAL;
+use protocol::epos2::rs232::{self, BodyDecoder};
+use protocol::epos2::usb::{self, UsbDecoder};
+use protocol::epos2::{CommError, Frame};
+use protocol::record::DriveLink;
+
+/// Counts looks at the shaft.
+#[derive(Debug)]
+pub struct Marks {
+    link: DriveLink,
+    /// What the look under way sees.
+    qc: i32,
+    /// RS232: the opcode that was sent last, and what the answer that waits for its handshake saw.
+    opcode: u8,
+    waiting: Option<i32>,
+}
+
+impl Marks {
+    /// The first look sees 1.
+    pub const fn new(link: DriveLink) -> Self {
+        Self {
+            link,
+            qc: 1,
+            opcode: 0,
+            waiting: None,
+        }
+    }
+
+    /// Ends a look: what it saw.
+    pub const fn next(&mut self) -> i32 {
+        self.qc += 1;
+        self.qc - 1
+    }
+
+    /// Puts the mark into what the unit says to what it was told, if that is its position.
+    pub fn put(&mut self, told: &[u8], said: &mut Vec<u8>) {
+        match self.link {
+            DriveLink::Usb => {
+                let request = decode_usb(told);
+                if let (Some(true), Some(answer)) =
+                    (request.as_ref().map(is_read), decode_usb(said))
+                {
+                    *said = usb::to_bytes(&marked(&answer, self.qc)).as_slice().to_vec();
+                }
+            }
+            DriveLink::Rs232 => self.put_rs232(told, said),
+            DriveLink::Can => self.put_can(said),
+        }
+    }
+
+    fn put_rs232(&mut self, told: &[u8], said: &mut Vec<u8>) {
+        match (told, said.as_slice()) {
+            (&[opcode], &[rs232::OKAY]) => self.opcode = opcode,
+            // The answer is ready and waits.
+            (body, &[Frame::ANSWER]) => {
+                let body = decode_body(self.opcode, body);
+                self.waiting = body.filter(is_read).map(|_| self.qc);
+            }
+            (_, &[_]) => {}
+            (_, body) => {
+                if let (Some(qc), Some(answer)) = (self.waiting, decode_body(Frame::ANSWER, body)) {
+                    said.clear();
+                    let _ = rs232::encode_body(&marked(&answer, qc), said);
+                }
+            }
+        }
+    }
+
+    fn put_can(&self, said: &mut Vec<u8>) {
+        let Ok(frame) = CanFrame::from_socketcan(said) else {
+            return;
+        };
+        let node = NodeId::new(1).expect("an id");
+        let address = POSITION_ACTUAL.address;
+        let channel = frame.cob_id().map(Channel::of);
+        if channel == Some(Channel::TransmitPdo(PdoNumber::One, node)) && frame.data().len() == 8 {
+            // Position and time: what the client has it send.
+            let data = [&self.qc.to_le_bytes(), &frame.data()[4..]].concat();
+            let id = frame.id();
+            let frame = CanFrame::new(id, &data).expect("eight bytes");
+            *said = frame.to_socketcan().to_vec();
+        } else if let Ok((_, SdoAnswer::InitiateUpload { address: got, .. })) =
+            SdoAnswer::parse(&frame)
+            && got == address
+        {
+            let transfer = Initiate::Expedited(Expedited::of(self.qc));
+            let answer = SdoAnswer::InitiateUpload { address, transfer };
+            *said = answer.to_frame(node).to_socketcan().to_vec();
+        }
+    }
+}
+
+fn is_read(request: &Frame) -> bool {
+    ReadObject::parse(request).is_ok_and(|read| read.address == POSITION_ACTUAL.address)
+}
+
+fn decode_usb(bytes: &[u8]) -> Option<Frame> {
+    let mut decoder = UsbDecoder::new();
+    bytes.iter().find_map(|&byte| decoder.push(byte))?.ok()
+}
+
+fn decode_body(opcode: u8, bytes: &[u8]) -> Option<Frame> {
+    let mut decoder = BodyDecoder::new(opcode);
+    bytes.iter().find_map(|&byte| decoder.push(byte))?.ok()
+}
+
+/// The answer with another value.
+fn marked(answer: &Frame, qc: i32) -> Frame {
+    match Answer::parse(answer) {
+        Ok(parsed) if parsed.error == CommError::NONE && parsed.value().is_ok() => {
+            let [a, b, c, d] = qc.to_le_bytes();
+            let words = [0, 0, u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d])];
+            Frame::new(Frame::ANSWER, &words).expect("few words")
+        }
+        _ => *answer,
+    }
+}

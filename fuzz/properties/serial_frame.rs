@@ -1,0 +1,206 @@
+//! EPOS2 frames on serial lines: what is encoded decodes to itself, noise costs at most one frame, the simulated unit answers with whole
+//! frames whatever it is told, and client and listener keep to what passed on the wire ([`super::drive_link`],
+//! [`super::drive_log`]).
+
+use firmware_sim::epos2::{Node, NodeConfig, Rs232Server, UsbServer};
+use protocol::epos2::message::{Answer, Request};
+use protocol::epos2::rs232::{self, BodyDecoder};
+use protocol::epos2::usb::{self, UsbDecoder, UsbDelimiter};
+use protocol::epos2::{Frame, FrameError, MAX_WORDS};
+
+use super::input::Input;
+use super::{drive_link, drive_log};
+
+/// The first byte chooses what the rest is for.
+pub fn holds(data: &[u8]) {
+    let mut input = Input::new(data);
+    match input.u8() % 8 {
+        0 => usb_bytes(input.rest()),
+        1 => usb_frame_behind_noise(&mut input),
+        2 => rs232_bytes(&mut input),
+        3 => rs232_frame(&mut input),
+        4 => usb_server(&mut input),
+        5 => rs232_server(&mut input),
+        6 => {
+            drive_link::holds(&mut input);
+        }
+        _ => drive_log::holds(&mut input),
+    }
+}
+
+/// A frame of up to [`MAX_WORDS`] words.
+fn frame(input: &mut Input<'_>) -> Frame {
+    let opcode = input.u8();
+    let len = usize::from(input.u8()) % (MAX_WORDS + 1);
+    let words: Vec<u16> = (0..len).map(|_| input.u16()).collect();
+    Frame::new(opcode, &words).expect("no more words than a frame has")
+}
+
+fn decode_usb(bytes: &[u8]) -> Vec<Result<Frame, FrameError>> {
+    let mut decoder = UsbDecoder::new();
+    let pushed = bytes.iter().map(|&byte| decoder.push(byte));
+    pushed.flatten().collect()
+}
+
+/// Any bytes: each frame in them encodes and decodes to itself, and the delimiter cuts where the decoder does.
+fn usb_bytes(bytes: &[u8]) {
+    let decoded = decode_usb(bytes);
+    for frame in decoded.iter().flatten() {
+        let again = usb::to_bytes(frame);
+        assert_eq!(decode_usb(&again), [Ok(*frame)]);
+        read_message(frame);
+    }
+    let mut delimiter = UsbDelimiter::new();
+    let mut cut = Vec::new();
+    for (read, &byte) in (1..).zip(bytes) {
+        if let Some((raw, outcome)) = delimiter.push(byte) {
+            // Behind a frame that broke off stand the two bytes of the next.
+            let broken_off = matches!(outcome, Err(FrameError::BrokenOff { .. }));
+            let end: usize = if broken_off { read - 2 } else { read };
+            assert!(bytes[..end].ends_with(&raw), "{raw:X?}");
+            if let Ok(frame) = outcome {
+                assert_eq!(raw, usb::to_bytes(&frame));
+            }
+            cut.push(outcome);
+        }
+    }
+    assert_eq!(cut, decoded);
+}
+
+/// Whatever a frame holds, reading it as a message ends well, and an answer is written as it was read.
+fn read_message(frame: &Frame) {
+    if let Ok(answer) = Answer::parse(frame) {
+        assert_eq!(answer.to_frame(), *frame);
+    }
+    if let Ok(Some(Request::ReadObject(read))) = Request::parse(frame) {
+        assert_eq!(read.to_frame(), *frame);
+    }
+    if let Ok(Some(Request::WriteObject(write))) = Request::parse(frame) {
+        assert_eq!(write.to_frame(), *frame);
+    }
+}
+
+/// Noise may end in the first half of a pair and so swallow the beginning of one frame, never of two.
+fn usb_frame_behind_noise(input: &mut Input<'_>) {
+    let frame = frame(input);
+    let whole = usb::to_bytes(&frame);
+    assert_eq!(decode_usb(&whole), [Ok(frame)]);
+    let noise = input.rest();
+    let bytes = [noise, &whole, &whole].concat();
+    assert_eq!(decode_usb(&bytes).last(), Some(&Ok(frame)), "{noise:X?}");
+    if noise.last() != Some(&usb::DLE) {
+        let bytes = [noise, &whole].concat();
+        assert_eq!(decode_usb(&bytes).last(), Some(&Ok(frame)), "{noise:X?}");
+    }
+}
+
+/// Any bytes as bodies of one opcode: a frame is the bytes it came from, and what is none is passed over.
+fn rs232_bytes(input: &mut Input<'_>) {
+    let opcode = input.u8();
+    let bytes = input.rest();
+    let mut decoder = BodyDecoder::new(opcode);
+    for (end, &byte) in (1..).zip(bytes) {
+        if let Some(Ok(frame)) = decoder.push(byte) {
+            let mut again = Vec::new();
+            rs232::encode_body(&frame, &mut again).expect("a body has words");
+            assert!(bytes[..end].ends_with(&again), "{again:X?}");
+            assert_eq!(frame.opcode, opcode);
+            read_message(&frame);
+        }
+    }
+}
+
+fn rs232_frame(input: &mut Input<'_>) {
+    let frame = frame(input);
+    let mut body = Vec::new();
+    if let Err(error) = rs232::encode_body(&frame, &mut body) {
+        assert!(frame.words.is_empty() && body.is_empty(), "{error}");
+        return;
+    }
+    let mut decoder = BodyDecoder::new(frame.opcode);
+    // Twice: after a body the next one is awaited.
+    for _ in 0..2 {
+        let got: Vec<_> = body.iter().filter_map(|&byte| decoder.push(byte)).collect();
+        assert_eq!(got, [Ok(frame)]);
+    }
+}
+
+/// What is done to a simulated unit between bytes.
+fn pass_time(node: &mut Node, input: &mut Input<'_>) {
+    match input.u8() {
+        long @ 0xF0.. => (0..50 * u32::from(long & 0xF)).for_each(|_| node.tick()),
+        0x80.. => node.tick(),
+        short => node.set_phase_us(8 * u32::from(short)),
+    }
+}
+
+/// Requests of any content, well framed or not: at most one answer a request, each one whole frame.
+fn usb_server(input: &mut Input<'_>) {
+    let mut node = Node::new(NodeConfig::default());
+    let mut server = UsbServer::new(1);
+    while !input.is_empty() {
+        pass_time(&mut node, input);
+        let raw;
+        let framed;
+        let bytes: &[u8] = if input.u8() & 1 == 0 {
+            raw = input.short();
+            raw
+        } else {
+            framed = usb::to_bytes(&frame(input));
+            &framed
+        };
+        let mut answers = 0;
+        server.input(&mut node, bytes, &mut |answer| {
+            answers += 1;
+            let [Ok(frame)] = decode_usb(answer)[..] else {
+                panic!("no whole frame: {answer:X?}");
+            };
+            Answer::parse(&frame).expect("an answer");
+        });
+        // The shortest frame has two bytes of sync, two of head and two of checksum.
+        assert!(answers <= bytes.len() / 4 + 1);
+    }
+}
+
+/// Any bytes: what the unit says are handshakes, announcements of an answer, and whole bodies.
+fn rs232_server(input: &mut Input<'_>) {
+    let mut node = Node::new(NodeConfig::default());
+    let mut server = Rs232Server::new(1);
+    while !input.is_empty() {
+        pass_time(&mut node, input);
+        let choice = input.u8();
+        if choice & 1 == 0 {
+            let bytes = input.short();
+            say_rs232(&mut server, &mut node, bytes);
+        } else {
+            let frame = frame(input);
+            let mut body = Vec::new();
+            if rs232::encode_body(&frame, &mut body).is_ok() {
+                say_rs232(&mut server, &mut node, &[frame.opcode]);
+                say_rs232(&mut server, &mut node, &body);
+                say_rs232(&mut server, &mut node, b"OO");
+            }
+        }
+    }
+}
+
+fn say_rs232(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) {
+    let mut said = 0;
+    server.input(node, bytes, &mut |chunk| {
+        said += 1;
+        if let [byte] = chunk {
+            assert!([rs232::OKAY, rs232::FAILED, Frame::ANSWER].contains(byte));
+            return;
+        }
+        let mut decoder = BodyDecoder::new(Frame::ANSWER);
+        let got: Vec<_> = chunk
+            .iter()
+            .filter_map(|&byte| decoder.push(byte))
+            .collect();
+        let [Ok(frame)] = got[..] else {
+            panic!("no whole body: {chunk:X?}");
+        };
+        Answer::parse(&frame).expect("an answer");
+    });
+    assert!(said <= 2 * bytes.len(), "a handshake and an announcement");
+}

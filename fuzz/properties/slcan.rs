@@ -1,0 +1,108 @@
+//! SLCAN lines in both directions, and the simulated adapter: what was decoded encodes to itself, noise never costs a frame
+//! behind a CR, and every command has its answer.
+
+use firmware_sim::epos2::{Node, NodeConfig, SlcanServer};
+use protocol::canopen::slcan::{Command, CommandDecoder, Reply, ReplyDecoder};
+
+use super::can_frames::frame;
+use super::input::Input;
+
+/// Mode 0: any bytes to both decoders. 1: a frame behind any bytes. Else the adapter with a unit behind it.
+pub fn holds(data: &[u8]) {
+    let mut input = Input::new(data);
+    match input.u8() % 3 {
+        0 => any_bytes(input.rest()),
+        1 => frame_behind_noise(&mut input),
+        _ => adapter(&mut input),
+    }
+}
+
+fn replies(bytes: &[u8]) -> Vec<Option<Reply>> {
+    let mut decoder = ReplyDecoder::new();
+    let pushed = bytes.iter().filter_map(|&byte| decoder.push(byte));
+    pushed.map(Result::ok).collect()
+}
+
+fn commands(bytes: &[u8]) -> Vec<Option<Command>> {
+    let mut decoder = CommandDecoder::new();
+    let pushed = bytes.iter().filter_map(|&byte| decoder.push(byte));
+    pushed.map(Result::ok).collect()
+}
+
+fn any_bytes(bytes: &[u8]) {
+    for reply in replies(bytes).into_iter().flatten() {
+        let mut again = Vec::new();
+        reply.encode(&mut again);
+        assert_eq!(replies(&again), [Some(reply)], "{again:X?}");
+    }
+    for command in commands(bytes).into_iter().flatten() {
+        let mut again = Vec::new();
+        command.encode(&mut again);
+        assert_eq!(commands(&again), [Some(command)], "{again:X?}");
+    }
+}
+
+fn frame_behind_noise(input: &mut Input<'_>) {
+    let frame = frame(input);
+    let stamp = input.u16();
+    let reply = Reply::Received {
+        frame,
+        stamp_ms: (stamp & 1 == 0).then_some(stamp >> 1),
+    };
+    let noise = input.rest();
+    let mut bytes = [noise, b"\r"].concat();
+    reply.encode(&mut bytes);
+    assert_eq!(replies(&bytes).last(), Some(&Some(reply)));
+
+    let mut bytes = [noise, b"\r"].concat();
+    Command::Transmit(frame).encode(&mut bytes);
+    assert_eq!(
+        commands(&bytes).last(),
+        Some(&Some(Command::Transmit(frame)))
+    );
+}
+
+fn adapter(input: &mut Input<'_>) {
+    let mut node = Node::new(NodeConfig::default());
+    let mut server = SlcanServer::new();
+    // The same bytes to a decoder of our own tell how many answers there must be.
+    let mut shadow = CommandDecoder::new();
+    while !input.is_empty() {
+        match input.u8() % 4 {
+            0 => {
+                for _ in 0..=input.u8() {
+                    node.tick();
+                    server.poll(&mut node, &mut |line| {
+                        assert!(is_frame(line), "{line:X?}");
+                    });
+                }
+            }
+            1 => node.set_phase_us(input.u16().into()),
+            2 => {
+                let mut line = Vec::new();
+                Command::Transmit(frame(input)).encode(&mut line);
+                tell(&mut server, &mut node, &mut shadow, &line);
+            }
+            _ => tell(&mut server, &mut node, &mut shadow, input.short()),
+        }
+    }
+}
+
+/// The adapter takes bytes; each command is answered once, frames of the bus come on top.
+fn tell(server: &mut SlcanServer, node: &mut Node, shadow: &mut CommandDecoder, bytes: &[u8]) {
+    let asked = bytes.iter().filter_map(|&byte| shadow.push(byte)).count();
+    let mut answered = 0;
+    server.input(node, bytes, &mut |line| {
+        answered += usize::from(!is_frame(line));
+    });
+    assert_eq!(answered, asked);
+}
+
+/// Whether a whole line brings a frame; else it is one answer to a command.
+fn is_frame(line: &[u8]) -> bool {
+    match replies(line).as_slice() {
+        [Some(Reply::Received { .. })] => true,
+        [Some(Reply::Unknown(_)) | None] | [] | [_, _, ..] => panic!("no reply: {line:X?}"),
+        [Some(_)] => false,
+    }
+}

@@ -1,0 +1,37 @@
+//! Writes the first inputs of every target to `corpus/TARGET`, made by our own encoders and simulated devices.
+//!
+//! `cargo run --release --bin seeds` in this directory; what is there already stays. Nothing here is a recording of anybody's.
+
+mod recording;
+mod sdo;
+mod serial_frame;
+mod slcan;
+mod vlp16_data;
+mod vlp16_position;
+
+use std::path::Path;
+use std::{fs, io};
+
+/// A name for its file, and an input.
+type Seed = (String, Vec<u8>);
+
+fn main() -> io::Result<()> {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
+    let targets: [(&str, Vec<Seed>); 6] = [
+        ("recording", recording::seeds()),
+        ("sdo", sdo::seeds()),
+        ("serial_frame", serial_frame::seeds()),
+        ("slcan", slcan::seeds()),
+        ("vlp16_data", vlp16_data::seeds()),
+        ("vlp16_position", vlp16_position::seeds()),
+    ];
+    for (target, seeds) in targets {
+        let directory = corpus.join(target);
+        fs::create_dir_all(&directory)?;
+        for (name, bytes) in &seeds {
+            fs::write(directory.join(format!("seed-{name}")), bytes)?;
+        }
+        println!("{target}: {} seeds", seeds.len());
+    }
+    Ok(())
+}

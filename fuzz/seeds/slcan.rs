@@ -1,0 +1,83 @@
+//! SLCAN sessions: lines of both directions, and a host that opens the adapter and asks the unit.
+
+use protocol::canopen::sdo::Request;
+use protocol::canopen::slcan::{Bitrate, Command, Reply};
+use protocol::canopen::{CanFrame, CobId, NodeId};
+use protocol::epos2::objects;
+
+use crate::Seed;
+
+/// Modes of `properties::slcan`.
+const BYTES: u8 = 0;
+const FRAME: u8 = 1;
+const ADAPTER: u8 = 2;
+
+pub fn seeds() -> Vec<Seed> {
+    let mut seeds = vec![
+        ("host".to_owned(), [&[BYTES], &host()[..]].concat()),
+        ("adapter".to_owned(), [&[BYTES], &replies()[..]].concat()),
+        (
+            "frame".to_owned(),
+            [&[FRAME, 0x3D], &[0x40; 8][..], &[0, 1], &host()].concat(),
+        ),
+    ];
+    // Step 3: so many bytes; step 0: so many ticks; step 1: a phase.
+    let host = host();
+    let mut session = vec![ADAPTER];
+    for part in host.chunks(200) {
+        session.extend([3, part.len() as u8]);
+        session.extend(part);
+        session.extend([0, 20, 1, 0x10, 0x01]);
+    }
+    seeds.push(("session".to_owned(), session));
+    seeds
+}
+
+fn request(node: NodeId) -> CanFrame {
+    let address = objects::POSITION_ACTUAL.address;
+    Request::InitiateUpload { address }.to_frame(node)
+}
+
+fn host() -> Vec<u8> {
+    let node = NodeId::new(1).expect("an id");
+    let nmt = CobId::new(0).expect("an id");
+    let commands = [
+        Command::Empty,
+        Command::Empty,
+        Command::Close,
+        Command::Version,
+        Command::SerialNumber,
+        Command::Stamps(true),
+        Command::Bitrate(Bitrate::Kbit1000),
+        Command::Open,
+        Command::Status,
+        Command::Transmit(CanFrame::of(nmt, [1, 1])),
+        Command::Transmit(request(node)),
+        Command::Transmit(CanFrame::of(CobId::SYNC, [])),
+        Command::Close,
+        Command::OpenListening,
+        Command::Transmit(request(node)),
+    ];
+    let mut bytes = Vec::new();
+    for command in commands {
+        command.encode(&mut bytes);
+    }
+    bytes
+}
+
+fn replies() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let frame = request(NodeId::MAX);
+    let frames = [None, Some(59_999)].map(|stamp_ms| Reply::Received { frame, stamp_ms });
+    let flat = [
+        Reply::Done,
+        Reply::Refused,
+        Reply::Sent,
+        Reply::SentExtended,
+    ];
+    for reply in flat.into_iter().chain(frames).chain([Reply::Status(0x24)]) {
+        reply.encode(&mut bytes);
+    }
+    bytes.extend(b"V1013\rNA123\rxyz\r");
+    bytes
+}

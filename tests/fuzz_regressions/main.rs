@@ -1,0 +1,79 @@
+//! What fuzzing once found, run through the same properties on stable Rust: `inputs/TARGET/NAME`, one file an input.
+//!
+//! The properties are the fuzz targets' own (`fuzz/properties`). Here also stands that they look at anything at all: a
+//! session that goes well must give samples, packets of a sensor firings. Left out: fuzzing itself.
+
+#[path = "../../fuzz/properties/mod.rs"]
+mod properties;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use properties::input::Input;
+
+/// A target, and what holds for its inputs.
+type Target = (&'static str, fn(&[u8]));
+
+const TARGETS: [Target; 6] = [
+    ("recording", properties::recording::holds),
+    ("sdo", properties::sdo::holds),
+    ("serial_frame", properties::serial_frame::holds),
+    ("slcan", properties::slcan::holds),
+    ("vlp16_data", |data| {
+        properties::vlp16_data::holds(data);
+    }),
+    ("vlp16_position", properties::vlp16_position::holds),
+];
+
+fn inputs(target: &str) -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz_regressions/inputs");
+    let Ok(directory) = fs::read_dir(root.join(target)) else {
+        return Vec::new();
+    };
+    let mut paths: Vec<_> = directory.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
+}
+
+#[test]
+fn what_was_found_once_holds_now() {
+    let mut run = 0;
+    for (target, holds) in TARGETS {
+        // Nothing at all is an input, too.
+        holds(&[]);
+        for path in inputs(target) {
+            let data = fs::read(&path).unwrap();
+            // A failure says which input it was.
+            println!("{}", path.display());
+            holds(&data);
+            run += 1;
+        }
+    }
+    let stored =
+        fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz_regressions/inputs"));
+    let stored: usize = stored
+        .unwrap()
+        .map(|target| fs::read_dir(target.unwrap().path()).unwrap().count())
+        .sum();
+    assert_eq!(run, stored, "inputs of a target that is not there");
+    assert!(run > 0);
+}
+
+#[test]
+fn a_client_that_nobody_disturbs_samples_on_each_link() {
+    // Connect, home where it stands, sweep: steps of `properties::drive_link`.
+    let script = [3, 0, 0, 2, 60, 3, 0, 1, 2, 40, 3, 8, 3, 2, 60];
+    // With the shaft's own positions, and with one for each look.
+    for link in [0, 1, 2, 0x80, 0x81, 0x82] {
+        let bytes = [&[link], &script[..]].concat();
+        let samples = properties::drive_link::holds(&mut Input::new(&bytes));
+        assert!(samples > 50, "link {link}: {samples} samples");
+    }
+}
+
+#[test]
+fn packets_of_a_sensor_give_firings() {
+    // Host and device at 0, then 50 packets that are in time: 24 firings each.
+    let script = [0; 8 + 4 + 1 + 50];
+    assert_eq!(properties::vlp16_data::holds(&script), 50 * 24);
+}
