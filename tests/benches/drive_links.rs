@@ -2,8 +2,8 @@
 //! software drive in a process of its own.
 //!
 //! `cargo bench -p velomotion-tests --bench drive_links` prints the tables of docs/src/links.md. `-- --seconds N` is how long each
-//! row is measured (60 s for the stream at SYNC), `-- --can IFACE` adds an interface of the kernel.
-//! Left out: wire time, which a pseudo-terminal does not have; the table says what it adds.
+//! row is measured (10 s; 60 s for the stream at SYNC), `-- --can IFACE` adds an interface of the kernel.
+//! Left out: wire time, which a pseudo-terminal does not have; the page says what it adds.
 
 use std::cell::RefCell;
 use std::io::{BufRead, BufReader};
@@ -12,11 +12,15 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use drive::{AxisConfig, Client, Command, Listener, Observation, ShaftSample};
-use io::port::{Port, Recorder};
+use drive::{AxisConfig, Client, Command, Listener, Observation, ShaftSample, Taken};
+use io::can::{CanPort, Slcan, SocketCan};
+use io::port::{Port, Recorder, SerialPort};
+use protocol::canopen::sdo::SdoClient;
+use protocol::canopen::slcan::Bitrate;
 use protocol::canopen::{CanFrame, Channel, CobId, NodeId, PdoNumber};
+use protocol::epos2::objects::POSITION_ACTUAL;
 use protocol::record::{Direction, DriveLink, Record, Wire};
-use units::Span;
+use units::{Host, Quadcounts, Span, Stamp};
 use velomotion::cli::{Common, FirmwareSim};
 use velomotion::config::{Axis, Device, DeviceKind};
 use velomotion::session::Session;
@@ -94,9 +98,9 @@ fn cpu_s(process: &str) -> f64 {
 /// What a stretch of sampling gave.
 struct Measured {
     samples: Vec<ShaftSample>,
-    /// SYNCs sent, and process data that came.
-    beats: u64,
-    answers: u64,
+    /// When SYNCs were sent, and when process data came.
+    beats: Vec<Stamp<Host>>,
+    answers: Vec<Stamp<Host>>,
     seconds: f64,
     client_share: f64,
     drive_share: f64,
@@ -131,18 +135,11 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
     let until = session.port().now() + Span::from_secs_f64(seconds);
     session.run(Command::Hold { until }, &mut |_| {}).unwrap();
     let took = begin.elapsed().as_secs_f64();
-    let (samples, beats, answers) = {
-        let mut heard = heard.borrow_mut();
-        (
-            std::mem::take(&mut heard.samples),
-            heard.beats,
-            heard.answers,
-        )
-    };
+    let said = heard.replace(Heard::new(&AxisConfig::default()));
     let measured = Measured {
-        samples,
-        beats,
-        answers,
+        samples: said.samples,
+        beats: said.beats,
+        answers: said.answers,
         seconds: took,
         client_share: (cpu_s("self") - client_s) / took,
         drive_share: (cpu_s(&child) - drive_s) / took,
@@ -151,12 +148,74 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
     measured
 }
 
+/// Reads the position by SDO for so long, one read after the other, at most one a period: what is left on a bus whose drive refuses
+/// to be mapped.
+fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> Measured {
+    let mut bus: Box<dyn CanPort> = match kind {
+        DeviceKind::Can => Box::new(SocketCan::open(&drive.port).unwrap()),
+        _ => {
+            let port = SerialPort::open(&drive.port, 115_200).unwrap();
+            Box::new(Slcan::open(port, Bitrate::Kbit1000).unwrap())
+        }
+    };
+    let node = NodeId::new(AxisConfig::default().node).unwrap();
+    let mut sdo = SdoClient::<8>::new(node, Span::from_secs(1));
+    let mut samples = Vec::new();
+    let child = drive.process.id().to_string();
+    let (begin, client_s, drive_s) = (Instant::now(), cpu_s("self"), cpu_s(&child));
+    let until = bus.now() + Span::from_secs_f64(seconds);
+    let mut due = bus.now();
+    while due < until {
+        while bus.now() < due {
+            let left = due.saturating_since(bus.now());
+            bus.read(left).unwrap();
+        }
+        let request = bus.now();
+        let position = Quadcounts(read_position(bus.as_mut(), &mut sdo));
+        let answer = bus.now();
+        samples.push(ShaftSample {
+            request,
+            answer,
+            position,
+            taken: Taken::Asked,
+            device_us: None,
+        });
+        // As the client does: no burst for what is late.
+        due = (due + period).max(answer);
+    }
+    let took = begin.elapsed().as_secs_f64();
+    Measured {
+        samples,
+        beats: Vec::new(),
+        answers: Vec::new(),
+        seconds: took,
+        client_share: (cpu_s("self") - client_s) / took,
+        drive_share: (cpu_s(&child) - drive_s) / took,
+    }
+}
+
+fn read_position(bus: &mut dyn CanPort, sdo: &mut SdoClient<8>) -> i32 {
+    sdo.read(POSITION_ACTUAL.address).unwrap();
+    loop {
+        while let Some(frame) = sdo.poll_transmit(bus.now()) {
+            bus.write_frame(&frame).unwrap();
+        }
+        if let Some(outcome) = sdo.poll_outcome() {
+            return outcome.result.unwrap().scalar().unwrap();
+        }
+        match bus.read(Span::from_secs(1)).unwrap() {
+            Some((frame, _)) => drop(sdo.handle_frame(&frame)),
+            None => sdo.handle_timeout(bus.now()),
+        }
+    }
+}
+
 /// What a log of the session tells.
 struct Heard {
     listener: Listener,
     samples: Vec<ShaftSample>,
-    beats: u64,
-    answers: u64,
+    beats: Vec<Stamp<Host>>,
+    answers: Vec<Stamp<Host>>,
     /// Identifier of the stream's process data.
     stream: CobId,
 }
@@ -166,15 +225,19 @@ impl Heard {
         Self {
             listener: Listener::new(axis.node),
             samples: Vec::new(),
-            beats: 0,
-            answers: 0,
+            beats: Vec::new(),
+            answers: Vec::new(),
             stream: Channel::TransmitPdo(PdoNumber::One, NodeId::new(axis.node).unwrap()).cob_id(),
         }
     }
 
     fn hear(&mut self, record: &Record<'_>) {
-        self.beats += u64::from(is_frame(record, Direction::ToDevice, CobId::SYNC));
-        self.answers += u64::from(is_frame(record, Direction::FromDevice, self.stream));
+        if is_frame(record, Direction::ToDevice, CobId::SYNC) {
+            self.beats.push(record.host);
+        }
+        if is_frame(record, Direction::FromDevice, self.stream) {
+            self.answers.push(record.host);
+        }
         let Wire::Drive {
             link,
             direction,
@@ -207,24 +270,19 @@ fn is_frame(record: &Record<'_>, way: Direction, id: CobId) -> bool {
         && CanFrame::from_socketcan(frame).is_ok_and(|frame| frame.cob_id() == Some(id))
 }
 
-/// The q-th part of the round trips, in microseconds.
-fn trip_us(samples: &[ShaftSample], q: f64) -> f64 {
-    let mut trips: Vec<f64> = samples
-        .iter()
-        .map(|sample| (sample.answer - sample.request).as_micros_f64())
-        .collect();
-    trips.sort_by(f64::total_cmp);
-    trips[((trips.len() - 1) as f64 * q) as usize]
+/// The median of these spans, what 99 % are below, and the longest, in microseconds.
+fn spans_us(spans: impl Iterator<Item = Span>) -> [f64; 3] {
+    let mut spans: Vec<f64> = spans.map(Span::as_micros_f64).collect();
+    spans.sort_by(f64::total_cmp);
+    [0.5, 0.99, 1.0].map(|part| spans[((spans.len() - 1) as f64 * part) as usize])
 }
 
 fn row(name: &str, pace: &str, measured: &Measured) {
     let samples = &measured.samples;
+    let [median, most, worst] = spans_us(samples.iter().map(|s| s.answer - s.request));
     println!(
-        "| {name} | {pace} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1} % | {:.1} % |",
+        "| {name} | {pace} | {:.0} | {median:.0} | {most:.0} | {worst:.0} | {:.1} % | {:.1} % |",
         samples.len() as f64 / measured.seconds,
-        trip_us(samples, 0.5),
-        trip_us(samples, 0.99),
-        trip_us(samples, 1.0),
         measured.client_share * 100.0,
         measured.drive_share * 100.0,
     );
@@ -242,12 +300,16 @@ fn stream(name: &str, measured: &Measured) {
         .map(|w| f64::from(w[1].wrapping_sub(w[0])) / 1e3)
         .collect();
     let worst = spacings.iter().copied().fold(0.0, f64::max);
+    let (beats, answers) = (&measured.beats, &measured.answers);
+    // In order, which holds where none is lost.
+    let [median, most, _] = spans_us(beats.iter().zip(answers).map(|(beat, at)| *at - *beat));
     println!(
-        "| {name} | {:.1} s | {} | {} | {} | {} | {worst:.2} ms | {:.1} % | {:.1} % |",
+        "| {name} | {:.1} s | {:.0} | {} | {} | {} | {} | {worst:.2} ms | {median:.0} | {most:.0} | {:.1} % | {:.1} % |",
         measured.seconds,
-        measured.beats,
-        measured.answers,
-        measured.beats.saturating_sub(measured.answers),
+        measured.seconds * 1e3,
+        beats.len(),
+        answers.len(),
+        beats.len().saturating_sub(answers.len()),
         times.len(),
         measured.client_share * 100.0,
         measured.drive_share * 100.0,
@@ -284,29 +346,30 @@ fn main() {
         "| link | poll period | samples/s | round trip us: median | 99 % | worst | client, of a core | software drive |"
     );
     println!("|---|---|---|---|---|---|---|---|");
-    // On a CAN bus nothing is polled: the drive is to send at SYNC.
+    let [polled, asked, streamed] = [10.0, 10.0, 60.0].map(|usual| seconds.unwrap_or(usual));
+    let paces = [("1 ms", Span::from_millis(1)), ("none", Span::ZERO)];
     for (name, kind, interface) in links.iter().take(2) {
-        for (pace, period) in [("1 ms", Span::from_millis(1)), ("none", Span::ZERO)] {
+        for (pace, period) in paces {
             let drive = SoftwareDrive::start(interface);
             let mut axis = axis();
             axis.timing.poll_period = period;
-            row(
-                name,
-                pace,
-                &measure(*kind, &drive, axis, seconds.unwrap_or(10.0)),
-            );
+            row(name, pace, &measure(*kind, &drive, axis, polled));
+        }
+    }
+    for (name, kind, interface) in links.iter().skip(2) {
+        for (pace, period) in paces {
+            let drive = SoftwareDrive::start(interface);
+            let name = format!("{name}, by SDO");
+            row(&name, pace, &ask(*kind, &drive, period, asked));
         }
     }
     println!();
     println!(
-        "| stream at 1 kHz SYNC | time | SYNCs sent | answered | lost | instants | worst spacing | client, of a core | software drive |"
+        "| stream at 1 kHz SYNC | time | SYNCs due | sent | answered | lost | instants | worst spacing | SYNC to sample us: median | 99 % | client, of a core | software drive |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for (name, kind, interface) in links.iter().skip(2) {
         let drive = SoftwareDrive::start(interface);
-        stream(
-            name,
-            &measure(*kind, &drive, axis(), seconds.unwrap_or(60.0)),
-        );
+        stream(name, &measure(*kind, &drive, axis(), streamed));
     }
 }

@@ -11,7 +11,7 @@ use protocol::epos2::objects::{Address, Object, Scalar};
 use units::{Host, Span, Stamp};
 
 /// For an answer, and for what a command brings about: an emulated machine on a busy host is slow.
-const PATIENCE: Span = Span::from_secs(5);
+pub const PATIENCE: Span = Span::from_secs(5);
 /// The longest object read here has 8 bytes.
 type Sdo = SdoClient<16>;
 

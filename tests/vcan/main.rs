@@ -3,13 +3,16 @@
 //!
 //! Where the kernel has no CAN, the test runs its own program again inside an emulated machine (`in-vm` beside this file).
 //! It says why it is skipped where that cannot be; with `VELOMOTION_VCAN=required` that is a failure. Here it is the kernel
-//! between two programs' sockets that counts: a master made for the test, and the project's own client.
+//! between two programs' sockets that counts: a master made for the test, and the project's own client, whose log and
+//! `candump`'s are then read outside, by tshark too.
 
 mod bus;
 mod client;
+mod logs;
+mod onlooker;
 mod stream;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,6 +29,7 @@ use protocol::canopen::{CanFrame, Channel, NodeId, PdoNumber};
 use protocol::epos2::cia402::{State, control};
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::{CommError, DeviceError};
+use tempfile::TempDir;
 use units::Span;
 use velomotion::config::Axis;
 use velomotion::software_drive::{self, Interface, SoftwareDriveError};
@@ -43,6 +47,9 @@ const BEAT_MS: u16 = 50;
 /// A node that has been silent for so long is lost.
 const LOST: Span = Span::from_secs(2);
 
+/// The folder for files that go out of the machine.
+const OUT: &str = "VELOMOTION_VCAN_OUT";
+
 #[test]
 fn the_software_drive_and_a_master_meet_on_a_bus_of_the_kernel() {
     if std::env::var_os(INSIDE).is_some() {
@@ -56,18 +63,32 @@ fn the_software_drive_and_a_master_meet_on_a_bus_of_the_kernel() {
 fn the_client_homes_and_sweeps_on_a_bus_of_the_kernel() {
     if std::env::var_os(INSIDE).is_some() {
         let drive = SoftwareDrive::start();
-        client::sweep();
+        client::sweep(Path::new(&std::env::var_os(OUT).unwrap()));
         drive.stop();
-    } else {
-        run_inside("the_client_homes_and_sweeps_on_a_bus_of_the_kernel");
+    } else if let Some(logs) = run_inside("the_client_homes_and_sweeps_on_a_bus_of_the_kernel") {
+        logs::check(logs.path());
     }
 }
 
-/// Runs this program's test `name` where the bus is there.
-fn run_inside(name: &str) {
+/// Whether what this test needs must be on this machine.
+fn required() -> bool {
+    std::env::var_os("VELOMOTION_VCAN").is_some_and(|v| v == "required")
+}
+
+/// Runs this program's test `name` where the bus is there; the files that it left, or `None`, after saying why, where that
+/// cannot be.
+fn run_inside(name: &str) -> Option<TempDir> {
     let runner = Path::new(env!("CARGO_MANIFEST_DIR")).join("vcan/in-vm");
-    let output = Command::new(&runner)
-        .args(["--env", &format!("{INSIDE}=1"), "--"])
+    let out = tempfile::tempdir().unwrap();
+    let mut command = Command::new(&runner);
+    command.args(["--env", &format!("{INSIDE}=1"), "--out"]);
+    command.arg(out.path());
+    if let Some(candump) = candump() {
+        command.arg("--file");
+        command.arg(format!("{}:/bin/candump", candump.display()));
+    }
+    let output = command
+        .arg("--")
         .arg(std::env::current_exe().unwrap())
         .args(["--exact", name, "--nocapture"])
         .output();
@@ -81,14 +102,22 @@ fn run_inside(name: &str) {
     };
     let said = String::from_utf8_lossy(&said);
     if status == Some(MISSING) {
-        let required = std::env::var_os("VELOMOTION_VCAN").is_some_and(|v| v == "required");
-        assert!(!required, "required here: {said}");
+        assert!(!required(), "required here: {said}");
         eprintln!("skipped: {said}");
-        return;
+        return None;
     }
     println!("{said}");
     assert!(status == Some(0), "{status:?}");
     assert!(said.contains("1 passed"), "no test of that name ran");
+    Some(out)
+}
+
+/// Where `candump` is on this machine.
+fn candump() -> Option<PathBuf> {
+    let folders = std::env::var_os("PATH")?;
+    std::env::split_paths(&folders)
+        .map(|folder| folder.join("candump"))
+        .find(|file| file.is_file())
 }
 
 /// The software drive on the bus, in a thread of its own.

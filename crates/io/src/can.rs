@@ -37,6 +37,13 @@ pub trait CanPort {
     /// [`CanError`]. After [`CanError::NotSent`] the port goes on.
     fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError>;
 
+    /// Frames of the bus that are known to have been lost between it and this program, at least so many. A loss shows with
+    /// what is read after it, if at all.
+    fn dropped(&self) -> u64;
+
+    /// What the bus is called: the interface's name, or `SLCAN`.
+    fn name(&self) -> &str;
+
     /// The time by which whoever uses this port keeps deadlines: it never steps ([`crate::clock::steady`]). Ports of a virtual
     /// world have their own.
     fn now(&self) -> Stamp<Host> {
@@ -51,6 +58,14 @@ impl<P: CanPort + ?Sized> CanPort for Box<P> {
 
     fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError> {
         (**self).read(timeout)
+    }
+
+    fn dropped(&self) -> u64 {
+        (**self).dropped()
+    }
+
+    fn name(&self) -> &str {
+        (**self).name()
     }
 
     fn now(&self) -> Stamp<Host> {
@@ -137,10 +152,112 @@ pub enum CanError {
     },
 }
 
+impl From<CanError> for PortError {
+    /// For whoever treats a bus as a port: the port is the interface.
+    fn from(error: CanError) -> Self {
+        let io = |port: &str, action, kind, what: String| Self::Io {
+            port: port.to_owned(),
+            action,
+            source: io::Error::new(kind, what),
+        };
+        match error {
+            CanError::Port(error) => error,
+            CanError::NoInterface { interface, .. } => Self::NotFound { port: interface },
+            CanError::Down { interface, command } => Self::Disconnected {
+                port: interface,
+                reason: format!("it is down; bring it up with `{command}`"),
+            },
+            CanError::Disconnected { interface } => Self::Disconnected {
+                port: interface,
+                reason: "the interface is gone".to_owned(),
+            },
+            CanError::WriteTimeout { interface } => io(
+                &interface,
+                "write",
+                io::ErrorKind::TimedOut,
+                "got rid of no frame in 0.5 s: is the drive on, the bus terminated, the bit rate right?"
+                    .to_owned(),
+            ),
+            CanError::Io {
+                interface,
+                action,
+                source,
+            } => Self::Io {
+                port: interface,
+                action,
+                source,
+            },
+            error @ (CanError::NoCan { .. } | CanError::NotCan { .. }) => {
+                let what = error.to_string();
+                io("CAN", "open", io::ErrorKind::Unsupported, what)
+            }
+            error @ (CanError::Refused { .. } | CanError::NotSent) => {
+                io("SLCAN", "write", io::ErrorKind::Other, error.to_string())
+            }
+        }
+    }
+}
+
 fn list(names: &[String]) -> String {
     if names.is_empty() {
         "(there is none)".to_owned()
     } else {
         names.join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bus_as_a_port_keeps_its_name_and_what_to_do() {
+        let interface = || "can0".to_owned();
+        let command = "sudo ip link set can0 up".to_owned();
+        let denied = io::Error::from(io::ErrorKind::PermissionDenied);
+        for (error, said) in [
+            (
+                CanError::Down {
+                    interface: interface(),
+                    command,
+                },
+                "port can0: disconnected (it is down; bring it up with `sudo ip link set can0 up`)",
+            ),
+            (
+                CanError::Disconnected {
+                    interface: interface(),
+                },
+                "port can0: disconnected (the interface is gone)",
+            ),
+            (
+                CanError::WriteTimeout {
+                    interface: interface(),
+                },
+                "port can0: cannot write: got rid of no frame in 0.5 s: is the drive on, the bus terminated, the bit rate right?",
+            ),
+            (
+                CanError::Io {
+                    interface: interface(),
+                    action: "read",
+                    source: denied,
+                },
+                "port can0: cannot read: permission denied",
+            ),
+            (
+                CanError::NoInterface {
+                    interface: interface(),
+                    known: Vec::new(),
+                },
+                "port can0: no such device",
+            ),
+            (
+                CanError::Port(PortError::Busy {
+                    port: "/dev/ttyACM0".to_owned(),
+                }),
+                "port /dev/ttyACM0: in use by another program",
+            ),
+        ] {
+            assert_eq!(PortError::from(error).to_string(), said);
+        }
     }
 }

@@ -87,12 +87,12 @@ pub fn open(device: &Device, place: &Path) -> Result<Opened, Failure> {
         },
         DeviceKind::Slcan => {
             let bus = Slcan::open(serial(SLCAN_BAUD)?, Bitrate::Kbit1000)
-                .map_err(|error| can_failure(&error))?;
+                .map_err(|error| can_failure(place, &error))?;
             opened(Box::new(BusLine(bus)), DriveLink::Can)
         }
         DeviceKind::Can => {
-            let bus =
-                SocketCan::open(&place.to_string_lossy()).map_err(|error| can_failure(&error))?;
+            let bus = SocketCan::open(&place.to_string_lossy())
+                .map_err(|error| can_failure(place, &error))?;
             opened(Box::new(BusLine(bus)), DriveLink::Can)
         }
     })
@@ -125,27 +125,30 @@ pub fn failure(error: &PortError) -> Failure {
     Failure::new(Kind::NoDevice, error.to_string()).help(help)
 }
 
-fn can_failure(error: &CanError) -> Failure {
+fn can_failure(place: &Path, error: &CanError) -> Failure {
     match error {
         CanError::Port(error) => failure(error),
+        CanError::Refused { .. } => {
+            Failure::new(Kind::NoDevice, format!("port {}: {error}", place.display())).help(
+                "see whether another program has the adapter's channel open, and whether it speaks SLCAN at 1 Mbit/s",
+            )
+        }
         error => Failure::new(Kind::NoDevice, error.to_string())
             .help("velomotion doctor lists the CAN interfaces and says how to bring them up"),
     }
 }
 
-/// A CAN bus as the drive client and the log know it: a `struct can_frame` of 16 bytes a frame.
-pub struct BusLine<C>(pub C);
+/// A CAN bus as the drive client and the log know it: a `struct can_frame` of 16 bytes a frame. Errors name the interface.
+pub struct BusLine<C: CanPort>(pub C);
 
 impl<C: CanPort> Port for BusLine<C> {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
         let frame = CanFrame::from_socketcan(frame)
-            .map_err(|error| bus_error("write", &error.to_string()))?;
+            .map_err(|error| self.misused("write", &error.to_string()))?;
         match self.0.write_frame(&frame) {
-            Ok(at) => Ok(at),
             // Lost on its way, as frames can be: the client asks again.
             Err(CanError::NotSent) => Ok(io::clock::now()),
-            Err(CanError::Port(error)) => Err(error),
-            Err(error) => Err(bus_error("write", &error.to_string())),
+            sent => Ok(sent?),
         }
     }
 
@@ -154,19 +157,17 @@ impl<C: CanPort> Port for BusLine<C> {
         buffer: &mut [u8],
         timeout: Span,
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
-        match self.0.read(timeout) {
-            Ok(None) | Err(CanError::NotSent) => Ok(None),
-            Ok(Some((frame, at))) => {
-                let bytes = frame.to_socketcan();
-                let Some(room) = buffer.get_mut(..bytes.len()) else {
-                    return Err(bus_error("read", "a buffer shorter than a frame"));
-                };
-                room.copy_from_slice(&bytes);
-                Ok(Some((bytes.len(), at)))
-            }
-            Err(CanError::Port(error)) => Err(error),
-            Err(error) => Err(bus_error("read", &error.to_string())),
-        }
+        let (frame, at) = match self.0.read(timeout) {
+            Ok(None) | Err(CanError::NotSent) => return Ok(None),
+            Ok(Some(read)) => read,
+            Err(error) => return Err(error.into()),
+        };
+        let bytes = frame.to_socketcan();
+        let Some(room) = buffer.get_mut(..bytes.len()) else {
+            return Err(self.misused("read", "a buffer shorter than a frame"));
+        };
+        room.copy_from_slice(&bytes);
+        Ok(Some((bytes.len(), at)))
     }
 
     fn now(&self) -> Stamp<Host> {
@@ -174,10 +175,26 @@ impl<C: CanPort> Port for BusLine<C> {
     }
 }
 
-fn bus_error(action: &'static str, what: &str) -> PortError {
-    PortError::Io {
-        port: "CAN".to_owned(),
-        action,
-        source: std::io::Error::other(what.to_owned()),
+impl<C: CanPort> BusLine<C> {
+    /// What a caller gets who speaks of no whole frame.
+    fn misused(&self, action: &'static str, what: &str) -> PortError {
+        PortError::Io {
+            port: self.0.name().to_owned(),
+            action,
+            source: std::io::Error::other(what.to_owned()),
+        }
+    }
+}
+
+impl<C: CanPort> Drop for BusLine<C> {
+    /// What was lost is said, once.
+    fn drop(&mut self) {
+        let dropped = self.0.dropped();
+        if dropped > 0 {
+            tracing::warn!(
+                "{}: at least {dropped} frames of the bus were lost on their way to this program",
+                self.0.name()
+            );
+        }
     }
 }

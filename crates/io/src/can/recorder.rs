@@ -56,6 +56,14 @@ impl<P: CanPort, S: FnMut(&Record<'_>)> CanPort for Recorder<P, S> {
         Ok(read)
     }
 
+    fn dropped(&self) -> u64 {
+        self.port.dropped()
+    }
+
+    fn name(&self) -> &str {
+        self.port.name()
+    }
+
     fn now(&self) -> Stamp<Host> {
         self.port.now()
     }
@@ -82,6 +90,14 @@ mod tests {
 
         fn read(&mut self, _: Span) -> Read {
             self.0.pop_front().unwrap()
+        }
+
+        fn dropped(&self) -> u64 {
+            0
+        }
+
+        fn name(&self) -> &str {
+            "script"
         }
     }
 

@@ -17,6 +17,11 @@ const ANSWER_TIMEOUT: Span = Span::from_millis(200);
 /// After closing: how long nothing comes until what was under way is taken to be over, and how long that may take.
 const QUIET: Span = Span::from_millis(50);
 const DRAIN_TIMEOUT: Span = Span::from_millis(300);
+/// How often an adapter that answers is asked whether frames were lost in it. An answer that does not come is not missed.
+const STATUS_PERIOD: Span = Span::from_secs(1);
+/// What tells of lost frames in its answer (CANUSB manual, command F): bit 0, its receive queue was full; bit 3, its
+/// controller was overrun.
+const LOST: u8 = 1 << 0 | 1 << 3;
 
 /// An open channel of an adapter. Dropping it closes the channel.
 #[derive(Debug)]
@@ -31,6 +36,17 @@ pub struct Slcan<P: Port> {
     /// Frames sent whose answer has not come; without meaning where the adapter does not answer.
     unanswered: u32,
     noise: u64,
+    status: Status,
+    dropped: u64,
+}
+
+/// The question for the status flags.
+#[derive(Debug, Default)]
+struct Status {
+    /// When it is due; `None`: never.
+    next: Option<Stamp<Host>>,
+    /// Asked: frames sent before it whose answers come first.
+    behind: Option<u32>,
 }
 
 impl<P: Port> Slcan<P> {
@@ -49,6 +65,8 @@ impl<P: Port> Slcan<P> {
             answers: false,
             unanswered: 0,
             noise: 0,
+            status: Status::default(),
+            dropped: 0,
         };
         // A line that was begun must not swallow the command. An adapter may refuse to close what is closed.
         channel.send(&Command::Empty)?;
@@ -59,6 +77,9 @@ impl<P: Port> Slcan<P> {
         channel.replies.clear();
         channel.waiting.clear();
         channel.command(&Command::Open)?;
+        if channel.answers {
+            channel.status.next = Some(channel.port.now().saturating_add(STATUS_PERIOD));
+        }
         Ok(channel)
     }
 
@@ -81,6 +102,19 @@ impl<P: Port> Slcan<P> {
 
     fn since(&self, begin: Stamp<Host>) -> Span {
         self.port.now().saturating_since(begin)
+    }
+
+    /// Whether the adapter is to be asked for its status now; it is noted as asked.
+    fn is_status_due(&mut self) -> bool {
+        let now = self.port.now();
+        let due = self.status.next.is_some_and(|next| next <= now);
+        if due {
+            self.status = Status {
+                next: Some(now.saturating_add(STATUS_PERIOD)),
+                behind: Some(self.unanswered),
+            };
+        }
+        due
     }
 
     fn send(&mut self, command: &Command) -> Result<Stamp<Host>, CanError> {
@@ -148,16 +182,29 @@ impl<P: Port> Slcan<P> {
     fn take(&mut self, reply: Reply, host: Stamp<Host>) {
         match reply {
             Reply::Received { frame, .. } => self.waiting.push_back(Ok((frame, host))),
-            Reply::Done | Reply::Sent | Reply::SentExtended => {
-                self.unanswered = self.unanswered.saturating_sub(1);
+            Reply::Done | Reply::Sent | Reply::SentExtended => self.frame_answered(),
+            // Flags are cleared by reading them, so each set one is another loss. They do not say of how many frames.
+            Reply::Status(flags) => {
+                self.status.behind = None;
+                self.dropped += u64::from(flags & LOST != 0);
             }
+            // An adapter without status flags is not asked again.
+            Reply::Refused if self.status.behind == Some(0) => self.status = Status::default(),
             Reply::Refused if self.answers && self.unanswered > 0 => {
-                self.unanswered -= 1;
+                self.frame_answered();
                 self.waiting.push_back(Err(CanError::NotSent));
             }
             Reply::Refused | Reply::Unknown(_) => self.noise += 1,
             // Answers to questions that were not asked.
-            Reply::Version(_) | Reply::SerialNumber(_) | Reply::Status(_) => {}
+            Reply::Version(_) | Reply::SerialNumber(_) => {}
+        }
+    }
+
+    /// Answers come in the order of what was sent.
+    fn frame_answered(&mut self) {
+        self.unanswered = self.unanswered.saturating_sub(1);
+        if let Some(behind) = &mut self.status.behind {
+            *behind = behind.saturating_sub(1);
         }
     }
 }
@@ -166,6 +213,10 @@ impl<P: Port> CanPort for Slcan<P> {
     fn write_frame(&mut self, frame: &CanFrame) -> Result<Stamp<Host>, CanError> {
         let host = self.send(&Command::Transmit(*frame))?;
         self.unanswered = self.unanswered.saturating_add(1);
+        if self.is_status_due() {
+            // A port that fails will say so with the next frame: this one is on its way.
+            drop(self.send(&Command::Status));
+        }
         Ok(host)
     }
 
@@ -186,6 +237,15 @@ impl<P: Port> CanPort for Slcan<P> {
             }
             left = timeout - self.since(begin);
         }
+    }
+
+    /// How often the adapter said that it had lost frames: at least so many.
+    fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    fn name(&self) -> &str {
+        "SLCAN"
     }
 
     fn now(&self) -> Stamp<Host> {

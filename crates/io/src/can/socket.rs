@@ -69,18 +69,6 @@ impl SocketCan {
         Ok(port)
     }
 
-    /// Frames that the kernel dropped because this program did not read fast enough, as far as those read tell.
-    #[must_use]
-    pub const fn dropped(&self) -> u64 {
-        self.dropped
-    }
-
-    /// The interface's name.
-    #[must_use]
-    pub fn interface(&self) -> &str {
-        &self.interface
-    }
-
     fn io_error(&self, action: &'static str, source: io::Error) -> CanError {
         let interface = self.interface.clone();
         match source.raw_os_error().map(Errno::from_raw) {
@@ -184,6 +172,15 @@ impl CanPort for SocketCan {
                 Err(e) => return Err(self.io_error("read", e.into())),
             }
         }
+    }
+
+    /// Frames that the kernel dropped because this program did not read fast enough, as far as those read tell.
+    fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    fn name(&self) -> &str {
+        &self.interface
     }
 }
 

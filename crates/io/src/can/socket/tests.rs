@@ -75,7 +75,7 @@ fn frames_pass_between_two_ports_with_the_kernels_time() {
     let Some((mut one, mut other)) = pair() else {
         return;
     };
-    assert_eq!(one.interface(), BUS);
+    assert_eq!(one.name(), BUS);
     for frame in frames() {
         let sent = one.write_frame(&frame).unwrap();
         // The kernel took its time when the frame passed, not when it is read.

@@ -1,0 +1,141 @@
+//! The logs of a sweep, the project's own and `candump`'s: what is in them, and what tshark makes of them.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+use std::process::Command;
+
+use io::recording::Recording;
+use protocol::canopen::{CanFrame, Channel, CobId, NodeId, PdoNumber};
+use protocol::record::{Direction, Wire};
+
+use crate::{onlooker, required};
+
+/// The project's log.
+pub const LOG: &str = "sweep.pcapng";
+/// `candump`'s.
+pub const CANDUMP_LOG: &str = "candump.log";
+
+/// Frames and how often each of them passed.
+type Passed = BTreeMap<[u8; 16], usize>;
+
+/// Every SYNC has its sample, `candump` heard what the client said and heard, and tshark dissects both logs as CANopen.
+pub fn check(folder: &Path) {
+    let ours = of_the_log(&folder.join(LOG));
+    tshark(&folder.join(LOG), &ours);
+    let candump = folder.join(CANDUMP_LOG);
+    if !candump.exists() {
+        assert!(!required(), "candump (can-utils) is required here");
+        eprintln!("skipped: no candump on this machine");
+        return;
+    }
+    let theirs = of_candump(&fs::read_to_string(&candump).unwrap());
+    compare(&ours, &theirs);
+    tshark(&candump, &theirs);
+}
+
+fn node() -> NodeId {
+    NodeId::new(1).unwrap()
+}
+
+/// The frames of the log; none of the stream's may be missing.
+fn of_the_log(path: &Path) -> Passed {
+    let mut recording = Recording::open(path).unwrap();
+    let mut passed = Passed::new();
+    while let Some(record) = recording.next_record().unwrap() {
+        let Wire::Drive {
+            direction, frame, ..
+        } = record.wire
+        else {
+            panic!("{record:?}");
+        };
+        let frame = CanFrame::from_socketcan(frame).unwrap();
+        let is_sync = frame.cob_id() == Some(CobId::SYNC);
+        assert_eq!(is_sync, is_sync && direction == Direction::ToDevice);
+        *passed.entry(frame.to_socketcan()).or_default() += 1;
+    }
+    assert!(recording.end().is_some());
+    let [syncs, samples] = [CobId::SYNC, stream()].map(|id| of(&passed, id));
+    println!("{syncs} SYNCs, {samples} samples");
+    // A second and more of the sweep alone, at 1 kHz.
+    assert!(syncs > 1_000, "{syncs}");
+    assert_eq!(samples, syncs);
+    passed
+}
+
+fn stream() -> CobId {
+    Channel::TransmitPdo(PdoNumber::One, node()).cob_id()
+}
+
+/// How many frames have this identifier.
+fn of(passed: &Passed, id: CobId) -> usize {
+    let has = |bytes: &[u8; 16]| CanFrame::from_socketcan(bytes).unwrap().cob_id() == Some(id);
+    let with_id = passed.iter().filter(|(bytes, _)| has(bytes));
+    with_id.map(|(_, count)| count).sum()
+}
+
+/// The frames of lines like `(1700000000.000000) vcan0 181#0011223344556677`.
+fn of_candump(text: &str) -> Passed {
+    let mut passed = Passed::new();
+    for line in text.lines() {
+        let (id, data) = line.rsplit(' ').next().unwrap().split_once('#').unwrap();
+        let id = CobId::new(u16::from_str_radix(id, 16).unwrap()).unwrap();
+        let data: Vec<u8> = (0..data.len())
+            .step_by(2)
+            .map(|at| u8::from_str_radix(&data[at..at + 2], 16).unwrap())
+            .collect();
+        let frame = CanFrame::new(id, &data).unwrap();
+        *passed.entry(frame.to_socketcan()).or_default() += 1;
+    }
+    passed
+}
+
+/// What is in the log was on the bus, as often; what `candump` has besides is what it was shown, and the node's heartbeat
+/// before and after the client.
+fn compare(ours: &Passed, theirs: &Passed) {
+    for (frame, count) in ours {
+        let heard = theirs.get(frame).copied().unwrap_or_default();
+        let frame = CanFrame::from_socketcan(frame).unwrap();
+        if frame.cob_id() == Some(Channel::Heartbeat(node()).cob_id()) {
+            assert!(heard >= *count, "{frame}: {heard} of {count}");
+        } else {
+            assert_eq!(heard, *count, "{frame}");
+        }
+    }
+    for frame in theirs.keys().filter(|frame| !ours.contains_key(*frame)) {
+        let frame = CanFrame::from_socketcan(frame).unwrap();
+        let heartbeat = frame.cob_id() == Some(Channel::Heartbeat(node()).cob_id());
+        assert!(heartbeat || onlooker::is_probe(&frame), "{frame}");
+    }
+}
+
+/// Somebody else's CANopen finds every frame and no fault in any.
+fn tshark(path: &Path, passed: &Passed) {
+    let lines = |filter: &str| {
+        let output = Command::new("tshark")
+            .args(["-n", "-d", "can.subdissector,canopen", "-r"])
+            .arg(path)
+            .args(["-Y", filter])
+            .output();
+        let output = match output {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                assert!(!required(), "tshark is required here");
+                eprintln!("skipped: no tshark on this machine");
+                return None;
+            }
+            output => output.unwrap(),
+        };
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{path:?}: {said}");
+        Some(String::from_utf8(output.stdout).unwrap())
+    };
+    let Some(malformed) = lines("_ws.malformed") else {
+        return;
+    };
+    assert_eq!(malformed, "");
+    // A SYNC has no data to dissect.
+    assert_eq!(lines("can && !canopen && can.len > 0").unwrap(), "");
+    let frames = lines("can").unwrap().lines().count();
+    assert_eq!(frames, passed.values().sum::<usize>());
+}
