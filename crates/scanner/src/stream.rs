@@ -7,9 +7,9 @@
 //! The drive's time wraps after 71 minutes and begins anew when the drive does; a run between two starts has a clock of its own.
 
 use drive::ShaftSample;
-use units::{Gearing, Host, Lidar, Span, Stamp};
+use units::{Drive, Gearing, Host, Span, Stamp};
 
-use crate::clock::{Arrival, LidarClock};
+use crate::clock::{Arrival, DeviceClock};
 use crate::trajectory::AngleSample;
 
 /// Fewer pairs than this tell no clock; they stand in the middle of SYNC and arrival, as polls do.
@@ -88,24 +88,23 @@ fn went(before_us: u32, after_us: u32, host: Span) -> Option<Span> {
     (apart <= allowed).then_some(device)
 }
 
-/// The drive's clock, from both sides. [`LidarClock`]'s envelope does the work: it is any device's clock, and from above the
-/// envelope is that of times counted backwards.
+/// The drive's clock, from both sides: from above the envelope is that of times counted backwards.
 struct DriveClock {
-    early: LidarClock,
-    late: LidarClock,
+    early: DeviceClock<Drive>,
+    late: DeviceClock<Drive>,
 }
 
 impl DriveClock {
     fn fit(run: &[Latched]) -> Option<Self> {
-        let arrivals = |device: fn(i64) -> Stamp<Lidar>, host: fn(&ShaftSample) -> Stamp<Host>| {
-            let arrivals: Vec<Arrival> = run
+        let arrivals = |device: fn(i64) -> Stamp<Drive>, host: fn(&ShaftSample) -> Stamp<Host>| {
+            let arrivals: Vec<Arrival<Drive>> = run
                 .iter()
                 .map(|latched| Arrival {
                     device: device(latched.device_ns),
                     host: host(&latched.sample),
                 })
                 .collect();
-            LidarClock::fit(&arrivals)
+            DeviceClock::fit(&arrivals)
         };
         Some(Self {
             early: arrivals(backwards, |sample| backwards(sample.request.as_nanos()))?,

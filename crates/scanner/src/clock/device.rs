@@ -1,0 +1,249 @@
+//! The clock of a device as a function: lines, blended, in one piece or several.
+//!
+//! Left out: how the lines are found (`envelope`) and where the pieces end (`steps`).
+
+use core::fmt;
+use core::marker::PhantomData;
+
+use units::{Host, Lidar, Span, Stamp};
+
+use super::Arrival;
+use super::cursor::{ClockCursor, Moment, Segment};
+use super::envelope;
+
+/// Maps a device's time to host time.
+///
+/// `C` is the device's clock. In one piece as long as nobody set the device's clock; a clock that was set, or began anew, has
+/// another piece from then on.
+pub struct DeviceClock<C = Lidar> {
+    origin_ns: i64,
+    /// In the order in which they were recorded, never empty.
+    pieces: Vec<Piece>,
+    residual: Span,
+    domain: PhantomData<fn() -> C>,
+}
+
+/// A stretch over which a device's clock went on evenly.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    /// First and last arrival, device nanoseconds after the clock's origin.
+    pub from_ns: f64,
+    pub to_ns: f64,
+    /// Whole nanoseconds from device time to host time, beside the lines' offsets.
+    pub whole: i64,
+    /// Never empty.
+    pub lines: Vec<Line>,
+}
+
+/// Offset over device time: `offset_ns + slope * (x - centre)`, with x in nanoseconds after the origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    pub centre_ns: f64,
+    pub offset_ns: f64,
+    pub slope: f64,
+}
+
+/// A device time this far beyond a piece's arrivals may still be of it: packets that were lost at its end, firings of its last.
+const BEYOND_NS: f64 = 5e6;
+
+impl<C> DeviceClock<C> {
+    /// Fits the envelope, in one piece. `None` without a single arrival.
+    ///
+    /// Arrivals need not be in order. Cost: n log n.
+    #[must_use]
+    pub fn fit(arrivals: &[Arrival<C>]) -> Option<Self> {
+        let mut sorted = arrivals.to_vec();
+        sorted.sort_unstable_by_key(|a| (a.device, a.host));
+        let origin_ns = sorted.first()?.device.as_nanos();
+        let piece = Piece::fit(&sorted, origin_ns)?;
+        let mut clock = Self {
+            origin_ns,
+            pieces: vec![piece],
+            residual: Span::ZERO,
+            domain: PhantomData,
+        };
+        clock.residual = clock.median_lateness(&sorted);
+        Some(clock)
+    }
+
+    /// The host time at which the device's clock read `device`.
+    #[must_use]
+    pub fn host(&self, device: Stamp<C>) -> Stamp<Host> {
+        self.moment(device).host
+    }
+
+    /// The same with what rounding to nanoseconds takes away.
+    #[must_use]
+    pub fn moment(&self, device: Stamp<C>) -> Moment {
+        self.moment_near(device, None)
+    }
+
+    /// The same, where the device's clock read `device` twice, for the time that is nearer to `near`, about when it arrived.
+    #[must_use]
+    pub fn moment_near(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Moment {
+        self.segment(device, near)
+            .moment(device, self.since_origin(device))
+    }
+
+    /// Follows the clock through device times that mostly grow, without a search for each.
+    #[must_use]
+    pub const fn cursor(&self) -> ClockCursor<'_, C> {
+        ClockCursor::new(self)
+    }
+
+    /// Median of how late packets came above the envelope: the link's typical delay beyond its smallest.
+    #[must_use]
+    pub fn residual(&self) -> Span {
+        self.residual
+    }
+
+    /// Drift of the device's clock against the host's at the middle of the recording, in parts per million; positive when
+    /// the device's seconds are long.
+    #[must_use]
+    pub fn drift_ppm(&self) -> f64 {
+        let longest = self
+            .pieces
+            .iter()
+            .max_by(|a, b| a.length_ns().total_cmp(&b.length_ns()));
+        let line = longest.and_then(|piece| piece.lines.get(piece.lines.len() / 2));
+        line.map_or(0.0, |line| line.slope * 1e6)
+    }
+
+    /// Whether the device's clock was set, so that there is more than one piece.
+    #[must_use]
+    pub fn is_cut(&self) -> bool {
+        self.pieces.len() > 1
+    }
+
+    pub(super) fn since_origin(&self, device: Stamp<C>) -> f64 {
+        device.as_nanos().saturating_sub(self.origin_ns) as f64
+    }
+
+    /// The stretch that `device` falls into: between two lines' centres, or beyond all of them.
+    pub(super) fn segment(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Segment {
+        let x = self.since_origin(device);
+        let beyond = |piece: &Piece| (piece.from_ns - x).max(x - piece.to_ns).max(BEYOND_NS);
+        let apart = |piece: &Piece| {
+            near.map_or(0, |near| {
+                let host = piece.segment(x).moment(device, x).host;
+                near.saturating_since(host).as_nanos().saturating_abs()
+            })
+        };
+        let piece = self.pieces.iter().min_by(|a, b| {
+            let nearer = || apart(a).cmp(&apart(b));
+            beyond(a).total_cmp(&beyond(b)).then_with(nearer)
+        });
+        let Some(piece) = piece else {
+            return Segment::NONE;
+        };
+        let mut segment = piece.segment(x);
+        if self.is_cut() {
+            segment.from_ns = segment.from_ns.max(piece.from_ns - BEYOND_NS);
+            segment.to_ns = segment.to_ns.min(piece.to_ns + BEYOND_NS);
+        }
+        segment
+    }
+
+    fn median_lateness(&self, arrivals: &[Arrival<C>]) -> Span {
+        let mut late: Vec<i64> = arrivals
+            .iter()
+            .map(|a| a.host.saturating_since(self.host(a.device)).as_nanos())
+            .collect();
+        let middle = late.len() / 2;
+        if late.is_empty() {
+            return Span::ZERO;
+        }
+        Span::from_nanos(*late.select_nth_unstable(middle).1)
+    }
+}
+
+impl Piece {
+    /// Fits arrivals in order of device time.
+    fn fit<C>(sorted: &[Arrival<C>], origin_ns: i64) -> Option<Self> {
+        let first = sorted.first()?;
+        let whole = first.host.as_nanos().wrapping_sub(first.device.as_nanos());
+        let points: Vec<(f64, f64)> = sorted
+            .iter()
+            .map(|a| {
+                let x = a.device.as_nanos().saturating_sub(origin_ns) as f64;
+                let y = a.host.as_nanos().wrapping_sub(a.device.as_nanos());
+                (x, y.wrapping_sub(whole) as f64)
+            })
+            .collect();
+        let (from_ns, to_ns) = (points.first()?.0, points.last()?.0);
+        Some(Self {
+            from_ns,
+            to_ns,
+            whole,
+            lines: envelope::lines(&points),
+        })
+    }
+
+    fn length_ns(&self) -> f64 {
+        self.to_ns - self.from_ns
+    }
+
+    /// The stretch between two lines' centres, or beyond all of them, that `x` falls into.
+    fn segment(&self, x: f64) -> Segment {
+        let next = self.lines.partition_point(|line| line.centre_ns <= x);
+        let before = next.checked_sub(1).and_then(|i| self.lines.get(i)).copied();
+        let after = self.lines.get(next).copied();
+        let from_ns = before.map_or(f64::NEG_INFINITY, |line| line.centre_ns);
+        let to_ns = after.map_or(f64::INFINITY, |line| line.centre_ns);
+        Segment {
+            whole: self.whole,
+            from_ns,
+            to_ns,
+            first: before.or(after).unwrap_or(Line::NONE),
+            second: before.and(after),
+            blend_ns: (from_ns, to_ns),
+        }
+    }
+}
+
+impl Segment {
+    /// Where there is no clock.
+    const NONE: Self = Self {
+        whole: 0,
+        from_ns: f64::NEG_INFINITY,
+        to_ns: f64::INFINITY,
+        first: Line::NONE,
+        second: None,
+        blend_ns: (f64::NEG_INFINITY, f64::INFINITY),
+    };
+}
+
+impl Line {
+    /// Where there is none.
+    const NONE: Self = Self {
+        centre_ns: 0.0,
+        offset_ns: 0.0,
+        slope: 0.0,
+    };
+
+    pub fn at(self, x: f64) -> f64 {
+        self.offset_ns + self.slope * (x - self.centre_ns)
+    }
+}
+
+// Derives would ask for `C: Clone` and so on; the clock's name is only a name.
+impl<C> Clone for DeviceClock<C> {
+    fn clone(&self) -> Self {
+        Self {
+            origin_ns: self.origin_ns,
+            pieces: self.pieces.clone(),
+            residual: self.residual,
+            domain: PhantomData,
+        }
+    }
+}
+
+impl<C> fmt::Debug for DeviceClock<C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DeviceClock")
+            .field("origin_ns", &self.origin_ns)
+            .field("pieces", &self.pieces)
+            .field("residual", &self.residual)
+            .finish()
+    }
+}
