@@ -7,10 +7,13 @@
 
 mod cursor;
 mod device;
+mod endpoint;
 mod envelope;
+mod online;
 
 pub use cursor::{ClockCursor, Moment, Tangent};
 pub use device::DeviceClock;
+pub use online::OnlineClock;
 
 use units::{Host, Lidar, Stamp};
 

@@ -12,6 +12,7 @@ mod attached;
 mod clock;
 mod head;
 pub mod link;
+pub mod packet_clock;
 mod rig;
 mod scene;
 pub mod scenes;

@@ -58,7 +58,7 @@ impl Link {
     pub const fn new(model: LinkModel, seed: u64) -> Self {
         Self {
             model,
-            random: Random { state: seed },
+            random: Random::new(seed),
             last_ns: i64::MIN,
         }
     }
@@ -86,12 +86,16 @@ impl Link {
 
 /// SplitMix64 (Steele, Lea and Flood 2014): enough for delays, and the same on every machine.
 #[derive(Clone, Debug)]
-struct Random {
+pub(crate) struct Random {
     state: u64,
 }
 
 impl Random {
-    fn next(&mut self) -> u64 {
+    pub const fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
+    pub fn next(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.state ^ (self.state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -99,7 +103,7 @@ impl Random {
     }
 
     /// Uniform in 0..1.
-    fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
         (self.next() >> 11) as f64 * STEP
     }

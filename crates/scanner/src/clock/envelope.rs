@@ -1,28 +1,222 @@
-//! Lines under the arrivals: the lower convex hulls of overlapping blocks.
+//! Lines under the arrivals: of each block of 30 s one, neighbouring blocks blended linearly, so that slow wander of either
+//! oscillator is followed.
 //!
-//! The line of each block is the hull edge under its middle; neighbouring blocks are blended linearly, so that slow wander of
-//! either oscillator is followed.
+//! A block's line is first the edge of its lower convex hull under its middle. On a link where packets come often with next to
+//! the least delay that is the clock to within a fraction of a microsecond. Where they do not, `endpoint` says how far below the hull the clock is.
+//! Left out: clocks that were set; whoever calls cuts there.
 
-use super::device::Line;
+use super::device::{Cell, Line};
+use super::endpoint::{self, Ends, Tail};
 
 /// Length of a block: long enough to meet a prompt packet on a busy link, short against an oscillator's wander.
-const BLOCK_NS: f64 = 30e9;
+pub(super) const BLOCK_NS: f64 = 30e9;
 /// No pair of crystal oscillators in working order drifts apart faster; holds the slope where a recording is too
 /// short to measure it.
 const MAX_SLOPE: f64 = 200e-6;
+/// A clock that is being slewed (500 ppm by the kernel) does, which takes this long to tell from delays.
+const MAX_SLEW: f64 = 600e-6;
+const SLEW_NS: f64 = 10e9;
+/// Share of all packets that tells how the least delays are spread, or so many, where a recording is short.
+const LOW_SHARE: f64 = 0.02;
+const FEWEST_LOW: usize = 64;
+/// With fewer packets in a block the hull stays as it is.
+const FEWEST: usize = 8 * FEWEST_LOW;
+/// Where so many are within this above the hull, it is the clock to within a fraction of a microsecond, and stays.
+const PROMPT_NS: f64 = 5e3;
+/// Rounds in which lines and the spread of the delays above them are found from each other.
+const ROUNDS: usize = 3;
+/// How fast the rates of two ordinary oscillators part, per second (0.03 ppm/s): across a block of length L a straight line misses
+/// L^2/8 of it. Where neighbouring blocks show more, it is theirs, and a quarter for what they do not show.
+const WANDER_PER_S: f64 = 0.03e-6;
+const MORE_WANDER: f64 = 1.25;
+/// Standard deviations within which all of a recording stays in 99 of 100 cases.
+const DEVIATIONS: f64 = 3.5;
+/// Of one or two packets nothing is known but that a network rarely holds one for a second.
+const UNKNOWN_NS: f64 = 1e9;
 
-/// The lines under points of (device time, offset), both in nanoseconds, sorted.
-pub(super) fn lines(points: &[(f64, f64)]) -> Vec<Line> {
+/// A point of (device time, offset), both in nanoseconds.
+pub(super) type Point = (f64, f64);
+
+/// The clock under a recording's points.
+pub(super) struct Envelope {
+    pub lines: Vec<Line>,
+    pub cells: Vec<Cell>,
+}
+
+/// A block with its line.
+struct Block<'a> {
+    points: &'a [Point],
+    line: Line,
+    /// Standard deviation of the line at the block's begin, middle and end.
+    ends: Ends,
+}
+
+impl Envelope {
+    /// The envelope of points sorted by time.
+    pub fn below(points: &[Point]) -> Self {
+        let (Some(first), Some(last)) = (points.first(), points.last()) else {
+            return Self {
+                lines: Vec::new(),
+                cells: Vec::new(),
+            };
+        };
+        let length_ns = last.0 - first.0;
+        let mut blocks: Vec<Block<'_>> = blocks(first.0, length_ns)
+            .filter_map(|(from, to)| {
+                let low = points.partition_point(|p| p.0 < from);
+                let high = points.partition_point(|p| p.0 <= to);
+                let points = points.get(low..high)?;
+                Some(Block {
+                    points,
+                    line: line_below(points)?,
+                    ends: Ends::default(),
+                })
+            })
+            .collect();
+        refine(&mut blocks);
+        let cells = cells(points, &blocks);
+        Self {
+            lines: blocks.iter().map(|block| block.line).collect(),
+            cells,
+        }
+    }
+}
+
+/// Brings lines down to where the delays above them come to an end, where that matters.
+fn refine(blocks: &mut [Block<'_>]) {
+    let low = |blocks: &[Block<'_>]| {
+        let mut late: Vec<f64> = blocks.iter().flat_map(Block::lateness).collect();
+        lowest(&mut late)
+    };
+    let Some((depth_ns, count)) = low(blocks) else {
+        return;
+    };
+    let all: usize = blocks.iter().map(|block| block.points.len()).sum();
+    for block in blocks.iter_mut() {
+        // The lowest of k packets that are up to D late is late by about D over the root of k, or less.
+        let own = (count * block.points.len()) as f64 / all as f64;
+        block.ends = Ends::all(depth_ns / own.max(1.0).sqrt());
+    }
+    let too_few = blocks.iter().any(|block| block.points.len() < FEWEST);
+    if depth_ns < PROMPT_NS || too_few {
+        return;
+    }
+    let hulls: Vec<Line> = blocks.iter().map(|block| block.line).collect();
+    let mut tail = Tail::of_two_stages(depth_ns);
+    for _ in 0..ROUNDS {
+        for (block, hull) in blocks.iter_mut().zip(&hulls) {
+            if let Some((line, ends)) = endpoint::line(block.points, *hull, tail) {
+                (block.line, block.ends) = (line, ends);
+            }
+        }
+        tail = tail.measured(blocks.iter().flat_map(Block::lateness));
+    }
+}
+
+/// The lateness below which a share of all lies, and how many these are.
+fn lowest(late: &mut [f64]) -> Option<(f64, usize)> {
+    let count = ((late.len() as f64 * LOW_SHARE) as usize).max(FEWEST_LOW.min(late.len() / 8));
+    if late.is_empty() {
+        return None;
+    }
+    let (_, depth, _) = late.select_nth_unstable_by(count, f64::total_cmp);
+    Some((depth.max(0.0), count.max(1)))
+}
+
+/// How far off the clock may be, by quarters of blocks. Two things tell: how well each line is known, and the quarter's lowest
+/// point, above which the clock cannot be.
+fn cells(points: &[Point], blocks: &[Block<'_>]) -> Vec<Cell> {
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return Vec::new();
     };
-    blocks(first.0, last.0 - first.0)
-        .filter_map(|(from, to)| {
-            let low = points.partition_point(|p| p.0 < from);
-            let high = points.partition_point(|p| p.0 <= to);
-            points.get(low..high).and_then(line_below)
+    let length_ns = last.0 - first.0;
+    let count = (4.0 * length_ns / BLOCK_NS).ceil().max(4.0) as usize;
+    let width = length_ns / count as f64;
+    let block_s = length_ns.min(BLOCK_NS) * 1e-9;
+    let wander_per_s = blocks
+        .windows(2)
+        .map(wander_per_s)
+        .fold(WANDER_PER_S, f64::max);
+    let wander_ns = wander_per_s * block_s * block_s / 8.0 * 1e9;
+    (0..count)
+        .map(|i| {
+            let from_ns = first.0 + i as f64 * width;
+            let to_ns = from_ns + width;
+            let low = points.partition_point(|p| p.0 < from_ns);
+            let high = points.partition_point(|p| p.0 <= to_ns);
+            let here = points.get(low..high).unwrap_or_default();
+            let lowest = here
+                .iter()
+                .map(|p| p.1 - blended(blocks, p.0))
+                .fold(f64::INFINITY, f64::min);
+            let known = |x: f64| wander_ns + DEVIATIONS * deviation(blocks, x);
+            let bound_ns = if points.len() < 3 {
+                UNKNOWN_NS
+            } else if lowest.is_finite() {
+                known(from_ns).max(known(to_ns)).max(lowest)
+            } else {
+                known(from_ns).max(known(to_ns))
+            };
+            Cell { from_ns, bound_ns }
         })
         .collect()
+}
+
+/// How fast the rate changed between two neighbours.
+fn wander_per_s(pair: &[Block<'_>]) -> f64 {
+    let [a, b] = pair else {
+        return 0.0;
+    };
+    let apart_s = (b.line.centre_ns - a.line.centre_ns) * 1e-9;
+    if apart_s > 0.0 {
+        MORE_WANDER * (b.line.slope - a.line.slope).abs() / apart_s
+    } else {
+        0.0
+    }
+}
+
+/// The blocks whose centres are around `x`, and how much the second counts.
+fn around<'b, 'p>(blocks: &'b [Block<'p>], x: f64) -> Option<(&'b Block<'p>, &'b Block<'p>, f64)> {
+    let next = blocks.partition_point(|block| block.line.centre_ns <= x);
+    let after = blocks.get(next).or(blocks.last())?;
+    let before = blocks.get(next.saturating_sub(1)).unwrap_or(after);
+    let apart = after.line.centre_ns - before.line.centre_ns;
+    let weight = if apart > 0.0 {
+        ((x - before.line.centre_ns) / apart).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    Some((before, after, weight))
+}
+
+fn blended(blocks: &[Block<'_>], x: f64) -> f64 {
+    around(blocks, x).map_or(0.0, |(before, after, weight)| {
+        before.line.at(x) * (1.0 - weight) + after.line.at(x) * weight
+    })
+}
+
+fn deviation(blocks: &[Block<'_>], x: f64) -> f64 {
+    around(blocks, x).map_or(0.0, |(before, after, weight)| {
+        before.deviation(x) * (1.0 - weight) + after.deviation(x) * weight
+    })
+}
+
+impl Block<'_> {
+    fn lateness(&self) -> impl Iterator<Item = f64> {
+        self.points.iter().map(|p| p.1 - self.line.at(p.0))
+    }
+
+    /// Standard deviation of the line at `x`.
+    fn deviation(&self, x: f64) -> f64 {
+        let half = self.points.first().zip(self.points.last());
+        let half = half.map_or(0.0, |(a, b)| 0.5 * (b.0 - a.0));
+        let beside = if half > 0.0 {
+            (x - self.line.centre_ns) / half
+        } else {
+            0.0
+        };
+        self.ends.at(beside)
+    }
 }
 
 /// Blocks of 30 s that overlap by half and are spread evenly, so that the last one is as long as the first.
@@ -41,7 +235,7 @@ fn blocks(begin_ns: f64, length_ns: f64) -> impl Iterator<Item = (f64, f64)> {
 
 /// The line under all of `points` (sorted by x) that is closest to them in sum: the hull edge under their mean x, its slope
 /// held to what oscillators do.
-fn line_below(points: &[(f64, f64)]) -> Option<Line> {
+fn line_below(points: &[Point]) -> Option<Line> {
     let (first, last) = (points.first()?, points.last()?);
     let centre = 0.5 * (first.0 + last.0);
     let mean = points.iter().map(|p| p.0 - centre).sum::<f64>() / points.len() as f64 + centre;
@@ -53,7 +247,12 @@ fn line_below(points: &[(f64, f64)]) -> Option<Line> {
             [a, b] if b.0 > a.0 => Some((b.1 - a.1) / (b.0 - a.0)),
             _ => None,
         });
-    let slope = edge.unwrap_or(0.0).clamp(-MAX_SLOPE, MAX_SLOPE);
+    let most = if last.0 - first.0 > SLEW_NS {
+        MAX_SLEW
+    } else {
+        MAX_SLOPE
+    };
+    let slope = edge.unwrap_or(0.0).clamp(-most, most);
     let offset = hull
         .iter()
         .map(|p| p.1 - slope * (p.0 - centre))
@@ -66,8 +265,8 @@ fn line_below(points: &[(f64, f64)]) -> Option<Line> {
 }
 
 /// Andrew's monotone chain over points sorted by x.
-pub(super) fn lower_hull(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let mut hull: Vec<(f64, f64)> = Vec::new();
+pub(super) fn lower_hull(points: &[Point]) -> Vec<Point> {
+    let mut hull: Vec<Point> = Vec::new();
     for &p in points {
         while let [.., a, b] = hull.as_slice() {
             let turn = (b.0 - a.0) * (p.1 - a.1) - (b.1 - a.1) * (p.0 - a.0);

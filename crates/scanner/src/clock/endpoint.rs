@@ -1,0 +1,225 @@
+//! How far below the lowest packets the clock is: Pitman's estimate of where a distribution ends.
+//!
+//! A delay that is the sum of several stages (waiting to be polled, waiting to be scheduled) is rarely close to its least
+//! value: with two stages the density near it grows linearly from zero, and the lowest of n packets is late by about the n^-1/2 part of
+//! the spread instead of the n^-1. The hull, which takes the lowest packets at their word, is late with them.
+//!
+//! Near its end let the share of delays below d be proportional to d^a (a = 1: a step, a = 2: two stages). Of the packets less than D
+//! above the hull, the likelihood of a line that runs d(x) below it is
+//!
+//! ```text
+//!     product over packets of  (r + d)^(a-1) / (D + d)^a,     r: lateness above the hull,     0 where a packet would be early
+//! ```
+//!
+//! Its maximum is no good estimate at an end (it may lie on the edge); its mean over all lines is the one of least
+//! variance among those that move with the data (E. J. G. Pitman, Biometrika 30, 1939, pp. 391-421). It is taken over a grid
+//! of the line's two ends, and the spread there is how well the line is known. The exponent is measured by Hill's estimator
+//! (B. M. Hill, Annals of Statistics 3, 1975, pp. 1163-1174) from the lowest packets of the whole recording.
+
+use super::device::Line;
+use super::envelope::Point;
+
+/// How delays are spread just above the least: the share below d is that of `depth_ns` times (d / depth)^exponent.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tail {
+    depth_ns: f64,
+    exponent: f64,
+}
+
+/// Standard deviation of a line at its begin, middle and end, nanoseconds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Ends {
+    begin_ns: f64,
+    middle_ns: f64,
+    end_ns: f64,
+}
+
+/// Nodes of the grid a side, and how many deviations the second, finer one reaches.
+const NODES: usize = 17;
+const REACH: f64 = 3.5;
+/// The first grid reaches this many times the lateness of the tenth lowest packet down, and up.
+const TENTH: usize = 10;
+const DOWN: f64 = 5.0;
+const UP: f64 = 3.0;
+/// A line that moves by this, the tenth packet may be at the hull.
+const LEAST_NS: f64 = 50.0;
+/// So many factors multiply without leaving the range of a double.
+const FACTORS: usize = 16;
+
+impl Tail {
+    /// What a delay of two stages looks like from near by.
+    pub const fn of_two_stages(depth_ns: f64) -> Self {
+        Self {
+            depth_ns,
+            exponent: 2.0,
+        }
+    }
+
+    /// The same depth with the exponent that the lateness of packets shows (Hill); between that of one stage and of three.
+    pub fn measured(self, late_ns: impl Iterator<Item = f64>) -> Self {
+        let low = late_ns.filter(|r| *r > 0.0 && *r < self.depth_ns);
+        let (count, sum) = low.fold((0.0, 0.0), |(count, sum), r| {
+            (count + 1.0, sum + (self.depth_ns / r).ln())
+        });
+        let exponent = if sum > 0.0 { count / sum } else { 2.0 };
+        Self {
+            exponent: exponent.clamp(1.0, 3.0),
+            ..self
+        }
+    }
+}
+
+impl Ends {
+    /// The same along the line.
+    pub const fn all(ns: f64) -> Self {
+        Self {
+            begin_ns: ns,
+            middle_ns: ns,
+            end_ns: ns,
+        }
+    }
+
+    /// At -1 (begin) to 1 (end), or beyond: the variance of a line is a parabola.
+    pub fn at(self, beside: f64) -> f64 {
+        let end = if beside < 0.0 {
+            self.begin_ns
+        } else {
+            self.end_ns
+        };
+        let middle = self.middle_ns * self.middle_ns;
+        let more = (end * end - middle).max(0.0);
+        (middle + more * beside * beside).sqrt()
+    }
+}
+
+/// A low packet: where in the block (0 to 1) and how late above the hull.
+type Low = (f64, f64);
+
+/// A grid over how far the line's begin and end are below the hull's.
+struct Grid {
+    begin: (f64, f64),
+    end: (f64, f64),
+}
+
+/// Mean and deviation of the line's begin and end, and deviation of its middle.
+struct Spread {
+    begin: (f64, f64),
+    end: (f64, f64),
+    middle: f64,
+}
+
+/// Where the clock is by the lowest of a block's points, and how well that is known. `None` where there are too few.
+pub(super) fn line(points: &[Point], hull: Line, tail: Tail) -> Option<(Line, Ends)> {
+    let (first, last) = (points.first()?.0, points.last()?.0);
+    let length = last - first;
+    if length <= 0.0 {
+        return None;
+    }
+    let mut low: Vec<Low> = points
+        .iter()
+        .map(|p| ((p.0 - first) / length, p.1 - hull.at(p.0)))
+        .filter(|(_, r)| *r < tail.depth_ns)
+        .collect();
+    if low.len() <= TENTH {
+        return None;
+    }
+    low.select_nth_unstable_by(TENTH, |a, b| a.1.total_cmp(&b.1));
+    let tenth = low.get(TENTH)?.1.max(LEAST_NS);
+    let side = (-UP * tenth, DOWN * tenth);
+    let coarse = Grid {
+        begin: side,
+        end: side,
+    }
+    .spread(&low, tail)?;
+    let fine = Grid {
+        begin: coarse.begin_side(),
+        end: coarse.end_side(),
+    };
+    // Where all of the likelihood is between two nodes the finer grid may miss it.
+    let spread = fine.spread(&low, tail).unwrap_or(coarse);
+    let line = Line {
+        centre_ns: hull.centre_ns,
+        offset_ns: hull.offset_ns - 0.5 * (spread.begin.0 + spread.end.0),
+        slope: hull.slope - (spread.end.0 - spread.begin.0) / length,
+    };
+    let ends = Ends {
+        begin_ns: spread.begin.1,
+        middle_ns: spread.middle,
+        end_ns: spread.end.1,
+    };
+    Some((line, ends))
+}
+
+impl Grid {
+    fn node(side: (f64, f64), i: usize) -> f64 {
+        side.0 + (side.1 - side.0) * i as f64 / (NODES - 1) as f64
+    }
+
+    /// Mean and deviations over the grid; `None` where no node is possible.
+    fn spread(&self, low: &[Low], tail: Tail) -> Option<Spread> {
+        let mut nodes: Vec<(f64, f64, f64)> = Vec::with_capacity(NODES * NODES);
+        for i in 0..NODES {
+            for k in 0..NODES {
+                let (begin, end) = (Self::node(self.begin, i), Self::node(self.end, k));
+                if let Some(likelihood) = log_likelihood(low, begin, end, tail) {
+                    nodes.push((begin, end, likelihood));
+                }
+            }
+        }
+        let most = nodes.iter().map(|n| n.2).fold(f64::NEG_INFINITY, f64::max);
+        let mean = |of: &dyn Fn(f64, f64) -> f64| {
+            let (sum, all) = nodes.iter().fold((0.0, 0.0), |(sum, all), n| {
+                let weight = (n.2 - most).exp();
+                (sum + weight * of(n.0, n.1), all + weight)
+            });
+            sum / all
+        };
+        if !most.is_finite() {
+            return None;
+        }
+        let (begin, end) = (mean(&|b, _| b), mean(&|_, e| e));
+        let deviation = |of: &dyn Fn(f64, f64) -> f64| mean(&|b, e| of(b, e).powi(2)).sqrt();
+        Some(Spread {
+            begin: (begin, deviation(&|b, _| b - begin)),
+            end: (end, deviation(&|_, e| e - end)),
+            middle: deviation(&|b, e| 0.5 * (b + e - begin - end)),
+        })
+    }
+}
+
+impl Spread {
+    fn begin_side(&self) -> (f64, f64) {
+        Self::side(self.begin)
+    }
+
+    fn end_side(&self) -> (f64, f64) {
+        Self::side(self.end)
+    }
+
+    fn side((mean, deviation): (f64, f64)) -> (f64, f64) {
+        let reach = REACH * deviation.max(1.0);
+        (mean - reach, mean + reach)
+    }
+}
+
+/// Of the line that begins `begin` and ends `end` below the hull; `None` where a packet would be early.
+fn log_likelihood(low: &[Low], begin: f64, end: f64, tail: Tail) -> Option<f64> {
+    let per_depth = 1.0 / tail.depth_ns;
+    let (mut up, mut down) = (0.0, 0.0);
+    for some in low.chunks(FACTORS) {
+        // Logarithms are dear, products cheap.
+        let (mut late, mut deep) = (1.0, 1.0);
+        for (at, r) in some {
+            let below = begin + (end - begin) * at;
+            let lateness = r + below;
+            if lateness <= 0.0 {
+                return None;
+            }
+            late *= lateness * per_depth;
+            deep *= 1.0 + below * per_depth;
+        }
+        up += late.ln();
+        down += deep.ln();
+    }
+    Some((tail.exponent - 1.0) * up - tail.exponent * down)
+}
