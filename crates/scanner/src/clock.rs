@@ -13,6 +13,7 @@ mod online;
 
 pub use cursor::{ClockCursor, Moment, Tangent};
 pub use device::DeviceClock;
+pub(crate) use device::Stretch;
 pub use online::OnlineClock;
 
 use units::{Host, Lidar, Stamp};

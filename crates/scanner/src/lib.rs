@@ -1,6 +1,6 @@
 //! The synchroniser: which angle the platform had when a laser fired.
 //!
-//! [`scanner`] is the whole path on one page; [`clock`], [`polls`], [`trajectory`] and [`sweeps`] are its parts. Nothing here
+//! [`scanner`] is the whole path on one page; [`clock`], [`steps`], [`polls`], [`trajectory`] and [`sweeps`] are its parts. Nothing here
 //! reads a clock or a file: the same records give the same cloud, bit for bit.
 
 pub mod clock;
@@ -9,6 +9,7 @@ pub mod error;
 mod plausible;
 pub mod polls;
 pub mod scanner;
+pub mod steps;
 mod stream;
 pub mod sweeps;
 pub mod tilt;

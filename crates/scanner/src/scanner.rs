@@ -7,6 +7,7 @@
 
 use cloud::mount::{Mount, Tilt};
 use cloud::{Fields, Point, Points, Sink, SinkError};
+use drive::objects::Address;
 use drive::record::{DriveLink, Record, Wire};
 use drive::{Listener, Observation, ShaftSample};
 use lidar::{Decoder, Options, SensorPoint, Stats, Timekeeper};
@@ -17,6 +18,7 @@ use crate::config::ScanConfig;
 use crate::error::ScanError;
 use crate::plausible;
 use crate::polls::angle_samples;
+use crate::steps::{ClockStep, HostLine, Seams, Timeline};
 use crate::sweeps::{MoveWatch, Sweep};
 use crate::tilt::TiltSource;
 use crate::trajectory::{Linear, Trajectory};
@@ -29,6 +31,9 @@ pub struct Survey {
     listener: Listener,
     arrivals: Vec<Arrival>,
     polls: Vec<ShaftSample>,
+    /// Acknowledged writes: object, value, and when it was asked for.
+    writes: Vec<(Address, u32, Stamp<Host>)>,
+    seams: Seams,
     moves: MoveWatch,
     question: Span,
     link: Option<DriveLink>,
@@ -39,6 +44,8 @@ pub struct Survey {
 pub struct Alignment {
     /// Lidar time to host time.
     pub clock: LidarClock,
+    /// The clocks that were set in mid-recording, in order. Host times are by the host's clock as it was before the first.
+    pub steps: Vec<ClockStep>,
     /// Host time to tilt angle.
     pub trajectory: Trajectory,
     /// The sweeps; empty where the platform does not tilt by the log.
@@ -64,6 +71,8 @@ impl Survey {
             listener: Listener::new(config.axis.node),
             arrivals: Vec::new(),
             polls: Vec::new(),
+            writes: Vec::new(),
+            seams: Seams::default(),
             moves: MoveWatch::new(gearing),
             question: config.question(),
             link: None,
@@ -75,6 +84,8 @@ impl Survey {
         match record.wire {
             Wire::Lidar { payload, .. } => {
                 if let Some(timing) = self.timekeeper.packet(record.host, payload) {
+                    let device_ns = timing.first_firing.as_nanos();
+                    self.seams.packet(device_ns, record.host);
                     self.arrivals.push(Arrival {
                         device: timing.first_firing,
                         host: record.host.saturating_add(-timing.fill),
@@ -87,27 +98,42 @@ impl Survey {
                 frame,
             } => {
                 self.link = Some(link);
-                let (polls, moves, question) = (&mut self.polls, &mut self.moves, self.question);
-                self.listener.observe(
-                    link,
-                    direction,
-                    frame,
-                    record.host,
-                    &mut |seen| match seen {
+                let host = self.seams.sew(record.host);
+                let (polls, seams, writes) = (&mut self.polls, &mut self.seams, &mut self.writes);
+                let question = self.question;
+                self.listener
+                    .observe(link, direction, frame, host, &mut |seen| match seen {
                         Observation::Sample(mut poll) => {
                             poll.request = poll.answer.min(poll.request + question);
                             polls.push(poll);
+                            seams.sample();
                         }
                         Observation::Wrote {
                             address,
                             value,
                             request,
                             ..
-                        } => moves.wrote(address, value, request),
+                        } => writes.push((address, value, request)),
                         _ => {}
-                    },
-                );
+                    });
             }
+        }
+    }
+
+    /// The clocks that were set, as far as the records tell; needs packets of one lidar.
+    #[must_use]
+    pub fn steps(&self) -> Vec<ClockStep> {
+        Timeline::new(&self.arrivals, &self.seams).map_or(Vec::new(), |timeline| timeline.steps)
+    }
+
+    /// Brings the drive's stamps to the host's clock as it was at the begin.
+    fn unsew(&mut self, line: &HostLine) {
+        for poll in &mut self.polls {
+            poll.request = line.host(poll.request);
+            poll.answer = line.host(poll.answer);
+        }
+        for (address, value, request) in self.writes.drain(..) {
+            self.moves.wrote(address, value, line.host(request));
         }
     }
 
@@ -121,8 +147,14 @@ impl Survey {
     ///
     /// # Errors
     /// [`ScanError`] where the records hold no lidar packet, or tilt was asked of them and they hold none, or no sweep.
-    pub fn solve(self, config: &ScanConfig, tilt: &TiltSource) -> Result<Alignment, ScanError> {
-        let clock = LidarClock::fit(&self.arrivals).ok_or(ScanError::NoLidarPackets)?;
+    pub fn solve(mut self, config: &ScanConfig, tilt: &TiltSource) -> Result<Alignment, ScanError> {
+        let Timeline {
+            clock,
+            steps,
+            drive,
+            arrivals,
+        } = Timeline::new(&self.arrivals, &self.seams).ok_or(ScanError::NoLidarPackets)?;
+        self.unsew(&drive);
         let mut implausible = 0;
         let samples = match tilt {
             TiltSource::Log => {
@@ -131,7 +163,7 @@ impl Survey {
                 samples
             }
             TiltSource::None => Vec::new(),
-            TiltSource::Table(table) => table.samples(&self.arrivals)?,
+            TiltSource::Table(table) => table.samples(&arrivals)?,
         };
         let sweeps = match tilt {
             TiltSource::Log => self.moves.sweeps(&samples, config.sweep.as_ref()),
@@ -154,6 +186,7 @@ impl Survey {
         };
         Ok(Alignment {
             clock,
+            steps,
             trajectory,
             sweeps,
             mount: match tilt {
@@ -195,7 +228,13 @@ impl Alignment {
     /// This is what placing means. [`Placer`] does it for all points of a block together.
     #[must_use]
     pub fn place(&self, point: &SensorPoint) -> Option<Point> {
-        let moment = self.clock.moment(point.time);
+        self.place_near(point, None)
+    }
+
+    /// The same for a packet that arrived at `near` by the host's clock of that time: where the lidar's clock was set back, times come twice.
+    #[must_use]
+    pub fn place_near(&self, point: &SensorPoint, near: Option<Stamp<Host>>) -> Option<Point> {
+        let moment = self.clock.moment_near(point.time, near);
         let tilt = self
             .trajectory
             .angle(moment)
@@ -227,6 +266,7 @@ impl Alignment {
     ) -> Self {
         Self {
             clock,
+            steps: Vec::new(),
             trajectory,
             sweeps: Vec::new(),
             mount,
@@ -284,6 +324,7 @@ impl<'a> Placer<'a> {
             return Ok(());
         };
         let (volleys, batch, placed) = (&mut self.volleys, &mut self.batch, &mut self.placed);
+        volleys.near(record.host);
         self.decoder.volleys(record.host, payload, &mut |volley| {
             volleys.place(volley, batch, placed);
         });

@@ -28,6 +28,8 @@ pub(crate) struct VolleyPlacer<'a> {
     clock: ClockCursor<'a>,
     trajectory: TrajectoryCursor<'a>,
     spans: SpanCursor<'a>,
+    /// About when what comes next arrived, as far as it matters.
+    near: Option<Stamp<Host>>,
     /// How far the platform turns from the block's start until each channel fires.
     ahead_rad: [f64; N],
     tilts: Tilts<N>,
@@ -55,6 +57,7 @@ impl<'a> VolleyPlacer<'a> {
             clock: alignment.clock.cursor(),
             trajectory: alignment.trajectory.cursor(),
             spans: SpanCursor::new(alignment.spans()),
+            near: None,
             ahead_rad: [0.0; N],
             tilts: Tilts::default(),
             avx2: Level::new().as_avx2(),
@@ -67,6 +70,14 @@ impl<'a> VolleyPlacer<'a> {
         Self {
             avx2: None,
             ..Self::new(alignment)
+        }
+    }
+
+    /// Tells about when what comes next arrived.
+    pub(crate) fn near(&mut self, host: Stamp<Host>) {
+        if self.alignment.clock.is_cut() {
+            self.near = Some(host);
+            self.clock.near(host);
         }
     }
 
@@ -97,7 +108,7 @@ impl<'a> VolleyPlacer<'a> {
                 let second = second.map_or(0, |second| second.kept().count_ones());
                 placed.outside += u64::from(returns + second);
             }
-            Verdict::OneByOne => one_by_one(self.alignment, volley, batch, placed),
+            Verdict::OneByOne => one_by_one(self.alignment, self.near, volley, batch, placed),
         }
     }
 
@@ -221,9 +232,15 @@ impl<'a> VolleyPlacer<'a> {
 
 /// Places the points of a volley by the definition.
 #[cold]
-fn one_by_one(alignment: &Alignment, volley: &Volley<'_>, batch: &mut Points, placed: &mut Placed) {
+fn one_by_one(
+    alignment: &Alignment,
+    near: Option<Stamp<Host>>,
+    volley: &Volley<'_>,
+    batch: &mut Points,
+    placed: &mut Placed,
+) {
     for point in volley.firings().flat_map(|firing| firing.points()) {
-        match alignment.place(&point) {
+        match alignment.place_near(&point, near) {
             Some(point) => {
                 placed.points += 1;
                 batch.push(point);

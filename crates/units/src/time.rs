@@ -127,6 +127,22 @@ impl Span {
         self.ns as f64 * 1e-3
     }
 
+    /// The two spans one after the other, held at the ends of the range instead of wrapping.
+    #[must_use]
+    pub const fn saturating_add(self, other: Self) -> Self {
+        Self {
+            ns: self.ns.saturating_add(other.ns),
+        }
+    }
+
+    /// What is left of the span without `other`, held at the ends of the range instead of wrapping.
+    #[must_use]
+    pub const fn saturating_sub(self, other: Self) -> Self {
+        Self {
+            ns: self.ns.saturating_sub(other.ns),
+        }
+    }
+
     /// Half of the span, towards zero.
     #[must_use]
     pub const fn half(self) -> Self {
@@ -246,6 +262,10 @@ mod tests {
     fn saturation_does_not_wrap() {
         let end = Stamp::<Lidar>::from_nanos(i64::MAX);
         assert_eq!(end.saturating_add(Span::from_secs(1)), end);
+        let most = Span::from_nanos(i64::MAX);
+        assert_eq!(most.saturating_add(Span::from_secs(1)), most);
+        let least = Span::from_nanos(i64::MIN);
+        assert_eq!(least.saturating_sub(Span::from_secs(1)), least);
         let start = Stamp::<Lidar>::from_nanos(i64::MIN);
         assert_eq!(end.saturating_since(start).as_nanos(), i64::MAX);
     }

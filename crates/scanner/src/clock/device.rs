@@ -23,14 +23,29 @@ pub struct DeviceClock<C = Lidar> {
     domain: PhantomData<fn() -> C>,
 }
 
+/// What arrived between two steps of a clock.
+pub(crate) struct Stretch<C = Lidar> {
+    /// Those that tell the clock, in order of device time.
+    pub arrivals: Vec<Arrival<C>>,
+    /// First and last device time of all.
+    pub first: Stamp<C>,
+    pub last: Stamp<C>,
+    /// Device time where the stretch begins in the recording.
+    pub join: Stamp<C>,
+}
+
 /// A stretch over which a device's clock went on evenly.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
     /// First and last arrival, device nanoseconds after the clock's origin.
     pub from_ns: f64,
     pub to_ns: f64,
+    /// The last by the device's clock.
+    pub end_ns: i64,
     /// Whole nanoseconds from device time to host time, beside the lines' offsets.
     pub whole: i64,
+    /// How far the host's clock had been set forward by then.
+    pub set_by: i64,
     /// Never empty.
     pub lines: Vec<Line>,
     /// How far off it may be.
@@ -63,16 +78,63 @@ impl<C> DeviceClock<C> {
     pub fn fit(arrivals: &[Arrival<C>]) -> Option<Self> {
         let mut sorted = arrivals.to_vec();
         sorted.sort_unstable_by_key(|a| (a.device, a.host));
-        let origin_ns = sorted.first()?.device.as_nanos();
-        let piece = Piece::fit(&sorted, origin_ns)?;
-        let mut clock = Self {
+        let stretch = Stretch {
+            first: sorted.first()?.device,
+            last: sorted.last()?.device,
+            join: sorted.first()?.device,
+            arrivals: sorted,
+        };
+        Self::fit_pieces(&[stretch], &[]).map(|(clock, _)| clock)
+    }
+
+    /// Fits a piece for each stretch. Between stretches one of the two clocks was set; where it was the host's, host times go on
+    /// from the stretch before. Beside the clock, how much later packets came from each stretch to the next.
+    pub(crate) fn fit_pieces(
+        stretches: &[Stretch<C>],
+        host_was_set: &[bool],
+    ) -> Option<(Self, Vec<Span>)> {
+        let origin_ns = stretches.first()?.first.as_nanos();
+        let mut pieces: Vec<Piece> = Vec::with_capacity(stretches.len());
+        let mut late: Vec<i64> = Vec::new();
+        let mut rises = Vec::new();
+        let mut set_by = 0i64;
+        for stretch in stretches {
+            let mut piece = Piece::fit(stretch, origin_ns)?;
+            late.extend(stretch.arrivals.iter().map(|arrival| {
+                let host = piece.host(arrival.device, origin_ns);
+                arrival.host.saturating_since(host).as_nanos()
+            }));
+            if let Some(last) = pieces.last() {
+                let by_host = host_was_set.get(rises.len()).copied().unwrap_or(false);
+                let (from, to) = if by_host {
+                    (stretch.join, stretch.join)
+                } else {
+                    (Stamp::from_nanos(last.end_ns), stretch.join)
+                };
+                let before = last
+                    .host(from, origin_ns)
+                    .saturating_since(Stamp::from_nanos(from.as_nanos()));
+                let after = piece
+                    .host(to, origin_ns)
+                    .saturating_since(Stamp::from_nanos(to.as_nanos()));
+                let after = after.saturating_sub(Span::from_nanos(set_by));
+                let rise = after.saturating_sub(before);
+                if by_host {
+                    set_by = set_by.saturating_add(rise.as_nanos());
+                }
+                rises.push(rise);
+            }
+            piece.whole = piece.whole.wrapping_sub(set_by);
+            piece.set_by = set_by;
+            pieces.push(piece);
+        }
+        let clock = Self {
             origin_ns,
-            pieces: vec![piece],
-            residual: Span::ZERO,
+            pieces,
+            residual: median(late),
             domain: PhantomData,
         };
-        clock.residual = clock.median_lateness(&sorted);
-        Some(clock)
+        Some((clock, rises))
     }
 
     /// The host time at which the device's clock read `device`.
@@ -87,7 +149,8 @@ impl<C> DeviceClock<C> {
         self.moment_near(device, None)
     }
 
-    /// The same, where the device's clock read `device` twice, for the time that is nearer to `near`, about when it arrived.
+    /// The same, where the device's clock read `device` twice, for the time that is nearer to `near`, about when it arrived by the
+    /// host's clock of that time.
     #[must_use]
     pub fn moment_near(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Moment {
         self.segment(device, near)
@@ -116,9 +179,8 @@ impl<C> DeviceClock<C> {
     /// How far off the clock may be at `device`, beyond the constant delay.
     ///
     /// It is a statistical bound, which holds all along a recording in 99 of 100: what oscillators wander across a block, and 3.5
-    /// standard deviations of its line, which follow from how densely packets lie just above it; at least how late the quarter's
-    /// most prompt packet is, as no packet is early. Steps too small to be found, and slews too fast to be followed, show
-    /// in the last of these.
+    /// standard deviations of its line, which follow from how densely packets lie just above it; and where all packets of some
+    /// seconds are later than chance allows, that: steps too small to be found, and slews too fast to be followed.
     #[must_use]
     pub fn bound_at(&self, device: Stamp<C>) -> Span {
         let x = self.since_origin(device);
@@ -161,7 +223,8 @@ impl<C> DeviceClock<C> {
         let apart = |piece: &Piece| {
             near.map_or(0, |near| {
                 let host = piece.segment(x).moment(device, x).host;
-                near.saturating_since(host).as_nanos().saturating_abs()
+                let recorded = host.saturating_add(Span::from_nanos(piece.set_by));
+                near.saturating_since(recorded).as_nanos().saturating_abs()
             })
         };
         self.pieces.iter().min_by(|a, b| {
@@ -182,42 +245,36 @@ impl<C> DeviceClock<C> {
         }
         segment
     }
-
-    fn median_lateness(&self, arrivals: &[Arrival<C>]) -> Span {
-        let mut late: Vec<i64> = arrivals
-            .iter()
-            .map(|a| a.host.saturating_since(self.host(a.device)).as_nanos())
-            .collect();
-        let middle = late.len() / 2;
-        if late.is_empty() {
-            return Span::ZERO;
-        }
-        Span::from_nanos(*late.select_nth_unstable(middle).1)
-    }
 }
 
 impl Piece {
-    /// Fits arrivals in order of device time.
-    fn fit<C>(sorted: &[Arrival<C>], origin_ns: i64) -> Option<Self> {
-        let first = sorted.first()?;
+    fn fit<C>(stretch: &Stretch<C>, origin_ns: i64) -> Option<Self> {
+        let first = stretch.arrivals.first()?;
         let whole = first.host.as_nanos().wrapping_sub(first.device.as_nanos());
-        let points: Vec<(f64, f64)> = sorted
+        let since_origin = |device: Stamp<C>| device.as_nanos().saturating_sub(origin_ns) as f64;
+        let points: Vec<(f64, f64)> = stretch
+            .arrivals
             .iter()
             .map(|a| {
-                let x = a.device.as_nanos().saturating_sub(origin_ns) as f64;
                 let y = a.host.as_nanos().wrapping_sub(a.device.as_nanos());
-                (x, y.wrapping_sub(whole) as f64)
+                (since_origin(a.device), y.wrapping_sub(whole) as f64)
             })
             .collect();
-        let (from_ns, to_ns) = (points.first()?.0, points.last()?.0);
         let Envelope { lines, cells } = Envelope::below(&points);
         Some(Self {
-            from_ns,
-            to_ns,
+            from_ns: since_origin(stretch.first),
+            to_ns: since_origin(stretch.last),
+            end_ns: stretch.last.as_nanos(),
             whole,
+            set_by: 0,
             lines,
             cells,
         })
+    }
+
+    fn host<C>(&self, device: Stamp<C>, origin_ns: i64) -> Stamp<Host> {
+        let x = device.as_nanos().saturating_sub(origin_ns) as f64;
+        self.segment(x).moment(device, x).host
     }
 
     fn length_ns(&self) -> f64 {
@@ -275,6 +332,14 @@ impl Line {
     pub fn at(self, x: f64) -> f64 {
         self.offset_ns + self.slope * (x - self.centre_ns)
     }
+}
+
+fn median(mut values: Vec<i64>) -> Span {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return Span::ZERO;
+    }
+    Span::from_nanos(*values.select_nth_unstable(middle).1)
 }
 
 pub(super) fn span(ns: f64) -> Span {

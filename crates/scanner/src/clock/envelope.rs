@@ -31,6 +31,14 @@ const WANDER_PER_S: f64 = 0.03e-6;
 const MORE_WANDER: f64 = 1.25;
 /// Standard deviations within which all of a recording stays in 99 of 100 cases.
 const DEVIATIONS: f64 = 3.5;
+/// Cells of a block.
+const CELLS: f64 = 16.0;
+/// A cell's least late packet is later than it may be by chance if so many others should have been before it.
+const MISSED: f64 = 9.0;
+/// What is later was held up by the network: a clock that was set by as much is found.
+const HELD_UP_NS: f64 = 10e6;
+/// How much more than a cell's neighbours show a clock may be off at the edge of a small step.
+const AT_EDGE: f64 = 1.5;
 /// Of one or two packets nothing is known but that a network rarely holds one for a second.
 const UNKNOWN_NS: f64 = 1e9;
 
@@ -41,6 +49,21 @@ pub(super) type Point = (f64, f64);
 pub(super) struct Envelope {
     pub lines: Vec<Line>,
     pub cells: Vec<Cell>,
+}
+
+/// How delays are spread above the lines: this share is below the depth.
+#[derive(Clone, Copy)]
+struct Spread {
+    share: f64,
+    depth_ns: f64,
+}
+
+impl Spread {
+    /// What the least of `count` delays stays below: with one stage of delay or two, and packets that come in bunches.
+    fn least_of(self, count: usize) -> f64 {
+        let part = MISSED / (self.share * count as f64);
+        2.0 * self.depth_ns * part.max(part.sqrt())
+    }
 }
 
 /// A block with its line.
@@ -73,8 +96,8 @@ impl Envelope {
                 })
             })
             .collect();
-        refine(&mut blocks);
-        let cells = cells(points, &blocks);
+        let spread = refine(&mut blocks);
+        let cells = cells(points, &blocks, spread);
         Self {
             lines: blocks.iter().map(|block| block.line).collect(),
             cells,
@@ -82,15 +105,13 @@ impl Envelope {
     }
 }
 
-/// Brings lines down to where the delays above them come to an end, where that matters.
-fn refine(blocks: &mut [Block<'_>]) {
+/// Brings lines down to where the delays above them come to an end, where that matters; how the delays are spread.
+fn refine(blocks: &mut [Block<'_>]) -> Option<Spread> {
     let low = |blocks: &[Block<'_>]| {
         let mut late: Vec<f64> = blocks.iter().flat_map(Block::lateness).collect();
         lowest(&mut late)
     };
-    let Some((depth_ns, count)) = low(blocks) else {
-        return;
-    };
+    let (depth_ns, count) = low(blocks)?;
     let all: usize = blocks.iter().map(|block| block.points.len()).sum();
     for block in blocks.iter_mut() {
         // The lowest of k packets that are up to D late is late by about D over the root of k, or less.
@@ -98,8 +119,12 @@ fn refine(blocks: &mut [Block<'_>]) {
         block.ends = Ends::all(depth_ns / own.max(1.0).sqrt());
     }
     let too_few = blocks.iter().any(|block| block.points.len() < FEWEST);
+    let spread = Spread {
+        share: count as f64 / all as f64,
+        depth_ns,
+    };
     if depth_ns < PROMPT_NS || too_few {
-        return;
+        return Some(spread);
     }
     let hulls: Vec<Line> = blocks.iter().map(|block| block.line).collect();
     let mut tail = Tail::of_two_stages(depth_ns);
@@ -111,6 +136,7 @@ fn refine(blocks: &mut [Block<'_>]) {
         }
         tail = tail.measured(blocks.iter().flat_map(Block::lateness));
     }
+    Some(spread)
 }
 
 /// The lateness below which a share of all lies, and how many these are.
@@ -123,14 +149,14 @@ fn lowest(late: &mut [f64]) -> Option<(f64, usize)> {
     Some((depth.max(0.0), count.max(1)))
 }
 
-/// How far off the clock may be, by quarters of blocks. Two things tell: how well each line is known, and the quarter's lowest
-/// point, above which the clock cannot be.
-fn cells(points: &[Point], blocks: &[Block<'_>]) -> Vec<Cell> {
+/// How far off the clock may be, cell by cell. Two things tell: how well each line is known, and cells of which all packets are late,
+/// above which the clock may be.
+fn cells(points: &[Point], blocks: &[Block<'_>], spread: Option<Spread>) -> Vec<Cell> {
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return Vec::new();
     };
     let length_ns = last.0 - first.0;
-    let count = (4.0 * length_ns / BLOCK_NS).ceil().max(4.0) as usize;
+    let count = (CELLS * length_ns / BLOCK_NS).ceil().max(CELLS) as usize;
     let width = length_ns / count as f64;
     let block_s = length_ns.min(BLOCK_NS) * 1e-9;
     let wander_per_s = blocks
@@ -138,24 +164,34 @@ fn cells(points: &[Point], blocks: &[Block<'_>]) -> Vec<Cell> {
         .map(wander_per_s)
         .fold(WANDER_PER_S, f64::max);
     let wander_ns = wander_per_s * block_s * block_s / 8.0 * 1e9;
+    let from = |i: usize| first.0 + i as f64 * width;
+    let late: Vec<f64> = (0..count)
+        .map(|i| {
+            let low = points.partition_point(|p| p.0 < from(i));
+            let high = points.partition_point(|p| p.0 <= from(i + 1));
+            let here = points.get(low..high).unwrap_or_default();
+            let late = here.iter().map(|p| p.1 - blended(blocks, p.0));
+            let least = late.fold(f64::INFINITY, f64::min);
+            let usual = spread.map_or(f64::INFINITY, |spread| spread.least_of(here.len()));
+            if least > usual && least < HELD_UP_NS {
+                least
+            } else {
+                0.0
+            }
+        })
+        .collect();
+    let known = |x: f64| wander_ns + DEVIATIONS * deviation(blocks, x);
     (0..count)
         .map(|i| {
-            let from_ns = first.0 + i as f64 * width;
-            let to_ns = from_ns + width;
-            let low = points.partition_point(|p| p.0 < from_ns);
-            let high = points.partition_point(|p| p.0 <= to_ns);
-            let here = points.get(low..high).unwrap_or_default();
-            let lowest = here
-                .iter()
-                .map(|p| p.1 - blended(blocks, p.0))
-                .fold(f64::INFINITY, f64::min);
-            let known = |x: f64| wander_ns + DEVIATIONS * deviation(blocks, x);
+            let (from_ns, to_ns) = (from(i), from(i + 1));
+            let near = late.get(i.saturating_sub(1)..(i + 2).min(count));
+            let late_ns = near.unwrap_or_default().iter().copied();
             let bound_ns = if points.len() < 3 {
                 UNKNOWN_NS
-            } else if lowest.is_finite() {
-                known(from_ns).max(known(to_ns)).max(lowest)
             } else {
-                known(from_ns).max(known(to_ns))
+                known(from_ns)
+                    .max(known(to_ns))
+                    .max(AT_EDGE * late_ns.fold(0.0, f64::max))
             };
             Cell { from_ns, bound_ns }
         })

@@ -1,0 +1,357 @@
+//! Steps of either clock and what only looks like one.
+
+use units::{Lidar, Span};
+
+use super::*;
+
+const EPOCH: i64 = 1_795_226_733_000_000_000;
+const PACKET_NS: i64 = 1_327_104;
+const S: i64 = 1_000_000_000;
+
+/// A reproducible stream of numbers in 0..1 (xorshift64*).
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// A recording of a lidar at 30 ppm and of a drive that is polled, as it would be had nobody set a clock.
+struct Recorded {
+    packets: Vec<Arrival>,
+    /// Request and answer.
+    polls: Vec<(i64, i64)>,
+}
+
+/// One record after the other, as in the file.
+enum Entry {
+    Packet(Arrival),
+    Poll(i64, i64),
+}
+
+impl Recorded {
+    fn new(seconds: i64, poll_every_us: Option<i64>) -> Self {
+        let mut noise = Noise(11);
+        let mut last = 0;
+        let packets = (0..seconds * S / PACKET_NS).map(|i| {
+            let device = i * PACKET_NS;
+            let late = -22e3 * (1.0 - noise.next()).ln();
+            let spike = if noise.next() < 0.002 {
+                15e6 * noise.next()
+            } else {
+                0.0
+            };
+            let host = EPOCH + device + device * 30 / 1_000_000 + (late + spike) as i64;
+            last = host.max(last);
+            Arrival {
+                device: Stamp::from_nanos(EPOCH + device / 1_000 * 1_000),
+                host: Stamp::from_nanos(last),
+            }
+        });
+        let packets = packets.collect();
+        let polls = poll_every_us.map_or(Vec::new(), |every| {
+            (0..seconds * 1_000_000 / every)
+                .map(|i| {
+                    let request = EPOCH + i * every * 1_000;
+                    let trip = 800_000.0 + 1.5e6 * noise.next();
+                    (request, request + trip.min(every as f64 * 900.0) as i64)
+                })
+                .collect()
+        });
+        Self { packets, polls }
+    }
+
+    /// As recorded by a host whose clock is set at true times.
+    fn stepped(&self, steps: &[(i64, i64)]) -> Seen {
+        let clock = |host: i64| {
+            let past = steps.iter().filter(|(when, _)| *when <= host - EPOCH);
+            host + past.map(|(_, by)| by).sum::<i64>()
+        };
+        let mut entries: Vec<(i64, Entry)> = Vec::new();
+        for packet in &self.packets {
+            let host = packet.host.as_nanos();
+            let stamped = Arrival {
+                host: Stamp::from_nanos(clock(host)),
+                ..*packet
+            };
+            entries.push((host, Entry::Packet(stamped)));
+        }
+        for (request, answer) in &self.polls {
+            entries.push((*answer, Entry::Poll(clock(*request), clock(*answer))));
+        }
+        entries.sort_by_key(|(host, _)| *host);
+        let mut seen = Seen::default();
+        for (_, entry) in entries {
+            match entry {
+                Entry::Packet(packet) => {
+                    seen.seams.packet(packet.device.as_nanos(), packet.host);
+                    seen.arrivals.push(packet);
+                }
+                Entry::Poll(request, answer) => {
+                    let stamp = Stamp::from_nanos;
+                    let sewn = (
+                        seen.seams.sew(stamp(request)),
+                        seen.seams.sew(stamp(answer)),
+                    );
+                    seen.polls.push(sewn);
+                    seen.seams.sample();
+                }
+            }
+        }
+        seen
+    }
+}
+
+/// What a survey has when all is read.
+#[derive(Default)]
+struct Seen {
+    arrivals: Vec<Arrival>,
+    seams: Seams,
+    polls: Vec<(Stamp<Host>, Stamp<Host>)>,
+}
+
+impl Seen {
+    fn timeline(&self) -> Timeline {
+        Timeline::new(&self.arrivals, &self.seams).unwrap()
+    }
+
+    /// Greatest error of clock and polls against what was, in microseconds, a constant aside; how many polls are off by a round trip or
+    /// more.
+    fn errors(&self, timeline: &Timeline, truth: &Recorded) -> (f64, usize) {
+        let clock = truth.packets.iter().zip(&self.arrivals).map(|(was, seen)| {
+            let since = was.device.as_nanos() - EPOCH;
+            let host = timeline
+                .clock
+                .moment_near(seen.device, Some(seen.host))
+                .host;
+            (host.as_nanos() - EPOCH - since - since * 30 / 1_000_000) as f64 / 1e3
+        });
+        let worst = clock.fold(0.0, |worst: f64, us| worst.max(us.abs()));
+        let polls = self.polls.iter().zip(&truth.polls).filter(|(seen, was)| {
+            let off = |seen: Stamp<Host>, was: i64| {
+                (timeline.drive.host(seen).as_nanos() - was).abs() > 20_000
+            };
+            off(seen.0, was.0) || off(seen.1, was.1)
+        });
+        (worst, polls.count())
+    }
+}
+
+fn only(timeline: &Timeline) -> ClockStep {
+    let [step] = timeline.steps[..] else {
+        panic!("{:?}", timeline.steps);
+    };
+    step
+}
+
+/// NTP, a leap second, somebody at the keyboard: from 12 ms to a year, both ways, with the drive polled and without one.
+#[test]
+fn the_hosts_clock_is_set() {
+    for poll_us in [Some(2_500), Some(1_000), Some(60_000), None] {
+        let recorded = Recorded::new(40, poll_us);
+        for by_ms in [
+            12,
+            30,
+            128,
+            400,
+            1_000,
+            1_700,
+            3_000,
+            60_000,
+            3_600_000,
+            31_536_000_000,
+        ] {
+            for by in [by_ms * 1_000_000, -by_ms * 1_000_000] {
+                let when = 21 * S + 345_678;
+                let seen = recorded.stepped(&[(when, by)]);
+                let timeline = seen.timeline();
+                let step = only(&timeline);
+                assert_eq!(step.clock, SetClock::Host, "{by} {poll_us:?}");
+                let off = (step.by.as_nanos() - by).abs();
+                assert!(off < 5_000, "{by} by {off} ns, {poll_us:?}");
+                let apart = (step.when.as_nanos() - EPOCH - when).abs();
+                assert!(apart < 30_000_000, "{by} at {apart} ns, {poll_us:?}");
+                let (worst_us, polls_off) = seen.errors(&timeline, &recorded);
+                assert!(worst_us < 5.0, "{by}, {poll_us:?}: {worst_us} us");
+                // At 60 ms a poll a pause may hide a step of less.
+                let most = usize::from(poll_us == Some(60_000) && by_ms < 60) * 2;
+                assert!(polls_off <= most, "{by}, {poll_us:?}: {polls_off} polls");
+            }
+        }
+    }
+}
+
+/// Two in one recording add up, and may undo each other.
+#[test]
+fn the_hosts_clock_is_set_twice() {
+    let recorded = Recorded::new(60, Some(2_500));
+    for (first, second) in [(S, -S), (S, S), (-90 * S, 25_000_000), (-S, -7_200 * S)] {
+        let seen = recorded.stepped(&[(20 * S, first), (41 * S, second)]);
+        let timeline = seen.timeline();
+        let found: Vec<i64> = timeline.steps.iter().map(|s| s.by.as_nanos()).collect();
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!((found[0] - first).abs() < 5_000 && (found[1] - second).abs() < 5_000);
+        let apart = timeline.steps[1].when.as_nanos() - EPOCH - 41 * S;
+        assert!(apart.abs() < 30_000_000, "{apart}");
+        let (worst_us, polls_off) = seen.errors(&timeline, &recorded);
+        assert!(
+            worst_us < 5.0 && polls_off == 0,
+            "{worst_us} us, {polls_off} polls"
+        );
+    }
+}
+
+/// In the first second, or the last, a step is one, too.
+#[test]
+fn the_hosts_clock_is_set_near_the_ends() {
+    let recorded = Recorded::new(20, Some(2_500));
+    for when in [S / 4, S, 19 * S, 19 * S + S / 2] {
+        for by in [S, -S] {
+            let seen = recorded.stepped(&[(when, by)]);
+            let timeline = seen.timeline();
+            let step = only(&timeline);
+            assert!((step.by.as_nanos() - by).abs() < 10_000, "{step:?}");
+            let (worst_us, polls_off) = seen.errors(&timeline, &recorded);
+            assert!(
+                worst_us < 20.0 && polls_off == 0,
+                "{when} {by}: {worst_us} us, {polls_off}"
+            );
+        }
+    }
+}
+
+/// The lidar's clock is set by its first pulse, forward or back, or begins anew after an outage: a piece of its own, and no host time is touched.
+#[test]
+fn the_lidars_clock_is_set() {
+    for poll_us in [Some(2_500), None] {
+        for (by, outage) in [
+            (300_700_000, 0),
+            (-412_345_000, 0),
+            (800 * S + 5_000, 0),
+            (-1_234 * S + 77_000, 12 * S),
+            (5 * S + 123_000, 12 * S),
+        ] {
+            let mut recorded = Recorded::new(50, poll_us);
+            let at = EPOCH + 18 * S;
+            recorded
+                .packets
+                .retain(|packet| !(at..at + outage).contains(&packet.device.as_nanos()));
+            let truth = Recorded {
+                packets: recorded.packets.clone(),
+                polls: recorded.polls.clone(),
+            };
+            for packet in &mut recorded.packets {
+                if packet.device.as_nanos() >= at {
+                    packet.device += Span::from_nanos(by);
+                }
+            }
+            let seen = recorded.stepped(&[]);
+            let timeline = seen.timeline();
+            let step = only(&timeline);
+            assert_eq!(step.clock, SetClock::Lidar, "{by} {poll_us:?}");
+            assert!(
+                (step.by.as_nanos() - by).abs() < 1_000_000,
+                "{by}: {step:?}"
+            );
+            let (worst_us, polls_off) = seen.errors(&timeline, &truth);
+            assert!(
+                worst_us < 5.0 && polls_off == 0,
+                "{by}: {worst_us} us, {polls_off}"
+            );
+        }
+    }
+}
+
+/// A network that stands still hands on what it held all at once, be it at the end of a recording or from its start; a link
+/// that loses packets, or a host that is paused, changes nothing either.
+#[test]
+fn delays_are_no_steps() {
+    for (from, length) in [
+        (10 * S, 3 * S),
+        (15 * S, 4 * S),
+        (0, 2 * S),
+        (28 * S, 2 * S),
+        (29 * S, S),
+    ] {
+        for poll_us in [Some(2_500), None] {
+            let mut recorded = Recorded::new(30, poll_us);
+            let truth = Recorded::new(30, poll_us);
+            let until = EPOCH + from + length;
+            for packet in &mut recorded.packets {
+                if packet.host.as_nanos() >= EPOCH + from && packet.host.as_nanos() < until {
+                    let place = packet.host.as_nanos() - EPOCH - from;
+                    packet.host = Stamp::from_nanos(until + place / 1_000_000);
+                }
+            }
+            let seen = recorded.stepped(&[]);
+            let timeline = seen.timeline();
+            assert_eq!(timeline.steps, [], "{from} {length}");
+            let (worst_us, polls_off) = seen.errors(&timeline, &truth);
+            assert!(polls_off == 0, "{polls_off}");
+            assert!(worst_us < 100.0, "{from} {length}: {worst_us} us");
+        }
+    }
+    let mut recorded = Recorded::new(30, Some(2_500));
+    let gap = EPOCH + 9 * S..EPOCH + 14 * S;
+    recorded
+        .packets
+        .retain(|packet| !gap.contains(&packet.device.as_nanos()));
+    recorded.polls.retain(|poll| !gap.contains(&poll.0));
+    assert_eq!(recorded.stepped(&[]).timeline().steps, []);
+}
+
+/// Below 10 ms a step is absorbed: the bound says so.
+#[test]
+fn what_is_too_small_to_be_found_is_within_the_bound() {
+    for by in [
+        100_000, 2_000_000, 8_000_000, -100_000, -2_000_000, -8_000_000,
+    ] {
+        let recorded = Recorded::new(60, Some(2_500));
+        let seen = recorded.stepped(&[(31 * S, by)]);
+        let timeline = seen.timeline();
+        assert_eq!(timeline.steps, []);
+        for (packet, was) in seen.arrivals.iter().zip(&recorded.packets) {
+            // By the clock of that time.
+            let since = was.device.as_nanos() - EPOCH;
+            let set = if packet.host == was.host { 0 } else { by };
+            let truth = EPOCH + since + since * 30 / 1_000_000 + set;
+            let off = timeline.clock.host(packet.device).as_nanos() - truth;
+            let bound = timeline.clock.bound_at(packet.device).as_nanos();
+            // Whole microseconds of the device.
+            assert!(off.abs() <= bound + 2_000, "{by}: {off} ns, bound {bound}");
+        }
+    }
+}
+
+/// A damaged stamp, early by minutes, is left out; the clock does not bend to it.
+#[test]
+fn a_stray_packet_is_left_out() {
+    let recorded = Recorded::new(20, Some(2_500));
+    let mut seen = recorded.stepped(&[]);
+    seen.arrivals[7_000].device += Span::from_secs(90);
+    let timeline = seen.timeline();
+    assert_eq!(timeline.steps, []);
+    let sound = |i: &usize| *i != 7_000;
+    let worst = (0..seen.arrivals.len()).filter(sound).map(|i| {
+        let device: Stamp<Lidar> = seen.arrivals[i].device;
+        let since = device.as_nanos() - EPOCH;
+        (timeline.clock.host(device).as_nanos() - device.as_nanos() - since * 30 / 1_000_000).abs()
+    });
+    assert!(worst.max().unwrap() < 5_000);
+}
+
+/// Of few packets nothing is a step, and nothing panics.
+#[test]
+fn a_handful_of_packets() {
+    for count in 1..40 {
+        let mut recorded = Recorded::new(1, None);
+        recorded.packets.truncate(count);
+        let seen = recorded.stepped(&[]);
+        assert_eq!(seen.timeline().steps, []);
+    }
+    assert!(Timeline::new(&[], &Seams::default()).is_none());
+}
