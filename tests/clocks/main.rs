@@ -111,11 +111,12 @@ fn straight(packets: &[TimedPacket]) -> Off {
     }))
 }
 
-/// Olson's, from a second after the start on; how often its bound held.
-fn online(packets: &[TimedPacket]) -> (Off, f64) {
+/// Olson's, from a second after the start on; the share of packets at which its bound held, and its mean.
+fn online(packets: &[TimedPacket]) -> (Off, f64, f64) {
     let mut clock = OnlineClock::new();
     let mut errors = Vec::new();
-    let (mut held, mut last) = (0, Stamp::from_nanos(i64::MIN));
+    let (mut held, mut bounds_us) = (0, 0.0);
+    let mut last = Stamp::from_nanos(i64::MIN);
     for (p, a) in packets.iter().zip(arrivals(packets)) {
         assert!(!clock.observe(a), "no clock was set");
         let host = clock.moment(p.device).unwrap().host;
@@ -130,9 +131,14 @@ fn online(packets: &[TimedPacket]) -> (Off, f64) {
         let error = host - p.truth;
         errors.push(error.as_micros_f64());
         held += u64::from(error.as_nanos().abs() <= clock.bound().as_nanos());
+        bounds_us += clock.bound().as_micros_f64();
     }
-    let share = held as f64 / errors.len() as f64;
-    (Off::of(errors.into_iter()), share)
+    let count = errors.len() as f64;
+    (
+        Off::of(errors.into_iter()),
+        held as f64 / count,
+        bounds_us / count,
+    )
 }
 
 const DRIFTS_PPM: [f64; 3] = [-50.0, 0.0, 50.0];
@@ -244,9 +250,13 @@ fn the_online_bound_holds() {
     for link in ArrivalLink::ALL {
         for seed in 0..12 {
             let packets = packets(link, 45, DRIFTS_PPM[seed as usize % 3], seed);
-            let (off, share) = online(&packets);
-            println!("{} {seed}: {share:.4} {off:?}", link.name());
-            assert!(share >= 0.99, "{link:?}, seed {seed}: {share}");
+            let (off, share, bound_us) = online(&packets);
+            let said = format!(
+                "{} {seed}: {share:.4}, {bound_us:.1} us, {off:?}",
+                link.name()
+            );
+            println!("{said}");
+            assert!(share >= 0.99 && bound_us < 5.0 * off.worst, "{said}");
         }
     }
 }

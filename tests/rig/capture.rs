@@ -49,6 +49,10 @@ pub struct Setting {
     pub lidar_clock_us: u32,
     /// What goes wrong, and how long after the begin.
     pub fault: Option<(Fault, Span)>,
+    /// How long after the begin the host's clock is set, and how far forward.
+    pub host_set: Option<(Span, Span)>,
+    /// The same of the lidar's clock.
+    pub lidar_set: Option<(Span, Span)>,
     /// How long after the begin the user presses Ctrl-C.
     pub interrupt_after: Option<Span>,
 }
@@ -69,6 +73,8 @@ impl Default for Setting {
             start: Stamp::from_nanos(1_795_226_733_000_000_000),
             lidar_clock_us: 1_234_567_890,
             fault: None,
+            host_set: None,
+            lidar_set: None,
             interrupt_after: None,
         }
     }
@@ -197,7 +203,10 @@ impl Captured {
         let mut tail = port.clone();
         io::port::Port::read(&mut tail, &mut [0; 1], Span::from_millis(20)).unwrap();
 
-        let (packets, truth) = port.end();
+        let (mut packets, truth) = port.end();
+        if let Some((after, by)) = setting.lidar_set {
+            set_lidar(&mut packets, setting.start + after, by);
+        }
         let folder = tempfile::tempdir().unwrap();
         let drive = drive.take();
         let records = write_log(
@@ -206,6 +215,9 @@ impl Captured {
             link,
             &drive,
             &packets,
+            setting
+                .host_set
+                .map(|(after, by)| (setting.start + after, by)),
         );
         let data_packets = packets
             .iter()
@@ -398,13 +410,28 @@ impl Captured {
     }
 }
 
-/// Writes both devices' records in order of time; their number.
+/// Stamps the packets from `from` on as by a clock that was set forward by `by`.
+fn set_lidar(packets: &mut [Arrived], from: Stamp<Host>, by: Span) {
+    let data = packets
+        .iter_mut()
+        .filter(|p| p.host >= from && p.datagram.port == sim::DATA_PORT);
+    for packet in data {
+        let stamp: &mut [u8] = &mut packet.datagram.payload[1_200..1_204];
+        let us = i64::from(u32::from_le_bytes(stamp.try_into().unwrap()));
+        let set = (us + by.as_nanos() / 1_000).rem_euclid(3_600_000_000) as u32;
+        stamp.copy_from_slice(&set.to_le_bytes());
+    }
+}
+
+/// Writes both devices' records in the order in which they came; their number. From an instant on they may be stamped by a clock
+/// that was set.
 fn write_log(
     path: &Path,
     config: &ScanConfig,
     link: DriveLink,
     drive: &[Owned],
     packets: &[Arrived],
+    set: Option<(Stamp<Host>, Span)>,
 ) -> usize {
     let drive = drive.iter().map(|owned| Record {
         host: owned.host,
@@ -424,6 +451,11 @@ fn write_log(
     });
     let mut records: Vec<Record<'_>> = drive.chain(lidar).collect();
     records.sort_by_key(|record| record.host);
+    if let Some((from, by)) = set {
+        for record in records.iter_mut().filter(|record| record.host >= from) {
+            record.host += by;
+        }
+    }
     let head = LogConfig {
         metadata: toml::to_string(config).unwrap(),
         drive: Some(link),

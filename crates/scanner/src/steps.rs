@@ -8,11 +8,13 @@
 //!
 //! All host stamps after a step of the host's clock, the drive's too (`seams`), are brought back to the clock before it, so time goes on evenly and
 //! so do clock and trajectory. A lidar's clock that was set has another piece from then on. Steps of the host's clock below 10 ms
-//! are not looked for: they show in the clock's bound. So does what comes and goes within six seconds.
+//! are not looked for: they show in the clock's bound. So does what is undone within six seconds.
 //! An hour that wraps is nothing to be found here: `lidar` unwraps it.
 
 mod jumps;
 mod seams;
+
+use core::fmt;
 
 use units::{Host, Span, Stamp};
 
@@ -37,8 +39,31 @@ pub struct ClockStep {
     pub clock: SetClock,
     /// When, by the host's clock as it was at the recording's begin.
     pub when: Stamp<Host>,
+    /// How long after the lidar's first packet.
+    pub after: Span,
     /// How far forward; negative where it was set back.
     pub by: Span,
+}
+
+impl fmt::Display for ClockStep {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let way = if self.by < Span::ZERO {
+            "back"
+        } else {
+            "forward"
+        };
+        let (by, after) = (self.by.as_secs_f64().abs(), self.after.as_secs_f64());
+        match self.clock {
+            SetClock::Host => write!(
+                f,
+                "the host's clock was set {way} by {by:.6} s, {after:.3} s into the recording; times after it are given by the clock before it"
+            ),
+            SetClock::Lidar => write!(
+                f,
+                "the lidar's clock was set {way} by {by:.6} s or began anew, {after:.3} s into the recording; times of the host are not affected"
+            ),
+        }
+    }
 }
 
 /// Time as it went on.
@@ -71,6 +96,7 @@ impl Timeline {
             .map(|(_, clock)| *clock == SetClock::Host)
             .collect();
         let (clock, rises) = LidarClock::fit_pieces(&pieces, &host_was_set)?;
+        let begin = arrivals.first()?.host;
         let mut line = HostLine::new(seams);
         let mut steps = Vec::new();
         let mut corrected = arrivals.to_vec();
@@ -93,8 +119,12 @@ impl Timeline {
                 SetClock::Host => before(when, by),
                 SetClock::Lidar => when,
             };
-            let clock = *clock;
-            steps.push(ClockStep { clock, when, by });
+            steps.push(ClockStep {
+                clock: *clock,
+                when,
+                after: when.saturating_since(begin),
+                by,
+            });
         }
         Some(Self {
             clock,

@@ -2,6 +2,7 @@
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
+use scanner::steps::{ClockStep, SetClock};
 use serde::Serialize;
 
 /// Packets by what they were.
@@ -139,6 +140,35 @@ pub struct SweepReport {
     pub frames: Option<f64>,
 }
 
+/// A clock that was set in mid-recording.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StepReport {
+    /// host or lidar.
+    pub clock: &'static str,
+    /// When, Unix seconds of the host's clock as it was at the begin.
+    pub when_s: f64,
+    /// Seconds after the lidar's first packet.
+    pub after_s: f64,
+    /// How far forward, seconds; negative where it was set back.
+    pub by_s: f64,
+}
+
+impl StepReport {
+    /// The report on a step.
+    #[must_use]
+    pub fn new(step: &ClockStep) -> Self {
+        Self {
+            clock: match step.clock {
+                SetClock::Host => "host",
+                SetClock::Lidar => "lidar",
+            },
+            when_s: step.when.as_secs_f64(),
+            after_s: step.after.as_secs_f64(),
+            by_s: step.by.as_secs_f64(),
+        }
+    }
+}
+
 /// How the clocks and the angle were joined.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sync {
@@ -146,8 +176,12 @@ pub struct Sync {
     pub clock_method: &'static str,
     /// Median delay of a packet above the clock's envelope.
     pub clock_residual_us: f64,
+    /// How far off the clock may be, beyond a constant delay.
+    pub clock_bound_us: f64,
     /// How much slower than the host's clock the lidar's runs.
     pub clock_drift_ppm: f64,
+    /// Clocks that were set in mid-recording.
+    pub steps: Vec<StepReport>,
     /// Method of the trajectory.
     pub angle_method: &'static str,
     /// RMS of angle samples against their neighbours.
@@ -288,8 +322,11 @@ impl Scan {
         rows.push((
             "clock",
             format!(
-                "{}, packets {:.0} us above it, drift {:.1} ppm",
-                sync.clock_method, sync.clock_residual_us, sync.clock_drift_ppm
+                "{}, within {:.0} us, packets {:.0} us above it, drift {:.1} ppm",
+                sync.clock_method,
+                sync.clock_bound_us,
+                sync.clock_residual_us,
+                sync.clock_drift_ppm
             ),
         ));
         let rms = sync.angle_rms_deg.map_or(String::new(), |rms| {

@@ -23,7 +23,7 @@ const RATE: f64 = 100e-6;
 /// How fast the offset may come down.
 const CATCH_UP: f64 = 0.5;
 /// Stamps that go back by more were not reordered.
-const BACK_NS: f64 = 5e6;
+const BACK_NS: f64 = 10e6;
 /// A gap in device time that the host's clock does not show, or packets all later than this for [`PATIENCE_NS`], are of a
 /// clock that was set.
 const SET_NS: f64 = 10e6;
@@ -117,8 +117,8 @@ impl<C> OnlineClock<C> {
     }
 
     /// How far off the clock may be now, beyond the constant delay: what it grew, and clocks may have drifted, in the two longest of
-    /// the last 32 intervals between prompt packets. Statistical; from the first second on it holds at 99 of 100
-    /// packets, before that it is a second.
+    /// the last 32 intervals between prompt packets. Statistical: it holds at 99 of 100
+    /// packets from the first second on; until two such intervals are known it is a second.
     #[must_use]
     pub fn bound(&self) -> Span {
         span(self.state.as_ref().map_or(UNKNOWN_NS, State::bound_ns))
@@ -141,7 +141,7 @@ impl State {
             from: (0.0, 0.0),
             last: (0.0, 0.0),
             late: None,
-            ages: [f64::INFINITY; AGES],
+            ages: [0.0; AGES],
             turn: 0,
             median: 0.0,
         }
@@ -227,7 +227,7 @@ impl State {
         let mut ages = self.ages;
         ages.sort_unstable_by(f64::total_cmp);
         let grew = match ages.as_slice() {
-            [.., second, first] if first.is_finite() => first + second,
+            [.., second, first] if *second > 0.0 => first + second,
             _ => return UNKNOWN_NS,
         };
         let now = (self.last.0 - self.held.0).max(0.0);

@@ -4,7 +4,7 @@
 //! the difference is already there within a tenth of a second, it is a jump. A delay is none, be it of seconds: what was held up
 //! comes all at once, so that the values fall back within as long as it was held up. Near the ends of a recording, where there are no six seconds, the values
 //! must be level instead.
-//! Left out: jumps that are undone within six seconds, and whose clock it was.
+//! Left out: jumps up that are undone within six seconds, and whose clock it was.
 
 use std::collections::VecDeque;
 
@@ -21,7 +21,7 @@ const WINDOW_NS: i64 = 6_000_000_000;
 const LEVEL: usize = 32;
 const LOCAL: usize = 64;
 /// Host stamps that go back by more were not reordered; nor was device time.
-const BACK: Span = Span::from_millis(-5);
+const BACK: Span = Span::from_millis(-10);
 /// How far from a jump its packet may be.
 const NEAR: usize = 8;
 /// Stamps are whole microseconds.
@@ -108,17 +108,21 @@ impl Search<'_> {
         if rise >= LEAST_NS && self.is_sudden(at, rise) && self.stays(at) {
             return Verdict::Jumped(Span::from_nanos(rise));
         }
-        if !early || rise > -LEAST_NS {
+        if !early {
             return Verdict::Goes;
         }
+        // Nobody is early for nothing: another jump within the window changes nothing of this one.
+        let fall = self
+            .least(at, at + LOCAL)
+            .map_or(0, |least| least.saturating_sub(before));
         let next = self.least(at + 1, at + LOCAL);
         if next.is_none_or(|next| next.saturating_sub(before) > -LEAST_NS / 2) {
             return Verdict::Stray;
         }
-        // Early packets are early; but those before may all have been late.
+        // But those before may all have been late.
         let was_level = at - self.since >= self.window || self.is_level(self.since, at);
-        if self.is_sudden(at, rise) && (was_level || self.went_back(at)) {
-            return Verdict::Jumped(Span::from_nanos(rise));
+        if fall <= -LEAST_NS && (was_level || self.went_back(at)) {
+            return Verdict::Jumped(Span::from_nanos(fall));
         }
         Verdict::Goes
     }

@@ -12,6 +12,8 @@ use units::{Host, Span, Stamp};
 const BACK: Span = Span::from_millis(-5);
 /// A leap ahead of what the lidar shows by more is of a clock that was set forward. Less than this disturbs no pairing.
 const LEAP: Span = Span::from_millis(1_500);
+/// What is put between two clocks: how long it truly was is not known to a microsecond, and after so long a silence pairing begins anew.
+const SEAM: Span = Span::from_millis(2_500);
 /// The lidar tells how time went only while its packets come.
 const ALIVE: Span = Span::from_millis(500);
 /// Pauses from this length on are kept in mind: a step may hide in them.
@@ -68,9 +70,7 @@ impl Seams {
             let length = host.saturating_since(last);
             let went = self.went_on(last, host);
             if length < BACK || went.is_some_and(|went| length.saturating_sub(went) > LEAP) {
-                // No two instants of two clocks become one.
-                let kept = went.unwrap_or(Span::ZERO).max(Span::from_nanos(1));
-                self.shift = self.shift.saturating_add(length).saturating_sub(kept);
+                self.shift = self.shift.saturating_add(length).saturating_sub(SEAM);
                 let sewn = before(host, self.shift);
                 self.shifts.push((sewn, self.shift));
             }
@@ -133,12 +133,20 @@ impl Seams {
             .iter()
             .filter(|pause| pause.packets.abs_diff(at) <= DISORDER)
             .filter(|pause| BACK < excess(pause) && excess(pause) < most_excess(by))
-            .min_by_key(|pause| (excess(pause), pause.packets.abs_diff(at)))
+            .min_by_key(|pause| {
+                // Another pause of that length may be about, but not so near.
+                let apart = i64::from(pause.packets.abs_diff(at));
+                let excess = excess(pause).as_nanos().saturating_abs();
+                excess.saturating_add(apart.saturating_mul(PER_PACKET_NS))
+            })
     }
 }
 
 /// A record of the drive this many packets before the step in the file may come after it.
 const NEAR: u32 = 4;
+
+/// A pause that is a packet farther from the step must fit it better by so much.
+const PER_PACKET_NS: i64 = 200_000;
 
 /// How much longer than the step a pause may be.
 fn most_excess(by: Span) -> Span {

@@ -7,7 +7,7 @@ use cloud::{Fields, Metadata, Point, Points};
 use lidar::{Decoder, Firing, Frame, FrameCutter, FrameError, Options, OrganisedFrame, Stats};
 use protocol::record::{Record, Wire};
 use scanner::{Alignment, Placed};
-use units::{Degrees, Stamp};
+use units::{Degrees, Host, Stamp};
 
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
@@ -53,6 +53,8 @@ struct Filling<'a> {
     /// Frames that have ended and are not written yet, with their rows.
     ended: Vec<(Frame, Points, u64)>,
     error: Option<FrameError>,
+    /// When the last record came.
+    near: Option<Stamp<Host>>,
 }
 
 impl<'a> FrameWriter<'a> {
@@ -90,6 +92,7 @@ impl<'a> FrameWriter<'a> {
                 placed: Placed::default(),
                 ended: Vec::new(),
                 error: None,
+                near: None,
             },
         })
     }
@@ -103,6 +106,7 @@ impl<'a> FrameWriter<'a> {
             return Ok(());
         };
         let filling = &mut self.filling;
+        filling.near = Some(record.host);
         self.decoder
             .packet(record.host, payload, &mut |firing| filling.firing(firing));
         self.write(written)
@@ -166,7 +170,7 @@ impl Filling<'_> {
             return;
         }
         for point in firing.points() {
-            match self.alignment.place(&point) {
+            match self.alignment.place_near(&point, self.near) {
                 Some(point) => {
                     self.placed.points += 1;
                     self.points.push(point);
@@ -203,13 +207,13 @@ impl Filling<'_> {
             for ring in 0..grid.rings() {
                 for column in 0..grid.columns().len() {
                     let seen = grid.cell(layer, ring, column);
-                    let placed = seen.and_then(|seen| alignment.place(seen));
+                    let placed = seen.and_then(|seen| alignment.place_near(seen, self.near));
                     match (seen, placed) {
                         (_, Some(_)) => self.placed.points += 1,
                         (Some(_), None) => self.placed.outside += 1,
                         (None, None) => {}
                     }
-                    let nothing = || nothing(alignment, grid, ring, column);
+                    let nothing = || nothing(alignment, self.near, grid, ring, column);
                     self.points.push(placed.unwrap_or_else(nothing));
                 }
             }
@@ -218,10 +222,18 @@ impl Filling<'_> {
 }
 
 /// The point of a shot that brought nothing back: fired then, by that laser, without a place.
-fn nothing(alignment: &Alignment, grid: &OrganisedFrame, ring: usize, column: usize) -> Point {
+fn nothing(
+    alignment: &Alignment,
+    near: Option<Stamp<Host>>,
+    grid: &OrganisedFrame,
+    ring: usize,
+    column: usize,
+) -> Point {
     let time = grid
         .time(ring, column)
-        .map_or(Stamp::from_nanos(0), |time| alignment.clock.host(time));
+        .map_or(Stamp::from_nanos(0), |time| {
+            alignment.clock.moment_near(time, near).host
+        });
     Point {
         position_m: [f64::NAN; 3],
         ring: u8::try_from(ring).unwrap_or(u8::MAX),

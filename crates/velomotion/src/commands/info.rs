@@ -4,6 +4,7 @@ use io::recording::{DatagramKind, Sensor};
 use lidar::{Decoder, Options, Stats, UtcClock, UtcState};
 use protocol::record::{DriveLink, Record, Wire};
 use protocol::vlp16::{PositionPacket, Pps, ReturnMode};
+use scanner::steps::{ClockStep, SetClock};
 use scanner::{ScanConfig, Survey};
 
 use super::Said;
@@ -29,12 +30,12 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
         Survey::new(&config, options).map_err(|error| super::replay::scan_failure(path, &error))?;
     let pass = source.read_all(|record| {
         ears.hear(record);
-        if let Wire::Drive { .. } = record.wire {
+        if ears.is_of_the_first(record) {
             survey.observe(record);
         }
         Ok(())
     })?;
-    let contents = ears.contents(&config, survey.drive(), &pass);
+    let contents = ears.contents(&config, survey.drive(), &pass, &survey.steps());
     let failure = pass.truncated.map(|truncated| {
         Failure::new(
             Kind::Incomplete,
@@ -102,6 +103,17 @@ impl Ears {
         }
     }
 
+    /// Whether a record is of the drive, or of the lidar that the report is of.
+    fn is_of_the_first(&self, record: &Record<'_>) -> bool {
+        match record.wire {
+            Wire::Drive { .. } => true,
+            Wire::Lidar { source, port, .. } => self
+                .ears
+                .first()
+                .is_some_and(|ear| ear.source == source && ear.port == port),
+        }
+    }
+
     fn ear(&mut self, source: [u8; 4], port: u16) -> Option<&mut Ear> {
         let known = |ear: &Ear| ear.source == source && ear.port == port;
         if let Some(at) = self.ears.iter().position(known) {
@@ -126,6 +138,7 @@ impl Ears {
         config: &ScanConfig,
         drive: Option<(DriveLink, u64)>,
         pass: &Pass,
+        steps: &[ClockStep],
     ) -> Contents {
         for ear in &mut self.ears {
             ear.decoder.finish(&mut |_| {});
@@ -141,6 +154,7 @@ impl Ears {
             first.map_or(&nothing, |ear| ear.decoder.stats()),
             drive,
             pass,
+            steps,
         );
         contents.gps = first.and_then(Ear::gps);
         if self.ears.len() > 1 {
@@ -202,6 +216,7 @@ pub fn contents(
     stats: &Stats,
     drive: Option<(DriveLink, u64)>,
     pass: &Pass,
+    steps: &[ClockStep],
 ) -> Contents {
     let counts = &pass.counts;
     let tilt = drive.map(|(link, samples)| Tilt {
@@ -226,12 +241,14 @@ pub fn contents(
         tilt,
         truncated: pass.truncated.clone(),
         simulated: config.simulated,
-        warnings: warnings(stats, pass),
+        warnings: warnings(stats, pass, steps),
     }
 }
 
-fn warnings(stats: &Stats, pass: &Pass) -> Vec<String> {
+fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
     let mut warnings: Vec<String> = stats.conflicts.iter().map(ToString::to_string).collect();
+    warnings.extend(steps.iter().map(ToString::to_string));
+    let lidar_was_set = steps.iter().any(|step| step.clock == SetClock::Lidar);
     if let Some(malformed) = &pass.counts.first_malformed {
         warnings.push(format!(
             "{} records are damaged, the first at byte {}: {}",
@@ -262,7 +279,11 @@ fn warnings(stats: &Stats, pass: &Pass) -> Vec<String> {
             stats.unidentified,
             "lidar packets are of a model that nothing tells and were left out: give --model",
         ),
-        (stats.clock_steps, "times the lidar's clock was set"),
+        (
+            // Said above, if it was found.
+            if lidar_was_set { 0 } else { stats.clock_steps },
+            "times the lidar's clock was set",
+        ),
         (
             pass.counts.fragments,
             "IP fragments could not be put together",

@@ -23,7 +23,7 @@ use crate::names;
 use crate::output::{self, Target, sink_failure};
 use crate::progress::Progress;
 use crate::recordings::{Pass, Source};
-use crate::report::{self, Scan, Sync};
+use crate::report::{self, Scan, StepReport, Sync};
 use crate::sensing;
 use crate::signals;
 use crate::utc::{InUtc, UtcSurvey};
@@ -285,7 +285,13 @@ fn report(
         )
         .help("give the calibration of this very lidar"));
     }
-    let mut contents = contents(&surveyed.config, stats, surveyed.drive, &surveyed.pass);
+    let mut contents = contents(
+        &surveyed.config,
+        stats,
+        surveyed.drive,
+        &surveyed.pass,
+        &alignment.steps,
+    );
     contents
         .warnings
         .extend(doubts(&surveyed.config, alignment));
@@ -386,7 +392,9 @@ fn sync(alignment: &Alignment) -> Sync {
     Sync {
         clock_method: "lower envelope",
         clock_residual_us: alignment.clock.residual().as_micros_f64(),
+        clock_bound_us: alignment.clock.bound().as_micros_f64(),
         clock_drift_ppm: alignment.clock.drift_ppm(),
+        steps: alignment.steps.iter().map(StepReport::new).collect(),
         angle_method: alignment.trajectory.method(),
         angle_rms_deg: alignment.angle_rms_deg(),
         angle_bound_deg: alignment.angle_bound_deg(),

@@ -1,0 +1,276 @@
+//! Clocks: set in mid-sweep, begun anew, and times at which arithmetic is hard.
+
+use scanner::clock::{Arrival, LidarClock, OnlineClock};
+use sim::Attached;
+use units::{Host, Lidar, Span, Stamp};
+use velomotion_tests::capture::{Captured, Setting};
+
+/// Half way through the usual setting's sweep, which begins after homing.
+fn mid_sweep(setting: Setting) -> Span {
+    let (begin, end) = Captured::new(setting).sweep_span();
+    begin.saturating_since(setting.start) + (end - begin).half()
+}
+
+/// NTP sets the host's clock while the platform moves: half of the packets and polls are stamped by another clock than the
+/// rest, and the pairing of requests and answers sees time go back. The cloud must be as good as any.
+#[test]
+fn the_hosts_clock_is_set_in_mid_sweep() {
+    for attached in [Attached::Usb, Attached::Rs232, Attached::Can] {
+        let usual = Setting::over(attached);
+        let (undisturbed, points) = {
+            let captured = Captured::new(usual);
+            (captured.error(), captured.cloud().len())
+        };
+        let middle = mid_sweep(usual);
+        for by_ms in [20, 128, 1_000, 2_500, 61_000, 5_000_000] {
+            for by in [Span::from_millis(by_ms), Span::from_millis(-by_ms)] {
+                let setting = Setting {
+                    host_set: Some((middle, by)),
+                    ..usual
+                };
+                let captured = Captured::new(setting);
+                let (scan, cloud) = captured.scan();
+                let said = format!("{attached:?} {} s", by.as_secs_f64());
+                let [step] = scan.sync.steps[..] else {
+                    panic!("{said}: {:?}", scan.sync.steps);
+                };
+                assert_eq!(step.clock, "host", "{said}");
+                assert!(
+                    (step.by_s - by.as_secs_f64()).abs() < 50e-6,
+                    "{said}: {step:?}"
+                );
+                let when = step.when_s - (setting.start + middle).as_secs_f64();
+                assert!(when.abs() < 10e-3, "{said}: {step:?}");
+                let warned = scan
+                    .contents
+                    .warnings
+                    .iter()
+                    .filter(|w| w.contains("host's clock was set"));
+                assert_eq!(warned.count(), 1, "{said}: {:?}", scan.contents.warnings);
+                let error = captured.error();
+                assert!(
+                    cloud.len().abs_diff(points) < 2_000,
+                    "{said}: {} points",
+                    cloud.len()
+                );
+                assert!(
+                    error.worst_m < undisturbed.worst_m * 1.2 + 1e-3
+                        && error.rms_m < undisturbed.rms_m * 1.1,
+                    "{said}: {error:?}, undisturbed {undisturbed:?}"
+                );
+                assert!(cloud.time().is_sorted(), "{said}");
+            }
+        }
+    }
+}
+
+/// A leap second is inserted by setting the clock back at midnight UTC: 2016-12-31 23:59:60, the last one so far, during the sweep.
+#[test]
+fn a_scan_across_a_leap_second() {
+    let midnight = Stamp::<Host>::from_nanos(1_483_228_800_000_000_000);
+    let middle = mid_sweep(Setting::default());
+    let setting = Setting {
+        start: midnight - middle,
+        host_set: Some((middle, Span::from_secs(-1))),
+        ..Setting::default()
+    };
+    let captured = Captured::new(setting);
+    let error = captured.error();
+    assert!(error.worst_m < 10e-3 && error.points > 180_000, "{error:?}");
+    assert!(captured.cloud().time().is_sorted());
+}
+
+/// The first pulse per second sets the lidar's clock, here back as well, so that its times come twice within the sweep; or it begins
+/// anew. Host times and angles are as if nothing had been.
+#[test]
+fn the_lidars_clock_is_set_in_mid_sweep() {
+    let middle = mid_sweep(Setting::default());
+    for by_us in [300_700_123, 137_001, -137_001, -412_345_000] {
+        let by = Span::from_micros(by_us);
+        let setting = Setting {
+            lidar_set: Some((middle, by)),
+            ..Setting::default()
+        };
+        let captured = Captured::new(setting);
+        let (scan, cloud) = captured.scan();
+        let [step] = scan.sync.steps[..] else {
+            panic!("{by_us}: {:?}", scan.sync.steps);
+        };
+        assert_eq!(step.clock, "lidar", "{by_us}");
+        assert!(
+            (step.by_s - by.as_secs_f64()).abs() < 1e-3,
+            "{by_us}: {step:?}"
+        );
+        assert!(cloud.time().is_sorted(), "{by_us}");
+        // The simulator knows times by the clock that nobody set.
+        let (mut last, mut set) = (None::<Stamp<Lidar>>, false);
+        let truth = |time: Stamp<Lidar>, laser| {
+            let went = last.map_or(Span::ZERO, |last| time - last);
+            set |= (went - by).as_nanos().abs() < 10_000_000;
+            last = Some(time);
+            let unset = if set { time - by } else { time };
+            captured.truth().point(unset.as_nanos(), laser)
+        };
+        let error = analysis::truth::compare(&cloud, truth).unwrap();
+        assert!(
+            error.worst_m < 10e-3 && error.points > 180_000,
+            "{by_us}: {error:?}"
+        );
+    }
+}
+
+/// Both clocks are set in one recording.
+#[test]
+fn both_clocks_are_set() {
+    let middle = mid_sweep(Setting::default());
+    let setting = Setting {
+        host_set: Some((middle - Span::from_millis(300), Span::from_secs(-1))),
+        lidar_set: Some((middle + Span::from_millis(100), Span::from_secs(700))),
+        ..Setting::default()
+    };
+    let (scan, cloud) = Captured::new(setting).scan();
+    let clocks: Vec<&str> = scan.sync.steps.iter().map(|step| step.clock).collect();
+    assert_eq!(clocks, ["host", "lidar"]);
+    assert!(cloud.time().is_sorted() && cloud.len() > 180_000);
+}
+
+fn arrival(device: i64, host: i64) -> Arrival {
+    Arrival {
+        device: Stamp::from_nanos(device),
+        host: Stamp::from_nanos(host),
+    }
+}
+
+/// 2100-01-01 in nanoseconds needs 62 bits, a double has 53: whatever goes through one loses half a microsecond.
+#[test]
+fn the_year_2100() {
+    const EPOCH: i64 = 4_102_444_800_000_000_001;
+    let arrivals: Vec<Arrival> = (0..40_000)
+        .map(|i| i * 1_327_104)
+        .map(|t| arrival(t, EPOCH + t + t / 25_000))
+        .collect();
+    let clock = LidarClock::fit(&arrivals).unwrap();
+    let mut online = OnlineClock::new();
+    for a in &arrivals {
+        online.observe(*a);
+        assert!((clock.host(a.device) - a.host).as_nanos().abs() <= 1);
+    }
+    let last = arrivals.last().unwrap();
+    let moment = online.moment(last.device).unwrap();
+    assert!((moment.host - last.host).as_nanos().abs() < 50_000);
+}
+
+/// Identical stamps make no slope: the earliest arrival counts.
+#[test]
+fn packets_of_one_instant() {
+    let arrivals = [30, 10, 20].map(|late| arrival(0, late));
+    let clock = LidarClock::fit(&arrivals).unwrap();
+    assert_eq!(clock.host(Stamp::from_nanos(0)).as_nanos(), 10);
+    assert_eq!(clock.drift_ppm(), 0.0);
+    // And a thousand identical ones, which have a spread of nothing.
+    let clock = LidarClock::fit(&[arrival(5, 7); 1_000]).unwrap();
+    assert_eq!(clock.host(Stamp::from_nanos(5)).as_nanos(), 7);
+    assert!(clock.bound() < Span::from_millis(1));
+}
+
+/// One packet gives an offset, two no drift of a thousand ppm out of their jitter; and the bound admits how little that is.
+#[test]
+fn one_packet_and_two() {
+    let one = LidarClock::fit(&[arrival(5, 1_000)]).unwrap();
+    assert_eq!(one.host(Stamp::from_nanos(1_005)).as_nanos(), 2_000);
+    let two = LidarClock::fit(&[arrival(0, 0), arrival(1_327_104, 2_327_104)]).unwrap();
+    assert!(two.drift_ppm().abs() <= 200.0);
+    for clock in [one, two] {
+        assert!(
+            clock.bound() >= Span::from_millis(100),
+            "{:?}",
+            clock.bound()
+        );
+    }
+    assert!(LidarClock::fit(&[]).is_none());
+}
+
+/// Packets that overtake each other on the way are the same packets.
+#[test]
+fn packets_out_of_order() {
+    let in_order: Vec<Arrival> = (0..20_000)
+        .map(|i| arrival(i * 1_327_104, i * 1_327_104 + i * i % 40_000))
+        .collect();
+    let mut shuffled = in_order.clone();
+    for some in shuffled.chunks_mut(5) {
+        some.reverse();
+    }
+    let (a, b) = (
+        LidarClock::fit(&in_order).unwrap(),
+        LidarClock::fit(&shuffled).unwrap(),
+    );
+    let mut online = OnlineClock::new();
+    for a in &shuffled {
+        assert!(!online.observe(*a));
+    }
+    for i in (0..20_000).step_by(77) {
+        let device = Stamp::from_nanos(i * 1_327_104);
+        assert_eq!(a.moment(device), b.moment(device));
+    }
+    let device = Stamp::from_nanos(20_000 * 1_327_104);
+    let apart = online.moment(device).unwrap().host - a.host(device);
+    assert!(apart.as_nanos().abs() < 40_000, "{apart:?}");
+}
+
+/// While packets come in, a clock that is set is noticed: at once where time goes back, within five seconds where it leaps.
+#[test]
+fn the_online_clock_begins_anew() {
+    for (device_by, host_by, within) in [
+        (0, -1_000_000_000, 1),
+        (0, -50_000_000, 1),
+        (0, 1_000_000_000, 5_000_000_000 / 1_327_104 + 2),
+        (-400_000_000, 0, 1),
+        (800_000_000_000, 0, 1),
+    ] {
+        let mut online = OnlineClock::new();
+        let mut noticed = None;
+        for i in 0..20_000i64 {
+            let (mut device, mut host) = (i * 1_327_104, i * 1_327_104 + i * 7_919 % 60_000);
+            if i >= 9_000 {
+                (device, host) = (device + device_by, host + host_by);
+            }
+            if online.observe(arrival(device, host)) {
+                assert!(noticed.is_none(), "{device_by} {host_by}: twice");
+                noticed = Some(i - 9_000);
+            }
+        }
+        let noticed = noticed.unwrap();
+        assert!(
+            (0..within).contains(&noticed),
+            "{device_by} {host_by}: {noticed}"
+        );
+        let device = Stamp::from_nanos(20_000 * 1_327_104 + device_by);
+        let off = online.moment(device).unwrap().host.as_nanos() - 20_000 * 1_327_104 - host_by;
+        assert!((0..60_000).contains(&off), "{device_by} {host_by}: {off}");
+    }
+}
+
+/// The online clock's tangent is its moments, and none where it bends.
+#[test]
+fn the_online_clocks_tangent_is_its_moments() {
+    let mut online = OnlineClock::new();
+    assert!(online.moment(Stamp::from_nanos(0)).is_none());
+    let length = Span::from_nanos(110_592);
+    let mut bent = 0;
+    for i in 0..5_000i64 {
+        let device = i * 1_327_104;
+        online.observe(arrival(device, device + i * 7_919 % 600_000));
+        for block in 0..12 {
+            let start = Stamp::from_nanos(device + block * 110_592);
+            let Some(tangent) = online.tangent(start, length) else {
+                bent += 1;
+                continue;
+            };
+            let end = online.moment(start + length).unwrap();
+            let by_tangent = tangent.at.rest_ns + length.as_nanos() as f64 * (1.0 + tangent.gain);
+            let off = (end.host - tangent.at.host).as_nanos() as f64 + end.rest_ns - by_tangent;
+            assert!(off.abs() < 1e-3, "{i} {block}: {off} ns");
+        }
+    }
+    assert!(bent > 0 && bent < 100, "{bent}");
+}
