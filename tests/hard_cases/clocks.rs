@@ -78,6 +78,15 @@ fn a_scan_across_a_leap_second() {
     let error = captured.error();
     assert!(error.worst_m < 10e-3 && error.points > 180_000, "{error:?}");
     assert!(captured.cloud().time().is_sorted());
+    let info = velomotion::commands::info::run(&velomotion::cli::Info {
+        file: captured.log(),
+        model: None,
+    });
+    let text = info.unwrap().text;
+    assert!(
+        text.contains("the host's clock was set back by 1.0000"),
+        "{text}"
+    );
 }
 
 /// The first pulse per second sets the lidar's clock, here back as well, so that its times come twice within the sweep; or it begins

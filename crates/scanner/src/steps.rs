@@ -56,11 +56,11 @@ impl fmt::Display for ClockStep {
         match self.clock {
             SetClock::Host => write!(
                 f,
-                "the host's clock was set {way} by {by:.6} s, {after:.3} s into the recording; times after it are given by the clock before it"
+                "the host's clock was set {way} by {by:.5} s, {after:.3} s into the recording; times after it are given by the clock before it"
             ),
             SetClock::Lidar => write!(
                 f,
-                "the lidar's clock was set {way} by {by:.6} s or began anew, {after:.3} s into the recording; times of the host are not affected"
+                "the lidar's clock was set {way} by {by:.5} s or began anew, {after:.3} s into the recording; times of the host are not affected"
             ),
         }
     }
