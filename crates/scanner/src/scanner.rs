@@ -21,7 +21,7 @@ use crate::polls::angle_samples;
 use crate::steps::{ClockStep, HostLine, Seams, Timeline};
 use crate::sweeps::{MoveWatch, Sweep};
 use crate::tilt::TiltSource;
-use crate::trajectory::{Linear, Trajectory};
+use crate::trajectory::{Method, Trajectory};
 use crate::volleys::{MOST_POINTS, VolleyPlacer};
 
 /// First pass: what the records say about time and tilt.
@@ -147,7 +147,20 @@ impl Survey {
     ///
     /// # Errors
     /// [`ScanError`] where the records hold no lidar packet, or tilt was asked of them and they hold none, or no sweep.
-    pub fn solve(mut self, config: &ScanConfig, tilt: &TiltSource) -> Result<Alignment, ScanError> {
+    pub fn solve(self, config: &ScanConfig, tilt: &TiltSource) -> Result<Alignment, ScanError> {
+        self.solve_by(config, tilt, None)
+    }
+
+    /// The same with the angles of a log by a given method.
+    ///
+    /// # Errors
+    /// As [`Survey::solve`].
+    pub fn solve_by(
+        mut self,
+        config: &ScanConfig,
+        tilt: &TiltSource,
+        method: Option<Method>,
+    ) -> Result<Alignment, ScanError> {
         let Timeline {
             clock,
             steps,
@@ -169,20 +182,24 @@ impl Survey {
             TiltSource::Log => self.moves.sweeps(&samples, config.sweep.as_ref()),
             TiltSource::None | TiltSource::Table(_) => Vec::new(),
         };
-        let (trajectory, spans) = match tilt {
-            TiltSource::None => (Trajectory::Fixed(Degrees(0.0)), vec![ALWAYS]),
+        let quantum = match tilt {
+            TiltSource::Log => Degrees(self.gearing.degrees_per_qc()),
+            TiltSource::None | TiltSource::Table(_) => Degrees(0.0),
+        };
+        let trajectory = match tilt {
+            TiltSource::None => Trajectory::fixed(Degrees(0.0)),
             TiltSource::Table(_) => {
-                let linear = Linear::new(samples).ok_or(ScanError::NoTilt)?;
-                (Trajectory::Linear(linear), vec![ALWAYS])
+                Trajectory::through(samples, quantum, &[], Some(Method::Linear))
+                    .ok_or(ScanError::NoTilt)?
             }
             TiltSource::Log => {
-                let linear = Linear::new(samples).ok_or(ScanError::NoTilt)?;
-                if sweeps.is_empty() {
-                    return Err(ScanError::NoSweep);
-                }
-                let spans = sweeps.iter().map(|s| (s.start, s.end)).collect();
-                (Trajectory::Linear(linear), spans)
+                Trajectory::through(samples, quantum, &sweeps, method).ok_or(ScanError::NoTilt)?
             }
+        };
+        let spans = match tilt {
+            TiltSource::None | TiltSource::Table(_) => vec![ALWAYS],
+            TiltSource::Log if sweeps.is_empty() => return Err(ScanError::NoSweep),
+            TiltSource::Log => sweeps.iter().map(|s| (s.start, s.end)).collect(),
         };
         Ok(Alignment {
             clock,
@@ -204,22 +221,16 @@ const ALWAYS: (Stamp<Host>, Stamp<Host>) =
     (Stamp::from_nanos(i64::MIN), Stamp::from_nanos(i64::MAX));
 
 impl Alignment {
-    /// RMS of the angle samples against their neighbours, degrees, during the sweeps; `None` without tilt.
+    /// How well the angle samples of the sweeps agree, root mean square, degrees ([`Trajectory::rms_deg`]); `None` without tilt.
     #[must_use]
     pub fn angle_rms_deg(&self) -> Option<f64> {
-        match &self.trajectory {
-            Trajectory::Fixed(_) => None,
-            Trajectory::Linear(linear) => linear.leave_one_out_rms(&self.spans).map(|rms| rms.0),
-        }
+        self.trajectory.rms_deg(&self.spans)
     }
 
-    /// How far off the tilt angle may be at worst during the sweeps; `None` without tilt.
+    /// How far off the tilt angle may be at worst during the sweeps ([`Trajectory::bound_deg`]); `None` without tilt.
     #[must_use]
     pub fn angle_bound_deg(&self) -> Option<f64> {
-        match &self.trajectory {
-            Trajectory::Fixed(_) => None,
-            Trajectory::Linear(linear) => Some(linear.worst_bound(&self.spans).0),
-        }
+        (self.trajectory.method() != Method::None).then(|| self.trajectory.bound_deg(&self.spans))
     }
 
     /// The heart: a point of the sensor's frame, at its own time and tilt, in the frame of the platform (Eq. 4-6). `None` outside

@@ -5,7 +5,7 @@
 //! the starting place, homing and returns drop out without marks in the log. A sweep that was cut short stays one, with the angle it reached.
 
 use drive::objects::{self, Address};
-use units::{DegPerS, Degrees, Gearing, Host, Quadcounts, Rpm, Stamp};
+use units::{DegPerS, DegPerS2, Degrees, Gearing, Host, Quadcounts, Rpm, RpmPerS, Stamp};
 
 use crate::config::SweepPlan;
 use crate::trajectory::AngleSample;
@@ -23,6 +23,28 @@ pub struct Sweep {
     pub start: Stamp<Host>,
     /// First sample at rest after it.
     pub end: Stamp<Host>,
+    /// What the drive was told of its motion.
+    pub commanded: Commanded,
+}
+
+/// What a drive was told of a profile move; zero where it was not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Commanded {
+    /// Speed of the cruise.
+    pub speed: DegPerS,
+    /// Acceleration.
+    pub acceleration: DegPerS2,
+    /// Deceleration.
+    pub deceleration: DegPerS2,
+}
+
+impl Commanded {
+    /// Nothing.
+    pub const NOTHING: Self = Self {
+        speed: DegPerS(0.0),
+        acceleration: DegPerS2(0.0),
+        deceleration: DegPerS2(0.0),
+    };
 }
 
 /// A profile move as commanded.
@@ -30,7 +52,7 @@ pub struct Sweep {
 struct Move {
     commanded: Stamp<Host>,
     target: Degrees,
-    speed: DegPerS,
+    motion: Commanded,
 }
 
 /// Follows the writes that start profile moves.
@@ -39,6 +61,7 @@ pub struct MoveWatch {
     gearing: Gearing,
     target: Option<Quadcounts>,
     speed: Rpm,
+    ramps: [RpmPerS; 2],
     controlword: u16,
     mode: u32,
     moves: Vec<Move>,
@@ -63,6 +86,7 @@ impl MoveWatch {
             gearing,
             target: None,
             speed: Rpm(0),
+            ramps: [RpmPerS(0); 2],
             controlword: 0,
             mode: PROFILE_POSITION,
             moves: Vec::new(),
@@ -75,6 +99,10 @@ impl MoveWatch {
             self.target = Some(Quadcounts(value as i32));
         } else if address == objects::PROFILE_VELOCITY.address {
             self.speed = Rpm(value);
+        } else if address == objects::PROFILE_ACCELERATION.address {
+            self.ramps[0] = RpmPerS(value);
+        } else if address == objects::PROFILE_DECELERATION.address {
+            self.ramps[1] = RpmPerS(value);
         } else if address == objects::MODE.address {
             self.mode = value & 0xFF;
         } else if address == objects::CONTROLWORD.address {
@@ -91,7 +119,11 @@ impl MoveWatch {
             self.moves.push(Move {
                 commanded: host,
                 target: self.gearing.angle(target),
-                speed: self.gearing.rate(self.speed),
+                motion: Commanded {
+                    speed: self.gearing.rate(self.speed),
+                    acceleration: self.gearing.acceleration(self.ramps[0]),
+                    deceleration: self.gearing.acceleration(self.ramps[1]),
+                },
             });
         }
     }
@@ -146,7 +178,7 @@ fn sweep(
         .saturating_sub(1);
     let last = samples.partition_point(|s| s.host < end);
     let window = samples.get(first..last)?;
-    let window = window.get(..unbroken(window, command.speed))?;
+    let window = window.get(..unbroken(window, command.motion.speed))?;
     let (from, to) = (window.first()?.angle, window.last()?.angle);
     let leaves = window
         .iter()
@@ -166,6 +198,7 @@ fn sweep(
         cruise: cruise(moving, from, to),
         start,
         end: stop,
+        commanded: command.motion,
     };
     Some((sweep, command.target))
 }

@@ -1,12 +1,32 @@
 //! The tilt angle over host time: from shaft samples to an angle at any instant.
 //!
-//! A [`Trajectory`] is what the synchroniser asks; how it came about (interpolation now, a fit of the commanded profile
-//! behind the same interface) is nobody else's concern. It never extrapolates: outside its samples there is no angle.
+//! A [`Trajectory`] is what the synchroniser asks; how it came about is nobody else's concern. Between sweeps, and with
+//! methods that know no sweeps, it goes from sample to sample (`interpolate`); over each sweep it may be the commanded motion found in
+//! the samples (`profile`, `profile_fit`) or a spline through them (`spline`), whichever is truer (`choose`). All end as
+//! piecewise cubics (`pieces`), followed by one cursor. It never extrapolates: outside its samples there is no angle.
 
-use cloud::mount::{MOST_AHEAD_RAD, Tilt};
 use units::{Degrees, Host, Span, Stamp};
 
-use crate::clock::{Moment, Tangent};
+use crate::clock::Moment;
+use crate::sweeps::Sweep;
+
+mod choose;
+mod cursor;
+mod interpolate;
+mod noise;
+mod pieces;
+mod profile;
+mod profile_fit;
+mod spline;
+#[cfg(test)]
+mod tests;
+
+pub use choose::SweepFit;
+pub use cursor::{Motion, TrajectoryCursor};
+pub use noise::Noise;
+pub use pieces::{Piece, Pieces};
+pub use profile::Profile;
+pub use profile_fit::Held;
 
 /// The platform's angle at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,383 +39,378 @@ pub struct AngleSample {
     pub angle: Degrees,
 }
 
+/// How the angle between samples is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// There are none: the platform does not tilt.
+    None,
+    /// The nearest sample's.
+    Nearest,
+    /// On a straight line between neighbours.
+    Linear,
+    /// On a cubic between neighbours, with speeds from theirs.
+    Hermite,
+    /// On a least-squares spline through a sweep's samples.
+    Spline,
+    /// By the commanded motion, found in a sweep's samples.
+    Profile,
+    /// The same behind a servo of first order.
+    ProfileServo,
+    /// The same behind a servo of second order, which may overshoot.
+    ProfileSwing,
+}
+
+impl Method {
+    /// All that know an angle from samples, the cheapest first.
+    pub const ALL: [Self; 7] = [
+        Self::Nearest,
+        Self::Linear,
+        Self::Hermite,
+        Self::Profile,
+        Self::ProfileServo,
+        Self::ProfileSwing,
+        Self::Spline,
+    ];
+
+    /// Its name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Nearest => "nearest",
+            Self::Linear => "linear",
+            Self::Hermite => "hermite",
+            Self::Spline => "spline",
+            Self::Profile => "profile",
+            Self::ProfileServo => "profile+servo",
+            Self::ProfileSwing => "profile+servo2",
+        }
+    }
+
+    /// Whether it is of whole sweeps, and goes straight between them.
+    #[must_use]
+    pub const fn is_fit(self) -> bool {
+        matches!(
+            self,
+            Self::Spline | Self::Profile | Self::ProfileServo | Self::ProfileSwing
+        )
+    }
+}
+
+/// What is to be said of a sweep's angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Remark {
+    /// The motion was not the commanded one: a profile would be off by so much, root mean square.
+    NotAsCommanded {
+        /// By how much.
+        off: Degrees,
+    },
+    /// The samples do not tell all of the motion: this was held near what was commanded.
+    Held(Held),
+    /// No fit was possible: too few samples; they are joined by straight lines.
+    TooFewSamples,
+}
+
+impl std::fmt::Display for Remark {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NotAsCommanded { off } => write!(
+                f,
+                "the motion was not the commanded one, by {:.3} deg: the angles follow the samples instead",
+                off.0
+            ),
+            Self::Held(held) => {
+                let parts = [
+                    (held.ramp_up, "acceleration"),
+                    (held.ramp_down, "deceleration"),
+                    (held.lag, "servo lag"),
+                ];
+                let parts: Vec<&str> = parts.iter().filter(|p| p.0).map(|p| p.1).collect();
+                write!(
+                    f,
+                    "too few samples in the ramps to tell its {}: taken as commanded",
+                    parts.join(" and ")
+                )
+            }
+            Self::TooFewSamples => {
+                f.write_str("too few samples for a fit: they are joined by straight lines")
+            }
+        }
+    }
+}
+
 /// The tilt angle as a function of host time.
 #[derive(Clone, Debug)]
-pub enum Trajectory {
-    /// A platform that does not tilt.
+pub struct Trajectory {
+    shape: Shape,
+    method: Method,
+    fits: Vec<SweepFit>,
+    /// As they came, in strictly increasing time.
+    samples: Vec<AngleSample>,
+}
+
+#[derive(Clone, Debug)]
+enum Shape {
     Fixed(Degrees),
-    /// Straight lines between samples.
-    Linear(Linear),
+    Pieces(Pieces),
 }
 
 impl Trajectory {
+    /// A platform that stands still.
+    #[must_use]
+    pub const fn fixed(angle: Degrees) -> Self {
+        Self {
+            shape: Shape::Fixed(angle),
+            method: Method::None,
+            fits: Vec::new(),
+            samples: Vec::new(),
+        }
+    }
+
+    /// Through samples in any order; of several at one instant the first is kept. Their angles come in steps of `quantum`.
+    /// A method of whole sweeps goes over `sweeps`, and straight where it cannot; without a method each sweep gets the truest.
+    /// `None` without samples.
+    #[must_use]
+    pub fn through(
+        samples: Vec<AngleSample>,
+        quantum: Degrees,
+        sweeps: &[Sweep],
+        method: Option<Method>,
+    ) -> Option<Self> {
+        let samples = interpolate::in_order(centred(samples, quantum));
+        let noise = Noise::of(&samples, quantum);
+        let pieces = match method {
+            Some(Method::Nearest) => interpolate::nearest(&samples, &noise),
+            Some(Method::Hermite) => interpolate::hermite(&samples, &noise),
+            _ => interpolate::linear(&samples, &noise),
+        }?;
+        let simple = method.filter(|m| !m.is_fit() && *m != Method::None);
+        let mut trajectory = Self {
+            shape: Shape::Pieces(pieces),
+            method: simple.unwrap_or(Method::Linear),
+            fits: Vec::new(),
+            samples,
+        };
+        if simple.is_none() {
+            trajectory.fit(&noise, sweeps, method);
+        }
+        Some(trajectory)
+    }
+
+    /// Replaces the straight lines over each sweep by a fit.
+    fn fit(&mut self, noise: &Noise, sweeps: &[Sweep], method: Option<Method>) {
+        let Shape::Pieces(pieces) = &mut self.shape else {
+            return;
+        };
+        for (i, sweep) in sweeps.iter().enumerate() {
+            // Half of the pause between two sweeps belongs to either.
+            let pause =
+                |a: &Sweep, b: &Sweep| a.end.saturating_add(b.start.saturating_since(a.end).half());
+            let before = i.checked_sub(1).and_then(|i| sweeps.get(i));
+            let low = before.map_or(Stamp::from_nanos(i64::MIN), |before| pause(before, sweep));
+            let next = sweeps.get(i + 1);
+            let high = next.map_or(Stamp::from_nanos(i64::MAX), |next| pause(sweep, next));
+            // Samples of one time each: the same noise everywhere would mix a quick sweep with rest.
+            let inside = within(&self.samples, (sweep.start, sweep.end));
+            let noise = Noise::of(inside, Degrees(noise.angle_sd_deg * f64::sqrt(12.0)));
+            let best = choose::Candidates::new(sweep, &self.samples, &noise, (low, high))
+                .and_then(|candidates| candidates.best(method));
+            let fit = match best {
+                Some((fit, over)) => {
+                    pieces.replace(&over);
+                    fit
+                }
+                None => SweepFit {
+                    method: Method::Linear,
+                    rms_deg: leave_one_out_rms(inside).unwrap_or_default(),
+                    sd_deg: 0.0,
+                    delay: (Span::ZERO, Span::ZERO),
+                    profile: None,
+                    condition: None,
+                    remarks: vec![Remark::TooFewSamples],
+                },
+            };
+            self.fits.push(fit);
+        }
+        if let Some(first) = self.fits.first() {
+            self.method = first.method;
+        }
+    }
+
+    /// One that grows: without samples, and with an angle nowhere.
+    #[must_use]
+    pub(crate) fn growing(pieces: Pieces, method: Method) -> Self {
+        Self {
+            shape: Shape::Pieces(pieces),
+            method,
+            fits: Vec::new(),
+            samples: Vec::new(),
+        }
+    }
+
+    /// Its pieces, to go on with; `None` of a platform that stands still.
+    pub(crate) const fn pieces_mut(&mut self) -> Option<&mut Pieces> {
+        match &mut self.shape {
+            Shape::Fixed(_) => None,
+            Shape::Pieces(pieces) => Some(pieces),
+        }
+    }
+
     /// The angle at an instant; `None` outside the time that samples cover.
     #[must_use]
     pub fn angle(&self, at: Moment) -> Option<Degrees> {
-        match self {
-            Self::Fixed(angle) => Some(*angle),
-            Self::Linear(linear) => linear.angle(at),
+        match &self.shape {
+            Shape::Fixed(angle) => Some(*angle),
+            Shape::Pieces(pieces) => pieces.angle(at),
+        }
+    }
+
+    /// The piece that holds at an instant; `None` of a platform that stands still, and outside the time that samples cover.
+    #[must_use]
+    pub fn piece(&self, at: Moment) -> Option<&Piece> {
+        match &self.shape {
+            Shape::Fixed(_) => None,
+            Shape::Pieces(pieces) => pieces.piece(at),
         }
     }
 
     /// Follows the angle through times that mostly grow, without a search for each.
     #[must_use]
     pub fn cursor(&self) -> TrajectoryCursor<'_> {
-        TrajectoryCursor {
-            fixed: match self {
-                Self::Fixed(angle) => Some(*angle),
-                Self::Linear(_) => None,
-            },
-            samples: match self {
-                Self::Fixed(_) => &[],
-                Self::Linear(linear) => &linear.samples,
-            },
-            next: 0,
-            anchor: Anchor::NONE,
+        match &self.shape {
+            Shape::Fixed(angle) => TrajectoryCursor::fixed(*angle),
+            Shape::Pieces(pieces) => TrajectoryCursor::of(pieces),
         }
     }
 
-    /// Name of the method for reports.
+    /// How the angle is known; of several sweeps the first one's.
     #[must_use]
-    pub fn method(&self) -> &'static str {
-        match self {
-            Self::Fixed(_) => "none",
-            Self::Linear(_) => "linear",
-        }
-    }
-}
-
-/// Linear interpolation over samples in strictly increasing time.
-#[derive(Clone, Debug)]
-pub struct Linear {
-    samples: Vec<AngleSample>,
-}
-
-impl Linear {
-    /// Takes samples in any order. Of several at one instant the first is kept. `None` without samples.
-    #[must_use]
-    pub fn new(mut samples: Vec<AngleSample>) -> Option<Self> {
-        samples.sort_by_key(|s| s.host);
-        samples.dedup_by_key(|s| s.host);
-        (!samples.is_empty()).then_some(Self { samples })
+    pub const fn method(&self) -> Method {
+        self.method
     }
 
-    /// The angle at an instant; `None` before the first and after the last sample, to the nanosecond.
+    /// What was found over each sweep; empty where no sweeps were fitted.
     #[must_use]
-    pub fn angle(&self, at: Moment) -> Option<Degrees> {
-        let (first, last) = (self.samples.first()?, self.samples.last()?);
-        if at.host < first.host || last.host < at.host {
-            return None;
-        }
-        // To the nanosecond the first and the last sample's moments belong to it.
-        let past = self.samples.partition_point(|s| at.reaches(s.host));
-        let next = past.clamp(1, self.samples.len().max(2) - 1);
-        match (self.samples.get(next - 1), self.samples.get(next)) {
-            (Some(before), Some(after)) => Some(between(before, after, at)),
-            _ => Some(first.angle),
-        }
+    pub fn fits(&self) -> &[SweepFit] {
+        &self.fits
     }
 
-    /// How far off the angle may be between samples within `spans`, at worst: half a poll's round trip at the speed there, and what a
-    /// straight line misses where the speed changes from one stretch to the next over a hole.
-    #[must_use]
-    pub fn worst_bound(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> Degrees {
-        let inside = |t: Stamp<Host>| spans.iter().any(|(from, to)| *from <= t && t <= *to);
-        let worst = self
-            .samples
-            .windows(4)
-            .filter_map(|w| match w {
-                [a, b, c, d] if inside(b.host) && inside(c.host) => {
-                    let (before, across, after) = (rate(a, b), rate(b, c), rate(c, d));
-                    let bent = (after - before).abs() * seconds(b, c) / 8.0;
-                    let held = across.abs() * b.bound.as_secs_f64().max(c.bound.as_secs_f64());
-                    Some(bent + held)
-                }
-                _ => None,
-            })
-            .fold(0.0, f64::max);
-        Degrees(worst)
-    }
-
-    /// How well samples predict each other: the RMS of each sample against the line between its neighbours, over samples
-    /// within `spans`. `None` where fewer than three samples fall there.
+    /// How well the samples within `spans` agree with each other, degrees: their root mean square against the fits, or where there are
+    /// none each against the line between its neighbours. `None` where too few fall there.
     ///
-    /// It holds the jitter of the stamps and what a straight line misses of a ramp over twice the sampling interval; a constant
-    /// delay does not show.
+    /// It holds the jitter of the stamps, and of lines what they miss of a ramp; a constant delay does not show.
     #[must_use]
-    pub fn leave_one_out_rms(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> Option<Degrees> {
-        let inside = |t: Stamp<Host>| spans.iter().any(|(from, to)| *from <= t && t <= *to);
-        let (sum, count) = self
-            .samples
-            .windows(3)
-            .filter_map(|w| match w {
-                [a, b, c] if inside(a.host) && inside(c.host) => {
-                    Some(between(a, c, at_once(b.host)).0 - b.angle.0)
-                }
-                _ => None,
-            })
-            .fold((0.0, 0u32), |(sum, n), e| (sum + e * e, n + 1));
-        (count > 0).then(|| Degrees((sum / f64::from(count)).sqrt()))
+    pub fn rms_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> Option<f64> {
+        if self.fits.is_empty() {
+            let squares = spans.iter().filter_map(|span| {
+                let inside = within(&self.samples, *span);
+                leave_one_out_rms(inside).map(|rms| (rms * rms * inside.len() as f64, inside.len()))
+            });
+            let (sum, count) =
+                squares.fold((0.0, 0), |(s, n), (square, count)| (s + square, n + count));
+            return (count > 0).then(|| (sum / count as f64).sqrt());
+        }
+        let squares: f64 = self.fits.iter().map(|fit| fit.rms_deg * fit.rms_deg).sum();
+        Some((squares / self.fits.len() as f64).sqrt())
+    }
+
+    /// How far off the angle may be within `spans`, at worst, degrees. Of fits: three standard deviations, and the delay that all
+    /// samples may share at the speed there. Of samples joined: half a poll's round trip at the speed there, and what a straight line
+    /// misses where the speed changes over a hole.
+    #[must_use]
+    pub fn bound_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> f64 {
+        let over = |(i, span): (usize, &(Stamp<Host>, Stamp<Host>))| {
+            let fit = self.fits.get(i).filter(|fit| fit.method.is_fit());
+            match (fit, &self.shape) {
+                (Some(fit), Shape::Pieces(pieces)) => fit_bound(pieces, *span, fit),
+                _ => joined_bound(within(&self.samples, *span)),
+            }
+        };
+        spans.iter().enumerate().map(over).fold(0.0, f64::max)
     }
 }
 
-fn seconds(a: &AngleSample, b: &AngleSample) -> f64 {
-    b.host.saturating_since(a.host).as_secs_f64()
+/// Standard deviations that a bound holds.
+const SURE: f64 = 3.0;
+
+fn fit_bound(pieces: &Pieces, (from, to): (Stamp<Host>, Stamp<Host>), fit: &SweepFit) -> f64 {
+    let shared = fit
+        .delay
+        .0
+        .as_secs_f64()
+        .abs()
+        .max(fit.delay.1.as_secs_f64());
+    let all = pieces.as_slice();
+    let inside = all.iter().filter(|p| from <= p.from && p.from <= to);
+    inside
+        .map(|piece| SURE * piece.sd_deg + shared * piece.rate(0.0).abs() * 1e9)
+        .fold(0.0, f64::max)
 }
 
-/// Degrees per second; samples are in strictly increasing time.
-fn rate(a: &AngleSample, b: &AngleSample) -> f64 {
-    (b.angle.0 - a.angle.0) / seconds(a, b)
+fn joined_bound(samples: &[AngleSample]) -> f64 {
+    let rate = |a: &AngleSample, b: &AngleSample| (b.angle.0 - a.angle.0) / noise::seconds(a, b);
+    samples
+        .windows(4)
+        .map(|w| match w {
+            [a, b, c, d] => {
+                let (before, across, after) = (rate(a, b), rate(b, c), rate(c, d));
+                let bent = (after - before).abs() * noise::seconds(b, c) / 8.0;
+                bent + across.abs() * b.bound.as_secs_f64().max(c.bound.as_secs_f64())
+            }
+            _ => 0.0,
+        })
+        .fold(0.0, f64::max)
 }
 
-fn between(a: &AngleSample, b: &AngleSample, at: Moment) -> Degrees {
-    let whole = b.host.saturating_since(a.host).as_nanos() as f64;
-    let part = at.host.saturating_since(a.host).as_nanos() as f64 + at.rest_ns;
-    Degrees(a.angle.0 + (b.angle.0 - a.angle.0) * (part / whole))
+/// Samples within a span.
+fn within(samples: &[AngleSample], (from, to): (Stamp<Host>, Stamp<Host>)) -> &[AngleSample] {
+    let low = samples.partition_point(|s| s.host < from);
+    let high = samples.partition_point(|s| s.host <= to);
+    samples.get(low..high.max(low)).unwrap_or_default()
 }
 
-const fn at_once(host: Stamp<Host>) -> Moment {
-    Moment { host, rest_ns: 0.0 }
+/// Each sample against the line between its neighbours, root mean square, degrees. `None` of fewer than three samples.
+fn leave_one_out_rms(samples: &[AngleSample]) -> Option<f64> {
+    let off = samples.windows(3).filter_map(|w| match w {
+        [a, b, c] => {
+            let part = noise::seconds(a, b) / noise::seconds(a, c);
+            Some(a.angle.0 + (c.angle.0 - a.angle.0) * part - b.angle.0)
+        }
+        _ => None,
+    });
+    let (sum, count) = off.fold((0.0, 0u32), |(sum, n), e| (sum + e * e, n + 1));
+    (count > 0).then(|| (sum / f64::from(count)).sqrt())
 }
 
-/// Follows a trajectory through times that mostly grow.
-#[derive(Clone, Debug)]
-pub struct TrajectoryCursor<'a> {
-    fixed: Option<Degrees>,
-    samples: &'a [AngleSample],
-    /// The first sample after the last start.
-    next: usize,
-    anchor: Anchor,
-}
-
-/// A stretch of time from whose start angles are counted, so that sine and cosine are computed once for many blocks. Where it
-/// begins and ends depends on the samples alone.
-#[derive(Clone, Copy, Debug)]
-struct Anchor {
-    /// Place of the sample after it.
-    next: usize,
-    from: Stamp<Host>,
-    /// Exclusive.
-    until: Stamp<Host>,
-    angle: Degrees,
-    tilt: Tilt,
-}
-
-impl Anchor {
-    const NONE: Self = Self {
-        next: 0,
-        from: Stamp::from_nanos(0),
-        until: Stamp::from_nanos(0),
-        angle: Degrees(0.0),
-        tilt: Tilt::LEVEL,
+/// An encoder says which of its counts the shaft is in. On its way through a count it is in the middle of it in the mean; at rest, where
+/// it was sent, at its beginning.
+fn centred(mut samples: Vec<AngleSample>, quantum: Degrees) -> Vec<AngleSample> {
+    samples.sort_by_key(|s| s.host);
+    let angles: Vec<f64> = samples.iter().map(|s| s.angle.0).collect();
+    let alike = |a: &f64, b: &f64| (a - b).abs() < quantum.0.abs() / 2.0;
+    let runs: Vec<(f64, usize)> = angles
+        .chunk_by(alike)
+        .filter_map(|run| Some((*run.first()?, run.len())))
+        .collect();
+    let passes = |i: usize| {
+        let before = i.checked_sub(1).and_then(|i| runs.get(i));
+        match (before, runs.get(i), runs.get(i + 1)) {
+            (Some(before), Some(here), Some(after)) => {
+                (here.0 - before.0) * (after.0 - here.0) > 0.0
+            }
+            _ => false,
+        }
     };
-
-    #[inline(always)]
-    fn holds(&self, next: usize, host: Stamp<Host>) -> bool {
-        self.next == next && self.from <= host && host < self.until
-    }
-
-    /// The one that `host`, between two samples, belongs to.
-    #[cold]
-    fn new(next: usize, a: &AngleSample, b: &AngleSample, host: Stamp<Host>) -> Self {
-        let rate = rad_per_ns(a, b).abs();
-        let whole_ns = b.host.saturating_since(a.host).as_nanos();
-        // As a number held to the range of the integer, at a rate of 0 too.
-        let length_ns = ((MOST_AHEAD_RAD / 2.0 / rate) as i64).clamp(1, whole_ns.max(1));
-        let part = host.saturating_since(a.host).as_nanos() / length_ns;
-        let from = a.host.saturating_add(Span::from_nanos(part * length_ns));
-        let angle = between(a, b, at_once(from));
-        Self {
-            next,
-            from,
-            until: from.saturating_add(Span::from_nanos(length_ns)).min(b.host),
-            angle,
-            tilt: Tilt::new(angle),
-        }
-    }
-}
-
-/// The angle over some instants.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
-    /// There is none at any of them.
-    Unknown,
-    /// Ask moment by moment: at some of them there may be none, or it goes farther than half of [`MOST_AHEAD_RAD`].
-    MomentByMoment,
-    /// From this it is counted.
-    Known(Degrees, Tilt),
-}
-
-/// What rounding may make of an instant, twice over.
-const EDGE: Span = Span::from_nanos(2);
-
-impl TrajectoryCursor<'_> {
-    /// The angle at moments that are `delays_ns` after a tangent's start by the lidar's clock, none of them after `last`: some
-    /// angle, and in `ahead_rad` how far it was on from there at each.
-    #[inline(always)]
-    pub fn follow<const N: usize>(
-        &mut self,
-        tangent: &Tangent,
-        last: Stamp<Host>,
-        delays_ns: &[f64; N],
-        ahead_rad: &mut [f64; N],
-    ) -> Motion {
-        let at = tangent.at;
-        if let Some(angle) = self.fixed {
-            ahead_rad.fill(0.0);
-            return Motion::Known(angle, Tilt::new(angle));
-        }
-        self.seek(at);
-        let (before, coming) = self.samples.split_at_checked(self.next).unwrap_or_default();
-        let (Some(from), Some(to)) = (before.last(), coming.first()) else {
-            let early = |first: &AngleSample| last.saturating_add(EDGE) < first.host;
-            let known = before.last().is_some_and(|end| at.host <= end.host)
-                || coming.first().is_some_and(|first| !early(first));
-            return if known {
-                Motion::MomentByMoment
-            } else {
-                Motion::Unknown
-            };
+    let mut rest = samples.iter_mut();
+    for (i, (_, count)) in runs.iter().enumerate() {
+        let shift = if passes(i) {
+            quantum.0.abs() / 2.0
+        } else {
+            0.0
         };
-        if self
-            .samples
-            .last()
-            .is_none_or(|end| end.host <= last.saturating_add(EDGE))
-        {
-            return Motion::MomentByMoment;
-        }
-        let anchor = match self.anchor {
-            anchor if anchor.holds(self.next, at.host) => anchor,
-            _ => Anchor::new(self.next, from, to, at.host),
-        };
-        self.anchor = anchor;
-        let stretch = 1.0 + tangent.gain;
-        let mut rate = rad_per_ns(from, to);
-        let length_ns = last.saturating_since(at.host).as_nanos() as f64;
-        let mut fastest = rate.abs();
-        let before = at.host.saturating_since(anchor.from).as_nanos() as f64 + at.rest_ns;
-        let (start, per_delay) = (rate * before, rate * stretch);
-        for (ahead, delay) in ahead_rad.iter_mut().zip(delays_ns) {
-            *ahead = start + per_delay * delay;
-        }
-        // Each sample that is passed bends the way: what comes after it turns at another rate.
-        for (to, beyond) in coming.iter().zip(coming.iter().skip(1)) {
-            if to.host > last.saturating_add(EDGE) {
-                break;
-            }
-            let passed_ns = to.host.saturating_since(at.host).as_nanos() as f64 - at.rest_ns;
-            let next_rate = rad_per_ns(to, beyond);
-            for (ahead, delay) in ahead_rad.iter_mut().zip(delays_ns) {
-                *ahead += (next_rate - rate) * (delay * stretch - passed_ns).max(0.0);
-            }
-            rate = next_rate;
-            fastest = fastest.max(rate.abs());
-        }
-        if fastest * length_ns > MOST_AHEAD_RAD / 2.0 {
-            return Motion::MomentByMoment;
-        }
-        Motion::Known(anchor.angle, anchor.tilt)
-    }
-
-    /// Makes `next` the first sample after `at`.
-    #[inline]
-    fn seek(&mut self, at: Moment) {
-        let is_past = |i: usize| {
-            self.samples
-                .get(i)
-                .is_some_and(|sample| at.reaches(sample.host))
-        };
-        if self
-            .next
-            .checked_sub(1)
-            .is_some_and(|before| !is_past(before))
-        {
-            self.next = self
-                .samples
-                .partition_point(|sample| at.reaches(sample.host));
-        }
-        while is_past(self.next) {
-            self.next += 1;
+        for sample in rest.by_ref().take(*count) {
+            sample.angle.0 += shift;
         }
     }
-}
-
-/// Samples are in strictly increasing time.
-fn rad_per_ns(a: &AngleSample, b: &AngleSample) -> f64 {
-    (b.angle.0 - a.angle.0).to_radians() / b.host.saturating_since(a.host).as_nanos() as f64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(ns: i64, angle: f64) -> AngleSample {
-        AngleSample {
-            host: Stamp::from_nanos(ns),
-            bound: Span::ZERO,
-            angle: Degrees(angle),
-        }
-    }
-
-    #[test]
-    fn it_goes_through_its_samples_and_straight_between_them() {
-        let linear = Linear::new(vec![at(10, 1.0), at(0, 0.0), at(30, -1.0)]).unwrap();
-        let angle = |ns| linear.angle(at_once(Stamp::from_nanos(ns))).map(|a| a.0);
-        assert_eq!(angle(0), Some(0.0));
-        assert_eq!(angle(5), Some(0.5));
-        assert_eq!(angle(20), Some(0.0));
-        assert_eq!(angle(30), Some(-1.0));
-    }
-
-    #[test]
-    fn it_never_extrapolates() {
-        let linear = Linear::new(vec![at(0, 0.0), at(10, 1.0)]).unwrap();
-        assert_eq!(linear.angle(at_once(Stamp::from_nanos(-1))), None);
-        assert_eq!(linear.angle(at_once(Stamp::from_nanos(11))), None);
-        assert!(Linear::new(Vec::new()).is_none());
-    }
-
-    #[test]
-    fn identical_timestamps_do_not_divide_by_zero() {
-        let linear = Linear::new(vec![at(0, 0.0), at(0, 9.0), at(10, 1.0)]).unwrap();
-        assert_eq!(
-            linear.angle(at_once(Stamp::from_nanos(5))),
-            Some(Degrees(0.5))
-        );
-    }
-
-    #[test]
-    fn the_bound_sees_slow_polls_and_holes() {
-        let all = [(Stamp::from_nanos(0), Stamp::from_nanos(1_000_000_000))];
-        let moving = |holes: &[i64], bound_us: i64| {
-            let samples = (0..100)
-                .filter(|i| !holes.contains(i))
-                .map(|i| AngleSample {
-                    bound: Span::from_micros(bound_us),
-                    ..at(
-                        i * 1_000_000,
-                        0.05 * f64::from(i32::try_from(i - 50).unwrap().max(0)),
-                    )
-                });
-            Linear::new(samples.collect()).unwrap().worst_bound(&all).0
-        };
-        // 50 deg/s: 1 ms of doubt is 0.05 deg, and from rest to 50 deg/s over 11 ms 50 x 0.011 / 8.
-        assert!((moving(&[], 1_000) - (0.05 + 0.00625)).abs() < 1e-3);
-        let hole: Vec<i64> = (45..55).collect();
-        assert!((moving(&hole, 0) - 50.0 * 0.011 / 8.0).abs() < 1e-3);
-        assert!(moving(&[], 0) < 0.01);
-    }
-
-    #[test]
-    fn leaving_one_out_sees_noise_but_not_uniform_motion() {
-        let all = [(Stamp::from_nanos(0), Stamp::from_nanos(1_000))];
-        let smooth = (0..100).map(|i| at(i * 10, i as f64)).collect();
-        let rms = Linear::new(smooth).unwrap().leave_one_out_rms(&all);
-        assert!(rms.unwrap().0 < 1e-12);
-        let noisy = (0..100)
-            .map(|i| at(i * 10, i as f64 + if i % 2 == 0 { 0.1 } else { -0.1 }))
-            .collect();
-        let rms = Linear::new(noisy).unwrap().leave_one_out_rms(&all);
-        assert!((rms.unwrap().0 - 0.2).abs() < 1e-9);
-    }
+    samples
 }

@@ -12,7 +12,7 @@ use units::{Lidar, Metres};
 use super::*;
 use crate::clock::{Arrival, LidarClock};
 use crate::scanner::Placer;
-use crate::trajectory::{AngleSample, Linear, Trajectory};
+use crate::trajectory::{AngleSample, Method, Trajectory};
 
 /// A full hour, where the sensor's count of microseconds begins.
 const EPOCH: i64 = 472_222 * 3_600_000_000_000;
@@ -143,9 +143,10 @@ prop_compose! {
         begin in -5_000_000i64..20_000_000,
         angle in -180.0..180.0f64,
         fixed in prop::bool::weighted(0.1),
+        method in prop::sample::select(&[Method::Linear, Method::Hermite]),
     ) -> Trajectory {
         if fixed {
-            return Trajectory::Fixed(Degrees(angle));
+            return Trajectory::fixed(Degrees(angle));
         }
         let (mut ns, mut angle) = (EPOCH + begin, angle);
         let samples = steps.into_iter().map(|(step, speed)| {
@@ -153,7 +154,7 @@ prop_compose! {
             angle += speed * step as f64 * 1e-9;
             AngleSample { host: Stamp::from_nanos(ns), bound: Span::ZERO, angle: Degrees(angle) }
         });
-        Trajectory::Linear(Linear::new(samples.collect()).unwrap())
+        Trajectory::through(samples.collect(), Degrees(0.0), &[], Some(method)).unwrap()
     }
 }
 

@@ -395,7 +395,7 @@ fn sync(alignment: &Alignment) -> Sync {
         clock_bound_us: alignment.clock.bound().as_micros_f64(),
         clock_drift_ppm: alignment.clock.drift_ppm(),
         steps: alignment.steps.iter().map(StepReport::new).collect(),
-        angle_method: alignment.trajectory.method(),
+        angle_method: alignment.trajectory.method().name(),
         angle_rms_deg: alignment.angle_rms_deg(),
         angle_bound_deg: alignment.angle_bound_deg(),
     }

@@ -1,0 +1,194 @@
+//! A piecewise cubic over host time: what every method of knowing the angle ends as.
+//!
+//! So there is one way to ask, one cursor for the fast path, and no method that costs more than another once it is fitted.
+//! Left out: where the coefficients come from.
+
+use units::{Degrees, Host, Stamp};
+
+use crate::clock::Moment;
+
+/// A cubic from its start until the next one's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Its start, the origin of its polynomial.
+    pub from: Stamp<Host>,
+    /// Degrees, degrees per nanosecond, per square and per cube of it.
+    pub deg: [f64; 4],
+    /// Standard deviation of the angle along it, degrees, beside what is the same for a whole scan.
+    pub sd_deg: f64,
+}
+
+/// Cubics in strictly increasing time, and where the last one ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pieces {
+    pieces: Vec<Piece>,
+    end: Stamp<Host>,
+}
+
+impl Piece {
+    /// A straight line that passes `deg` at its start.
+    #[must_use]
+    pub const fn line(from: Stamp<Host>, deg: f64, deg_per_ns: f64) -> Self {
+        Self {
+            from,
+            deg: [deg, deg_per_ns, 0.0, 0.0],
+            sd_deg: 0.0,
+        }
+    }
+
+    /// The cubic that passes `a` degrees with slope `va` at its start and `b` with `vb` after `length_ns` (slopes in degrees
+    /// per nanosecond).
+    #[must_use]
+    pub fn hermite(
+        from: Stamp<Host>,
+        length_ns: f64,
+        [a, va]: [f64; 2],
+        [b, vb]: [f64; 2],
+    ) -> Self {
+        let h = length_ns;
+        let slope = (b - a) / h;
+        Self {
+            from,
+            deg: [
+                a,
+                va,
+                (3.0 * slope - 2.0 * va - vb) / h,
+                (va + vb - 2.0 * slope) / (h * h),
+            ],
+            sd_deg: 0.0,
+        }
+    }
+
+    /// The same with a standard deviation.
+    #[must_use]
+    pub const fn with_sd(self, sd_deg: f64) -> Self {
+        Self { sd_deg, ..self }
+    }
+
+    /// Degrees, `ns` after its start.
+    #[inline(always)]
+    pub(super) fn at(&self, ns: f64) -> f64 {
+        let [c0, c1, c2, c3] = self.deg;
+        c0 + ns * (c1 + ns * (c2 + ns * c3))
+    }
+
+    /// Degrees per nanosecond, `ns` after its start.
+    #[inline(always)]
+    pub(super) fn rate(&self, ns: f64) -> f64 {
+        let [_, c1, c2, c3] = self.deg;
+        c1 + ns * (2.0 * c2 + ns * (3.0 * c3))
+    }
+
+    /// The coefficients about the instant `ns` after its start.
+    #[inline(always)]
+    pub(super) fn about(&self, ns: f64) -> [f64; 4] {
+        let [_, _, c2, c3] = self.deg;
+        [self.at(ns), self.rate(ns), c2 + 3.0 * c3 * ns, c3]
+    }
+
+    /// Not exceeded by the speed on its first `length_ns`, degrees per nanosecond.
+    pub(super) fn fastest(&self, length_ns: f64) -> f64 {
+        let [_, c1, c2, c3] = self.deg;
+        c1.abs() + length_ns * (2.0 * c2.abs() + length_ns * 3.0 * c3.abs())
+    }
+
+    pub(super) fn since(&self, at: Moment) -> f64 {
+        at.host.saturating_since(self.from).as_nanos() as f64 + at.rest_ns
+    }
+}
+
+impl Pieces {
+    /// `pieces` until `end`. Of several that start at one instant the last is kept, and none that starts at the end or later
+    /// but the very first. `None` without pieces.
+    #[must_use]
+    pub fn new(mut pieces: Vec<Piece>, end: Stamp<Host>) -> Option<Self> {
+        pieces.sort_by_key(|piece| piece.from);
+        let first = pieces.first()?.from;
+        pieces.retain(|piece| piece.from < end || piece.from == first);
+        pieces.reverse();
+        pieces.dedup_by_key(|piece| piece.from);
+        pieces.reverse();
+        Some(Self {
+            pieces,
+            end: end.max(first),
+        })
+    }
+
+    /// From when to when there is an angle.
+    #[must_use]
+    pub fn span(&self) -> (Stamp<Host>, Stamp<Host>) {
+        let first = self.pieces.first().map_or(self.end, |piece| piece.from);
+        (first, self.end)
+    }
+
+    pub(super) fn as_slice(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// The piece that holds at an instant; `None` before the first and after the end, to the nanosecond.
+    #[must_use]
+    pub fn piece(&self, at: Moment) -> Option<&Piece> {
+        let (first, end) = self.span();
+        if at.host < first || end < at.host {
+            return None;
+        }
+        // To the nanosecond the first one's start belongs to it.
+        let past = self.pieces.partition_point(|piece| at.reaches(piece.from));
+        self.pieces.get(past.saturating_sub(1))
+    }
+
+    /// The angle at an instant; `None` before the first piece and after the end.
+    #[must_use]
+    pub fn angle(&self, at: Moment) -> Option<Degrees> {
+        let piece = self.piece(at)?;
+        Some(Degrees(piece.at(piece.since(at))))
+    }
+
+    /// Puts `other` in place of what is here for the time that it covers.
+    pub(super) fn replace(&mut self, other: &Self) {
+        let (from, to) = other.span();
+        let (first, end) = self.span();
+        let after = (to < end)
+            .then(|| {
+                self.piece(crate::clock::Moment {
+                    host: to,
+                    rest_ns: 0.0,
+                })
+            })
+            .flatten()
+            .map(|piece| {
+                let ns = to.saturating_since(piece.from).as_nanos() as f64;
+                Piece {
+                    from: to,
+                    deg: piece.about(ns),
+                    sd_deg: piece.sd_deg,
+                }
+            });
+        let low = self.pieces.partition_point(|piece| piece.from < from);
+        let high = self.pieces.partition_point(|piece| piece.from <= to);
+        let new = other.pieces.iter().copied().chain(after);
+        self.pieces.splice(low..high.max(low), new);
+        self.end = end.max(to);
+        debug_assert!(first.min(from) == self.span().0);
+    }
+
+    /// Takes away what ended before `host`.
+    pub(crate) fn forget_before(&mut self, host: Stamp<Host>) {
+        let past = self.pieces.partition_point(|piece| piece.from <= host);
+        self.pieces.drain(..past.saturating_sub(1));
+    }
+
+    /// Goes on with `piece` until `end`; a piece that does not start later than the last one takes its place.
+    pub(crate) fn go_on(&mut self, piece: Piece, end: Stamp<Host>) {
+        while self.pieces.len() > 1
+            && self
+                .pieces
+                .last()
+                .is_some_and(|last| last.from >= piece.from)
+        {
+            self.pieces.pop();
+        }
+        self.pieces.push(piece);
+        self.end = self.end.max(end);
+    }
+}

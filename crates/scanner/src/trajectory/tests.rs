@@ -1,0 +1,94 @@
+//! Methods against known motions.
+
+use super::*;
+
+mod realistic;
+
+fn at(ns: i64, angle: f64) -> AngleSample {
+    AngleSample {
+        host: Stamp::from_nanos(ns),
+        bound: Span::ZERO,
+        angle: Degrees(angle),
+    }
+}
+
+fn at_once(ns: i64) -> Moment {
+    Moment {
+        host: Stamp::from_nanos(ns),
+        rest_ns: 0.0,
+    }
+}
+
+fn joined(samples: Vec<AngleSample>, method: Method) -> Option<Trajectory> {
+    Trajectory::through(samples, Degrees(0.0), &[], Some(method))
+}
+
+#[test]
+fn lines_go_through_their_samples_and_straight_between_them() {
+    let linear = joined(vec![at(10, 1.0), at(0, 0.0), at(30, -1.0)], Method::Linear).unwrap();
+    let angle = |ns| linear.angle(at_once(ns)).map(|a| a.0);
+    assert_eq!(angle(0), Some(0.0));
+    assert_eq!(angle(5), Some(0.5));
+    assert_eq!(angle(20), Some(0.0));
+    assert_eq!(angle(30), Some(-1.0));
+}
+
+#[test]
+fn no_method_extrapolates() {
+    for method in [Method::Nearest, Method::Linear, Method::Hermite] {
+        let two = joined(vec![at(0, 0.0), at(10, 1.0)], method).unwrap();
+        assert_eq!(two.angle(at_once(-1)), None);
+        assert_eq!(two.angle(at_once(11)), None);
+        assert!(two.angle(at_once(0)).is_some() && two.angle(at_once(10)).is_some());
+        assert!(joined(Vec::new(), method).is_none());
+        let one = joined(vec![at(3, 2.0)], method).unwrap();
+        assert_eq!(one.angle(at_once(3)), Some(Degrees(2.0)));
+        assert_eq!(one.angle(at_once(4)), None);
+    }
+}
+
+#[test]
+fn identical_timestamps_do_not_divide_by_zero() {
+    for method in [Method::Nearest, Method::Linear, Method::Hermite] {
+        let twice = joined(vec![at(0, 0.0), at(0, 9.0), at(10, 1.0)], method).unwrap();
+        let angle = twice.angle(at_once(4)).unwrap().0;
+        assert!((0.0..=1.0).contains(&angle), "{method:?}: {angle}");
+    }
+}
+
+#[test]
+fn the_bound_sees_slow_polls_and_holes() {
+    let all = [(Stamp::from_nanos(0), Stamp::from_nanos(1_000_000_000))];
+    let moving = |holes: &[i64], bound_us: i64| {
+        let samples = (0..100)
+            .filter(|i| !holes.contains(i))
+            .map(|i| AngleSample {
+                bound: Span::from_micros(bound_us),
+                ..at(
+                    i * 1_000_000,
+                    0.05 * f64::from(i32::try_from(i - 50).unwrap().max(0)),
+                )
+            });
+        joined(samples.collect(), Method::Linear)
+            .unwrap()
+            .bound_deg(&all)
+    };
+    // 50 deg/s: 1 ms of doubt is 0.05 deg, and from rest to 50 deg/s over 11 ms 50 x 0.011 / 8.
+    assert!((moving(&[], 1_000) - (0.05 + 0.00625)).abs() < 1e-3);
+    let hole: Vec<i64> = (45..55).collect();
+    assert!((moving(&hole, 0) - 50.0 * 0.011 / 8.0).abs() < 1e-3);
+    assert!(moving(&[], 0) < 0.01);
+}
+
+#[test]
+fn leaving_one_out_sees_noise_but_not_uniform_motion() {
+    let all = [(Stamp::from_nanos(0), Stamp::from_nanos(1_000))];
+    let smooth = (0..100).map(|i| at(i * 10, i as f64)).collect();
+    let rms = joined(smooth, Method::Linear).unwrap().rms_deg(&all);
+    assert!(rms.unwrap() < 1e-12);
+    let noisy = (0..100)
+        .map(|i| at(i * 10, i as f64 + if i % 2 == 0 { 0.1 } else { -0.1 }))
+        .collect();
+    let rms = joined(noisy, Method::Linear).unwrap().rms_deg(&all);
+    assert!((rms.unwrap() - 0.2).abs() < 1e-9);
+}
