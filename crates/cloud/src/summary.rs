@@ -28,11 +28,7 @@ impl Bounds {
         };
         let axes = bounds.min_m.iter_mut().zip(&mut bounds.max_m);
         for ((min, max), column) in axes.zip(columns_m) {
-            for &value in column {
-                // f64::min and max let a number win over NaN.
-                *min = min.min(value);
-                *max = max.max(value);
-            }
+            (*min, *max) = extent(column);
             if *min > *max {
                 return None;
             }
@@ -53,6 +49,29 @@ impl Bounds {
             max_m: each(f64::max, a.max_m, b.max_m),
         }
     }
+}
+
+/// Numbers that are compared side by side: more than one comparison takes, so that none waits for the one before it.
+const LANES: usize = 16;
+
+/// Least and greatest number of a column; infinities the wrong way round where there is none.
+fn extent(column: &[f64]) -> (f64, f64) {
+    let (mut least, mut greatest) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    let (chunks, rest) = column.as_chunks::<LANES>();
+    for chunk in chunks {
+        for ((least, greatest), &value) in least.iter_mut().zip(&mut greatest).zip(chunk) {
+            // NaN is neither less nor greater, so that every number wins over it.
+            *least = if value < *least { value } else { *least };
+            *greatest = if value > *greatest { value } else { *greatest };
+        }
+    }
+    let least = least
+        .iter()
+        .chain(rest)
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    let greatest = greatest.iter().chain(rest).copied();
+    (least, greatest.fold(f64::NEG_INFINITY, f64::max))
 }
 
 impl Summary {
@@ -102,6 +121,28 @@ mod tests {
                 max_m: [2.0, 5.0, 9.0]
             })
         );
+    }
+
+    /// Against the plain way, for every length around the lanes and NaN in every place.
+    #[test]
+    fn lanes_find_what_a_plain_search_finds() {
+        for len in 0..=3 * LANES {
+            let column: Vec<f64> = (0..len)
+                .map(|i| f64::from((i * 37 % 101) as u32) - 50.0)
+                .collect();
+            for nan in 0..=len {
+                let mut column = column.clone();
+                if let Some(value) = column.get_mut(nan) {
+                    *value = f64::NAN;
+                }
+                let plain = column
+                    .iter()
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+                        (a.min(*v), b.max(*v))
+                    });
+                assert_eq!(extent(&column), plain, "{len} {nan}");
+            }
+        }
     }
 
     #[test]

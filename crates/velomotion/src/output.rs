@@ -13,6 +13,9 @@ use cloud::{Sink, SinkError};
 
 use crate::failure::{Failure, Kind};
 
+/// Enough for what comes in small pieces (LAZ, CSV); less than a batch of rows, which then goes to the system without being copied.
+const BUFFER_BYTES: usize = 1 << 16;
+
 /// A cloud's destination, checked and opened before anything is measured.
 pub struct Target {
     path: PathBuf,
@@ -32,7 +35,7 @@ impl Target {
                 Failure::new(Kind::BadInput, format!("cannot write to stdout: {error}"))
                     .help("set TMPDIR to a folder with room for the cloud, or name a file with -o")
             })?;
-            let scratch = BufWriter::with_capacity(1 << 20, scratch);
+            let scratch = BufWriter::with_capacity(BUFFER_BYTES, scratch);
             return Ok(Self {
                 path: path.to_owned(),
                 file: None,
@@ -63,7 +66,7 @@ impl Target {
     ) -> Result<Self, Failure> {
         let file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
         let shared = Shared(Arc::new(Mutex::new(Some(file))));
-        let buffered = BufWriter::with_capacity(1 << 20, shared.clone());
+        let buffered = BufWriter::with_capacity(BUFFER_BYTES, shared.clone());
         Ok(Self {
             path: path.to_owned(),
             file: Some(shared),

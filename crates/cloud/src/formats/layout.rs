@@ -72,19 +72,50 @@ impl Layout {
         batch.fields().require(self.fields)?;
         let rows = &mut self.rows;
         rows.reset(batch.len());
-        let mut at = 0;
-        for axis in [batch.x_m(), batch.y_m(), batch.z_m()] {
-            rows.fill(at, axis.iter().map(|v| (*v as f32).to_le_bytes()));
-            at += Kind::Float.bytes();
+        if self.fields == Fields::FILE {
+            usual_rows(rows, batch);
+            return Ok(rows.bytes());
         }
-        for column in self.fields.columns() {
-            fill(rows, at, column, batch);
-            at += Kind::of(column).bytes();
-        }
-        Ok(self.rows.bytes())
+        columns_into(rows, self.fields, batch);
+        Ok(rows.bytes())
     }
 }
 
+/// Bytes of a row of the usual columns: x, y, z, intensity, ring, time, tilt.
+const USUAL: usize = 29;
+
+/// The usual columns in one pass, a row at a time, as all but few files have them.
+fn usual_rows(rows: &mut Rows, batch: &Points) {
+    let (x, y, z) = (batch.x_m(), batch.y_m(), batch.z_m());
+    let reflected = batch.intensity().iter().zip(batch.ring());
+    let stood = batch.time().iter().zip(batch.tilt_deg());
+    let columns = x.iter().zip(y).zip(z).zip(reflected).zip(stood);
+    for (row, (((xy, z), (intensity, ring)), (time, tilt))) in rows.each::<USUAL>().zip(columns) {
+        let [x, y, z, intensity, tilt] =
+            [*xy.0, *xy.1, *z, f64::from(*intensity), *tilt].map(|v| (v as f32).to_le_bytes());
+        let [t0, t1, t2, t3, t4, t5, t6, t7] = seconds(time.as_nanos()).to_le_bytes();
+        let ([x0, x1, x2, x3], [y0, y1, y2, y3]) = (x, y);
+        let ([z0, z1, z2, z3], [i0, i1, i2, i3]) = (z, intensity);
+        let [a0, a1, a2, a3] = tilt;
+        *row = [
+            x0, x1, x2, x3, y0, y1, y2, y3, z0, z1, z2, z3, i0, i1, i2, i3, *ring, t0, t1, t2, t3,
+            t4, t5, t6, t7, a0, a1, a2, a3,
+        ];
+    }
+}
+
+/// Any columns, one after the other.
+fn columns_into(rows: &mut Rows, fields: Fields, batch: &Points) {
+    let mut at = 0;
+    for axis in [batch.x_m(), batch.y_m(), batch.z_m()] {
+        rows.fill(at, axis.iter().map(|v| (*v as f32).to_le_bytes()));
+        at += Kind::Float.bytes();
+    }
+    for column in fields.columns() {
+        fill(rows, at, column, batch);
+        at += Kind::of(column).bytes();
+    }
+}
 /// A column of a batch into its place in every row.
 fn fill(rows: &mut Rows, at: usize, column: Column, batch: &Points) {
     match column {
@@ -106,5 +137,23 @@ fn fill(rows: &mut Rows, at: usize, column: Column, batch: &Points) {
             let angles = batch.tilt_deg().iter();
             rows.fill(at, angles.map(|v| (*v as f32).to_le_bytes()));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::testing;
+
+    #[test]
+    fn the_usual_columns_in_one_pass_are_the_columns_one_by_one() {
+        let batch = testing::cloud(100);
+        let mut layout = Layout::new(Fields::FILE);
+        let usual = layout.encode(&batch).unwrap().to_vec();
+        assert_eq!(usual.len(), 100 * USUAL);
+        let mut rows = Rows::new(USUAL);
+        rows.reset(100);
+        columns_into(&mut rows, Fields::FILE, &batch);
+        assert_eq!(usual, rows.bytes());
     }
 }

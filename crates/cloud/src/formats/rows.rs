@@ -16,10 +16,16 @@ impl Rows {
         }
     }
 
-    /// `count` rows of zeros.
+    /// `count` rows; what stood in them before may still stand there.
     pub(super) fn reset(&mut self, count: usize) {
-        self.bytes.clear();
         self.bytes.resize(count * self.row_bytes, 0);
+    }
+
+    /// Every row; none where rows are not of `N` bytes.
+    pub(super) fn each<const N: usize>(&mut self) -> impl Iterator<Item = &mut [u8; N]> {
+        let fits = N == self.row_bytes;
+        let (rows, _) = self.bytes.as_chunks_mut::<N>();
+        rows.iter_mut().take(if fits { usize::MAX } else { 0 })
     }
 
     /// Writes a column at byte `offset` of every row.
@@ -62,6 +68,9 @@ mod tests {
         rows.fill(1, [0x0304u16, 0x0506].iter().map(|v| v.to_be_bytes()));
         assert_eq!(rows.bytes(), [1, 3, 4, 2, 5, 6]);
         rows.reset(1);
-        assert_eq!(rows.bytes(), [0, 0, 0]);
+        assert_eq!(rows.bytes(), [1, 3, 4]);
+        rows.each::<3>().for_each(|row| *row = [7, 8, 9]);
+        assert_eq!(rows.bytes(), [7, 8, 9]);
+        assert_eq!(rows.each::<2>().count(), 0);
     }
 }
