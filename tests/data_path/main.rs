@@ -2,6 +2,7 @@
 
 mod frames;
 mod links;
+mod live;
 mod sensors;
 
 use units::{DegPerS, DegPerS2, Host, Span, Stamp};

@@ -6,6 +6,7 @@
 pub mod clock;
 pub mod config;
 pub mod error;
+mod live;
 mod plausible;
 pub mod polls;
 pub mod scanner;
@@ -18,5 +19,6 @@ mod volleys;
 
 pub use config::{ScanConfig, SweepPlan};
 pub use error::ScanError;
+pub use live::Live;
 pub use scanner::{Alignment, Placed, Placer, Survey};
 pub use tilt::{AngleTable, TableTime, TiltSource};

@@ -5,6 +5,8 @@
 //! middle may be off by half the excess. In steady motion its neighbours tell the angle better than it does. On a ramp they may not: a slow
 //! poll stays where the line across the hole would be worse than the poll.
 
+use std::collections::VecDeque;
+
 use drive::ShaftSample;
 use units::{Gearing, Span};
 
@@ -51,12 +53,40 @@ fn without_slow(samples: &[AngleSample]) -> Vec<AngleSample> {
     kept
 }
 
-fn sample(poll: &ShaftSample, gearing: Gearing) -> AngleSample {
+/// A sample in the middle of its poll.
+pub(crate) fn sample(poll: &ShaftSample, gearing: Gearing) -> AngleSample {
     let half = poll.answer.saturating_since(poll.request).half();
     AngleSample {
         host: poll.request.saturating_add(half),
         bound: half,
         angle: gearing.angle(poll.position),
+    }
+}
+
+/// Tells slow polls while they come in: by the round trips of the last ones.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct QuickPolls {
+    trips: VecDeque<Span>,
+}
+
+/// So many round trips tell what is slow.
+const REMEMBERED: usize = 64;
+/// Without a sample for so long a slow one is better than none.
+const PATIENCE: Span = Span::from_millis(20);
+
+impl QuickPolls {
+    /// Whether to take a sample that comes after `newest`.
+    pub(crate) fn is_quick(&mut self, sample: &AngleSample, newest: Option<&AngleSample>) -> bool {
+        let trip = sample.bound + sample.bound;
+        if self.trips.len() >= REMEMBERED {
+            self.trips.pop_front();
+        }
+        self.trips.push_back(trip);
+        let mut sorted: Vec<Span> = self.trips.iter().copied().collect();
+        sorted.sort_unstable();
+        let rank = (sorted.len() as f64 * QUICK_QUANTILE) as usize;
+        sorted.get(rank).is_none_or(|limit| trip <= *limit)
+            || newest.is_none_or(|newest| sample.host.saturating_since(newest.host) > PATIENCE)
     }
 }
 

@@ -13,7 +13,7 @@ use drive::{Listener, Observation, ShaftSample};
 use lidar::{Decoder, Options, SensorPoint, Stats, Timekeeper};
 use units::{Degrees, Gearing, Host, Metres, Span, Stamp};
 
-use crate::clock::{Arrival, LidarClock};
+use crate::clock::{Arrival, LidarClock, Moment};
 use crate::config::ScanConfig;
 use crate::error::ScanError;
 use crate::plausible;
@@ -265,6 +265,28 @@ impl Alignment {
         self.spans
             .iter()
             .any(|(from, to)| *from <= host && host <= *to)
+    }
+
+    /// One that changes while records come in: a clock for each packet, an angle that grows, sweeps as they begin.
+    pub(crate) fn live(trajectory: Trajectory, mount: Mount) -> Self {
+        let epoch = Moment {
+            host: Stamp::from_nanos(0),
+            rest_ns: 0.0,
+        };
+        Self {
+            clock: LidarClock::through(Stamp::from_nanos(0), epoch),
+            steps: Vec::new(),
+            trajectory,
+            sweeps: Vec::new(),
+            mount,
+            implausible: 0,
+            spans: Vec::new(),
+        }
+    }
+
+    pub(crate) fn set_spans(&mut self, spans: &[(Stamp<Host>, Stamp<Host>)]) {
+        self.spans.clear();
+        self.spans.extend_from_slice(spans);
     }
 
     /// An alignment of given parts.

@@ -23,6 +23,7 @@ mod tests;
 
 pub use choose::SweepFit;
 pub use cursor::{Motion, TrajectoryCursor};
+pub(crate) use interpolate::Growing;
 pub use noise::Noise;
 pub use pieces::{Piece, Pieces};
 pub use profile::Profile;
@@ -237,22 +238,27 @@ impl Trajectory {
         }
     }
 
-    /// One that grows: without samples, and with an angle nowhere.
-    #[must_use]
-    pub(crate) fn growing(pieces: Pieces, method: Method) -> Self {
-        Self {
-            shape: Shape::Pieces(pieces),
+    /// One that grows piece by piece; `None` without time.
+    pub(crate) fn of(piece: Piece, end: Stamp<Host>, method: Method) -> Option<Self> {
+        Some(Self {
+            shape: Shape::Pieces(Pieces::new(vec![piece], end)?),
             method,
             fits: Vec::new(),
             samples: Vec::new(),
+        })
+    }
+
+    /// Goes on with `piece` until `end`.
+    pub(crate) fn go_on(&mut self, piece: Piece, end: Stamp<Host>) {
+        if let Shape::Pieces(pieces) = &mut self.shape {
+            pieces.go_on(piece, end);
         }
     }
 
-    /// Its pieces, to go on with; `None` of a platform that stands still.
-    pub(crate) const fn pieces_mut(&mut self) -> Option<&mut Pieces> {
-        match &mut self.shape {
-            Shape::Fixed(_) => None,
-            Shape::Pieces(pieces) => Some(pieces),
+    /// Forgets what ended before `host`.
+    pub(crate) fn forget_before(&mut self, host: Stamp<Host>) {
+        if let Shape::Pieces(pieces) = &mut self.shape {
+            pieces.forget_before(host);
         }
     }
 

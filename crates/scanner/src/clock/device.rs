@@ -87,6 +87,31 @@ impl<C> DeviceClock<C> {
         Self::fit_pieces(&[stretch], &[]).map(|(clock, _)| clock)
     }
 
+    /// One that runs as fast as the host's and passes `moment` at `device`.
+    #[must_use]
+    pub(crate) fn through(device: Stamp<C>, moment: Moment) -> Self {
+        let host = moment.host.as_nanos();
+        let line = Line {
+            centre_ns: 0.0,
+            offset_ns: moment.rest_ns,
+            slope: 0.0,
+        };
+        Self {
+            origin_ns: device.as_nanos(),
+            pieces: vec![Piece {
+                from_ns: 0.0,
+                to_ns: 0.0,
+                end_ns: device.as_nanos(),
+                whole: host.wrapping_sub(device.as_nanos()),
+                set_by: 0,
+                lines: vec![line],
+                cells: Vec::new(),
+            }],
+            residual: Span::ZERO,
+            domain: PhantomData,
+        }
+    }
+
     /// Fits a piece for each stretch. Between stretches one of the two clocks was set; where it was the host's, host times go on
     /// from the stretch before. Beside the clock, how much later packets came from each stretch to the next.
     pub(crate) fn fit_pieces(

@@ -38,27 +38,36 @@ pub(super) fn linear(samples: &[AngleSample], noise: &Noise) -> Option<Pieces> {
     })
 }
 
-/// The line from one sample to the next, for one that comes after `before`; for trajectories that grow.
-pub(crate) fn line(
-    before: Option<&AngleSample>,
-    a: &AngleSample,
-    b: &AngleSample,
-    noise: &Noise,
-) -> Piece {
-    let rate = |a: &AngleSample, b: &AngleSample| {
-        let s = seconds(a, b);
-        if s > 0.0 {
-            (b.angle.0 - a.angle.0) / s
-        } else {
-            0.0
+/// Straight lines from sample to sample while they come in.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Growing {
+    last: [Option<AngleSample>; 2],
+}
+
+impl Growing {
+    /// The newest sample.
+    pub(crate) const fn newest(&self) -> Option<&AngleSample> {
+        self.last[1].as_ref()
+    }
+
+    /// The line to a sample from the one before it; `None` of the first, and of one that is not later.
+    pub(crate) fn add(&mut self, sample: AngleSample) -> Option<Piece> {
+        let [before, last] = self.last;
+        if last.is_some_and(|last| sample.host <= last.host) {
+            return None;
         }
-    };
-    let here = rate(a, b);
-    let bent = before.map_or(0.0, |before| (here - rate(before, a)) * seconds(a, b) / 8.0);
-    let [sa, sb] = [a, b].map(|s| noise.sd_deg(s, here));
-    let sd = f64::sqrt((sa * sa + sb * sb) / 3.0 + bent * bent * (8.0 / 15.0));
-    let ns = b.host.saturating_since(a.host).as_nanos().max(1) as f64;
-    Piece::line(a.host, a.angle.0, (b.angle.0 - a.angle.0) / ns).with_sd(sd)
+        self.last = [last, Some(sample)];
+        let last = last?;
+        let rate = (sample.angle.0 - last.angle.0) / seconds(&last, &sample);
+        let bent = before.map_or(0.0, |before| {
+            let rate_before = (last.angle.0 - before.angle.0) / seconds(&before, &last);
+            (rate - rate_before) * seconds(&last, &sample) / 8.0
+        });
+        let noise = Noise::EVEN;
+        let [a, b] = [last, sample].map(|s| noise.sd_deg(&s, rate));
+        let sd = f64::sqrt((a * a + b * b) / 3.0 + bent * bent * (8.0 / 15.0));
+        Some(Piece::line(last.host, last.angle.0, rate * 1e-9).with_sd(sd))
+    }
 }
 
 /// A cubic between neighbours whose speed at each sample is that of the parabola through it and its neighbours. Samples are in

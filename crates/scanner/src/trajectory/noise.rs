@@ -21,6 +21,12 @@ pub struct Noise {
 const EVEN: f64 = 0.577_350_269_189_625_8;
 
 impl Noise {
+    /// Evenly spread over the bounds: where nothing is known.
+    pub const EVEN: Self = Self {
+        share: EVEN,
+        angle_sd_deg: 0.0,
+    };
+
     /// That of `samples`, whose angles come in steps of `quantum`. Where motion tells nothing, errors count as even
     /// over the bounds.
     #[must_use]

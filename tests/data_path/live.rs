@@ -1,0 +1,68 @@
+//! The cloud while it is measured: the same records one by one.
+
+use cloud::{Fields, Points};
+use io::recording::Recording;
+use scanner::Live;
+use sim::Attached;
+use units::Span;
+use velomotion::recordings::Source;
+use velomotion_tests::capture::{Captured, Setting};
+
+/// The newest angle may be this much ahead of the cloud.
+const MOST_LAG: Span = Span::from_millis(50);
+
+#[test]
+fn the_live_cloud_is_close_behind_and_a_replay_is_at_least_as_good() {
+    for attached in [
+        Attached::Usb,
+        Attached::Rs232,
+        Attached::Slcan,
+        Attached::Can,
+    ] {
+        let captured = Captured::new(Setting::over(attached));
+        let (from, to) = captured.sweep_span();
+        let mut recording = Recording::open(captured.log()).unwrap();
+        let config = Source::open(&captured.log(), None)
+            .unwrap()
+            .config()
+            .unwrap();
+        let mut points = Points::new(Fields::ALL);
+        let mut live = Live::new(&config, lidar::Options::default(), &mut points).unwrap();
+        let mut most = Span::ZERO;
+        while let Some(record) = recording.next_record().unwrap() {
+            live.observe(&record).unwrap();
+            if from < record.host && record.host < to {
+                most = most.max(live.lag().unwrap());
+            }
+        }
+        let (placed, _) = live.finish().unwrap();
+        assert_eq!(placed.points, points.len() as u64);
+        let truth = |time: units::Stamp<units::Lidar>, laser| {
+            captured.truth().point(time.as_nanos(), laser)
+        };
+        let (live, offline) = (
+            analysis::truth::compare(&points, truth).unwrap(),
+            captured.error(),
+        );
+        println!(
+            "{attached:?}: lag {:.1} ms; live rms {:.2} mm, worst {:.2} mm; replayed rms {:.2} mm, worst {:.2} mm",
+            most.as_secs_f64() * 1e3,
+            live.rms_m * 1e3,
+            live.worst_m * 1e3,
+            offline.rms_m * 1e3,
+            offline.worst_m * 1e3
+        );
+        assert!(most < MOST_LAG, "{attached:?}: {most:?}");
+        // Where the link is even, both are as good as the ranges' 2 mm: equal to one in a hundred.
+        assert!(
+            offline.rms_m <= live.rms_m * 1.01 && offline.worst_m <= live.worst_m,
+            "{attached:?}"
+        );
+        assert!(live.rms_m < 5e-3, "{attached:?}");
+        let (few, all) = (points.len() as f64, captured.cloud().len() as f64);
+        assert!(
+            (few / all - 1.0).abs() < 0.01,
+            "{attached:?}: {few} of {all} points"
+        );
+    }
+}
