@@ -1,5 +1,6 @@
-//! What clouds are worth: for now, a cloud against the simulated truth.
+//! What clouds are worth: a cloud against the simulated truth, and what accuracy costs in time.
 //!
 //! Left out: making clouds (`scanner`), and anything that reads files or clocks.
 
+pub mod tradeoff;
 pub mod truth;

@@ -48,6 +48,8 @@ pub enum Command {
     Replay(Replay),
     /// Say what a file holds
     Info(Info),
+    /// Measure, on this machine and now, what accuracy costs in time
+    Tradeoff(Tradeoff),
     /// Look at the tilt axis, home it, move it, stop it
     Tilt(Tilt),
     /// Say what this machine has of a scanner, what is wrong and what to do
@@ -197,6 +199,26 @@ pub struct Info {
     /// The lidars' model, where neither their packets' factory byte nor their spacing tells it right
     #[arg(long, value_enum)]
     pub model: Option<ModelName>,
+}
+
+/// `tradeoff`.
+#[derive(Clone, Debug, Args)]
+pub struct Tradeoff {
+    /// Folder for a page to look at (index.html), a figure a study (SVG) and tradeoff.json
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Folder of a book's pages: writes tradeoff.md, and its figures into tradeoff/
+    #[arg(long, value_name = "DIR")]
+    pub markdown: Option<PathBuf>,
+    /// Only these studies
+    #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// A look: smaller workloads and fewer rounds
+    #[arg(long)]
+    pub quick: bool,
+    /// Overwrite files that exist
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// `tilt`.

@@ -7,6 +7,7 @@ pub mod frames;
 pub mod info;
 pub mod replay;
 pub mod tilt;
+pub mod tradeoff;
 
 use crate::cli::{Cli, Command};
 use crate::failure::Failure;
@@ -32,6 +33,7 @@ pub fn run(cli: &Cli) -> Result<Said, Failure> {
         Command::Capture(arguments) => capture::run(arguments, &cli.common),
         Command::Replay(arguments) => replay::run(arguments, &cli.common),
         Command::Info(arguments) => info::run(arguments),
+        Command::Tradeoff(arguments) => tradeoff::run(arguments, &cli.common),
         Command::Tilt(arguments) => tilt::run(arguments, &cli.common),
         Command::Doctor => doctor::run(&cli.common),
         Command::FirmwareSim(arguments) => firmware_sim::run(arguments, &cli.common),

@@ -1,0 +1,413 @@
+//! What a study is, and what it finds.
+
+use cloud::SinkError;
+use serde::Serialize;
+use units::Span;
+
+use super::front::{front, front_within_spread};
+use super::{Clock, Plan, Spread, number};
+
+/// Ways to do one thing, measured against each other. One file each; whoever lists them decides which there are.
+pub trait Study {
+    /// Its name on the command line and of its files: lower-case letters and hyphens.
+    fn name(&self) -> &'static str;
+
+    /// One line on what is compared.
+    fn title(&self) -> &'static str;
+
+    /// Measures.
+    ///
+    /// # Errors
+    /// [`StudyError`] where what is measured fails.
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError>;
+}
+
+/// Why a study came to nothing.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// A sink refused points.
+    #[error(transparent)]
+    Sink(#[from] SinkError),
+    /// What was to be measured could not be set up.
+    #[error("workload: {0}")]
+    Workload(Box<dyn std::error::Error + Send + Sync>),
+    /// What was written does not read back.
+    #[error("{format} read back, byte {offset}: expected {expected}, got {got}")]
+    ReadBack {
+        /// The format.
+        format: &'static str,
+        /// Where in the file.
+        offset: usize,
+        /// What should be there.
+        expected: String,
+        /// What is.
+        got: String,
+    },
+}
+
+/// How thoroughly a study measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Effort {
+    /// A look: smaller workloads, fewer rounds.
+    Quick,
+    /// What figures are published from.
+    Full,
+}
+
+/// What a study measures with.
+pub struct Bench<'a> {
+    /// The clock.
+    pub clock: &'a mut dyn Clock,
+    /// How thoroughly.
+    pub effort: Effort,
+    /// Takes sentences on what goes on.
+    pub say: &'a mut dyn FnMut(&str),
+}
+
+impl Bench<'_> {
+    /// `full`, or of a quick look `quick`.
+    #[must_use]
+    pub const fn size(&self, quick: usize, full: usize) -> usize {
+        match self.effort {
+            Effort::Quick => quick,
+            Effort::Full => full,
+        }
+    }
+
+    /// Rounds of measurements of at least 2 ms each.
+    #[must_use]
+    pub const fn plan(&self, quick: usize, full: usize) -> Plan {
+        Plan {
+            rounds: self.size(quick, full),
+            least: Span::from_micros(2_000),
+        }
+    }
+}
+
+/// How an axis shows a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Even steps.
+    Linear,
+    /// Powers of ten; nought has a place of its own below them.
+    Log,
+}
+
+/// What was measured of every choice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name in JSON, the unit last.
+    pub key: &'static str,
+    /// Its heading, the unit in it.
+    pub heading: &'static str,
+    /// How an axis shows it.
+    pub scale: Scale,
+}
+
+/// A measured value. Less is better wherever values are traded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// Computed: it comes out the same every time.
+    Computed(f64),
+    /// Timed, several times.
+    Timed(Spread),
+}
+
+impl Value {
+    /// The value that counts: of several the median.
+    #[must_use]
+    pub const fn middle(&self) -> f64 {
+        match self {
+            Self::Computed(x) => *x,
+            Self::Timed(spread) => spread.median,
+        }
+    }
+
+    /// The best that was measured: of several the least.
+    #[must_use]
+    pub const fn best(&self) -> f64 {
+        match self {
+            Self::Computed(x) => *x,
+            Self::Timed(spread) => spread.min,
+        }
+    }
+}
+
+/// A choice and what was measured of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Its name, like no other's.
+    pub name: String,
+    /// A word or two for the figure.
+    pub label: String,
+    /// The kind of choice that it is: a colour in the figure.
+    pub group: &'static str,
+    /// One value a column.
+    pub values: Vec<Value>,
+}
+
+/// One column that is paid for another: a plot with a Pareto front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Trade {
+    /// What is paid: place of a column; the x axis.
+    pub cost: usize,
+    /// What is to be small for it: place of a column; the y axis.
+    pub loss: usize,
+    /// Whether a line joins the choices of one group.
+    pub joined: bool,
+}
+
+/// What a study found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Findings {
+    /// The study's name.
+    pub name: &'static str,
+    /// The study's title.
+    pub title: &'static str,
+    /// Paragraphs: what was measured, on what, and what the columns mean.
+    pub about: Vec<String>,
+    /// Heading over the choices' names.
+    pub choice: &'static str,
+    /// What was measured.
+    pub columns: Vec<Column>,
+    /// The choices.
+    pub rows: Vec<Row>,
+    /// What is traded for what.
+    pub trades: Vec<Trade>,
+}
+
+impl Findings {
+    /// A value.
+    #[must_use]
+    pub fn value(&self, row: usize, column: usize) -> Option<&Value> {
+        self.rows.get(row)?.values.get(column)
+    }
+
+    /// A column's heading.
+    #[must_use]
+    pub fn heading(&self, column: usize) -> &'static str {
+        self.columns.get(column).map_or("", |c| c.heading)
+    }
+
+    /// Which rows are on a trade's front: no other's median is as good as their best in one and better in the other.
+    #[must_use]
+    pub fn front(&self, trade: &Trade) -> Vec<bool> {
+        front_within_spread(
+            &self.costs(trade, Value::middle),
+            &self.costs(trade, Value::best),
+        )
+    }
+
+    /// The same by medians alone: the steps of a figure.
+    #[must_use]
+    pub fn steps(&self, trade: &Trade) -> Vec<bool> {
+        front(&self.costs(trade, Value::middle))
+    }
+
+    fn costs(&self, trade: &Trade, of: impl Fn(&Value) -> f64) -> Vec<Vec<f64>> {
+        let value = |row: &Row, column: usize| row.values.get(column).map_or(f64::NAN, &of);
+        let pair = |row| vec![value(row, trade.cost), value(row, trade.loss)];
+        self.rows.iter().map(pair).collect()
+    }
+
+    /// Each row's marks: a star where the only front has it, else the numbers of the figures whose fronts have it.
+    #[must_use]
+    pub fn marks(&self) -> Vec<String> {
+        let mut marks = vec![String::new(); self.rows.len()];
+        for (number, trade) in self.trades.iter().enumerate() {
+            let mark = match self.trades.len() {
+                1 => "*".to_owned(),
+                _ => (number + 1).to_string(),
+            };
+            let on = self.front(trade).into_iter();
+            for (marks, _) in marks.iter_mut().zip(on).filter(|(_, on)| *on) {
+                if !marks.is_empty() {
+                    marks.push(',');
+                }
+                marks.push_str(&mark);
+            }
+        }
+        marks
+    }
+
+    /// A sentence on each front: its choices in order of their cost.
+    #[must_use]
+    pub fn verdicts(&self) -> Vec<String> {
+        self.trades
+            .iter()
+            .map(|trade| self.verdict(trade))
+            .collect()
+    }
+
+    fn verdict(&self, trade: &Trade) -> String {
+        let middle = |row, column| self.value(row, column).map_or(f64::NAN, Value::middle);
+        let on = self.front(trade);
+        let mut rows: Vec<usize> = (0..self.rows.len())
+            .filter(|&row| on.get(row) == Some(&true))
+            .collect();
+        rows.sort_by(|&a, &b| middle(a, trade.cost).total_cmp(&middle(b, trade.cost)));
+        let names: Vec<String> = rows
+            .iter()
+            .filter_map(|&row| {
+                let name = &self.rows.get(row)?.name;
+                let cost = number::short(middle(row, trade.cost));
+                let loss = number::short(middle(row, trade.loss));
+                Some(format!("{name} ({cost}; {loss})"))
+            })
+            .collect();
+        let names = match names.as_slice() {
+            [first, .., last] if names.len() > MOST_NAMED => {
+                let (on, all) = (names.len(), self.rows.len());
+                format!("{on} of {all} choices, from {first} to {last}")
+            }
+            _ => names.join(", "),
+        };
+        format!(
+            "Pareto front of {} and {}: {names}.",
+            self.heading(trade.cost),
+            self.heading(trade.loss),
+        )
+    }
+}
+
+/// What it was measured on.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Machine {
+    /// Its processor.
+    pub cpu: String,
+    /// Processors that the program may use.
+    pub cores: usize,
+    /// Its operating system.
+    pub os: String,
+    /// How the program was built: `release` or `debug`.
+    pub build: &'static str,
+}
+
+impl Machine {
+    /// One line.
+    #[must_use]
+    pub fn line(&self) -> String {
+        let cores = match self.cores {
+            1 => "1 core".to_owned(),
+            n => format!("{n} cores"),
+        };
+        format!("{}, {cores}, {}", self.cpu, self.os)
+    }
+}
+
+/// All findings of one run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Name and version of the program.
+    pub program: String,
+    /// How thoroughly it was measured.
+    pub effort: Effort,
+    /// What on.
+    pub machine: Machine,
+    /// What was found.
+    pub studies: Vec<Findings>,
+}
+
+impl Report {
+    /// What must be known before a figure is believed, a sentence each.
+    #[must_use]
+    pub fn cautions(&self) -> Vec<&'static str> {
+        let mut cautions = Vec::new();
+        if self.effort == Effort::Quick {
+            cautions.push("A quick look: small workloads and few rounds. Leave --quick out for figures to rely on.");
+        }
+        if self.machine.build != "release" {
+            cautions
+                .push("Built without optimisation: the times say nothing about a release build.");
+        }
+        cautions
+    }
+}
+
+/// The most choices that a sentence names.
+const MOST_NAMED: usize = 6;
+
+/// Findings of every kind, for tests of what shows them.
+#[cfg(test)]
+pub(crate) fn example() -> Report {
+    let timed = |median: f64| {
+        Value::Timed(Spread {
+            median,
+            min: median * 0.9,
+            max: median * 1.7,
+            runs: 5,
+        })
+    };
+    let row = |name: &str, group: &'static str, cost: f64, loss: f64, size: f64| Row {
+        name: format!("{name} <&> way"),
+        label: name.to_owned(),
+        group,
+        values: vec![timed(cost), Value::Computed(loss), Value::Computed(size)],
+    };
+    let column = |key, heading, scale| Column {
+        key,
+        heading,
+        scale,
+    };
+    Report {
+        program: "velomotion 0.0.0".to_owned(),
+        effort: Effort::Quick,
+        machine: Machine {
+            cpu: "Processor <4>".to_owned(),
+            cores: 2,
+            os: "Linux".to_owned(),
+            build: "release",
+        },
+        studies: vec![Findings {
+            name: "example",
+            title: "Ways & means",
+            about: vec!["What is <measured> here, in a sentence that is long enough to need a second line of text.".to_owned()],
+            choice: "way",
+            columns: vec![
+                column("time_ns", "ns a point", Scale::Log),
+                column("error_mm", "worst error, mm", Scale::Log),
+                column("size_bytes", "bytes", Scale::Linear),
+            ],
+            rows: vec![
+                row("coarse", "plain", 2.0, 130.0, 10.0),
+                row("fine", "plain", 9.0, 1e-6, 12.0),
+                row("exact", "clever", 20.0, 0.0, 14.0),
+                row("bad", "clever", 21.0, 1.0, 9.0),
+            ],
+            trades: vec![
+                Trade { cost: 0, loss: 1, joined: true },
+                Trade { cost: 2, loss: 1, joined: false },
+            ],
+        }],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fronts_are_marked_by_number_and_said() {
+        let report = example();
+        let findings = &report.studies[0];
+        assert_eq!(findings.marks(), ["1", "1,2", "1,2", "2"]);
+        assert_eq!(
+            findings.verdicts()[0],
+            "Pareto front of ns a point and worst error, mm: coarse <&> way (2; 130), \
+             fine <&> way (9; 1e-6), exact <&> way (20; 0)."
+        );
+    }
+
+    #[test]
+    fn a_quick_look_and_a_debug_build_are_said() {
+        let mut report = example();
+        assert_eq!(report.cautions().len(), 1);
+        report.machine.build = "debug";
+        assert_eq!(report.cautions().len(), 2);
+        report.effort = Effort::Full;
+        report.machine.build = "release";
+        assert!(report.cautions().is_empty());
+    }
+}

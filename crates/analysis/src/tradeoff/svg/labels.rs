@@ -1,0 +1,111 @@
+//! Names beside marks, where they cover neither marks nor each other.
+
+/// A rectangle in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Box2 {
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+}
+
+impl Box2 {
+    fn meets(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    fn within(&self, other: &Self) -> bool {
+        self.left >= other.left
+            && self.right <= other.right
+            && self.top >= other.top
+            && self.bottom <= other.bottom
+    }
+
+    /// A level or upright line, whichever way it goes, a pixel to each side.
+    pub(super) fn along(a: (f64, f64), b: (f64, f64)) -> Self {
+        Self {
+            left: a.0.min(b.0) - 1.0,
+            top: a.1.min(b.1) - 1.0,
+            right: a.0.max(b.0) + 1.0,
+            bottom: a.1.max(b.1) + 1.0,
+        }
+    }
+
+    /// The square about a mark.
+    pub(super) fn about(x: f64, y: f64, half: f64) -> Self {
+        Self {
+            left: x - half,
+            top: y - half,
+            right: x + half,
+            bottom: y + half,
+        }
+    }
+}
+
+/// Width of a text of 11 pixels, about.
+pub(super) fn width(text: &str) -> f64 {
+    6.1 * text.chars().count() as f64
+}
+
+const HEIGHT: f64 = 12.0;
+const AWAY: f64 = 8.0;
+
+/// A name's left end and base line beside the mark at (`x`, `y`): the first place inside `room` that is free of `taken`.
+pub(super) fn place(
+    text: &str,
+    (x, y): (f64, f64),
+    room: &Box2,
+    taken: &[Box2],
+) -> Option<(Box2, (f64, f64))> {
+    let wide = width(text);
+    let places = [
+        (x + AWAY, y),
+        (x - AWAY - wide, y),
+        (x - wide / 2.0, y - 13.0),
+        (x - wide / 2.0, y + 13.0),
+        (x + AWAY, y - 11.0),
+        (x + AWAY, y + 11.0),
+        (x - AWAY - wide, y - 11.0),
+        (x - AWAY - wide, y + 11.0),
+        (x + 5.0, y - 15.0),
+        (x - 5.0 - wide, y + 15.0),
+        (x + 5.0, y + 15.0),
+        (x - 5.0 - wide, y - 15.0),
+    ];
+    places.into_iter().find_map(|(left, middle)| {
+        let area = Box2 {
+            left,
+            top: middle - HEIGHT / 2.0,
+            right: left + wide,
+            bottom: middle + HEIGHT / 2.0,
+        };
+        let free = area.within(room) && !taken.iter().any(|other| area.meets(other));
+        free.then_some((area, (left, middle + 4.0)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROOM: Box2 = Box2 {
+        left: 0.0,
+        top: 0.0,
+        right: 100.0,
+        bottom: 100.0,
+    };
+
+    #[test]
+    fn a_name_goes_right_else_left_else_nowhere() {
+        let (area, (left, _)) = place("abc", (20.0, 50.0), &ROOM, &[]).unwrap();
+        assert_eq!(left, 28.0);
+        let (_, (left, _)) = place("abc", (95.0, 50.0), &ROOM, &[]).unwrap();
+        assert!(left < 80.0);
+        let (other, _) = place("abc", (20.0, 50.0), &ROOM, &[area]).unwrap();
+        assert!(!other.meets(&area));
+        assert!(place("abc", (50.0, 50.0), &ROOM, &[ROOM]).is_none());
+    }
+}

@@ -1,0 +1,35 @@
+//! The shapes that choices are drawn with: a group has its own, so that colour is not all that tells them apart.
+
+const SHAPES: usize = 5;
+const COLOURS: usize = 6;
+
+/// Half of a mark's size.
+pub(super) const HALF: f64 = 4.5;
+
+/// The class of a group's colour.
+pub(super) fn colour(group: usize) -> String {
+    format!("tv-s{}", group % COLOURS)
+}
+
+/// A group's mark about a place; filled where the choice is on the front.
+pub(super) fn mark(group: usize, x: f64, y: f64, filled: bool) -> String {
+    let open = if filled { "" } else { " tv-open" };
+    let class = format!("tv-mark {}{open}", colour(group));
+    let r = HALF;
+    let path = |d: String| format!("<path class=\"{class}\" d=\"{d}\"/>\n");
+    match group % SHAPES {
+        0 => format!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{r}\"/>\n"),
+        1 => path(format!(
+            "M{:.1} {:.1}h{w}v{w}h-{w}z",
+            x - 4.0,
+            y - 4.0,
+            w = 8.0
+        )),
+        2 => path(format!(
+            "M{x:.1} {:.1}l5.5 5.5l-5.5 5.5l-5.5 -5.5z",
+            y - 5.5
+        )),
+        3 => path(format!("M{x:.1} {:.1}l5.2 9h-10.4z", y - 5.5)),
+        _ => path(format!("M{x:.1} {:.1}l5.2 -9h-10.4z", y + 5.5)),
+    }
+}

@@ -1,0 +1,242 @@
+//! One plot: axes, grid, the front's steps, a mark a choice with its spread and its name.
+
+use super::super::{Findings, Row, Scale, Trade, Value};
+use super::labels::{self, Box2};
+use super::scale::Axis;
+use super::{Groups, WIDTH, escaped, marks};
+
+/// Height of a plot with everything about it.
+pub(super) const HEIGHT: f64 = 322.0;
+const LEFT: f64 = 56.0;
+const RIGHT: f64 = WIDTH - 18.0;
+const TOP: f64 = 26.0;
+const BOTTOM: f64 = 276.0;
+
+/// A choice's place.
+struct Spot<'a> {
+    row: &'a Row,
+    x: f64,
+    y: f64,
+    /// On the front.
+    on: bool,
+    /// A step of it.
+    step: bool,
+}
+
+/// A line's ends.
+type Line = ((f64, f64), (f64, f64));
+
+/// The plot of a trade, `top` pixels down.
+pub(super) fn draw(
+    findings: &Findings,
+    trade: &Trade,
+    number: Option<usize>,
+    groups: &Groups<'_>,
+    top: f64,
+) -> String {
+    let x = axis(findings, trade.cost, LEFT, RIGHT);
+    let y = axis(findings, trade.loss, BOTTOM, TOP);
+    let number = number.map_or(String::new(), |n| format!("{n}: "));
+    let mut svg = format!(
+        "<g transform=\"translate(0 {top})\">\n{grid}\
+         <rect class=\"tv-frame\" x=\"{LEFT}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\"/>\n\
+         <text class=\"tv-ink\" x=\"14\" y=\"16\">{number}{loss}</text>\n\
+         <text class=\"tv-ink\" x=\"{RIGHT}\" y=\"{:.1}\" text-anchor=\"end\">{cost}</text>\n",
+        RIGHT - LEFT,
+        BOTTOM - TOP,
+        BOTTOM + 34.0,
+        grid = grid(&x, &y),
+        loss = escaped(findings.heading(trade.loss)),
+        cost = escaped(findings.heading(trade.cost)),
+    );
+    let spots = spots(findings, trade, &x, &y);
+    let corners = corners(&spots);
+    svg += &steps(&corners);
+    if trade.joined {
+        svg += &joined(&spots, groups);
+    }
+    for spot in &spots {
+        svg += &bars(spot, trade, &x, &y, groups);
+    }
+    for spot in &spots {
+        let mark = marks::mark(groups.number(spot.row.group), spot.x, spot.y, spot.on);
+        let name = escaped(&spot.row.name);
+        svg += &format!("<g><title>{name}</title>{mark}</g>\n");
+    }
+    let mut lines: Vec<Box2> = corners
+        .windows(2)
+        .filter_map(|pair| Some(Box2::along(*pair.first()?, *pair.last()?)))
+        .collect();
+    let bars = spots.iter().flat_map(|spot| spread(spot, trade, &x, &y));
+    lines.extend(bars.flatten().map(|(a, b)| Box2::along(a, b)));
+    svg += &names(&spots, &lines);
+    svg + "</g>\n"
+}
+
+fn axis(findings: &Findings, column: usize, from: f64, to: f64) -> Axis {
+    let scale = findings
+        .columns
+        .get(column)
+        .map_or(Scale::Linear, |c| c.scale);
+    let values = findings
+        .rows
+        .iter()
+        .filter_map(|row| row.values.get(column));
+    let ends = values.flat_map(|value| {
+        let (low, high) = ends(value);
+        [low, high]
+    });
+    Axis::new(scale, ends, from, to)
+}
+
+const fn ends(value: &Value) -> (f64, f64) {
+    match value {
+        Value::Computed(x) => (*x, *x),
+        Value::Timed(spread) => (spread.min, spread.max),
+    }
+}
+
+fn grid(x: &Axis, y: &Axis) -> String {
+    let mut svg = String::new();
+    for tick in x.ticks() {
+        svg += &format!(
+            "<path class=\"tv-grid\" d=\"M{:.1} {TOP}V{BOTTOM}\"/>\n<text class=\"tv-soft tv-small\" x=\"{:.1}\" y=\"{:.1}\" \
+             text-anchor=\"middle\">{}</text>\n",
+            tick.at,
+            tick.at,
+            BOTTOM + 15.0,
+            tick.label
+        );
+    }
+    for tick in y.ticks() {
+        svg += &format!(
+            "<path class=\"tv-grid\" d=\"M{LEFT} {:.1}H{RIGHT}\"/>\n<text class=\"tv-soft tv-small\" x=\"{:.1}\" y=\"{:.1}\" \
+             text-anchor=\"end\">{}</text>\n",
+            tick.at,
+            LEFT - 6.0,
+            tick.at + 4.0,
+            tick.label
+        );
+    }
+    svg
+}
+
+fn spots<'a>(findings: &'a Findings, trade: &Trade, x: &Axis, y: &Axis) -> Vec<Spot<'a>> {
+    let on = findings.front(trade).into_iter().zip(findings.steps(trade));
+    let rows = findings.rows.iter().zip(on);
+    rows.filter_map(|(row, (on, step))| {
+        Some(Spot {
+            row,
+            x: x.place(row.values.get(trade.cost)?.middle())?,
+            y: y.place(row.values.get(trade.loss)?.middle())?,
+            on,
+            step,
+        })
+    })
+    .collect()
+}
+
+/// The corners of the front: what can be had for at most so much.
+fn corners(spots: &[Spot<'_>]) -> Vec<(f64, f64)> {
+    let mut front: Vec<&Spot<'_>> = spots.iter().filter(|spot| spot.step).collect();
+    front.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let mut corners = Vec::new();
+    let mut y = TOP;
+    for spot in front {
+        corners.extend([(spot.x, y), (spot.x, spot.y)]);
+        y = spot.y;
+    }
+    if !corners.is_empty() {
+        corners.push((RIGHT, y));
+    }
+    corners
+}
+
+fn steps(corners: &[(f64, f64)]) -> String {
+    let corners: Vec<String> = corners
+        .iter()
+        .map(|(x, y)| format!("{x:.1} {y:.1}"))
+        .collect();
+    match corners.is_empty() {
+        true => String::new(),
+        false => format!("<path class=\"tv-front\" d=\"M{}\"/>\n", corners.join("L")),
+    }
+}
+
+fn joined(spots: &[Spot<'_>], groups: &Groups<'_>) -> String {
+    let mut svg = String::new();
+    for (group, number) in &groups.0 {
+        let own = spots.iter().filter(|spot| spot.row.group == *group);
+        let places: Vec<String> = own.map(|s| format!("{:.1} {:.1}", s.x, s.y)).collect();
+        if places.len() > 1 {
+            let class = marks::colour(*number);
+            svg += &format!(
+                "<path class=\"{class} tv-line tv-none\" d=\"M{}\"/>\n",
+                places.join("L")
+            );
+        }
+    }
+    svg
+}
+
+/// Least to greatest where that is wider than the mark: the ends of a level line and of an upright one.
+fn spread(spot: &Spot<'_>, trade: &Trade, x: &Axis, y: &Axis) -> [Option<Line>; 2] {
+    let places = |axis: &Axis, column: usize| {
+        let (low, high) = ends(spot.row.values.get(column)?);
+        let (low, high) = (axis.place(low)?, axis.place(high)?);
+        ((high - low).abs() > marks::HALF).then_some((low, high))
+    };
+    [
+        places(x, trade.cost).map(|(a, b)| ((a, spot.y), (b, spot.y))),
+        places(y, trade.loss).map(|(a, b)| ((spot.x, a), (spot.x, b))),
+    ]
+}
+
+fn bars(spot: &Spot<'_>, trade: &Trade, x: &Axis, y: &Axis, groups: &Groups<'_>) -> String {
+    let class = marks::colour(groups.number(spot.row.group));
+    let [level, upright] = spread(spot, trade, x, y);
+    let level = level.map(|((a, y), (b, _))| {
+        let top = y - 3.0;
+        format!("M{a:.1} {y:.1}H{b:.1}M{a:.1} {top:.1}v6M{b:.1} {top:.1}v6")
+    });
+    let upright = upright.map(|((x, a), (_, b))| {
+        let left = x - 3.0;
+        format!("M{x:.1} {a:.1}V{b:.1}M{left:.1} {a:.1}h6M{left:.1} {b:.1}h6")
+    });
+    let paths = level.into_iter().chain(upright);
+    paths
+        .map(|path| format!("<path class=\"{class} tv-bar\" d=\"{path}\"/>\n"))
+        .collect()
+}
+
+/// The names, those on the front first, clear of marks, of each other and, while there is room, of `lines`. One without a free place
+/// is left to the table.
+fn names(spots: &[Spot<'_>], lines: &[Box2]) -> String {
+    let room = Box2 {
+        left: LEFT + 2.0,
+        top: TOP + 2.0,
+        right: RIGHT - 2.0,
+        bottom: BOTTOM - 2.0,
+    };
+    let mut taken: Vec<Box2> = spots
+        .iter()
+        .map(|spot| Box2::about(spot.x, spot.y, marks::HALF + 1.0))
+        .collect();
+    let mut order: Vec<&Spot<'_>> = spots.iter().collect();
+    order.sort_by_key(|spot| !spot.on);
+    let mut svg = String::new();
+    for spot in order {
+        let (name, at) = (&spot.row.label, (spot.x, spot.y));
+        let clear = [taken.as_slice(), lines].concat();
+        let placed = labels::place(name, at, &room, &clear)
+            .or_else(|| labels::place(name, at, &room, &taken));
+        if let Some((area, (x, y))) = placed {
+            taken.push(area);
+            svg += &format!(
+                "<text class=\"tv-ink tv-small\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>\n",
+                escaped(name)
+            );
+        }
+    }
+    svg
+}

@@ -1,0 +1,200 @@
+//! Values to places on an axis, and where an axis has its ticks.
+
+use super::super::{Scale, number};
+
+/// An axis: values from `low` to `high` on pixels from `from` to `to`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis {
+    scale: Scale,
+    low: f64,
+    high: f64,
+    from: f64,
+    to: f64,
+    /// Where nought stands on a logarithmic axis that has it.
+    nought: Option<f64>,
+}
+
+/// A line of the grid.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tick {
+    pub at: f64,
+    /// Empty for a line without a number.
+    pub label: String,
+}
+
+/// Share of the axis that nought takes.
+const NOUGHT: f64 = 0.08;
+/// The most numbers an axis has room for.
+const MOST_LABELS: i32 = 7;
+
+impl Axis {
+    /// An axis that shows `values` from pixel `from` to pixel `to`, with some air at its ends.
+    pub(super) fn new(scale: Scale, values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
+        let mut low = f64::INFINITY;
+        let mut high = f64::NEG_INFINITY;
+        let mut has_nought = false;
+        for value in values.filter(|v| v.is_finite()) {
+            if scale == Scale::Log && value <= 0.0 {
+                has_nought = true;
+            } else {
+                low = low.min(value);
+                high = high.max(value);
+            }
+        }
+        if low > high {
+            (low, high) = (1.0, 1.0);
+        }
+        let nought = has_nought.then_some(from + (to - from) * NOUGHT / 2.0);
+        let from = if has_nought {
+            from + (to - from) * NOUGHT
+        } else {
+            from
+        };
+        let (low, high) = match scale {
+            Scale::Linear => {
+                let air = if high > low { 0.08 * (high - low) } else { 1.0 };
+                let floor = if low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
+                ((low - air).max(floor), high + air)
+            }
+            Scale::Log => {
+                let air = (high / low).powf(0.07).max(1.3);
+                (low / air, high * air)
+            }
+        };
+        Self {
+            scale,
+            low,
+            high,
+            from,
+            to,
+            nought,
+        }
+    }
+
+    /// Where a value stands; `None` where it has no place.
+    pub(super) fn place(&self, value: f64) -> Option<f64> {
+        let part = match self.scale {
+            _ if !value.is_finite() => return None,
+            Scale::Log if value <= 0.0 => return self.nought,
+            Scale::Log => (value / self.low).ln() / (self.high / self.low).ln(),
+            Scale::Linear => (value - self.low) / (self.high - self.low),
+        };
+        Some(self.from + (self.to - self.from) * part)
+    }
+
+    /// The grid's lines and numbers.
+    pub(super) fn ticks(&self) -> Vec<Tick> {
+        let mut ticks = match self.scale {
+            Scale::Log => self.powers(),
+            Scale::Linear => self.steps(),
+        };
+        if let Some(at) = self.nought {
+            ticks.push(Tick {
+                at,
+                label: "0".to_owned(),
+            });
+        }
+        ticks
+    }
+
+    fn powers(&self) -> Vec<Tick> {
+        let (first, last) = (self.low.log10().floor(), self.high.log10().ceil());
+        let (first, last) = (first as i32, last as i32);
+        let decades = (self.high / self.low).log10();
+        let every = (decades / f64::from(MOST_LABELS)).ceil().max(1.0) as i32;
+        let digits: &[f64] = match decades {
+            d if d < 0.8 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
+            d if d < 2.2 => &[1.0, 2.0, 5.0],
+            _ => &[1.0],
+        };
+        let mut ticks = Vec::new();
+        for power in first..=last {
+            for digit in digits {
+                let value = digit * 10_f64.powi(power);
+                if value < self.low || value > self.high {
+                    continue;
+                }
+                let label = match digits.len() {
+                    1 if power % every != 0 => String::new(),
+                    1 => number::decade(power),
+                    _ => number::short(value),
+                };
+                if let Some(at) = self.place(value) {
+                    ticks.push(Tick { at, label });
+                }
+            }
+        }
+        ticks
+    }
+
+    fn steps(&self) -> Vec<Tick> {
+        let rough = (self.high - self.low) / 5.0;
+        let power = 10_f64.powf(rough.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0]
+            .map(|digit| digit * power)
+            .into_iter()
+            .find(|step| *step >= rough)
+            .unwrap_or(rough);
+        let first = (self.low / step).ceil() as i64;
+        let last = (self.high / step).floor() as i64;
+        (first..=last.min(first.saturating_add(20)))
+            .filter_map(|i| {
+                let value = i as f64 * step;
+                Some(Tick {
+                    at: self.place(value)?,
+                    label: number::short(value),
+                })
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn labels(axis: &Axis) -> Vec<String> {
+        axis.ticks().into_iter().map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn decades_have_their_numbers_and_nought_its_place() {
+        let axis = Axis::new(Scale::Log, [0.0, 2e-6, 150.0].into_iter(), 100.0, 0.0);
+        assert_eq!(axis.place(0.0), Some(96.0));
+        assert!(axis.place(2e-6).unwrap() < 92.0);
+        let labels = labels(&axis);
+        assert!(labels.contains(&"100".to_owned()), "{labels:?}");
+        assert_eq!(labels.last().unwrap(), "0");
+        assert_eq!(axis.place(f64::NAN), None);
+        let positive = Axis::new(Scale::Log, [1.0, 2.0].into_iter(), 0.0, 100.0);
+        assert_eq!(positive.place(0.0), None);
+    }
+
+    #[test]
+    fn short_axes_have_numbers_within_a_decade() {
+        let axis = Axis::new(Scale::Log, [9.0, 30.0].into_iter(), 0.0, 100.0);
+        assert_eq!(labels(&axis), ["8", "10", "15", "20", "30"]);
+        let axis = Axis::new(Scale::Linear, [9.0, 43.0].into_iter(), 0.0, 100.0);
+        assert_eq!(labels(&axis), ["10", "20", "30", "40"]);
+    }
+
+    proptest! {
+        #[test]
+        fn values_stay_on_the_axis_in_their_order(
+            values in prop::collection::vec((1.0..10.0_f64, -12..12_i32), 1..20), log: bool,
+        ) {
+            let scale = if log { Scale::Log } else { Scale::Linear };
+            let mut values: Vec<f64> = values.iter().map(|(x, p)| x * 10_f64.powi(*p)).collect();
+            values.sort_by(f64::total_cmp);
+            let axis = Axis::new(scale, values.iter().copied(), 40.0, 400.0);
+            let places: Vec<f64> = values.iter().map(|v| axis.place(*v).unwrap()).collect();
+            prop_assert!(places.iter().all(|p| (40.0..=400.0).contains(p)), "{:?}", places);
+            prop_assert!(places.is_sorted());
+            let ticks = axis.ticks();
+            prop_assert!(ticks.len() < 40);
+            prop_assert!(ticks.iter().all(|t| (39.9..=400.1).contains(&t.at)));
+        }
+    }
+}

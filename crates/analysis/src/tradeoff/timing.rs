@@ -1,0 +1,172 @@
+//! How long work takes, in rounds: the competitors run one after the other, each round another one first, so that what else the
+//! machine does falls on all of them.
+//!
+//! Left out: the clock itself, and any judgement of what the times are good for.
+
+use serde::Serialize;
+use units::{Host, Span, Stamp};
+
+/// A clock that does not step.
+pub trait Clock {
+    /// What it shows.
+    fn now(&mut self) -> Stamp<Host>;
+}
+
+impl<F: FnMut() -> Stamp<Host>> Clock for F {
+    fn now(&mut self) -> Stamp<Host> {
+        self()
+    }
+}
+
+/// Middle and ends of repeated measurements.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// The middle one; of an even number the mean of the two in the middle.
+    pub median: f64,
+    /// The least.
+    pub min: f64,
+    /// The greatest.
+    pub max: f64,
+    /// How many there were.
+    pub runs: usize,
+}
+
+impl Spread {
+    /// Of measurements in any order; not numbers where there are none.
+    #[must_use]
+    pub fn of(mut measured: Vec<f64>) -> Self {
+        measured.sort_by(f64::total_cmp);
+        let runs = measured.len();
+        let at = |i: usize| measured.get(i).copied().unwrap_or(f64::NAN);
+        Self {
+            median: f64::midpoint(at(runs.saturating_sub(1) / 2), at(runs / 2)),
+            min: at(0),
+            max: at(runs.saturating_sub(1)),
+            runs,
+        }
+    }
+
+    /// The same in a unit of which one of these is `factor`.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            median: self.median * factor,
+            min: self.min * factor,
+            max: self.max * factor,
+            runs: self.runs,
+        }
+    }
+}
+
+/// One of the competitors.
+pub type Work<'a, E> = Box<dyn FnMut() -> Result<(), E> + 'a>;
+
+/// How work is timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// Measurements of each competitor.
+    pub rounds: usize,
+    /// How long a measurement lasts at least: short work is repeated within it.
+    pub least: Span,
+}
+
+/// More repetitions than this are not needed by any work that can be measured.
+const MOST_REPEATS: i64 = 100_000;
+
+/// Seconds that each work takes. Each is run once beforehand for nothing, to warm up and to learn how often it must be repeated.
+///
+/// # Errors
+/// The first that any work gives.
+pub fn in_rounds<E>(
+    clock: &mut dyn Clock,
+    plan: Plan,
+    work: &mut [Work<'_, E>],
+) -> Result<Vec<Spread>, E> {
+    let mut repeats = Vec::with_capacity(work.len());
+    for work in work.iter_mut() {
+        let took = time(clock, 1, work)?.as_nanos().max(1);
+        repeats.push((plan.least.as_nanos() / took).clamp(1, MOST_REPEATS));
+    }
+    let mut measured = vec![Vec::with_capacity(plan.rounds); work.len()];
+    for round in 0..plan.rounds {
+        for turn in 0..work.len() {
+            let i = (round + turn) % work.len();
+            if let (Some(work), Some(&repeats), Some(measured)) =
+                (work.get_mut(i), repeats.get(i), measured.get_mut(i))
+            {
+                let took = time(clock, repeats, work)?;
+                measured.push(took.as_nanos() as f64 * 1e-9 / repeats as f64);
+            }
+        }
+    }
+    Ok(measured.into_iter().map(Spread::of).collect())
+}
+
+fn time<E>(clock: &mut dyn Clock, repeats: i64, work: &mut Work<'_, E>) -> Result<Span, E> {
+    let start = clock.now();
+    for _ in 0..repeats {
+        work()?;
+    }
+    Ok(clock.now().saturating_since(start))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::{Cell, RefCell};
+    use std::convert::Infallible;
+
+    use super::*;
+
+    #[test]
+    fn middle_and_ends_of_measurements() {
+        let odd = Spread::of(vec![3.0, 1.0, 2.0]);
+        assert_eq!((odd.median, odd.min, odd.max, odd.runs), (2.0, 1.0, 3.0, 3));
+        let even = Spread::of(vec![4.0, 1.0, 2.0, 9.0]).times(10.0);
+        assert_eq!((even.median, even.min, even.max), (30.0, 10.0, 90.0));
+        assert!(Spread::of(Vec::new()).median.is_nan());
+    }
+
+    /// Two works that move the clock themselves: 3 us and 1 ms a time.
+    #[test]
+    fn short_work_is_repeated_and_each_round_begins_with_another() {
+        let now = Cell::new(0_i64);
+        let log = RefCell::new(Vec::new());
+        let work = |name: char, ns: i64| -> Work<'_, Infallible> {
+            let (now, log) = (&now, &log);
+            Box::new(move || {
+                now.set(now.get() + ns);
+                log.borrow_mut().push(name);
+                Ok(())
+            })
+        };
+        let plan = Plan {
+            rounds: 4,
+            least: Span::from_micros(12),
+        };
+        let mut clock = || Stamp::from_nanos(now.get());
+        let mut works = [work('a', 3_000), work('b', 1_000_000)];
+        let Ok(spreads) = in_rounds(&mut clock, plan, &mut works);
+        assert!((spreads[0].median - 3e-6).abs() < 1e-15);
+        assert!((spreads[1].max - 1e-3).abs() < 1e-12);
+        assert_eq!((spreads[0].runs, spreads[1].runs), (4, 4));
+        let log: String = log.borrow().iter().collect();
+        assert_eq!(log, "ab aaaab baaaa aaaab baaaa".replace(' ', ""));
+    }
+
+    #[test]
+    fn work_that_fails_ends_it() {
+        let mut calls = 0;
+        let mut works: [Work<'_, &str>; 1] = [Box::new(|| {
+            calls += 1;
+            Err("broken")
+        })];
+        let plan = Plan {
+            rounds: 3,
+            least: Span::ZERO,
+        };
+        let error = in_rounds(&mut || Stamp::from_nanos(0), plan, &mut works);
+        assert_eq!(error.unwrap_err(), "broken");
+        drop(works);
+        assert_eq!(calls, 1);
+    }
+}

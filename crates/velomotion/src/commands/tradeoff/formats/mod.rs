@@ -1,0 +1,296 @@
+//! Point formats: bytes, seconds, and what rounding costs.
+
+mod read_back;
+
+use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ::cloud::formats::Format;
+use ::cloud::{Fields, Metadata, Points};
+use analysis::tradeoff::pattern::Sweep;
+use analysis::tradeoff::placing::worst_m;
+use analysis::tradeoff::{
+    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+};
+use protocol::vlp16::models::VLP_16;
+use sim::{MAX_RANGE_M, MIN_RANGE_M, scenes};
+use units::{Degrees, Metres};
+
+use super::granularity::place_packets;
+use super::workload::{Ray, Workload};
+
+/// The study.
+pub(super) struct Formats;
+
+/// A million points.
+const SWEEP: Sweep = Sweep {
+    way_deg: 45.0,
+    speed_deg_s: 13.0,
+    accel_deg_s2: 500.0,
+};
+/// As the scanner hands points on.
+const BATCH_POINTS: usize = 1 << 12;
+/// As the program buffers a file.
+const BUFFER_BYTES: usize = 1 << 20;
+/// Standard deviation of a range, metres: a third of the VLP-16's +-3 cm (Table 2 of the paper).
+const NOISE_M: f64 = 0.01;
+
+impl Study for Formats {
+    fn name(&self) -> &'static str {
+        "formats"
+    }
+
+    fn title(&self) -> &'static str {
+        "Point formats"
+    }
+
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+        let seconds = match bench.effort {
+            Effort::Quick => 0.15,
+            Effort::Full => SWEEP.duration_s(),
+        };
+        let cloud = hall(seconds)?;
+        let batches = batches(&cloud);
+        let plan = bench.plan(3, 9);
+        let points = cloud.len();
+        (bench.say)(&format!("{points} points, {} rounds", plan.rounds));
+        let memories = Format::ALL.map(|_| Memory::default());
+        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
+        for (format, memory) in Format::ALL.into_iter().zip(&memories) {
+            let batches = &batches;
+            work.push(Box::new(move || write(format, memory, batches)));
+        }
+        let times = in_rounds(bench.clock, plan, &mut work)?;
+        drop(work);
+        let mut rows = Vec::new();
+        for ((format, memory), time) in Format::ALL.into_iter().zip(&memories).zip(times) {
+            let bytes = memory.bytes();
+            let error_m = error_m(format, &bytes, &cloud)?;
+            let empty = Memory::default();
+            write(format, &empty, &[])?;
+            let of_points = bytes.len().saturating_sub(empty.bytes().len());
+            let per_point = of_points as f64 / points as f64;
+            rows.push(Row {
+                name: format!(".{format}"),
+                label: format!(".{format}"),
+                group: "velomotion's writers",
+                values: vec![
+                    Value::Timed(time.times(1e6 / points as f64)),
+                    Value::Computed(per_point),
+                    Value::Computed(error_m * 1e6),
+                ],
+            });
+        }
+        Ok(Findings {
+            name: self.name(),
+            title: self.title(),
+            about: about(points),
+            choice: "format",
+            columns: columns(),
+            rows,
+            trades: [0, 1]
+                .map(|cost| Trade {
+                    cost,
+                    loss: 2,
+                    joined: false,
+                })
+                .into(),
+        })
+    }
+}
+
+fn columns() -> Vec<Column> {
+    [
+        ("time_s_per_million_points", "s a million points"),
+        ("bytes_per_point", "bytes a point"),
+        ("worst_error_um", "worst error of a place, um"),
+    ]
+    .map(|(key, heading)| Column {
+        key,
+        heading,
+        scale: Scale::Log,
+    })
+    .into()
+}
+
+fn about(points: usize) -> Vec<String> {
+    vec![
+        format!(
+            "{points} points of a sweep through the simulator's hall (nothing farther than 20 m) with {} mm of range noise, written to memory as velomotion writes files, in \
+             batches, with intensity, ring, time and tilt. Disks are not in it.",
+            NOISE_M * 1e3
+        ),
+        "Bytes are those beyond an empty file's. The error is the greatest distance of a point read back from the one that was written. f32 coordinates (.ply, .pcd) err more \
+         the farther they are, 4 um at 100 m; steps of 0.1 mm (.las, .laz) the same everywhere."
+            .to_owned(),
+    ]
+}
+
+/// The first seconds of a sweep in the simulator's hall, as velomotion places them.
+fn hall(seconds: f64) -> Result<Points, StudyError> {
+    let scene = scenes::hall();
+    let head = sim::Head::new(Metres(0.06));
+    let mut noise = Noise(1);
+    let answer = |ray: &Ray| {
+        let (azimuth, tilt) = (Degrees(ray.azimuth_deg), Degrees(ray.tilt_deg));
+        let beam = head.beam(ray.laser, azimuth, tilt);
+        let hit = beam.and_then(|(origin, way)| scene.cast(origin, way, MIN_RANGE_M, MAX_RANGE_M));
+        hit.map_or((0, 0), |hit| {
+            let range_m = hit.range_m + NOISE_M * noise.next();
+            let count = (range_m / VLP_16.distance_unit_m).round();
+            (count as u16, hit.reflectivity)
+        })
+    };
+    let packets = Workload::new(|t_s| SWEEP.angle_deg(t_s), seconds, answer);
+    let mut cloud = Points::new(Fields::FILE);
+    place_packets(&packets, &packets.alignment()?, &mut cloud)?;
+    Ok(cloud)
+}
+
+/// Nearly normal noise of deviation 1: the sum of twelve even ones (splitmix64), less 6.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        (0..12).map(|_| self.even()).sum::<f64>() - 6.0
+    }
+
+    fn even(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+fn batches(cloud: &Points) -> Vec<Points> {
+    let mut batches = Vec::new();
+    for (i, point) in cloud.iter().enumerate() {
+        if i % BATCH_POINTS == 0 {
+            batches.push(Points::with_capacity(cloud.fields(), BATCH_POINTS));
+        }
+        if let Some(batch) = batches.last_mut() {
+            batch.push(point);
+        }
+    }
+    batches
+}
+
+fn write(format: Format, memory: &Memory, batches: &[Points]) -> Result<(), StudyError> {
+    memory.clear();
+    let output = BufWriter::with_capacity(BUFFER_BYTES, memory.clone());
+    let mut sink = format.writer(output);
+    sink.begin(&Metadata::default())?;
+    for batch in batches {
+        sink.points(batch)?;
+    }
+    sink.finish()?;
+    Ok(())
+}
+
+/// The greatest distance of a point from where it was.
+fn error_m(format: Format, bytes: &[u8], cloud: &Points) -> Result<f64, StudyError> {
+    let [x, y, z] = read_back::places(format, bytes, cloud.len())?;
+    Ok(worst_m(
+        [&x, &y, &z],
+        [cloud.x_m(), cloud.y_m(), cloud.z_m()],
+    ))
+}
+
+/// A file in memory that outlives the sink which writes it, and keeps its room from one writing to the next.
+#[derive(Clone, Default)]
+struct Memory(Arc<Mutex<Cursor<Vec<u8>>>>);
+
+impl Memory {
+    fn with<T>(&self, act: impl FnOnce(&mut Cursor<Vec<u8>>) -> T) -> T {
+        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn clear(&self) {
+        self.with(|file| {
+            file.get_mut().clear();
+            file.set_position(0);
+        });
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        self.with(|file| file.get_ref().clone())
+    }
+}
+
+impl Write for Memory {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.with(|file| file.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for Memory {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.with(|file| file.seek(to))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What `cloud::formats` says of each: 4 um at 100 m for f32, half of 0.1 mm a coordinate for LAS, nothing for CSV.
+    #[test]
+    fn what_is_read_back_errs_as_the_formats_say() {
+        let cloud = hall(0.02).unwrap();
+        assert!(cloud.len() > 5_000);
+        let batches = batches(&cloud);
+        assert_eq!(batches.iter().map(Points::len).sum::<usize>(), cloud.len());
+        let error_um = |format| {
+            let memory = Memory::default();
+            write(format, &memory, &batches).unwrap();
+            // Twice, as the rounds do.
+            write(format, &memory, &batches).unwrap();
+            error_m(format, &memory.bytes(), &cloud).unwrap() * 1e6
+        };
+        assert_eq!(error_um(Format::Csv), 0.0);
+        let ply = error_um(Format::Ply);
+        // Half a step of f32 between 16 and 32 m is 0.95 um a coordinate.
+        assert!((0.1..1.7).contains(&ply), "{ply}");
+        assert_eq!(error_um(Format::Pcd), ply);
+        let las = error_um(Format::Las);
+        assert!((50.0..=50.0 * 3_f64.sqrt() + 0.01).contains(&las), "{las}");
+        assert_eq!(error_um(Format::Laz), las);
+    }
+
+    #[test]
+    fn the_noise_has_the_deviation_it_should() {
+        let mut noise = Noise(7);
+        let drawn: Vec<f64> = (0..20_000).map(|_| noise.next()).collect();
+        let n = drawn.len() as f64;
+        let mean = drawn.iter().sum::<f64>() / n;
+        let deviation = (drawn.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
+        assert!(
+            mean.abs() < 0.02 && (deviation - 1.0).abs() < 0.02,
+            "{mean} {deviation}"
+        );
+    }
+
+    #[test]
+    fn what_does_not_read_back_says_where() {
+        let error =
+            |format, bytes: &[u8]| read_back::places(format, bytes, 3).unwrap_err().to_string();
+        for format in Format::ALL {
+            let said = error(format, b"nothing of the kind");
+            assert!(
+                said.contains(format.extension()) && said.contains("byte"),
+                "{said}"
+            );
+        }
+        let said = error(Format::Csv, b"x_m,y_m,z_m\n1,2,3\n1,x,3\n");
+        assert!(
+            said.contains("a number") && said.contains("\"x\""),
+            "{said}"
+        );
+    }
+}

@@ -1,0 +1,233 @@
+//! How often the angles are worked out: a packet, a block, a firing or a return, and what velomotion does.
+
+use std::hint::black_box;
+
+use analysis::tradeoff::placing::{
+    BLOCK, Exact, FIRING, Head, PACKET, Places, RETURN, Shot, place, worst_m,
+};
+use analysis::tradeoff::{
+    Bench, Column, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+};
+use cloud::{Fields, Points, Sink, SinkError};
+use drive::record::Wire;
+use lidar::{Decoder, Options};
+use scanner::{Alignment, Placer};
+
+use super::workload::{Workload, all_at, cruise_deg, cruise_s, head, workload};
+
+/// The study.
+pub(super) struct Granularity;
+
+const RANGE_M: f64 = 100.0;
+
+type Kernel = fn(&[Shot], &Head, (&Exact, &Exact), &mut Places<f64>);
+
+/// Name, label, group and loop.
+const WAYS: [(&str, &str, &str, Kernel); 7] = [
+    (
+        "tilt a packet, azimuth a return",
+        "packet",
+        "tilt alone",
+        place::<f64, Exact, Exact, RETURN, PACKET>,
+    ),
+    (
+        "tilt a block, azimuth a return",
+        "block",
+        "tilt alone",
+        place::<f64, Exact, Exact, RETURN, BLOCK>,
+    ),
+    (
+        "tilt a firing, azimuth a return",
+        "firing",
+        "tilt alone",
+        place::<f64, Exact, Exact, RETURN, FIRING>,
+    ),
+    (
+        "tilt a packet, azimuth a block",
+        "packet",
+        "tilt and azimuth",
+        place::<f64, Exact, Exact, BLOCK, PACKET>,
+    ),
+    (
+        "both a block",
+        "block",
+        "tilt and azimuth",
+        place::<f64, Exact, Exact, BLOCK, BLOCK>,
+    ),
+    (
+        "both a firing",
+        "firing",
+        "tilt and azimuth",
+        place::<f64, Exact, Exact, FIRING, FIRING>,
+    ),
+    (
+        "both a return",
+        "return",
+        "tilt and azimuth",
+        place::<f64, Exact, Exact, RETURN, RETURN>,
+    ),
+];
+
+impl Study for Granularity {
+    fn name(&self) -> &'static str {
+        "granularity"
+    }
+
+    fn title(&self) -> &'static str {
+        "How often angles are worked out"
+    }
+
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+        let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
+        let alignment = packets.alignment()?;
+        let (shots, truth) = (packets.shots(&alignment), definition(&packets, &alignment));
+        let (head, points) = (head(), truth.len());
+        let mut errors_m = Vec::new();
+        for (_, _, _, kernel) in WAYS {
+            let mut out = Places::new(points);
+            kernel(&shots, &head, (&Exact, &Exact), &mut out);
+            errors_m.push(out.worst_m(&truth));
+        }
+        errors_m.push(own_error_m(&packets, &alignment, &truth)?);
+
+        let plan = bench.plan(5, 25);
+        (bench.say)(&format!("{points} points, {} rounds", plan.rounds));
+        let mut work = kernels(&shots, &head, points);
+        work.push(Box::new(|| {
+            place_packets(&packets, &alignment, &mut Ignore)
+        }));
+        let times = in_rounds(bench.clock, plan, &mut work)?;
+        drop(work);
+
+        let named = WAYS.map(|(name, label, group, _)| (name, label, group));
+        let own = (
+            "velomotion, from the packets' bytes",
+            "velomotion",
+            "velomotion",
+        );
+        let rows = named.into_iter().chain([own]).zip(times).zip(errors_m);
+        let rows = rows.map(|(((name, label, group), time), error_m)| Row {
+            name: name.to_owned(),
+            label: label.to_owned(),
+            group,
+            values: vec![
+                Value::Timed(time.times(1e9 / points as f64)),
+                Value::Computed(error_m * 1e3),
+            ],
+        });
+        Ok(Findings {
+            name: self.name(),
+            title: self.title(),
+            about: about(points),
+            choice: "angles per",
+            columns: vec![
+                Column {
+                    key: "time_ns_per_point",
+                    heading: "ns a point",
+                    scale: Scale::Log,
+                },
+                Column {
+                    key: "worst_error_mm",
+                    heading: "worst error, mm at 100 m",
+                    scale: Scale::Log,
+                },
+            ],
+            rows: rows.collect(),
+            trades: vec![Trade {
+                cost: 0,
+                loss: 1,
+                joined: true,
+            }],
+        })
+    }
+}
+
+fn about(points: usize) -> Vec<String> {
+    vec![
+        format!(
+            "A VLP-16 at 10 turns a second on a platform that tilts at 56.25 deg/s, everything {RANGE_M} m away ({points} points). \
+             Angles are those at the start of their packet, block or firing, or each return's own. The error is the distance to where \
+             the definition puts the point, with time and angles looked up for each return by itself; at 10 m it is a tenth."
+        ),
+        "All but the last are plain loops over decoded distances in f64, with the library's sine, that write x, y and z. The last is velomotion's own path: \
+         from the packets' bytes, with clocks and angles looked up, both angles a return, carried on from the start of a block."
+            .to_owned(),
+    ]
+}
+
+fn kernels<'a>(shots: &'a [Shot], head: &'a Head, points: usize) -> Vec<Work<'a, StudyError>> {
+    WAYS.iter()
+        .map(|(_, _, _, kernel)| {
+            let mut out = Places::new(points);
+            let work: Work<'a, StudyError> = Box::new(move || {
+                kernel(black_box(shots), head, (&Exact, &Exact), &mut out);
+                black_box(&out);
+                Ok(())
+            });
+            work
+        })
+        .collect()
+}
+
+/// Takes what comes.
+struct Ignore;
+
+impl Sink for Ignore {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        black_box(batch);
+        Ok(())
+    }
+}
+
+/// velomotion's second pass.
+pub(super) fn place_packets(
+    packets: &Workload,
+    alignment: &Alignment,
+    sink: &mut dyn Sink,
+) -> Result<(), StudyError> {
+    let mut placer = Placer::new(alignment, Options::default(), sink);
+    for record in packets.records() {
+        placer.observe(&record)?;
+    }
+    black_box(placer.finish()?);
+    Ok(())
+}
+
+/// Every return by itself, as `scanner` defines its place.
+fn definition(packets: &Workload, alignment: &Alignment) -> Places<f64> {
+    let mut places = Places::new(0);
+    let mut each = |firing: &lidar::Firing<'_>| {
+        for point in firing.points().filter_map(|point| alignment.place(&point)) {
+            let [x, y, z] = point.position_m;
+            places.x_m.push(x);
+            places.y_m.push(y);
+            places.z_m.push(z);
+        }
+    };
+    let mut decoder = Decoder::new(Options::default());
+    for record in packets.records() {
+        if let Wire::Lidar { payload, .. } = record.wire {
+            decoder.packet(record.host, payload, &mut each);
+        }
+    }
+    decoder.finish(&mut each);
+    places
+}
+
+/// How far velomotion's own points are from those of the definition.
+fn own_error_m(
+    packets: &Workload,
+    alignment: &Alignment,
+    truth: &Places<f64>,
+) -> Result<f64, StudyError> {
+    let mut cloud = Points::new(Fields::NONE);
+    place_packets(packets, alignment, &mut cloud)?;
+    if cloud.len() != truth.len() {
+        let (got, expected) = (cloud.len(), truth.len());
+        return Err(workload(format!("expected {expected} points, got {got}")));
+    }
+    Ok(worst_m(
+        [cloud.x_m(), cloud.y_m(), cloud.z_m()],
+        [&truth.x_m, &truth.y_m, &truth.z_m],
+    ))
+}

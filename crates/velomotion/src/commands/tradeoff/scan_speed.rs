@@ -1,0 +1,151 @@
+//! Tilt speed against scan time, resolution and what stays unseen. Computed, not timed.
+
+use analysis::tradeoff::pattern::{Lidar, Sweep};
+use analysis::tradeoff::{
+    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value,
+};
+
+/// The study.
+pub(super) struct ScanSpeed;
+
+/// 45 degrees, with the drive's factory ramps.
+const WAY_DEG: f64 = 45.0;
+const ACCEL_DEG_S2: f64 = 500.0;
+/// What the drive can be told: 1 rpm of the motor is 0.05 deg/s.
+const SPEEDS_DEG_S: [f64; 18] = [
+    0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 12.5, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0,
+    56.25,
+];
+
+impl Study for ScanSpeed {
+    fn name(&self) -> &'static str {
+        "scan-speed"
+    }
+
+    fn title(&self) -> &'static str {
+        "Tilt speed and scan time"
+    }
+
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+        let lidar = Lidar::vlp_16();
+        let (phases, step_deg) = match bench.effort {
+            Effort::Quick => (8, 3.0),
+            Effort::Full => (64, 0.5),
+        };
+        (bench.say)(&format!("{} speeds, computed", SPEEDS_DEG_S.len()));
+        let rows = SPEEDS_DEG_S.map(|speed_deg_s| {
+            let sweep = Sweep {
+                way_deg: WAY_DEG,
+                speed_deg_s,
+                accel_deg_s2: ACCEL_DEG_S2,
+            };
+            let gaps = lidar.gaps(&sweep, phases);
+            Row {
+                name: format!("{speed_deg_s} deg/s"),
+                label: speed_deg_s.to_string(),
+                group: "VLP-16 at 10 turns a second",
+                values: [
+                    sweep.duration_s(),
+                    lidar.mean_resolution_deg(&sweep),
+                    gaps.field_deg,
+                    gaps.middle_deg,
+                    lidar.widest_circle_deg(&sweep, step_deg),
+                ]
+                .map(|x| Value::Computed(without_rounding(x)))
+                .to_vec(),
+            }
+        });
+        Ok(Findings {
+            name: self.name(),
+            title: self.title(),
+            about: about(phases, step_deg),
+            choice: "cruise",
+            columns: columns(),
+            rows: rows.into(),
+            trades: [1, 2, 3]
+                .map(|loss| Trade {
+                    cost: 0,
+                    loss,
+                    joined: true,
+                })
+                .into(),
+        })
+    }
+}
+
+/// To a billionth: equal gaps of two speeds are to be equal, whatever the last bits of their sums.
+fn without_rounding(x: f64) -> f64 {
+    (x * 1e9).round() / 1e9
+}
+
+fn columns() -> Vec<Column> {
+    [
+        ("scan_time_s", "scan time, s"),
+        ("mean_resolution_deg", "mean vertical resolution, deg"),
+        ("gap_deg", "widest gap, deg"),
+        ("gap_in_the_middle_deg", "widest gap in the middle, deg"),
+        ("widest_circle_deg", "widest unseen circle, deg"),
+    ]
+    .map(|(key, heading)| Column {
+        key,
+        heading,
+        scale: Scale::Log,
+    })
+    .into()
+}
+
+fn about(phases: u32, step_deg: f64) -> Vec<String> {
+    vec![
+        format!(
+            "A tilt of {WAY_DEG} degrees with ramps of {ACCEL_DEG_S2} deg/s2, computed from the directions of the scan lines: what one laser sweeps in one turn. \
+             The mean vertical resolution is the paper's: the vertical field of view, 75 degrees, over 16 lasers times the turns of the whole scan. \
+             The paper counts 0.80 s and 8 turns at 56.25 deg/s, without ramps, and has 0.586."
+        ),
+        format!(
+            "The widest gap is the greatest angle between neighbouring scan lines in the plane across the tilt axis, where tilting spreads them most, the ends \
+             of the field of view counted as lines, at the worst of {phases} azimuths of the lidar at the start. Near its ends the field is seen by one laser \
+             alone, whose lines are a turn's tilt apart. In the middle, 15 degrees that all lasers pass, they fill each other's gaps, but where their 2 degrees are a \
+             multiple of a turn's tilt: there all lines coincide, and 20 deg/s shows no more than one frame does."
+        ),
+        format!(
+            "The widest unseen circle is the largest about any direction of the field of view, on a grid of {step_deg} degrees, that no scan line enters; its \
+             diameter. About the tilt axis 2 degrees stay blind at any speed: the lasers at -1 and +1 degrees circle around the poles."
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use units::Stamp;
+
+    use super::*;
+
+    #[test]
+    fn the_findings_are_those_of_the_pattern() {
+        let mut clock = || Stamp::from_nanos(0);
+        let mut bench = Bench {
+            clock: &mut clock,
+            effort: Effort::Quick,
+            say: &mut |_| {},
+        };
+        let findings = ScanSpeed.measure(&mut bench).unwrap();
+        let value = |name: &str, column: usize| {
+            let row = findings.rows.iter().find(|row| row.name == name).unwrap();
+            row.values[column].middle()
+        };
+        assert!((value("56.25 deg/s", 0) - 0.9125).abs() < 1e-12);
+        assert!((value("56.25 deg/s", 1) - 75.0 / (16.0 * 9.125)).abs() < 1e-12);
+        assert!((value("0.05 deg/s", 0) - 900.0).abs() < 1e-3);
+        // 0.05 deg/s: 0.005 degrees a turn, and the ends of the field are seen by one laser alone.
+        assert!((0.005..0.006).contains(&value("0.05 deg/s", 2)));
+        for row in &findings.rows {
+            let [mean, gap, middle] = [1, 2, 3].map(|column| row.values[column].middle());
+            // Between lasers, or at an end what the platform tilts in the first turn: at most 0.5 x 500 x 0.1^2.
+            assert!(mean <= gap && middle <= gap && gap <= 2.5, "{row:?}");
+            assert!(middle <= 2.0 + 1e-9, "{row:?}");
+            assert!(row.values[4].middle() >= 2.0 - 1e-9, "{row:?}");
+        }
+        // Slower is finer on average, so that every speed is on the first front.
+        assert_eq!(findings.front(&findings.trades[0]), [true; 18]);
+    }
+}

@@ -1,0 +1,144 @@
+//! In which numbers points are placed, and by which sine (Eq. 4-6).
+
+use std::hint::black_box;
+
+use analysis::tradeoff::placing::{
+    Addition, Exact, Head, LASERS, Number, Places, RETURN, Shot, Sine, Table, place,
+};
+use analysis::tradeoff::{
+    Bench, Column, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+};
+
+use super::workload::{Workload, all_at, cruise_deg, cruise_s, head};
+
+/// The study.
+pub(super) struct Trigonometry;
+
+const RANGE_M: f64 = 100.0;
+
+/// A way with its name, its label, its group and how far it is off.
+struct Way<'a> {
+    name: String,
+    label: &'static str,
+    group: &'static str,
+    error_m: f64,
+    work: Work<'a, StudyError>,
+}
+
+/// What every way works on.
+struct Setting {
+    shots: Vec<Shot>,
+    head: Head,
+    truth: Places<f64>,
+}
+
+impl Study for Trigonometry {
+    fn name(&self) -> &'static str {
+        "trigonometry"
+    }
+
+    fn title(&self) -> &'static str {
+        "Numbers and sines"
+    }
+
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+        let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
+        let shots = packets.shots(&packets.alignment()?);
+        let (head, points) = (head(), shots.len() * LASERS);
+        let mut truth = Places::new(points);
+        place::<f64, _, _, RETURN, RETURN>(&shots, &head, (&Exact, &Exact), &mut truth);
+        let setting = Setting { shots, head, truth };
+        let (wide, narrow) = (Table::<f64>::new(), Table::<f32>::new());
+        let mut ways = ways("f64", &setting, &wide);
+        ways.extend(self::ways("f32", &setting, &narrow));
+
+        let plan = bench.plan(5, 25);
+        (bench.say)(&format!("{points} points, {} rounds", plan.rounds));
+        let (mut work, named): (Vec<_>, Vec<_>) = ways
+            .into_iter()
+            .map(|w| (w.work, (w.name, w.label, w.group, w.error_m)))
+            .unzip();
+        let times = in_rounds(bench.clock, plan, &mut work)?;
+        let rows = named.into_iter().zip(times);
+        let rows = rows.map(|((name, label, group, error_m), time)| Row {
+            name,
+            label: label.to_owned(),
+            group,
+            values: vec![
+                Value::Timed(time.times(1e9 / points as f64)),
+                Value::Computed(error_m * 1e3),
+            ],
+        });
+        Ok(Findings {
+            name: self.name(),
+            title: self.title(),
+            about: about(points),
+            choice: "numbers, sine and cosine",
+            columns: vec![
+                Column {
+                    key: "time_ns_per_point",
+                    heading: "ns a point",
+                    scale: Scale::Log,
+                },
+                Column {
+                    key: "worst_error_mm",
+                    heading: "worst error, mm at 100 m",
+                    scale: Scale::Log,
+                },
+            ],
+            rows: rows.collect(),
+            trades: vec![Trade {
+                cost: 0,
+                loss: 1,
+                joined: false,
+            }],
+        })
+    }
+}
+
+fn about(points: usize) -> Vec<String> {
+    vec![
+        format!(
+            "The same tilt, {points} points at {RANGE_M} m, each return with its own azimuth and tilt. Eq. 1-6 are worked out in f64 or wholly in f32, angles \
+             and distances included. The error is the distance to where f64 and the library's sine put the point."
+        ),
+        "Library: sine and cosine of both angles for every return. Table: those of the nearest hundredth of a degree, 36,000 places, for the azimuth or for both \
+         angles. Addition: the library's for the first laser of a firing, carried on to the others by the sum's sine and cosine, of a little angle whose series \
+         ends at the third power; velomotion does this in f64, a block at a time."
+            .to_owned(),
+    ]
+}
+
+fn ways<'a, T: Number>(
+    group: &'static str,
+    setting: &'a Setting,
+    table: &'a Table<T>,
+) -> Vec<Way<'a>> {
+    vec![
+        way::<T, _, _>((group, "library"), setting, (&Exact, &Exact)),
+        way::<T, _, _>((group, "azimuth table"), setting, (table, &Exact)),
+        way::<T, _, _>((group, "table"), setting, (table, table)),
+        way::<T, _, _>((group, "addition"), setting, (&Addition, &Addition)),
+    ]
+}
+
+fn way<'a, T: Number, A: Sine<T>, G: Sine<T>>(
+    (group, label): (&'static str, &'static str),
+    setting: &'a Setting,
+    sines: (&'a A, &'a G),
+) -> Way<'a> {
+    let Setting { shots, head, truth } = setting;
+    let mut out = Places::<T>::new(truth.len());
+    place::<T, A, G, RETURN, RETURN>(shots, head, sines, &mut out);
+    Way {
+        name: format!("{group}, {label}"),
+        label,
+        group,
+        error_m: out.worst_m(truth),
+        work: Box::new(move || {
+            place::<T, A, G, RETURN, RETURN>(black_box(shots), head, sines, &mut out);
+            black_box(&out);
+            Ok(())
+        }),
+    }
+}
