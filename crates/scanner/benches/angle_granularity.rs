@@ -5,15 +5,19 @@
 //!
 //! A real VLP-16 at 20 Hz on a platform that swings at 56.25 deg/s. Angles are those at the start of their packet, block, firing or
 //! return; the azimuth is the block's own where the tilt is the packet's, as every packet has twelve. Errors are against
-//! angles a return, f64, libm's sine, with every return put at 100 m; times are with the distances as recorded. These kernels are
-//! plain loops that write x, y and z; the last line is the product's own path with everything that it does besides, and the
-//! error that its tests hold it to.
+//! angles a return, f64, libm's sine, with every return put at 100 m; times are with the distances as recorded. The loops are
+//! `analysis`'s, which `velomotion tradeoff` compares on packets of its own; the last line is the product's own path with everything
+//! that it does besides, and the error that its tests hold it to.
 #![expect(clippy::unwrap_used, reason = "a bench of recordings")]
 
 mod common;
 
 use std::hint::black_box;
 
+use analysis::tradeoff::placing::{
+    BLOCK, Beam, Exact, FIRING, Head, LASERS, Number, PACKET, Places, RETURN, Shot, Sine, Table,
+    place, returns,
+};
 use cloud::{Fields, Points, Sink, SinkError};
 use common::{Recording, Timing};
 use drive::record::Wire;
@@ -24,42 +28,7 @@ use scanner::{Alignment, Placer};
 use units::Span;
 
 const RECORDING: &str = "vlp16-2014-no-factory-bytes.pcap";
-const LASERS: usize = 16;
-const BLOCK_FIRINGS: usize = 2;
-const PACKET_FIRINGS: usize = 24;
-const MOUNT_D_M: f64 = 0.06;
 const FAR_M: f64 = 100.0;
-/// The table has a sine for every hundredth of a degree.
-const TABLE_STEPS: usize = 36_000;
-
-/// One firing: its angles at its start, how fast they grow, and what came back.
-struct Shot {
-    azimuth_deg: f64,
-    azimuth_deg_ns: f64,
-    tilt_deg: f64,
-    tilt_deg_ns: f64,
-    counts: [u16; LASERS],
-}
-
-/// How often angles are worked out.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Per {
-    Packet,
-    Block,
-    Firing,
-    Return,
-}
-
-const PACKET: u8 = Per::Packet as u8;
-const BLOCK: u8 = Per::Block as u8;
-const FIRING: u8 = Per::Firing as u8;
-const RETURN: u8 = Per::Return as u8;
-const UNITS: [(Per, &str); 4] = [
-    (Per::Packet, "packet"),
-    (Per::Block, "block"),
-    (Per::Firing, "firing"),
-    (Per::Return, "return"),
-];
 
 fn main() {
     let runs = std::env::args()
@@ -73,59 +42,18 @@ fn main() {
     let alignment = recording.tilting();
     let shots = shots(&recording, &alignment);
     let far = at_100_m(&shots);
-    let returns = |shots: &[Shot]| {
-        shots
-            .iter()
-            .flat_map(|s| s.counts)
-            .filter(|c| *c != 0)
-            .count()
-    };
-    let points = returns(&shots);
-    let truth = {
-        let mut out = Out::<f64>::new(returns(&far));
-        place::<f64, Exact, RETURN, RETURN>(&far, &Exact, &mut out);
-        out
+    let setting = Setting {
+        shots: &shots,
+        far: &far,
+        head: head(),
+        truth: truth(&far),
     };
     let (wide, narrow) = (Table::<f64>::new(), Table::<f32>::new());
     let mut rows: Vec<Row<'_>> = Vec::new();
-    for (per, name) in UNITS {
-        add::<f64, _>(
-            &mut rows,
-            format!("{name:<8}f64  libm"),
-            per,
-            &Exact,
-            &shots,
-            &far,
-            &truth,
-        );
-        add(
-            &mut rows,
-            format!("{name:<8}f64  table"),
-            per,
-            &wide,
-            &shots,
-            &far,
-            &truth,
-        );
-        add::<f32, _>(
-            &mut rows,
-            format!("{name:<8}f32  libm"),
-            per,
-            &Exact,
-            &shots,
-            &far,
-            &truth,
-        );
-        add(
-            &mut rows,
-            format!("{name:<8}f32  table"),
-            per,
-            &narrow,
-            &shots,
-            &far,
-            &truth,
-        );
-    }
+    setting.add::<f64, _>(&mut rows, "f64  libm", &Exact);
+    setting.add(&mut rows, "f64  table", &wide);
+    setting.add::<f32, _>(&mut rows, "f32  libm", &Exact);
+    setting.add(&mut rows, "f32  table", &narrow);
     let product = || {
         let mut sink = Ignore;
         let mut placer = Placer::new(&alignment, Options::default(), &mut sink);
@@ -139,6 +67,7 @@ fn main() {
         Box::new(product),
         [1e-6; 2],
     ));
+    let points = returns(&shots);
     println!("{points} points; time: least of {runs} runs, and the median above it");
     println!("{:<38}{:>10}{:>9}{:>26}", "", "", "", "worst, mm at 100 m");
     println!(
@@ -171,214 +100,78 @@ impl Sink for Ignore {
 /// Name, work, and worst errors in millimetres: by the tilt alone and in all.
 type Row<'a> = (String, Box<dyn FnMut() + 'a>, [f64; 2]);
 
-type Kernel<T, S> = fn(&[Shot], &S, &mut Out<T>);
+type Kernel<T, S> = fn(&[Shot], &Head, (&S, &S), &mut Places<T>);
 
-/// Adds a line of the table.
-fn add<'a, T: Number, S: Sine<T>>(
-    rows: &mut Vec<Row<'a>>,
-    name: String,
-    per: Per,
-    sine: &'a S,
+/// How often, the loop, and the same with each return's own azimuth.
+type Way<T, S> = (&'static str, Kernel<T, S>, Kernel<T, S>);
+
+/// What every line works on.
+struct Setting<'a> {
     shots: &'a [Shot],
-    far: &[Shot],
-    truth: &Out<f64>,
-) {
-    let (run, with_own_azimuth): (Kernel<T, S>, Kernel<T, S>) = match per {
-        Per::Packet => (place::<T, S, BLOCK, PACKET>, place::<T, S, RETURN, PACKET>),
-        Per::Block => (place::<T, S, BLOCK, BLOCK>, place::<T, S, RETURN, BLOCK>),
-        Per::Firing => (place::<T, S, FIRING, FIRING>, place::<T, S, RETURN, FIRING>),
-        Per::Return => (place::<T, S, RETURN, RETURN>, place::<T, S, RETURN, RETURN>),
-    };
-    let mut out = Out::<T>::new(truth.len());
-    with_own_azimuth(far, sine, &mut out);
-    let by_tilt_mm = out.worst_m(truth) * 1e3;
-    run(far, sine, &mut out);
-    let worst_mm = [by_tilt_mm, out.worst_m(truth) * 1e3];
-    let work = move || {
-        run(shots, sine, &mut out);
-        black_box(&out);
-    };
-    rows.push((name, Box::new(work), worst_mm));
+    far: &'a [Shot],
+    head: Head,
+    truth: Places<f64>,
 }
 
-/// f32 or f64.
-trait Number: Copy + 'static {
-    fn of(x: f64) -> Self;
-    fn f64(self) -> f64;
-    fn sin_cos_deg(self) -> (Self, Self);
-    fn add(self, other: Self) -> Self;
-    fn sub(self, other: Self) -> Self;
-    fn mul(self, other: Self) -> Self;
-}
-
-macro_rules! number {
-    ($float:ty) => {
-        impl Number for $float {
-            #[inline(always)]
-            fn of(x: f64) -> Self {
-                x as $float
-            }
-            #[inline(always)]
-            fn f64(self) -> f64 {
-                f64::from(self)
-            }
-            #[inline(always)]
-            fn sin_cos_deg(self) -> (Self, Self) {
-                self.to_radians().sin_cos()
-            }
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                self + other
-            }
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                self - other
-            }
-            #[inline(always)]
-            fn mul(self, other: Self) -> Self {
-                self * other
-            }
-        }
-    };
-}
-number!(f32);
-number!(f64);
-
-trait Sine<T> {
-    fn sin_cos(&self, degrees: T) -> (T, T);
-}
-
-struct Exact;
-
-impl<T: Number> Sine<T> for Exact {
-    #[inline(always)]
-    fn sin_cos(&self, degrees: T) -> (T, T) {
-        degrees.sin_cos_deg()
-    }
-}
-
-/// Sine and cosine of the nearest hundredth of a degree.
-struct Table<T>(Vec<(T, T)>);
-
-impl<T: Number> Table<T> {
-    fn new() -> Self {
-        let of = |i: usize| {
-            let (sin, cos) = (i as f64 * 0.01).to_radians().sin_cos();
-            (T::of(sin), T::of(cos))
-        };
-        Self((0..TABLE_STEPS).map(of).collect())
-    }
-}
-
-impl<T: Number> Sine<T> for Table<T> {
-    #[inline(always)]
-    fn sin_cos(&self, degrees: T) -> (T, T) {
-        // Azimuths and tilts here are between -360 and 720 degrees.
-        let hundredths = degrees.mul(T::of(100.0)).f64() + (TABLE_STEPS as f64 + 0.5);
-        self.0[hundredths as usize % TABLE_STEPS]
-    }
-}
-
-struct Out<T> {
-    x_m: Vec<T>,
-    y_m: Vec<T>,
-    z_m: Vec<T>,
-}
-
-impl<T: Number> Out<T> {
-    fn new(len: usize) -> Self {
-        let column = || vec![T::of(0.0); len];
-        Self {
-            x_m: column(),
-            y_m: column(),
-            z_m: column(),
-        }
-    }
-
-    fn len(&self) -> usize {
-        self.x_m.len()
-    }
-
-    fn worst_m(&self, truth: &Out<f64>) -> f64 {
-        let square = |a: &[T], b: &[f64], i: usize| (a[i].f64() - b[i]).powi(2);
-        (0..self.len())
-            .map(|i| {
-                square(&self.x_m, &truth.x_m, i)
-                    + square(&self.y_m, &truth.y_m, i)
-                    + square(&self.z_m, &truth.z_m, i)
-            })
-            .fold(0.0, f64::max)
-            .sqrt()
-    }
-}
-
-/// Places every return, its angles those at the start of its packet, block or firing, or its own.
-fn place<T: Number, S: Sine<T>, const AZIMUTH: u8, const TILT: u8>(
-    shots: &[Shot],
-    sine: &S,
-    out: &mut Out<T>,
-) {
-    let unit = T::of(VLP_16.distance_unit_m);
-    let rays: [(T, T, T); LASERS] = std::array::from_fn(|i| {
-        let laser = &VLP_16.lasers[i];
-        let (sin, cos) = laser.elevation_deg.to_radians().sin_cos();
-        (
-            T::of(sin),
-            T::of(cos),
-            T::of(laser.vertical_offset_m + MOUNT_D_M),
-        )
-    });
-    let delays: [T; LASERS] = std::array::from_fn(|i| T::of(f64::from(VLP_16.lasers[i].delay_ns)));
-    let (mut azimuth, mut tilt) = ((unit, unit), (unit, unit));
-    let mut row = 0;
-    for (i, shot) in shots.iter().enumerate() {
-        let starts = |per: Per| match per {
-            Per::Packet => i % PACKET_FIRINGS == 0,
-            Per::Block => i % BLOCK_FIRINGS == 0,
-            Per::Firing | Per::Return => true,
-        };
-        if starts(of(AZIMUTH)) {
-            azimuth = sine.sin_cos(T::of(shot.azimuth_deg));
-        }
-        if starts(of(TILT)) {
-            tilt = sine.sin_cos(T::of(shot.tilt_deg));
-        }
-        for (laser, &count) in shot.counts.iter().enumerate() {
-            if count == 0 {
-                continue;
-            }
-            let at = |deg: f64, rate: f64| T::of(deg).add(T::of(rate).mul(delays[laser]));
-            if AZIMUTH == RETURN {
-                azimuth = sine.sin_cos(at(shot.azimuth_deg, shot.azimuth_deg_ns));
-            }
-            if TILT == RETURN {
-                tilt = sine.sin_cos(at(shot.tilt_deg, shot.tilt_deg_ns));
-            }
-            let (sin_w, cos_w, up) = rays[laser];
-            let range = T::of(f64::from(count)).mul(unit);
-            let across = range.mul(cos_w);
-            let (x, height) = (across.mul(azimuth.0), range.mul(sin_w).add(up));
-            let (sin, cos) = tilt;
-            if let (Some(to_x), Some(to_y), Some(to_z)) = (
-                out.x_m.get_mut(row),
-                out.y_m.get_mut(row),
-                out.z_m.get_mut(row),
-            ) {
-                *to_x = x.mul(cos).add(height.mul(sin));
-                *to_y = across.mul(azimuth.1);
-                *to_z = height.mul(cos).sub(x.mul(sin));
-            }
-            row += 1;
+impl<'a> Setting<'a> {
+    /// Adds four lines: how often the angles are worked out, and the same with each return's own azimuth.
+    fn add<T: Number, S: Sine<T>>(&'a self, rows: &mut Vec<Row<'a>>, name: &str, sine: &'a S) {
+        let ways: [Way<T, S>; 4] = [
+            (
+                "packet",
+                place::<T, S, S, BLOCK, PACKET>,
+                place::<T, S, S, RETURN, PACKET>,
+            ),
+            (
+                "block",
+                place::<T, S, S, BLOCK, BLOCK>,
+                place::<T, S, S, RETURN, BLOCK>,
+            ),
+            (
+                "firing",
+                place::<T, S, S, FIRING, FIRING>,
+                place::<T, S, S, RETURN, FIRING>,
+            ),
+            (
+                "return",
+                place::<T, S, S, RETURN, RETURN>,
+                place::<T, S, S, RETURN, RETURN>,
+            ),
+        ];
+        for (per, run, with_own_azimuth) in ways {
+            let mut out = Places::<T>::new(self.truth.len());
+            let mut worst_mm = |kernel: Kernel<T, S>| {
+                kernel(self.far, &self.head, (sine, sine), &mut out);
+                out.worst_m(&self.truth) * 1e3
+            };
+            let errors_mm = [worst_mm(with_own_azimuth), worst_mm(run)];
+            let work = move || {
+                run(self.shots, &self.head, (sine, sine), &mut out);
+                black_box(&out);
+            };
+            rows.push((format!("{per:<8}{name}"), Box::new(work), errors_mm));
         }
     }
 }
 
-const fn of(per: u8) -> Per {
-    match per {
-        0 => Per::Packet,
-        1 => Per::Block,
-        2 => Per::Firing,
-        _ => Per::Return,
+fn truth(far: &[Shot]) -> Places<f64> {
+    let mut truth = Places::new(returns(far));
+    place::<f64, _, _, RETURN, RETURN>(far, &head(), (&Exact, &Exact), &mut truth);
+    truth
+}
+
+fn head() -> Head {
+    Head {
+        beams: std::array::from_fn(|i| {
+            let laser = &VLP_16.lasers[i];
+            Beam {
+                elevation_deg: laser.elevation_deg,
+                rise_m: laser.vertical_offset_m,
+                delay_ns: f64::from(laser.delay_ns),
+            }
+        }),
+        unit_m: VLP_16.distance_unit_m,
+        d_m: 0.06,
     }
 }
 
