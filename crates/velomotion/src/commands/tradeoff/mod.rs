@@ -1,6 +1,6 @@
 //! `velomotion tradeoff`: what every choice that buys accuracy costs in time, measured on this machine and now.
 //!
-//! One file a study; [`studies`] lists them. What a study is, and how findings become tables, figures and pages, is
+//! One file a study; `studies` lists them. What a study is, and how findings become tables, figures and pages, is
 //! `analysis::tradeoff`'s. Here are the clock, the machine's name and the files.
 
 mod formats;

@@ -102,8 +102,8 @@ fn about(points: usize) -> Vec<String> {
             "The same tilt, {points} points at {RANGE_M} m, each return with its own azimuth and tilt. Eq. 1-6 are worked out in f64 or wholly in f32, angles \
              and distances included. The error is the distance to where f64 and the library's sine put the point."
         ),
-        "Library: sine and cosine of both angles for every return. Table: those of the nearest hundredth of a degree, 36,000 places, for the azimuth or for both \
-         angles. Addition: the library's for the first laser of a firing, carried on to the others by the sum's sine and cosine, of a little angle whose series \
+        "Library: sine and cosine of both angles for every return. Table: those of the nearest hundredth of a degree, 36,000 places; azimuth table: \
+             for the azimuth alone. Addition: the library's for the first laser of a firing, carried on to the others by the sum's sine and cosine, of a little angle whose series \
          ends at the third power; velomotion does this in f64, a block at a time."
             .to_owned(),
     ]
