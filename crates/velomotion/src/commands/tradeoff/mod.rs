@@ -3,6 +3,7 @@
 //! One file a study; `studies` lists them. What a study is, and how findings become tables, figures and pages, is
 //! `analysis::tradeoff`'s. Here are the clock, the machine's name and the files.
 
+mod clocks;
 mod formats;
 mod granularity;
 mod machine;
@@ -27,6 +28,7 @@ fn studies() -> Vec<&'static dyn Study> {
     vec![
         &granularity::Granularity,
         &trigonometry::Trigonometry,
+        &clocks::Clocks,
         &formats::Formats,
         &scan_speed::ScanSpeed,
     ]
