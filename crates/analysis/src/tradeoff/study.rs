@@ -157,6 +157,8 @@ pub struct Trade {
     pub loss: usize,
     /// Whether a line joins the choices of one group.
     pub joined: bool,
+    /// Whether groups are circumstances, which nobody chooses: each has a front of its own.
+    pub apart: bool,
 }
 
 /// What a study found.
@@ -191,25 +193,54 @@ impl Findings {
         self.columns.get(column).map_or("", |c| c.heading)
     }
 
-    /// Which rows are on a trade's front: no other's median is as good as their best in one and better in the other.
+    /// Which rows are on a trade's front: no other's median is as good as their best in one and better in the other. Where
+    /// groups are apart, no other's of their group.
     #[must_use]
     pub fn front(&self, trade: &Trade) -> Vec<bool> {
-        front_within_spread(
-            &self.costs(trade, Value::middle),
-            &self.costs(trade, Value::best),
-        )
+        self.by_group(trade, |rows| {
+            front_within_spread(
+                &costs(rows, trade, Value::middle),
+                &costs(rows, trade, Value::best),
+            )
+        })
     }
 
     /// The same by medians alone: the steps of a figure.
     #[must_use]
     pub fn steps(&self, trade: &Trade) -> Vec<bool> {
-        front(&self.costs(trade, Value::middle))
+        self.by_group(trade, |rows| front(&costs(rows, trade, Value::middle)))
     }
 
-    fn costs(&self, trade: &Trade, of: impl Fn(&Value) -> f64) -> Vec<Vec<f64>> {
-        let value = |row: &Row, column: usize| row.values.get(column).map_or(f64::NAN, &of);
-        let pair = |row| vec![value(row, trade.cost), value(row, trade.loss)];
-        self.rows.iter().map(pair).collect()
+    /// The groups in their order, or a single one of all where groups are not apart.
+    #[must_use]
+    pub fn circumstances(&self, trade: &Trade) -> Vec<Option<&'static str>> {
+        if !trade.apart {
+            return vec![None];
+        }
+        let mut groups = Vec::new();
+        for row in &self.rows {
+            if !groups.contains(&Some(row.group)) {
+                groups.push(Some(row.group));
+            }
+        }
+        groups
+    }
+
+    fn by_group(&self, trade: &Trade, front: impl Fn(&[&Row]) -> Vec<bool>) -> Vec<bool> {
+        let mut on = vec![false; self.rows.len()];
+        for group in self.circumstances(trade) {
+            let of_group = |row: &Row| group.is_none_or(|group| row.group == group);
+            let rows: Vec<&Row> = self.rows.iter().filter(|row| of_group(row)).collect();
+            let places = self
+                .rows
+                .iter()
+                .zip(&mut on)
+                .filter(|(row, _)| of_group(row));
+            for ((_, place), found) in places.zip(front(&rows)) {
+                *place = found;
+            }
+        }
+        on
     }
 
     /// Each row's marks: a star where the only front has it, else the numbers of the figures whose fronts have it.
@@ -235,41 +266,51 @@ impl Findings {
     /// A sentence on each front: its choices in order of their cost.
     #[must_use]
     pub fn verdicts(&self) -> Vec<String> {
-        self.trades
-            .iter()
-            .map(|trade| self.verdict(trade))
+        let trades = self.trades.iter();
+        trades
+            .flat_map(|trade| {
+                let groups = self.circumstances(trade).into_iter();
+                groups.map(|group| self.verdict(trade, group))
+            })
             .collect()
     }
 
-    fn verdict(&self, trade: &Trade) -> String {
-        let middle = |row, column| self.value(row, column).map_or(f64::NAN, Value::middle);
-        let on = self.front(trade);
-        let mut rows: Vec<usize> = (0..self.rows.len())
-            .filter(|&row| on.get(row) == Some(&true))
+    fn verdict(&self, trade: &Trade, group: Option<&str>) -> String {
+        let middle =
+            |row: &Row, column: usize| row.values.get(column).map_or(f64::NAN, Value::middle);
+        let rows = self.rows.iter().zip(self.front(trade));
+        let all = rows.filter(|(row, _)| group.is_none_or(|group| row.group == group));
+        let mut on: Vec<&Row> = all
+            .clone()
+            .filter_map(|(row, on)| on.then_some(row))
             .collect();
-        rows.sort_by(|&a, &b| middle(a, trade.cost).total_cmp(&middle(b, trade.cost)));
-        let names: Vec<String> = rows
-            .iter()
-            .filter_map(|&row| {
-                let name = &self.rows.get(row)?.name;
-                let cost = number::short(middle(row, trade.cost));
-                let loss = number::short(middle(row, trade.loss));
-                Some(format!("{name} ({cost}; {loss})"))
-            })
-            .collect();
-        let names = match names.as_slice() {
-            [first, .., last] if names.len() > MOST_NAMED => {
-                let (on, all) = (names.len(), self.rows.len());
+        on.sort_by(|a, b| middle(a, trade.cost).total_cmp(&middle(b, trade.cost)));
+        let named = on.iter().map(|row| {
+            let cost = number::short(middle(row, trade.cost));
+            let loss = number::short(middle(row, trade.loss));
+            format!("{} ({cost}; {loss})", row.name)
+        });
+        let named: Vec<String> = named.collect();
+        let names = match named.as_slice() {
+            [first, .., last] if named.len() > MOST_NAMED => {
+                let (on, all) = (named.len(), all.count());
                 format!("{on} of {all} choices, from {first} to {last}")
             }
-            _ => names.join(", "),
+            _ => named.join(", "),
         };
         format!(
-            "Pareto front of {} and {}: {names}.",
+            "Pareto front of {} and {}{}: {names}.",
             self.heading(trade.cost),
             self.heading(trade.loss),
+            group.map_or(String::new(), |group| format!(", {group}")),
         )
     }
+}
+
+fn costs(rows: &[&Row], trade: &Trade, of: impl Fn(&Value) -> f64) -> Vec<Vec<f64>> {
+    let value = |row: &Row, column: usize| row.values.get(column).map_or(f64::NAN, &of);
+    let pair = |row: &&Row| vec![value(row, trade.cost), value(row, trade.loss)];
+    rows.iter().map(pair).collect()
 }
 
 /// What it was measured on.
@@ -377,8 +418,8 @@ pub(crate) fn example() -> Report {
                 row("bad", "clever", 21.0, 1.0, 9.0),
             ],
             trades: vec![
-                Trade { cost: 0, loss: 1, joined: true },
-                Trade { cost: 2, loss: 1, joined: false },
+                Trade { cost: 0, loss: 1, joined: true, apart: false },
+                Trade { cost: 2, loss: 1, joined: false, apart: false },
             ],
         }],
     }
@@ -397,6 +438,24 @@ mod tests {
             findings.verdicts()[0],
             "Pareto front of ns a point and worst error, mm: coarse <&> way (2; 130), \
              fine <&> way (9; 1e-6), exact <&> way (20; 0)."
+        );
+    }
+
+    #[test]
+    fn where_groups_are_apart_each_has_its_front() {
+        let mut report = example();
+        let findings = &mut report.studies[0];
+        findings.trades.truncate(1);
+        findings.trades[0].apart = true;
+        findings.rows[2].values[0] = Value::Computed(10.0);
+        assert_eq!(findings.marks(), ["*", "*", "*", ""]);
+        findings.rows[2].values[0] = Value::Computed(50.0);
+        assert_eq!(findings.marks(), ["*", "*", "*", "*"]);
+        let verdicts = findings.verdicts();
+        assert_eq!(verdicts.len(), 2);
+        assert!(
+            verdicts[1].contains(", clever: bad <&> way (21; 1), exact <&> way (50; 0)."),
+            "{verdicts:?}"
         );
     }
 

@@ -50,8 +50,14 @@ pub(super) fn draw(
         cost = escaped(findings.heading(trade.cost)),
     );
     let spots = spots(findings, trade, &x, &y);
-    let corners = corners(&spots);
-    svg += &steps(&corners);
+    let mut lines: Vec<Box2> = Vec::new();
+    for group in findings.circumstances(trade) {
+        let corners = corners(&spots, group);
+        let colour = group.map(|group| marks::colour(groups.number(group)));
+        svg += &steps(&corners, colour.as_deref());
+        let sides = corners.windows(2);
+        lines.extend(sides.filter_map(|pair| Some(Box2::along(*pair.first()?, *pair.last()?))));
+    }
     if trade.joined {
         svg += &joined(&spots, groups);
     }
@@ -63,10 +69,6 @@ pub(super) fn draw(
         let name = escaped(&spot.row.name);
         svg += &format!("<g><title>{name}</title>{mark}</g>\n");
     }
-    let mut lines: Vec<Box2> = corners
-        .windows(2)
-        .filter_map(|pair| Some(Box2::along(*pair.first()?, *pair.last()?)))
-        .collect();
     let bars = spots.iter().flat_map(|spot| spread(spot, trade, &x, &y));
     lines.extend(bars.flatten().map(|(a, b)| Box2::along(a, b)));
     svg += &names(&spots, &lines);
@@ -136,9 +138,11 @@ fn spots<'a>(findings: &'a Findings, trade: &Trade, x: &Axis, y: &Axis) -> Vec<S
     .collect()
 }
 
-/// The corners of the front: what can be had for at most so much.
-fn corners(spots: &[Spot<'_>]) -> Vec<(f64, f64)> {
-    let mut front: Vec<&Spot<'_>> = spots.iter().filter(|spot| spot.step).collect();
+/// The corners of the front of a group, or of all: what can be had for at most so much.
+fn corners(spots: &[Spot<'_>], group: Option<&str>) -> Vec<(f64, f64)> {
+    let of_group = |spot: &&Spot<'_>| group.is_none_or(|group| spot.row.group == group);
+    let steps = spots.iter().filter(|spot| spot.step).filter(of_group);
+    let mut front: Vec<&Spot<'_>> = steps.collect();
     front.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let mut corners = Vec::new();
     let mut y = TOP;
@@ -152,15 +156,16 @@ fn corners(spots: &[Spot<'_>]) -> Vec<(f64, f64)> {
     corners
 }
 
-fn steps(corners: &[(f64, f64)]) -> String {
-    let corners: Vec<String> = corners
-        .iter()
-        .map(|(x, y)| format!("{x:.1} {y:.1}"))
-        .collect();
-    match corners.is_empty() {
-        true => String::new(),
-        false => format!("<path class=\"tv-front\" d=\"M{}\"/>\n", corners.join("L")),
+fn steps(corners: &[(f64, f64)], colour: Option<&str>) -> String {
+    if corners.is_empty() {
+        return String::new();
     }
+    let places = corners.iter().map(|(x, y)| format!("{x:.1} {y:.1}"));
+    let places: Vec<String> = places.collect();
+    let class = colour.map_or("tv-front".to_owned(), |colour| {
+        format!("tv-front {colour} tv-none")
+    });
+    format!("<path class=\"{class}\" d=\"M{}\"/>\n", places.join("L"))
 }
 
 fn joined(spots: &[Spot<'_>], groups: &Groups<'_>) -> String {

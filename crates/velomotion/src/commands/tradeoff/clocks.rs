@@ -87,7 +87,8 @@ impl Study for Clocks {
             trades: vec![Trade {
                 cost: 0,
                 loss: 2,
-                joined: true,
+                joined: false,
+                apart: true,
             }],
         })
     }
@@ -114,8 +115,8 @@ fn about(seconds: i64, runs: usize) -> Vec<String> {
              up to 20 ms and an oscillator that is up to 50 ppm off and wanders. Errors are beyond the link's least delay, which no timing sees, averaged over {runs} \
              recordings: the bias is the size of their mean, the worst error the greatest from the first second on. 18 us are 0.001 degrees at 56.25 deg/s."
         ),
-        "Arrivals and the online clock are known when a packet comes, the line and the clock of the whole once all have. The \
-         front is of all links together; within one link, compare by colour."
+        "Arrivals and the online clock are known when a packet comes, the line and the clock of the whole once all have. \
+         Nobody chooses the link, so each has a front of its own."
             .to_owned(),
     ]
 }

@@ -137,6 +137,7 @@ impl Study for Granularity {
                 cost: 0,
                 loss: 1,
                 joined: true,
+                apart: false,
             }],
         })
     }

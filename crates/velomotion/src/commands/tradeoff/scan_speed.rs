@@ -67,6 +67,7 @@ impl Study for ScanSpeed {
                     cost: 0,
                     loss,
                     joined: true,
+                    apart: false,
                 })
                 .into(),
         })

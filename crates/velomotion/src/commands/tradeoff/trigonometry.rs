@@ -91,6 +91,7 @@ impl Study for Trigonometry {
                 cost: 0,
                 loss: 1,
                 joined: false,
+                apart: false,
             }],
         })
     }

@@ -93,6 +93,7 @@ impl Study for Formats {
                     cost,
                     loss: 2,
                     joined: false,
+                    apart: false,
                 })
                 .into(),
         })
