@@ -8,6 +8,7 @@ mod formats;
 mod granularity;
 mod machine;
 mod scan_speed;
+mod trajectory;
 mod trigonometry;
 mod workload;
 
@@ -28,6 +29,7 @@ fn studies() -> Vec<&'static dyn Study> {
     vec![
         &granularity::Granularity,
         &trigonometry::Trigonometry,
+        &trajectory::Trajectories,
         &clocks::Clocks,
         &formats::Formats,
         &scan_speed::ScanSpeed,

@@ -171,6 +171,25 @@ pub(super) fn all_at(range_m: f64) -> impl FnMut(&Ray) -> (u16, u8) {
     move |_| (count, 40)
 }
 
+/// Chance that is the same on every machine (splitmix64).
+pub(super) struct Random(pub u64);
+
+impl Random {
+    /// Even in 0..1.
+    pub fn even(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Nearly normal, of standard deviation 1: the sum of twelve even ones, less 6.
+    pub fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.even()).sum::<f64>() - 6.0
+    }
+}
+
 /// What could not be set up.
 pub(super) fn workload(error: impl Display) -> StudyError {
     StudyError::Workload(error.to_string().into())
@@ -201,5 +220,18 @@ mod tests {
             let off = (shot.azimuth_deg - azimuth + 180.0).rem_euclid(360.0) - 180.0;
             assert!(off.abs() < 0.011, "{i}: {shot:?} {azimuth}");
         }
+    }
+
+    #[test]
+    fn the_noise_has_the_deviation_it_should() {
+        let mut noise = Random(7);
+        let drawn: Vec<f64> = (0..20_000).map(|_| noise.normal()).collect();
+        let n = drawn.len() as f64;
+        let mean = drawn.iter().sum::<f64>() / n;
+        let deviation = (drawn.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
+        assert!(
+            mean.abs() < 0.02 && (deviation - 1.0).abs() < 0.02,
+            "{mean} {deviation}"
+        );
     }
 }

@@ -17,7 +17,7 @@ use sim::{MAX_RANGE_M, MIN_RANGE_M, scenes};
 use units::{Degrees, Metres};
 
 use super::granularity::place_packets;
-use super::workload::{Ray, Workload};
+use super::workload::{Random, Ray, Workload};
 
 /// The study.
 pub(super) struct Formats;
@@ -131,13 +131,13 @@ fn about(points: usize) -> Vec<String> {
 fn hall(seconds: f64) -> Result<Points, StudyError> {
     let scene = scenes::hall();
     let head = sim::Head::new(Metres(0.06));
-    let mut noise = Noise(1);
+    let mut noise = Random(1);
     let answer = |ray: &Ray| {
         let (azimuth, tilt) = (Degrees(ray.azimuth_deg), Degrees(ray.tilt_deg));
         let beam = head.beam(ray.laser, azimuth, tilt);
         let hit = beam.and_then(|(origin, way)| scene.cast(origin, way, MIN_RANGE_M, MAX_RANGE_M));
         hit.map_or((0, 0), |hit| {
-            let range_m = hit.range_m + NOISE_M * noise.next();
+            let range_m = hit.range_m + NOISE_M * noise.normal();
             let count = (range_m / VLP_16.distance_unit_m).round();
             (count as u16, hit.reflectivity)
         })
@@ -146,23 +146,6 @@ fn hall(seconds: f64) -> Result<Points, StudyError> {
     let mut cloud = Points::new(Fields::FILE);
     place_packets(&packets, &packets.alignment()?, &mut cloud)?;
     Ok(cloud)
-}
-
-/// Nearly normal noise of deviation 1: the sum of twelve even ones (splitmix64), less 6.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        (0..12).map(|_| self.even()).sum::<f64>() - 6.0
-    }
-
-    fn even(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
 }
 
 fn batches(cloud: &Points) -> Vec<Points> {
@@ -262,19 +245,6 @@ mod tests {
         let las = error_um(Format::Las);
         assert!((50.0..=50.0 * 3_f64.sqrt() + 0.01).contains(&las), "{las}");
         assert_eq!(error_um(Format::Laz), las);
-    }
-
-    #[test]
-    fn the_noise_has_the_deviation_it_should() {
-        let mut noise = Noise(7);
-        let drawn: Vec<f64> = (0..20_000).map(|_| noise.next()).collect();
-        let n = drawn.len() as f64;
-        let mean = drawn.iter().sum::<f64>() / n;
-        let deviation = (drawn.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
-        assert!(
-            mean.abs() < 0.02 && (deviation - 1.0).abs() < 0.02,
-            "{mean} {deviation}"
-        );
     }
 
     #[test]

@@ -1,0 +1,361 @@
+//! How the angle between polls is known: method, poll rate, and how well the polls' times are known.
+
+use std::hint::black_box;
+
+use analysis::tradeoff::pattern;
+use analysis::tradeoff::{
+    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+};
+use scanner::clock::Moment;
+use scanner::sweeps::{Commanded, Sweep};
+use scanner::trajectory::{AngleSample, Method, Trajectory};
+use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
+
+use super::workload::{Random, workload};
+
+/// The study.
+pub(super) struct Trajectories;
+
+const RATES_HZ: [(f64, &str); 3] = [
+    (50.0, "50 polls a second"),
+    (200.0, "200 polls a second"),
+    (1000.0, "1000 polls a second"),
+];
+/// The paper's fast scan with the drive's factory ramps.
+const SWEEP: pattern::Sweep = pattern::Sweep {
+    way_deg: 45.0,
+    speed_deg_s: 56.25,
+    accel_deg_s2: 500.0,
+};
+/// An encoder of 500 lines behind 120:1.
+const QUANTUM_DEG: f64 = 0.0015;
+const EPOCH: Stamp<Host> = Stamp::from_nanos(1_700_002_800_000_000_000);
+/// Rest before the sweep and after it, seconds.
+const BEFORE_S: f64 = 0.2;
+const AFTER_S: f64 = 0.4;
+/// How long after the commanded end a servo may take.
+const SETTLING_S: f64 = 0.1;
+/// A block of a VLP-16.
+const BLOCK_S: f64 = 110.592e-6;
+/// Steps in which the servo is worked out.
+const STEP_S: f64 = 10e-6;
+/// Natural frequency (Hz) and damping of the servo.
+const SERVO: (f64, f64) = (15.0, 0.8);
+/// No stamp is farther off than so many standard deviations.
+const MOST_SD: f64 = 4.0;
+
+/// What drive and polls are like.
+#[derive(Clone, Copy)]
+struct Circumstance {
+    key: &'static str,
+    heading: &'static str,
+    /// Standard deviation of a poll's instant, seconds.
+    jitter_s: f64,
+    /// Step of the encoder, degrees; 0 for none.
+    quantum_deg: f64,
+    /// Whether a servo follows the commanded motion, or the axis does.
+    servo: bool,
+}
+
+const CIRCUMSTANCES: [Circumstance; 4] = [
+    Circumstance {
+        key: "worst_ideal_deg",
+        heading: "worst, ideal polls, deg",
+        jitter_s: 0.0,
+        quantum_deg: 0.0,
+        servo: false,
+    },
+    Circumstance {
+        key: "worst_jitter_0_1_ms_deg",
+        heading: "worst, 0.1 ms jitter, deg",
+        jitter_s: 0.1e-3,
+        quantum_deg: QUANTUM_DEG,
+        servo: false,
+    },
+    Circumstance {
+        key: "worst_jitter_0_5_ms_deg",
+        heading: "worst, 0.5 ms jitter, deg",
+        jitter_s: 0.5e-3,
+        quantum_deg: QUANTUM_DEG,
+        servo: false,
+    },
+    Circumstance {
+        key: "worst_servo_deg",
+        heading: "worst, 0.1 ms and servo, deg",
+        jitter_s: 0.1e-3,
+        quantum_deg: QUANTUM_DEG,
+        servo: true,
+    },
+];
+/// The one that is timed.
+const USUAL: Circumstance = CIRCUMSTANCES[1];
+
+impl Study for Trajectories {
+    fn name(&self) -> &'static str {
+        "trajectory"
+    }
+
+    fn title(&self) -> &'static str {
+        "The angle between polls"
+    }
+
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+        let seeds = match bench.effort {
+            Effort::Quick => 1,
+            Effort::Full => 8,
+        };
+        let plan = bench.plan(3, 15);
+        (bench.say)(&format!("{seeds} runs of each, {} rounds", plan.rounds));
+        let shafts = [false, true].map(shaft);
+        let choices: Vec<(f64, &'static str, Method)> = RATES_HZ
+            .into_iter()
+            .flat_map(|(hz, group)| Method::ALL.map(|method| (hz, group, method)))
+            .collect();
+        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
+        let mut errors = Vec::new();
+        for &(hz, _, method) in &choices {
+            let mut worst = Vec::new();
+            for circumstance in CIRCUMSTANCES {
+                let [stiff, soft] = &shafts;
+                let shaft = if circumstance.servo { soft } else { stiff };
+                worst.push(Value::Computed(worst_deg(
+                    shaft,
+                    hz,
+                    circumstance,
+                    method,
+                    seeds,
+                )?));
+            }
+            errors.push(worst);
+            let [shaft, _] = &shafts;
+            let samples = polls(shaft, hz, USUAL, 1);
+            work.push(Box::new(move || {
+                let trajectory = through(black_box(samples.clone()), USUAL, method)?;
+                for at in blocks() {
+                    black_box(trajectory.angle(at));
+                }
+                Ok(())
+            }));
+        }
+        let times = in_rounds(bench.clock, plan, &mut work)?;
+        let rows = choices.into_iter().zip(times).zip(errors);
+        let rows = rows.map(|(((hz, group, method), time), worst)| Row {
+            name: format!("{hz} Hz, {}", method.name()),
+            label: method.name().to_owned(),
+            group,
+            values: [Value::Timed(time.times(1e3))]
+                .into_iter()
+                .chain(worst)
+                .collect(),
+        });
+        Ok(Findings {
+            name: self.name(),
+            title: self.title(),
+            about: about(seeds),
+            choice: "polls, method",
+            columns: columns(),
+            rows: rows.collect(),
+            trades: (1..=CIRCUMSTANCES.len())
+                .map(|loss| Trade {
+                    cost: 0,
+                    loss,
+                    joined: false,
+                    apart: false,
+                })
+                .collect(),
+        })
+    }
+}
+
+fn columns() -> Vec<Column> {
+    let time = ("time_ms_per_sweep", "ms a sweep");
+    let worst = CIRCUMSTANCES.map(|c| (c.key, c.heading));
+    [time]
+        .into_iter()
+        .chain(worst)
+        .map(|(key, heading)| Column {
+            key,
+            heading,
+            scale: Scale::Log,
+        })
+        .collect()
+}
+
+fn about(seeds: u64) -> Vec<String> {
+    let (hz, damping) = SERVO;
+    vec![
+        format!(
+            "A sweep of 45 degrees at 56.25 deg/s with ramps of 500 deg/s2, polled at three rates. The error is the greatest difference to the true angle at any block of \
+             the sweep, averaged over {seeds} runs; 0.01 degrees are 1.7 mm at 10 m. The time is that of a whole sweep: making the curve of the polls, and \
+             asking it for the angle at each of its blocks."
+        ),
+        format!(
+            "Ideal polls are exact; the others come in the encoder's steps of {QUANTUM_DEG} degrees, at instants known to 0.1 or 0.5 ms (one standard deviation). \
+             The axis follows the commanded motion, in the last column behind a servo of second order, {hz} Hz, damping {damping}."
+        ),
+    ]
+}
+
+/// The true angle, degrees, every [`STEP_S`].
+fn shaft(servo: bool) -> Vec<f64> {
+    let (hz, damping) = SERVO;
+    let pace = hz * std::f64::consts::TAU;
+    let end_s = BEFORE_S + SWEEP.duration_s() + AFTER_S;
+    let (mut at, mut rate) = (0.0, 0.0);
+    let steps = 0..(end_s / STEP_S).ceil() as u32;
+    steps
+        .map(|k| {
+            let asked = SWEEP.angle_deg(f64::from(k) * STEP_S - BEFORE_S);
+            if servo {
+                rate += (pace * pace * (asked - at) - 2.0 * damping * pace * rate) * STEP_S;
+                at += rate * STEP_S;
+            } else {
+                at = asked;
+            }
+            at
+        })
+        .collect()
+}
+
+/// The true angle at an instant: on a line between steps.
+fn truth_deg(shaft: &[f64], t_s: f64) -> f64 {
+    let place = (t_s / STEP_S).max(0.0);
+    let before = place as usize;
+    let at = |i: usize| shaft.get(i).or(shaft.last()).copied().unwrap_or(0.0);
+    at(before) + (at(before + 1) - at(before)) * (place - before as f64)
+}
+
+fn polls(shaft: &[f64], hz: f64, circumstance: Circumstance, seed: u64) -> Vec<AngleSample> {
+    let Circumstance {
+        jitter_s,
+        quantum_deg,
+        ..
+    } = circumstance;
+    let mut noise = Random(seed);
+    let end_s = BEFORE_S + SWEEP.duration_s() + AFTER_S - 0.01;
+    // No poll falls on a corner of the motion.
+    let begin_s = 0.01 + noise.even() / hz;
+    (0..)
+        .map(|i| begin_s + f64::from(i) / hz)
+        .take_while(|t_s| *t_s < end_s)
+        .map(|t_s| {
+            let truth = truth_deg(shaft, t_s);
+            let angle = match quantum_deg {
+                0.0 => truth,
+                quantum => (truth / quantum).floor() * quantum,
+            };
+            let off_s = jitter_s * noise.normal().clamp(-MOST_SD, MOST_SD);
+            AngleSample {
+                host: after(t_s + off_s),
+                bound: Span::from_secs_f64(MOST_SD * jitter_s),
+                angle: Degrees(angle),
+            }
+        })
+        .collect()
+}
+
+fn after(t_s: f64) -> Stamp<Host> {
+    EPOCH.saturating_add(Span::from_secs_f64(t_s))
+}
+
+fn through(
+    samples: Vec<AngleSample>,
+    circumstance: Circumstance,
+    method: Method,
+) -> Result<Trajectory, StudyError> {
+    let sweep = Sweep {
+        from: Degrees(0.0),
+        to: Degrees(-SWEEP.way_deg),
+        cruise: DegPerS(-SWEEP.speed_deg_s),
+        start: after(BEFORE_S),
+        end: after(BEFORE_S + SWEEP.duration_s() + SETTLING_S),
+        commanded: Commanded {
+            speed: DegPerS(SWEEP.speed_deg_s),
+            acceleration: DegPerS2(SWEEP.accel_deg_s2),
+            deceleration: DegPerS2(SWEEP.accel_deg_s2),
+        },
+    };
+    let quantum = Degrees(circumstance.quantum_deg);
+    Trajectory::through(samples, quantum, &[sweep], Some(method))
+        .ok_or_else(|| workload("polls that make no trajectory"))
+}
+
+/// The blocks' instants from the sweep's begin until it has settled.
+fn blocks() -> impl Iterator<Item = Moment> {
+    block_times_s().map(|t_s| Moment {
+        host: after(t_s),
+        rest_ns: 0.0,
+    })
+}
+
+fn block_times_s() -> impl Iterator<Item = f64> {
+    let end_s = BEFORE_S + SWEEP.duration_s() + SETTLING_S;
+    let times = (0..).map(|k| BEFORE_S + f64::from(k) * BLOCK_S);
+    times.take_while(move |t_s| *t_s < end_s)
+}
+
+fn worst_deg(
+    shaft: &[f64],
+    hz: f64,
+    circumstance: Circumstance,
+    method: Method,
+    seeds: u64,
+) -> Result<f64, StudyError> {
+    let mut sum = 0.0;
+    for seed in 1..=seeds {
+        let samples = polls(shaft, hz, circumstance, seed);
+        let trajectory = through(samples, circumstance, method)?;
+        let errors = blocks().zip(block_times_s()).map(|(at, t_s)| {
+            let angle = trajectory.angle(at).map_or(f64::INFINITY, |angle| angle.0);
+            (angle - truth_deg(shaft, t_s)).abs()
+        });
+        sum += errors.fold(0.0, f64::max);
+    }
+    Ok(sum / seeds as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Worst errors of such a sweep as computed by another program (numpy), degrees; its polls had other phases, which
+    /// ramps show, and another seed.
+    #[test]
+    fn errors_are_those_of_an_independent_computation() {
+        let stiff = shaft(false);
+        let [ideal, tenth, half, _] = CIRCUMSTANCES;
+        for (hz, circumstance, method, expected_deg) in [
+            (50.0, ideal, Method::Nearest, 0.56),
+            (50.0, ideal, Method::Linear, 0.025),
+            (200.0, ideal, Method::Nearest, 0.14),
+            (200.0, ideal, Method::Linear, 0.0016),
+            (1000.0, ideal, Method::Nearest, 0.028),
+            (1000.0, ideal, Method::Linear, 6.3e-5),
+            (200.0, tenth, Method::Linear, 0.017),
+            (200.0, half, Method::Linear, 0.085),
+            (200.0, tenth, Method::Profile, 0.0016),
+            (200.0, half, Method::Profile, 0.0076),
+        ] {
+            let got_deg = worst_deg(&stiff, hz, circumstance, method, 3).unwrap();
+            let said = format!("{hz} Hz, {}, {}", method.name(), circumstance.heading);
+            let ratio = got_deg / expected_deg;
+            assert!(
+                (0.4..1.5).contains(&ratio),
+                "{said}: {got_deg} {expected_deg}"
+            );
+        }
+        let exact = worst_deg(&stiff, 200.0, ideal, Method::Profile, 1).unwrap();
+        assert!(exact < 1e-6, "{exact}");
+    }
+
+    #[test]
+    fn a_servo_lags_and_arrives() {
+        let (stiff, soft) = (shaft(false), shaft(true));
+        let (hz, damping) = SERVO;
+        // 2 damping / w behind in the cruise: 56.25 x 2 x 0.8 / 94.2 = 0.955 degrees.
+        let lag = truth_deg(&soft, 0.7) - truth_deg(&stiff, 0.7);
+        let expected = 56.25 * 2.0 * damping / (hz * std::f64::consts::TAU);
+        assert!((lag - expected).abs() < 0.01, "{lag} {expected}");
+        assert!((soft.last().unwrap() + 45.0).abs() < 1e-6);
+    }
+}
