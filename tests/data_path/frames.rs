@@ -18,6 +18,7 @@ fn frames(log: &Path, output: &Path, organised: bool) -> Scan {
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
         time: TimeOf::Host,
+        accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,
         interrupt: &AtomicBool::new(false),

@@ -4,6 +4,7 @@ mod frames;
 mod links;
 mod live;
 mod sensors;
+mod tolerance;
 
 use units::{DegPerS, DegPerS2, Host, Span, Stamp};
 use velomotion::session::SessionError;

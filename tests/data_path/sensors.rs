@@ -52,6 +52,7 @@ fn scan(log: &Path, sensor: Option<&str>) -> Result<Scan, Failure> {
         tilt: TiltSource::None,
         options: lidar::Options::default(),
         time: velomotion::cli::TimeOf::Host,
+        accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,
         interrupt: &AtomicBool::new(false),

@@ -3,6 +3,8 @@
 use thiserror::Error;
 use units::GearingError;
 
+use crate::tolerance::OutOfReach;
+
 /// Why a scan could not be made of its records.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ScanError {
@@ -49,6 +51,14 @@ pub enum ScanError {
         /// Row, counted from 1 over the rows with numbers.
         row: usize,
     },
+    /// Angles more accurate than any method can tell them from this recording.
+    #[error("{0}")]
+    OutOfReach(OutOfReach),
+    /// An accuracy was asked of angles that nobody says how accurate they are.
+    #[error(
+        "a tolerance was asked for, but the tilt angles are not of the log: nothing says how accurate they are"
+    )]
+    NoBound,
     /// A gearing of zeros.
     #[error("gearing: {0}")]
     Gearing(#[from] GearingError),

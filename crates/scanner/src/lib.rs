@@ -14,6 +14,7 @@ pub mod steps;
 mod stream;
 pub mod sweeps;
 pub mod tilt;
+pub mod tolerance;
 pub mod trajectory;
 mod volleys;
 
@@ -22,3 +23,4 @@ pub use error::ScanError;
 pub use live::Live;
 pub use scanner::{Alignment, Placed, Placer, Survey};
 pub use tilt::{AngleTable, TableTime, TiltSource};
+pub use tolerance::{Accuracy, Choice, OutOfReach, Tolerance};

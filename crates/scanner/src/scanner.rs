@@ -21,6 +21,7 @@ use crate::polls::angle_samples;
 use crate::steps::{ClockStep, HostLine, Seams, Timeline};
 use crate::sweeps::{MoveWatch, Sweep};
 use crate::tilt::TiltSource;
+use crate::tolerance::{Accuracy, Choice};
 use crate::trajectory::{Method, Trajectory};
 use crate::volleys::{MOST_POINTS, VolleyPlacer};
 
@@ -48,6 +49,8 @@ pub struct Alignment {
     pub steps: Vec<ClockStep>,
     /// Host time to tilt angle.
     pub trajectory: Trajectory,
+    /// Why the angles are known as they are, where an accuracy was asked for.
+    pub choice: Option<Choice>,
     /// The sweeps; empty where the platform does not tilt by the log.
     pub sweeps: Vec<Sweep>,
     /// How the lidar sits on the axis.
@@ -148,18 +151,18 @@ impl Survey {
     /// # Errors
     /// [`ScanError`] where the records hold no lidar packet, or tilt was asked of them and they hold none, or no sweep.
     pub fn solve(self, config: &ScanConfig, tilt: &TiltSource) -> Result<Alignment, ScanError> {
-        self.solve_by(config, tilt, None)
+        self.solve_to(config, tilt, Accuracy::Best)
     }
 
-    /// The same with the angles of a log by a given method.
+    /// The same with the angles of a log as accurate as is asked for.
     ///
     /// # Errors
-    /// As [`Survey::solve`].
-    pub fn solve_by(
+    /// As [`Survey::solve`]; [`ScanError::OutOfReach`] where no method is that accurate.
+    pub fn solve_to(
         mut self,
         config: &ScanConfig,
         tilt: &TiltSource,
-        method: Option<Method>,
+        accuracy: Accuracy,
     ) -> Result<Alignment, ScanError> {
         let Timeline {
             clock,
@@ -186,25 +189,41 @@ impl Survey {
             TiltSource::Log => Degrees(self.gearing.degrees_per_qc()),
             TiltSource::None | TiltSource::Table(_) => Degrees(0.0),
         };
-        let trajectory = match tilt {
-            TiltSource::None => Trajectory::fixed(Degrees(0.0)),
-            TiltSource::Table(_) => {
-                Trajectory::through(samples, quantum, &[], Some(Method::Linear))
-                    .ok_or(ScanError::NoTilt)?
-            }
-            TiltSource::Log => {
-                Trajectory::through(samples, quantum, &sweeps, method).ok_or(ScanError::NoTilt)?
-            }
-        };
         let spans = match tilt {
             TiltSource::None | TiltSource::Table(_) => vec![ALWAYS],
-            TiltSource::Log if sweeps.is_empty() => return Err(ScanError::NoSweep),
             TiltSource::Log => sweeps.iter().map(|s| (s.start, s.end)).collect(),
         };
+        let through = |sweeps: &[Sweep], method| {
+            let samples = samples.clone();
+            Trajectory::through(samples, quantum, sweeps, method)
+        };
+        let mut choice = None;
+        let trajectory = match (tilt, accuracy) {
+            (TiltSource::None | TiltSource::Table(_), Accuracy::Within(_)) => {
+                return Err(ScanError::NoBound);
+            }
+            (TiltSource::None, _) => Some(Trajectory::fixed(Degrees(0.0))),
+            (TiltSource::Table(_), _) => through(&[], Some(Method::Linear)),
+            (TiltSource::Log, _) if !samples.is_empty() && sweeps.is_empty() => {
+                return Err(ScanError::NoSweep);
+            }
+            (TiltSource::Log, Accuracy::Best) => through(&sweeps, None),
+            (TiltSource::Log, Accuracy::By(method)) => through(&sweeps, Some(method)),
+            (TiltSource::Log, Accuracy::Within(tolerance)) => {
+                let by = |method| through(&sweeps, Some(method));
+                let chosen = tolerance.choose(clock.bound(), &spans, by);
+                let (trajectory, why) =
+                    chosen.map_err(|best| best.map_or(ScanError::NoTilt, ScanError::OutOfReach))?;
+                choice = Some(why);
+                Some(trajectory)
+            }
+        }
+        .ok_or(ScanError::NoTilt)?;
         Ok(Alignment {
             clock,
             steps,
             trajectory,
+            choice,
             sweeps,
             mount: match tilt {
                 // The sensor's own frame: nothing of the platform in it.
@@ -277,6 +296,7 @@ impl Alignment {
             clock: LidarClock::through(Stamp::from_nanos(0), epoch),
             steps: Vec::new(),
             trajectory,
+            choice: None,
             sweeps: Vec::new(),
             mount,
             implausible: 0,
@@ -301,6 +321,7 @@ impl Alignment {
             clock,
             steps: Vec::new(),
             trajectory,
+            choice: None,
             sweeps: Vec::new(),
             mount,
             implausible: 0,

@@ -5,7 +5,7 @@
 //! the samples (`profile`, `profile_fit`) or a spline through them (`spline`), whichever is truer (`choose`). All end as
 //! piecewise cubics (`pieces`), followed by one cursor. It never extrapolates: outside its samples there is no angle.
 
-use units::{Degrees, Host, Span, Stamp};
+use units::{DegPerS, Degrees, Host, Span, Stamp};
 
 use crate::clock::Moment;
 use crate::sweeps::Sweep;
@@ -329,10 +329,45 @@ impl Trajectory {
             let fit = self.fits.get(i).filter(|fit| fit.method.is_fit());
             match (fit, &self.shape) {
                 (Some(fit), Shape::Pieces(pieces)) => fit_bound(pieces, *span, fit),
-                _ => joined_bound(within(&self.samples, *span)),
+                _ => {
+                    let inside = within(&self.samples, *span);
+                    let jump = match self.method {
+                        Method::Nearest => widest_step(inside) / 2.0,
+                        _ => 0.0,
+                    };
+                    joined_bound(inside) + jump
+                }
             }
         };
         spans.iter().enumerate().map(over).fold(0.0, f64::max)
+    }
+
+    /// How much of [`Trajectory::bound_deg`] is a delay that all samples of a sweep may share, degrees.
+    #[must_use]
+    pub fn delay_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> f64 {
+        let fastest = self.fastest(spans).0.abs();
+        let shared = self.fits.iter().map(SweepFit::shared_s);
+        shared.fold(0.0, f64::max) * fastest
+    }
+
+    /// The greatest speed within `spans`, signed as the motion; zero without samples.
+    #[must_use]
+    pub fn fastest(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> DegPerS {
+        let inside = spans.iter().map(|span| within(&self.samples, *span));
+        // Over some samples, as between neighbours a stamp's jitter is a speed.
+        let speeds = inside.flat_map(|samples| {
+            samples.windows(8).filter_map(|window| {
+                let (a, b) = (window.first()?, window.last()?);
+                Some((b.angle.0 - a.angle.0) / noise::seconds(a, b))
+            })
+        });
+        DegPerS(speeds.fold(0.0, |most: f64, speed| {
+            if speed.abs() > most.abs() {
+                speed
+            } else {
+                most
+            }
+        }))
     }
 }
 
@@ -351,6 +386,15 @@ fn fit_bound(pieces: &Pieces, (from, to): (Stamp<Host>, Stamp<Host>), fit: &Swee
     inside
         .map(|piece| SURE * piece.sd_deg + shared * piece.rate(0.0).abs() * 1e9)
         .fold(0.0, f64::max)
+}
+
+/// The greatest step from one sample to the next, degrees.
+fn widest_step(samples: &[AngleSample]) -> f64 {
+    let steps = samples.windows(2).map(|pair| match pair {
+        [a, b] => (b.angle.0 - a.angle.0).abs(),
+        _ => 0.0,
+    });
+    steps.fold(0.0, f64::max)
 }
 
 fn joined_bound(samples: &[AngleSample]) -> f64 {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use protocol::vlp16::{Model, models};
+use scanner::Tolerance;
 
 use crate::recordings::SensorName;
 
@@ -82,6 +83,9 @@ pub struct Capture {
     /// Raw log to keep [default: named after the cloud]
     #[arg(long, value_name = "LOG.pcapng")]
     pub log: Option<PathBuf>,
+    /// How accurate it is to be
+    #[command(flatten)]
+    pub accuracy: Accuracy,
     /// Where the cloud goes
     #[command(flatten)]
     pub output: Output,
@@ -111,9 +115,29 @@ pub struct Replay {
     /// How the lidar's packets are read
     #[command(flatten)]
     pub lidar: Lidar,
+    /// How accurate it is to be
+    #[command(flatten)]
+    pub accuracy: Accuracy,
     /// Where the cloud goes
     #[command(flatten)]
     pub output: Output,
+}
+
+/// How accurate a cloud is to be.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct Accuracy {
+    /// How far off points may be at a distance, such as 2mm@20m: the cheapest way that is good enough [default: the best there is]
+    #[arg(long, value_name = "LENGTH@DISTANCE")]
+    pub tolerance: Option<Tolerance>,
+}
+
+impl Accuracy {
+    /// What it asks of the synchroniser.
+    #[must_use]
+    pub fn wanted(&self) -> scanner::Accuracy {
+        self.tolerance
+            .map_or(scanner::Accuracy::Best, scanner::Accuracy::Within)
+    }
 }
 
 /// How a lidar's packets are read.

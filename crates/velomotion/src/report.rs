@@ -2,6 +2,7 @@
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
+use scanner::Choice;
 use scanner::steps::{ClockStep, SetClock};
 use serde::Serialize;
 
@@ -169,6 +170,49 @@ impl StepReport {
     }
 }
 
+/// Why a method was taken.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ToleranceReport {
+    /// How far off points may be.
+    pub asked_m: f64,
+    /// At this distance.
+    pub at_m: f64,
+    /// How far off they may be by the method taken.
+    pub bound_m: f64,
+    /// Each method that was tried, the cheapest first.
+    pub tried: Vec<TriedMethod>,
+    /// The same in words.
+    #[serde(skip)]
+    pub why: String,
+}
+
+/// A method and how far off it may be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TriedMethod {
+    /// Its name.
+    pub method: &'static str,
+    /// How far off points may be by it at the distance asked for.
+    pub bound_m: f64,
+}
+
+impl ToleranceReport {
+    /// The report on a choice.
+    #[must_use]
+    pub fn new(choice: &Choice) -> Self {
+        let tried = choice.bounds.iter().map(|(method, bound)| TriedMethod {
+            method: method.name(),
+            bound_m: bound.0,
+        });
+        Self {
+            asked_m: choice.tolerance.off.0,
+            at_m: choice.tolerance.at.0,
+            bound_m: choice.bounds.last().map_or(f64::NAN, |(_, bound)| bound.0),
+            tried: tried.collect(),
+            why: choice.to_string(),
+        }
+    }
+}
+
 /// How the clocks and the angle were joined.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sync {
@@ -184,6 +228,9 @@ pub struct Sync {
     pub steps: Vec<StepReport>,
     /// Method of the trajectory.
     pub angle_method: &'static str,
+    /// Why it was taken, where an accuracy was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<ToleranceReport>,
     /// RMS of angle samples against their neighbours.
     pub angle_rms_deg: Option<f64>,
     /// How far off an angle may be at worst.
@@ -333,6 +380,11 @@ impl Scan {
             format!(", samples agree to {rms:.4} deg RMS")
         });
         rows.push(("angle", format!("{}{rms}", sync.angle_method)));
+        if let Some(tolerance) = &sync.tolerance {
+            for (line, why) in tolerance.why.split("; ").enumerate() {
+                rows.push((if line == 0 { "tolerance" } else { "" }, why.to_owned()));
+            }
+        }
         rows.push((
             "points",
             format!("{} ({} returns left out)", self.points, self.left_out),

@@ -34,6 +34,14 @@ pub struct SweepFit {
     pub remarks: Vec<Remark>,
 }
 
+impl SweepFit {
+    /// The longest delay that all samples may share either way, seconds.
+    pub(super) fn shared_s(&self) -> f64 {
+        let (early, late) = self.delay;
+        early.as_secs_f64().abs().max(late.as_secs_f64().abs())
+    }
+}
+
 /// Samples of rest that a fit gets on either side of the sweep.
 const BESIDE: Span = Span::from_millis(60);
 /// So many residuals in a row are taken together.

@@ -79,6 +79,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
         time: TimeOf::Host,
+        accuracy: arguments.accuracy.wanted(),
         pace: None,
         truth: truth.as_ref(),
         interrupt: &interrupt,

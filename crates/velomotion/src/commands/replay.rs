@@ -9,7 +9,8 @@ use io::recording::{Gap, Pacer, Turn};
 use lidar::{Options, Stats, UtcClock};
 use protocol::record::{DriveLink, Record};
 use scanner::{
-    Alignment, AngleTable, Placed, Placer, ScanConfig, ScanError, Survey, TableTime, TiltSource,
+    Accuracy, Alignment, AngleTable, OutOfReach, Placed, Placer, ScanConfig, ScanError, Survey,
+    TableTime, TiltSource,
 };
 use sim::Truth;
 use units::{Degrees, Span};
@@ -23,7 +24,7 @@ use crate::names;
 use crate::output::{self, Target, sink_failure};
 use crate::progress::Progress;
 use crate::recordings::{Pass, Source};
-use crate::report::{self, Scan, StepReport, Sync};
+use crate::report::{self, Scan, StepReport, Sync, ToleranceReport};
 use crate::sensing;
 use crate::signals;
 use crate::utc::{InUtc, UtcSurvey};
@@ -38,6 +39,8 @@ pub struct Request<'a> {
     pub options: Options,
     /// Whose clock the points' times are of.
     pub time: TimeOf,
+    /// How accurate angles are to be.
+    pub accuracy: Accuracy,
     /// How many times as fast as they were recorded points are handed on; `None`: as fast as they are made.
     pub pace: Option<f64>,
     /// What truly happened, where a simulator knows.
@@ -59,6 +62,7 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
         tilt: tilt_source(&arguments.tilt)?,
         options: sensing::options(&arguments.lidar, &source)?,
         time: arguments.time,
+        accuracy: arguments.accuracy.wanted(),
         pace: arguments.realtime,
         truth: None,
         interrupt: &interrupt,
@@ -154,7 +158,9 @@ fn survey(request: &Request<'_>) -> Result<Surveyed, Failure> {
         go_on(request)
     })?;
     let drive = survey.drive();
-    let alignment = survey.solve(&config, &request.tilt).map_err(cannot_scan)?;
+    let alignment = survey
+        .solve_to(&config, &request.tilt, request.accuracy)
+        .map_err(cannot_scan)?;
     Ok(Surveyed {
         config,
         drive,
@@ -367,6 +373,10 @@ fn doubts(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
             alignment.implausible
         ));
     }
+    for (number, fit) in alignment.trajectory.fits().iter().enumerate() {
+        let remarks = fit.remarks.iter();
+        doubts.extend(remarks.map(|remark| format!("sweep {}: {remark}", number + 1)));
+    }
     let Some(plan) = config.sweep.filter(|_| !alignment.sweeps.is_empty()) else {
         return doubts;
     };
@@ -396,6 +406,7 @@ fn sync(alignment: &Alignment) -> Sync {
         clock_drift_ppm: alignment.clock.drift_ppm(),
         steps: alignment.steps.iter().map(StepReport::new).collect(),
         angle_method: alignment.trajectory.method().name(),
+        tolerance: alignment.choice.as_ref().map(ToleranceReport::new),
         angle_rms_deg: alignment.angle_rms_deg(),
         angle_bound_deg: alignment.angle_bound_deg(),
     }
@@ -473,6 +484,9 @@ fn parse_row(line: &str) -> Option<(f64, f64)> {
 }
 
 pub(super) fn scan_failure(path: &Path, error: &ScanError) -> Failure {
+    if let ScanError::OutOfReach(out) = error {
+        return out_of_reach(path, out);
+    }
     let help = match error {
         ScanError::NoLidarPackets => {
             "give a recording of the lidar's UDP traffic (ports 2368 and 8308); info says what this file holds"
@@ -489,7 +503,30 @@ pub(super) fn scan_failure(path: &Path, error: &ScanError) -> Failure {
         | ScanError::TableOrder { .. } => {
             "give times as Unix seconds like the recording's, or as seconds since its first packet"
         }
+        ScanError::NoBound => "leave --tolerance out, or use the angles of the log",
+        ScanError::OutOfReach(_) => "ask for less",
         ScanError::Gearing(_) => "correct encoder_lines and gear in the configuration",
     };
     Failure::new(Kind::BadInput, format!("{}: {error}", path.display())).help(help)
+}
+
+/// No cloud is as accurate as was asked for: what would be.
+fn out_of_reach(path: &Path, out: &OutOfReach) -> Failure {
+    let mut would = Vec::new();
+    if let Some(speed) = out.speed_that_would_do() {
+        would.push(format!("sweeps at {:.2} deg/s or slower", speed.0));
+    }
+    if out.delay_share > 0.5 {
+        would
+            .push("a link to the drive with shorter round trips (CAN, where it is not)".to_owned());
+    }
+    let coarser = (out.bound.0 * 1.1e3).ceil();
+    would.push(format!(
+        "of this recording --tolerance {coarser}mm@{}m",
+        out.tolerance.at.0
+    ));
+    Failure::new(Kind::Incomplete, format!("{}: {out}", path.display())).help(format!(
+        "no cloud was made; the recording is as it was. What would do: {}",
+        would.join("; ")
+    ))
 }

@@ -1,0 +1,222 @@
+//! An accuracy that is asked for instead of a method: `2mm@20m`.
+//!
+//! Every way to know the angle has a bound, and a cost. The cheapest whose bound is good enough at the distance named is taken; where none
+//! is, it is said how far the best one comes, and nothing is made. What the bound holds is [`crate::trajectory::Trajectory::bound_deg`] and
+//! the lidar's clock at the fastest motion. Left out: the lidar's own ranges, which no choice here changes, and a delay that all packets of
+//! the lidar share, which timing cannot see.
+
+use core::fmt;
+use core::str::FromStr;
+
+use thiserror::Error;
+use units::{DegPerS, Degrees, Metres, Span};
+
+use crate::trajectory::{Method, Trajectory};
+
+/// Points at a distance may be off by so much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// By how much, across the line of sight.
+    pub off: Metres,
+    /// At what distance from the tilt axis.
+    pub at: Metres,
+}
+
+/// How accurate angles are to be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Accuracy {
+    /// As accurate as the recording allows.
+    #[default]
+    Best,
+    /// By a given method, whatever comes of it.
+    By(Method),
+    /// By the cheapest method that is good enough.
+    Within(Tolerance),
+}
+
+/// Why a method was taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// What was asked for.
+    pub tolerance: Tolerance,
+    /// Bounds at the distance asked for, the cheapest method first; the last one is the one taken.
+    pub bounds: Vec<(Method, Metres)>,
+}
+
+/// Why no method would do.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error(
+    "no method is within {tolerance}: the best, {}, is within {:.1} mm there ({:.4} deg at {:.2} deg/s)",
+    .best.name(), .bound.0 * 1e3, .bound_angle.0, .fastest.0.abs()
+)]
+pub struct OutOfReach {
+    /// What was asked for.
+    pub tolerance: Tolerance,
+    /// The best method.
+    pub best: Method,
+    /// How far off its points may be at that distance.
+    pub bound: Metres,
+    /// The same as an angle.
+    pub bound_angle: Degrees,
+    /// How much of the bound a delay common to all samples has.
+    pub delay_share: f64,
+    /// The greatest speed of the sweeps.
+    pub fastest: DegPerS,
+}
+
+impl OutOfReach {
+    /// The speed at which the best method would do, where a slower sweep helps: all of its bound but the encoder's count shrinks
+    /// with the speed.
+    #[must_use]
+    pub fn speed_that_would_do(&self) -> Option<DegPerS> {
+        /// Below it a motor does not turn evenly.
+        const SLOWEST_DEG_S: f64 = 0.05;
+        // A tenth less, as the next scan is not this one.
+        let speed = 0.9 * self.fastest.0.abs() * self.tolerance.angle().0 / self.bound_angle.0;
+        (speed >= SLOWEST_DEG_S).then_some(DegPerS(speed))
+    }
+}
+
+impl Tolerance {
+    /// The angle that it is.
+    #[must_use]
+    pub fn angle(&self) -> Degrees {
+        Degrees((self.off.0 / self.at.0).to_degrees())
+    }
+
+    /// How far off a point is by an angle at this distance.
+    fn off_by(&self, angle_deg: f64) -> Metres {
+        Metres(angle_deg.to_radians() * self.at.0)
+    }
+
+    /// The cheapest method of `through` that does, with why; `clock` is how far off the lidar's clock may be.
+    pub(crate) fn choose(
+        &self,
+        clock: Span,
+        spans: &[(units::Stamp<units::Host>, units::Stamp<units::Host>)],
+        through: impl Fn(Method) -> Option<Trajectory>,
+    ) -> Result<(Trajectory, Choice), Option<OutOfReach>> {
+        let mut bounds = Vec::new();
+        let mut best: Option<OutOfReach> = None;
+        for method in Method::ALL {
+            let Some(trajectory) = through(method) else {
+                continue;
+            };
+            let fastest = trajectory.fastest(spans);
+            let bound_deg = trajectory.bound_deg(spans) + fastest.0.abs() * clock.as_secs_f64();
+            let bound = self.off_by(bound_deg);
+            bounds.push((method, bound));
+            if bound.0 <= self.off.0 {
+                let choice = Choice {
+                    tolerance: *self,
+                    bounds,
+                };
+                return Ok((trajectory, choice));
+            }
+            if best.as_ref().is_none_or(|best| bound.0 < best.bound.0) {
+                best = Some(OutOfReach {
+                    tolerance: *self,
+                    best: method,
+                    bound,
+                    bound_angle: Degrees(bound_deg),
+                    delay_share: trajectory.delay_deg(spans) / bound_deg,
+                    fastest,
+                });
+            }
+        }
+        Err(best)
+    }
+}
+
+impl fmt::Display for Tolerance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} mm at {} m", self.off.0 * 1e3, self.at.0)
+    }
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(((method, bound), cheaper)) = self.bounds.split_last() else {
+            return Ok(());
+        };
+        write!(
+            f,
+            "{}: within {:.2} mm at {} m, {:.2} mm asked for",
+            method.name(),
+            bound.0 * 1e3,
+            self.tolerance.at.0,
+            self.tolerance.off.0 * 1e3
+        )?;
+        match cheaper.last() {
+            Some((method, bound)) => write!(
+                f,
+                "; {}, which is cheaper, only within {:.2} mm",
+                method.name(),
+                bound.0 * 1e3
+            ),
+            None => f.write_str("; nothing is cheaper"),
+        }
+    }
+}
+
+/// What a tolerance cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("expected a length at a distance, such as 2mm@20m (mm, cm or m)")]
+pub struct NotATolerance;
+
+impl FromStr for Tolerance {
+    type Err = NotATolerance;
+
+    fn from_str(text: &str) -> Result<Self, NotATolerance> {
+        let (off, at) = text.split_once('@').ok_or(NotATolerance)?;
+        Ok(Self {
+            off: length(off)?,
+            at: length(at)?,
+        })
+    }
+}
+
+/// A positive length with its unit.
+fn length(text: &str) -> Result<Metres, NotATolerance> {
+    let text = text.trim();
+    let units = [("mm", 1e-3), ("cm", 1e-2), ("m", 1.0)];
+    let (number, unit) = units
+        .iter()
+        .find_map(|(name, metres)| Some((text.strip_suffix(name)?, metres)))
+        .ok_or(NotATolerance)?;
+    let number: f64 = number.trim().parse().map_err(|_| NotATolerance)?;
+    let metres = number * unit;
+    (metres > 0.0 && metres.is_finite())
+        .then_some(Metres(metres))
+        .ok_or(NotATolerance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_at_distances_are_tolerances() {
+        let two: Tolerance = "2mm@20m".parse().unwrap();
+        assert_eq!(two.to_string(), "2 mm at 20 m");
+        assert!((two.angle().0 - 0.0057296).abs() < 1e-6);
+        let odd: Tolerance = "0.5 cm @ 1500mm".parse().unwrap();
+        assert!((odd.off.0 - 0.005).abs() < 1e-15 && (odd.at.0 - 1.5).abs() < 1e-15);
+        for wrong in [
+            "",
+            "2mm",
+            "2@20m",
+            "@",
+            "2mm@",
+            "-2mm@20m",
+            "0mm@1m",
+            "1mm@0m",
+            "nanmm@1m",
+            "infm@1m",
+            "2km@1m",
+            "2mm@20m@3",
+        ] {
+            assert_eq!(wrong.parse::<Tolerance>(), Err(NotATolerance), "{wrong}");
+        }
+    }
+}
