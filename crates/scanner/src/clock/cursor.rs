@@ -71,9 +71,9 @@ impl<'a, C> ClockCursor<'a, C> {
     #[inline(always)]
     pub fn tangent(&mut self, device: Stamp<C>, length: Span) -> Option<Tangent> {
         let x = self.clock.since_origin(device);
-        let segment = match self.segment {
+        let segment = match &self.segment {
             Some(segment) if segment.from_ns <= x && x < segment.to_ns => segment,
-            _ => *self.segment.insert(self.clock.segment(device, self.near)),
+            _ => self.segment.insert(self.clock.segment(device, self.near)),
         };
         let length_ns = length.as_nanos() as f64;
         (x + length_ns < segment.to_ns && segment.bend_ns(length_ns) < MOST_BEND_NS).then(|| {
@@ -134,6 +134,7 @@ impl Segment {
         }
     }
 
+    #[inline(always)]
     fn offset_at(&self, x: f64) -> f64 {
         match self.second {
             Some(after) => {
@@ -145,6 +146,7 @@ impl Segment {
     }
 
     /// The derivative of [`Segment::offset_at`].
+    #[inline(always)]
     fn slope_at(&self, x: f64) -> f64 {
         match self.second {
             Some(after) => {
@@ -158,6 +160,7 @@ impl Segment {
     }
 
     /// How far the blend is from its tangent after `length_ns`: half of the second derivative times the length squared.
+    #[inline(always)]
     fn bend_ns(&self, length_ns: f64) -> f64 {
         self.second.map_or(0.0, |after| {
             let bend = (after.slope - self.first.slope) / (self.blend_ns.1 - self.blend_ns.0);
@@ -165,6 +168,7 @@ impl Segment {
         })
     }
 
+    #[inline(always)]
     fn weight(&self, x: f64) -> f64 {
         (x - self.blend_ns.0) / (self.blend_ns.1 - self.blend_ns.0)
     }
@@ -174,6 +178,7 @@ impl Segment {
 const NO_FRACTION: f64 = 6_755_399_441_055_744.0;
 
 /// To the nearest whole number, and to the even one from halfway.
+#[inline(always)]
 fn round(x: f64) -> i64 {
     // f64::round is a call on most processors.
     if x.abs() < NO_FRACTION / 4.0 {

@@ -234,6 +234,7 @@ impl<C> DeviceClock<C> {
         self.pieces.len() > 1
     }
 
+    #[inline(always)]
     pub(super) fn since_origin(&self, device: Stamp<C>) -> f64 {
         device.as_nanos().saturating_sub(self.origin_ns) as f64
     }
@@ -259,6 +260,7 @@ impl<C> DeviceClock<C> {
     }
 
     /// The stretch that `device` falls into: between two lines' centres, or beyond all of them.
+    #[inline(never)]
     pub(super) fn segment(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Segment {
         let Some(piece) = self.piece(device, near) else {
             return Segment::NONE;
@@ -354,6 +356,7 @@ impl Line {
         slope: 0.0,
     };
 
+    #[inline(always)]
     pub fn at(self, x: f64) -> f64 {
         self.offset_ns + self.slope * (x - self.centre_ns)
     }
