@@ -44,6 +44,9 @@ const SERVO: (f64, f64) = (15.0, 0.8);
 /// No stamp is farther off than so many standard deviations.
 const MOST_SD: f64 = 4.0;
 
+/// How near stamps of two polls come, in parts of the time between polls.
+const NEAREST: f64 = 0.1;
+
 /// What drive and polls are like.
 #[derive(Clone, Copy)]
 struct Circumstance {
@@ -235,6 +238,7 @@ fn polls(shaft: &[f64], hz: f64, circumstance: Circumstance, seed: u64) -> Vec<A
     let end_s = BEFORE_S + SWEEP.duration_s() + AFTER_S - 0.01;
     // No poll falls on a corner of the motion.
     let begin_s = 0.01 + noise.even() / hz;
+    let mut last_s = 0.0_f64;
     (0..)
         .map(|i| begin_s + f64::from(i) / hz)
         .take_while(|t_s| *t_s < end_s)
@@ -245,8 +249,10 @@ fn polls(shaft: &[f64], hz: f64, circumstance: Circumstance, seed: u64) -> Vec<A
                 quantum => (truth / quantum).floor() * quantum,
             };
             let off_s = jitter_s * noise.normal().clamp(-MOST_SD, MOST_SD);
+            // A poll ends before the next begins, however late it is seen.
+            last_s = (t_s + off_s).max(last_s + NEAREST / hz);
             AngleSample {
-                host: after(t_s + off_s),
+                host: after(last_s),
                 bound: Span::from_secs_f64(MOST_SD * jitter_s),
                 angle: Degrees(angle),
             }
