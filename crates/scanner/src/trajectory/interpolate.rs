@@ -70,7 +70,7 @@ impl Growing {
     }
 }
 
-/// A cubic between neighbours whose speed at each sample is that of the parabola through it and its neighbours. Samples are in
+/// A cubic between neighbours whose speed at each sample is that of the parabola through it and its neighbours, and which never goes beyond them. Samples are in
 /// strictly increasing time.
 pub(super) fn hermite(samples: &[AngleSample], noise: &Noise) -> Option<Pieces> {
     let rates = rates(samples);
@@ -136,7 +136,17 @@ fn parabolas(samples: &[AngleSample]) -> Vec<f64> {
     };
     (0..samples.len())
         .map(|i| match (i.checked_sub(1).and_then(slope), slope(i)) {
-            (Some((before, h0)), Some((after, h1))) => (before * h1 + after * h0) / (h0 + h1),
+            (Some((before, h0)), Some((after, h1))) => {
+                // Of stamps that lie close together the parabola is wild: held to where the cubic does not leave the range of its
+                // ends (Fritsch and Carlson 1980).
+                let most = 3.0 * f64::min(before.abs(), after.abs());
+                let speed = (before * h1 + after * h0) / (h0 + h1);
+                if before * after > 0.0 {
+                    speed.clamp(-most, most)
+                } else {
+                    0.0
+                }
+            }
             (Some((only, _)), None) | (None, Some((only, _))) => only,
             (None, None) => 0.0,
         })

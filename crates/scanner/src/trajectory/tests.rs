@@ -92,3 +92,25 @@ fn leaving_one_out_sees_noise_but_not_uniform_motion() {
     let rms = joined(noisy, Method::Linear).unwrap().rms_deg(&all);
     assert!((rms.unwrap() - 0.2).abs() < 1e-9);
 }
+
+/// Jitter may bring two stamps together; the speed between them is then anything.
+#[test]
+fn a_cubic_stays_between_its_samples_however_close_their_stamps_are() {
+    let samples = vec![
+        at(0, 0.0),
+        at(1_000_000, 1.0),
+        at(1_000_010, 1.5),
+        at(2_000_000, 2.0),
+    ];
+    let cubic = joined(samples.clone(), Method::Hermite).unwrap();
+    for pair in samples.windows(2) {
+        let (from, to) = (pair[0].host.as_nanos(), pair[1].host.as_nanos());
+        for k in 0..=10 {
+            let angle = cubic.angle(at_once(from + (to - from) * k / 10)).unwrap().0;
+            assert!(
+                (pair[0].angle.0 - 1e-9..=pair[1].angle.0 + 1e-9).contains(&angle),
+                "{angle}"
+            );
+        }
+    }
+}
