@@ -65,9 +65,11 @@ impl Node {
         }
     }
 
-    /// 1011:1 and 1011:4: back to factory values, at once. Saved they are only by a save after it.
+    /// 1011:1 and 1011:4: back to factory values, at once and for good. CiA 301 has them valid after the next reset, which what was
+    /// saved before must then not undo; that they are valid at once is this unit's reading, as the maxon guides do not say.
     pub(super) fn restore(&mut self) {
         self.dictionary = factory(&self.config);
+        self.saved = self.dictionary.clone();
         self.mode = self.dictionary.get(objects::MODE);
         let lines = self.dictionary.get(objects::ENCODER_LINES);
         self.generator.set_qc_per_turn(lines.saturating_mul(4));

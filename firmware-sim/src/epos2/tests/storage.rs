@@ -41,15 +41,18 @@ fn only_what_was_saved_survives_power_off() {
         "was not saved"
     );
     assert_eq!(get(&node, objects::TARGET_POSITION), 0, "is no parameter");
+}
+
+#[test]
+fn what_was_loaded_is_the_factorys_at_once_and_after_power_off() {
     for sub in [1, 4] {
+        let mut node = healthy();
+        set(&mut node, objects::PROFILE_VELOCITY, 77);
+        set(&mut node, objects::STORE_ALL, objects::SAVE);
         write(&mut node, 0x1011, sub, objects::LOAD).unwrap();
         assert_eq!(get(&node, objects::PROFILE_VELOCITY), 1000);
         node.power_cycle();
-        assert_eq!(
-            get(&node, objects::PROFILE_VELOCITY),
-            77,
-            "what was loaded was not saved"
-        );
+        assert_eq!(get(&node, objects::PROFILE_VELOCITY), 1000, "CiA 301");
     }
 }
 
