@@ -3,6 +3,7 @@
 mod access;
 mod anything;
 mod blocked;
+mod description;
 mod golden;
 mod homing;
 mod limits;
