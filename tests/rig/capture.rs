@@ -407,7 +407,7 @@ impl Captured {
             truth: None,
             interrupt: &AtomicBool::new(false),
         };
-        replay::make(&request, Target::open(&path, false).unwrap()).unwrap();
+        replay::make(&request, Target::open(&path, Fields::FILE, false).unwrap()).unwrap();
         path
     }
 }

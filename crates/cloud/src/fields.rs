@@ -20,17 +20,20 @@ pub enum Column {
     Laser,
     /// Time of the firing on the lidar's own clock.
     DeviceTime,
+    /// How far the point is off, as a root mean square expected, metres.
+    Sd,
 }
 
 impl Column {
     /// Every column, in the order in which files list them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Intensity,
         Self::Ring,
         Self::Time,
         Self::Tilt,
         Self::Laser,
         Self::DeviceTime,
+        Self::Sd,
     ];
 
     /// The column's name in files and messages.
@@ -43,6 +46,7 @@ impl Column {
             Self::Tilt => "tilt",
             Self::Laser => "laser",
             Self::DeviceTime => "device_time",
+            Self::Sd => "sd",
         }
     }
 
@@ -72,10 +76,12 @@ impl Fields {
     pub const LASER: Self = Column::Laser.field();
     /// [`Column::DeviceTime`].
     pub const DEVICE_TIME: Self = Column::DeviceTime.field();
+    /// [`Column::Sd`].
+    pub const SD: Self = Column::Sd.field();
     /// What a file carries unless asked otherwise: intensity, ring, time and tilt.
     pub const FILE: Self = Self(Self::INTENSITY.0 | Self::RING.0 | Self::TIME.0 | Self::TILT.0);
     /// Every column.
-    pub const ALL: Self = Self(Self::FILE.0 | Self::LASER.0 | Self::DEVICE_TIME.0);
+    pub const ALL: Self = Self(Self::FILE.0 | Self::LASER.0 | Self::DEVICE_TIME.0 | Self::SD.0);
 
     /// Whether every column of `other` is in this set.
     #[must_use]

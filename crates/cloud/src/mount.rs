@@ -61,6 +61,19 @@ impl Mount {
     }
 }
 
+impl Mount {
+    /// How far a placed point (Eq. 4-6, metres) is from the tilt axis and from the axis that the lidar's head turns about, square metres
+    /// each: the arms by which errors of tilt and azimuth move it.
+    #[inline(always)]
+    #[must_use]
+    pub fn arms_m2(&self, placed_m: [f64; 3], tilt: Tilt) -> [f64; 2] {
+        let [x, y, z] = placed_m;
+        // Back into the lidar's frame, where its head's axis is z.
+        let across = x * tilt.cos - z * tilt.sin;
+        [x * x + z * z, across * across + y * y]
+    }
+}
+
 /// The greatest turn that [`Tilts`] follow, radians either way.
 pub const MOST_AHEAD_RAD: f64 = 2e-3;
 
@@ -214,6 +227,16 @@ mod tests {
         let right = PAPER.place([10.0, 0.0, 0.0], gamma);
         let expected = [(10.0 - 0.06) * half, 0.0, (10.0 + 0.06) * half];
         assert!(distance(right, expected) < 1e-14);
+    }
+
+    #[test]
+    fn arms_are_distances_from_both_axes() {
+        for gamma in [-45.0, 0.0, 30.0, 180.0] {
+            let tilt = Tilt::new(Degrees(gamma));
+            let [from_tilt, from_head] = PAPER.arms_m2(PAPER.place([3.0, 4.0, 12.0], tilt), tilt);
+            assert!((from_tilt - (9.0 + 12.06 * 12.06)).abs() < 1e-12);
+            assert!((from_head - 25.0).abs() < 1e-12);
+        }
     }
 
     #[test]

@@ -32,6 +32,8 @@ pub struct Point {
     pub device_time: Stamp<Lidar>,
     /// Tilt angle of the platform at the firing.
     pub tilt: Degrees,
+    /// How far the point is off, as a root mean square expected, metres.
+    pub sd_m: f64,
 }
 
 impl Default for Point {
@@ -45,6 +47,7 @@ impl Default for Point {
             time: Stamp::from_nanos(0),
             device_time: Stamp::from_nanos(0),
             tilt: Degrees(0.0),
+            sd_m: 0.0,
         }
     }
 }
@@ -65,6 +68,7 @@ pub struct Points {
     time: Vec<Stamp<Host>>,
     device_time: Vec<Stamp<Lidar>>,
     tilt_deg: Vec<f64>,
+    sd_m: Vec<f64>,
 }
 
 impl Points {
@@ -103,6 +107,7 @@ impl Points {
         self.time.reserve(room(Fields::TIME));
         self.device_time.reserve(room(Fields::DEVICE_TIME));
         self.tilt_deg.reserve(room(Fields::TILT));
+        self.sd_m.reserve(room(Fields::SD));
     }
 
     /// Forgets the points and keeps the memory.
@@ -154,6 +159,9 @@ impl Points {
         if self.fields.contains(Fields::TILT) {
             put(&mut self.tilt_deg, row, point.tilt.0);
         }
+        if self.fields.contains(Fields::SD) {
+            put(&mut self.sd_m, row, point.sd_m);
+        }
         self.len += 1;
     }
 
@@ -184,6 +192,9 @@ impl Points {
         }
         if self.fields.contains(Fields::TILT) {
             extend(&mut self.tilt_deg, row, batch.tilt_deg());
+        }
+        if self.fields.contains(Fields::SD) {
+            extend(&mut self.sd_m, row, batch.sd_m());
         }
         self.len += batch.len;
         Ok(())
@@ -243,6 +254,12 @@ impl Points {
         self.column(&self.tilt_deg)
     }
 
+    /// Root mean square distance that each point is expected to be off by, metres; empty unless asked for.
+    #[must_use]
+    pub fn sd_m(&self) -> &[f64] {
+        self.column(&self.sd_m)
+    }
+
     /// The counted rows; an unwanted column has none.
     fn column<'a, T>(&self, column: &'a [T]) -> &'a [T] {
         column.get(..self.len).unwrap_or(column)
@@ -264,6 +281,7 @@ impl Points {
             time: or(self.time(), index, none.time),
             device_time: or(self.device_time(), index, none.device_time),
             tilt: Degrees(or(self.tilt_deg(), index, none.tilt.0)),
+            sd_m: or(self.sd_m(), index, none.sd_m),
         })
     }
 
@@ -304,6 +322,7 @@ impl PartialEq for Points {
             && self.time() == other.time()
             && self.device_time() == other.device_time()
             && self.tilt_deg() == other.tilt_deg()
+            && self.sd_m() == other.sd_m()
     }
 }
 
@@ -338,10 +357,10 @@ mod tests {
             prop::array::uniform3(-120.0..120.0),
             any::<(u8, u8, u8)>(),
             any::<(i64, i64)>(),
-            -180.0..180.0,
+            (-180.0..180.0, 0.0..1.0),
         )
             .prop_map(
-                |(position_m, (intensity, ring, laser), (host, device), tilt)| Point {
+                |(position_m, (intensity, ring, laser), (host, device), (tilt, sd_m))| Point {
                     position_m,
                     intensity,
                     ring,
@@ -349,6 +368,7 @@ mod tests {
                     time: Stamp::from_nanos(host),
                     device_time: Stamp::from_nanos(device),
                     tilt: Degrees(tilt),
+                    sd_m,
                 },
             )
     }
@@ -371,6 +391,7 @@ mod tests {
             (Fields::TIME, points.time().len()),
             (Fields::DEVICE_TIME, points.device_time().len()),
             (Fields::TILT, points.tilt_deg().len()),
+            (Fields::SD, points.sd_m().len()),
         ]
     }
 
@@ -408,6 +429,11 @@ mod tests {
                 point.tilt
             } else {
                 none.tilt
+            },
+            sd_m: if fields.contains(Fields::SD) {
+                point.sd_m
+            } else {
+                none.sd_m
             },
         }
     }
@@ -472,6 +498,7 @@ mod tests {
         let points = Points::with_capacity(Fields::NONE, 1000);
         assert_eq!(points.time.capacity(), 0);
         assert_eq!(points.tilt_deg.capacity(), 0);
+        assert_eq!(points.sd_m.capacity(), 0);
         assert!(points.x_m.capacity() >= 1000);
     }
 

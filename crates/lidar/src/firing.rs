@@ -55,6 +55,8 @@ pub struct SensorPoint {
     pub position_m: [f64; 3],
     /// Measured distance in metres, uncorrected.
     pub range_m: f64,
+    /// Variance of its azimuth, square radians: what the wire's steps of it leave after interpolation ([`crate::azimuth_variance_rad2`]).
+    pub azimuth_variance_rad2: f64,
     /// Place in the firing order, from 0.
     pub laser: u8,
     /// Place by elevation, 0 the lowest.
@@ -63,6 +65,17 @@ pub struct SensorPoint {
     pub reflectivity: u8,
     /// Which return of its pulse it is.
     pub echo: Echo,
+}
+
+/// Variance of an azimuth, square radians, that is carried on over `part` of a block's period.
+///
+/// The wire has the azimuth of each block's begin in steps of 0.01 degrees, whose errors are even over a step: s = 0.01 deg / sqrt 12. Between
+/// two of them it is (1 - p) a + p b, so that its variance is s^2 ((1 - p)^2 + p^2). Left out: how unevenly the rotor turns, and
+/// the zero of its encoder, which no packet tells.
+#[must_use]
+pub fn azimuth_variance_rad2(part: f64) -> f64 {
+    let step_rad = 0.01_f64.to_radians();
+    step_rad * step_rad / 12.0 * ((1.0 - part) * (1.0 - part) + part * part)
 }
 
 /// The channels of one firing as they are on the wire, one entry a laser.
@@ -92,6 +105,8 @@ pub struct Firing<'a> {
     pub model: &'static Model,
     pub(crate) rays: &'a [Ray],
     pub(crate) channels: Channels<'a>,
+    /// Its start after its block's, over the block's period.
+    pub(crate) part: f64,
 }
 
 impl<'a> Firing<'a> {
@@ -128,6 +143,11 @@ impl<'a> Firing<'a> {
         self.azimuth_deg + self.azimuth_rate_deg_s * ray.delay_s + ray.azimuth_offset_deg
     }
 
+    /// A laser's delay over the block's period.
+    fn part_of(&self, ray: &Ray) -> f64 {
+        ray.delay_ns as f64 / f64::from(self.model.block_period_ns())
+    }
+
     fn place(&self, seen: Return, ray: &Ray) -> SensorPoint {
         let range_m = f64::from(seen.distance_raw) * self.model.distance_unit_m;
         let (sin_azimuth, cos_azimuth) = self.azimuth_of(ray).to_radians().sin_cos();
@@ -142,6 +162,7 @@ impl<'a> Firing<'a> {
                 corrected_m * ray.sin_elevation + ray.vertical_offset_m,
             ],
             range_m,
+            azimuth_variance_rad2: azimuth_variance_rad2(self.part + self.part_of(ray)),
             laser: seen.laser,
             ring: ray.ring,
             reflectivity: seen.reflectivity,
@@ -262,6 +283,7 @@ mod tests {
                 raw,
                 echo: Echo::Strongest,
             },
+            part: 0.0,
         }
     }
 

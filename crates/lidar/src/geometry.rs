@@ -9,6 +9,7 @@ use protocol::vlp16::{CHANNELS, Model};
 use units::Span;
 
 use crate::corrections::{Corrections, LaserCorrection};
+use crate::firing::azimuth_variance_rad2;
 
 /// One laser, ready for use.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,7 @@ pub(crate) struct Fan {
     pub azimuth_offset_deg: PerChannel<f64>,
     /// Time after the block's start, over the block's period.
     pub part: PerChannel<f64>,
+    pub azimuth_variance_rad2: PerChannel<f64>,
     pub delay_ns: PerChannel<i64>,
     pub delay_f64_ns: PerChannel<f64>,
     /// The longest delay.
@@ -127,6 +129,7 @@ impl Fan {
             aside_counts: aside.iter().any(|&aside| aside != 0.0).then_some(aside),
             azimuth_offset_deg: of(&|ray| ray.azimuth_offset_deg),
             part: delay_ns.map(|ns| ns as f64 / period_ns),
+            azimuth_variance_rad2: delay_ns.map(|ns| azimuth_variance_rad2(ns as f64 / period_ns)),
             delay_ns,
             delay_f64_ns: delay_ns.map(|ns| ns as f64),
             length: Span::from_nanos(delay_ns.into_iter().max().unwrap_or(0)),

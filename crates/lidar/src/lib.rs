@@ -27,7 +27,7 @@ mod volley;
 
 pub use corrections::{Corrections, LaserCorrection};
 pub use decoder::{Decoder, Options};
-pub use firing::{Duplicates, Echo, Firing, Return, SensorPoint};
+pub use firing::{Duplicates, Echo, Firing, Return, SensorPoint, azimuth_variance_rad2};
 pub use frames::{Frame, FrameCutter, FrameError};
 pub use organised::{Column, OrganisedFrame};
 pub use stats::{Conflict, Stats};

@@ -167,6 +167,13 @@ impl<'a> Volley<'a> {
         self.geometry.fan.length
     }
 
+    /// Variance of each channel's azimuth, square radians ([`crate::azimuth_variance_rad2`]).
+    #[inline]
+    #[must_use]
+    pub const fn azimuth_variances_rad2(&self) -> &'a [f64; CHANNELS] {
+        &self.geometry.fan.azimuth_variance_rad2
+    }
+
     /// Each channel's laser, by its place in the firing order.
     #[inline]
     #[must_use]
@@ -235,6 +242,7 @@ impl<'a> Volley<'a> {
                 model,
                 rays: &volley.geometry.rays,
                 channels: volley.channels(n),
+                part: after.as_nanos() as f64 / period_ns,
             }
         })
     }

@@ -16,6 +16,8 @@ pub struct ScanConfig {
     pub simulated: bool,
     /// How the lidar sits on the tilt axis.
     pub mount: MountConfig,
+    /// How well the lidar measures.
+    pub lidar: LidarConfig,
     /// The tilt axis.
     pub axis: AxisConfig,
     /// Speed of the drive's RS232 line, baud; absent on every other link.
@@ -45,6 +47,14 @@ impl ScanConfig {
 pub struct MountConfig {
     /// Height of the lidar's origin above the tilt axis, metres (d of Eq. 4-6).
     pub d_m: f64,
+}
+
+/// How well the lidar measures.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LidarConfig {
+    /// Standard deviation of a range, metres, steps of the wire included.
+    pub range_sd_m: f64,
 }
 
 /// Encoder, gear and node id.
@@ -84,6 +94,7 @@ impl Default for ScanConfig {
             device: "unknown".to_owned(),
             simulated: false,
             mount: MountConfig::default(),
+            lidar: LidarConfig::default(),
             axis: AxisConfig::default(),
             rs232_baud: None,
             sweep: None,
@@ -95,6 +106,14 @@ impl Default for MountConfig {
     /// 6 cm: the Velomotion-16.
     fn default() -> Self {
         Self { d_m: 0.06 }
+    }
+}
+
+impl Default for LidarConfig {
+    /// 3 cm: the typical accuracy of the VLP-16 by its manual (63-9243, specifications), which does not say of what kind it is; here it
+    /// counts as one standard deviation.
+    fn default() -> Self {
+        Self { range_sd_m: 0.03 }
     }
 }
 

@@ -16,9 +16,10 @@ pub mod sweeps;
 pub mod tilt;
 pub mod tolerance;
 pub mod trajectory;
+mod uncertainty;
 mod volleys;
 
-pub use config::{ScanConfig, SweepPlan};
+pub use config::{LidarConfig, ScanConfig, SweepPlan};
 pub use error::ScanError;
 pub use live::Live;
 pub use scanner::{Alignment, Placed, Placer, Survey};

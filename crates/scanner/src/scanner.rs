@@ -57,6 +57,8 @@ pub struct Alignment {
     pub mount: Mount,
     /// Shaft samples that no platform can have given and that were left out.
     pub implausible: u64,
+    /// Standard deviation of a range, metres.
+    pub range_sd_m: f64,
     /// Only firings within one of these spans become points.
     spans: Vec<(Stamp<Host>, Stamp<Host>)>,
 }
@@ -231,6 +233,7 @@ impl Survey {
                 TiltSource::Log | TiltSource::Table(_) => config.mount.mount(),
             },
             implausible,
+            range_sd_m: config.lidar.range_sd_m,
             spans,
         })
     }
@@ -277,6 +280,7 @@ impl Alignment {
             time: moment.host,
             device_time: point.time,
             tilt,
+            sd_m: self.sd_m(point, moment, near),
         })
     }
 
@@ -325,6 +329,7 @@ impl Alignment {
             sweeps: Vec::new(),
             mount,
             implausible: 0,
+            range_sd_m: 0.004,
             spans,
         }
     }

@@ -280,6 +280,15 @@ impl Trajectory {
         }
     }
 
+    /// Variance of the angle at an instant that is known to `clock_sd_ns` nanoseconds (one standard deviation), square radians:
+    /// (piece's deviation)^2 + (rate x clock's deviation)^2. 0 where there is no piece.
+    #[must_use]
+    pub fn variance_rad2(&self, at: Moment, clock_sd_ns: f64) -> f64 {
+        self.piece(at).map_or(0.0, |piece| {
+            piece.variance_rad2(piece.rate(piece.since(at)), clock_sd_ns)
+        })
+    }
+
     /// Follows the angle through times that mostly grow, without a search for each.
     #[must_use]
     pub fn cursor(&self) -> TrajectoryCursor<'_> {

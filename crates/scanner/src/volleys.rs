@@ -6,7 +6,7 @@
 //! Results depend on the block alone, not on what came before it. Left out: what any of it means.
 
 use cloud::mount::Tilts;
-use cloud::{Order, Points, Spare};
+use cloud::{Fields, Order, Points, Spare};
 use fearless_simd::{Avx2, Level, Simd};
 use lidar::{Layer, Volley};
 use units::{Degrees, Host, Span, Stamp};
@@ -33,6 +33,8 @@ pub(crate) struct VolleyPlacer<'a> {
     /// How far the platform turns from the block's start until each channel fires.
     ahead_rad: [f64; N],
     tilts: Tilts<N>,
+    /// Variance of the tilt at each channel, square radians, where it is wanted.
+    tilt_variance_rad2: [f64; N],
     /// Wider registers, where the processor has them. They change no result: the operations are the same in the same order.
     avx2: Option<Avx2>,
 }
@@ -41,6 +43,8 @@ pub(crate) struct VolleyPlacer<'a> {
 struct Pose {
     tangent: Tangent,
     angle: Degrees,
+    /// Not before the last channel fires.
+    last: Stamp<Host>,
 }
 
 /// What becomes of a block.
@@ -60,6 +64,7 @@ impl<'a> VolleyPlacer<'a> {
             near: None,
             ahead_rad: [0.0; N],
             tilts: Tilts::default(),
+            tilt_variance_rad2: [0.0; N],
             avx2: Level::new().as_avx2(),
         }
     }
@@ -97,6 +102,9 @@ impl<'a> VolleyPlacer<'a> {
         let (first, second) = volley.layers();
         match self.judge(volley) {
             Verdict::Place(pose) => {
+                if batch.fields().contains(Fields::SD) {
+                    self.weigh(volley, &pose);
+                }
                 let points = match second {
                     None => self.place_one(volley, first, &pose, batch),
                     Some(second) => self.place_two(volley, [first, second], &pose, batch),
@@ -138,8 +146,47 @@ impl<'a> VolleyPlacer<'a> {
             Motion::MomentByMoment => Verdict::OneByOne,
             Motion::Known(angle, tilt) => {
                 self.tilts.set(tilt, &self.ahead_rad);
-                Verdict::Place(Pose { tangent, angle })
+                Verdict::Place(Pose {
+                    tangent,
+                    angle,
+                    last,
+                })
             }
+        }
+    }
+
+    /// How well the tilt is known at each channel.
+    #[inline(never)]
+    fn weigh(&mut self, volley: &Volley<'_>, pose: &Pose) {
+        let sd_ns = |after| {
+            self.alignment
+                .clock_sd_ns(volley.start + Span::from_nanos(after), self.near)
+        };
+        let mut clock_sd_ns = [sd_ns(0); N];
+        // It changes from cell to cell, of which a recording has few.
+        if sd_ns(volley.length().as_nanos()).to_bits() != clock_sd_ns[0].to_bits() {
+            clock_sd_ns = volley.delays_ns().map(sd_ns);
+        }
+        self.trajectory.variances(
+            &pose.tangent,
+            pose.last,
+            volley.delays_f64_ns(),
+            &clock_sd_ns,
+            &mut self.tilt_variance_rad2,
+        );
+    }
+
+    /// How far each point is expected to be off: [`Alignment::sd_m`] in columns, of points that are placed.
+    #[inline(never)]
+    fn fill_sd(&self, volley: &Volley<'_>, [x_m, y_m, z_m]: [&[f64; N]; 3], sd_m: &mut [f64; N]) {
+        let (mount, tilts) = (&self.alignment.mount, &self.tilts);
+        let range_variance_m2 = self.alignment.range_sd_m * self.alignment.range_sd_m;
+        let azimuth_variance_rad2 = volley.azimuth_variances_rad2();
+        for i in 0..N {
+            let [tilt_arm, head_arm] = mount.arms_m2([x_m[i], y_m[i], z_m[i]], tilts.get(i));
+            let by_tilt = tilt_arm * self.tilt_variance_rad2[i];
+            let by_azimuth = head_arm * azimuth_variance_rad2[i];
+            sd_m[i] = (by_tilt + range_variance_m2 + by_azimuth).sqrt();
         }
     }
 
@@ -225,6 +272,10 @@ impl<'a> VolleyPlacer<'a> {
                 for (tilt_deg, ahead_rad) in tilt_deg[i].iter_mut().zip(&self.ahead_rad) {
                     *tilt_deg = pose.angle.0 + ahead_rad.to_degrees();
                 }
+            }
+            if let Some(sd_m) = &mut rows.sd_m {
+                let placed = [&rows.x_m[i], &rows.y_m[i], &rows.z_m[i]];
+                self.fill_sd(volley, placed, &mut sd_m[i]);
             }
         }
     }

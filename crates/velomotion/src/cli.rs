@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use cloud::Fields;
 use protocol::vlp16::{Model, models};
 use scanner::Tolerance;
 
@@ -209,9 +210,23 @@ pub struct Output {
     /// Cloud to write: .ply .pcd .las .laz .csv; - is PLY on stdout
     #[arg(short, long, value_name = "CLOUD")]
     pub output: Option<PathBuf>,
+    /// Add a column sd: how far each point is expected to be off (root mean square), metres
+    #[arg(long)]
+    pub uncertainty: bool,
     /// Overwrite files that exist
     #[arg(long)]
     pub force: bool,
+}
+
+impl Output {
+    /// The columns of the cloud beside the position.
+    #[must_use]
+    pub fn fields(&self) -> Fields {
+        match self.uncertainty {
+            true => Fields::FILE | Fields::SD,
+            false => Fields::FILE,
+        }
+    }
 }
 
 /// `info`.

@@ -8,7 +8,7 @@ use std::fmt;
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
 
-use scanner::config::{AxisConfig, MountConfig};
+use scanner::config::{AxisConfig, LidarConfig, MountConfig};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
@@ -22,6 +22,8 @@ pub struct Config {
     pub device: Devices,
     /// How the lidar sits on the tilt axis.
     pub mount: MountConfig,
+    /// How well the lidar measures; software devices say it themselves.
+    pub lidar: LidarConfig,
     /// The tilt axis.
     pub axis: Axis,
 }
@@ -263,6 +265,7 @@ impl Config {
         let Axis { homing, .. } = &self.axis;
         let within = [
             ("mount.d_m", self.mount.d_m, 10.0),
+            ("lidar.range_sd_m", self.lidar.range_sd_m, 10.0),
             ("axis.min_deg", self.axis.min_deg, 3_600.0),
             ("axis.max_deg", self.axis.max_deg, 3_600.0),
             ("axis.max_speed_deg_s", self.axis.max_speed_deg_s, 1e6),
@@ -280,6 +283,12 @@ impl Config {
                     "{name}: expected a number within +-{limit}, got {value}"
                 ));
             }
+        }
+        if self.lidar.range_sd_m < 0.0 {
+            let got = self.lidar.range_sd_m;
+            return Err(format!(
+                "lidar.range_sd_m: expected a standard deviation, got {got}"
+            ));
         }
         Ok(())
     }
@@ -309,11 +318,16 @@ mod tests {
         assert_eq!(config.device.default.as_deref(), Some("sim"));
         assert_eq!(config.axis, Axis::default());
         assert_eq!(config.mount, MountConfig::default());
+        assert_eq!(config.lidar, LidarConfig::default());
     }
 
     #[test]
     fn numbers_that_no_scanner_has_are_refused() {
-        for text in ["[mount]\nd_m = nan", "[axis]\nmin_deg = -inf"] {
+        for text in [
+            "[mount]\nd_m = nan",
+            "[axis]\nmin_deg = -inf",
+            "[lidar]\nrange_sd_m = -0.01",
+        ] {
             let config: Config = toml::from_str(text).unwrap();
             assert!(config.check().is_err(), "{text}");
         }

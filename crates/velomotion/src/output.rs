@@ -9,7 +9,7 @@ use ::io::files::{FileError, NewFile, Overwrite};
 use cloud::formats::Format;
 use cloud::formats::pcd::PcdWriter;
 use cloud::formats::ply::PlyPipe;
-use cloud::{Sink, SinkError};
+use cloud::{Fields, Sink, SinkError};
 
 use crate::failure::{Failure, Kind};
 
@@ -24,12 +24,12 @@ pub struct Target {
 }
 
 impl Target {
-    /// Opens `path`: the format by its extension, `-` for PLY on stdout.
+    /// Opens `path` for a cloud with the columns `fields`: the format by its extension, `-` for PLY on stdout.
     ///
     /// # Errors
     /// [`Kind::Usage`] where the extension names no format or the file exists and `force` is not set; [`Kind::BadInput`] where it
     /// cannot be made.
-    pub fn open(path: &Path, force: bool) -> Result<Self, Failure> {
+    pub fn open(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
         if path == Path::new("-") {
             let scratch = ::io::files::scratch().map_err(|error| {
                 Failure::new(Kind::BadInput, format!("cannot write to stdout: {error}"))
@@ -39,23 +39,23 @@ impl Target {
             return Ok(Self {
                 path: path.to_owned(),
                 file: None,
-                sink: Box::new(PlyPipe::new(stdio::stdout(), Scratch(scratch))),
+                sink: Box::new(PlyPipe::new(stdio::stdout(), Scratch(scratch)).with_fields(fields)),
             });
         }
         let format = Format::from_path(path).map_err(|error| {
             Failure::new(Kind::Usage, format!("{}: {error}", path.display()))
                 .help("give -o a name with one of those extensions, or - for PLY on stdout")
         })?;
-        Self::file(path, force, |buffered| format.writer(buffered))
+        Self::file(path, force, |buffered| format.writer(buffered, fields))
     }
 
-    /// Opens `path` for an organised cloud of so many rows: a PCD.
+    /// Opens `path` for an organised cloud of so many rows with the columns `fields`: a PCD.
     ///
     /// # Errors
     /// As [`Target::open`].
-    pub fn organised(path: &Path, force: bool, rows: u64) -> Result<Self, Failure> {
+    pub fn organised(path: &Path, fields: Fields, force: bool, rows: u64) -> Result<Self, Failure> {
         Self::file(path, force, |buffered| {
-            Box::new(PcdWriter::organised(buffered, rows))
+            Box::new(PcdWriter::organised(buffered, rows).with_fields(fields))
         })
     }
 

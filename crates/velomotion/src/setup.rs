@@ -10,7 +10,7 @@ use crate::cli::{self, Common};
 use crate::config::{self, Config, Device};
 use crate::failure::Failure;
 use crate::motion::{self, Step, Wish};
-use crate::{devices, names, output};
+use crate::{devices, names, output, simulated};
 
 /// A capture, decided.
 pub struct Setup {
@@ -133,6 +133,10 @@ pub fn scan_config(
         device: device.to_owned(),
         simulated,
         mount: config.mount,
+        lidar: match simulated {
+            true => simulated::lidar(),
+            false => config.lidar,
+        },
         axis: config.axis.scan(),
         sweep,
         ..ScanConfig::default()

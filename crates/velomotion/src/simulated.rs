@@ -8,8 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
 use firmware_sim::epos2::{NodeConfig, Region, Switch};
+use firmware_sim::vlp16::DISTANCE_UNIT_MM;
 use io::port::{Port, PortError, Pty};
-use scanner::ScanConfig;
+use scanner::{LidarConfig, ScanConfig};
 use sim::{Rig, RigConfig, Truth};
 use thiserror::Error;
 use units::{Degrees, Host, Metres, Span, Stamp};
@@ -132,6 +133,15 @@ pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> R
         gearing: axis.gearing,
         drive: node(axis),
         ..RigConfig::new(start)
+    }
+}
+
+/// How well the software lidar measures: ranges come in steps and have no other error.
+#[must_use]
+pub fn lidar() -> LidarConfig {
+    let step_m = f64::from(DISTANCE_UNIT_MM) * 1e-3;
+    LidarConfig {
+        range_sd_m: step_m / f64::sqrt(12.0),
     }
 }
 

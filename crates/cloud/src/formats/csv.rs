@@ -88,6 +88,7 @@ fn encode_field(text: &mut Vec<u8>, column: Column, point: &Point) -> io::Result
         Column::Ring => write!(text, "{}", point.ring),
         Column::Laser => write!(text, "{}", point.laser),
         Column::Tilt => write!(text, "{}", point.tilt.0),
+        Column::Sd => write!(text, "{}", point.sd_m),
         Column::Time => encode_seconds(text, point.time.as_nanos()),
         Column::DeviceTime => encode_seconds(text, point.device_time.as_nanos()),
     }
@@ -106,6 +107,7 @@ const fn heading(column: Column) -> &'static str {
         Column::Time => "time_s",
         Column::DeviceTime => "device_time_s",
         Column::Tilt => "tilt_deg",
+        Column::Sd => "sd_m",
         plain => plain.name(),
     }
 }
@@ -187,6 +189,7 @@ mod tests {
             assert_eq!(number(6), point.tilt.0);
             assert_eq!(row[7], point.laser.to_string());
             assert_eq!(ns(row[8]), point.device_time.as_nanos());
+            assert_eq!(number(9), point.sd_m);
         }
     }
 

@@ -210,6 +210,10 @@ fn encode(batch: &Points, flags: u8, extras: &[Extra], rows: &mut [u8], row_byte
                 let tilt = batch.tilt_deg().iter().map(|v| *v as f32);
                 fill(rows, row_bytes, offset, tilt.map(f32::to_le_bytes));
             }
+            Column::Sd => {
+                let sd = batch.sd_m().iter().map(|v| *v as f32);
+                fill(rows, row_bytes, offset, sd.map(f32::to_le_bytes));
+            }
             Column::Time => {
                 let time = batch.time().iter().map(|t| seconds(t.as_nanos()));
                 fill(rows, row_bytes, offset, time.map(f64::to_le_bytes));

@@ -27,7 +27,7 @@ impl Kind {
 
     const fn of(column: Column) -> Self {
         match column {
-            Column::Intensity | Column::Tilt => Self::Float,
+            Column::Intensity | Column::Tilt | Column::Sd => Self::Float,
             Column::Time | Column::DeviceTime => Self::Double,
             Column::Ring | Column::Laser => Self::Byte,
         }
@@ -136,6 +136,10 @@ fn fill(rows: &mut Rows, at: usize, column: Column, batch: &Points) {
         Column::Tilt => {
             let angles = batch.tilt_deg().iter();
             rows.fill(at, angles.map(|v| (*v as f32).to_le_bytes()));
+        }
+        Column::Sd => {
+            let sds = batch.sd_m().iter();
+            rows.fill(at, sds.map(|v| (*v as f32).to_le_bytes()));
         }
     }
 }

@@ -24,7 +24,7 @@ use std::fmt;
 use std::io::{Seek, Write};
 use std::path::Path;
 
-use crate::Sink;
+use crate::{Fields, Sink};
 
 /// A file format for clouds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -99,17 +99,17 @@ impl Format {
         Self::from_extension(&extension.to_string_lossy())
     }
 
-    /// A writer of this format into `output`, which should be buffered: LAZ writes in small pieces.
-    pub fn writer<W>(self, output: W) -> Box<dyn Sink + Send>
+    /// A writer of this format with the columns `fields` into `output`, which should be buffered: LAZ writes in small pieces.
+    pub fn writer<W>(self, output: W, fields: Fields) -> Box<dyn Sink + Send>
     where
         W: Write + Seek + Send + Sync + 'static,
     {
         match self {
-            Self::Ply => Box::new(ply::PlyWriter::new(output)),
-            Self::Pcd => Box::new(pcd::PcdWriter::new(output)),
-            Self::Las => Box::new(las::LasWriter::las(output)),
-            Self::Laz => Box::new(las::LasWriter::laz(output)),
-            Self::Csv => Box::new(csv::CsvWriter::new(output)),
+            Self::Ply => Box::new(ply::PlyWriter::new(output).with_fields(fields)),
+            Self::Pcd => Box::new(pcd::PcdWriter::new(output).with_fields(fields)),
+            Self::Las => Box::new(las::LasWriter::las(output).with_fields(fields)),
+            Self::Laz => Box::new(las::LasWriter::laz(output).with_fields(fields)),
+            Self::Csv => Box::new(csv::CsvWriter::new(output).with_fields(fields)),
         }
     }
 }
@@ -153,7 +153,7 @@ mod tests {
     fn every_format_writes_what_its_writer_was_given() {
         for format in Format::ALL {
             let file = testing::Shared::default();
-            let mut sink = format.writer(file.clone());
+            let mut sink = format.writer(file.clone(), Fields::FILE);
             let cloud = testing::cloud(100);
             sink.begin(&testing::metadata()).unwrap();
             sink.points(&cloud).unwrap();

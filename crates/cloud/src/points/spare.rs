@@ -29,6 +29,8 @@ pub struct Spare<'a, const N: usize, const L: usize> {
     pub device_time: Option<&'a mut [[Stamp<Lidar>; N]; L]>,
     /// Tilt angle in degrees, if asked for.
     pub tilt_deg: Option<&'a mut [[f64; N]; L]>,
+    /// How far the point is off, as a root mean square expected, metres, if asked for.
+    pub sd_m: Option<&'a mut [[f64; N]; L]>,
 }
 
 impl Points {
@@ -63,6 +65,7 @@ impl Points {
             time: wanted(fields, Fields::TIME, &mut self.time, row),
             device_time: wanted(fields, Fields::DEVICE_TIME, &mut self.device_time, row),
             tilt_deg: wanted(fields, Fields::TILT, &mut self.tilt_deg, row),
+            sd_m: wanted(fields, Fields::SD, &mut self.sd_m, row),
         })
     }
 
@@ -85,6 +88,7 @@ impl Points {
         gather(&mut self.time, row, order);
         gather(&mut self.device_time, row, order);
         gather(&mut self.tilt_deg, row, order);
+        gather(&mut self.sd_m, row, order);
         self.keep_all(order.len());
     }
 
@@ -118,6 +122,9 @@ impl Points {
         }
         if wanted(Fields::TILT) {
             self.tilt_deg.resize(end, 0.0);
+        }
+        if wanted(Fields::SD) {
+            self.sd_m.resize(end, 0.0);
         }
     }
 }
@@ -178,6 +185,7 @@ mod tests {
             time: Stamp::from_nanos(1_000 + i64::from(n)),
             device_time: Stamp::from_nanos(2_000 + i64::from(n)),
             tilt: Degrees(-far),
+            sd_m: far / 8.0,
         }
     }
 
@@ -209,6 +217,9 @@ mod tests {
             }
             if let Some(column) = &mut rows.tilt_deg {
                 column[layer][place] = point.tilt.0;
+            }
+            if let Some(column) = &mut rows.sd_m {
+                column[layer][place] = point.sd_m;
             }
         }
     }

@@ -57,6 +57,8 @@ pub(crate) struct Piece {
 pub(crate) struct Cell {
     pub from_ns: f64,
     pub bound_ns: f64,
+    /// Standard deviation of it.
+    pub sd_ns: f64,
 }
 
 /// Offset over device time: `offset_ns + slope * (x - centre)`, with x in nanoseconds after the origin.
@@ -208,12 +210,25 @@ impl<C> DeviceClock<C> {
     /// seconds are later than chance allows, that: steps too small to be found, and slews too fast to be followed.
     #[must_use]
     pub fn bound_at(&self, device: Stamp<C>) -> Span {
+        let cell = self.cell(device, None);
+        cell.map_or(Span::ZERO, |cell| span(cell.bound_ns))
+    }
+
+    /// Standard deviation of the clock at `device`, nanoseconds, beyond the constant delay; where the device's clock read `device` twice,
+    /// of the time that is nearer to `near`.
+    ///
+    /// That of its line, from how densely packets lie just above it; what oscillators wander across a block, and packets that are
+    /// all late for some seconds, as errors even over what [`DeviceClock::bound_at`] allows them.
+    #[must_use]
+    pub fn sd_near_ns(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> f64 {
+        self.cell(device, near).map_or(0.0, |cell| cell.sd_ns)
+    }
+
+    fn cell(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Option<&Cell> {
         let x = self.since_origin(device);
-        let bound = self.piece(device, None).and_then(|piece| {
-            let next = piece.cells.partition_point(|cell| cell.from_ns <= x);
-            piece.cells.get(next.saturating_sub(1))
-        });
-        bound.map_or(Span::ZERO, |cell| span(cell.bound_ns))
+        let cells = &self.piece(device, near)?.cells;
+        let next = cells.partition_point(|cell| cell.from_ns <= x);
+        cells.get(next.saturating_sub(1))
     }
 
     /// Drift of the device's clock against the host's at the middle of the recording, in parts per million; positive when

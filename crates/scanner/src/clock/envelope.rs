@@ -39,6 +39,8 @@ const MISSED: f64 = 9.0;
 const HELD_UP_NS: f64 = 10e6;
 /// How much more than a cell's neighbours show a clock may be off at the edge of a small step.
 const AT_EDGE: f64 = 1.5;
+/// Standard deviation of what is even between two bounds, in halves of their distance.
+const EVEN: f64 = 0.577_350_269_189_625_8;
 /// Of one or two packets nothing is known but that a network rarely holds one for a second.
 const UNKNOWN_NS: f64 = 1e9;
 
@@ -186,14 +188,20 @@ fn cells(points: &[Point], blocks: &[Block<'_>], spread: Option<Spread>) -> Vec<
             let (from_ns, to_ns) = (from(i), from(i + 1));
             let near = late.get(i.saturating_sub(1)..(i + 2).min(count));
             let late_ns = near.unwrap_or_default().iter().copied();
-            let bound_ns = if points.len() < 3 {
-                UNKNOWN_NS
-            } else {
-                known(from_ns)
-                    .max(known(to_ns))
-                    .max(AT_EDGE * late_ns.fold(0.0, f64::max))
-            };
-            Cell { from_ns, bound_ns }
+            let late_ns = AT_EDGE * late_ns.fold(0.0, f64::max);
+            if points.len() < 3 {
+                return Cell {
+                    from_ns,
+                    bound_ns: UNKNOWN_NS,
+                    sd_ns: EVEN * UNKNOWN_NS,
+                };
+            }
+            let line_ns = deviation(blocks, from_ns).max(deviation(blocks, to_ns));
+            Cell {
+                from_ns,
+                bound_ns: known(from_ns).max(known(to_ns)).max(late_ns),
+                sd_ns: line_ns.hypot(EVEN * wander_ns.max(late_ns)),
+            }
         })
         .collect()
 }

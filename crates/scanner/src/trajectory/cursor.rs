@@ -152,6 +152,38 @@ impl<'a> TrajectoryCursor<'a> {
         Motion::Known(anchor.angle, anchor.tilt)
     }
 
+    /// Variances of the angles that [`TrajectoryCursor::follow`] last gave, square radians, where the clock has a standard deviation
+    /// at each ([`super::Trajectory::variance_rad2`]).
+    pub fn variances<const N: usize>(
+        &self,
+        tangent: &Tangent,
+        last: Stamp<Host>,
+        delays_ns: &[f64; N],
+        clock_sd_ns: &[f64; N],
+        variance_rad2: &mut [f64; N],
+    ) {
+        variance_rad2.fill(0.0);
+        let (before, coming) = self.pieces.split_at_checked(self.next).unwrap_or_default();
+        let here = before.last().into_iter();
+        let soon = coming
+            .iter()
+            .take_while(|piece| piece.from <= last.saturating_add(EDGE));
+        let (at, stretch) = (tangent.at, 1.0 + tangent.gain);
+        for (i, piece) in here.chain(soon).enumerate() {
+            let since_ns = piece.since(at);
+            let channels = variance_rad2.iter_mut().zip(delays_ns).zip(clock_sd_ns);
+            for ((variance, delay), clock_sd_ns) in channels {
+                let ns = delay * stretch + since_ns;
+                let there = piece.variance_rad2(piece.rate(ns), *clock_sd_ns);
+                *variance = if i == 0 || ns >= 0.0 {
+                    there
+                } else {
+                    *variance
+                };
+            }
+        }
+    }
+
     /// Whether all of a block is outside of what is known.
     #[cold]
     fn at_the_ends(&self, at: Moment, last: Stamp<Host>, coming: Option<&Piece>) -> Motion {

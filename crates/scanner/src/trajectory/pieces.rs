@@ -79,6 +79,16 @@ impl Piece {
         c1 + ns * (2.0 * c2 + ns * (3.0 * c3))
     }
 
+    /// Variance of the angle where it changes by `deg_per_ns` and the instant has a standard deviation, square radians.
+    #[inline(always)]
+    pub(super) fn variance_rad2(&self, deg_per_ns: f64, clock_sd_ns: f64) -> f64 {
+        let (own, by_clock) = (
+            self.sd_deg.to_radians(),
+            deg_per_ns.to_radians() * clock_sd_ns,
+        );
+        own * own + by_clock * by_clock
+    }
+
     /// The coefficients about the instant `ns` after its start.
     #[inline(always)]
     pub(super) fn about(&self, ns: f64) -> [f64; 4] {

@@ -116,6 +116,7 @@ fn assert_same(fast: &(Points, Placed), slow: &(Points, Placed)) {
         assert!(off.fold(0.0, f64::max) < 1e-9, "{a:?} {b:?}");
         assert!((a.time - b.time).as_nanos().abs() <= 1, "{a:?} {b:?}");
         assert!((a.tilt.0 - b.tilt.0).abs() < 5e-10, "{a:?} {b:?}");
+        assert!((a.sd_m / b.sd_m - 1.0).abs() < 1e-6, "{a:?} {b:?}");
         let exact = |p: &cloud::Point| (p.intensity, p.ring, p.laser, p.device_time);
         assert_eq!(exact(&a), exact(&b));
     }

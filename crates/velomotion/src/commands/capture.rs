@@ -47,7 +47,7 @@ struct Ended {
 pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
     let setup = Setup::new(arguments, common)?;
     output::one_for_stdout(Some(&setup.cloud), common.json)?;
-    let target = Target::open(&setup.cloud, setup.force)?;
+    let target = Target::open(&setup.cloud, arguments.output.fields(), setup.force)?;
     output::check_free(&setup.log, setup.force)?;
     let interrupt = signals::interrupt_flag()?;
     let mut progress = Progress::new(common);

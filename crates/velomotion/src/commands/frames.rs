@@ -21,6 +21,8 @@ pub struct FramePlan {
     pub organised: bool,
     /// Name of the clouds, each with the frame's number before its extension.
     pub output: PathBuf,
+    /// Their columns beside the position.
+    pub fields: Fields,
     /// Whether clouds that exist are overwritten.
     pub force: bool,
 }
@@ -87,7 +89,7 @@ impl<'a> FrameWriter<'a> {
                 alignment,
                 organised: plan.organised,
                 cutter,
-                points: Points::new(Fields::FILE),
+                points: Points::new(plan.fields),
                 grid: OrganisedFrame::new(),
                 placed: Placed::default(),
                 ended: Vec::new(),
@@ -135,9 +137,9 @@ impl<'a> FrameWriter<'a> {
         for (frame, points, rows) in std::mem::take(&mut self.filling.ended) {
             let path = name(&self.plan.output, frame.index);
             let mut target = if self.plan.organised {
-                Target::organised(&path, self.plan.force, rows)?
+                Target::organised(&path, self.plan.fields, self.plan.force, rows)?
             } else {
-                Target::open(&path, self.plan.force)?
+                Target::open(&path, self.plan.fields, self.plan.force)?
             };
             let mut metadata = self.metadata.clone();
             metadata.comments.push(said(&frame));
@@ -183,13 +185,14 @@ impl Filling<'_> {
     /// The frame is complete; one without points is not worth a cloud.
     fn end(&mut self, frame: Frame) {
         let before = self.placed.points;
+        let fields = self.points.fields();
         let mut rows = 1;
         if self.organised {
             rows = (self.grid.layers() * self.grid.rings()) as u64;
             self.lay_out();
             self.grid.clear();
         }
-        let points = std::mem::replace(&mut self.points, Points::new(Fields::FILE));
+        let points = std::mem::replace(&mut self.points, Points::new(fields));
         let any = if self.organised {
             self.placed.points > before
         } else {
@@ -239,6 +242,7 @@ fn nothing(
         ring: u8::try_from(ring).unwrap_or(u8::MAX),
         time,
         tilt: Degrees(f64::NAN),
+        sd_m: f64::NAN,
         ..Point::default()
     }
 }

@@ -87,12 +87,13 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
         cut: Degrees(cut),
         organised: arguments.organised,
         output: cloud.clone(),
+        fields: arguments.output.fields(),
         force: arguments.output.force,
     });
     let (scan, stdout) = match &plan {
         Some(plan) => (frames(&request, plan)?, false),
         None => {
-            let target = Target::open(&cloud, arguments.output.force)?;
+            let target = Target::open(&cloud, arguments.output.fields(), arguments.output.force)?;
             let stdout = target.is_stdout();
             (make(&request, target)?, stdout)
         }

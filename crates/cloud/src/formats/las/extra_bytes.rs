@@ -29,6 +29,7 @@ const fn kind(column: Column) -> Option<(u8, usize, &'static str)> {
         Column::Tilt => Some((F32, 4, "tilt of the platform, degrees")),
         Column::Laser => Some((U8, 1, "laser in firing order")),
         Column::DeviceTime => Some((F64, 8, "seconds, clock of the lidar")),
+        Column::Sd => Some((F32, 4, "expected error (RMS), metres")),
     }
 }
 
@@ -45,7 +46,7 @@ pub(super) fn layout(fields: Fields) -> Vec<Extra> {
     extras
 }
 
-/// Bytes that they take in a point; at most 22, with every column.
+/// Bytes that they take in a point; at most 26, with every column.
 pub(super) fn length(extras: &[Extra]) -> u16 {
     extras
         .iter()
@@ -96,8 +97,8 @@ mod tests {
             assert!(description.len() <= 32 && extra.column.name().len() <= 32);
         }
         assert_eq!(usize::from(length(&extras)), expected);
-        assert_eq!(expected, 22);
-        assert_eq!(record(&extras).data.len(), 5 * RECORD_BYTES);
+        assert_eq!(expected, 26);
+        assert_eq!(record(&extras).data.len(), 6 * RECORD_BYTES);
     }
 
     #[test]

@@ -181,6 +181,7 @@ proptest! {
                 time: units::Stamp::from_nanos(ns),
                 device_time: units::Stamp::from_nanos(ns / 1000),
                 tilt: Degrees(tilt),
+                sd_m: tilt.abs() / 1e3,
             });
         }
         let (bytes, _) = written(Fields::ALL, &[points]);
@@ -194,6 +195,7 @@ proptest! {
             prop_assert!((row[5] - ns as f64 * 1e-9).abs() < 1e-6);
             prop_assert!((row[6] - tilt).abs() < 8e-6);
             prop_assert!((row[8] - ns as f64 * 1e-12).abs() < 1e-8);
+            prop_assert!((row[9] - tilt.abs() / 1e3).abs() < 8e-9);
         }
     }
 }
