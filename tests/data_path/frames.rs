@@ -26,6 +26,7 @@ fn frames(log: &Path, output: &Path, organised: bool) -> Scan {
     let plan = FramePlan {
         cut: Degrees(90.0),
         organised,
+        fields: cloud::Fields::FILE,
         output: output.to_owned(),
         force: false,
     };

@@ -38,6 +38,7 @@ pub struct Live<'a> {
     waiting: VecDeque<Waiting>,
     alignment: Option<Alignment>,
     mount: Mount,
+    range_sd_m: f64,
     /// First firing of the packet that the decoder holds back.
     held: Option<Stamp<Lidar>>,
     decoder: Decoder,
@@ -86,6 +87,7 @@ impl<'a> Live<'a> {
             waiting: VecDeque::new(),
             alignment: None,
             mount: config.mount.mount(),
+            range_sd_m: config.lidar.range_sd_m,
             held: None,
             decoder: Decoder::new(options),
             batch: Points::with_capacity(sink.fields(), 2 * MOST_POINTS),
@@ -191,7 +193,8 @@ impl<'a> Live<'a> {
             Some(alignment) => alignment.trajectory.go_on(piece, sample.host),
             None => {
                 let trajectory = Trajectory::of(piece, sample.host, Method::Linear);
-                self.alignment = trajectory.map(|t| Alignment::live(t, self.mount));
+                self.alignment =
+                    trajectory.map(|t| Alignment::live(t, self.mount, self.range_sd_m));
             }
         }
     }

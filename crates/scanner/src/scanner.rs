@@ -291,7 +291,7 @@ impl Alignment {
     }
 
     /// One that changes while records come in: a clock for each packet, an angle that grows, sweeps as they begin.
-    pub(crate) fn live(trajectory: Trajectory, mount: Mount) -> Self {
+    pub(crate) fn live(trajectory: Trajectory, mount: Mount, range_sd_m: f64) -> Self {
         let epoch = Moment {
             host: Stamp::from_nanos(0),
             rest_ns: 0.0,
@@ -304,6 +304,7 @@ impl Alignment {
             sweeps: Vec::new(),
             mount,
             implausible: 0,
+            range_sd_m,
             spans: Vec::new(),
         }
     }

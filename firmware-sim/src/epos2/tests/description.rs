@@ -206,7 +206,7 @@ fn writes_keep_to_access_length_and_limits() {
 fn process_data_carries_what_is_mappable() {
     for entry in described() {
         let Address { index, sub } = entry.address;
-        let mapped = u32::from(index) << 16 | u32::from(sub) << 8 | 8 * entry.bytes as u32;
+        let mapped = (u32::from(index) << 16) | (u32::from(sub) << 8) | (8 * entry.bytes as u32);
         for (parameters, mapping, access) in [
             (0x1803, 0x1A03, ["ro", "rw", "rww", "const"].as_slice()),
             (0x1403, 0x1603, &["rww", "wo"]),

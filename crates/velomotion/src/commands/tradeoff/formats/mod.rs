@@ -164,7 +164,7 @@ fn batches(cloud: &Points) -> Vec<Points> {
 fn write(format: Format, memory: &Memory, batches: &[Points]) -> Result<(), StudyError> {
     memory.clear();
     let output = BufWriter::with_capacity(BUFFER_BYTES, memory.clone());
-    let mut sink = format.writer(output);
+    let mut sink = format.writer(output, cloud::Fields::FILE);
     sink.begin(&Metadata::default())?;
     for batch in batches {
         sink.points(batch)?;
