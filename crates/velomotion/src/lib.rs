@@ -22,6 +22,7 @@ pub mod session;
 pub mod setup;
 pub mod signals;
 pub mod simulated;
+pub mod software_axis;
 pub mod software_drive;
 pub mod utc;
 

@@ -7,16 +7,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
-use firmware_sim::epos2::{NodeConfig, Region, Switch};
 use firmware_sim::vlp16::DISTANCE_UNIT_MM;
 use io::port::{Port, PortError, Pty};
 use scanner::{LidarConfig, ScanConfig};
 use sim::{Rig, RigConfig, Truth};
 use thiserror::Error;
-use units::{Degrees, Host, Metres, Span, Stamp};
+use units::{Host, Metres, Span, Stamp};
 
 use crate::failure::{Failure, Kind};
 use crate::recording::DATA_PORT;
+pub use crate::software_axis::node;
 
 /// Where the software lidar sends its packets.
 #[derive(Clone, Copy, Debug)]
@@ -142,36 +142,5 @@ pub fn lidar() -> LidarConfig {
     let step_m = f64::from(DISTANCE_UNIT_MM) * 1e-3;
     LidarConfig {
         range_sd_m: step_m / f64::sqrt(12.0),
-    }
-}
-
-/// The software drive that fits an axis: its encoder, switches a degree beyond its lower limit and where homing expects the other,
-/// the axis some way down.
-#[must_use]
-pub fn node(axis: &drive::AxisConfig) -> NodeConfig {
-    let gearing = axis.gearing;
-    let qc = |angle: f64| gearing.position(Degrees(angle)).map_or(0, |qc| qc.0);
-    let switch = |input: Option<u8>, pressed| {
-        input.map(|input| Switch {
-            input,
-            pressed,
-            normally_closed: axis.limit_switches.active_low,
-        })
-    };
-    let low = Region::AtMost(qc(axis.limits.min.0 - 1.0));
-    // Homing finds the switch at its home position less the way it goes on from there.
-    let high = Region::AtLeast(qc(axis.homing.home_position.0 - axis.homing.offset.0));
-    let middle = 0.5 * (axis.limits.min.0 + axis.limits.max.0);
-    NodeConfig {
-        node_id: axis.node,
-        qc_per_turn: gearing.qc_per_motor_turn(),
-        initial_position: qc(0.5 * (middle + axis.limits.max.0)),
-        switches: [
-            switch(axis.limit_switches.negative, low),
-            switch(axis.limit_switches.positive, high),
-            None,
-            None,
-        ],
-        ..NodeConfig::default()
     }
 }
