@@ -93,10 +93,27 @@ pub struct Axis {
     pub max_accel_deg_s2: f64,
     /// Deceleration of a quick stop (Ctrl-C, limit switch, fault), degrees per second squared.
     pub quick_stop_deg_s2: f64,
-    /// Digital output of the drive (1..=5) that opens the brake; absent without brake.
+    /// Digital output of the drive (1..=5) that opens the brake; absent without brake. From the factory no output is one.
     pub brake_output: Option<u8>,
+    /// The limit switches; without the table they are where the factory expects them.
+    pub limit_switches: LimitSwitches,
     /// How the axis finds its angle after power-on.
     pub homing: Homing,
+}
+
+/// The limit switches' digital inputs (1..=9). In a table that is there, a switch that is left out does not exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitSwitches {
+    /// Input of the switch at the lower end.
+    #[serde(default)]
+    pub negative: Option<u8>,
+    /// Input of the switch at the upper end.
+    #[serde(default)]
+    pub positive: Option<u8>,
+    /// Whether the inputs are low while a switch is pressed, so that a broken wire stops the axis too.
+    #[serde(default)]
+    pub normally_closed: bool,
 }
 
 /// How the axis finds its angle.
@@ -127,8 +144,20 @@ impl Default for Axis {
             max_speed_deg_s: 98.0,
             max_accel_deg_s2: 10_000.0,
             quick_stop_deg_s2: 500.0,
-            brake_output: Some(1),
+            brake_output: None,
+            limit_switches: LimitSwitches::default(),
             homing: Homing::default(),
+        }
+    }
+}
+
+impl Default for LimitSwitches {
+    /// The factory's choice: inputs 6 and 5, high when pressed (2070, 2071).
+    fn default() -> Self {
+        Self {
+            negative: Some(6),
+            positive: Some(5),
+            normally_closed: false,
         }
     }
 }
@@ -263,24 +292,37 @@ impl Config {
     /// Refuses numbers that no scanner has (TOML knows nan and inf).
     fn check(&self) -> Result<(), String> {
         let Axis { homing, .. } = &self.axis;
-        let within = [
-            ("mount.d_m", self.mount.d_m, 10.0),
-            ("lidar.range_sd_m", self.lidar.range_sd_m, 10.0),
-            ("axis.min_deg", self.axis.min_deg, 3_600.0),
-            ("axis.max_deg", self.axis.max_deg, 3_600.0),
-            ("axis.max_speed_deg_s", self.axis.max_speed_deg_s, 1e6),
+        for (name, value, low, high) in [
+            ("mount.d_m", self.mount.d_m, -10.0, 10.0),
+            ("lidar.range_sd_m", self.lidar.range_sd_m, 0.0, 10.0),
+            ("axis.min_deg", self.axis.min_deg, -3_600.0, 3_600.0),
+            ("axis.max_deg", self.axis.max_deg, -3_600.0, 3_600.0),
+            ("axis.homing.at_deg", homing.at_deg, -3_600.0, 3_600.0),
+            ("axis.homing.to_deg", homing.to_deg, -3_600.0, 3_600.0),
+        ] {
+            // Not a number is not within either.
+            if !(low..=high).contains(&value) {
+                return Err(format!(
+                    "{name}: expected a number from {low} to {high}, got {value}"
+                ));
+            }
+        }
+        let fastest = self.axis.max_speed_deg_s;
+        for (name, value, high) in [
+            ("axis.max_speed_deg_s", fastest, 1e6),
             ("axis.max_accel_deg_s2", self.axis.max_accel_deg_s2, 1e9),
             ("axis.quick_stop_deg_s2", self.axis.quick_stop_deg_s2, 1e9),
-            ("axis.homing.at_deg", homing.at_deg, 3_600.0),
-            ("axis.homing.to_deg", homing.to_deg, 3_600.0),
-            ("axis.homing.speed_deg_s", homing.speed_deg_s, 1e6),
-            ("axis.homing.edge_speed_deg_s", homing.edge_speed_deg_s, 1e6),
-        ];
-        for (name, value, limit) in within {
-            // Not a number is not within either.
-            if !(-limit..=limit).contains(&value) {
+            ("axis.homing.speed_deg_s", homing.speed_deg_s, fastest),
+            (
+                "axis.homing.edge_speed_deg_s",
+                homing.edge_speed_deg_s,
+                fastest,
+            ),
+        ] {
+            // Directions are no business of these: a sign is a mistake.
+            if !(value > 0.0 && value <= high) {
                 return Err(format!(
-                    "{name}: expected a number within +-{limit}, got {value}"
+                    "{name}: expected a number above 0 up to {high}, got {value}"
                 ));
             }
         }
@@ -316,22 +358,56 @@ mod tests {
         let text = include_str!("../../../velomotion.toml");
         let config: Config = toml::from_str(text).unwrap();
         assert_eq!(config.device.default.as_deref(), Some("sim"));
-        assert_eq!(config.axis, Axis::default());
+        let braked = Axis {
+            brake_output: Some(1),
+            ..Axis::default()
+        };
+        assert_eq!(config.axis, braked);
         assert_eq!(config.mount, MountConfig::default());
         assert_eq!(config.lidar, LidarConfig::default());
     }
 
     #[test]
     fn numbers_that_no_scanner_has_are_refused() {
-        for text in [
-            "[mount]\nd_m = nan",
-            "[axis]\nmin_deg = -inf",
-            "[lidar]\nrange_sd_m = -0.01",
+        for (text, key) in [
+            ("[mount]\nd_m = nan", "mount.d_m"),
+            ("[axis]\nmin_deg = -inf", "axis.min_deg"),
+            ("[lidar]\nrange_sd_m = -0.01", "lidar.range_sd_m"),
+            ("[axis]\nmax_speed_deg_s = -20.0", "axis.max_speed_deg_s"),
+            ("[axis]\nmax_accel_deg_s2 = 0.0", "axis.max_accel_deg_s2"),
+            ("[axis]\nquick_stop_deg_s2 = nan", "axis.quick_stop_deg_s2"),
+            (
+                "[axis.homing]\nspeed_deg_s = -5.0",
+                "axis.homing.speed_deg_s",
+            ),
+            (
+                "[axis]\nmax_speed_deg_s = 5.0",
+                "axis.homing.speed_deg_s: expected a number above 0 up to 5,",
+            ),
         ] {
             let config: Config = toml::from_str(text).unwrap();
-            assert!(config.check().is_err(), "{text}");
+            let said = config.check().unwrap_err();
+            assert!(said.starts_with(key), "{text}: {said}");
         }
         assert_eq!(Config::default().check(), Ok(()));
+    }
+
+    #[test]
+    fn a_brake_and_a_switch_that_are_not_named_are_not_there() {
+        let axis = |text: &str| toml::from_str::<Config>(text).unwrap().axis;
+        assert_eq!(axis("").brake_output, None);
+        assert_eq!(axis("[axis]\nnode = 2").brake_output, None);
+        let of = |text| axis(text).limit_switches;
+        assert_eq!(of("[axis]\nnode = 2"), LimitSwitches::default());
+        let one = LimitSwitches {
+            negative: Some(3),
+            positive: None,
+            normally_closed: true,
+        };
+        assert_eq!(
+            of("[axis.limit_switches]\nnegative = 3\nnormally_closed = true"),
+            one
+        );
     }
 
     #[test]

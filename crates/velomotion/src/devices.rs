@@ -8,6 +8,9 @@ use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
 use crate::config::{Axis, Config, Device, DeviceKind};
 use crate::failure::{Failure, Kind};
 
+/// Acceleration while homing, of an axis that may take so much.
+const HOMING_ACCELERATION: RpmPerS = RpmPerS(5_000);
+
 /// The device to use and its name: `--device`, else the configuration's, else whatever is plugged in.
 ///
 /// # Errors
@@ -84,6 +87,7 @@ pub fn axis(axis: &Axis) -> Result<drive::AxisConfig, Failure> {
     let gearing = axis.scan().gearing().map_err(|error| wrong(&error))?;
     let rpm = |deg_s: f64| gearing.rpm(DegPerS(deg_s));
     let homing = &axis.homing;
+    let max_acceleration = gearing.rpm_per_s(DegPerS2(axis.max_accel_deg_s2));
     let config = drive::AxisConfig {
         node: axis.node,
         gearing,
@@ -92,9 +96,13 @@ pub fn axis(axis: &Axis) -> Result<drive::AxisConfig, Failure> {
             max: Degrees(axis.max_deg),
         },
         max_speed: rpm(axis.max_speed_deg_s),
-        max_acceleration: gearing.rpm_per_s(DegPerS2(axis.max_accel_deg_s2)),
+        max_acceleration,
         quick_stop: gearing.rpm_per_s(DegPerS2(axis.quick_stop_deg_s2)),
-        limit_switches: LimitSwitches::default(),
+        limit_switches: LimitSwitches {
+            negative: axis.limit_switches.negative,
+            positive: axis.limit_switches.positive,
+            active_low: axis.limit_switches.normally_closed,
+        },
         brake: axis.brake_output.map(|output| Brake {
             output,
             ..Brake::default()
@@ -103,7 +111,7 @@ pub fn axis(axis: &Axis) -> Result<drive::AxisConfig, Failure> {
             method: homing.method,
             switch_speed: rpm(homing.speed_deg_s),
             zero_speed: rpm(homing.edge_speed_deg_s),
-            acceleration: RpmPerS(5_000),
+            acceleration: HOMING_ACCELERATION.min(max_acceleration),
             offset: Degrees(homing.to_deg - homing.at_deg),
             home_position: Degrees(homing.to_deg),
             time_limit: Span::from_secs(60),
@@ -120,4 +128,41 @@ pub fn axis(axis: &Axis) -> Result<drive::AxisConfig, Failure> {
 #[must_use]
 pub fn simulated(device: &Device) -> bool {
     device.kind == DeviceKind::Sim
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config;
+
+    #[test]
+    fn a_gentle_axis_homes_gently() {
+        let gentle = Axis {
+            max_accel_deg_s2: 100.0,
+            ..Axis::default()
+        };
+        let config = axis(&gentle).unwrap();
+        assert_eq!(config.homing.acceleration, config.max_acceleration);
+        let strong = axis(&Axis::default()).unwrap();
+        assert_eq!(strong.homing.acceleration, HOMING_ACCELERATION);
+    }
+
+    #[test]
+    fn limit_switches_reach_the_client_as_configured() {
+        let switches = config::LimitSwitches {
+            negative: None,
+            positive: Some(2),
+            normally_closed: true,
+        };
+        let config = axis(&Axis {
+            limit_switches: switches,
+            ..Axis::default()
+        });
+        let expected = LimitSwitches {
+            negative: None,
+            positive: Some(2),
+            active_low: true,
+        };
+        assert_eq!(config.unwrap().limit_switches, expected);
+    }
 }

@@ -9,7 +9,8 @@ use serde::Serialize;
 
 use super::Said;
 use crate::cli::Common;
-use crate::config::{self, Config, DeviceKind};
+use crate::config::{self, Axis, Config, DeviceKind};
+use crate::devices;
 use crate::failure::Failure;
 
 /// One thing that was looked at.
@@ -54,8 +55,10 @@ pub fn run(common: &Common) -> Result<Said, Failure> {
             .map(|text| text.trim().to_owned())
     };
     let mut findings = drives(&discover(), &read);
-    findings.extend(can_interfaces(&io::can::interfaces()));
-    findings.extend(profiles(&config));
+    let interfaces = io::can::interfaces();
+    findings.extend(can_interfaces(&interfaces));
+    findings.extend(profiles(&config, &interfaces));
+    findings.push(axis(&config.axis));
     findings.push(receive_buffer(&read));
     let report = Report { findings };
     let text = text(&report);
@@ -149,7 +152,7 @@ fn can_interfaces(interfaces: &[Interface]) -> Vec<Finding> {
         .collect()
 }
 
-fn profiles(config: &Config) -> Vec<Finding> {
+fn profiles(config: &Config, interfaces: &[Interface]) -> Vec<Finding> {
     let named = config.device.default.as_deref().unwrap_or("auto");
     let mut findings = vec![finding("device without --device", Verdict::Ok, named)];
     for (name, device) in &config.device.profiles {
@@ -157,7 +160,7 @@ fn profiles(config: &Config) -> Vec<Finding> {
         findings.push(match (&device.kind, &device.port) {
             (DeviceKind::Sim, _) => finding(what, Verdict::Ok, "software devices"),
             (DeviceKind::Can, _) => match &device.interface {
-                Some(interface) => finding(what, Verdict::Ok, format!("CAN interface {interface}")),
+                Some(name) => can_profile(what, name, interfaces),
                 None => finding(what, Verdict::Problem, "names no interface")
                     .todo("add interface = \"can0\" (or what it is)"),
             },
@@ -175,6 +178,25 @@ fn profiles(config: &Config) -> Vec<Finding> {
         });
     }
     findings
+}
+
+/// An interface that is down has a finding of its own.
+fn can_profile(what: String, name: &str, interfaces: &[Interface]) -> Finding {
+    if interfaces.iter().any(|interface| interface.name == name) {
+        return finding(what, Verdict::Ok, format!("CAN interface {name}"));
+    }
+    finding(what, Verdict::Problem, format!("there is no CAN interface {name}")).todo(format!(
+        "plug the adapter in, or correct interface in the configuration;\n\
+         without an adapter, as root: modprobe vcan && ip link add {name} type vcan && ip link set {name} up"
+    ))
+}
+
+fn axis(configured: &Axis) -> Finding {
+    match devices::axis(configured) {
+        Ok(_) => finding("[axis]", Verdict::Ok, "an axis that can be"),
+        Err(failure) => finding("[axis]", Verdict::Problem, failure.to_string())
+            .todo("correct that value in the configuration; docs: wiring says what each one means"),
+    }
 }
 
 /// The lidar's socket asks for 8 MiB; a smaller limit is what it gets.
@@ -266,5 +288,33 @@ mod tests {
         assert_eq!(findings[0].verdict, Verdict::Problem);
         assert!(findings[0].todo.as_ref().unwrap().contains("can0"));
         assert_eq!(findings[1].verdict, Verdict::Ok);
+    }
+
+    #[test]
+    fn a_profile_whose_can_interface_is_not_there_is_a_problem() {
+        let there = [Interface {
+            name: "can0".to_owned(),
+            up: true,
+        }];
+        let of = |name| {
+            let text = format!("[device.bus]\nkind = 'can'\ninterface = '{name}'");
+            let config: Config = toml::from_str(&text).unwrap();
+            profiles(&config, &there).remove(1)
+        };
+        assert_eq!(of("can0").verdict, Verdict::Ok);
+        let missing = of("can1");
+        assert_eq!(missing.verdict, Verdict::Problem);
+        assert!(missing.found.contains("can1"), "{missing:?}");
+        assert!(missing.todo.is_some());
+    }
+
+    #[test]
+    fn an_axis_that_cannot_be_is_a_problem() {
+        let wrong = Axis {
+            min_deg: 10.0,
+            ..Axis::default()
+        };
+        assert_eq!(axis(&wrong).verdict, Verdict::Problem);
+        assert_eq!(axis(&Axis::default()).verdict, Verdict::Ok);
     }
 }

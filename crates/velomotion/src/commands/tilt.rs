@@ -89,7 +89,7 @@ pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<Said, Failure> {
             Asked::NotStopped => {
                 return Err(Failure::new(
                     Kind::DeviceFault,
-                    "the capture that runs could not stop the axis, or did not say so in 10 s",
+                    "the program that has the drive could not stop the axis, or did not say so in 10 s",
                 )
                 .help("switch the motor's supply off if the axis moves"));
             }
@@ -279,7 +279,7 @@ fn stopped_elsewhere(device: &str) -> Said {
     };
     Said::report(
         &report,
-        "the capture that runs has stopped the axis".to_owned(),
+        "the program that has the drive has stopped the axis".to_owned(),
     )
 }
 
@@ -288,8 +288,8 @@ fn session_failure(error: &SessionError) -> Failure {
         SessionError::Interrupted => Kind::Interrupted,
         _ => Kind::DeviceFault,
     };
-    let help = error
-        .help()
-        .unwrap_or_else(|| "the axis stands, its brake set".to_owned());
+    let help = error.help().unwrap_or_else(|| {
+        "the axis stands, its power stage off, its brake set if it has one".to_owned()
+    });
     Failure::new(kind, error.to_string()).help(help)
 }
