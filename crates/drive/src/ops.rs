@@ -166,6 +166,19 @@ impl Ops {
         self.set(object, (old & !mask) | (bits & mask)).await
     }
 
+    /// Writes what may be written twice: repeated, as reads are, where its answer is lost.
+    pub async fn write_again<T: Scalar>(
+        &self,
+        object: Object<T>,
+        value: T,
+    ) -> Result<(), DriveError> {
+        let request = Request {
+            retries: self.config.timing.read_retries,
+            ..self.request(object.address, Access::Write(value.to_raw()), T::BYTES)
+        };
+        self.ask(request).await.map(drop)
+    }
+
     /// Writes an object ahead of everything, even of finding out what became of an earlier request.
     pub async fn write_urgently<T: Scalar>(
         &self,

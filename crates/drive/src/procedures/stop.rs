@@ -100,7 +100,7 @@ async fn newest_error(ops: &Ops) -> Result<Option<DeviceError>, DriveError> {
 async fn rest(ops: &mut Ops) -> Result<Stopped, DriveError> {
     ops.set_moving(true);
     standstill(ops).await?;
-    ops.write(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
+    ops.write_again(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
         .await?;
     let statusword = wait_for(ops, "power off", is_off).await?;
     ops.set_moving(false);

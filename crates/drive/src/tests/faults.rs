@@ -357,6 +357,25 @@ fn a_write_whose_answer_is_lost_is_not_repeated() {
 }
 
 #[test]
+fn a_sweep_does_not_fail_by_the_last_lost_answer() {
+    let mut rig = Rig::homed();
+    assert!(rig.run(Command::Sweep(to(-15.0))).is_ok());
+    let mut lost = 0;
+    rig.fake.hand = Box::new(move |_, request| {
+        // Power off is power off, however often it is said.
+        if is_write(request, 0x6040, 0) && lost < 2 {
+            lost += 1;
+            return Fate::Lost;
+        }
+        Fate::Sent
+    });
+    let before = rig.writes().len();
+    assert!(matches!(rig.run(Command::Brake), Ok(Outcome::Stopped(_))));
+    let off = rig.writes().split_off(before);
+    assert_eq!(off.iter().filter(|w| w.0 == 0x6040).count(), 3);
+}
+
+#[test]
 fn silence_ends_a_command_in_bounded_time() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.fake.hand = Box::new(|_, _| Fate::Lost);
