@@ -40,7 +40,7 @@ impl Node {
     /// Looks at the inputs and runs the error routines of those that have one (2071:4).
     ///
     /// A limit switch is an error when it becomes active and when the axis moves on into it, so that a unit whose fault has
-    /// been cleared can leave it. While homing no limit switch is an error: homing is what looks for them.
+    /// been cleared can leave it; once while an error's ramp is under way. While homing no limit switch is an error: homing is what looks for them.
     pub(super) fn watch_inputs(&mut self) {
         let before = self.inputs;
         self.inputs = self.sense();
@@ -53,12 +53,13 @@ impl Node {
             self.quick_stop();
         }
         let direction = self.generator.speed().0.signum();
+        let reacting = self.state == State::FaultReactionEnabled;
         for (bit, into, error) in [
             (input::NEGATIVE_LIMIT, -1, DeviceError::NEGATIVE_LIMIT),
             (input::POSITIVE_LIMIT, 1, DeviceError::POSITIVE_LIMIT),
         ] {
             let became = before & bit == 0;
-            if watched & bit != 0 && (became || direction == into) {
+            if watched & bit != 0 && (became || direction == into && !reacting) {
                 self.fail(error);
             }
         }

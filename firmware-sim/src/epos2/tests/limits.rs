@@ -25,6 +25,11 @@ fn a_limit_switch_in_the_execution_mask_stops_the_axis_and_can_be_left() {
     go(&mut node, -50_000, control::START_ABSOLUTE);
     until(&mut node, 5000, |node| state(node) == State::Fault);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0xFF06);
+    assert_eq!(
+        get(&node, objects::ERROR_COUNT),
+        1,
+        "one switch, one error, however long the ramp"
+    );
     assert_eq!(get(&node, objects::ERROR_REGISTER) & 0x80, 0x80);
     let at = position(&node);
     // 1000 rpm at 10000 rpm/s need 1667 qc to stop.
