@@ -146,7 +146,12 @@ impl Captured {
 
     /// Runs the capture, whatever it comes to.
     pub fn run(setting: Setting) -> (Self, Result<(), SessionError>) {
-        let axis = devices::axis(&Axis::default()).unwrap();
+        // With the brake of the checkout's own configuration.
+        let axis = devices::axis(&Axis {
+            brake_output: Some(1),
+            ..Axis::default()
+        })
+        .unwrap();
         let steps = motion::steps(&setting.wish, &axis, Degrees(0.0)).unwrap();
         let mut config = scan_config(&Config::default(), "sim", true, &setting.wish, &steps);
         config.rs232_baud = (setting.links.attached == Attached::Rs232).then_some(115_200);
