@@ -326,12 +326,6 @@ impl Config {
                 ));
             }
         }
-        if self.lidar.range_sd_m < 0.0 {
-            let got = self.lidar.range_sd_m;
-            return Err(format!(
-                "lidar.range_sd_m: expected a standard deviation, got {got}"
-            ));
-        }
         Ok(())
     }
 }
