@@ -19,15 +19,24 @@ const QUICK_QUANTILE: f64 = 0.9;
 /// Angle samples of `samples`, in order of time. The gearing turns quadcounts into degrees.
 #[must_use]
 pub fn angle_samples(samples: &[ShaftSample], gearing: Gearing) -> Vec<AngleSample> {
+    with_clock(samples, gearing).0
+}
+
+/// The same, and the standard deviation of what all their instants are off by together, nanoseconds: 0 of polls, whose errors are each
+/// one's own.
+pub(crate) fn with_clock(samples: &[ShaftSample], gearing: Gearing) -> (Vec<AngleSample>, f64) {
     let (latched, polls): (Vec<_>, Vec<_>) = samples
         .iter()
         .partition(|sample| sample.device_us.is_some());
     let mut angles: Vec<AngleSample> = polls.iter().map(|poll| sample(poll, gearing)).collect();
+    let mut shared_ns = 0.0;
     if !latched.is_empty() {
-        angles.extend(stream::angle_samples(&latched, gearing));
+        let (streamed, sd_ns) = stream::angle_samples(&latched, gearing);
+        angles.extend(streamed);
         angles.sort_by_key(|sample| sample.host);
+        shared_ns = sd_ns;
     }
-    without_slow(&angles)
+    (without_slow(&angles), shared_ns)
 }
 
 /// Leaves the slow ones out where they are not needed.

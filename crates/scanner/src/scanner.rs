@@ -17,7 +17,7 @@ use crate::clock::{Arrival, LidarClock, Moment};
 use crate::config::ScanConfig;
 use crate::error::ScanError;
 use crate::plausible;
-use crate::polls::angle_samples;
+use crate::polls::with_clock;
 use crate::steps::{ClockStep, HostLine, Seams, Timeline};
 use crate::sweeps::{MoveWatch, Sweep};
 use crate::tilt::TiltSource;
@@ -173,10 +173,11 @@ impl Survey {
             arrivals,
         } = Timeline::new(&self.arrivals, &self.seams).ok_or(ScanError::NoLidarPackets)?;
         self.unsew(&drive);
-        let mut implausible = 0;
+        let (mut implausible, mut shared_ns) = (0, 0.0);
         let samples = match tilt {
             TiltSource::Log => {
-                let mut samples = angle_samples(&self.polls, self.gearing);
+                let (mut samples, sd_ns) = with_clock(&self.polls, self.gearing);
+                shared_ns = sd_ns;
                 implausible = plausible::leave_out(&mut samples);
                 samples
             }
@@ -197,7 +198,8 @@ impl Survey {
         };
         let through = |sweeps: &[Sweep], method| {
             let samples = samples.clone();
-            Trajectory::through(samples, quantum, sweeps, method)
+            let through = Trajectory::through(samples, quantum, sweeps, method);
+            through.map(|trajectory| trajectory.with_shared(shared_ns))
         };
         let mut choice = None;
         let trajectory = match (tilt, accuracy) {

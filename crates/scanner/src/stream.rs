@@ -28,14 +28,19 @@ struct Latched {
     device_ns: i64,
 }
 
-/// Angle samples of what came at SYNC, in its order. Samples without the drive's time are passed over.
-pub(crate) fn angle_samples(stream: &[ShaftSample], gearing: Gearing) -> Vec<AngleSample> {
+/// Angle samples of what came at SYNC, in its order, and the standard deviation of their clock, nanoseconds: an error that they share,
+/// so that no fit averages over it. Samples without the drive's time are passed over.
+pub(crate) fn angle_samples(stream: &[ShaftSample], gearing: Gearing) -> (Vec<AngleSample>, f64) {
     let mut samples = Vec::with_capacity(stream.len());
+    let mut square_ns2 = 0.0;
     for run in runs(stream) {
         let clock = (run.len() >= FEWEST)
             .then(|| DriveClock::fit(&run))
             .flatten();
         samples.extend(run.iter().map(|latched| {
+            if let Some(clock) = &clock {
+                square_ns2 += clock.sd_ns(latched.device_ns).powi(2);
+            }
             let (early, late) = match &clock {
                 Some(clock) => clock.bounds(latched.device_ns),
                 None => (latched.sample.request, latched.sample.answer),
@@ -48,7 +53,8 @@ pub(crate) fn angle_samples(stream: &[ShaftSample], gearing: Gearing) -> Vec<Ang
             }
         }));
     }
-    samples
+    let sd_ns = f64::sqrt(square_ns2 / samples.len().max(1) as f64);
+    (samples, sd_ns)
 }
 
 /// The samples cut where the drive's clock began anew, its wraps undone.
@@ -96,20 +102,39 @@ struct DriveClock {
 
 impl DriveClock {
     fn fit(run: &[Latched]) -> Option<Self> {
-        let arrivals = |device: fn(i64) -> Stamp<Drive>, host: fn(&ShaftSample) -> Stamp<Host>| {
-            let arrivals: Vec<Arrival<Drive>> = run
-                .iter()
-                .map(|latched| Arrival {
-                    device: device(latched.device_ns),
-                    host: host(&latched.sample),
-                })
-                .collect();
-            DeviceClock::fit(&arrivals)
+        let arrivals: Vec<Arrival<Drive>> = run
+            .iter()
+            .map(|latched| Arrival {
+                device: Stamp::from_nanos(latched.device_ns),
+                host: latched.sample.answer,
+            })
+            .collect();
+        let late = DeviceClock::fit(&arrivals)?;
+        // After frames were lost samples may for long be given the SYNC before their own: a whole beat early, which would tilt the
+        // envelope. They, and those whose SYNC was held up as long, tell nothing of it.
+        let ahead = |latched: &Latched| {
+            let taken = late.host(Stamp::from_nanos(latched.device_ns));
+            taken.saturating_since(latched.sample.request)
         };
-        Some(Self {
-            early: arrivals(backwards, |sample| backwards(sample.request.as_nanos()))?,
-            late: arrivals(Stamp::from_nanos, |sample| sample.answer)?,
-        })
+        let least = run.iter().map(ahead).min()?;
+        let most = least.saturating_add(beat(run).half());
+        let arrivals: Vec<Arrival<Drive>> = run
+            .iter()
+            .filter(|latched| ahead(latched) <= most)
+            .map(|latched| Arrival {
+                device: backwards(latched.device_ns),
+                host: backwards(latched.sample.request.as_nanos()),
+            })
+            .collect();
+        let early = DeviceClock::fit(&arrivals)?;
+        Some(Self { early, late })
+    }
+
+    /// Standard deviation of the middle between both sides, nanoseconds, beside what the quickest ways there and back differ by.
+    fn sd_ns(&self, device_ns: i64) -> f64 {
+        let early = self.early.sd_near_ns(backwards(device_ns), None);
+        let late = self.late.sd_near_ns(Stamp::from_nanos(device_ns), None);
+        0.5 * early.hypot(late)
     }
 
     /// Between which times of the host the drive's clock read `device_ns`.
@@ -118,6 +143,17 @@ impl DriveClock {
         let late = self.late.host(Stamp::from_nanos(device_ns));
         (backwards(early.as_nanos()), late)
     }
+}
+
+/// The usual time from one sample to the next.
+fn beat(run: &[Latched]) -> Span {
+    let pairs = run.windows(2).filter_map(|pair| match pair {
+        [a, b] => Some(b.device_ns.saturating_sub(a.device_ns)),
+        _ => None,
+    });
+    let mut steps: Vec<i64> = pairs.collect();
+    steps.sort_unstable();
+    Span::from_nanos(steps.get(steps.len() / 2).copied().unwrap_or(0))
 }
 
 fn backwards<C>(ns: i64) -> Stamp<C> {
@@ -163,7 +199,7 @@ mod tests {
     }
 
     fn worst_us(stream: &[ShaftSample], truth: &[i64]) -> f64 {
-        let samples = angle_samples(stream, gearing());
+        let (samples, _) = angle_samples(stream, gearing());
         assert_eq!(samples.len(), truth.len());
         let off = samples.iter().zip(truth).map(|(sample, truth)| {
             let off = sample.host.as_nanos() - truth;
@@ -217,7 +253,7 @@ mod tests {
     #[test]
     fn a_bus_that_is_slower_one_way_shows_in_the_bound() {
         let (stream, truth) = stream(1_000, 17, |_| 70, |_| 30_000);
-        let samples = angle_samples(&stream, gearing());
+        let (samples, _) = angle_samples(&stream, gearing());
         assert!(
             samples
                 .iter()
@@ -229,8 +265,8 @@ mod tests {
     #[test]
     fn a_few_samples_stand_in_the_middle() {
         let (stream, _) = stream(3, 17, |_| 70, |_| 90);
-        let samples = angle_samples(&stream, gearing());
+        let (samples, _) = angle_samples(&stream, gearing());
         assert_eq!(samples[1].host.as_nanos(), EPOCH + 1_080_000);
-        assert!(angle_samples(&[], gearing()).is_empty());
+        assert!(angle_samples(&[], gearing()).0.is_empty());
     }
 }

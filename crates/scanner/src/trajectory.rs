@@ -198,6 +198,16 @@ impl Trajectory {
         Some(trajectory)
     }
 
+    /// The same, of samples whose instants are all off together, by a standard deviation in nanoseconds: what that is worth at its speed
+    /// is added to each piece's.
+    #[must_use]
+    pub(crate) fn with_shared(mut self, sd_ns: f64) -> Self {
+        if let Shape::Pieces(pieces) = &mut self.shape {
+            pieces.widen(sd_ns);
+        }
+        self
+    }
+
     /// Replaces the straight lines over each sweep by a fit.
     fn fit(&mut self, noise: &Noise, sweeps: &[Sweep], method: Option<Method>) {
         let Shape::Pieces(pieces) = &mut self.shape else {

@@ -3,6 +3,8 @@
 //! All three pass every sample, its error included, and know nothing of what the axis was told. That makes them cheap, possible
 //! while samples still come in, and right whatever moved the axis.
 
+use units::Span;
+
 use super::AngleSample;
 use super::noise::{Noise, rates, seconds};
 use super::pieces::{Piece, Pieces};
@@ -17,9 +19,14 @@ pub(super) fn nearest(samples: &[AngleSample], noise: &Noise) -> Option<Pieces> 
             let half = next.host.saturating_since(sample.host).half();
             sample.host.saturating_add(half)
         });
-        // Uniform over the half intervals on both sides.
-        let reach = until.saturating_since(from).as_secs_f64() / 2.0;
-        let sd = f64::hypot(noise.sd_deg(sample, *rate), rate * reach / f64::sqrt(3.0));
+        // Mean square of what is even over the half intervals on both sides, which may differ.
+        let [a, b] = [
+            sample.host.saturating_since(from),
+            until.saturating_since(sample.host),
+        ]
+        .map(Span::as_secs_f64);
+        let reach = ((a * a - a * b + b * b) / 3.0).sqrt();
+        let sd = f64::hypot(noise.sd_deg(sample, *rate), rate * reach);
         pieces.push(Piece::line(from, sample.angle.0, 0.0).with_sd(sd));
         from = until;
     }

@@ -182,6 +182,16 @@ impl Pieces {
         debug_assert!(first.min(from) == self.span().0);
     }
 
+    /// Adds what an instant that is off by `sd_ns` makes of each piece's deviation, at the speed in its middle.
+    pub(super) fn widen(&mut self, sd_ns: f64) {
+        let starts = self.pieces.iter().skip(1).map(|piece| piece.from);
+        let ends: Vec<Stamp<Host>> = starts.chain([self.end]).collect();
+        for (piece, end) in self.pieces.iter_mut().zip(ends) {
+            let half_ns = end.saturating_since(piece.from).half().as_nanos() as f64;
+            piece.sd_deg = piece.sd_deg.hypot(piece.rate(half_ns) * sd_ns);
+        }
+    }
+
     /// Takes away what ended before `host`.
     pub(crate) fn forget_before(&mut self, host: Stamp<Host>) {
         let past = self.pieces.partition_point(|piece| piece.from <= host);
