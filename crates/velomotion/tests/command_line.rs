@@ -105,6 +105,17 @@ fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
     assert_eq!(json(&again)["points"], scan["points"]);
     assert_eq!(std::fs::read(place.path("again.ply")).unwrap(), ply);
 
+    // The column is the last one of a line; without other errors a point is off by its range's steps at the least.
+    let with_sd = place.run("replay scan.pcapng -o sd.csv --uncertainty");
+    assert!(with_sd.status.success());
+    let text = std::fs::read_to_string(place.path("sd.csv")).unwrap();
+    let mut lines = text.lines().skip_while(|line| line.starts_with('#'));
+    assert!(lines.next().unwrap().ends_with(",tilt_deg,sd_m"));
+    let sds = lines.map(|line| line.rsplit(',').next().unwrap().parse::<f64>().unwrap());
+    let least = sds.fold(f64::INFINITY, f64::min);
+    assert!((0.000_57..0.000_8).contains(&least), "{least}");
+    std::fs::remove_file(place.path("sd.csv")).unwrap();
+
     // The log is a plain lidar recording too, and says what it is.
     let info = place.run("info scan.pcapng --json");
     assert!(json(&info)["tilt"]["samples"].as_u64().unwrap() > 100);
