@@ -28,6 +28,7 @@ fn frames(log: &Path, output: &Path, organised: bool) -> Scan {
         organised,
         fields: cloud::Fields::FILE,
         output: output.to_owned(),
+        fields: cloud::Fields::FILE,
         force: false,
     };
     replay::frames(&request, &plan).unwrap()
