@@ -1,6 +1,6 @@
 //! `velomotion firmware-sim`: the software EPOS2 alone, for whoever develops a client against it.
 
-use std::io::{Read, Write};
+use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +15,7 @@ use crate::failure::{Failure, Kind};
 use crate::software_drive::{self, Interface};
 use crate::{config, devices, signals, simulated};
 
-/// Runs the command: the first line on stdout is the port; it ends when stdin closes or at SIGTERM.
+/// Runs the command: the first line on stdout is the port; it ends at SIGTERM, Ctrl-C, or when a stdin that is no terminal closes.
 ///
 /// # Errors
 /// Where the machine gives no pseudo-terminal or has no such CAN interface, or the link cannot be made.
@@ -75,8 +75,11 @@ fn announce(port: &Path) -> Result<(), Failure> {
         })
 }
 
-/// Sets `stop` when stdin comes to its end.
+/// Sets `stop` when stdin comes to its end. A terminal is left alone: a shell stops what reads from it in the background.
 fn until_stdin_closes(stop: &Arc<AtomicBool>) -> Result<(), Failure> {
+    if std::io::stdin().is_terminal() {
+        return Ok(());
+    }
     let stop = Arc::clone(stop);
     std::thread::Builder::new()
         .name("stdin".to_owned())
