@@ -12,6 +12,7 @@ use velomotion::progress::to_stderr;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
+    keep_words_whole();
     start_log(&cli.common);
     let (said, failure) = match commands::run(&cli) {
         Ok(mut said) => {
@@ -40,6 +41,20 @@ fn main() -> ExitCode {
             ExitCode::from(code)
         }
     }
+}
+
+/// Messages hold names of files and units: a line is broken at spaces only, not behind a hyphen or a slash.
+fn keep_words_whole() {
+    // Fails only where a hook was set before.
+    let _ = miette::set_hook(Box::new(|_| {
+        Box::new(
+            miette::MietteHandlerOpts::new()
+                .word_separator(textwrap::WordSeparator::AsciiSpace)
+                .word_splitter(textwrap::WordSplitter::NoHyphenation)
+                .break_words(false)
+                .build(),
+        )
+    }));
 }
 
 /// With `--json` exactly one object, failure or not; else the text, unless `--quiet`. Where the cloud has stdout, stderr.
