@@ -247,8 +247,26 @@ fn conclude(
             Ok(Said::scan(&scan, failure, stdout))
         }
         (Err(_), Some(failure)) => Err(failure),
-        (Err(failure), None) => Err(failure),
+        (Err(failure), None) => Err(without_cloud(failure, &setup.log)),
     }
+}
+
+/// Why there is no cloud of a capture that went well: its log is saved, and what the log cannot be used for without being asked, such
+/// as a choice between two lidars, `replay` can be told.
+fn without_cloud(failure: Failure, log: &Path) -> Failure {
+    let kind = match failure.kind {
+        Kind::BadInput => Kind::Incomplete,
+        kind => kind,
+    };
+    let saved = format!(
+        "the log is saved: velomotion replay {} makes the cloud",
+        log.display()
+    );
+    let help = failure
+        .help
+        .as_ref()
+        .map_or(saved.clone(), |help| format!("{help}\n{saved}"));
+    Failure { kind, ..failure }.help(help)
 }
 
 fn lost_records(recorded: &Recorded) -> u64 {
