@@ -110,7 +110,7 @@ pub struct Replay {
     /// Make a cloud of each turn of the lidar, cut at this azimuth; -o NAME.ply gives NAME-00000.ply and so on
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub frames: Option<f64>,
-    /// Keep the shots without a return: a row a ring, a column a firing (.pcd)
+    /// Keep the shots without a return: a row a ring, a column a firing (.pcd, with --frames)
     #[arg(long, requires = "frames")]
     pub organised: bool,
     /// How the lidar's packets are read

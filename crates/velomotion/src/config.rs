@@ -266,24 +266,25 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
             Kind::BadInput,
             format!("cannot read the configuration {}: {error}", path.display()),
         )
-        .help("name an existing file with --config, or leave the option out")
+        .help("name a text file that exists with --config, or leave the option out")
     })?;
     let config: Config = toml::from_str(&text).map_err(|error| {
         Failure::new(
             Kind::BadInput,
             format!(
-                "the configuration {} cannot be understood:\n{error}",
-                path.display()
+                "the configuration {} cannot be understood:\n{}",
+                path.display(),
+                error.to_string().trim_end()
             ),
         )
-        .help("correct that line; the checkout's velomotion.toml shows every key")
+        .help("correct that line; docs/src/wiring.md shows every key")
     })?;
     config.check().map_err(|what| {
         Failure::new(
             Kind::BadInput,
             format!("the configuration {}: {what}", path.display()),
         )
-        .help("correct that value; docs: wiring says what each one means")
+        .help("correct that value; docs/src/wiring.md says what each one means")
     })?;
     Ok(config)
 }

@@ -255,6 +255,26 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
         )
         .help("read all of it, or write the cloud to a file with -o");
     }
+    if path == Path::new("-") {
+        return Failure::new(
+            Kind::Incomplete,
+            format!("the cloud could not be written to stdout: {error}"),
+        )
+        .help(format!(
+            "its points wait in a scratch file, 29 bytes each, as a PLY begins with their count: free some space in {}, \
+             set TMPDIR to a folder with more, or name a file with -o",
+            ::io::files::scratch_folder().display()
+        ));
+    }
+    if let SinkError::Write { source, .. } = error
+        && source.kind() == stdio::ErrorKind::NotSeekable
+    {
+        return Failure::new(
+            Kind::Incomplete,
+            format!("the cloud {} could not be written: {error}", path.display()),
+        )
+        .help("a pipe cannot be gone back in: use -o - and send stdout there, or name a file");
+    }
     Failure::new(
         Kind::Incomplete,
         format!("the cloud {} could not be written: {error}", path.display()),

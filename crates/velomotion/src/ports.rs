@@ -48,8 +48,8 @@ pub fn place(name: &str, device: &Device) -> Result<PathBuf, Failure> {
         Failure::new(
             Kind::BadInput,
             format!(
-                "device {name} is of kind {:?} but names no {key}",
-                device.kind
+                "device {name} is of kind {} but names no {key}",
+                format!("{:?}", device.kind).to_lowercase()
             ),
         )
         .help(format!(

@@ -1,6 +1,7 @@
 //! Reading recordings: passes over a file or a pipe, one sensor of it, its configuration, and its errors in the program's words.
 
 use std::fmt;
+use std::io::ErrorKind;
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -267,6 +268,9 @@ fn cut_off(end: &End) -> Option<String> {
 pub fn failure(error: &RecordingError) -> Failure {
     let help = match error {
         RecordingError::Open { .. } => "see whether the name is right and the file may be read",
+        RecordingError::Read { source, .. } if source.kind() == ErrorKind::IsADirectory => {
+            "name one recording in it"
+        }
         RecordingError::Read { .. } => {
             "see whether the disk is sound; copy the file and try the copy"
         }

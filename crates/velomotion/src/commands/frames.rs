@@ -74,6 +74,13 @@ impl<'a> FrameWriter<'a> {
             Failure::new(Kind::Usage, error.to_string())
                 .help("give --frames an azimuth in degrees, such as 180")
         })?;
+        if plan.output == Path::new("-") {
+            return Err(Failure::new(
+                Kind::Usage,
+                "--frames makes many clouds, and stdout takes one".to_owned(),
+            )
+            .help("give -o a name, such as turn.ply"));
+        }
         if plan.organised && plan.output.extension().is_none_or(|e| e != "pcd") {
             return Err(Failure::new(
                 Kind::Usage,

@@ -39,7 +39,7 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
     let failure = pass.truncated.map(|truncated| {
         Failure::new(
             Kind::Incomplete,
-            format!("{} is cut off: {truncated}", path.display()),
+            format!("{} is not whole: {truncated}", path.display()),
         )
         .help("what is said above holds for the part that is there; replay makes a cloud of it")
     });

@@ -104,7 +104,7 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
     let failure = scan.contents.truncated.as_ref().map(|truncated| {
         Failure::new(
             Kind::Incomplete,
-            format!("{} is cut off: {truncated}", arguments.input.display()),
+            format!("{} is not whole: {truncated}", arguments.input.display()),
         )
         .help(format!(
             "the cloud of what was there is {}; take the recording from its source again if you need the rest",
