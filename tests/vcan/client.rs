@@ -12,7 +12,7 @@ use io::files::Overwrite;
 use io::log::{LogConfig, LogWriter};
 use io::port::Recorder;
 use protocol::record::{DriveLink, Record, Wire};
-use units::{DegPerS, DegPerS2, Degrees};
+use units::{DegPerS, DegPerS2, Degrees, Span};
 use velomotion::config::Axis;
 use velomotion::devices;
 use velomotion::motion::{self, Wish};
@@ -56,7 +56,16 @@ impl<W: std::io::Write> Heard<W> {
 /// 45 degrees at 10 deg/s, sampled at 1 kHz. The logs go to the folder `out`.
 pub fn sweep(out: &Path) {
     let onlooker = Onlooker::start(&out.join(CANDUMP_LOG));
-    let axis = devices::axis(&Axis::default()).unwrap();
+    // With the brake of the checkout's own configuration.
+    let mut axis = devices::axis(&Axis {
+        brake_output: Some(1),
+        ..Axis::default()
+    })
+    .unwrap();
+    // An emulated machine on a busy one may stand still for longer than a drive may be silent; that is tested in virtual time.
+    axis.can.host_limit = Span::from_secs(2);
+    axis.can.node_limit = Span::from_secs(2);
+    axis.timing.timeout_moving = Span::from_secs(1);
     let wish = Wish {
         from: Degrees(0.0),
         to: Degrees(-45.0),
@@ -100,6 +109,8 @@ pub fn sweep(out: &Path) {
     };
     assert!((arrived.angle.0 + 45.0).abs() < 0.01, "{arrived:?}");
     session.run(Command::Brake, &mut |_| {}).unwrap();
+    // What answers the last SYNCs may come after what ends the command: the log has it when something else has been asked.
+    session.run(Command::Status, &mut |_| {}).unwrap();
     assert_eq!(session.port().port().0.dropped(), 0);
     drop(session);
     if let Some(onlooker) = onlooker {
