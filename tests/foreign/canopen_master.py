@@ -118,6 +118,63 @@ write(0x6040, 0x1F, 2)
 wait("an emergency message", lambda: bool(heard))
 seen["emcy"] = heard[0]
 seen["history"] = read(0x1003, 1) & 0xFFFF
+
+# Recovery, then every way of homing, each from where the one before has left the axis.
+write(0x607D, 2**31 - 1, 4, 2)
+write(0x607D, -(2**31), 4, 1)
+
+
+def enabled():
+    for word in (0x00, 0x80, 0x00, 0x06, 0x07):
+        write(0x6040, word, 2)
+    control(0x0F, 0x27, 0x6F, "enabled again")
+
+
+homed = {}
+for method in (1, 2, 7, 11, 17, 18, 23, 27, 33, 34, 35, -1, -2, -3, -4, 18):
+    enabled()
+    for index, value, size, sub in [
+        (0x6060, 6, 1, 0),
+        (0x6098, method, 1, 0),
+        (0x6099, 3000, 4, 1),
+        (0x6099, 400, 4, 2),
+        (0x609A, 30000, 4, 0),
+    ]:
+        write(index, value, size, sub)
+    write(0x6040, 0x1F, 2)
+    wait(f"homing by method {method}", lambda: read(0x6041) & 0x3400 != 0)
+    wait(f"the end of method {method}", lambda: read(0x6041) & 0x2000 != 0 or read(0x6041) & 0x1400 == 0x1400, 60.0)
+    homed[str(method)] = read(0x6041) & 0x3400 == 0x1400
+seen["homed"] = homed
+
+
+def run_up():
+    """Goes up, off any stop first, until a fault; what was heard of it."""
+    enabled()
+    write(0x6060, 1, 1)
+    write(0x6081, 2000, 4)
+    write(0x607A, -3000, 4)
+    write(0x6040, 0x1F, 2)
+    wait("room above", lambda: read(0x6041) & 0x0400 != 0)
+    write(0x1003, 0, 1)
+    heard.clear()
+    write(0x6040, 0x0F, 2)
+    write(0x607A, 100_000, 4)
+    write(0x6040, 0x1F, 2)
+    wait("a fault", lambda: read(0x6041) & 0x4F == 0x08)
+    count = read(0x1003)
+    wait("its emergency message", lambda: bool(heard))
+    return {"heard": list(heard), "history": [read(0x1003, sub) & 0xFFFF for sub in range(1, count + 1)]}
+
+
+# A limit switch with its bit in the execution mask is one fault; without, the axis goes on to the mechanical stop.
+write(0x2071, 0x000B, 2, 4)
+seen["limit_switch"] = run_up()
+write(0x2071, 0x0008, 2, 4)
+seen["mechanical_stop"] = run_up()
+enabled()
+seen["enabled_again"] = read(0x6041) & 0x6F == 0x27
+write(0x6040, 0x00, 2)
 seen["error_register"] = read(0x1001)
 
 network.disconnect()

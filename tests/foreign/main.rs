@@ -222,4 +222,12 @@ fn python_canopen_runs_our_software_drive_over_slcan() {
     );
     assert_eq!(seen["emcy"], 0xFF09, "{seen}");
     assert_eq!(seen["history"], 0xFF09, "{seen}");
+    let homed = seen["homed"].as_object().unwrap();
+    assert_eq!(homed.len(), 15, "{seen}");
+    assert!(homed.values().all(|attained| attained == true), "{seen}");
+    for (met, error) in [("limit_switch", 0xFF07), ("mechanical_stop", 0x8611)] {
+        assert_eq!(seen[met]["heard"], serde_json::json!([error]), "{seen}");
+        assert_eq!(seen[met]["history"], serde_json::json!([error]), "{seen}");
+    }
+    assert_eq!(seen["enabled_again"], true, "{seen}");
 }
