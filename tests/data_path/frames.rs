@@ -28,7 +28,6 @@ fn frames(log: &Path, output: &Path, organised: bool) -> Scan {
         organised,
         fields: cloud::Fields::FILE,
         output: output.to_owned(),
-        fields: cloud::Fields::FILE,
         force: false,
     };
     replay::frames(&request, &plan).unwrap()

@@ -7,7 +7,7 @@
 
 use scanner::clock::Moment;
 use scanner::trajectory::Method;
-use scanner::{Survey, TiltSource};
+use scanner::{Accuracy, Survey, TiltSource};
 use sim::Attached;
 use units::{DegPerS, Degrees, Span};
 use velomotion::recordings::Source;
@@ -178,7 +178,7 @@ fn angles(captured: &Captured, method: Method, case: usize, seed: u64) -> Vec<Se
     });
     read.unwrap();
     let alignment = survey
-        .solve_by(&config, &TiltSource::Log, Some(method))
+        .solve_to(&config, &TiltSource::Log, Accuracy::By(method))
         .unwrap();
     let (sweep, truth) = (&alignment.sweeps[0], captured.truth());
     let length = sweep.end - sweep.start;
