@@ -238,6 +238,7 @@ fn files_that_are_no_recordings_are_refused() {
         place.fails(&format!("{verb} text.pcap"), 3, &["pcap"]);
     }
     place.fails("replay --tilt none other.pcap", 3, &["no lidar"]);
+    place.fails("info .", 3, &["name one recording in it"]);
     place.fails("replay --tilt missing.csv other.pcap", 3, &["missing.csv"]);
 }
 
@@ -270,6 +271,23 @@ fn recording(name: &str) -> Option<PathBuf> {
     }
     eprintln!("skipped: {} is not there", path.display());
     None
+}
+
+#[test]
+fn names_are_not_broken_at_the_end_of_a_line() {
+    let place = Place::new();
+    let name = format!("{}.pcap", "a-b".repeat(30));
+    let said = place.run(&format!("info {name}")).stderr;
+    assert!(String::from_utf8_lossy(&said).contains(&name));
+}
+
+#[test]
+fn frames_go_to_files_only() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let line = format!("replay {} --tilt none --frames 180 -o -", path.display());
+    Place::new().fails(&line, 2, &["stdout takes one", "turn.ply"]);
 }
 
 #[test]

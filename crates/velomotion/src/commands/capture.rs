@@ -316,3 +316,26 @@ fn motion_failure(error: &SessionError, recorded: Option<Failure>) -> Failure {
         None => failure,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_capture_without_a_cloud_says_where_its_log_is() {
+        let two = Failure::new(Kind::BadInput, "2 lidars in one recording")
+            .help("choose one with --sensor");
+        let failure = without_cloud(two, Path::new("hall.pcapng"));
+        assert_eq!(failure.kind, Kind::Incomplete);
+        assert_eq!(failure.message, "2 lidars in one recording");
+        let help = failure.help.unwrap();
+        assert!(
+            help.contains("--sensor") && help.contains("replay hall.pcapng"),
+            "{help}"
+        );
+        // Ctrl-C while the cloud is made stays what it is.
+        let stopped = Failure::new(Kind::Interrupted, "stopped");
+        let failure = without_cloud(stopped, Path::new("hall.pcapng"));
+        assert_eq!(failure.kind, Kind::Interrupted);
+    }
+}
