@@ -102,6 +102,7 @@ pub static PUCK_HI_RES: Model = Model {
 };
 
 /// HDL-32E (its manual, "Laser firing sequence"): 4/3 degree steps, printed to two decimals and used as printed; no azimuth offsets.
+/// Where its rays start is in the maker's drawing 86-0106 (revision B, sheet 2), not in the manual.
 ///
 /// Appendix E of the manual's early editions gives a laser's time as -542.592 us + 46.08 us x block + 1.152 us x laser: one
 /// after the other, not in pairs, and from a timestamp written when the packet ended. The times here count from the first
@@ -119,7 +120,7 @@ pub static HDL_32E: Model = Model {
 /// VLP-32C (manual 63-9325, table 9-2, section 9.5): lasers fire in pairs, off the centre line by one of four angles.
 ///
 /// The maker's XML calibration has the azimuth offsets with the opposite sign because VeloView subtracts them; here they are
-/// as in the manual and are added. The manual's sample code multiplies the pair's time by the laser's number, which would
+/// as in the manual and are added. Neither the manual nor that calibration says how high the rays start: all start in one point here. The manual's sample code multiplies the pair's time by the laser's number, which would
 /// make the last pair fire after the next firing began; pairs are counted here, as its figure 9-7 has it.
 pub static VLP_32C: Model = Model {
     name: "VLP-32C",
@@ -163,7 +164,11 @@ static HDL_32E_LASERS: [Laser; 32] = lasers(
         -22.67, -1.33, -21.33, 0.0, -20.0, 1.33, -18.67, 2.67, -17.33, 4.0, -16.0, 5.33, -14.67,
         6.67, -13.33, 8.0, -12.0, 9.33, -10.67, 10.67,
     ],
-    [0.0; 32],
+    [
+        17.17, 4.76, 16.27, 4.07, 15.4, 3.38, 14.54, 2.7, 13.71, 2.02, 12.89, 1.35, 12.09, 0.67,
+        11.31, 0.0, 10.54, -0.67, 9.78, -1.35, 9.04, -2.02, 8.3, -2.7, 7.58, -3.38, 6.86, -4.07,
+        6.15, -4.76, 5.45, -5.45,
+    ],
     [0.0; 32],
     1_152,
     1,
@@ -292,10 +297,12 @@ mod tests {
                 assert!(laser.elevation_deg * laser.vertical_offset_m <= 0.0);
             }
         }
-        // HDL-32E: 4/3 degree steps.
+        // HDL-32E: 4/3 degree steps, and all rays cross 28.95 mm in front of the axis.
         for laser in HDL_32E.lasers {
             let exact = -92.0 / 3.0 + 4.0 / 3.0 * f64::from(laser.ring);
             assert!((laser.elevation_deg - exact).abs() < 0.0051, "{laser:?}");
+            let crossing_m = 0.02895 * -laser.elevation_deg.to_radians().tan();
+            assert!((laser.vertical_offset_m - crossing_m).abs() < 1.1e-5, "{laser:?}");
         }
         // VLP-32C table 9-6: no two neighbours in elevation share a column.
         let column = |ring: u8| VLP_32C.lasers.iter().find(|l| l.ring == ring).unwrap();
