@@ -108,7 +108,7 @@ pub struct Replay {
     #[arg(long, value_enum, default_value_t = TimeOf::Host)]
     pub time: TimeOf,
     /// Make a cloud of each turn of the lidar, cut at this azimuth; -o NAME.ply gives NAME-00000.ply and so on
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = azimuth)]
     pub frames: Option<f64>,
     /// Keep the shots without a return: a row a ring, a column a firing (.pcd, with --frames)
     #[arg(long, requires = "frames")]
@@ -321,6 +321,16 @@ pub struct FirmwareSim {
     /// Make a symbolic link to the port
     #[arg(long, value_name = "PATH", conflicts_with = "can")]
     pub link: Option<PathBuf>,
+}
+
+/// An azimuth as a user may give it, degrees.
+fn azimuth(text: &str) -> Result<f64, String> {
+    let degrees: f64 = text.parse().map_err(|_| "expected degrees".to_owned())?;
+    if (-360.0..=360.0).contains(&degrees) {
+        Ok(degrees)
+    } else {
+        Err("expected an azimuth from -360 to 360 degrees".to_owned())
+    }
 }
 
 #[cfg(test)]

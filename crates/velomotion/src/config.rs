@@ -327,6 +327,28 @@ impl Config {
                 ));
             }
         }
+        let devices = self.device.profiles.iter();
+        devices
+            .map(|(name, device)| device.check(name))
+            .find(Result::is_err)
+            .unwrap_or(Ok(()))
+    }
+}
+
+impl Device {
+    fn check(&self, name: &str) -> Result<(), String> {
+        let accel = self.accel_deg_s2;
+        if !(accel > 0.0 && accel <= 1e9) {
+            return Err(format!(
+                "device.{name}.accel_deg_s2: expected a number above 0 up to 1000000000, got {accel}"
+            ));
+        }
+        let has_none = matches!(self.kind, DeviceKind::Sim | DeviceKind::Can);
+        if let Some(baud) = self.baud.filter(|_| has_none) {
+            return Err(format!(
+                "device.{name}.baud: expected on a serial port only, got {baud} on a device without one"
+            ));
+        }
         Ok(())
     }
 }
@@ -383,6 +405,13 @@ mod tests {
             let config: Config = toml::from_str(text).unwrap();
             let said = config.check().unwrap_err();
             assert!(said.starts_with(key), "{text}: {said}");
+        }
+        for (keys, key) in [
+            ("kind = 'usb'\naccel_deg_s2 = -5.0", "device.a.accel_deg_s2"),
+            ("kind = 'can'\nbaud = 9600", "device.a.baud"),
+        ] {
+            let config: Config = toml::from_str(&format!("[device.a]\n{keys}")).unwrap();
+            assert!(config.check().unwrap_err().starts_with(key), "{keys}");
         }
         assert_eq!(Config::default().check(), Ok(()));
     }

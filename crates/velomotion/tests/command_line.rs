@@ -291,6 +291,41 @@ fn frames_go_to_files_only() {
 }
 
 #[test]
+fn frames_are_cut_at_an_azimuth() {
+    for wrong in ["400", "-361", "nan", "north"] {
+        let output = Place::new().run(&format!("replay scan.pcap --frames {wrong}"));
+        assert_eq!(output.status.code(), Some(2), "{wrong}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("--frames"));
+    }
+}
+
+#[test]
+fn frames_in_utc_are_the_cloud_in_utc() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let rows = |bytes: Vec<u8>| {
+        let mark = b"end_header\n";
+        let at = bytes.windows(mark.len()).position(|w| w == mark).unwrap();
+        bytes[at + mark.len()..].to_vec()
+    };
+    let place = Place::new();
+    let input = path.display();
+    for options in ["-o whole.ply", "--frames 180 -o turn.ply"] {
+        let line = format!("replay {input} --tilt none --time utc {options}");
+        assert!(place.run(&line).status.success());
+    }
+    let whole = rows(std::fs::read(place.path("whole.ply")).unwrap());
+    let turns = (0..).map_while(|i| std::fs::read(place.path(&format!("turn-{i:05}.ply"))).ok());
+    let turns: Vec<Vec<u8>> = turns.map(rows).collect();
+    assert!(turns.len() > 3, "{}", turns.len());
+    assert_eq!(turns.concat(), whole);
+    let organised =
+        format!("replay {input} --tilt none --time utc --frames 180 --organised -o o.pcd");
+    assert!(place.run(&organised).status.success());
+}
+
+#[test]
 fn a_real_recording_becomes_a_cloud() {
     let Some(path) = recording("vlp16-strongest-gps.pcap") else {
         return;

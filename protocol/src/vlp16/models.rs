@@ -302,7 +302,10 @@ mod tests {
             let exact = -92.0 / 3.0 + 4.0 / 3.0 * f64::from(laser.ring);
             assert!((laser.elevation_deg - exact).abs() < 0.0051, "{laser:?}");
             let crossing_m = 0.02895 * -laser.elevation_deg.to_radians().tan();
-            assert!((laser.vertical_offset_m - crossing_m).abs() < 1.1e-5, "{laser:?}");
+            assert!(
+                (laser.vertical_offset_m - crossing_m).abs() < 1.1e-5,
+                "{laser:?}"
+            );
         }
         // VLP-32C table 9-6: no two neighbours in elevation share a column.
         let column = |ring: u8| VLP_32C.lasers.iter().find(|l| l.ring == ring).unwrap();

@@ -85,9 +85,8 @@ fn drives(found: &Findings, read: Sysfs<'_>) -> Vec<Finding> {
     let mut findings: Vec<Finding> = found.epos2.iter().map(|unit| epos2(unit, read)).collect();
     if findings.is_empty() {
         findings.push(
-            finding("EPOS2 on USB", Verdict::Warning, "none (0403:A8B0)").todo(
-                "plug it in and switch its supply on; a drive on RS232 or CAN does not show here",
-            ),
+            finding("EPOS2 on USB", Verdict::Warning, "none (0403:A8B0)")
+                .todo("plug it in and switch it on; a drive on RS232 or CAN does not show here"),
         );
     }
     for port in &found.serial_ports {
@@ -210,7 +209,7 @@ fn receive_buffer(read: Sysfs<'_>) -> Finding {
             what,
             Verdict::Warning,
             format!(
-                "at most {} KiB: packets are lost if this machine pauses longer than it holds",
+                "at most {} KiB: a long pause of this machine loses packets",
                 limit >> 10
             ),
         )

@@ -4,10 +4,10 @@
 use std::path::{Path, PathBuf};
 
 use cloud::{Fields, Metadata, Point, Points};
-use lidar::{Decoder, Firing, Frame, FrameCutter, FrameError, Options, OrganisedFrame, Stats};
+use lidar::{Decoder, Firing, Frame, FrameCutter, Options, OrganisedFrame, Stats, UtcClock};
 use protocol::record::{Record, Wire};
 use scanner::{Alignment, Placed};
-use units::{Degrees, Host, Stamp};
+use units::{Degrees, Host, Lidar, Span, Stamp};
 
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
@@ -40,6 +40,8 @@ pub struct FrameWriter<'a> {
 pub struct Written {
     /// Points, and returns that have no place.
     pub placed: Placed,
+    /// Points that were left out: the lidar's clock was not locked to UTC.
+    pub without_utc: u64,
     /// Clouds.
     pub clouds: u64,
 }
@@ -47,14 +49,17 @@ pub struct Written {
 /// The frame being filled.
 struct Filling<'a> {
     alignment: &'a Alignment,
+    /// UTC by the lidar's receiver, where times are to be in it.
+    utc: Option<&'a UtcClock>,
     organised: bool,
     cutter: FrameCutter,
     points: Points,
     grid: OrganisedFrame,
     placed: Placed,
+    without_utc: u64,
     /// Frames that have ended and are not written yet, with their rows.
     ended: Vec<(Frame, Points, u64)>,
-    error: Option<FrameError>,
+    error: Option<Failure>,
     /// When the last record came.
     near: Option<Stamp<Host>>,
 }
@@ -67,6 +72,7 @@ impl<'a> FrameWriter<'a> {
     pub fn new(
         plan: &'a FramePlan,
         alignment: &'a Alignment,
+        utc: Option<&'a UtcClock>,
         options: Options,
         metadata: Metadata,
     ) -> Result<Self, Failure> {
@@ -94,11 +100,13 @@ impl<'a> FrameWriter<'a> {
             decoder: Decoder::new(options),
             filling: Filling {
                 alignment,
+                utc,
                 organised: plan.organised,
                 cutter,
                 points: Points::new(plan.fields),
                 grid: OrganisedFrame::new(),
                 placed: Placed::default(),
+                without_utc: 0,
                 ended: Vec::new(),
                 error: None,
                 near: None,
@@ -133,13 +141,13 @@ impl<'a> FrameWriter<'a> {
         }
         self.write(written)?;
         written.placed = self.filling.placed;
+        written.without_utc = self.filling.without_utc;
         Ok(self.decoder.stats().clone())
     }
 
     fn write(&mut self, written: &mut Written) -> Result<(), Failure> {
         if let Some(error) = self.filling.error.take() {
-            return Err(Failure::new(Kind::BadInput, error.to_string())
-                .help("say which model it is with --model"));
+            return Err(error);
         }
         for (frame, points, rows) in std::mem::take(&mut self.filling.ended) {
             let path = name(&self.plan.output, frame.index);
@@ -173,20 +181,36 @@ impl Filling<'_> {
             self.end(frame);
         }
         if self.organised {
+            if self.utc.is_some_and(|clock| !has_utc(clock, firing)) {
+                self.without_utc += firing.points().count() as u64;
+                return;
+            }
             if let Err(error) = self.grid.push(firing) {
+                let error = Failure::new(Kind::BadInput, error.to_string())
+                    .help("say which model it is with --model");
                 self.error.get_or_insert(error);
             }
             return;
         }
-        for point in firing.points() {
-            match self.alignment.place_near(&point, self.near) {
-                Some(point) => {
-                    self.placed.points += 1;
-                    self.points.push(point);
-                }
+        for seen in firing.points() {
+            match self.alignment.place_near(&seen, self.near) {
+                Some(point) => self.keep(point),
                 None => self.placed.outside += 1,
             }
         }
+    }
+
+    /// Adds a point to a frame that is not organised.
+    fn keep(&mut self, mut point: Point) {
+        if let Some(clock) = self.utc {
+            let Some(time) = in_utc(clock, point.device_time) else {
+                self.without_utc += 1;
+                return;
+            };
+            point.time = time;
+        }
+        self.placed.points += 1;
+        self.points.push(point);
     }
 
     /// The frame is complete; one without points is not worth a cloud.
@@ -224,11 +248,28 @@ impl Filling<'_> {
                         (None, None) => {}
                     }
                     let nothing = || nothing(alignment, self.near, grid, ring, column);
-                    self.points.push(placed.unwrap_or_else(nothing));
+                    let mut point = placed.unwrap_or_else(nothing);
+                    let fired = grid.time(ring, column);
+                    if let Some(time) = fired.zip(self.utc).and_then(|(at, utc)| in_utc(utc, at)) {
+                        point.time = time;
+                    }
+                    self.points.push(point);
                 }
             }
         }
     }
+}
+
+fn in_utc(clock: &UtcClock, device_time: Stamp<Lidar>) -> Option<Stamp<Host>> {
+    let utc = clock.utc(device_time)?;
+    Some(Stamp::from_nanos(utc.as_nanos()))
+}
+
+/// Whether the clock was locked from a firing's first laser to its last: an organised frame has it whole or not at all.
+fn has_utc(clock: &UtcClock, firing: &Firing<'_>) -> bool {
+    let last = firing.model.lasers.iter().map(|laser| laser.delay_ns).max();
+    let end = firing.start + Span::from_nanos(i64::from(last.unwrap_or(0)));
+    clock.utc(firing.start).is_some() && clock.utc(end).is_some()
 }
 
 /// The point of a shot that brought nothing back: fired then, by that laser, without a place.

@@ -193,23 +193,32 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
     let without = sink.without();
     placed.points -= without;
     if placed.points == 0 {
-        return Err(Failure::new(
-            Kind::BadInput,
-            format!(
-                "{}: the lidar's clock was never locked to UTC while it fired",
-                request.recording.path().display()
-            ),
-        )
-        .help("info says why; without --time utc times are of the recording host's clock"));
+        return Err(never_locked(request));
     }
     let mut scan = report(request, &surveyed, placed, &stats, output)?;
-    if without > 0 {
-        scan.left_out += without;
+    left_out(&mut scan, without);
+    Ok(scan)
+}
+
+fn never_locked(request: &Request<'_>) -> Failure {
+    Failure::new(
+        Kind::BadInput,
+        format!(
+            "{}: the lidar's clock was never locked to UTC while it fired",
+            request.recording.path().display()
+        ),
+    )
+    .help("info says why; without --time utc times are of the recording host's clock")
+}
+
+/// Says how many points have no UTC.
+fn left_out(scan: &mut Scan, without_utc: u64) {
+    if without_utc > 0 {
+        scan.left_out += without_utc;
         scan.contents.warnings.push(format!(
-            "{without} points were left out: the lidar's clock was not locked to UTC"
+            "{without_utc} points were left out: the lidar's clock was not locked to UTC"
         ));
     }
-    Ok(scan)
 }
 
 /// The second pass.
@@ -239,18 +248,12 @@ fn place(
 /// # Errors
 /// As for [`make`], and [`Kind::Usage`] for frames that cannot be.
 pub fn frames(request: &Request<'_>, plan: &FramePlan) -> Result<Scan, Failure> {
-    if request.time == TimeOf::Utc {
-        return Err(Failure::new(
-            Kind::Usage,
-            "--frames and --time utc do not go together yet".to_owned(),
-        )
-        .help("make one cloud in UTC, or frames in the recording host's time"));
-    }
     let surveyed = survey(request)?;
     let metadata = metadata(&surveyed.config, request);
     let mut pace = pacer(request.pace)?;
     let options = request.options.clone();
-    let mut writer = FrameWriter::new(plan, &surveyed.alignment, options, metadata)?;
+    let utc = surveyed.utc.as_ref();
+    let mut writer = FrameWriter::new(plan, &surveyed.alignment, utc, options, metadata)?;
     let mut written = Written::default();
     request.recording.read(|record| {
         if let Some(pace) = &mut pace {
@@ -260,8 +263,12 @@ pub fn frames(request: &Request<'_>, plan: &FramePlan) -> Result<Scan, Failure> 
         go_on(request)
     })?;
     let stats = writer.finish(&mut written)?;
+    if written.placed.points == 0 && written.without_utc > 0 {
+        return Err(never_locked(request));
+    }
     let mut scan = report(request, &surveyed, written.placed, &stats, &plan.output)?;
     scan.clouds = Some(written.clouds);
+    left_out(&mut scan, written.without_utc);
     Ok(scan)
 }
 
