@@ -5,11 +5,12 @@
 //! so that the two agreeing is evidence. There is no I/O, no clock and no global randomness: time and seeds are
 //! arguments, and one seed gives one result.
 //!
-//! Left out: effects of the real world (range noise, beam divergence, loss, jitter of the sensor's own clock). What is not
-//! here costs nothing.
+//! [`effects`] are absent unless asked for, and cost nothing then. Left out: range noise, beam divergence, loss, jitter of the
+//! sensor's own clock.
 
 mod attached;
 mod clock;
+pub mod effects;
 mod head;
 pub mod link;
 pub mod packet_clock;

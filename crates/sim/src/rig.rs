@@ -14,6 +14,7 @@ use units::{Degrees, Gearing, Host, Metres, Stamp};
 
 use crate::attached::{Attached, Server};
 use crate::clock::LidarClock;
+use crate::effects::GearRipple;
 use crate::scene::Scene;
 use crate::scenes;
 use crate::shaft::{CYCLE, Shaft};
@@ -34,6 +35,8 @@ pub struct RigConfig {
     pub attached: Attached,
     /// From the motor's shaft to the platform; tilt 0 (level) is the shaft's position 0.
     pub gearing: Gearing,
+    /// What the gear adds to that; `None`: nothing.
+    pub ripple: Option<GearRipple>,
     /// The lidar.
     pub lidar: LidarConfig,
     /// Host time at which both devices are switched on.
@@ -77,6 +80,7 @@ impl RigConfig {
             drive: NodeConfig::default(),
             attached: Attached::Usb,
             gearing: GEARING,
+            ripple: None,
             lidar: LidarConfig::default(),
             start,
             seed: 0,
@@ -136,6 +140,7 @@ impl Rig {
             drive,
             attached,
             gearing,
+            ripple,
             lidar,
             start,
             seed,
@@ -148,7 +153,7 @@ impl Rig {
         let node = Node::new(drive);
         let mut rig = Self {
             world: World::new(scene, mount, clock, spin),
-            shaft: Shaft::new(start, gearing, node.segment().start),
+            shaft: Shaft::new(start, gearing, node.segment().start).with_ripple(ripple),
             node,
             server: Server::new(attached, seed),
             lidar: Spinning::default(),

@@ -1,8 +1,9 @@
 //! Where the motor shaft has been: its position at every control cycle, straight in between.
 //!
 //! Eight bytes a millisecond. The position is the mechanical one, whatever the drive calls zero. Left out: how it moved,
-//! which is the drive's firmware, and backlash and ripple of the gear.
+//! which is the drive's firmware, and backlash of the gear.
 
+use crate::effects::GearRipple;
 use units::{Degrees, Gearing, Host, Span, Stamp};
 
 /// The drive's control cycle.
@@ -13,6 +14,8 @@ pub(crate) const CYCLE: Span = Span::from_millis(1);
 pub(crate) struct Shaft {
     start: Stamp<Host>,
     degrees_per_qc: f64,
+    qc_per_motor_turn: f64,
+    ripple: Option<GearRipple>,
     /// Position at the beginning of each cycle, and at the end of the last, in 2^-32 quadcounts.
     knots: Vec<i64>,
 }
@@ -23,8 +26,15 @@ impl Shaft {
         Self {
             start,
             degrees_per_qc: gearing.degrees_per_qc(),
+            qc_per_motor_turn: f64::from(gearing.qc_per_motor_turn()),
+            ripple: None,
             knots: vec![position],
         }
+    }
+
+    /// The same behind a gear that is not true.
+    pub fn with_ripple(self, ripple: Option<GearRipple>) -> Self {
+        Self { ripple, ..self }
     }
 
     /// Adds the next cycle, at whose end the shaft is at `position` (2^-32 quadcounts).
@@ -39,7 +49,7 @@ impl Shaft {
         self.start.saturating_add(Span::from_nanos(ns))
     }
 
-    /// The tilt angle at an instant of the known motion.
+    /// The platform's tilt angle at an instant of the known motion.
     #[inline]
     pub fn tilt(&self, host: Stamp<Host>) -> Option<Degrees> {
         let since = host.saturating_since(self.start).as_nanos();
@@ -48,9 +58,12 @@ impl Shaft {
         let from = *self.knots.get(cycle)? as f64;
         let to = *self.knots.get(cycle + 1)? as f64;
         const QUADCOUNT: f64 = (1_u64 << 32) as f64;
-        Some(Degrees(
-            (from + (to - from) * into) / QUADCOUNT * self.degrees_per_qc,
-        ))
+        let position_qc = (from + (to - from) * into) / QUADCOUNT;
+        let even = position_qc * self.degrees_per_qc;
+        Some(match &self.ripple {
+            None => Degrees(even),
+            Some(ripple) => Degrees(even + ripple.ahead(position_qc / self.qc_per_motor_turn).0),
+        })
     }
 }
 
@@ -92,5 +105,21 @@ mod tests {
         assert_eq!(tilt(2_000_000), None);
         assert_eq!(tilt(i64::MAX - 1_000), None);
         assert_eq!(shaft().end(), Stamp::from_nanos(2_001_000));
+    }
+
+    #[test]
+    fn a_gear_that_is_not_true_moves_the_platform_alone() {
+        let ripple = GearRipple {
+            amplitude: Degrees(0.003),
+            per_motor_turn: 1,
+            phase: Degrees(90.0),
+        };
+        let even = shaft();
+        let rippled = shaft().with_ripple(Some(ripple));
+        let at = Stamp::from_nanos(501_000);
+        let off = rippled.tilt(at).unwrap().0 - even.tilt(at).unwrap().0;
+        let turn = (-2.0 / 2000.0_f64) * core::f64::consts::TAU;
+        assert!((off - 0.003 * turn.cos()).abs() < 1e-12, "{off}");
+        assert_eq!(rippled.knots, even.knots);
     }
 }

@@ -39,7 +39,7 @@ impl Truth {
         Some(found.point_m.to_array())
     }
 
-    /// The tilt angle at a host time, degrees; `None` outside the run.
+    /// The platform's tilt angle at a host time, degrees, with what the gear adds to the motor's; `None` outside the run.
     #[must_use]
     pub fn tilt_deg_at(&self, host: Stamp<Host>) -> Option<f64> {
         self.shaft.tilt(host).map(|angle| angle.0)

@@ -5,6 +5,8 @@
 
 use protocol::epos2::DeviceError;
 
+pub use super::servo::Servo;
+
 /// The most switches an axis has.
 pub const MAX_SWITCHES: usize = 4;
 
@@ -23,6 +25,8 @@ pub struct NodeConfig {
     pub index_position: i32,
     /// Where the mechanics end, world qc: below, above. The shaft goes no farther, whatever its demand does.
     pub hard_stops: [Option<i32>; 2],
+    /// How the shaft follows its demand; `None`: exactly.
+    pub servo: Option<Servo>,
     /// The switches on the digital inputs.
     pub switches: [Option<Switch>; MAX_SWITCHES],
     /// The error that the unit has at power-on, such as [`DeviceError::CAN_PASSIVE`] where no CAN bus is connected.
@@ -87,7 +91,7 @@ impl Default for Identity {
 
 impl Default for NodeConfig {
     /// A tilt axis of 500 lines behind 120:1 (0.0015 deg/qc) whose world zero is level: limit switches 65 degrees either side on the
-    /// inputs that are the factory's choice (6 negative, 5 positive), no hard stops, 4.5 degrees down at power-on, and the fault of
+    /// inputs that are the factory's choice (6 negative, 5 positive), no hard stops, no lag, 4.5 degrees down at power-on, and the fault of
     /// a unit that is used over USB alone.
     fn default() -> Self {
         let limit = |input, pressed| {
@@ -104,6 +108,7 @@ impl Default for NodeConfig {
             initial_position: -3_000,
             index_position: 700,
             hard_stops: [None; 2],
+            servo: None,
             switches: [
                 limit(6, Region::AtMost(-43_334)),
                 limit(5, Region::AtLeast(43_334)),

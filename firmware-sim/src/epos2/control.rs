@@ -167,6 +167,7 @@ impl Node {
     /// where the shaft is from now on.
     fn power_off(&mut self, to: State) {
         self.abandon_motion();
+        self.shaft.rest();
         self.generator.rest_at(self.shaft.position());
         self.brake_released = false;
         self.sequence = Sequence::Idle;

@@ -20,8 +20,8 @@ impl Node {
 
     /// A velocity controller has no position to return to: a shaft that is held takes its demand with it.
     pub(super) fn follow_shaft(&mut self) {
-        if self.mode == mode::PROFILE_VELOCITY && self.shaft.is_behind() {
-            let behind = self.shaft.position() - self.generator.position();
+        if self.mode == mode::PROFILE_VELOCITY && self.shaft.is_held() {
+            let behind = self.shaft.give_way(self.generator.position());
             self.velocity_mode.held = self.generator.speed().0.signum() as i16;
             self.generator.shift(behind);
         } else {
@@ -40,7 +40,7 @@ impl Node {
         self.following_error().clamp(-most - 1, most) as i16
     }
 
-    /// 606C: while the shaft follows, the speed of the demand at the end of the control cycle.
+    /// 606C: while the shaft follows exactly, the speed of the demand at the end of the control cycle.
     pub(super) fn velocity_actual_rpm(&self) -> i32 {
         if self.shaft.is_behind() || self.velocity_mode.held != 0 {
             self.shaft.speed(self.generator.qc_per_turn()).to_rpm()

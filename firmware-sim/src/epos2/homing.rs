@@ -218,6 +218,7 @@ impl Node {
         if current < i32::from(self.dictionary.get(objects::HOMING_CURRENT)) {
             return;
         }
+        self.shaft.rest();
         self.generator.rest_at(self.shaft.position());
         match self.homing.method.index {
             Some(direction) => {

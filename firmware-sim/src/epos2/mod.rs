@@ -5,8 +5,8 @@
 //! [`CanServer`] those of a CAN bus, [`SlcanServer`] the same through a serial CAN adapter. A [`Bus`] is what its gateway reaches.
 //! Facts are from the EPOS2 Firmware Specification and Communication Guide; where they are silent the choice is said in a comment.
 //!
-//! Left out: the modes a tilt axis has no use for, and everything electrical. The shaft follows its demand exactly unless something
-//! holds it; an unpowered shaft stays where it is, brake or not.
+//! Left out: the modes a tilt axis has no use for, and everything electrical. The shaft follows its demand exactly unless the
+//! configuration gives its servo a lag ([`Servo`]) or something holds it; an unpowered shaft stays where it is, brake or not.
 
 mod brake;
 mod bus;
@@ -34,6 +34,7 @@ mod position_mode;
 mod profile;
 mod rs232;
 mod service;
+mod servo;
 mod shaft;
 mod slcan;
 mod storage;
@@ -45,7 +46,7 @@ mod velocity_mode;
 pub use brake::Brake;
 pub use bus::{Bus, Neighbour};
 pub use can::CanServer;
-pub use config::{Identity, MAX_SWITCHES, NodeConfig, Region, Switch};
+pub use config::{Identity, MAX_SWITCHES, NodeConfig, Region, Servo, Switch};
 pub use node::{Node, Segment};
 pub use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
 pub use rs232::Rs232Server;

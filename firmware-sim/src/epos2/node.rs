@@ -72,7 +72,11 @@ impl Node {
     #[must_use]
     pub fn new(config: NodeConfig) -> Self {
         let saved = factory(&config);
-        let shaft = Shaft::new(fine(config.initial_position.into()), config.hard_stops);
+        let shaft = Shaft::new(
+            fine(config.initial_position.into()),
+            config.hard_stops,
+            config.servo,
+        );
         Self::boot(config, saved, shaft, Network::at_power_on())
     }
 

@@ -1,10 +1,11 @@
-//! The shaft behind the demand: an ideal servo that follows exactly, until something is in its way.
+//! The shaft behind the demand: an ideal servo that follows exactly, or one with a lag ([`Servo`]), until something is in its way.
 //!
-//! A hard stop or a jam holds the shaft while the demand goes on; free again, it catches up no faster than any motor of this drive
-//! turns. The current follows the distance between the two, as that of a proportional position controller. Inertia, friction,
-//! lag and ripple are left out.
+//! A hard stop or a jam holds the shaft while the servo goes on; free again, it catches up no faster than any motor of this drive
+//! turns. The current follows the distance between the two, as that of a proportional position controller. Load, friction and
+//! ripple are left out.
 
 use super::fixed::{FINE_PER_QC, Fine, Speed, fine};
+use super::servo::{Follower, Servo};
 
 /// Current for each quadcount that the shaft is off its demand, mA.
 const MA_PER_QC: i64 = 5;
@@ -15,41 +16,81 @@ const FASTEST_RPM: i64 = 26_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shaft {
     position: Fine,
+    /// Where it would be if nothing held it; `None`: where its demand is.
+    servo: Option<Follower>,
     jammed: bool,
     /// Hard stops, world qc: below, above.
     stops: [Option<i32>; 2],
     /// In the last millisecond.
     moved: Fine,
-    /// It could not follow in the last millisecond, or has not caught up.
+    /// It is not where its demand is.
     behind: bool,
+    /// It could not follow its servo in the last millisecond, or has not caught up.
+    held: bool,
 }
 
 impl Shaft {
-    pub const fn new(position: Fine, stops: [Option<i32>; 2]) -> Self {
+    pub const fn new(position: Fine, stops: [Option<i32>; 2], servo: Option<Servo>) -> Self {
+        let servo = match servo {
+            Some(servo) => Some(Follower::new(servo, position)),
+            None => None,
+        };
         Self {
             position,
+            servo,
             jammed: false,
             stops,
             moved: 0,
             behind: false,
+            held: false,
         }
     }
 
     /// The drive has lost its power; the mechanics have not changed.
     pub const fn at_power_on(self) -> Self {
-        Self {
+        let mut shaft = Self {
             moved: 0,
             behind: false,
+            held: false,
             ..self
+        };
+        shaft.rest();
+        shaft
+    }
+
+    /// Nothing drives it from now on: its demand is where it is.
+    pub const fn rest(&mut self) {
+        if let Some(servo) = &mut self.servo {
+            servo.rest_at(self.position);
         }
+    }
+
+    /// Where it would be at this demand if nothing held it.
+    fn free(&self, demand: Fine) -> Fine {
+        self.servo.map_or(demand, |servo| servo.position())
+    }
+
+    /// How far it is off where it would be, once something has held it; the servo goes on from where the shaft is.
+    pub fn give_way(&mut self, demand: Fine) -> Fine {
+        let behind = self.position - self.free(demand);
+        if let Some(servo) = &mut self.servo {
+            servo.shift(behind);
+        }
+        behind
     }
 
     pub const fn position(&self) -> Fine {
         self.position
     }
 
+    /// Whether it is off its demand, be it by the servo's lag.
     pub const fn is_behind(&self) -> bool {
         self.behind
+    }
+
+    /// Whether something is, or was, in its way.
+    pub const fn is_held(&self) -> bool {
+        self.held
     }
 
     pub fn jam(&mut self, jammed: bool) {
@@ -61,7 +102,11 @@ impl Shaft {
         let [low, high] = self.stops;
         let low = low.map_or(Fine::MIN, |qc| fine(qc.into()));
         let high = high.map_or(Fine::MAX, |qc| fine(qc.into()));
-        let wanted = demand.max(low).min(high);
+        if let Some(servo) = &mut self.servo {
+            servo.follow(demand);
+        }
+        let free = self.free(demand);
+        let wanted = free.max(low).min(high);
         // A millirpm is twice the quadcounts of a turn, in position units a millisecond.
         let most = FASTEST_RPM * 1000 * 2 * i64::from(qc_per_turn);
         self.moved = if self.jammed {
@@ -71,6 +116,7 @@ impl Shaft {
         };
         self.position = self.position.saturating_add(self.moved);
         self.behind = self.position != demand;
+        self.held = self.position != free;
     }
 
     /// Speed in the last millisecond.
@@ -85,10 +131,12 @@ impl Shaft {
         demand.saturating_sub(self.position) / FINE_PER_QC
     }
 
-    /// The current it takes, mA, at most `most_ma`.
+    /// The current it takes to be held, mA, at most `most_ma`.
     pub fn current_ma(&self, demand: Fine, most_ma: u16) -> i16 {
         let most = i64::from(most_ma).min(i16::MAX.into());
-        let wanted = self.following_error(demand).saturating_mul(MA_PER_QC);
+        let wanted = self
+            .following_error(self.free(demand))
+            .saturating_mul(MA_PER_QC);
         wanted.clamp(-most, most) as i16
     }
 }
@@ -99,7 +147,7 @@ mod tests {
 
     #[test]
     fn it_follows_until_a_stop_and_comes_back_from_it() {
-        let mut shaft = Shaft::new(0, [Some(-10), Some(10)]);
+        let mut shaft = Shaft::new(0, [Some(-10), Some(10)], None);
         shaft.follow(fine(7), 2000);
         assert_eq!((shaft.position(), shaft.is_behind()), (fine(7), false));
         shaft.follow(fine(15), 2000);
@@ -114,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_jam_lets_go_no_faster_than_a_motor_turns() {
-        let mut shaft = Shaft::new(0, [None; 2]);
+        let mut shaft = Shaft::new(0, [None; 2], None);
         shaft.jam(true);
         shaft.follow(fine(100_000), 2000);
         assert_eq!(shaft.position(), 0);
@@ -123,5 +171,34 @@ mod tests {
         // 26,000 rpm are 866 qc a ms.
         assert_eq!(shaft.position() / FINE_PER_QC, 866);
         assert_eq!(shaft.speed(2000), Speed::from_rpm(26_000));
+    }
+
+    #[test]
+    fn a_servo_lags_without_being_held() {
+        let servo = Servo::SecondOrder {
+            natural_millihertz: 15_000,
+            damping_permille: 800,
+        };
+        let mut shaft = Shaft::new(0, [None, Some(7_000)], Some(servo));
+        for ms in 1..=200 {
+            shaft.follow(fine(37 * ms), 2000);
+        }
+        assert!(shaft.is_behind() && !shaft.is_held());
+        let demand = fine(7_400);
+        // 2 x 0.8 / (2 pi 15 Hz) at 37 qc a ms.
+        assert!((620..636).contains(&shaft.following_error(demand)));
+        assert_eq!(shaft.current_ma(demand, 9_000), 0);
+        // Against the stop it is held, and that takes a current.
+        for _ in 0..300 {
+            shaft.follow(demand, 2000);
+        }
+        assert!(shaft.is_held() && shaft.position() == fine(7_000));
+        assert_eq!(shaft.current_ma(demand, 9_000), 2_000);
+        assert_eq!(shaft.speed(2000), Speed::ZERO);
+        assert_eq!(shaft.give_way(demand), fine(-400));
+        assert_eq!(shaft.current_ma(demand, 9_000), 0);
+        shaft.rest();
+        shaft.follow(shaft.position(), 2000);
+        assert!(!shaft.is_behind() && !shaft.is_held());
     }
 }

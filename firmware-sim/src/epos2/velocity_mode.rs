@@ -80,7 +80,7 @@ impl Node {
         let actual = self.velocity_actual_rpm();
         let window = self.dictionary.get(VELOCITY_WINDOW);
         if window == u32::MAX {
-            return self.generator.speed() == target && !self.shaft.is_behind();
+            return self.generator.speed() == target && !self.shaft.is_held();
         }
         let off = actual.abs_diff(target.to_rpm());
         let waited = &mut self.velocity_mode.in_window_ms;

@@ -1,5 +1,6 @@
 //! Both devices together: what comes out depends on what came in when, and the encoder tells what truly happens.
 
+use firmware_sim::epos2::Servo;
 use proptest::prelude::*;
 use units::Span;
 
@@ -222,6 +223,67 @@ fn the_seed_decides_the_garbage_of_the_drive_and_nothing_of_the_lidar() {
     assert_eq!(run(1), run(1));
     assert_ne!(run(1).0, run(2).0);
     assert_eq!(run(1).1, run(2).1);
+}
+
+/// Answers to a position request each 1.1 ms of a move, lidar packets, and the truth in the end.
+fn moved(config: RigConfig) -> (Vec<Sent>, Vec<Datagram>, Truth) {
+    let mut rig = Rig::new(config);
+    for request in motion(-9_000) {
+        rig.advance(rig.now() + Span::from_millis(1));
+        rig.drive_input(&request);
+    }
+    while rig.drive_output().is_some() {}
+    for _ in 0..150 {
+        rig.advance(rig.now() + Span::from_micros(1_100));
+        rig.drive_input(&read(0x6064, 0));
+    }
+    let answers = std::iter::from_fn(|| rig.drive_output()).collect();
+    let datagrams = std::iter::from_fn(|| rig.poll_datagram()).collect();
+    (answers, datagrams, rig.truth())
+}
+
+#[test]
+fn a_gear_that_is_not_true_shows_in_the_lidar_and_in_no_byte_of_the_drive() {
+    let plain = moved(RigConfig::new(START));
+    let ripple = GearRipple {
+        amplitude: Degrees(0.2),
+        per_motor_turn: 1,
+        phase: Degrees(0.0),
+    };
+    let rippled = moved(RigConfig {
+        ripple: Some(ripple),
+        ..RigConfig::new(START)
+    });
+    assert_eq!(rippled.0, plain.0);
+    assert_eq!(rippled.1.len(), plain.1.len());
+    assert_ne!(rippled.1, plain.1);
+    let off = plain.0.iter().map(|sent| {
+        let angle = |truth: &Truth| truth.tilt_deg_at(sent.at - Span::from_micros(1)).unwrap();
+        angle(&rippled.2) - angle(&plain.2)
+    });
+    let (least, most) = off.fold((0.0_f64, 0.0_f64), |(a, b), x| (a.min(x), b.max(x)));
+    assert!((least + 0.2).abs() < 0.01 && (most - 0.2).abs() < 0.01);
+}
+
+#[test]
+fn a_servo_that_lags_shows_in_the_encoder_as_in_the_platform() {
+    let mut config = RigConfig::new(START);
+    config.drive.servo = Some(Servo::FirstOrder {
+        corner_millihertz: 15_000,
+    });
+    let plain = moved(RigConfig::new(START));
+    let (answers, _, truth) = moved(config);
+    let mut most_behind = 0.0_f64;
+    for sent in &answers {
+        // 3000 counts below level at power-on, where its own zero is.
+        let (_, position) = answer(&sent.bytes);
+        let angle = truth.tilt_deg_at(sent.at);
+        let Some(angle) = angle else { continue };
+        assert!((f64::from(position - 3_000) * 0.0015 - angle).abs() < 0.0031);
+        most_behind = most_behind.max(angle - plain.2.tilt_deg_at(sent.at).unwrap());
+    }
+    // 1 / (2 pi 15 Hz) at 56.25 deg/s.
+    assert!((most_behind - 0.597).abs() < 0.01, "{most_behind}");
 }
 
 /// Answers, datagrams, truth, and degrees moved in a run with `inputs` (each at its instant, ns) that is also stopped at each of `stops`.
