@@ -95,19 +95,15 @@ async fn watch(ops: &Ops) -> Result<(), DriveError> {
     }
 }
 
-async fn check(ops: &Ops) -> Result<Outcome, DriveError> {
+async fn check(ops: &mut Ops) -> Result<Outcome, DriveError> {
     let got = check_enabled(ops).await?;
     if !is_referenced(got) {
         return Err(DriveError::NotReferenced { got });
     }
     ops.set_referenced(true);
-    let position = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
+    let position = settled(ops).await?;
     let angle = ops.config.gearing.angle(position);
-    let limits = ops.config.limits_qc()?;
-    let tolerance = ops.config.arrival_tolerance.0;
-    if position.0 < limits.min.0.saturating_sub(tolerance)
-        || position.0 > limits.max.0.saturating_add(tolerance)
-    {
+    if !is_inside(ops, position)? {
         return Err(DriveError::Outside {
             at: angle,
             min: ops.config.limits.min,
@@ -115,4 +111,33 @@ async fn check(ops: &Ops) -> Result<Outcome, DriveError> {
         });
     }
     Ok(Outcome::Homed { position, angle })
+}
+
+/// Where the axis is, once it is within the limits or stands: the drive calls homing done when its demand is there, and a servo comes
+/// after it.
+async fn settled(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
+    let timing = ops.config.timing;
+    let limit = ops.now().saturating_add(timing.state_limit);
+    let mut place = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
+    let mut since = ops.now();
+    while !is_inside(ops, place)? {
+        let asked = ops.now();
+        if asked.saturating_since(since) >= timing.standstill || asked > limit {
+            break;
+        }
+        ops.sleep(timing.status_period).await;
+        let position = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
+        if position != place {
+            (place, since) = (position, ops.now());
+        }
+    }
+    Ok(place)
+}
+
+/// Whether a position is within the limits, to the tolerance of an arrival.
+fn is_inside(ops: &Ops, position: Quadcounts) -> Result<bool, DriveError> {
+    let limits = ops.config.limits_qc()?;
+    let tolerance = ops.config.arrival_tolerance.0;
+    Ok(limits.min.0.saturating_sub(tolerance) <= position.0
+        && position.0 <= limits.max.0.saturating_add(tolerance))
 }

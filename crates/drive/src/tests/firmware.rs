@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use firmware_sim::epos2::{Brake, CanServer, Node, NodeConfig, Rs232Server, UsbServer};
+use firmware_sim::epos2::{Brake, CanServer, Node, NodeConfig, Rs232Server, Servo, UsbServer};
 use protocol::canopen::CanFrame;
 use protocol::epos2::cia402::State;
 use protocol::epos2::objects::Address;
@@ -571,5 +571,42 @@ fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
         assert_eq!(bytes, 1_500_u32.to_le_bytes());
         let stats = world.client.link_stats();
         assert_eq!((stats.lost, stats.strays), (0, 0), "{link:?}");
+    }
+}
+
+/// A servo comes to the end of homing, which is the end of the axis, some hundredths of a second after its demand: too late for who looks
+/// at once.
+#[test]
+fn a_servo_that_lags_is_home_and_arrives() {
+    for (natural_millihertz, damping_permille) in [(15_000, 700), (15_000, 1_000), (8_000, 1_000)] {
+        for link in LINKS {
+            let servo = Servo::SecondOrder {
+                natural_millihertz,
+                damping_permille,
+            };
+            let config = NodeConfig {
+                servo: Some(servo),
+                ..NodeConfig::default()
+            };
+            let mut world = World::on(link, config);
+            world.run(Command::Connect).unwrap();
+            let homed = world.run(Command::Home);
+            let Ok(Outcome::Homed { angle, .. }) = homed else {
+                panic!("{servo:?} {link:?}: {homed:?}")
+            };
+            // Within the limits, to the tolerance of an arrival.
+            assert!(angle.0 > -60.031, "{servo:?} {link:?}: {angle:?}");
+            let swept = world.run(Command::Sweep(to(-15.0)));
+            let Ok(Outcome::Arrived(arrived)) = swept else {
+                panic!("{servo:?} {link:?}: {swept:?}")
+            };
+            assert!(arrived.position.0.abs_diff(-10_000) <= 20);
+            let slept = world.run(Command::Brake).unwrap();
+            let Outcome::Stopped(stopped) = slept else {
+                panic!("{slept:?}")
+            };
+            assert!(!stopped.fault && stopped.position.0.abs_diff(-10_000) <= 1);
+            assert_eq!(world.node.brake(), Brake::Closed);
+        }
     }
 }
