@@ -3,6 +3,7 @@
 mod frames;
 mod links;
 mod live;
+mod mechanism;
 mod sensors;
 mod tolerance;
 

@@ -9,6 +9,7 @@ use std::sync::atomic::AtomicBool;
 use analysis::truth::TruthReport;
 use cloud::{Fields, Points};
 use drive::{Client, Observation};
+use firmware_sim::epos2::Servo;
 use io::can::Slcan;
 use io::files::Overwrite;
 use io::log::{LogConfig, LogWriter};
@@ -19,6 +20,7 @@ use protocol::epos2::message::WriteObject;
 use protocol::epos2::rs232;
 use protocol::record::{DriveLink, Record, Wire};
 use scanner::{ScanConfig, TiltSource};
+use sim::effects::GearRipple;
 use sim::{Attached, Rig};
 use tempfile::TempDir;
 use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
@@ -55,6 +57,12 @@ pub struct Setting {
     pub lidar_set: Option<(Span, Span)>,
     /// How long after the begin the user presses Ctrl-C.
     pub interrupt_after: Option<Span>,
+    /// How the motor follows its demand; `None`: exactly.
+    pub servo: Option<Servo>,
+    /// What the gear adds; `None`: nothing.
+    pub ripple: Option<GearRipple>,
+    /// Least time between two polls; `None`: as the axis has it.
+    pub poll_period: Option<Span>,
 }
 
 impl Default for Setting {
@@ -76,6 +84,9 @@ impl Default for Setting {
             host_set: None,
             lidar_set: None,
             interrupt_after: None,
+            servo: None,
+            ripple: None,
+            poll_period: None,
         }
     }
 }
@@ -147,17 +158,20 @@ impl Captured {
     /// Runs the capture, whatever it comes to.
     pub fn run(setting: Setting) -> (Self, Result<(), SessionError>) {
         // With the brake of the checkout's own configuration.
-        let axis = devices::axis(&Axis {
+        let mut axis = devices::axis(&Axis {
             brake_output: Some(1),
             ..Axis::default()
         })
         .unwrap();
+        axis.timing.poll_period = setting.poll_period.unwrap_or(axis.timing.poll_period);
         let steps = motion::steps(&setting.wish, &axis, Degrees(0.0)).unwrap();
         let mut config = scan_config(&Config::default(), "sim", true, &setting.wish, &steps);
         config.rs232_baud = (setting.links.attached == Attached::Rs232).then_some(115_200);
         let mut rig = simulated::rig(&axis, &config, setting.start);
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;
         rig.attached = setting.links.attached;
+        rig.drive.servo = setting.servo;
+        rig.ripple = setting.ripple;
         if setting.links.attached != Attached::Usb && setting.links.attached != Attached::Rs232 {
             // A unit on a CAN bus has nothing to complain of at power-on.
             rig.drive.fault_at_power_on = DeviceError::NONE;
