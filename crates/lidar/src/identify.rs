@@ -20,6 +20,9 @@ const TOLERANCE_NS: i64 = 3_000;
 const LONGEST: Span = Span::from_millis(100);
 /// Multiples of the named model's spacing taken for loss; further apart, spacing tells nothing.
 const MOST_LOST: i64 = 8;
+/// So many spacings in a row that loss would explain, and another model without any, are the other model's: where the named
+/// model's own has never been seen, nobody loses every second packet and none besides.
+const TOO_REGULAR: u8 = 4;
 
 /// Whether two blocks of this packet share a firing.
 pub(crate) fn is_dual(packet: &DataPacket<'_>) -> bool {
@@ -53,6 +56,8 @@ pub(crate) struct Identifier {
     confirmed: bool,
     /// What the last spacing said against a confirmed model.
     doubt: Option<&'static Model>,
+    /// The model that would explain the last spacings without loss, and how many they are.
+    regular: Option<(&'static Model, u8)>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +73,7 @@ impl Identifier {
             found: None,
             confirmed: false,
             doubt: None,
+            regular: None,
         }
     }
 
@@ -81,6 +87,7 @@ impl Identifier {
         if self.found.is_some_and(|found| !same(found.named, named)) {
             self.found = None;
             self.confirmed = false;
+            self.regular = None;
         }
         let mut conflict = None;
         if let Some(spacing) = spacing
@@ -119,7 +126,18 @@ impl Identifier {
             Said::Holds => {
                 self.confirmed = true;
                 self.doubt = None;
+                self.regular = None;
                 None
+            }
+            Said::Lossless(model) => {
+                let before = self.regular.filter(|&(before, _)| ptr::eq(before, model));
+                let run = before.map_or(1, |(_, run)| run + 1);
+                self.regular = Some((model, run));
+                if self.confirmed || run < TOO_REGULAR {
+                    return None;
+                }
+                self.regular = None;
+                Some(model)
             }
             Said::Other(model) if self.confirmed && !same(self.doubt, Some(model)) => {
                 self.doubt = Some(model);
@@ -140,6 +158,8 @@ enum Said {
     Holds,
     /// It is another's, and no multiple of its own.
     Other(&'static Model),
+    /// It is a multiple of its own, and another's as it is.
+    Lossless(&'static Model),
 }
 
 /// Whose spacing this is. `None` for what any loss, gap or setting of the clock could be.
@@ -158,16 +178,17 @@ fn told_by(
         let off_by = spacing_ns - packets * i64::from(model.packet_period_ns(dual));
         off_by.abs() <= TOLERANCE_NS
     };
+    // The named model goes before others of its timing.
+    let models = named.into_iter().chain([&VLP_16, &HDL_32E, &VLP_32C]);
     if let Some(holds) = holds {
         if is(holds, 1) {
             return Some(Said::Holds);
         }
         if (2..=MOST_LOST).any(|packets| is(holds, packets)) {
-            return None;
+            let mut models = models;
+            return models.find(|model| is(model, 1)).map(Said::Lossless);
         }
     }
-    // The named model goes before others of its timing.
-    let models = named.into_iter().chain([&VLP_16, &HDL_32E, &VLP_32C]);
     // Packets may be missing right at the start as well; fewer are likelier than more.
     let most = if confirmed { 1 } else { MOST_LOST };
     (1..=most).find_map(|packets| {
@@ -193,7 +214,7 @@ mod tests {
     /// What the very first spacing says against the named model.
     fn told(us: i64, named: &'static Model, dual: bool) -> Option<&'static str> {
         match told_by(Span::from_micros(us), Some(named), Some(named), dual, false)? {
-            Said::Holds => None,
+            Said::Holds | Said::Lossless(_) => None,
             Said::Other(model) => Some(model.name),
         }
     }
@@ -222,7 +243,7 @@ mod tests {
     #[test]
     fn a_product_that_is_not_listed_is_found_by_spacing() {
         let by = |us, dual| match told_by(Span::from_micros(us), None, None, dual, false)? {
-            Said::Holds => None,
+            Said::Holds | Said::Lossless(_) => None,
             Said::Other(model) => Some(model.name),
         };
         assert_eq!(by(1_327, false), Some("VLP-16"));
@@ -303,6 +324,19 @@ mod tests {
             not_named,
             (vec!["?", "VLP-16", "VLP-32C", "VLP-32C", "VLP-32C"], 2)
         );
+    }
+
+    #[test]
+    fn a_vlp16_that_says_vlp32c_is_no_vlp32c_that_loses_every_second_packet() {
+        let (models, conflicts) = follow(0x28, &[1_327, 1_327, 1_328, 1_327, 1_327]);
+        assert_eq!(models[..4], ["VLP-32C"; 4]);
+        assert_eq!((&models[4..], conflicts), (&["VLP-16"; 2][..], 1));
+        // One packet that follows at its own pace is enough to be what it says.
+        let (models, conflicts) = follow(0x28, &[664, 1_327, 1_327, 1_328, 1_327, 1_327]);
+        assert_eq!((models, conflicts), (vec!["VLP-32C"; 7], 0));
+        // Nor is what lost packets now and then.
+        let (models, _) = follow(0x28, &[1_327, 1_991, 1_327, 1_327, 664, 664]);
+        assert_eq!(models, vec!["VLP-32C"; 7]);
     }
 
     #[test]

@@ -23,6 +23,8 @@ const NEWEST_FIX: Span = Span::from_millis(-1_500);
 const LONGEST_SILENCE: Span = Span::from_secs(5);
 /// Position packets this much before the last one are out of order; further back, the clock was set.
 const REORDER: Span = Span::from_secs(2);
+/// Data this much before the last one were overtaken by it; further back, the clock was set.
+const OVERTAKEN: Span = Span::from_millis(20);
 /// Locks kept; a receiver that comes and goes more often loses the oldest.
 const MOST_LOCKS: usize = 4_096;
 
@@ -119,9 +121,14 @@ impl UtcClock {
 
     /// Takes device time as of the last firing that was decoded; says whether that ended the lock.
     pub fn data(&mut self, at: Stamp<Lidar>) -> Option<UtcChange> {
-        let back = self.data.is_some_and(|last| at < last);
+        let back = self
+            .data
+            .map_or(Span::ZERO, |last| last.saturating_since(at));
+        if Span::ZERO < back && back <= OVERTAKEN {
+            return None;
+        }
         self.data = Some(at);
-        if back {
+        if back > Span::ZERO {
             self.position = None;
             // The device goes through these times a second time: what they were the first time helps nobody.
             self.locks.retain(|lock| lock.from < at);
@@ -172,6 +179,15 @@ impl UtcClock {
         })?;
         let ns = at.saturating_add(lock.offset).as_nanos();
         Some(Stamp::from_nanos(ns))
+    }
+
+    /// How often a lock ended, whether or not another followed.
+    #[must_use]
+    pub fn ends(&self) -> usize {
+        self.locks
+            .iter()
+            .filter(|lock| lock.until.is_some())
+            .count()
     }
 
     /// What holds now.

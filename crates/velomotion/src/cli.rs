@@ -156,6 +156,9 @@ pub struct Lidar {
     /// Dual return: both returns of a pulse where they are equal, or one of them
     #[arg(long, value_enum, default_value_t = Equal::Once)]
     pub equal_returns: Equal,
+    /// Let all rays start in one point, as many drivers do, and not each at its laser's height
+    #[arg(long)]
+    pub one_origin: bool,
 }
 
 /// Whose clock times are of.

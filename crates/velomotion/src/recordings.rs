@@ -97,15 +97,19 @@ impl Filter {
         else {
             return true;
         };
-        let is_data = match DatagramKind::of(payload) {
-            DatagramKind::Data | DatagramKind::Damaged => true,
-            DatagramKind::Position => false,
-            DatagramKind::Foreign => return true,
-        };
-        if !is_data {
-            return self.source.is_none_or(|wanted| wanted == source);
+        match DatagramKind::of(payload) {
+            DatagramKind::Data => {
+                *self.source.get_or_insert(source) == source
+                    && *self.port.get_or_insert(port) == port
+            }
+            // No stranger with a lidar's marks is taken for the lidar.
+            DatagramKind::Damaged => {
+                self.source.is_none_or(|wanted| wanted == source)
+                    && self.port.is_none_or(|wanted| wanted == port)
+            }
+            DatagramKind::Position => self.source.is_none_or(|wanted| wanted == source),
+            DatagramKind::Foreign => true,
         }
-        *self.source.get_or_insert(source) == source && *self.port.get_or_insert(port) == port
     }
 }
 

@@ -26,6 +26,7 @@ pub fn options(arguments: &Lidar, source: &Source) -> Result<Options, Failure> {
             Equal::Once => Duplicates::Unique,
             Equal::Twice => Duplicates::All,
         },
+        vertical_offsets: !arguments.one_origin,
         ..Options::default()
     };
     let Some(path) = &arguments.calibration else {

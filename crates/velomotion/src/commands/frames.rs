@@ -4,7 +4,9 @@
 use std::path::{Path, PathBuf};
 
 use cloud::{Fields, Metadata, Point, Points};
-use lidar::{Decoder, Firing, Frame, FrameCutter, Options, OrganisedFrame, Stats, UtcClock};
+use lidar::{
+    Decoder, Duplicates, Echo, Firing, Frame, FrameCutter, Options, OrganisedFrame, Stats, UtcClock,
+};
 use protocol::record::{Record, Wire};
 use scanner::{Alignment, Placed};
 use units::{Degrees, Host, Lidar, Span, Stamp};
@@ -52,6 +54,8 @@ struct Filling<'a> {
     /// UTC by the lidar's receiver, where times are to be in it.
     utc: Option<&'a UtcClock>,
     organised: bool,
+    /// Whether a return that is both of its pair is one point.
+    once: bool,
     cutter: FrameCutter,
     points: Points,
     grid: OrganisedFrame,
@@ -94,11 +98,13 @@ impl<'a> FrameWriter<'a> {
             )
             .help("give -o a name that ends in .pcd, or leave --organised out"));
         }
+        let once = options.duplicates == Duplicates::Unique;
         Ok(Self {
             plan,
             metadata,
             decoder: Decoder::new(options),
             filling: Filling {
+                once,
                 alignment,
                 utc,
                 organised: plan.organised,
@@ -240,7 +246,9 @@ impl Filling<'_> {
         for layer in 0..grid.layers() {
             for ring in 0..grid.rings() {
                 for column in 0..grid.columns().len() {
-                    let seen = grid.cell(layer, ring, column);
+                    let seen = grid.cell(layer, ring, column).filter(|seen| {
+                        !(self.once && layer > 0 && seen.echo == Echo::LastAndStrongest)
+                    });
                     let placed = seen.and_then(|seen| alignment.place_near(seen, self.near));
                     match (seen, placed) {
                         (_, Some(_)) => self.placed.points += 1,

@@ -62,7 +62,8 @@ struct Ears {
 /// Listens to one sensor.
 struct Ear {
     source: [u8; 4],
-    port: u16,
+    /// Of its data; `None` until one came.
+    port: Option<u16>,
     decoder: Decoder,
     utc: UtcClock,
     pps: Option<Pps>,
@@ -91,14 +92,25 @@ impl Ears {
         };
         match DatagramKind::of(payload) {
             DatagramKind::Position => {
+                if !self.ears.iter().any(|ear| ear.source == source) {
+                    self.add(source, None);
+                }
                 for ear in self.ears.iter_mut().filter(|ear| ear.source == source) {
                     ear.position(record, payload);
                 }
             }
-            DatagramKind::Data | DatagramKind::Damaged => match self.ear(source, port) {
+            DatagramKind::Data => match self.ear(source, port) {
                 Some(ear) => ear.data(record, payload),
                 None => self.rest.packet(record.host, payload, &mut |_| {}),
             },
+            // A stranger with a lidar's marks is no sensor of its own.
+            DatagramKind::Damaged => {
+                let known = |ear: &&mut Ear| ear.source == source && ear.port == Some(port);
+                match self.ears.iter_mut().find(known) {
+                    Some(ear) => ear.data(record, payload),
+                    None => self.rest.packet(record.host, payload, &mut |_| {}),
+                }
+            }
             DatagramKind::Foreign => self.rest.packet(record.host, payload, &mut |_| {}),
         }
     }
@@ -108,17 +120,33 @@ impl Ears {
         match record.wire {
             Wire::Drive { .. } => true,
             Wire::Lidar { source, port, .. } => self
-                .ears
                 .first()
-                .is_some_and(|ear| ear.source == source && ear.port == port),
+                .is_some_and(|ear| ear.source == source && ear.port.is_none_or(|own| own == port)),
         }
     }
 
+    /// The sensor that the report is of: the first that sent data, else the first that sent anything.
+    fn first(&self) -> Option<&Ear> {
+        let with_data = self.ears.iter().find(|ear| ear.port.is_some());
+        with_data.or(self.ears.first())
+    }
+
+    /// Of the sensor that sends data from `source` to `port`.
     fn ear(&mut self, source: [u8; 4], port: u16) -> Option<&mut Ear> {
-        let known = |ear: &Ear| ear.source == source && ear.port == port;
-        if let Some(at) = self.ears.iter().position(known) {
-            return self.ears.get_mut(at);
-        }
+        let is = |wanted: Option<u16>| move |ear: &Ear| ear.source == source && ear.port == wanted;
+        let at = self.ears.iter().position(is(Some(port)));
+        // What sent position packets before its data.
+        let at = at.or_else(|| self.ears.iter().position(is(None)));
+        let at = match at {
+            Some(at) => at,
+            None => self.add(source, Some(port))?,
+        };
+        let ear = self.ears.get_mut(at)?;
+        ear.port = Some(port);
+        Some(ear)
+    }
+
+    fn add(&mut self, source: [u8; 4], port: Option<u16>) -> Option<usize> {
         if self.ears.len() >= MOST_SENSORS {
             return None;
         }
@@ -129,7 +157,7 @@ impl Ears {
             utc: UtcClock::new(),
             pps: None,
         });
-        self.ears.last_mut()
+        Some(self.ears.len() - 1)
     }
 
     /// What was heard: of the first sensor, and where there are several, of each.
@@ -144,11 +172,11 @@ impl Ears {
             ear.decoder.finish(&mut |_| {});
         }
         let sensor = |ear: &Ear| -> Option<Sensor> {
-            let known = |s: &&Sensor| s.source == ear.source && s.data_port == Some(ear.port);
+            let known = |s: &&Sensor| s.source == ear.source && s.data_port == ear.port;
             pass.sensors.iter().find(known).cloned()
         };
         let nothing = Stats::default();
-        let first = self.ears.first();
+        let first = self.first();
         let mut contents = contents(
             config,
             first.map_or(&nothing, |ear| ear.decoder.stats()),
@@ -157,6 +185,14 @@ impl Ears {
             steps,
         );
         contents.gps = first.and_then(Ear::gps);
+        let strange = self.rest.stats();
+        contents.packets.malformed += strange.malformed;
+        if let Some(error) = &strange.first_malformed {
+            contents.warnings.push(format!(
+                "{} packets that look like a lidar's are of no lidar here, the first: {error}",
+                strange.malformed
+            ));
+        }
         if self.ears.len() > 1 {
             contents.sensors = self
                 .ears
@@ -191,10 +227,15 @@ impl Ear {
     fn gps(&self) -> Option<Gps> {
         let pps = self.pps?;
         let state = self.utc.state();
+        let locked = matches!(state, UtcState::Locked { .. });
+        let said = match self.utc.ends() {
+            ends if locked && ends > 0 => format!("{state}; the lock was lost {ends} times before"),
+            _ => state.to_string(),
+        };
         Some(Gps {
             pps: pps_name(pps),
-            locked: matches!(state, UtcState::Locked { .. }),
-            state: state.to_string(),
+            locked,
+            state: said,
         })
     }
 }
