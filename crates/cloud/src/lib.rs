@@ -17,6 +17,6 @@ mod summary;
 pub use error::SinkError;
 pub use fields::{Column, Fields, MissingColumns};
 pub use metadata::Metadata;
-pub use points::{Order, Point, Points, Spare};
+pub use points::{Point, Points, Spare};
 pub use sink::Sink;
 pub use summary::{Bounds, Summary};

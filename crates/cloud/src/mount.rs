@@ -8,7 +8,7 @@
 //! Left out until a calibration gives it: the rigid transforms before the rotation (boresight, offsets along x and y)
 //! and after it (pose of the axis). They would compose here, behind [`Mount::place`], and nowhere else.
 
-use units::{Degrees, Metres};
+use units::{Degrees, Metres, Real};
 
 /// Where the lidar's origin is on the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,12 +17,15 @@ pub struct Mount {
     pub d: Metres,
 }
 
-/// A tilt angle with its sine and cosine, so that the points of one firing can share them.
+/// A tilt angle with its sine and cosine, so that the points of one firing can share them; or several of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tilt {
-    sin: f64,
-    cos: f64,
+pub struct Tilt<V = f64> {
+    sin: V,
+    cos: V,
 }
+
+/// The greatest turn for [`Tilt::ahead`], radians either way.
+pub const MOST_AHEAD_RAD: f64 = 2e-3;
 
 impl Tilt {
     /// No tilt.
@@ -33,6 +36,21 @@ impl Tilt {
     pub fn new(angle: Degrees) -> Self {
         let (sin, cos) = angle.to_radians().0.sin_cos();
         Self { sin, cos }
+    }
+
+    /// The tilts `ahead_rad` beyond this one, at most [`MOST_AHEAD_RAD`] either way.
+    ///
+    /// Taylor's series about the angle ends at the third power, so that a point is off by at most 2e-3 ^ 4 / 24 = 7e-13 of its
+    /// distance.
+    #[inline(always)]
+    #[must_use]
+    pub fn ahead<V: Real>(self, ahead_rad: V) -> Tilt<V> {
+        const SIXTH: f64 = 1.0 / 6.0;
+        let (Self { sin, cos }, e) = (self, ahead_rad);
+        Tilt {
+            sin: ((e * (-SIXTH * cos) + (-0.5 * sin)) * e + cos) * e + sin,
+            cos: ((e * (SIXTH * sin) + (-0.5 * cos)) * e + (-sin)) * e + cos,
+        }
     }
 }
 
@@ -48,9 +66,9 @@ impl Mount {
     ///
     /// With x_v, y_v, z_v of Eq. 1-3 the paper's equations read x = x_v cos g + (z_v + d) sin g, y = y_v,
     /// z = (z_v + d) cos g - x_v sin g.
-    #[inline]
+    #[inline(always)]
     #[must_use]
-    pub fn place(&self, position_m: [f64; 3], tilt: Tilt) -> [f64; 3] {
+    pub fn place<V: Real>(&self, position_m: [V; 3], tilt: Tilt<V>) -> [V; 3] {
         let [x, y, z] = position_m;
         let height = z + self.d.0;
         [
@@ -59,66 +77,16 @@ impl Mount {
             height * tilt.cos - x * tilt.sin,
         ]
     }
-}
 
-impl Mount {
     /// How far a placed point (Eq. 4-6, metres) is from the tilt axis and from the axis that the lidar's head turns about, square metres
     /// each: the arms by which errors of tilt and azimuth move it.
     #[inline(always)]
     #[must_use]
-    pub fn arms_m2(&self, placed_m: [f64; 3], tilt: Tilt) -> [f64; 2] {
+    pub fn arms_m2<V: Real>(&self, placed_m: [V; 3], tilt: Tilt<V>) -> [V; 2] {
         let [x, y, z] = placed_m;
         // Back into the lidar's frame, where its head's axis is z.
         let across = x * tilt.cos - z * tilt.sin;
         [x * x + z * z, across * across + y * y]
-    }
-}
-
-/// The greatest turn that [`Tilts`] follow, radians either way.
-pub const MOST_AHEAD_RAD: f64 = 2e-3;
-
-/// Tilts of points that were measured within a short time: `N` of them, a column each of sines and cosines.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tilts<const N: usize> {
-    sin: [f64; N],
-    cos: [f64; N],
-}
-
-impl<const N: usize> Default for Tilts<N> {
-    /// None of them tilted.
-    fn default() -> Self {
-        Self {
-            sin: [0.0; N],
-            cos: [1.0; N],
-        }
-    }
-}
-
-impl<const N: usize> Tilts<N> {
-    /// Sets every tilt to one `ahead_rad` beyond `tilt`, at most [`MOST_AHEAD_RAD`] either way.
-    ///
-    /// Taylor's series about the angle ends at the third power, so that a point is off by at most 2e-3 ^ 4 / 24 = 7e-13 of its
-    /// distance.
-    #[inline(always)]
-    pub fn set(&mut self, tilt: Tilt, ahead_rad: &[f64; N]) {
-        let Tilt { sin, cos } = tilt;
-        let (half_sin, half_cos) = (sin / 2.0, cos / 2.0);
-        let (sixth_sin, sixth_cos) = (sin / 6.0, cos / 6.0);
-        let tilts = self.sin.iter_mut().zip(&mut self.cos);
-        for ((to_sin, to_cos), &e) in tilts.zip(ahead_rad) {
-            *to_sin = sin + e * (cos - e * (half_sin + e * sixth_cos));
-            *to_cos = cos - e * (sin + e * (half_cos - e * sixth_sin));
-        }
-    }
-
-    /// Tilt `index`; level beyond the last.
-    #[inline(always)]
-    #[must_use]
-    pub fn get(&self, index: usize) -> Tilt {
-        match (self.sin.get(index), self.cos.get(index)) {
-            (Some(&sin), Some(&cos)) => Tilt { sin, cos },
-            _ => Tilt::LEVEL,
-        }
     }
 }
 
@@ -256,12 +224,11 @@ mod tests {
             gamma in -360.0..360.0,
             ahead_rad in prop::array::uniform4(-MOST_AHEAD_RAD..=MOST_AHEAD_RAD),
         ) {
-            let mut tilts = Tilts::default();
-            tilts.set(Tilt::new(Degrees(gamma)), &ahead_rad);
-            for (i, ahead) in ahead_rad.into_iter().enumerate() {
+            let tilt = Tilt::new(Degrees(gamma));
+            for ahead in ahead_rad {
                 let angle = Degrees(gamma + ahead.to_degrees());
                 let expected = PAPER.place(point, Tilt::new(angle));
-                let off = distance(PAPER.place(point, tilts.get(i)), expected);
+                let off = distance(PAPER.place(point, tilt.ahead(ahead)), expected);
                 prop_assert!(off < 2e-10, "{off} m");
             }
         }

@@ -4,14 +4,12 @@
 //! batch ([`Points::clear`] keeps the memory) and as a whole cloud ([`Points::append`]). There is no per-point
 //! heap and no row type in storage; [`Point`] exists only on the way in and out. [`Points::spare`] is the fast way in.
 
-mod order;
 mod spare;
 
 use units::{Degrees, Host, Lidar, Stamp};
 
 use crate::{Bounds, Fields, MissingColumns, Summary};
 
-pub use order::Order;
 pub use spare::Spare;
 
 /// One point with every column, as it goes in and comes out. A column that its [`Points`] lacks is dropped on the way

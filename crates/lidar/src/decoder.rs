@@ -15,9 +15,10 @@ use crate::firing::{Duplicates, Echo, Firing};
 use crate::geometry::{Geometry, fits};
 use crate::plan::{Link, Slot, Steps, Successor, first_azimuth};
 use crate::rotor::{Compass, Rotor};
+use crate::sorted::SortedPacket;
 use crate::stats::Stats;
 use crate::timekeeper::Timekeeper;
-use crate::volley::{Counts, Layers, Volley};
+use crate::volley::{Layer, Layers, Volley};
 
 /// A packet this much before its predecessor is out of order; further back, the device's clock was set.
 const REORDER: Span = Span::from_millis(10);
@@ -88,9 +89,9 @@ struct Unpacker {
 #[derive(Clone, Debug)]
 struct Sensor {
     geometry: Geometry,
-    compass: Compass,
+    compass: &'static Compass,
     rotor: Rotor,
-    counts: Counts,
+    sorted: SortedPacket,
 }
 
 impl Decoder {
@@ -295,6 +296,7 @@ impl Unpacker {
             Some(sensor) if ptr::eq(sensor.geometry.model, model) => sensor,
             _ => self.sensor_of(model),
         };
+        sensor.sorted.set(packet);
         for (i, slot) in slots.iter().take(blocks).enumerate() {
             self.unpack_block(packet, held, &mut sensor, i, slot, emit);
         }
@@ -312,9 +314,9 @@ impl Unpacker {
         let rotor = Rotor::new(&geometry.fan);
         Box::new(Sensor {
             geometry,
-            compass: Compass::new(),
+            compass: Compass::get(),
             rotor,
-            counts: Counts::default(),
+            sorted: SortedPacket::new(),
         })
     }
 
@@ -330,22 +332,17 @@ impl Unpacker {
         emit: &mut impl FnMut(&Volley<'_>),
     ) {
         let first = if held.dual { 2 * i } else { i };
-        let Some(even) = packet.block(first) else {
+        let layer = |i: usize| {
+            let (block, sorted) = (packet.block(i)?, sensor.sorted.blocks.get(i)?);
+            Some(Layer::new(block.raw_channels(), sorted))
+        };
+        let Some(even) = layer(first) else {
             return;
         };
-        let returns = match packet.block(first + 1) {
+        let returns = match layer(first + 1) {
             // No block follows the last one; a pair always has both.
-            Some(odd) if held.dual => Layers::two(
-                even.raw_channels(),
-                odd.raw_channels(),
-                &mut sensor.counts,
-                self.options.duplicates,
-            ),
-            _ => Layers::one(
-                even.raw_channels(),
-                &mut sensor.counts,
-                single_echo(packet.return_mode()),
-            ),
+            Some(odd) if held.dual => Layers::two(even, odd, self.options.duplicates),
+            _ => Layers::one(even, single_echo(packet.return_mode())),
         };
         let (seen, unique) = returns.count();
         self.stats.returns += seen;

@@ -31,20 +31,23 @@ pub(crate) type PerChannel<T> = [T; CHANNELS];
 
 /// The lasers by channel: distance counts c become out = `out_per_count` (c + `out_counts`) along the horizon and
 /// up = `up_per_count` c + `up_m`.
+///
+/// Columns begin where lines of the cache do, so that no register's worth lies across two.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 pub(crate) struct Fan {
     pub out_per_count: PerChannel<f64>,
     pub out_counts: PerChannel<f64>,
     pub up_per_count: PerChannel<f64>,
     pub up_m: PerChannel<f64>,
-    /// Sideways, over `out_per_count`, where any laser starts beside the line through the origin.
-    pub aside_counts: Option<PerChannel<f64>>,
     pub azimuth_offset_deg: PerChannel<f64>,
     /// Time after the block's start, over the block's period.
     pub part: PerChannel<f64>,
     pub azimuth_variance_rad2: PerChannel<f64>,
     pub delay_ns: PerChannel<i64>,
     pub delay_f64_ns: PerChannel<f64>,
+    /// Sideways, over `out_per_count`, where any laser starts beside the line through the origin.
+    pub aside_counts: Option<PerChannel<f64>>,
     /// The longest delay.
     pub length: Span,
     pub laser: PerChannel<u8>,

@@ -45,6 +45,8 @@ pub(crate) struct Slot {
 #[derive(Clone, Debug)]
 pub(crate) struct Steps {
     azimuths: [i32; BLOCKS],
+    /// Step from each block to the next, that behind the last left out.
+    inner: [i32; BLOCKS],
     blocks: usize,
     period_ns: i64,
     /// The least step.
@@ -68,9 +70,10 @@ pub(crate) struct Link {
     pub measured: bool,
 }
 
-/// Azimuth from `from` to `to`, forward, or a little back.
+/// Azimuth from `from` to `to`, both 0 up to 36000, forward, or a little back.
 pub(crate) const fn turned(from: i32, to: i32) -> i32 {
-    let forward = (to - from).rem_euclid(TURN_CDEG);
+    let way = to - from;
+    let forward = if way < 0 { way + TURN_CDEG } else { way };
     if forward > TURN_CDEG - BACKLASH_CDEG {
         forward - TURN_CDEG
     } else {
@@ -88,6 +91,7 @@ impl Steps {
     pub(crate) fn new(packet: &DataPacket<'_>, model: &Model, dual: bool) -> Self {
         let mut steps = Self {
             azimuths: [0; BLOCKS],
+            inner: [0; BLOCKS],
             blocks: Model::firing_blocks(dual),
             period_ns: i64::from(model.block_period_ns()),
             least_cdeg: 0,
@@ -102,6 +106,11 @@ impl Steps {
             .zip(packet.blocks().step_by(stride))
         {
             *azimuth = i32::from(block.azimuth_cdeg()) % TURN_CDEG;
+        }
+        for (step, pair) in steps.inner.iter_mut().zip(steps.azimuths.windows(2)) {
+            if let [from, to] = pair {
+                *step = turned(*from, *to);
+            }
         }
         let (least, most) = steps
             .inner()
@@ -133,9 +142,8 @@ impl Steps {
 
     /// Steps from each block to the next within the packet.
     fn inner(&self) -> impl Iterator<Item = i32> + Clone + '_ {
-        let azimuths = self.azimuths();
-        let next = azimuths.iter().skip(1);
-        azimuths.iter().zip(next).map(|(&a, &b)| turned(a, b))
+        let steps = self.inner.get(..self.blocks.saturating_sub(1));
+        steps.unwrap_or_default().iter().copied()
     }
 
     fn median(&self) -> i32 {

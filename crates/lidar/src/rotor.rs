@@ -6,6 +6,7 @@
 //! that what was kept before changes no result. Left out: the azimuth itself ([`crate::Firing`] has it).
 
 use core::array;
+use std::sync::LazyLock;
 
 use protocol::vlp16::CHANNELS;
 
@@ -41,19 +42,21 @@ impl SinCos {
 }
 
 /// How far each channel's azimuth is ahead of its block's: sine and cosine, times the way along the horizon of one count.
+/// Aligned as [`Fan`] is.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 pub(crate) struct Ahead {
-    /// Bits of the pace, so that any two paces differ.
-    pace: u64,
     pub sin: PerChannel<f64>,
     pub cos: PerChannel<f64>,
+    /// Bits of the pace, so that any two paces differ.
+    pace: u64,
 }
 
 /// Sine and cosine of every azimuth that a packet can say.
 #[derive(Clone, Debug)]
 pub(crate) struct Compass {
-    degrees: Box<[SinCos; DEGREES]>,
-    hundredths: Box<[SinCos; HUNDREDTHS]>,
+    degrees: [SinCos; DEGREES],
+    hundredths: [SinCos; HUNDREDTHS],
 }
 
 /// How far channels are ahead, by pace, for one sensor.
@@ -63,12 +66,16 @@ pub(crate) struct Rotor {
 }
 
 impl Compass {
-    pub(crate) fn new() -> Self {
-        let table = |i: usize, step_deg: f64| SinCos::of_degrees(i as f64 * step_deg);
-        Self {
-            degrees: Box::new(array::from_fn(|i| table(i, 1.0))),
-            hundredths: Box::new(array::from_fn(|i| table(i, 0.01))),
-        }
+    /// The only one: it is the same for all sensors, and for a short recording it would be much of the work.
+    pub(crate) fn get() -> &'static Self {
+        static COMPASS: LazyLock<Compass> = LazyLock::new(|| {
+            let table = |i: usize, step_deg: f64| SinCos::of_degrees(i as f64 * step_deg);
+            Compass {
+                degrees: array::from_fn(|i| table(i, 1.0)),
+                hundredths: array::from_fn(|i| table(i, 0.01)),
+            }
+        });
+        &COMPASS
     }
 
     /// Of an azimuth in hundredths of a degree, 0 up to 36000.
@@ -86,8 +93,9 @@ impl Compass {
 
 impl Rotor {
     pub(crate) fn new(fan: &Fan) -> Self {
+        let still = Ahead::new(fan, 0.0);
         Self {
-            paces: Box::new(array::from_fn(|_| Ahead::new(fan, 0.0))),
+            paces: Box::new(array::from_fn(|_| still.clone())),
         }
     }
 
@@ -135,7 +143,7 @@ mod tests {
 
     #[test]
     fn every_azimuth_of_the_wire_has_its_sine_and_cosine() {
-        let compass = Compass::new();
+        let compass = Compass::get();
         for cdeg in 0..36_000 {
             let (sin, cos) = (f64::from(cdeg) / 100.0).to_radians().sin_cos();
             let got = compass.azimuth(cdeg);

@@ -1,27 +1,22 @@
 //! What one block of a packet holds, or one pair of blocks with dual returns: 32 channels that are placed together.
 //!
 //! A [`Volley`] is two firings of a 16-laser model, or one of a 32-laser one. [`Volley::firings`] is the plain way on;
-//! [`Volley::place`] is the fast one, a column at a time, and gives the same points to some 1e-14 of their distance.
+//! [`Volley::place`] is the fast one, several channels at a time, and gives the same points to some 1e-14 of their distance.
 //! Left out: everything after the sensor's own frame.
 
 use protocol::vlp16::{CHANNELS, Model};
-use units::{Lidar, Span, Stamp};
+use units::{Lidar, Real, Span, Stamp};
 
 use crate::firing::{Channels, Duplicates, Echo, Firing};
 use crate::geometry::Geometry;
 use crate::rotor::{Ahead, SinCos};
-
-/// The channels of a block as they are on the wire.
-pub(crate) type Raw = [[u8; 3]; CHANNELS];
-
-/// Room for the distances of a block or of a pair.
-pub(crate) type Counts = [[u16; CHANNELS]; 2];
+use crate::sorted::{Raw, Sorted};
 
 /// The returns of one block: each channel's only one, or of a pair of blocks each channel's first or second.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a> {
     raw: &'a Raw,
-    counts: &'a [u16; CHANNELS],
+    sorted: &'a Sorted,
     kept: u32,
 }
 
@@ -36,6 +31,15 @@ pub struct Volley<'a> {
     pub(crate) azimuth: SinCos,
     pub(crate) ahead: &'a Ahead,
     pub(crate) returns: Layers<'a>,
+}
+
+/// Where channels look along the horizon: one, or several.
+#[derive(Clone, Copy, Debug)]
+pub struct Heading<V> {
+    /// How far right a count gets, metres.
+    across: V,
+    /// How far forward, metres.
+    along: V,
 }
 
 /// One block, or a pair of them.
@@ -54,12 +58,12 @@ pub(crate) enum Layers<'a> {
 
 impl<'a> Layer<'a> {
     #[inline(always)]
-    fn new(raw: &'a Raw, counts: &'a mut [u16; CHANNELS]) -> Self {
-        for (count, [lo, hi, _]) in counts.iter_mut().zip(raw) {
-            *count = u16::from_le_bytes([*lo, *hi]);
+    pub(crate) const fn new(raw: &'a Raw, sorted: &'a Sorted) -> Self {
+        Self {
+            raw,
+            sorted,
+            kept: sorted.returns,
         }
-        let kept = nonzero(counts);
-        Self { raw, counts, kept }
     }
 
     /// Bit c is set where channel c has a return that is to become a point.
@@ -69,36 +73,32 @@ impl<'a> Layer<'a> {
         self.kept
     }
 
+    /// Each channel's distance in the model's unit; 0 where nothing came back.
+    #[inline]
+    #[must_use]
+    pub const fn counts(&self) -> &'a [f64; CHANNELS] {
+        &self.sorted.counts
+    }
+
     /// Each channel's calibrated reflectivity.
     #[inline]
-    pub fn reflectivities(&self, out: &mut [u8; CHANNELS]) {
-        for (out, [_, _, reflectivity]) in out.iter_mut().zip(self.raw) {
-            *out = *reflectivity;
-        }
+    #[must_use]
+    pub const fn reflectivities(&self) -> &'a [u8; CHANNELS] {
+        &self.sorted.reflectivities
     }
 }
 
 impl<'a> Layers<'a> {
     #[inline(always)]
-    pub(crate) fn one(raw: &'a Raw, counts: &'a mut Counts, echo: Echo) -> Self {
-        let [counts, _] = counts;
-        Self::One {
-            only: Layer::new(raw, counts),
-            echo,
-        }
+    pub(crate) const fn one(only: Layer<'a>, echo: Echo) -> Self {
+        Self::One { only, echo }
     }
 
     #[inline(always)]
-    pub(crate) fn two(
-        last: &'a Raw,
-        strongest: &'a Raw,
-        counts: &'a mut Counts,
-        duplicates: Duplicates,
-    ) -> Self {
-        let [even, odd] = counts;
-        let (last, mut strongest) = (Layer::new(last, even), Layer::new(strongest, odd));
+    pub(crate) fn two(last: Layer<'a>, strongest: Layer<'a>, duplicates: Duplicates) -> Self {
+        let mut strongest = strongest;
         if duplicates == Duplicates::Unique {
-            strongest.kept &= different(last.counts, strongest.counts);
+            strongest.kept &= strongest.sorted.changed;
         }
         Self::Two {
             last,
@@ -119,8 +119,8 @@ impl<'a> Layers<'a> {
             Self::Two {
                 last, strongest, ..
             } => {
-                let equal = last.kept & !different(last.counts, strongest.counts);
-                let returns = ones(last.kept) + ones(nonzero(strongest.counts));
+                let equal = last.kept & !strongest.sorted.changed;
+                let returns = ones(last.kept) + ones(strongest.sorted.returns);
                 (returns, returns - ones(equal))
             }
         }
@@ -188,40 +188,36 @@ impl<'a> Volley<'a> {
         &self.geometry.fan.ring
     }
 
-    /// The points of every channel of a layer, each as `frame` makes it of the point in the sensor's frame (x right, y forward,
-    /// z up, metres) and its channel. A channel without a return gets a place of no meaning.
+    /// Where channels look along the horizon: how far right and forward they get by one count. `of` takes the values of some channels, the same
+    /// ones every time, from a column of all.
     #[inline(always)]
-    pub fn place(
+    pub fn heading<V: Real>(&self, of: impl Fn(&[f64; CHANNELS]) -> V) -> Heading<V> {
+        let (SinCos { sin, cos }, ahead) = (self.azimuth, self.ahead);
+        let (ahead_sin, ahead_cos) = (of(&ahead.sin), of(&ahead.cos));
+        Heading {
+            across: ahead_cos * sin + ahead_sin * cos,
+            along: ahead_cos * cos - ahead_sin * sin,
+        }
+    }
+
+    /// The points of channels in the sensor's frame (x right, y forward, z up, metres) from their distance counts. Of a channel
+    /// without a return that is a place of no meaning.
+    #[inline(always)]
+    pub fn place<V: Real>(
         &self,
-        layer: &Layer<'_>,
-        frame: impl Fn(usize, [f64; 3]) -> [f64; 3],
-        x_m: &mut [f64; CHANNELS],
-        y_m: &mut [f64; CHANNELS],
-        z_m: &mut [f64; CHANNELS],
-    ) {
-        let (fan, ahead, azimuth) = (&self.geometry.fan, self.ahead, self.azimuth);
-        let across = |i: usize| azimuth.sin * ahead.cos[i] + azimuth.cos * ahead.sin[i];
-        let along = |i: usize| azimuth.cos * ahead.cos[i] - azimuth.sin * ahead.sin[i];
-        let counts = layer.counts;
+        counts: V,
+        heading: Heading<V>,
+        of: impl Fn(&[f64; CHANNELS]) -> V,
+    ) -> [V; 3] {
+        let (fan, Heading { across, along }) = (&self.geometry.fan, heading);
+        let out = counts + of(&fan.out_counts);
+        let up_m = counts * of(&fan.up_per_count) + of(&fan.up_m);
         match &fan.aside_counts {
-            None => {
-                for i in 0..CHANNELS {
-                    let count = f64::from(counts[i]);
-                    let out = count + fan.out_counts[i];
-                    let up_m = count * fan.up_per_count[i] + fan.up_m[i];
-                    let point = frame(i, [out * across(i), out * along(i), up_m]);
-                    [x_m[i], y_m[i], z_m[i]] = point;
-                }
-            }
+            None => [out * across, out * along, up_m],
             Some(aside) => {
-                for i in 0..CHANNELS {
-                    let count = f64::from(counts[i]);
-                    let out = count + fan.out_counts[i];
-                    let x_m_i = out * across(i) - aside[i] * along(i);
-                    let y_m_i = out * along(i) + aside[i] * across(i);
-                    let up_m = count * fan.up_per_count[i] + fan.up_m[i];
-                    [x_m[i], y_m[i], z_m[i]] = frame(i, [x_m_i, y_m_i, up_m]);
-                }
+                let aside = of(aside);
+                let x_m = out * across - aside * along;
+                [x_m, out * along + aside * across, up_m]
             }
         }
     }
@@ -270,37 +266,4 @@ impl<'a> Volley<'a> {
             },
         }
     }
-}
-
-/// The channels with a distance.
-#[inline]
-fn nonzero(counts: &[u16; CHANNELS]) -> u32 {
-    different(counts, &[0; CHANNELS])
-}
-
-/// The channels in which two returns differ.
-#[inline]
-fn different(a: &[u16; CHANNELS], b: &[u16; CHANNELS]) -> u32 {
-    let (a, b) = (a.as_chunks::<16>().0, b.as_chunks::<16>().0);
-    let halves = a.iter().zip(b).rev();
-    halves.fold(0, |mask, (a, b)| mask << 16 | u32::from(half(a, b)))
-}
-
-/// A bit for each place in which two halves differ, as a sum of columns rather than bit by bit.
-#[inline(always)]
-fn half(a: &[u16; 16], b: &[u16; 16]) -> u16 {
-    const BITS: [u16; 16] = {
-        let mut bits = [0; 16];
-        let mut i = 0;
-        while i < 16 {
-            bits[i] = 1 << i;
-            i += 1;
-        }
-        bits
-    };
-    let mut mask = 0;
-    for ((a, b), bit) in a.iter().zip(b).zip(&BITS) {
-        mask |= if a == b { 0 } else { *bit };
-    }
-    mask
 }

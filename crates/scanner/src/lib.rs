@@ -6,6 +6,7 @@
 pub mod clock;
 pub mod config;
 pub mod error;
+mod lanes;
 mod live;
 mod plausible;
 pub mod polls;

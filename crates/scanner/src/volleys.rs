@@ -5,44 +5,54 @@
 //! that does not hold (the edge of a sweep, the ends of the angle's record, a kink of the clock) the points go one by one.
 //! Results depend on the block alone, not on what came before it. Left out: what any of it means.
 
-use cloud::mount::Tilts;
-use cloud::{Fields, Order, Points, Spare};
-use fearless_simd::{Avx2, Level, Simd};
+mod rows;
+mod spans;
+
+use cloud::mount::Tilt;
+use cloud::{Fields, Points, Spare};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch};
 use lidar::{Layer, Volley};
 use units::{Degrees, Host, Span, Stamp};
 
+use self::rows::{Places, Rows};
+use self::spans::{SpanCursor, Within};
 use crate::clock::{ClockCursor, Tangent};
+use crate::lanes::load;
 use crate::scanner::{Alignment, Placed};
 use crate::trajectory::{Motion, TrajectoryCursor};
 
 /// Channels of a block.
 const N: usize = 32;
+/// The most points that a block makes, both returns of a pair of them.
+const ROOM: usize = 2 * N;
 /// The most points that one packet makes: 12 blocks of 32 channels, and room to write beyond.
-pub(crate) const MOST_POINTS: usize = 16 * N;
+pub(crate) const MOST_POINTS: usize = 12 * N + ROOM;
 /// What rounding may make of a time, twice over.
 const EDGE: Span = Span::from_nanos(2);
 
-/// Places volleys by an alignment.
+/// Places volleys by an alignment. Its columns begin where lines of the cache do, so that no register's worth lies across two.
+#[repr(C, align(64))]
 pub(crate) struct VolleyPlacer<'a> {
+    /// How far the platform turns from the block's start until each channel fires.
+    ahead_rad: [f64; N],
+    /// Variance of the tilt at each channel, square radians, where it is wanted.
+    tilt_variance_rad2: [f64; N],
     alignment: &'a Alignment,
     clock: ClockCursor<'a>,
     trajectory: TrajectoryCursor<'a>,
     spans: SpanCursor<'a>,
     /// About when what comes next arrived, as far as it matters.
     near: Option<Stamp<Host>>,
-    /// How far the platform turns from the block's start until each channel fires.
-    ahead_rad: [f64; N],
-    tilts: Tilts<N>,
-    /// Variance of the tilt at each channel, square radians, where it is wanted.
-    tilt_variance_rad2: [f64; N],
-    /// Wider registers, where the processor has them. They change no result: the operations are the same in the same order.
-    avx2: Option<Avx2>,
+    /// The widest registers that the processor has. They change no result: the operations are the same in the same order.
+    level: Level,
 }
 
 /// When and how a block begins.
 struct Pose {
     tangent: Tangent,
     angle: Degrees,
+    tilt: Tilt,
     /// Not before the last channel fires.
     last: Stamp<Host>,
 }
@@ -63,17 +73,16 @@ impl<'a> VolleyPlacer<'a> {
             spans: SpanCursor::new(alignment.spans()),
             near: None,
             ahead_rad: [0.0; N],
-            tilts: Tilts::default(),
             tilt_variance_rad2: [0.0; N],
-            avx2: Level::new().as_avx2(),
+            level: Level::new(),
         }
     }
 
-    /// The same without wider registers.
+    /// The same with other registers.
     #[cfg(test)]
-    fn plain(alignment: &'a Alignment) -> Self {
+    fn with_level(alignment: &'a Alignment, level: Level) -> Self {
         Self {
-            avx2: None,
+            level,
             ..Self::new(alignment)
         }
     }
@@ -88,27 +97,36 @@ impl<'a> VolleyPlacer<'a> {
 
     /// Adds the points of a volley to a batch.
     pub(crate) fn place(&mut self, volley: &Volley<'_>, batch: &mut Points, placed: &mut Placed) {
-        match self.avx2 {
-            Some(avx2) => avx2.vectorize(
-                #[inline(always)]
-                || self.place_by(volley, batch, placed),
-            ),
-            None => self.place_by(volley, batch, placed),
-        }
+        dispatch!(self.level, simd => self.place_by(simd, volley, batch, placed));
     }
 
     #[inline(always)]
-    fn place_by(&mut self, volley: &Volley<'_>, batch: &mut Points, placed: &mut Placed) {
+    fn place_by<S: Simd>(
+        &mut self,
+        simd: S,
+        volley: &Volley<'_>,
+        batch: &mut Points,
+        placed: &mut Placed,
+    ) {
         let (first, second) = volley.layers();
-        match self.judge(volley) {
+        // A second return that is no point is like none.
+        let second = second.filter(|second| second.kept() != 0);
+        if first.kept() == 0 && second.is_none() {
+            return;
+        }
+        match self.judge(simd, volley) {
             Verdict::Place(pose) => {
                 if batch.fields().contains(Fields::SD) {
                     self.weigh(volley, &pose);
                 }
-                let points = match second {
-                    None => self.place_one(volley, first, &pose, batch),
-                    Some(second) => self.place_two(volley, [first, second], &pose, batch),
+                let Some(mut rows) = batch.spare() else {
+                    return;
                 };
+                let points = match second {
+                    None => self.fill(simd, volley, [first], &pose, &mut rows),
+                    Some(second) => self.fill(simd, volley, [first, second], &pose, &mut rows),
+                };
+                batch.keep(points);
                 placed.points += points as u64;
             }
             Verdict::LeaveOut => {
@@ -122,15 +140,13 @@ impl<'a> VolleyPlacer<'a> {
 
     /// Looks up time and angle of a volley.
     #[inline(always)]
-    fn judge(&mut self, volley: &Volley<'_>) -> Verdict {
+    fn judge<S: Simd>(&mut self, simd: S, volley: &Volley<'_>) -> Verdict {
         let Some(tangent) = self.clock.tangent(volley.start, volley.length()) else {
             return Verdict::OneByOne;
         };
-        let length_ns = volley.length().as_nanos();
-        let stretched_ns = length_ns + (length_ns as f64 * tangent.gain) as i64;
         let start = tangent.at.host;
         let last = start
-            .saturating_add(Span::from_nanos(stretched_ns))
+            .saturating_add(tangent.stretched(volley.length()))
             .saturating_add(EDGE);
         match self.spans.within(start, last) {
             Within::None => return Verdict::LeaveOut,
@@ -140,18 +156,16 @@ impl<'a> VolleyPlacer<'a> {
         let delays_ns = volley.delays_f64_ns();
         let motion = self
             .trajectory
-            .follow(&tangent, last, delays_ns, &mut self.ahead_rad);
+            .follow(simd, &tangent, last, delays_ns, &mut self.ahead_rad);
         match motion {
             Motion::Unknown => Verdict::LeaveOut,
             Motion::MomentByMoment => Verdict::OneByOne,
-            Motion::Known(angle, tilt) => {
-                self.tilts.set(tilt, &self.ahead_rad);
-                Verdict::Place(Pose {
-                    tangent,
-                    angle,
-                    last,
-                })
-            }
+            Motion::Known(angle, tilt) => Verdict::Place(Pose {
+                tangent,
+                angle,
+                tilt,
+                last,
+            }),
         }
     }
 
@@ -176,108 +190,74 @@ impl<'a> VolleyPlacer<'a> {
         );
     }
 
-    /// How far each point is expected to be off: [`Alignment::sd_m`] in columns, of points that are placed.
-    #[inline(never)]
-    fn fill_sd(&self, volley: &Volley<'_>, [x_m, y_m, z_m]: [&[f64; N]; 3], sd_m: &mut [f64; N]) {
-        let (mount, tilts) = (&self.alignment.mount, &self.tilts);
-        let range_variance_m2 = self.alignment.range_sd_m * self.alignment.range_sd_m;
-        let azimuth_variance_rad2 = volley.azimuth_variances_rad2();
-        for i in 0..N {
-            let [tilt_arm, head_arm] = mount.arms_m2([x_m[i], y_m[i], z_m[i]], tilts.get(i));
-            let by_tilt = tilt_arm * self.tilt_variance_rad2[i];
-            let by_azimuth = head_arm * azimuth_variance_rad2[i];
-            sd_m[i] = (by_tilt + range_variance_m2 + by_azimuth).sqrt();
-        }
-    }
-
-    /// Places the only return of each channel; how many points that makes.
+    /// Writes every column that is wanted, as many channels at a time as a register holds; how many points that makes.
+    ///
+    /// Of two layers both returns of a channel stand side by side, the first layer's first.
     #[inline(always)]
-    fn place_one(
+    fn fill<S: Simd, const L: usize>(
         &self,
-        volley: &Volley<'_>,
-        layer: &Layer<'_>,
-        pose: &Pose,
-        batch: &mut Points,
-    ) -> usize {
-        let kept = layer.kept();
-        if kept == u32::MAX {
-            if let Some(mut rows) = batch.spare() {
-                self.fill(volley, [layer], pose, &mut rows);
-            }
-            batch.keep_all(N);
-            return N;
-        }
-        if let Some(mut rows) = batch.spare_beyond() {
-            self.fill(volley, [layer], pose, &mut rows);
-        }
-        let order = Order::of(kept);
-        batch.keep(&order);
-        order.len()
-    }
-
-    /// Places both returns of each channel, of one channel side by side; how many points that makes.
-    #[inline(always)]
-    fn place_two(
-        &self,
-        volley: &Volley<'_>,
-        layers: [&Layer<'_>; 2],
-        pose: &Pose,
-        batch: &mut Points,
-    ) -> usize {
-        if let Some(mut rows) = batch.spare_beyond() {
-            self.fill(volley, layers, pose, &mut rows);
-        }
-        let order = Order::of_pairs(layers[0].kept(), layers[1].kept());
-        batch.keep(&order);
-        order.len()
-    }
-
-    /// Writes every column that is wanted, for all channels whether they have a return or not.
-    #[inline(always)]
-    fn fill<const L: usize>(
-        &self,
+        simd: S,
         volley: &Volley<'_>,
         layers: [&Layer<'_>; L],
         pose: &Pose,
-        rows: &mut Spare<'_, N, L>,
-    ) {
-        let (mount, tilts) = (&self.alignment.mount, &self.tilts);
-        for (i, layer) in layers.into_iter().enumerate() {
-            volley.place(
-                layer,
-                |channel, point| mount.place(point, tilts.get(channel)),
-                &mut rows.x_m[i],
-                &mut rows.y_m[i],
-                &mut rows.z_m[i],
-            );
-            if let Some(intensity) = &mut rows.intensity {
-                layer.reflectivities(&mut intensity[i]);
+        to: &mut Spare<'_, ROOM>,
+    ) -> usize {
+        let mount = &self.alignment.mount;
+        let kept = Rows::kept(layers);
+        for channel in (0..N).step_by(S::f64s::LEN) {
+            let of = |column: &[f64; N]| load(simd, column, channel);
+            let places: Places<S, L> = kept.places(simd, channel);
+            let (heading, ahead_rad) = (volley.heading(of), of(&self.ahead_rad));
+            let tilt = pose.tilt.ahead(ahead_rad);
+            let [mut x_m, mut y_m, mut z_m] = [[ahead_rad; L]; 3];
+            for layer in 0..L {
+                let point = volley.place(of(layers[layer].counts()), heading, of);
+                [x_m[layer], y_m[layer], z_m[layer]] = mount.place(point, tilt);
             }
-            if let Some(ring) = &mut rows.ring {
-                ring[i] = *volley.rings();
+            places.put(to.x_m, x_m);
+            places.put(to.y_m, y_m);
+            places.put(to.z_m, z_m);
+            if let Some(tilt_deg) = &mut to.tilt_deg {
+                let degrees = ahead_rad * 1_f64.to_degrees() + pose.angle.0;
+                places.put(tilt_deg, [degrees; L]);
             }
-            if let Some(laser) = &mut rows.laser {
-                laser[i] = *volley.lasers();
+            let delays_ns = of(volley.delays_f64_ns());
+            if let Some(time) = &mut to.time {
+                let nanos = pose.tangent.nanos(simd, delays_ns);
+                places.put_times(time, [nanos; L]);
             }
-            if let Some(time) = &mut rows.time {
-                pose.tangent.times(volley.delays_f64_ns(), &mut time[i]);
+            if let Some(device_time) = &mut to.device_time {
+                let nanos = Tangent::of_device(volley.start).nanos(simd, delays_ns);
+                places.put_times(device_time, [nanos; L]);
             }
-            if let Some(device_time) = &mut rows.device_time {
-                let start = volley.start.as_nanos();
-                for (time, delay) in device_time[i].iter_mut().zip(volley.delays_ns()) {
-                    *time = Stamp::from_nanos(start.wrapping_add(*delay));
+            if let Some(sd_m) = &mut to.sd_m {
+                let tilt_variance = of(&self.tilt_variance_rad2);
+                let azimuth_variance = of(volley.azimuth_variances_rad2());
+                let range_variance = self.alignment.range_sd_m * self.alignment.range_sd_m;
+                let mut sds = [ahead_rad; L];
+                for (layer, sd) in sds.iter_mut().enumerate() {
+                    let point = [x_m[layer], y_m[layer], z_m[layer]];
+                    let [tilt_arm, head_arm] = mount.arms_m2(point, tilt);
+                    let by_tilt = tilt_arm * tilt_variance;
+                    *sd = (by_tilt + range_variance + head_arm * azimuth_variance).sqrt();
                 }
-            }
-            if let Some(tilt_deg) = &mut rows.tilt_deg {
-                for (tilt_deg, ahead_rad) in tilt_deg[i].iter_mut().zip(&self.ahead_rad) {
-                    *tilt_deg = pose.angle.0 + ahead_rad.to_degrees();
-                }
-            }
-            if let Some(sd_m) = &mut rows.sd_m {
-                let placed = [&rows.x_m[i], &rows.y_m[i], &rows.z_m[i]];
-                self.fill_sd(volley, placed, &mut sd_m[i]);
+                places.put(sd_m, sds);
             }
         }
+        if let Some(intensity) = &mut to.intensity {
+            let mut reflectivities = [volley.rings(); L];
+            for (to, layer) in reflectivities.iter_mut().zip(layers) {
+                *to = layer.reflectivities();
+            }
+            kept.put_bytes(simd, intensity, reflectivities);
+        }
+        if let Some(ring) = &mut to.ring {
+            kept.put_bytes(simd, ring, [volley.rings(); L]);
+        }
+        if let Some(laser) = &mut to.laser {
+            kept.put_bytes(simd, laser, [volley.lasers(); L]);
+        }
+        kept.count()
     }
 }
 
@@ -298,82 +278,6 @@ fn one_by_one(
             }
             None => placed.outside += 1,
         }
-    }
-}
-
-/// How much of a stretch of time lies within the spans.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Within {
-    All,
-    /// Some of it, or perhaps none.
-    Some,
-    None,
-}
-
-/// Follows spans through times that mostly grow.
-#[derive(Clone, Debug)]
-struct SpanCursor<'a> {
-    spans: &'a [(Stamp<Host>, Stamp<Host>)],
-    /// Stretch of time for which the last answer holds.
-    holds: (Stamp<Host>, Stamp<Host>),
-    answer: Within,
-}
-
-impl<'a> SpanCursor<'a> {
-    const fn new(spans: &'a [(Stamp<Host>, Stamp<Host>)]) -> Self {
-        Self {
-            spans,
-            holds: (Stamp::from_nanos(0), Stamp::from_nanos(-1)),
-            answer: Within::None,
-        }
-    }
-
-    #[inline]
-    fn within(&mut self, start: Stamp<Host>, end: Stamp<Host>) -> Within {
-        if self.holds.0 <= start && end <= self.holds.1 {
-            return self.answer;
-        }
-        self.search(start, end)
-    }
-
-    #[cold]
-    fn search(&mut self, start: Stamp<Host>, end: Stamp<Host>) -> Within {
-        let around = self
-            .spans
-            .iter()
-            .find(|(from, to)| *from <= start && end <= *to);
-        if let Some(span) = around {
-            (self.holds, self.answer) = (*span, Within::All);
-            return Within::All;
-        }
-        if self
-            .spans
-            .iter()
-            .any(|(from, to)| *from <= end && start <= *to)
-        {
-            return Within::Some;
-        }
-        let ends_before = self
-            .spans
-            .iter()
-            .map(|span| span.1)
-            .filter(|to| *to < start)
-            .max();
-        let begins_after = self
-            .spans
-            .iter()
-            .map(|span| span.0)
-            .filter(|from| end < *from)
-            .min();
-        let nearest = Span::from_nanos(1);
-        self.holds = (
-            ends_before.map_or(Stamp::from_nanos(i64::MIN), |to| to.saturating_add(nearest)),
-            begins_after.map_or(Stamp::from_nanos(i64::MAX), |from| {
-                from.saturating_add(-nearest)
-            }),
-        );
-        self.answer = Within::None;
-        Within::None
     }
 }
 

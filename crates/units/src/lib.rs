@@ -8,8 +8,10 @@
 
 mod angle;
 mod gearing;
+mod real;
 mod time;
 
 pub use angle::{DegPerS, DegPerS2, Degrees, Metres, Radians};
 pub use gearing::{Gearing, GearingError, Quadcounts, Rpm, RpmPerS};
+pub use real::Real;
 pub use time::{Drive, Host, Lidar, Span, Stamp};

@@ -1,60 +1,49 @@
-//! The fast way into columns: rows beyond the last point are written as whole arrays, then those that hold a point are kept.
+//! The fast way into columns: room beyond the last point is written as whole arrays, then as much of it as holds points is kept.
 //!
 //! A producer that makes points by the dozen writes them where they are to stay, in loops without a branch, and says
-//! afterwards which of them count. Left out: any meaning of the rows.
+//! afterwards how many count. Left out: any meaning of the rows.
 
 use units::{Host, Lidar, Stamp};
 
-use super::{Order, Points};
+use super::Points;
 use crate::Fields;
 
-/// `L` times `N` rows beyond the last point, to be written; what stands in them is of no meaning.
+/// `R` rows beyond the last point, to be written; what stands in them is of no meaning.
 #[derive(Debug)]
-pub struct Spare<'a, const N: usize, const L: usize> {
+pub struct Spare<'a, const R: usize> {
     /// x (right), metres.
-    pub x_m: &'a mut [[f64; N]; L],
+    pub x_m: &'a mut [f64; R],
     /// y (forward), metres.
-    pub y_m: &'a mut [[f64; N]; L],
+    pub y_m: &'a mut [f64; R],
     /// z (up), metres.
-    pub z_m: &'a mut [[f64; N]; L],
+    pub z_m: &'a mut [f64; R],
     /// Reflectivity, if asked for.
-    pub intensity: Option<&'a mut [[u8; N]; L]>,
+    pub intensity: Option<&'a mut [u8; R]>,
     /// Ring, if asked for.
-    pub ring: Option<&'a mut [[u8; N]; L]>,
+    pub ring: Option<&'a mut [u8; R]>,
     /// Laser number, if asked for.
-    pub laser: Option<&'a mut [[u8; N]; L]>,
+    pub laser: Option<&'a mut [u8; R]>,
     /// Time on the host's clock, if asked for.
-    pub time: Option<&'a mut [[Stamp<Host>; N]; L]>,
+    pub time: Option<&'a mut [Stamp<Host>; R]>,
     /// Time on the lidar's clock, if asked for.
-    pub device_time: Option<&'a mut [[Stamp<Lidar>; N]; L]>,
+    pub device_time: Option<&'a mut [Stamp<Lidar>; R]>,
     /// Tilt angle in degrees, if asked for.
-    pub tilt_deg: Option<&'a mut [[f64; N]; L]>,
+    pub tilt_deg: Option<&'a mut [f64; R]>,
     /// How far the point is off, as a root mean square expected, metres, if asked for.
-    pub sd_m: Option<&'a mut [[f64; N]; L]>,
+    pub sd_m: Option<&'a mut [f64; R]>,
 }
 
 impl Points {
-    /// Room for `L` times `N` more points, to be written and then counted by [`Points::keep_all`].
+    /// Room for `R` more points, to be written and then counted by [`Points::keep`].
     ///
     /// `None` never happens: the room is made first.
-    #[inline]
-    pub fn spare<const N: usize, const L: usize>(&mut self) -> Option<Spare<'_, N, L>> {
-        self.rows_from(self.len)
-    }
-
-    /// The same, beyond room for as many: where points are written of which [`Points::keep`] then keeps some.
-    #[inline]
-    pub fn spare_beyond<const N: usize, const L: usize>(&mut self) -> Option<Spare<'_, N, L>> {
-        self.rows_from(self.len + N * L)
-    }
-
     #[inline(always)]
-    fn rows_from<const N: usize, const L: usize>(&mut self, row: usize) -> Option<Spare<'_, N, L>> {
-        let end = row + N * L;
+    pub fn spare<const R: usize>(&mut self) -> Option<Spare<'_, R>> {
+        let (fields, row) = (self.fields, self.len);
+        let end = row + R;
         if self.x_m.len() < end {
             self.grow(end);
         }
-        let fields = self.fields;
         Some(Spare {
             x_m: rows(&mut self.x_m, row)?,
             y_m: rows(&mut self.y_m, row)?,
@@ -71,25 +60,8 @@ impl Points {
 
     /// Makes points of the first `count` rows that were spare; of no more than there are.
     #[inline]
-    pub fn keep_all(&mut self, count: usize) {
+    pub fn keep(&mut self, count: usize) {
         self.len = (self.len + count).min(self.x_m.len());
-    }
-
-    /// Makes points of some of the `R` rows beyond `R` spare ones, in their order.
-    #[inline]
-    pub fn keep<const R: usize>(&mut self, order: &Order<R>) {
-        let row = self.len;
-        gather(&mut self.x_m, row, order);
-        gather(&mut self.y_m, row, order);
-        gather(&mut self.z_m, row, order);
-        gather(&mut self.intensity, row, order);
-        gather(&mut self.ring, row, order);
-        gather(&mut self.laser, row, order);
-        gather(&mut self.time, row, order);
-        gather(&mut self.device_time, row, order);
-        gather(&mut self.tilt_deg, row, order);
-        gather(&mut self.sd_m, row, order);
-        self.keep_all(order.len());
     }
 
     /// Lengthens every column asked for to `end` rows or more: all that is reserved, or twice that.
@@ -130,40 +102,21 @@ impl Points {
 }
 
 #[inline(always)]
-fn rows<T, const N: usize, const L: usize>(
-    column: &mut [T],
-    row: usize,
-) -> Option<&mut [[T; N]; L]> {
-    column.get_mut(row..)?.as_chunks_mut().0.first_chunk_mut()
+fn rows<T, const R: usize>(column: &mut [T], row: usize) -> Option<&mut [T; R]> {
+    column.get_mut(row..)?.first_chunk_mut()
 }
 
 #[inline(always)]
-fn wanted<T, const N: usize, const L: usize>(
+fn wanted<T, const R: usize>(
     fields: Fields,
     field: Fields,
     column: &mut [T],
     row: usize,
-) -> Option<&mut [[T; N]; L]> {
+) -> Option<&mut [T; R]> {
     if fields.contains(field) {
         rows(column, row)
     } else {
         None
-    }
-}
-
-/// Brings rows of beyond to the front. A column that was not asked for has none.
-#[inline(always)]
-fn gather<T: Copy, const R: usize>(column: &mut [T], row: usize, order: &Order<R>) {
-    let rest = column.get_mut(row..).unwrap_or_default();
-    let Some((to, beyond)) = rest.split_first_chunk_mut::<R>() else {
-        return;
-    };
-    let Some(from) = beyond.first_chunk::<R>() else {
-        return;
-    };
-    for (to, &row) in to.iter_mut().zip(order.rows()) {
-        // The remainder changes no row that is one, and spares a check.
-        *to = from[usize::from(row) % R];
     }
 }
 
@@ -190,15 +143,10 @@ mod tests {
     }
 
     /// Writes points `first`, `first + 1` and so on into the rows.
-    fn write<const L: usize>(rows: &mut Spare<'_, 32, L>, first: u8) {
-        for row in 0..32 * L {
-            let (layer, place) = (row / 32, row % 32);
+    fn write(rows: &mut Spare<'_, 32>, first: u8) {
+        for row in 0..32 {
             let point = point(first + row as u8);
-            [
-                rows.x_m[layer][place],
-                rows.y_m[layer][place],
-                rows.z_m[layer][place],
-            ] = point.position_m;
+            [rows.x_m[row], rows.y_m[row], rows.z_m[row]] = point.position_m;
             let narrow = [
                 (&mut rows.intensity, point.intensity),
                 (&mut rows.ring, point.ring),
@@ -206,20 +154,20 @@ mod tests {
             ];
             for (column, value) in narrow {
                 if let Some(column) = column {
-                    column[layer][place] = value;
+                    column[row] = value;
                 }
             }
             if let Some(column) = &mut rows.time {
-                column[layer][place] = point.time;
+                column[row] = point.time;
             }
             if let Some(column) = &mut rows.device_time {
-                column[layer][place] = point.device_time;
+                column[row] = point.device_time;
             }
             if let Some(column) = &mut rows.tilt_deg {
-                column[layer][place] = point.tilt.0;
+                column[row] = point.tilt.0;
             }
             if let Some(column) = &mut rows.sd_m {
-                column[layer][place] = point.sd_m;
+                column[row] = point.sd_m;
             }
         }
     }
@@ -227,9 +175,7 @@ mod tests {
     #[derive(Clone, Debug)]
     enum Step {
         Push(u8),
-        All(u8),
-        Some(u32),
-        Pairs(u32, u32),
+        Some(u8, usize),
         Append,
         Clear,
     }
@@ -237,9 +183,7 @@ mod tests {
     fn any_step() -> impl Strategy<Value = Step> {
         prop_oneof![
             any::<u8>().prop_map(Step::Push),
-            (0u8..200).prop_map(Step::All),
-            any::<u32>().prop_map(Step::Some),
-            any::<(u32, u32)>().prop_map(|(a, b)| Step::Pairs(a, b)),
+            (0u8..200, 0..=32usize).prop_map(|(first, count)| Step::Some(first, count)),
             Just(Step::Append),
             Just(Step::Clear),
         ]
@@ -259,29 +203,10 @@ mod tests {
                         fast.push(point(n));
                         slow.push(point(n));
                     }
-                    Step::All(first) => {
-                        write::<1>(&mut fast.spare().unwrap(), first);
-                        fast.keep_all(32);
-                        (0..32).for_each(|row| slow.push(point(first + row)));
-                    }
-                    Step::Some(mask) => {
-                        write::<1>(&mut fast.spare_beyond().unwrap(), 7);
-                        fast.keep(&Order::of(mask));
-                        (0..32)
-                            .filter(|row| mask >> row & 1 != 0)
-                            .for_each(|row| slow.push(point(7 + row)));
-                    }
-                    Step::Pairs(first, second) => {
-                        write::<2>(&mut fast.spare_beyond().unwrap(), 3);
-                        fast.keep(&Order::of_pairs(first, second));
-                        for row in 0..32 {
-                            if first >> row & 1 != 0 {
-                                slow.push(point(3 + row));
-                            }
-                            if second >> row & 1 != 0 {
-                                slow.push(point(35 + row));
-                            }
-                        }
+                    Step::Some(first, count) => {
+                        write(&mut fast.spare().unwrap(), first);
+                        fast.keep(count);
+                        (0..count).for_each(|row| slow.push(point(first + row as u8)));
                     }
                     Step::Append => {
                         let batch = slow.clone();
@@ -302,7 +227,7 @@ mod tests {
     #[test]
     fn room_for_a_column_nobody_asked_for_is_not_made() {
         let mut points = Points::new(Fields::RING);
-        let rows = points.spare::<32, 2>().unwrap();
+        let rows = points.spare::<64>().unwrap();
         assert!(rows.ring.is_some() && rows.time.is_none() && rows.tilt_deg.is_none());
         assert_eq!(points.time.capacity(), 0);
         assert!(points.is_empty());

@@ -2,6 +2,7 @@
 //!
 //! Left out: how the clock was found.
 
+use fearless_simd::prelude::*;
 use units::{Host, Lidar, Span, Stamp};
 
 use super::device::{DeviceClock, Line};
@@ -105,16 +106,35 @@ impl Moment {
 }
 
 impl Tangent {
+    /// The device's own clock, its times taken for the host's.
+    #[inline(always)]
+    #[must_use]
+    pub const fn of_device<C>(start: Stamp<C>) -> Self {
+        Self {
+            at: Moment {
+                host: Stamp::from_nanos(start.as_nanos()),
+                rest_ns: 0.0,
+            },
+            gain: 0.0,
+        }
+    }
+
+    /// How long `length` of the device's time takes the host, to the nearest nanosecond.
+    #[inline(always)]
+    #[must_use]
+    pub fn stretched(&self, length: Span) -> Span {
+        let more_ns = round(length.as_nanos() as f64 * self.gain);
+        length.saturating_add(Span::from_nanos(more_ns))
+    }
+
     /// Host times that are `delays_ns` after the start by the device's clock, to the nearest nanosecond.
     #[inline(always)]
-    pub fn times<const N: usize>(&self, delays_ns: &[f64; N], times: &mut [Stamp<Host>; N]) {
-        let bits = NO_FRACTION.to_bits() as i64;
-        let start = self.at.host.as_nanos().wrapping_sub(bits);
-        let stretch = 1.0 + self.gain;
-        for (time, delay) in times.iter_mut().zip(delays_ns) {
-            let whole = delay * stretch + self.at.rest_ns + NO_FRACTION;
-            *time = Stamp::from_nanos(start.wrapping_add(whole.to_bits() as i64));
-        }
+    #[must_use]
+    pub fn nanos<S: Simd>(&self, simd: S, delays_ns: S::f64s) -> S::i64s {
+        let whole = delays_ns * (1.0 + self.gain) + self.at.rest_ns + NO_FRACTION;
+        let bits: S::i64s = whole.bitcast();
+        let origin = self.at.host.as_nanos();
+        bits + S::i64s::splat(simd, origin.wrapping_sub(NO_FRACTION.to_bits() as i64))
     }
 }
 
@@ -180,10 +200,15 @@ const NO_FRACTION: f64 = 6_755_399_441_055_744.0;
 /// To the nearest whole number, and to the even one from halfway.
 #[inline(always)]
 fn round(x: f64) -> i64 {
-    // f64::round is a call on most processors.
+    // f64::round is a call on most processors, and a cast that saturates takes several steps.
     if x.abs() < NO_FRACTION / 4.0 {
-        ((x + NO_FRACTION) - NO_FRACTION) as i64
+        (x + NO_FRACTION).to_bits() as i64 - NO_FRACTION.to_bits() as i64
     } else {
-        x.round() as i64
+        round_far(x)
     }
+}
+
+#[cold]
+fn round_far(x: f64) -> i64 {
+    x.round() as i64
 }

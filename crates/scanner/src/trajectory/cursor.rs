@@ -3,15 +3,17 @@
 //! Left out: what the angles mean, and blocks at the ends of what is known, which are asked moment by moment.
 
 use cloud::mount::{MOST_AHEAD_RAD, Tilt};
+use fearless_simd::prelude::*;
 use units::{Degrees, Host, Span, Stamp};
 
 use super::pieces::{Piece, Pieces};
 use crate::clock::{Moment, Tangent};
+use crate::lanes::{load, store};
 
 /// Follows a trajectory through times that mostly grow.
 #[derive(Clone, Debug)]
 pub struct TrajectoryCursor<'a> {
-    fixed: Option<Degrees>,
+    fixed: Option<(Degrees, Tilt)>,
     pieces: &'a [Piece],
     end: Stamp<Host>,
     /// The first piece after the last start.
@@ -82,9 +84,9 @@ pub enum Motion {
 const EDGE: Span = Span::from_nanos(2);
 
 impl<'a> TrajectoryCursor<'a> {
-    pub(super) const fn fixed(angle: Degrees) -> Self {
+    pub(super) fn fixed(angle: Degrees) -> Self {
         Self {
-            fixed: Some(angle),
+            fixed: Some((angle, Tilt::new(angle))),
             pieces: &[],
             end: Stamp::from_nanos(0),
             next: 0,
@@ -105,17 +107,18 @@ impl<'a> TrajectoryCursor<'a> {
     /// The angle at moments that are `delays_ns` after a tangent's start by the lidar's clock, none of them after `last`: some
     /// angle, and in `ahead_rad` how far it was on from there at each.
     #[inline(always)]
-    pub fn follow<const N: usize>(
+    pub fn follow<S: Simd, const N: usize>(
         &mut self,
+        simd: S,
         tangent: &Tangent,
         last: Stamp<Host>,
         delays_ns: &[f64; N],
         ahead_rad: &mut [f64; N],
     ) -> Motion {
         let at = tangent.at;
-        if let Some(angle) = self.fixed {
+        if let Some((angle, tilt)) = self.fixed {
             ahead_rad.fill(0.0);
-            return Motion::Known(angle, Tilt::new(angle));
+            return Motion::Known(angle, tilt);
         }
         self.seek(at);
         let (before, coming) = self.pieces.split_at_checked(self.next).unwrap_or_default();
@@ -126,22 +129,22 @@ impl<'a> TrajectoryCursor<'a> {
             return self.at_the_ends(at, last, coming.first());
         };
         let until = coming.first().map_or(self.end, |piece| piece.from);
-        let anchor = match self.anchor {
-            anchor if anchor.holds(self.next, at.host) => anchor,
-            _ => Anchor::new(self.next, piece, until, at.host),
-        };
-        self.anchor = anchor;
+        if !self.anchor.holds(self.next, at.host) {
+            self.anchor = Anchor::new(self.next, piece, until, at.host);
+        }
+        let anchor = &self.anchor;
         let stretch = 1.0 + tangent.gain;
         let length_ns = last.saturating_since(at.host).as_nanos() as f64;
         let about = piece.about(piece.since(at));
         if fastest(&about, length_ns).to_radians() * length_ns > MOST_AHEAD_RAD / 2.0 {
             return Motion::MomentByMoment;
         }
-        carry_on(&about, anchor.angle, stretch, delays_ns, ahead_rad);
+        carry_on(simd, &about, anchor.angle, stretch, delays_ns, ahead_rad);
         if until <= last.saturating_add(EDGE)
             && !cross(
+                simd,
                 coming,
-                &anchor,
+                anchor,
                 &Crossing { at, last, stretch },
                 delays_ns,
                 ahead_rad,
@@ -226,7 +229,8 @@ fn fastest(about: &[f64; 4], length_ns: f64) -> f64 {
 
 /// The polynomial `about` a block's start at each delay, counted from `angle`.
 #[inline(always)]
-fn carry_on<const N: usize>(
+fn carry_on<S: Simd, const N: usize>(
+    simd: S,
     about: &[f64; 4],
     angle: Degrees,
     stretch: f64,
@@ -234,14 +238,10 @@ fn carry_on<const N: usize>(
     ahead_rad: &mut [f64; N],
 ) {
     let [c0, c1, c2, c3] = in_radians(about, angle, stretch);
-    if c2 == 0.0 && c3 == 0.0 {
-        for (ahead, delay) in ahead_rad.iter_mut().zip(delays_ns) {
-            *ahead = c0 + c1 * delay;
-        }
-    } else {
-        for (ahead, &delay) in ahead_rad.iter_mut().zip(delays_ns) {
-            *ahead = c0 + delay * (c1 + delay * (c2 + delay * c3));
-        }
+    for at in (0..N).step_by(S::f64s::LEN) {
+        let delay = load(simd, delays_ns, at);
+        let cubic = ((delay * c3 + c2) * delay + c1) * delay + c0;
+        store(cubic, ahead_rad, at);
     }
 }
 
@@ -263,27 +263,29 @@ struct Crossing {
 }
 
 /// Takes the pieces that begin within a block for the channels that fire in them; whether all stay near the anchor.
-#[cold]
-#[inline(never)]
-fn cross<const N: usize>(
+#[inline(always)]
+fn cross<S: Simd, const N: usize>(
+    simd: S,
     coming: &[Piece],
     anchor: &Anchor,
     block: &Crossing,
     delays_ns: &[f64; N],
     ahead_rad: &mut [f64; N],
 ) -> bool {
+    let mut near = S::mask64s::splat(simd, true);
     for piece in coming {
         if piece.from > block.last.saturating_add(EDGE) {
             break;
         }
         let passed_ns =
             piece.from.saturating_since(block.at.host).as_nanos() as f64 - block.at.rest_ns;
-        for (ahead, delay) in ahead_rad.iter_mut().zip(delays_ns) {
-            let ns = delay * block.stretch - passed_ns;
-            if ns >= 0.0 {
-                *ahead = (piece.at(ns) - anchor.angle.0).to_radians();
-            }
+        for at in (0..N).step_by(S::f64s::LEN) {
+            let ns = load(simd, delays_ns, at) * block.stretch + -passed_ns;
+            let there = (piece.at(ns) + -anchor.angle.0) * 1_f64.to_radians();
+            let ahead = ns.simd_ge(0.0).select(there, load(simd, ahead_rad, at));
+            near &= ahead.abs().simd_le(MOST_AHEAD_RAD);
+            store(ahead, ahead_rad, at);
         }
     }
-    ahead_rad.iter().all(|ahead| ahead.abs() <= MOST_AHEAD_RAD)
+    near.all_true()
 }

@@ -3,7 +3,7 @@
 //! So there is one way to ask, one cursor for the fast path, and no method that costs more than another once it is fitted.
 //! Left out: where the coefficients come from.
 
-use units::{Degrees, Host, Stamp};
+use units::{Degrees, Host, Real, Stamp};
 
 use crate::clock::Moment;
 
@@ -67,9 +67,9 @@ impl Piece {
 
     /// Degrees, `ns` after its start.
     #[inline(always)]
-    pub(super) fn at(&self, ns: f64) -> f64 {
+    pub(super) fn at<V: Real>(&self, ns: V) -> V {
         let [c0, c1, c2, c3] = self.deg;
-        c0 + ns * (c1 + ns * (c2 + ns * c3))
+        ((ns * c3 + c2) * ns + c1) * ns + c0
     }
 
     /// Degrees per nanosecond, `ns` after its start.

@@ -196,6 +196,23 @@ prop_compose! {
     }
 }
 
+/// Registers of every width that this processor has.
+fn levels() -> Vec<Level> {
+    let detected = Level::new();
+    #[cfg(not(target_arch = "x86_64"))]
+    let narrower: [Option<Level>; 0] = [];
+    #[cfg(target_arch = "x86_64")]
+    let narrower = [
+        detected.as_sse4_2().map(Level::Sse4_2),
+        detected.as_avx2().map(Level::Avx2),
+    ];
+    let narrower = narrower.into_iter().flatten();
+    [detected, Level::baseline()]
+        .into_iter()
+        .chain(narrower)
+        .collect()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
@@ -253,7 +270,7 @@ proptest! {
             }
             points
         };
-        let (wide, plain) = (run(VolleyPlacer::new(&alignment)), run(VolleyPlacer::plain(&alignment)));
+        let wide = run(VolleyPlacer::new(&alignment));
         let bits = |points: &Points| -> Vec<[u64; 4]> {
             let tilts = points.tilt_deg().iter();
             points
@@ -262,8 +279,11 @@ proptest! {
                 .map(|([x, y, z], tilt)| [x, y, z, *tilt].map(f64::to_bits))
                 .collect()
         };
-        prop_assert_eq!(bits(&wide), bits(&plain));
-        prop_assert_eq!(wide, plain);
+        for level in levels() {
+            let narrow = run(VolleyPlacer::with_level(&alignment, level));
+            prop_assert_eq!(bits(&wide), bits(&narrow), "{:?}", level);
+            prop_assert_eq!(&wide, &narrow, "{:?}", level);
+        }
     }
 
     /// What a block becomes depends on nothing that came before it, to the bit.
