@@ -4,5 +4,7 @@
 //! angle and count is computed from the rotor's motion, not from another decoder. For clocks that are set, whole captures of the virtual rig are held against its
 //! truth.
 
+mod angles;
 mod clocks;
 mod lidar;
+mod scans;

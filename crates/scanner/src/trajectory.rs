@@ -10,8 +10,10 @@ use units::{DegPerS, Degrees, Host, Span, Stamp};
 use crate::clock::Moment;
 use crate::sweeps::Sweep;
 
+mod bound;
 mod choose;
 mod cursor;
+mod held;
 mod interpolate;
 mod noise;
 mod pieces;
@@ -23,11 +25,11 @@ mod tests;
 
 pub use choose::SweepFit;
 pub use cursor::{Motion, TrajectoryCursor};
+pub use held::Held;
 pub(crate) use interpolate::Growing;
 pub use noise::Noise;
 pub use pieces::{Piece, Pieces};
 pub use profile::Profile;
-pub use profile_fit::Held;
 
 /// The platform's angle at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,14 +124,16 @@ impl std::fmt::Display for Remark {
             ),
             Self::Held(held) => {
                 let parts = [
+                    (held.start, "beginning"),
                     (held.ramp_up, "acceleration"),
                     (held.ramp_down, "deceleration"),
-                    (held.lag, "servo lag"),
+                    (held.way, "end"),
+                    (held.servo, "servo"),
                 ];
                 let parts: Vec<&str> = parts.iter().filter(|p| p.0).map(|p| p.1).collect();
                 write!(
                     f,
-                    "too few samples in the ramps to tell its {}: taken as commanded",
+                    "too few samples of its {}: taken near what was commanded",
                     parts.join(" and ")
                 )
             }
@@ -148,6 +152,8 @@ pub struct Trajectory {
     fits: Vec<SweepFit>,
     /// As they came, in strictly increasing time.
     samples: Vec<AngleSample>,
+    /// A step of the encoder.
+    step_deg: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -165,6 +171,7 @@ impl Trajectory {
             method: Method::None,
             fits: Vec::new(),
             samples: Vec::new(),
+            step_deg: 0.0,
         }
     }
 
@@ -191,6 +198,7 @@ impl Trajectory {
             method: simple.unwrap_or(Method::Linear),
             fits: Vec::new(),
             samples,
+            step_deg: quantum.0.abs(),
         };
         if simple.is_none() {
             trajectory.fit(&noise, sweeps, method);
@@ -255,6 +263,7 @@ impl Trajectory {
             method,
             fits: Vec::new(),
             samples: Vec::new(),
+            step_deg: 0.0,
         })
     }
 
@@ -340,22 +349,15 @@ impl Trajectory {
     }
 
     /// How far off the angle may be within `spans`, at worst, degrees. Of fits: three standard deviations, and the delay that all
-    /// samples may share at the speed there. Of samples joined: half a poll's round trip at the speed there, and what a straight line
-    /// misses where the speed changes over a hole.
+    /// samples may share at the speed there. Of samples joined: a step of the encoder, half a poll's round trip at the speed there, and
+    /// what a straight line misses where the speed changes.
     #[must_use]
     pub fn bound_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> f64 {
         let over = |(i, span): (usize, &(Stamp<Host>, Stamp<Host>))| {
             let fit = self.fits.get(i).filter(|fit| fit.method.is_fit());
             match (fit, &self.shape) {
-                (Some(fit), Shape::Pieces(pieces)) => fit_bound(pieces, *span, fit),
-                _ => {
-                    let inside = within(&self.samples, *span);
-                    let jump = match self.method {
-                        Method::Nearest => widest_step(inside) / 2.0,
-                        _ => 0.0,
-                    };
-                    joined_bound(inside) + jump
-                }
+                (Some(fit), Shape::Pieces(pieces)) => bound::of_fit(pieces, *span, fit),
+                _ => self.step_deg + bound::of_joined(&self.samples, *span, self.method),
             }
         };
         spans.iter().enumerate().map(over).fold(0.0, f64::max)
@@ -388,47 +390,6 @@ impl Trajectory {
             }
         }))
     }
-}
-
-/// Standard deviations that a bound holds.
-const SURE: f64 = 3.0;
-
-fn fit_bound(pieces: &Pieces, (from, to): (Stamp<Host>, Stamp<Host>), fit: &SweepFit) -> f64 {
-    let shared = fit
-        .delay
-        .0
-        .as_secs_f64()
-        .abs()
-        .max(fit.delay.1.as_secs_f64());
-    let all = pieces.as_slice();
-    let inside = all.iter().filter(|p| from <= p.from && p.from <= to);
-    inside
-        .map(|piece| SURE * piece.sd_deg + shared * piece.rate(0.0).abs() * 1e9)
-        .fold(0.0, f64::max)
-}
-
-/// The greatest step from one sample to the next, degrees.
-fn widest_step(samples: &[AngleSample]) -> f64 {
-    let steps = samples.windows(2).map(|pair| match pair {
-        [a, b] => (b.angle.0 - a.angle.0).abs(),
-        _ => 0.0,
-    });
-    steps.fold(0.0, f64::max)
-}
-
-fn joined_bound(samples: &[AngleSample]) -> f64 {
-    let rate = |a: &AngleSample, b: &AngleSample| (b.angle.0 - a.angle.0) / noise::seconds(a, b);
-    samples
-        .windows(4)
-        .map(|w| match w {
-            [a, b, c, d] => {
-                let (before, across, after) = (rate(a, b), rate(b, c), rate(c, d));
-                let bent = (after - before).abs() * noise::seconds(b, c) / 8.0;
-                bent + across.abs() * b.bound.as_secs_f64().max(c.bound.as_secs_f64())
-            }
-            _ => 0.0,
-        })
-        .fold(0.0, f64::max)
 }
 
 /// Samples within a span.

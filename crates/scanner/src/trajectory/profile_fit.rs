@@ -2,13 +2,15 @@
 //!
 //! In these parameters the problem is well posed (condition some tens) as long as the samples see both ramps; speed, acceleration and
 //! deceleration instead would not converge. Where a ramp is shorter than what the samples see, its length is held near what was
-//! commanded, and the fit says so. A minimum is found by Levenberg and Marquardt's method (MINPACK's, Moré 1978).
+//! commanded, and where the samples do not tell all of the motion (they begin or end in the midst of it) all parameters are; the fit says
+//! which of them that decided. A minimum is found by Levenberg and Marquardt's method (MINPACK's, Moré 1978).
 //! Left out: whether the motion was the commanded one at all; residuals tell, and `choose` asks them.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
+use super::held::{Held, Prior, SHORTEST_RAMP_S, priors};
 use super::profile::{Gradient, Profile};
 
 /// One observation: seconds after the origin, angle and its standard deviation in degrees.
@@ -26,7 +28,7 @@ pub struct ProfileFit {
     pub profile: Profile,
     /// Whether the cruise was never reached.
     pub is_triangle: bool,
-    /// Condition number of the fit, its columns scaled to one length.
+    /// Condition number of the fit, its columns scaled to one length, what holds parameters among them.
     pub condition: f64,
     /// Which parameters were held near what was commanded, as the samples do not tell them.
     pub held: Held,
@@ -34,6 +36,7 @@ pub struct ProfileFit {
     pub excess: f64,
     servo: Servo,
     covariance: DMatrix<f64>,
+    priors: Vec<Prior>,
 }
 
 /// What is behind the demand.
@@ -53,35 +56,10 @@ impl Servo {
     }
 }
 
-/// What the samples do not tell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Held {
-    /// The acceleration's duration.
-    pub ramp_up: bool,
-    /// The deceleration's duration.
-    pub ramp_down: bool,
-    /// The servo's lag.
-    pub lag: bool,
-}
-
-impl Held {
-    /// Whether anything was held.
-    #[must_use]
-    pub const fn any(self) -> bool {
-        self.ramp_up || self.ramp_down || self.lag
-    }
-}
-
 /// Fewer samples than this within a ramp do not tell its length.
 const FEWEST_IN_RAMP: usize = 3;
-/// What a ramp may be off what was commanded where the samples do not tell, as a part of it.
-const RAMP_SHARE: f64 = 0.2;
-/// Likewise the lag: 10 ms, the time constant of a servo of 15 Hz.
-const LAG_SD_S: f64 = 0.01;
 /// Above this the samples do not tell all parameters.
 const WORST_CONDITION: f64 = 1e6;
-/// No ramp is shorter: below it acceleration has no meaning for a motor.
-const SHORTEST_RAMP_S: f64 = 1e-6;
 /// What a lag is looked for from: that of a servo of 15 Hz.
 const USUAL_LAG_S: f64 = 0.01;
 /// No servo that was tuned swings longer.
@@ -143,18 +121,19 @@ fn solve(observed: &[Observed], guess: Profile, shape: Shape) -> Option<ProfileF
     let held = Held {
         ramp_up: within(up, cruise) < FEWEST_IN_RAMP,
         ramp_down: within(brake, rest) < FEWEST_IN_RAMP,
-        lag: false,
+        ..Held::default()
     };
-    let free = Problem::new(observed, guess, shape, held).minimise()?;
-    if free.condition < WORST_CONDITION {
-        return Some(free);
+    let free = Problem::new(observed, guess, shape, held).minimise();
+    match free {
+        Some(free) if free.condition < WORST_CONDITION => Some(free),
+        _ => Problem::new(observed, guess, shape, Held::ALL)
+            .minimise()
+            .map(|fit| {
+                let variances = fit.covariance.diagonal();
+                let held = Held::that_decided(&fit.priors, variances.as_slice());
+                ProfileFit { held, ..fit }
+            }),
     }
-    let all = Held {
-        ramp_up: true,
-        ramp_down: true,
-        lag: shape.servo != Servo::None,
-    };
-    Problem::new(observed, guess, shape, all).minimise()
 }
 
 /// Which parameters a profile has: a triangle's speed follows from its way and its ramps, and there may be no lag.
@@ -290,35 +269,10 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Rows that hold parameters: place, distance from what was commanded, and how far that may be.
-    fn priors(&self) -> Vec<(usize, f64, f64)> {
-        let (now, then) = (&self.profile, &self.guess);
-        let ramp_sd = |s: f64| (RAMP_SHARE * s).max(SHORTEST_RAMP_S);
-        let first_of_servo = self.shape.len() - self.shape.servo.parameters();
-        [
-            (
-                self.held.ramp_up,
-                1,
-                now.ramp_up_s - then.ramp_up_s,
-                ramp_sd(then.ramp_up_s),
-            ),
-            (
-                self.held.ramp_down,
-                2,
-                now.ramp_down_s - then.ramp_down_s,
-                ramp_sd(then.ramp_down_s),
-            ),
-            (
-                self.held.lag && self.shape.servo != Servo::None,
-                first_of_servo,
-                now.lag_s - then.lag_s,
-                LAG_SD_S,
-            ),
-        ]
-        .into_iter()
-        .filter(|(held, ..)| *held)
-        .map(|(_, place, off, sd)| (place, off, sd))
-        .collect()
+    /// What holds parameters.
+    fn priors(&self) -> Vec<Prior> {
+        let servo = self.shape.len() - self.shape.servo.parameters()..self.shape.len();
+        priors(&self.profile, &self.guess, self.held, servo)
     }
 
     fn minimise(self) -> Option<ProfileFit> {
@@ -362,6 +316,7 @@ impl<'a> Problem<'a> {
             excess: 2.0 * report.objective_function / freedom as f64,
             servo: problem.shape.servo,
             covariance: &scale * inverse * &scale,
+            priors: problem.priors(),
         })
     }
 }
@@ -394,7 +349,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
             return Some(DVector::from_element(rows, FAR_OFF));
         }
         let off = |o: &Observed| (self.profile.angle_deg(o.at_s) - o.angle_deg) / o.sd_deg;
-        let held = self.priors().into_iter().map(|(_, off, sd)| off / sd);
+        let held = self.priors().into_iter().map(|prior| prior.off / prior.sd);
         let rows: Vec<f64> = self.observed.iter().map(off).chain(held).collect();
         Some(DVector::from_vec(rows))
     }
@@ -408,8 +363,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
                 *jacobian.get_mut((i, k))? = by / o.sd_deg;
             }
         }
-        for (i, (place, _, sd)) in priors.into_iter().enumerate() {
-            *jacobian.get_mut((self.observed.len() + i, place))? = 1.0 / sd;
+        for (i, prior) in priors.into_iter().enumerate() {
+            *jacobian.get_mut((self.observed.len() + i, prior.place))? = 1.0 / prior.sd;
         }
         Some(jacobian)
     }

@@ -1,0 +1,143 @@
+//! Whole scans where numbers are at their limits.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use cloud::{Fields, Points};
+use firmware_sim::epos2::Servo;
+use scanner::TiltSource;
+use sim::Attached;
+use units::{DegPerS2, Degrees, Span, Stamp};
+use velomotion::commands::replay::{self, Request};
+use velomotion::recordings::Source;
+use velomotion::report::Scan;
+use velomotion_tests::capture::{Captured, Setting};
+
+/// 2100-01-01 00:00:00 UTC during the sweep: nanoseconds beyond 2^61, where a double steps by half a microsecond. The same scan a whole
+/// number of hours earlier gives the same points.
+#[test]
+fn a_scan_into_the_year_2100() {
+    let now = Setting::default();
+    let midnight = 4_102_444_800_000_000_000;
+    let hour = 3_600_000_000_000;
+    let (from, to) = Captured::new(now).sweep_span();
+    let middle = from + (to - from).half() - now.start;
+    let then = Stamp::from_nanos(midnight) - middle;
+    let before = Stamp::from_nanos(then.as_nanos() - hour * 24 * 365 * 50);
+    let [then, before] = [then, before].map(|start| Captured::new(Setting { start, ..now }));
+    let error = then.error();
+    assert!(error.points > 180_000 && error.worst_m < 10e-3, "{error:?}");
+    let (then, before) = (then.cloud(), before.cloud());
+    assert!(then.time().first().unwrap().as_nanos() < midnight);
+    assert!(then.time().last().unwrap().as_nanos() > midnight);
+    assert_eq!(then.len(), before.len());
+    for (a, b) in then.positions().zip(before.positions()) {
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+    }
+}
+
+/// From one limit of the axis to the other and back, by a servo that overshoots either: the drive takes targets at its limits, samples
+/// beyond them are no faults, and the points at both ends are there and true.
+#[test]
+fn gamma_at_both_limits() {
+    for attached in [Attached::Usb, Attached::Can] {
+        let mut setting = Setting::over(attached);
+        setting.wish.acceleration = DegPerS2(500.0);
+        setting.wish.sweeps = 2;
+        setting.wish.both_ways = true;
+        setting.servo = Some(Servo::SecondOrder {
+            natural_millihertz: 15_000,
+            damping_permille: 400,
+        });
+        let captured = Captured::new(setting);
+        let (scan, cloud) = captured.scan();
+        assert_eq!(scan.sweeps.len(), 2, "{attached:?}");
+        for limit in [Degrees(-45.0), Degrees(0.0)] {
+            let near = cloud.iter().filter(|p| (p.tilt.0 - limit.0).abs() < 0.01);
+            assert!(near.count() > 1_000, "{attached:?}: {limit:?}");
+        }
+        let beyond = |p: &cloud::Point| p.tilt.0 < -45.02 || p.tilt.0 > 0.02;
+        let beyond = cloud.iter().filter(beyond).count();
+        assert!(
+            beyond > 100,
+            "{attached:?}: {beyond} points beyond the limits"
+        );
+        let error = captured.error();
+        assert!(error.worst_m < 10e-3 && error.rms_m < 2e-3, "{error:?}");
+    }
+}
+
+/// A log that ends in mid-sweep, as after a power failure: what is there is as true as if it went on, its uncertainty no smaller, and
+/// it is said that the sweep was cut short.
+#[test]
+fn a_log_that_ends_in_mid_sweep() {
+    for attached in [Attached::Usb, Attached::Can] {
+        let captured = Captured::new(Setting::over(attached));
+        let (from, to) = captured.sweep_span();
+        let (_, whole) = captured.scan();
+        for part in [0.2, 0.6] {
+            let end = from + Span::from_secs_f64((to - from).as_secs_f64() * part);
+            let folder = tempfile::tempdir().unwrap();
+            let log = folder.path().join("cut.pcapng");
+            std::fs::write(&log, cut(&captured.log(), end)).unwrap();
+            let (scan, cloud) = scan(&log);
+            let truth =
+                |time: Stamp<units::Lidar>, laser| captured.truth().point(time.as_nanos(), laser);
+            let error = analysis::truth::compare(&cloud, truth).unwrap();
+            let share = cloud.len() as f64 / whole.len() as f64;
+            println!(
+                "{attached:?} {part}: {error:?}, {share:.3}, {:?}",
+                scan.contents.warnings
+            );
+            assert!(share > part - 0.05, "{attached:?} {part}: {share}");
+            assert!(error.rms_m < 2e-3 && error.worst_m < 10e-3, "{error:?}");
+            let mean_sd = |cloud: &Points| cloud.sd_m().iter().sum::<f64>() / cloud.len() as f64;
+            assert!(mean_sd(&cloud) > 0.9 * mean_sd(&whole));
+            assert!(
+                scan.contents
+                    .warnings
+                    .iter()
+                    .any(|w| w.contains("cut short")),
+                "{attached:?} {part}: {:?}",
+                scan.contents.warnings
+            );
+        }
+    }
+}
+
+/// The bytes of a log up to its last record before `end`.
+fn cut(log: &Path, end: Stamp<units::Host>) -> Vec<u8> {
+    let bytes = std::fs::read(log).unwrap();
+    // Enhanced packet blocks (pcapng, 4.3): type, length, interface, time in two words, of nanoseconds here.
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+    let mut at = 0;
+    while at + 12 <= bytes.len() {
+        if word(at) == 6 {
+            let ns = u64::from(word(at + 12)) << 32 | u64::from(word(at + 16));
+            if ns as i64 > end.as_nanos() {
+                break;
+            }
+        }
+        at += word(at + 4) as usize;
+    }
+    assert!(at < bytes.len());
+    bytes[..at].to_vec()
+}
+
+fn scan(log: &Path) -> (Scan, Points) {
+    let mut points = Points::new(Fields::ALL);
+    let request = Request {
+        recording: &Source::open(log, None).unwrap(),
+        tilt: TiltSource::Log,
+        options: lidar::Options::default(),
+        time: velomotion::cli::TimeOf::Host,
+        accuracy: scanner::Accuracy::Best,
+        pace: None,
+        truth: None,
+        interrupt: &AtomicBool::new(false),
+    };
+    let scan = replay::scan(&request, &mut points, Path::new("memory")).unwrap();
+    (scan, points)
+}
