@@ -1,0 +1,132 @@
+//! What the best angles cost a replay: the same log by straight lines between samples and by the truest curve of each sweep.
+//!
+//! `cargo bench -p velomotion-tests --bench replay_methods [-- --runs N]`
+//!
+//! A whole replay each time, as `velomotion replay LOG -o CLOUD.ply` makes it: the log read twice from its file, clocks and angles found,
+//! every point placed and written. The logs are captures in virtual time of the card's scan, 45 degrees at 56.25 deg/s, with an ideal drive
+//! and with one whose servo lags and whose gear ripples. The two ways take turns, each round another one first; what counts is the ratio
+//! within a round, so that what else the machine does falls on both. Logs and clouds are in the temporary folder: in memory, where that is.
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use cloud::Fields;
+use firmware_sim::epos2::Servo;
+use scanner::trajectory::Method;
+use scanner::{Accuracy, TiltSource};
+use sim::Attached;
+use sim::effects::GearRipple;
+use units::{DegPerS2, Degrees};
+use velomotion::commands::replay::{self, Request};
+use velomotion::output::Target;
+use velomotion::recordings::Source;
+use velomotion_tests::capture::{Captured, Setting};
+
+/// As many pairs where none are asked for.
+const RUNS: usize = 41;
+
+fn main() {
+    let asked = std::env::args().skip_while(|word| word != "--runs").nth(1);
+    let runs = asked.and_then(|n| n.parse().ok()).unwrap_or(RUNS).max(1);
+    println!("{runs} rounds; medians, quartiles in brackets");
+    println!(
+        "{:<24}{:>10}{:>16}{:>10}{:>10}  {}",
+        "", "points", "best by", "linear", "best", "best / linear"
+    );
+    for attached in [Attached::Usb, Attached::Can] {
+        for real in [false, true] {
+            let captured = Captured::new(setting(attached, real));
+            let name = if real { "real drive" } else { "ideal drive" };
+            compare(&format!("{attached:?}, {name}"), &captured, runs);
+        }
+    }
+}
+
+fn setting(attached: Attached, real: bool) -> Setting {
+    let mut setting = Setting::over(attached);
+    setting.wish.acceleration = DegPerS2(500.0);
+    if real {
+        setting.servo = Some(Servo::SecondOrder {
+            natural_millihertz: 15_000,
+            damping_permille: 700,
+        });
+        setting.ripple = Some(GearRipple {
+            amplitude: Degrees(0.003),
+            per_motor_turn: 1,
+            phase: Degrees(0.0),
+        });
+    }
+    setting
+}
+
+fn compare(name: &str, captured: &Captured, runs: usize) {
+    let folder = tempfile::tempdir().unwrap();
+    let cloud = folder.path().join("cloud.ply");
+    let log = captured.log();
+    let run = |accuracy| {
+        let start = Instant::now();
+        let scan = replayed(&log, accuracy, &cloud);
+        let took = start.elapsed().as_secs_f64();
+        fs::remove_file(&cloud).unwrap();
+        (took, scan)
+    };
+    let ways = [Accuracy::By(Method::Linear), Accuracy::Best];
+    let [_, (points, method)] = ways.map(|way| run(way).1);
+    let mut times = [Vec::new(), Vec::new(), Vec::new()];
+    for round in 0..runs {
+        let mut took = [0.0; 2];
+        for turn in 0..2 {
+            let way = (round + turn) % 2;
+            took[way] = run(ways[way]).0;
+        }
+        times[0].push(took[0]);
+        times[1].push(took[1]);
+        times[2].push(took[1] / took[0]);
+    }
+    let [linear, best, ratio] = times.map(Quartiles::of);
+    println!(
+        "{name:<24}{points:>10}{method:>16}{:>7.1} ms{:>7.1} ms  {:.3} ({:.3}..{:.3})",
+        linear.median * 1e3,
+        best.median * 1e3,
+        ratio.median,
+        ratio.low,
+        ratio.high
+    );
+}
+
+/// Points and the method of their angles.
+fn replayed(log: &Path, accuracy: Accuracy, cloud: &Path) -> (u64, &'static str) {
+    let request = Request {
+        recording: &Source::open(log, None).unwrap(),
+        tilt: TiltSource::Log,
+        options: lidar::Options::default(),
+        time: velomotion::cli::TimeOf::Host,
+        accuracy,
+        pace: None,
+        truth: None,
+        interrupt: &AtomicBool::new(false),
+    };
+    let target = Target::open(cloud, Fields::FILE, false).unwrap();
+    let scan = replay::make(&request, target).unwrap();
+    (scan.points, scan.sync.angle_method)
+}
+
+struct Quartiles {
+    low: f64,
+    median: f64,
+    high: f64,
+}
+
+impl Quartiles {
+    fn of(mut measured: Vec<f64>) -> Self {
+        measured.sort_by(f64::total_cmp);
+        let at = |part: f64| measured[((measured.len() - 1) as f64 * part).round() as usize];
+        Self {
+            low: at(0.25),
+            median: at(0.5),
+            high: at(0.75),
+        }
+    }
+}
