@@ -49,8 +49,10 @@ const ROW: usize = 16;
 /// A motion is not the commanded one if residuals in a row show this many times what samples scatter it by, and this much.
 const STRANGE: f64 = 4.0;
 const STRANGE_DEG: f64 = 0.01;
-/// More observations than this are put together before a profile is fitted: a straight line tells no more by its parts.
-const MOST_OBSERVED: usize = 12_000;
+/// So long after a ramp a servo that moves a head has settled, seconds.
+const SETTLED_S: f64 = 0.1;
+/// Observations of the cruise that are left for a profile's fit.
+const MOST_STRAIGHT: usize = 100;
 /// No servo's answer takes more pieces than this.
 const MOST_PIECES: usize = 4_000;
 /// The bias of a spline with the best spacing is about its scatter.
@@ -289,15 +291,11 @@ fn observed(samples: &[AngleSample], noise: &Noise, origin: Stamp<Host>) -> Vec<
     observed
 }
 
-/// The same with neighbours of the cruise put together, so that no more than [`MOST_OBSERVED`] are left.
+/// The same with neighbours of the cruise put together where there are many, as a straight line tells no more by its parts.
 fn condensed(observed: &[Observed], guess: &Profile) -> Vec<Observed> {
-    let group = observed.len() / MOST_OBSERVED + 1;
-    if group == 1 {
-        return observed.to_vec();
-    }
     let [start, up, brake, end] = guess.corners_s();
     // The guess may be off, and a servo comes after.
-    let beside = 0.2 + 0.5 * (up - start).max(end - brake);
+    let beside = SETTLED_S + 0.5 * (up - start).max(end - brake);
     let is_straight = |o: &Observed| o.at_s > up + beside && o.at_s < brake - beside;
     let first = observed.partition_point(|o| !is_straight(o) && o.at_s < brake);
     let last = observed
@@ -305,6 +303,7 @@ fn condensed(observed: &[Observed], guess: &Profile) -> Vec<Observed> {
         .max(first);
     let (before, rest) = observed.split_at_checked(first).unwrap_or((observed, &[]));
     let (straight, after) = rest.split_at_checked(last - first).unwrap_or((rest, &[]));
+    let group = straight.len() / MOST_STRAIGHT + 1;
     let together = straight.chunks(group).map(|chunk| {
         let weight: f64 = chunk.iter().map(|o| 1.0 / (o.sd_deg * o.sd_deg)).sum();
         let mean = |of: fn(&Observed) -> f64| {
@@ -418,7 +417,10 @@ fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<Pieces> {
             let [from_s, to_s] = [a, b].map(|s| s.saturating_since(origin).as_secs_f64());
             let ns = b.saturating_since(*a).as_nanos() as f64;
             // Just inside: at a corner of a profile without lag the acceleration jumps, and the speed does not.
-            let ends = [from_s, to_s].map(|s| [profile.angle_deg(s), profile.rate_deg_s(s) * 1e-9]);
+            let ends = [from_s, to_s].map(|s| {
+                let (angle_deg, rate_deg_s) = profile.place(s);
+                [angle_deg, rate_deg_s * 1e-9]
+            });
             let sd = fit.sd_deg(0.5 * (from_s + to_s));
             Some(Piece::hermite(*a, ns, ends[0], ends[1]).with_sd(sd))
         }

@@ -48,15 +48,25 @@ impl Profile {
     /// Angle at an instant.
     #[must_use]
     pub fn angle_deg(&self, at_s: f64) -> f64 {
-        let (up, down) = self.ramps(at_s);
-        self.from_deg + self.speed_deg_s * (up.position - down.position)
+        self.place(at_s).0
     }
 
     /// Speed at an instant, degrees per second.
     #[must_use]
     pub fn rate_deg_s(&self, at_s: f64) -> f64 {
-        let (up, down) = self.ramps(at_s);
-        self.speed_deg_s * (up.rate - down.rate)
+        self.place(at_s).1
+    }
+
+    /// Angle and speed at an instant.
+    pub(super) fn place(&self, at_s: f64) -> (f64, f64) {
+        let since = at_s - self.start_s;
+        let ramp = |since, length| Ramp::place(since, length, self.lag_s, self.inertia_s2);
+        let up = ramp(since, self.ramp_up_s);
+        let down = ramp(since - self.braking_s(), self.ramp_down_s);
+        (
+            self.from_deg + self.speed_deg_s * (up.0 - down.0),
+            self.speed_deg_s * (up.1 - down.1),
+        )
     }
 
     fn ramps(&self, at_s: f64) -> (Ramp, Ramp) {
@@ -135,6 +145,25 @@ impl Ramp {
             return swing::behind(demand, since, length, lag, inertia);
         }
         demand.behind(since, length, lag)
+    }
+
+    /// Position and speed alone.
+    fn place(since: f64, length: f64, lag: f64, inertia: f64) -> (f64, f64) {
+        if since <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let demand = Self::demand(since, length);
+        if lag <= 0.0 {
+            return (demand.position, demand.rate);
+        }
+        if inertia > 0.0 {
+            return swing::answer(&demand, since, length, lag, inertia);
+        }
+        let missing = Missing::rate(since, length, lag);
+        (
+            demand.position - lag * (demand.rate - missing),
+            demand.rate - missing,
+        )
     }
 
     fn demand(since: f64, length: f64) -> Self {
@@ -244,55 +273,117 @@ mod swing {
             if t <= 0.0 {
                 return (0.0, 0.0);
             }
-            let Waves { c, s } = self.waves(t);
+            if self.w2 > 0.0 && self.a * t > OVER {
+                return (0.0, self.lag * self.lag - self.inertia);
+            }
+            self.sums(&self.waves(t))
+        }
+
+        fn sums(&self, &Waves { c, s }: &Waves) -> (f64, f64) {
             let whole = self.lag * self.lag - self.inertia;
             let g = self.lag * c + (self.a * self.lag - 1.0) * s;
             (g, whole - (whole * c + (self.a * whole - self.lag) * s))
         }
 
-        /// Position and speed behind a ramp of `length` seconds.
-        fn answer(&self, demand: &Ramp, since: f64, length: f64) -> (f64, f64) {
-            let (g, sum) = self.behind(since);
-            let (g_after, sum_after) = self.behind(since - length);
-            let acceleration = if since < length { 1.0 / length } else { 0.0 };
-            (
-                demand.position - self.lag * demand.rate + (sum - sum_after) / length,
-                demand.rate - self.lag * acceleration + (g - g_after) / length,
-            )
+        /// The same, and the integral's derivatives by lag and inertia: those of C and S by a and w2 are -t C, -t S, -t S / 2 and
+        /// (t C - S) / (2 w2), and a and w2 are functions of both.
+        fn behind_with_gradient(&self, t: f64) -> Behind {
+            if t <= 0.0 {
+                return Behind::default();
+            }
+            if self.w2 > 0.0 && self.a * t > OVER {
+                return Behind {
+                    g: 0.0,
+                    sum: self.lag * self.lag - self.inertia,
+                    by_lag: 2.0 * self.lag,
+                    by_inertia: -1.0,
+                };
+            }
+            let waves = self.waves(t);
+            let (g, sum) = self.sums(&waves);
+            let Waves { c, s } = waves;
+            let Self {
+                lag,
+                inertia,
+                a,
+                w2,
+            } = *self;
+            let phase = w2 * t * t;
+            let s_by_w2 = if phase.abs() < SMALL_PHASE {
+                // The difference would lose its digits.
+                f64::exp(-a * t) * t * t * t * (-1.0 / 6.0 + phase / 60.0 - phase * phase / 1680.0)
+            } else {
+                (t * c - s) / (2.0 * w2)
+            };
+            let whole = lag * lag - inertia;
+            let by = |a_by: f64, w2_by: f64, whole_by: f64, lag_by: f64| {
+                let c_by = -t * c * a_by - t / 2.0 * s * w2_by;
+                let s_by = -t * s * a_by + s_by_w2 * w2_by;
+                whole_by * (1.0 - c)
+                    - whole * c_by
+                    - (a_by * whole + a * whole_by - lag_by) * s
+                    - (a * whole - lag) * s_by
+            };
+            let by_lag = by(0.5 / inertia, -a / inertia, 2.0 * lag, 1.0);
+            let w2_by_inertia = (2.0 * a * a - 1.0 / inertia) / inertia;
+            let by_inertia = by(-a / inertia, w2_by_inertia, -1.0, 0.0);
+            Behind {
+                g,
+                sum,
+                by_lag,
+                by_inertia,
+            }
         }
     }
 
-    /// Steps of the differences by lag and inertia, as a part of them.
-    const STEP: f64 = 1e-5;
+    /// g, its integral, and that one's derivatives.
+    #[derive(Clone, Copy, Debug, Default)]
+    struct Behind {
+        g: f64,
+        sum: f64,
+        by_lag: f64,
+        by_inertia: f64,
+    }
+
+    /// When so many of its decay times have gone by, the answer is over: exp(-40) is nothing beside 1.
+    const OVER: f64 = 40.0;
+    /// Below it (t C - S) / (2 w2) is a series: three terms are good to 1e-11 there, the difference to as much above.
+    const SMALL_PHASE: f64 = 1e-2;
+
+    /// Position and speed behind a ramp of `length` seconds.
+    pub(super) fn answer(
+        demand: &Ramp,
+        since: f64,
+        length: f64,
+        lag: f64,
+        inertia: f64,
+    ) -> (f64, f64) {
+        let servo = Servo::new(lag, inertia);
+        let (g, sum) = servo.behind(since);
+        let (g_after, sum_after) = servo.behind(since - length);
+        let acceleration = if since < length { 1.0 / length } else { 0.0 };
+        (
+            demand.position - lag * demand.rate + (sum - sum_after) / length,
+            demand.rate - lag * acceleration + (g - g_after) / length,
+        )
+    }
 
     pub(super) fn behind(demand: Ramp, since: f64, length: f64, lag: f64, inertia: f64) -> Ramp {
         let servo = Servo::new(lag, inertia);
-        let (position, rate) = servo.answer(&demand, since, length);
-        let by = |low: Servo, high: Servo, step: f64| {
-            let [low, high] = [low, high].map(|servo| servo.answer(&demand, since, length).0);
-            (high - low) / (2.0 * step)
-        };
-        let (g_after, sum_after) = servo.behind(since - length);
-        let mean = (servo.behind(since).1 - sum_after) / length;
-        let rate_by_ramp = if since < length {
-            -demand.rate / length
+        let now = servo.behind_with_gradient(since);
+        let after = servo.behind_with_gradient(since - length);
+        let mean = (now.sum - after.sum) / length;
+        let (acceleration, rate_by_ramp) = if since < length {
+            (1.0 / length, -demand.rate / length)
         } else {
-            0.0
+            (0.0, 0.0)
         };
         Ramp {
-            position,
-            rate,
-            by_ramp: demand.by_ramp - lag * rate_by_ramp + (g_after - mean) / length,
-            by_lag: by(
-                Servo::new(lag * (1.0 - STEP), inertia),
-                Servo::new(lag * (1.0 + STEP), inertia),
-                lag * STEP,
-            ),
-            by_inertia: by(
-                Servo::new(lag, inertia * (1.0 - STEP)),
-                Servo::new(lag, inertia * (1.0 + STEP)),
-                inertia * STEP,
-            ),
+            position: demand.position - lag * demand.rate + mean,
+            rate: demand.rate - lag * acceleration + (now.g - after.g) / length,
+            by_ramp: demand.by_ramp - lag * rate_by_ramp + (after.g - mean) / length,
+            by_lag: -demand.rate + (now.by_lag - after.by_lag) / length,
+            by_inertia: (now.by_inertia - after.by_inertia) / length,
         }
     }
 }
@@ -305,6 +396,15 @@ struct Missing {
 }
 
 impl Missing {
+    /// The speed that is missing alone.
+    fn rate(since: f64, length: f64, lag: f64) -> f64 {
+        if since < length {
+            since / length * mean_decay(since / lag)
+        } else {
+            f64::exp(-(since - length) / lag) * mean_decay(length / lag)
+        }
+    }
+
     fn on_the_ramp(since: f64, length: f64, lag: f64) -> Self {
         let (part, x) = (since / length, since / lag);
         let f = mean_decay(x);
@@ -421,6 +521,53 @@ mod tests {
                 for until in [0.11, 0.15, 0.3, 0.85, 0.95, 1.2] {
                     let off = profile.angle_deg(until) - stepped(&profile, until);
                     assert!(off.abs() < 2e-4, "{profile:?} at {until}: {off}");
+                }
+            }
+        }
+    }
+
+    /// The servo's own two, whose closed forms are the least obvious: underdamped, overdamped, and where both poles meet.
+    #[test]
+    fn derivatives_by_lag_and_inertia_are_differences() {
+        for damping in [
+            0.1, 0.4, 0.8, 0.999, 0.999_999, 1.0, 1.000_001, 1.001, 1.5, 4.0,
+        ] {
+            for hertz in [3.0, 15.0, 60.0] {
+                let w = hertz * std::f64::consts::TAU;
+                let profile = Profile {
+                    lag_s: 2.0 * damping / w,
+                    inertia_s2: 1.0 / (w * w),
+                    ..card()
+                };
+                for ms in [
+                    1, 5, 30, 80, 113, 120, 180, 400, 801, 850, 920, 1_000, 1_500,
+                ] {
+                    let at = profile.start_s + f64::from(ms) * 1e-3;
+                    let (angle, [.., by_lag, by_inertia]) = profile.with_gradient(at);
+                    assert!((angle - profile.angle_deg(at)).abs() < 1e-12);
+                    let by = |change: fn(&mut Profile) -> &mut f64, step: f64| {
+                        let angle = |step: f64| {
+                            let mut moved = profile;
+                            *change(&mut moved) += step;
+                            moved.angle_deg(at)
+                        };
+                        (angle(step) - angle(-step)) / (2.0 * step)
+                    };
+                    let said = format!("damping {damping}, {hertz} Hz, {ms} ms");
+                    let difference = by(|p| &mut p.lag_s, profile.lag_s * 1e-5);
+                    let off = (by_lag - difference).abs();
+                    assert!(
+                        off < 1e-4 * profile.speed_deg_s.abs(),
+                        "{said}: {by_lag} {difference}"
+                    );
+                    // As the fit has it, by the inertia's root: degrees a second, too.
+                    let root = profile.inertia_s2.sqrt();
+                    let difference = by(|p| &mut p.inertia_s2, profile.inertia_s2 * 1e-5);
+                    let off = 2.0 * root * (by_inertia - difference).abs();
+                    assert!(
+                        off < 1e-4 * profile.speed_deg_s.abs(),
+                        "{said}: {by_inertia} {difference}"
+                    );
                 }
             }
         }

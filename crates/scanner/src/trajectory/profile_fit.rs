@@ -60,6 +60,9 @@ impl Servo {
 const FEWEST_IN_RAMP: usize = 3;
 /// Above this the samples do not tell all parameters.
 const WORST_CONDITION: f64 = 1e6;
+/// A sum of squares that changes by less than this, as a part of it, is the least: parameters are then within a hundredth of what the
+/// samples scatter them by.
+const CONVERGED: f64 = 1e-8;
 /// What a lag is looked for from: that of a servo of 15 Hz.
 const USUAL_LAG_S: f64 = 0.01;
 /// No servo that was tuned swings longer.
@@ -277,8 +280,8 @@ impl<'a> Problem<'a> {
 
     fn minimise(self) -> Option<ProfileFit> {
         let solver = LevenbergMarquardt::new()
-            .with_ftol(1e-12)
-            .with_xtol(1e-12)
+            .with_ftol(CONVERGED)
+            .with_xtol(CONVERGED)
             .with_gtol(0.0)
             .with_patience(30);
         let (problem, report) = solver.minimize(self);
