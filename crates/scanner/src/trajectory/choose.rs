@@ -75,6 +75,13 @@ struct Candidate {
     strange_deg: f64,
 }
 
+impl Candidate {
+    /// Whether what is left in a row is less than a part of its error.
+    fn leaves_less_than(&self, part: f64) -> bool {
+        self.strange_deg < part * self.fit.sd_deg
+    }
+}
+
 impl<'a> Candidates<'a> {
     /// Those of `sweep` among `samples`, not reaching beyond `limits`.
     pub(super) fn new(
@@ -113,14 +120,11 @@ impl<'a> Candidates<'a> {
                 for method in [Method::Profile, Method::ProfileServo, Method::ProfileSwing] {
                     all.extend(servo(method).and_then(|servo| self.profile(servo, method)));
                     // Of a motion that leaves nothing more would be fitted to scatter.
-                    if all
-                        .last()
-                        .is_some_and(|c| c.strange_deg < c.fit.sd_deg / 4.0)
-                    {
+                    if all.last().is_some_and(|c| c.leaves_less_than(0.25)) {
                         break;
                     }
                 }
-                let settled = all.iter().any(|c| c.strange_deg < c.fit.sd_deg / 2.0);
+                let settled = all.iter().any(|c| c.leaves_less_than(0.5));
                 if !settled {
                     all.extend(self.spline());
                 }
@@ -280,9 +284,7 @@ fn observed(samples: &[AngleSample], noise: &Noise, origin: Stamp<Host>) -> Vec<
             sd_deg: noise.sd_deg(s, rate).max(f64::EPSILON),
         })
         .collect();
-    let alike =
-        |a: &Observed, b: &Observed| (a.angle_deg - b.angle_deg).abs() < f64::EPSILON * 64.0;
-    for run in observed.chunk_by_mut(alike) {
+    for run in observed.chunk_by_mut(is_alike) {
         let count = run.len() as f64;
         for o in run {
             o.sd_deg *= count.sqrt();
@@ -304,27 +306,30 @@ fn condensed(observed: &[Observed], guess: &Profile) -> Vec<Observed> {
     let (before, rest) = observed.split_at_checked(first).unwrap_or((observed, &[]));
     let (straight, after) = rest.split_at_checked(last - first).unwrap_or((rest, &[]));
     let group = straight.len() / MOST_STRAIGHT + 1;
-    let together = straight.chunks(group).map(|chunk| {
-        let weight: f64 = chunk.iter().map(|o| 1.0 / (o.sd_deg * o.sd_deg)).sum();
-        let mean = |of: fn(&Observed) -> f64| {
-            chunk
-                .iter()
-                .map(|o| of(o) / (o.sd_deg * o.sd_deg))
-                .sum::<f64>()
-                / weight
-        };
-        Observed {
-            at_s: mean(|o| o.at_s),
-            angle_deg: mean(|o| o.angle_deg),
-            sd_deg: 1.0 / weight.sqrt(),
-        }
-    });
-    before
-        .iter()
-        .copied()
-        .chain(together)
-        .chain(after.iter().copied())
-        .collect()
+    let few = straight.chunks(group).filter_map(together);
+    let few: Vec<Observed> = few.collect();
+    [before, &few, after].concat()
+}
+
+/// Observations of a straight line as one.
+fn together(some: &[Observed]) -> Option<Observed> {
+    let first = some.first()?;
+    let (mut weight, mut late, mut ahead) = (0.0, 0.0, 0.0);
+    for o in some {
+        let w = 1.0 / (o.sd_deg * o.sd_deg);
+        weight += w;
+        late += w * (o.at_s - first.at_s);
+        ahead += w * (o.angle_deg - first.angle_deg);
+    }
+    Some(Observed {
+        at_s: first.at_s + late / weight,
+        angle_deg: first.angle_deg + ahead / weight,
+        sd_deg: 1.0 / weight.sqrt(),
+    })
+}
+
+fn is_alike(a: &Observed, b: &Observed) -> bool {
+    (a.angle_deg - b.angle_deg).abs() < f64::EPSILON * 64.0
 }
 
 /// What residuals show that does not cancel over a row of them, root mean square, degrees: their means' squares, less what scatter

@@ -60,9 +60,11 @@ impl Servo {
 const FEWEST_IN_RAMP: usize = 3;
 /// Above this the samples do not tell all parameters.
 const WORST_CONDITION: f64 = 1e6;
-/// A sum of squares that changes by less than this, as a part of it, is the least: parameters are then within a hundredth of what the
-/// samples scatter them by.
-const CONVERGED: f64 = 1e-8;
+/// A sum of squares that changes by less than this, as a part of it, is the least: of a thousand samples, parameters are then within a
+/// thirtieth of what these scatter them by.
+const LEAST: f64 = 1e-6;
+/// Parameters that change by less than this, as a part of them, are found.
+const FOUND: f64 = 1e-9;
 /// What a lag is looked for from: that of a servo of 15 Hz.
 const USUAL_LAG_S: f64 = 0.01;
 /// No servo that was tuned swings longer.
@@ -76,9 +78,12 @@ impl ProfileFit {
     /// Standard deviation of the angle at an instant, degrees, from the scatter of the samples.
     #[must_use]
     pub fn sd_deg(&self, at_s: f64) -> f64 {
-        let row = Shape::of(self).row(&self.profile, at_s).1;
-        let row = DVector::from_vec(row);
-        let variance = row.dot(&(&self.covariance * &row));
+        let (_, row) = Shape::of(self).row(&self.profile, at_s);
+        // Columns come as many as there are parameters.
+        let columns = self.covariance.column_iter().zip(row);
+        let variance: f64 = columns
+            .map(|(column, by)| by * column.iter().zip(row).map(|(c, by)| c * by).sum::<f64>())
+            .sum();
         (variance.max(0.0) * self.excess).sqrt()
     }
 }
@@ -224,28 +229,27 @@ impl Shape {
         })
     }
 
-    /// Angle at an instant and its derivatives by the parameters.
-    fn row(self, profile: &Profile, at_s: f64) -> (f64, Vec<f64>) {
+    /// Angle at an instant and its derivatives by the parameters, of which as many count as there are.
+    fn row(self, profile: &Profile, at_s: f64) -> (f64, Gradient) {
         let (angle, [start, speed, up, down, from, way, lag, inertia]): (f64, Gradient) =
             profile.with_gradient(at_s);
-        let mut row = if self.is_triangle {
+        let inertia = 2.0 * profile.inertia_s2.sqrt() * inertia;
+        let row = if self.is_triangle {
             let by_ramps = -profile.speed_deg_s / (profile.ramp_up_s + profile.ramp_down_s);
             let by_way = profile.speed_deg_s / profile.way_deg;
-            vec![
+            [
                 start,
                 up + speed * by_ramps,
                 down + speed * by_ramps,
                 from,
                 way + speed * by_way,
+                lag,
+                inertia,
+                0.0,
             ]
         } else {
-            vec![start, up, down, from, way, speed]
+            [start, up, down, from, way, speed, lag, inertia]
         };
-        row.extend(
-            [lag, 2.0 * profile.inertia_s2.sqrt() * inertia]
-                .into_iter()
-                .take(self.servo.parameters()),
-        );
         (angle, row)
     }
 }
@@ -280,8 +284,8 @@ impl<'a> Problem<'a> {
 
     fn minimise(self) -> Option<ProfileFit> {
         let solver = LevenbergMarquardt::new()
-            .with_ftol(CONVERGED)
-            .with_xtol(CONVERGED)
+            .with_ftol(LEAST)
+            .with_xtol(FOUND)
             .with_gtol(0.0)
             .with_patience(30);
         let (problem, report) = solver.minimize(self);
@@ -362,7 +366,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         let mut jacobian = DMatrix::zeros(self.observed.len() + priors.len(), self.shape.len());
         for (i, o) in self.observed.iter().enumerate() {
             let (_, row) = self.shape.row(&self.profile, o.at_s);
-            for (k, by) in row.into_iter().enumerate() {
+            for (k, by) in row.into_iter().take(self.shape.len()).enumerate() {
                 *jacobian.get_mut((i, k))? = by / o.sd_deg;
             }
         }
