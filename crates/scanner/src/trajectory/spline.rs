@@ -25,6 +25,8 @@ const STEP: f64 = std::f64::consts::SQRT_2;
 /// The closest knots, in mean distances of samples, and the farthest, as a part of the whole.
 const CLOSEST: f64 = 2.0;
 const FARTHEST: f64 = 0.25;
+/// A spacing that is worse by so much is too wide for the motion, and so are all wider ones.
+const HOPELESS: f64 = 10.0;
 /// Stiffness against bending, beside the mean weight of samples in a knot's stretch.
 const STIFFNESS: f64 = 1e-9;
 /// More knots than this are not tried: time grows with them.
@@ -50,8 +52,10 @@ pub(super) fn fit(
         let knots = (length / spacing).ceil().max(1.0) as usize;
         if let Some(spline) = Spline::fit(observed, from_s, length / knots as f64, knots) {
             let score = spline.score();
-            if best.as_ref().is_none_or(|(least, _)| score < *least) {
-                best = Some((score, spline));
+            match &best {
+                Some((least, _)) if score > HOPELESS * least => break,
+                Some((least, _)) if score >= *least => {}
+                _ => best = Some((score, spline)),
             }
         }
         spacing *= STEP;
