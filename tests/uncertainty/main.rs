@@ -5,11 +5,12 @@
 //! What no scan tells, and sd leaves out, is taken away first as a calibration would: of each way to the drive one delay and one zero
 //! of the angle, over all of its seeds and speeds.
 
+use firmware_sim::epos2::Servo;
 use scanner::clock::Moment;
 use scanner::trajectory::Method;
 use scanner::{Accuracy, Survey, TiltSource};
 use sim::Attached;
-use units::{DegPerS, Degrees, Span};
+use units::{DegPerS, DegPerS2, Degrees, Span};
 use velomotion::recordings::Source;
 use velomotion_tests::capture::{Captured, Setting};
 
@@ -21,7 +22,11 @@ const EVERY: usize = 37;
 const NEAR_M: f64 = 5.0;
 const FAR_M: f64 = 12.0;
 
-fn capture(attached: Attached, (speed, to): (f64, f64), seed: u64) -> Captured {
+fn capture(attached: Attached, sweep: (f64, f64), seed: u64) -> Captured {
+    Captured::new(setting(attached, sweep, seed))
+}
+
+fn setting(attached: Attached, (speed, to): (f64, f64), seed: u64) -> Setting {
     let mut setting = Setting::over(attached);
     setting.links.seed = 1_000 * seed + 7;
     // Another day: other phases of polls, rotor and control cycle.
@@ -29,7 +34,7 @@ fn capture(attached: Attached, (speed, to): (f64, f64), seed: u64) -> Captured {
     setting.lidar_clock_us += 7_919_111 * seed as u32;
     setting.wish.speed = DegPerS(speed);
     setting.wish.to = Degrees(to);
-    Captured::new(setting)
+    setting
 }
 
 /// A point, or an angle, beside the truth.
@@ -106,11 +111,16 @@ fn normalised(seen: &[Seen], pick: impl Fn(&Seen) -> bool) -> (f64, usize) {
     ((sum / count as f64).sqrt(), count)
 }
 
-fn points_are_off_by_what_sd_says(attached: Attached) {
+fn points_are_off_by_what_sd_says(attached: Attached, servo: Option<Servo>) {
     let mut seen = Vec::new();
     for (case, sweep) in SWEEPS.into_iter().enumerate() {
         for seed in 0..SEEDS {
-            seen.extend(points(&capture(attached, sweep, seed), case, seed));
+            let mut setting = setting(attached, sweep, seed);
+            if servo.is_some() {
+                setting.servo = servo;
+                setting.wish.acceleration = DegPerS2(500.0);
+            }
+            seen.extend(points(&Captured::new(setting), case, seed));
         }
     }
     let (delay_s, zero_deg) = calibrate(&mut seen);
@@ -136,12 +146,24 @@ fn points_are_off_by_what_sd_says(attached: Attached) {
 
 #[test]
 fn points_are_off_by_what_sd_says_over_usb() {
-    points_are_off_by_what_sd_says(Attached::Usb);
+    points_are_off_by_what_sd_says(Attached::Usb, None);
 }
 
 #[test]
 fn points_are_off_by_what_sd_says_over_can() {
-    points_are_off_by_what_sd_says(Attached::Can);
+    points_are_off_by_what_sd_says(Attached::Can, None);
+}
+
+/// A servo of 15 Hz that overshoots, on both links. The gear is true: what it adds no encoder sees, and sd cannot hold.
+#[test]
+fn points_are_off_by_what_sd_says_behind_a_servo_that_lags() {
+    let servo = Servo::SecondOrder {
+        natural_millihertz: 15_000,
+        damping_permille: 700,
+    };
+    for attached in [Attached::Usb, Attached::Can] {
+        points_are_off_by_what_sd_says(attached, Some(servo));
+    }
 }
 
 /// Where ranges and azimuths do not hide it: the angle itself, between polls over USB.
