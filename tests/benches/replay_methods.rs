@@ -34,8 +34,8 @@ fn main() {
     let runs = asked.and_then(|n| n.parse().ok()).unwrap_or(RUNS).max(1);
     println!("{runs} rounds; medians, quartiles in brackets");
     println!(
-        "{:<24}{:>10}{:>16}{:>10}{:>10}  {}",
-        "", "points", "best by", "linear", "best", "best / linear"
+        "{:<24}{:>10}{:>16}{:>10}{:>10}  best / linear",
+        "", "points", "best by", "linear", "best"
     );
     for attached in [Attached::Usb, Attached::Can] {
         for real in [false, true] {

@@ -1,6 +1,6 @@
 //! Angles: motions and samples at which arithmetic, or a fit, is hard.
 
-use cloud::mount::{Mount, Tilt, Tilts};
+use cloud::mount::{Mount, Tilt};
 use scanner::clock::Moment;
 use scanner::sweeps::{Commanded, Sweep};
 use scanner::trajectory::{AngleSample, Method, Remark, Trajectory};
@@ -423,11 +423,10 @@ fn tilts_do_not_drift_over_a_slow_scan() {
         let gamma = Degrees(step_deg * f64::from(k));
         // As a block is placed: from the angle at its beginning, a fraction of a degree ahead.
         let block = Tilt::new(Degrees(gamma.0 - 0.005));
-        let mut tilts = Tilts::<1>::default();
-        tilts.set(block, &[0.005_f64.to_radians()]);
+        let ahead = block.ahead(0.005_f64.to_radians());
         let point = [60.0, 20.0, -70.0];
         let (near, exact) = (
-            mount.place(point, tilts.get(0)),
+            mount.place(point, ahead),
             mount.place(point, Tilt::new(gamma)),
         );
         for (a, b) in near.iter().zip(exact) {
