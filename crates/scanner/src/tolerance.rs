@@ -46,8 +46,8 @@ pub struct Choice {
 /// Why no method would do.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
-    "no method is within {tolerance}: the best, {}, is within {:.1} mm there ({:.4} deg at {:.2} deg/s)",
-    .best.name(), .bound.0 * 1e3, .bound_angle.0, .fastest.0.abs()
+    "no method is within {tolerance}: the best, {}, is within {} mm there ({:.4} deg at {:.2} deg/s)",
+    .best.name(), three_digits(.bound.0 * 1e3), .bound_angle.0, .fastest.0.abs()
 )]
 pub struct OutOfReach {
     /// What was asked for.
@@ -64,7 +64,27 @@ pub struct OutOfReach {
     pub fastest: DegPerS,
 }
 
+/// A number with three digits that count: rounded to one or two a bound may look like what it misses.
+fn three_digits(number: f64) -> String {
+    let decimals = 2.0 - number.abs().max(1e-6).log10().floor();
+    format!("{number:.*}", decimals.clamp(0.0, 9.0) as usize)
+}
+
 impl OutOfReach {
+    /// The tolerance at the same distance that the best method meets with a tenth to spare, rounded up to two digits.
+    #[must_use]
+    pub fn tolerance_that_would_do(&self) -> Tolerance {
+        let least_mm = 1.1e3 * self.bound.0;
+        let digit = 10_f64.powi(least_mm.log10().floor() as i32 - 1);
+        // Of a digit like 0.01 the multiples are not exact: two digits are.
+        let up = format!("{:.1e}", (least_mm / digit).ceil() * digit);
+        let mm = up.parse().unwrap_or(least_mm);
+        Tolerance {
+            off: Metres(mm * 1e-3),
+            at: self.tolerance.at,
+        }
+    }
+
     /// The speed at which the best method would do, where a slower sweep helps: all of its bound but the encoder's count shrinks
     /// with the speed.
     #[must_use]
@@ -194,6 +214,30 @@ fn length(text: &str) -> Result<Metres, NotATolerance> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_would_do_is_no_coarser_than_it_must_be() {
+        let out = |bound_mm: f64| OutOfReach {
+            tolerance: "0.001mm@20m".parse().unwrap(),
+            best: Method::Profile,
+            bound: Metres(bound_mm * 1e-3),
+            bound_angle: Degrees(0.003),
+            delay_share: 0.2,
+            fastest: DegPerS(-56.25),
+        };
+        for (bound_mm, would_do_mm, said) in [
+            (0.0512, 0.057, "within 0.0512 mm"),
+            (1.018, 1.2, "within 1.02 mm"),
+            (5.08, 5.6, "within 5.08 mm"),
+            (176.79, 200.0, "within 177 mm"),
+        ] {
+            let out = out(bound_mm);
+            let Tolerance { off, at } = out.tolerance_that_would_do();
+            assert!((off.0 * 1e3 - would_do_mm).abs() < 1e-9, "{off:?}");
+            assert_eq!(at.0, 20.0);
+            assert!(out.to_string().contains(said), "{out}");
+        }
+    }
 
     #[test]
     fn lengths_at_distances_are_tolerances() {

@@ -128,7 +128,7 @@ pub struct Replay {
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct Accuracy {
     /// How far off points may be at a distance, such as 2mm@20m: the cheapest way that is good enough [default: the best there is]
-    #[arg(long, value_name = "LENGTH@DISTANCE")]
+    #[arg(long, value_name = "LENGTH@DISTANCE", allow_hyphen_values = true)]
     pub tolerance: Option<Tolerance>,
 }
 

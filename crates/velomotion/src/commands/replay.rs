@@ -528,10 +528,12 @@ fn out_of_reach(path: &Path, out: &OutOfReach) -> Failure {
         would
             .push("a link to the drive with shorter round trips (CAN, where it is not)".to_owned());
     }
-    let coarser = (out.bound.0 * 1.1e3).ceil();
+    let coarser = out.tolerance_that_would_do();
+    let mm = format!("{:.6}", coarser.off.0 * 1e3);
     would.push(format!(
-        "of this recording --tolerance {coarser}mm@{}m",
-        out.tolerance.at.0
+        "of this recording --tolerance {}mm@{}m",
+        mm.trim_end_matches('0').trim_end_matches('.'),
+        coarser.at.0
     ));
     Failure::new(Kind::Incomplete, format!("{}: {out}", path.display())).help(format!(
         "no cloud was made; the recording is as it was. What would do: {}",
