@@ -22,11 +22,14 @@ pub enum Column {
     DeviceTime,
     /// How far the point is off, as a root mean square expected, metres.
     Sd,
+    /// Which return of its pulse the point is: 1 the strongest, 2 the last, 3 both at one distance, 4 dual mode's other one (the
+    /// strongest, or the second strongest where the last is the strongest), 0 not told.
+    Echo,
 }
 
 impl Column {
     /// Every column, in the order in which files list them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Intensity,
         Self::Ring,
         Self::Time,
@@ -34,6 +37,7 @@ impl Column {
         Self::Laser,
         Self::DeviceTime,
         Self::Sd,
+        Self::Echo,
     ];
 
     /// The column's name in files and messages.
@@ -47,6 +51,7 @@ impl Column {
             Self::Laser => "laser",
             Self::DeviceTime => "device_time",
             Self::Sd => "sd",
+            Self::Echo => "echo",
         }
     }
 
@@ -78,10 +83,13 @@ impl Fields {
     pub const DEVICE_TIME: Self = Column::DeviceTime.field();
     /// [`Column::Sd`].
     pub const SD: Self = Column::Sd.field();
+    /// [`Column::Echo`].
+    pub const ECHO: Self = Column::Echo.field();
     /// What a file carries unless asked otherwise: intensity, ring, time and tilt.
     pub const FILE: Self = Self(Self::INTENSITY.0 | Self::RING.0 | Self::TIME.0 | Self::TILT.0);
     /// Every column.
-    pub const ALL: Self = Self(Self::FILE.0 | Self::LASER.0 | Self::DEVICE_TIME.0 | Self::SD.0);
+    pub const ALL: Self =
+        Self(Self::FILE.0 | Self::LASER.0 | Self::DEVICE_TIME.0 | Self::SD.0 | Self::ECHO.0);
 
     /// Whether every column of `other` is in this set.
     #[must_use]

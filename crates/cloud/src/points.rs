@@ -32,6 +32,8 @@ pub struct Point {
     pub tilt: Degrees,
     /// How far the point is off, as a root mean square expected, metres.
     pub sd_m: f64,
+    /// Which return of its pulse it is, by the numbers of [`crate::Column::Echo`].
+    pub echo: u8,
 }
 
 impl Default for Point {
@@ -46,6 +48,7 @@ impl Default for Point {
             device_time: Stamp::from_nanos(0),
             tilt: Degrees(0.0),
             sd_m: 0.0,
+            echo: 0,
         }
     }
 }
@@ -67,6 +70,7 @@ pub struct Points {
     device_time: Vec<Stamp<Lidar>>,
     tilt_deg: Vec<f64>,
     sd_m: Vec<f64>,
+    echo: Vec<u8>,
 }
 
 impl Points {
@@ -106,6 +110,7 @@ impl Points {
         self.device_time.reserve(room(Fields::DEVICE_TIME));
         self.tilt_deg.reserve(room(Fields::TILT));
         self.sd_m.reserve(room(Fields::SD));
+        self.echo.reserve(room(Fields::ECHO));
     }
 
     /// Forgets the points and keeps the memory.
@@ -160,6 +165,9 @@ impl Points {
         if self.fields.contains(Fields::SD) {
             put(&mut self.sd_m, row, point.sd_m);
         }
+        if self.fields.contains(Fields::ECHO) {
+            put(&mut self.echo, row, point.echo);
+        }
         self.len += 1;
     }
 
@@ -193,6 +201,9 @@ impl Points {
         }
         if self.fields.contains(Fields::SD) {
             extend(&mut self.sd_m, row, batch.sd_m());
+        }
+        if self.fields.contains(Fields::ECHO) {
+            extend(&mut self.echo, row, batch.echo());
         }
         self.len += batch.len;
         Ok(())
@@ -258,6 +269,12 @@ impl Points {
         self.column(&self.sd_m)
     }
 
+    /// Which return of its pulse each point is, by the numbers of [`crate::Column::Echo`]; empty unless asked for.
+    #[must_use]
+    pub fn echo(&self) -> &[u8] {
+        self.column(&self.echo)
+    }
+
     /// The counted rows; an unwanted column has none.
     fn column<'a, T>(&self, column: &'a [T]) -> &'a [T] {
         column.get(..self.len).unwrap_or(column)
@@ -280,6 +297,7 @@ impl Points {
             device_time: or(self.device_time(), index, none.device_time),
             tilt: Degrees(or(self.tilt_deg(), index, none.tilt.0)),
             sd_m: or(self.sd_m(), index, none.sd_m),
+            echo: or(self.echo(), index, none.echo),
         })
     }
 
@@ -321,6 +339,7 @@ impl PartialEq for Points {
             && self.device_time() == other.device_time()
             && self.tilt_deg() == other.tilt_deg()
             && self.sd_m() == other.sd_m()
+            && self.echo() == other.echo()
     }
 }
 
@@ -353,20 +372,23 @@ mod tests {
     fn any_point() -> impl Strategy<Value = Point> {
         (
             prop::array::uniform3(-120.0..120.0),
-            any::<(u8, u8, u8)>(),
+            any::<(u8, u8, u8, u8)>(),
             any::<(i64, i64)>(),
             (-180.0..180.0, 0.0..1.0),
         )
             .prop_map(
-                |(position_m, (intensity, ring, laser), (host, device), (tilt, sd_m))| Point {
-                    position_m,
-                    intensity,
-                    ring,
-                    laser,
-                    time: Stamp::from_nanos(host),
-                    device_time: Stamp::from_nanos(device),
-                    tilt: Degrees(tilt),
-                    sd_m,
+                |(position_m, (intensity, ring, laser, echo), (host, device), (tilt, sd_m))| {
+                    Point {
+                        position_m,
+                        intensity,
+                        ring,
+                        laser,
+                        time: Stamp::from_nanos(host),
+                        device_time: Stamp::from_nanos(device),
+                        tilt: Degrees(tilt),
+                        sd_m,
+                        echo,
+                    }
                 },
             )
     }
@@ -390,6 +412,7 @@ mod tests {
             (Fields::DEVICE_TIME, points.device_time().len()),
             (Fields::TILT, points.tilt_deg().len()),
             (Fields::SD, points.sd_m().len()),
+            (Fields::ECHO, points.echo().len()),
         ]
     }
 
@@ -432,6 +455,11 @@ mod tests {
                 point.sd_m
             } else {
                 none.sd_m
+            },
+            echo: if fields.contains(Fields::ECHO) {
+                point.echo
+            } else {
+                none.echo
             },
         }
     }
@@ -497,6 +525,7 @@ mod tests {
         assert_eq!(points.time.capacity(), 0);
         assert_eq!(points.tilt_deg.capacity(), 0);
         assert_eq!(points.sd_m.capacity(), 0);
+        assert_eq!(points.echo.capacity(), 0);
         assert!(points.x_m.capacity() >= 1000);
     }
 

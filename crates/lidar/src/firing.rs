@@ -33,6 +33,20 @@ pub enum Echo {
     Unknown,
 }
 
+impl Echo {
+    /// Its number in a cloud's column `echo`.
+    #[must_use]
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::Unknown => 0,
+            Self::Strongest => 1,
+            Self::Last => 2,
+            Self::LastAndStrongest => 3,
+            Self::StrongestOrSecond => 4,
+        }
+    }
+}
+
 /// One laser's measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Return {

@@ -146,6 +146,25 @@ impl<'a> Volley<'a> {
         }
     }
 
+    /// Which return each channel's is ([`Echo::code`]), a row a layer; of no meaning where a channel has none.
+    #[inline(never)]
+    #[must_use]
+    pub fn echo_codes(&self) -> [[u8; CHANNELS]; 2] {
+        match &self.returns {
+            Layers::One { echo, .. } => [[echo.code(); CHANNELS]; 2],
+            Layers::Two { strongest, .. } => {
+                let changed = strongest.sorted.changed;
+                let codes = |apart: Echo| {
+                    core::array::from_fn(|channel| match changed >> channel & 1 {
+                        0 => Echo::LastAndStrongest.code(),
+                        _ => apart.code(),
+                    })
+                };
+                [codes(Echo::Last), codes(Echo::StrongestOrSecond)]
+            }
+        }
+    }
+
     /// When each channel fired, in nanoseconds after the start.
     #[inline]
     #[must_use]

@@ -283,6 +283,7 @@ impl Alignment {
             device_time: point.time,
             tilt,
             sd_m: self.sd_m(point, moment, near),
+            echo: point.echo.code(),
         })
     }
 

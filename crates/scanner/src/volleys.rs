@@ -257,6 +257,14 @@ impl<'a> VolleyPlacer<'a> {
         if let Some(laser) = &mut to.laser {
             kept.put_bytes(simd, laser, [volley.lasers(); L]);
         }
+        if let Some(echo) = &mut to.echo {
+            let codes = volley.echo_codes();
+            let mut of = [&codes[0]; L];
+            for (of, codes) in of.iter_mut().zip(&codes) {
+                *of = codes;
+            }
+            kept.put_bytes(simd, echo, of);
+        }
         kept.count()
     }
 }

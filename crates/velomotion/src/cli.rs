@@ -216,6 +216,9 @@ pub struct Output {
     /// Add a column sd: how far each point is expected to be off (root mean square), metres
     #[arg(long)]
     pub uncertainty: bool,
+    /// Add a column echo: 1 strongest, 2 last, 3 both in one, 4 dual return's other one, 0 not told
+    #[arg(long)]
+    pub echo: bool,
     /// Overwrite files that exist
     #[arg(long)]
     pub force: bool,
@@ -225,10 +228,9 @@ impl Output {
     /// The columns of the cloud beside the position.
     #[must_use]
     pub fn fields(&self) -> Fields {
-        match self.uncertainty {
-            true => Fields::FILE | Fields::SD,
-            false => Fields::FILE,
-        }
+        let asked = [(self.uncertainty, Fields::SD), (self.echo, Fields::ECHO)];
+        let asked = asked.into_iter().filter(|(asked, _)| *asked);
+        asked.fold(Fields::FILE, |fields, (_, field)| fields | field)
     }
 }
 

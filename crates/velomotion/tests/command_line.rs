@@ -417,6 +417,35 @@ fn packets_out_of_order_cost_no_utc() {
 }
 
 #[test]
+fn dual_returns_say_which_they_are() {
+    let Some(path) = recording("vlp16-dual.pcap") else {
+        return;
+    };
+    let place = Place::new();
+    for (more, counts) in [
+        ("", [0, 0, 1_236, 57_413, 765]),
+        ("--equal-returns twice", [0, 0, 1_236, 114_826, 765]),
+    ] {
+        let options = format!("--tilt none --echo --force -o cloud.csv {more}");
+        assert!(
+            place
+                .run(&format!("replay {} {options}", path.display()))
+                .status
+                .success()
+        );
+        let text = std::fs::read_to_string(place.path("cloud.csv")).unwrap();
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        assert!(lines.next().unwrap().ends_with(",echo"));
+        let mut seen = [0; 5];
+        for line in lines {
+            let code: usize = line.rsplit(',').next().unwrap().parse().unwrap();
+            seen[code] += 1;
+        }
+        assert_eq!(seen, counts, "{more}");
+    }
+}
+
+#[test]
 fn rays_may_start_in_one_point() {
     let Some(path) = recording("vlp16-strongest-gps.pcap") else {
         return;

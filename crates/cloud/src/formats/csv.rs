@@ -89,6 +89,7 @@ fn encode_field(text: &mut Vec<u8>, column: Column, point: &Point) -> io::Result
         Column::Laser => write!(text, "{}", point.laser),
         Column::Tilt => write!(text, "{}", point.tilt.0),
         Column::Sd => write!(text, "{}", point.sd_m),
+        Column::Echo => write!(text, "{}", point.echo),
         Column::Time => encode_seconds(text, point.time.as_nanos()),
         Column::DeviceTime => encode_seconds(text, point.device_time.as_nanos()),
     }
@@ -190,6 +191,7 @@ mod tests {
             assert_eq!(row[7], point.laser.to_string());
             assert_eq!(ns(row[8]), point.device_time.as_nanos());
             assert_eq!(number(9), point.sd_m);
+            assert_eq!(row[10], point.echo.to_string());
         }
     }
 

@@ -206,6 +206,7 @@ fn encode(batch: &Points, flags: u8, extras: &[Extra], rows: &mut [u8], row_byte
         match extra.column {
             Column::Ring => fill(rows, row_bytes, offset, batch.ring().iter().map(|v| [*v])),
             Column::Laser => fill(rows, row_bytes, offset, batch.laser().iter().map(|v| [*v])),
+            Column::Echo => fill(rows, row_bytes, offset, batch.echo().iter().map(|v| [*v])),
             Column::Tilt => {
                 let tilt = batch.tilt_deg().iter().map(|v| *v as f32);
                 fill(rows, row_bytes, offset, tilt.map(f32::to_le_bytes));

@@ -29,7 +29,7 @@ impl Kind {
         match column {
             Column::Intensity | Column::Tilt | Column::Sd => Self::Float,
             Column::Time | Column::DeviceTime => Self::Double,
-            Column::Ring | Column::Laser => Self::Byte,
+            Column::Ring | Column::Laser | Column::Echo => Self::Byte,
         }
     }
 }
@@ -125,6 +125,7 @@ fn fill(rows: &mut Rows, at: usize, column: Column, batch: &Points) {
         }
         Column::Ring => rows.fill(at, batch.ring().iter().map(|v| [*v])),
         Column::Laser => rows.fill(at, batch.laser().iter().map(|v| [*v])),
+        Column::Echo => rows.fill(at, batch.echo().iter().map(|v| [*v])),
         Column::Time => {
             let times = batch.time().iter();
             rows.fill(at, times.map(|t| seconds(t.as_nanos()).to_le_bytes()));

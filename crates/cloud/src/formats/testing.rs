@@ -39,6 +39,7 @@ pub fn cloud(count: u32) -> Points {
             device_time: Stamp::from_nanos(i64::from(i) * 2_304),
             tilt: Degrees(-45.0 + 45.0 * f64::from(i) / f64::from(count)),
             sd_m: 1e-3 * (1.0 + f64::from(i % 9)),
+            echo: (i % 5) as u8,
         });
     }
     points

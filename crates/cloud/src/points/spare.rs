@@ -31,6 +31,8 @@ pub struct Spare<'a, const R: usize> {
     pub tilt_deg: Option<&'a mut [f64; R]>,
     /// How far the point is off, as a root mean square expected, metres, if asked for.
     pub sd_m: Option<&'a mut [f64; R]>,
+    /// Which return of its pulse, if asked for.
+    pub echo: Option<&'a mut [u8; R]>,
 }
 
 impl Points {
@@ -55,6 +57,7 @@ impl Points {
             device_time: wanted(fields, Fields::DEVICE_TIME, &mut self.device_time, row),
             tilt_deg: wanted(fields, Fields::TILT, &mut self.tilt_deg, row),
             sd_m: wanted(fields, Fields::SD, &mut self.sd_m, row),
+            echo: wanted(fields, Fields::ECHO, &mut self.echo, row),
         })
     }
 
@@ -98,6 +101,9 @@ impl Points {
         if wanted(Fields::SD) {
             self.sd_m.resize(end, 0.0);
         }
+        if wanted(Fields::ECHO) {
+            self.echo.resize(end, 0);
+        }
     }
 }
 
@@ -139,6 +145,7 @@ mod tests {
             device_time: Stamp::from_nanos(2_000 + i64::from(n)),
             tilt: Degrees(-far),
             sd_m: far / 8.0,
+            echo: n ^ 3,
         }
     }
 
@@ -151,6 +158,7 @@ mod tests {
                 (&mut rows.intensity, point.intensity),
                 (&mut rows.ring, point.ring),
                 (&mut rows.laser, point.laser),
+                (&mut rows.echo, point.echo),
             ];
             for (column, value) in narrow {
                 if let Some(column) = column {

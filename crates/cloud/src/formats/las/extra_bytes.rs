@@ -30,6 +30,7 @@ const fn kind(column: Column) -> Option<(u8, usize, &'static str)> {
         Column::Laser => Some((U8, 1, "laser in firing order")),
         Column::DeviceTime => Some((F64, 8, "seconds, clock of the lidar")),
         Column::Sd => Some((F32, 4, "expected error (RMS), metres")),
+        Column::Echo => Some((U8, 1, "1 strongest 2 last 3 both 4 rest")),
     }
 }
 

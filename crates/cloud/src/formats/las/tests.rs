@@ -109,7 +109,7 @@ fn a_real_cloud_is_not_called_simulated() {
 #[test]
 fn every_column_can_be_asked_for_or_none() {
     let given = cloud(20);
-    for (fields, extra) in [(Fields::NONE, 0), (Fields::ALL, 26)] {
+    for (fields, extra) in [(Fields::NONE, 0), (Fields::ALL, 27)] {
         let writer = LasWriter::laz(Cursor::new(vec![])).with_fields(fields);
         let bytes = written(writer, &metadata(), std::slice::from_ref(&given));
         let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
@@ -119,8 +119,9 @@ fn every_column_can_be_asked_for_or_none() {
                 assert_eq!(got.extra_bytes[13], expected.laser);
                 let time = f64::from_le_bytes(got.extra_bytes[14..22].try_into().unwrap());
                 assert!((time - expected.device_time.as_nanos() as f64 * 1e-9).abs() < 1e-12);
-                let sd = f32::from_le_bytes(got.extra_bytes[22..].try_into().unwrap());
+                let sd = f32::from_le_bytes(got.extra_bytes[22..26].try_into().unwrap());
                 assert_eq!(sd, expected.sd_m as f32);
+                assert_eq!(got.extra_bytes[26], expected.echo);
             }
         }
     }

@@ -182,6 +182,7 @@ proptest! {
                 device_time: units::Stamp::from_nanos(ns / 1000),
                 tilt: Degrees(tilt),
                 sd_m: tilt.abs() / 1e3,
+                echo: laser % 5,
             });
         }
         let (bytes, _) = written(Fields::ALL, &[points]);
@@ -192,6 +193,7 @@ proptest! {
                 prop_assert!((got - expected).abs() < 4e-6);
             }
             prop_assert_eq!((row[3], row[4], row[7]), (intensity.into(), ring.into(), laser.into()));
+            prop_assert_eq!(row[10], f64::from(laser % 5));
             prop_assert!((row[5] - ns as f64 * 1e-9).abs() < 1e-6);
             prop_assert!((row[6] - tilt).abs() < 8e-6);
             prop_assert!((row[8] - ns as f64 * 1e-12).abs() < 1e-8);
