@@ -73,6 +73,8 @@ struct Candidate {
     pieces: Pieces,
     /// What is left in a row, degrees.
     strange_deg: f64,
+    /// It is of few observations: a look at what a fit comes to.
+    is_look: bool,
 }
 
 impl Candidate {
@@ -114,15 +116,32 @@ impl<'a> Candidates<'a> {
         };
         let mut candidates: Vec<Candidate> = match method {
             Some(Method::Spline) => self.spline().into_iter().collect(),
-            Some(method) => self.profile(servo(method)?, method).into_iter().collect(),
+            Some(method) => {
+                let fit = self.profile(servo(method)?, method, None);
+                fit.into_iter().collect()
+            }
             None => {
                 let mut all: Vec<Candidate> = Vec::new();
                 for method in [Method::Profile, Method::ProfileServo, Method::ProfileSwing] {
-                    all.extend(servo(method).and_then(|servo| self.profile(servo, method)));
+                    let Some(mut one) = servo(method).and_then(|servo| self.look(servo, method))
+                    else {
+                        continue;
+                    };
+                    // The motion alone is quickly fitted, and mostly it is that.
+                    if method == Method::Profile || one.leaves_less_than(0.25) {
+                        self.look_closer(&mut one, servo(method));
+                    }
                     // Of a motion that leaves nothing more would be fitted to scatter.
-                    if all.last().is_some_and(|c| c.leaves_less_than(0.25)) {
+                    let is_it = one.leaves_less_than(0.25);
+                    all.push(one);
+                    if is_it {
                         break;
                     }
+                }
+                // Looks tell which it is, and where its fit is to begin.
+                if let Some(best) = least(&all).and_then(|best| all.get_mut(best)) {
+                    let method = best.fit.method;
+                    self.look_closer(best, servo(method));
                 }
                 let settled = all.iter().any(|c| c.leaves_less_than(0.5));
                 if !settled {
@@ -136,10 +155,7 @@ impl<'a> Candidates<'a> {
             .filter(|c| c.fit.method != Method::Spline)
             .map(|c| c.strange_deg)
             .min_by(f64::total_cmp);
-        let best = (0..candidates.len()).min_by(|a, b| {
-            let sd = |i: &usize| candidates.get(*i).map_or(f64::INFINITY, |c| c.fit.sd_deg);
-            sd(a).total_cmp(&sd(b))
-        })?;
+        let best = least(&candidates)?;
         let mut best = candidates.swap_remove(best);
         let is_strange = |off: f64| off > STRANGE_DEG && off > STRANGE * best.fit.sd_deg;
         let off = strange.filter(|off| is_strange(*off));
@@ -150,10 +166,35 @@ impl<'a> Candidates<'a> {
         Some((best.fit, best.pieces))
     }
 
-    fn profile(&self, servo: Servo, method: Method) -> Option<Candidate> {
+    /// What a fit comes to, by few observations; by all of them where they are few.
+    fn look(&self, servo: Servo, method: Method) -> Option<Candidate> {
         let guess = self.guess()?;
         let observed = condensed(&self.observed, &guess);
-        let fit = profile_fit::fit(&observed, guess, servo)?;
+        let Some(fit) = profile_fit::look(&observed, guess, servo) else {
+            return self.profile(servo, method, None);
+        };
+        let mut look = self.candidate(fit, method)?;
+        look.is_look = true;
+        Some(look)
+    }
+
+    /// Makes a fit to all observations of a look, if that is what it is and there is one.
+    fn look_closer(&self, look: &mut Candidate, servo: Option<Servo>) {
+        if let (true, Some(servo)) = (look.is_look, servo)
+            && let Some(fit) = self.profile(servo, look.fit.method, look.fit.profile.as_ref())
+        {
+            *look = fit;
+        }
+    }
+
+    fn profile(&self, servo: Servo, method: Method, begin: Option<&Profile>) -> Option<Candidate> {
+        let guess = self.guess()?;
+        let observed = condensed(&self.observed, &guess);
+        let fit = profile_fit::fit(&observed, guess, servo, begin)?;
+        self.candidate(fit, method)
+    }
+
+    fn candidate(&self, fit: ProfileFit, method: Method) -> Option<Candidate> {
         let end_s = self.observed.last()?.at_s;
         let pieces = pieces(&fit, self.origin, end_s)?;
         let remarks = fit.held.any().then_some(Remark::Held(fit.held));
@@ -268,8 +309,15 @@ impl<'a> Candidates<'a> {
             fit,
             pieces: Pieces::new(with_sd, pieces.span().1)?,
             strange_deg,
+            is_look: false,
         })
     }
+}
+
+/// The one with the least error.
+fn least(candidates: &[Candidate]) -> Option<usize> {
+    let sd = |i: &usize| candidates.get(*i).map_or(f64::INFINITY, |c| c.fit.sd_deg);
+    (0..candidates.len()).min_by(|a, b| sd(a).total_cmp(&sd(b)))
 }
 
 /// Samples for a fit. While the axis rests all samples say one thing, and weigh as one.

@@ -63,9 +63,8 @@ const WORST_CONDITION: f64 = 1e6;
 /// A sum of squares that changes by less than this, as a part of it, is the least: of a thousand samples, parameters are then within a
 /// thirtieth of what these scatter them by.
 const LEAST: f64 = 1e-6;
-/// One observation in so many tells about where the minimum is, if there are at least so many of these.
-const PART: usize = 4;
-const FEWEST_IN_PARTS: usize = 60;
+/// So many observations are enough for a look.
+const ENOUGH_TO_LOOK: usize = 100;
 /// Parameters that change by less than this, as a part of them, are found.
 const FOUND: f64 = 1e-9;
 /// What a lag is looked for from: that of a servo of 15 Hz.
@@ -91,9 +90,14 @@ impl ProfileFit {
     }
 }
 
-/// Fits from `guess`, with the servo's parameters that it has. `None` where there are fewer observations than parameters, or no minimum is
+/// Fits from `guess`, with the servo's parameters that it has, or from where a look has led, `begin`. `None` where there are fewer observations than parameters, or no minimum is
 /// found that is a motion at all.
-pub(super) fn fit(observed: &[Observed], guess: Profile, servo: Servo) -> Option<ProfileFit> {
+pub(super) fn fit(
+    observed: &[Observed],
+    guess: Profile,
+    servo: Servo,
+    begin: Option<&Profile>,
+) -> Option<ProfileFit> {
     let [lag_s, inertia_s2] = match servo {
         Servo::None => [0.0; 2],
         Servo::Lag => [USUAL_LAG_S, 0.0],
@@ -105,7 +109,7 @@ pub(super) fn fit(observed: &[Observed], guess: Profile, servo: Servo) -> Option
         ..guess
     };
     let is_triangle = guess.braking_s() <= guess.ramp_up_s;
-    let first = solve(observed, guess, Shape { is_triangle, servo })?;
+    let first = solve(observed, guess, Shape { is_triangle, servo }, begin)?;
     let cruises = first.profile.braking_s() - first.profile.ramp_up_s;
     match (is_triangle, cruises > 0.0) {
         (false, false) => solve(
@@ -115,12 +119,18 @@ pub(super) fn fit(observed: &[Observed], guess: Profile, servo: Servo) -> Option
                 is_triangle: true,
                 servo,
             },
+            None,
         ),
         _ => Some(first),
     }
 }
 
-fn solve(observed: &[Observed], guess: Profile, shape: Shape) -> Option<ProfileFit> {
+fn solve(
+    observed: &[Observed],
+    guess: Profile,
+    shape: Shape,
+    begin: Option<&Profile>,
+) -> Option<ProfileFit> {
     if observed.len() < shape.len() {
         return None;
     }
@@ -135,7 +145,7 @@ fn solve(observed: &[Observed], guess: Profile, shape: Shape) -> Option<ProfileF
         ..Held::default()
     };
     let free = Problem::new(observed, guess, shape, held)
-        .beginning_at(&nearby(observed, guess, shape, held))
+        .beginning_at(begin.unwrap_or(&guess))
         .minimise();
     match free {
         Some(free) if free.condition < WORST_CONDITION => Some(free),
@@ -149,15 +159,15 @@ fn solve(observed: &[Observed], guess: Profile, shape: Shape) -> Option<ProfileF
     }
 }
 
-/// Where to begin: the minimum of every few observations, where there are many, is next to that of all and sooner found.
-fn nearby(observed: &[Observed], guess: Profile, shape: Shape, held: Held) -> Profile {
-    if held.any() || observed.len() < FEWEST_IN_PARTS * PART {
-        return guess;
+/// A fit to one observation in every few, for a look at what it comes to; `None` where there are too few for that, or they do not tell
+/// everything.
+pub(super) fn look(observed: &[Observed], guess: Profile, servo: Servo) -> Option<ProfileFit> {
+    let part = observed.len() / ENOUGH_TO_LOOK;
+    if part < 2 {
+        return None;
     }
-    let some: Vec<Observed> = observed.iter().copied().step_by(PART).collect();
-    let found = Problem::new(&some, guess, shape, held).minimise();
-    let found = found.filter(|found| found.condition < WORST_CONDITION);
-    found.map_or(guess, |found| found.profile)
+    let some: Vec<Observed> = observed.iter().copied().step_by(part).collect();
+    fit(&some, guess, servo, None).filter(|fit| !fit.held.any())
 }
 
 /// Which parameters a profile has: a triangle's speed follows from its way and its ramps, and there may be no lag.
