@@ -98,8 +98,8 @@ mod tests {
             assert!(description.len() <= 32 && extra.column.name().len() <= 32);
         }
         assert_eq!(usize::from(length(&extras)), expected);
-        assert_eq!(expected, 26);
-        assert_eq!(record(&extras).data.len(), 6 * RECORD_BYTES);
+        assert_eq!(expected, 27);
+        assert_eq!(record(&extras).data.len(), 7 * RECORD_BYTES);
     }
 
     #[test]
