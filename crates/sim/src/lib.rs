@@ -9,6 +9,7 @@
 //! sensor's own clock.
 
 mod attached;
+pub mod cast;
 mod clock;
 pub mod effects;
 mod head;

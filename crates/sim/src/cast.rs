@@ -1,0 +1,35 @@
+//! Ray casting: which surface a ray meets first, how far away, and on request the normal there.
+//!
+//! A [`Caster`] holds objects: surfaces, each at its [`Placement`]. It answers for one ray ([`Caster::nearest`], [`Caster::any`]) or for many
+//! ([`Caster::nearest_of`]), in f64 and without a gap between triangles. Every answer is a function of its ray and the objects
+//! alone: the same bits by one ray or many, in any order, on any number of threads, with any registers.
+//!
+//! How it is fast: trees of boxes with eight children (`bvh`), boxes in f32 and what is in them in f64 (`beam`, `triangle`), and
+//! eight rays at a time where they go nearly the same way (`packet`). Why no crate does it: docs/src/rays.md.
+//! Left out: materials, effects, time; files; everything about a sensor.
+
+mod beam;
+mod build;
+mod bvh;
+mod caster;
+mod height_field;
+mod mesh;
+mod packet;
+mod placement;
+mod ray;
+mod solids;
+mod surface;
+mod threads;
+mod triangle;
+
+pub use caster::{CastError, Caster, Rays};
+pub use height_field::{HeightField, HeightFieldError};
+pub use mesh::{Mesh, MeshError};
+pub use placement::{Placement, PlacementError};
+pub use ray::{Hit, Normal, ObjectId, Ray, RayError, Reach};
+pub use solids::{Cuboid, Cylinder, Plane, Sphere};
+pub use surface::{Object, Surface};
+pub use threads::{Threads, ThreadsError};
+
+#[cfg(test)]
+mod tests;

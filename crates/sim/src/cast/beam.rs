@@ -1,0 +1,125 @@
+//! What a ray, or eight rays that go much the same way, asks of boxes: may it enter, and from where.
+//!
+//! The answer errs on the safe side only. Everything is f32; slabs are moved outward by [`Beam::slack`], which is more than all
+//! roundings of the test together can make (after Ize, Robust BVH Ray Traversal, 2013, whose factors are relative to the slab: ours
+//! is absolute, and holds for a beam of rays as well). Left out: what is in the boxes.
+
+use fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
+
+use super::bvh::Node;
+
+/// Roundings of the test are below 2^-21 of the coordinates that go in; twice over for both ends of an interval, twice over to be sure.
+const SLACK: f64 = 1.0 / (1 << 19) as f64;
+/// A direction is never nearer to parallel than this; within any scene that is less than the slack.
+const LEAST_DIRECTION: f64 = 1e-18;
+
+/// The least and the greatest coordinate of rays along each axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spread {
+    pub low: [f64; 3],
+    pub high: [f64; 3],
+}
+
+/// Along one axis, where rays of one sign of direction meet the planes of boxes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Axis {
+    /// Which of the node's slabs is met first, 0..6.
+    near: usize,
+    far: usize,
+    near_origin: f32,
+    far_origin: f32,
+    /// One over the direction: of the steepest and of the flattest ray.
+    inverse: [f32; 2],
+}
+
+/// Rays whose directions have the same signs: one, or several if `THICK`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beam<const THICK: bool>([Axis; 3]);
+
+impl Beam<false> {
+    /// One ray, in a tree whose coordinates reach so far.
+    #[inline(always)]
+    pub(super) fn thin(origin: [f64; 3], direction: [f64; 3], reach_m: f64) -> Self {
+        let origin = Spread {
+            low: origin,
+            high: origin,
+        };
+        let direction = Spread {
+            low: direction,
+            high: direction,
+        };
+        Self::about(&origin, &direction, reach_m)
+    }
+}
+
+impl<const THICK: bool> Beam<THICK> {
+    /// All rays between these origins and directions, in a tree whose coordinates reach so far.
+    #[inline(always)]
+    pub(super) fn about(origin: &Spread, direction: &Spread, reach_m: f64) -> Self {
+        let slack = Self::slack(origin, reach_m);
+        Self([0, 1, 2].map(|axis| {
+            let (from, to) = (origin.low[axis], origin.high[axis]);
+            let (flat, steep) = (direction.low[axis], direction.high[axis]);
+            let (low, high) = (2 * axis, 2 * axis + 1);
+            if steep >= 0.0 {
+                Axis {
+                    near: low,
+                    far: high,
+                    near_origin: (to + slack) as f32,
+                    far_origin: (from - slack) as f32,
+                    inverse: [steep, flat].map(|d| d.max(LEAST_DIRECTION).recip() as f32),
+                }
+            } else {
+                Axis {
+                    near: high,
+                    far: low,
+                    near_origin: (from - slack) as f32,
+                    far_origin: (to + slack) as f32,
+                    inverse: [flat, steep].map(|d| d.min(-LEAST_DIRECTION).recip() as f32),
+                }
+            }
+        }))
+    }
+
+    /// How far slabs are moved outward, metres: by what f32 makes of the coordinates.
+    #[inline(always)]
+    fn slack(origin: &Spread, reach_m: f64) -> f64 {
+        let mut far = reach_m;
+        for axis in 0..3 {
+            far = far.max(origin.low[axis].abs()).max(origin.high[axis].abs());
+        }
+        far * SLACK
+    }
+
+    /// From where on the beam may be within each of a node's boxes, and for which that is not beyond `up_to`.
+    #[inline(always)]
+    pub(super) fn enter<S: Simd>(
+        &self,
+        simd: S,
+        node: &Node,
+        up_to: f32,
+    ) -> (f32x8<S>, mask32x8<S>) {
+        let mut enter = f32x8::splat(simd, 0.0);
+        let mut leave = f32x8::splat(simd, up_to);
+        for axis in &self.0 {
+            let [steep, flat] = axis.inverse;
+            let near = f32x8::simd_from(simd, node.slabs[axis.near % 6]) - axis.near_origin;
+            let far = f32x8::simd_from(simd, node.slabs[axis.far % 6]) - axis.far_origin;
+            let (mut first, mut last) = (near * steep, far * steep);
+            if THICK {
+                first = first.min(near * flat);
+                last = last.max(far * flat);
+            }
+            enter = enter.max(first);
+            leave = leave.min(last);
+        }
+        (enter, enter.simd_le(leave))
+    }
+}
+
+/// How far a walk is to look for hits up to here.
+#[inline(always)]
+pub(super) fn up_to(range_m: f64) -> f32 {
+    // What this rounds off is within the slack.
+    range_m as f32
+}

@@ -1,0 +1,417 @@
+//! Objects in a scene, and what rays meet first among them.
+//!
+//! Finite objects are in a tree of their own, about the middle of the scene; endless planes are asked one after the other. Left out: how one object
+//! is met.
+
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use rayon::prelude::*;
+use thiserror::Error;
+
+use glam::DVec3;
+
+use super::beam::{Beam, up_to};
+use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
+use super::mesh::short_middle;
+use super::packet::{Ask, Best, LANES, Lanes, Nearest, spread};
+use super::placement::Placement;
+use super::ray::{Hit, Normal, Ray, Reach};
+use super::surface::Object;
+use super::threads::Threads;
+
+/// So few objects are asked one after the other.
+const FEW: usize = 4;
+/// Rays whose directions differ by more than this go one by one.
+const WIDE: f64 = 0.15;
+/// Rays whose origins differ by more than this, relative to the size of the scene, go one by one.
+const FAR_APART: f64 = 1e-3;
+/// How many packets of each beam one thread takes at a time.
+const PACKETS_AT_A_TIME: usize = 8;
+
+/// What cannot be cast at.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum CastError {
+    /// More objects than a tree holds.
+    #[error("sim: expected at most 2^27 objects, got {0}")]
+    TooMany(usize),
+    /// An object whose size is not finite or is negative.
+    #[error("sim: object {object}: expected a finite size, got corners {low:?} and {high:?}")]
+    Size {
+        /// Its number, from 0.
+        object: usize,
+        /// The least corner of its box in its own frame, metres.
+        low: [f64; 3],
+        /// The greatest corner, metres.
+        high: [f64; 3],
+    },
+    /// There is no such object.
+    #[error("sim: expected an object below {objects}, got {got}")]
+    NoObject {
+        /// How many there are.
+        objects: usize,
+        /// Which was asked for.
+        got: usize,
+    },
+}
+
+/// Objects to cast rays at.
+#[derive(Clone, Debug)]
+pub struct Caster {
+    objects: Vec<Object>,
+    /// Planes, by number.
+    endless: Vec<u32>,
+    /// Everything else, by number, in the order of the tree's leaves.
+    finite: Vec<u32>,
+    tree: Bvh,
+    /// Where the tree's coordinates begin.
+    middle_m: DVec3,
+    /// Which registers there are. They change no result.
+    level: Level,
+}
+
+/// Where children wait, for the tree of objects and that of one object.
+struct Stacks {
+    objects: Stack,
+    inner: Stack,
+}
+
+impl Stacks {
+    const fn new() -> Self {
+        Self {
+            objects: Stack::new(),
+            inner: Stack::new(),
+        }
+    }
+}
+
+/// Rays in the order in which a lidar fires: `beams` of them a firing, firing after firing.
+///
+/// Rays of one beam in consecutive firings are cast together. If there is no such order, one beam is right.
+#[derive(Clone, Copy, Debug)]
+pub struct Rays<'a> {
+    rays: &'a [Ray],
+    beams: usize,
+}
+
+impl<'a> Rays<'a> {
+    /// Rays of firings of so many beams; zero counts as one. The last firing need not be whole.
+    #[must_use]
+    pub fn new(rays: &'a [Ray], beams: usize) -> Self {
+        Self {
+            rays,
+            beams: beams.max(1),
+        }
+    }
+}
+
+impl Caster {
+    /// A scene of these objects, which go by their places in this order.
+    ///
+    /// # Errors
+    /// [`CastError`] for an object whose size is no size, or more than 2^27 objects.
+    pub fn new(objects: impl IntoIterator<Item = Object>) -> Result<Self, CastError> {
+        let mut caster = Self {
+            objects: objects.into_iter().collect(),
+            endless: Vec::new(),
+            finite: Vec::new(),
+            tree: Bvh::over(&[]).0,
+            middle_m: DVec3::ZERO,
+            level: Level::new(),
+        };
+        if caster.objects.len() > MOST_ITEMS {
+            return Err(CastError::TooMany(caster.objects.len()));
+        }
+        caster.arrange()?;
+        Ok(caster)
+    }
+
+    /// The objects.
+    #[must_use]
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// Moves an object and sorts the scene anew; trees within meshes stay as they are.
+    ///
+    /// # Errors
+    /// [`CastError::NoObject`] if there is none of this number.
+    pub fn place(&mut self, object: usize, placement: Placement) -> Result<(), CastError> {
+        let objects = self.objects.len();
+        let Some(moved) = self.objects.get_mut(object) else {
+            return Err(CastError::NoObject {
+                objects,
+                got: object,
+            });
+        };
+        moved.placement = placement;
+        self.arrange()
+    }
+
+    /// Sorts objects into endless ones and the tree.
+    fn arrange(&mut self) -> Result<(), CastError> {
+        self.endless.clear();
+        let (mut finite, mut boxes) = (Vec::new(), Vec::new());
+        let mut whole = Bounds::EMPTY;
+        for ((number, object), id) in self.objects.iter().enumerate().zip(0_u32..) {
+            match object.bounds() {
+                Ok(None) => self.endless.push(id),
+                Ok(Some(bounds)) => {
+                    whole.join(&bounds);
+                    finite.push(id);
+                    boxes.push(bounds);
+                }
+                Err(Bounds { low, high }) => {
+                    return Err(CastError::Size {
+                        object: number,
+                        low,
+                        high,
+                    });
+                }
+            }
+        }
+        self.middle_m = short_middle(&whole);
+        let middle = self.middle_m.to_array();
+        for bounds in &mut boxes {
+            for axis in 0..3 {
+                bounds.low[axis] -= middle[axis];
+                bounds.high[axis] -= middle[axis];
+            }
+        }
+        let (tree, order) = Bvh::over(&boxes);
+        self.tree = tree;
+        self.finite = order
+            .iter()
+            .filter_map(|&at| finite.get(at as usize).copied())
+            .collect();
+        Ok(())
+    }
+
+    /// What a ray hits first within its reach; [`Hit`] says which of equals. `N` is `()` or, for normals, [`DVec3`].
+    #[must_use]
+    pub fn nearest<N: Normal>(&self, ray: &Ray, reach: Reach) -> Option<Hit<N>> {
+        let (own, reach) = (arrays(ray), reach.clean());
+        let best = dispatch!(self.level, simd => self.one::<_, false>(simd, &mut Stacks::new(), own, reach));
+        self.finish(ray, best.hit())
+    }
+
+    /// Whether a ray hits anything within its reach.
+    #[must_use]
+    pub fn any(&self, ray: &Ray, reach: Reach) -> bool {
+        let (own, reach) = (arrays(ray), reach.clean());
+        let best = dispatch!(self.level, simd => self.one::<_, true>(simd, &mut Stacks::new(), own, reach));
+        best.hit().is_some()
+    }
+
+    /// As [`Caster::nearest`] for every ray, in their order: the first of `hits` for the first ray, up to the shorter of both.
+    pub fn nearest_of<N: Normal>(
+        &self,
+        rays: &Rays<'_>,
+        reach: Reach,
+        threads: &Threads,
+        hits: &mut [Option<Hit<N>>],
+    ) {
+        let (beams, reach) = (rays.beams, reach.clean());
+        let piece = beams.saturating_mul(LANES * PACKETS_AT_A_TIME);
+        let work = |(rays, hits): (&[Ray], &mut [Option<Hit<N>>])| {
+            dispatch!(self.level, simd => self.piece(simd, rays, beams, reach, hits));
+        };
+        match threads.pool() {
+            None => rays
+                .rays
+                .chunks(piece)
+                .zip(hits.chunks_mut(piece))
+                .for_each(work),
+            Some(pool) => pool.install(|| {
+                let pieces = rays.rays.par_chunks(piece);
+                pieces.zip(hits.par_chunks_mut(piece)).for_each(work);
+            }),
+        }
+    }
+
+    /// The piece of a batch that one thread does at a time.
+    #[inline(always)]
+    fn piece<S: Simd, N: Normal>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        beams: usize,
+        reach: Reach,
+        hits: &mut [Option<Hit<N>>],
+    ) {
+        let mut stacks = Stacks::new();
+        let mut lanes = Lanes::ZERO;
+        for beam in 0..beams {
+            let mut first = beam;
+            while first < rays.len() {
+                let mut wanted = 0;
+                for lane in 0..LANES {
+                    if let Some(ray) = rays.get(first + lane * beams) {
+                        lanes.set(lane, ray.origin_m(), ray.direction());
+                        wanted |= 1 << lane;
+                    }
+                }
+                let nearest = self.eight(simd, &mut stacks, &mut lanes, wanted, reach);
+                for lane in 0..LANES {
+                    let at = first + lane * beams;
+                    if let Some((ray, hit)) = rays.get(at).zip(hits.get_mut(at)) {
+                        *hit = self.finish(ray, nearest.best(lane).hit());
+                    }
+                }
+                first += LANES * beams;
+            }
+        }
+    }
+
+    /// Adds what is asked beyond range, object and primitive.
+    #[inline(always)]
+    fn finish<N: Normal>(&self, ray: &Ray, hit: Option<Hit>) -> Option<Hit<N>> {
+        hit.map(|hit| Hit {
+            range_m: hit.range_m,
+            object: hit.object,
+            primitive: hit.primitive,
+            normal: N::wanted(|| self.normal(ray, &hit)),
+        })
+    }
+
+    fn normal(&self, ray: &Ray, hit: &Hit) -> DVec3 {
+        let object = self.objects.get(hit.object.index());
+        object.map_or(DVec3::ZERO, |object| {
+            object.normal(hit.primitive, ray.at(hit.range_m))
+        })
+    }
+
+    /// What one ray hits; if `ANY`, whatever is found first.
+    #[inline(always)]
+    fn one<S: Simd, const ANY: bool>(
+        &self,
+        simd: S,
+        stacks: &mut Stacks,
+        ray: ([f64; 3], [f64; 3]),
+        reach: Reach,
+    ) -> Best {
+        let mut best = Best::within(reach.up_to_m);
+        let inner = &mut stacks.inner;
+        let mut ask = |id: u32, best: &mut Best| {
+            if let Some(object) = self.objects.get(id as usize) {
+                let ask = Ask {
+                    above_m: reach.above_m,
+                    object: id,
+                };
+                object.one::<S, ANY>(simd, inner, ray, ask, best);
+            }
+            ANY && best.hit().is_some()
+        };
+        for &id in &self.endless {
+            if ask(id, &mut best) {
+                return best;
+            }
+        }
+        if self.finite.len() <= FEW {
+            for &id in &self.finite {
+                if ask(id, &mut best) {
+                    return best;
+                }
+            }
+            return best;
+        }
+        let (origin, direction) = ray;
+        let origin = (DVec3::from_array(origin) - self.middle_m).to_array();
+        let beam = Beam::thin(origin, direction, self.tree.reach_m);
+        let far = up_to(best.range_m);
+        self.tree
+            .walk(simd, &mut stacks.objects, &beam, far, |leaf| {
+                let id = self.finite.get(leaf as usize);
+                if id.is_some_and(|&id| ask(id, &mut best)) {
+                    return -1.0;
+                }
+                up_to(best.range_m)
+            });
+        best
+    }
+
+    /// What eight rays hit, or those of them that are wanted.
+    #[inline(always)]
+    fn eight<S: Simd>(
+        &self,
+        simd: S,
+        stacks: &mut Stacks,
+        lanes: &mut Lanes,
+        mut wanted: u64,
+        reach: Reach,
+    ) -> Nearest {
+        lanes.fill(wanted);
+        let mut nearest = Nearest::within(reach.up_to_m);
+        if !self.go_together(simd, lanes) {
+            while wanted != 0 {
+                let lane = wanted.trailing_zeros() as usize;
+                wanted &= wanted - 1;
+                let best = self.one::<S, false>(simd, stacks, lanes.ray(lane), reach);
+                nearest.put(lane, best);
+            }
+            return nearest;
+        }
+        let inner = &mut stacks.inner;
+        let mut ask = |id: u32, wanted: u64, nearest: &mut Nearest| {
+            if let Some(object) = self.objects.get(id as usize) {
+                let ask = Ask {
+                    above_m: reach.above_m,
+                    object: id,
+                };
+                object.eight(simd, inner, lanes, wanted, ask, nearest);
+            }
+        };
+        for &id in &self.endless {
+            ask(id, wanted, &mut nearest);
+        }
+        if self.finite.len() <= FEW {
+            for &id in &self.finite {
+                ask(id, wanted, &mut nearest);
+            }
+            return nearest;
+        }
+        while wanted != 0 {
+            let (alike, _) = lanes.alike(simd, wanted);
+            wanted &= !alike;
+            let beam = self.beam(simd, *lanes, alike);
+            let far = up_to(nearest.farthest(simd, alike));
+            self.tree
+                .walk(simd, &mut stacks.objects, &beam, far, |leaf| {
+                    if let Some(&id) = self.finite.get(leaf as usize) {
+                        ask(id, alike, &mut nearest);
+                    }
+                    up_to(nearest.farthest(simd, alike))
+                });
+        }
+        nearest
+    }
+
+    /// Some of the lanes in the tree of objects.
+    #[inline(always)]
+    fn beam<S: Simd>(&self, simd: S, mut lanes: Lanes, alike: u64) -> Beam<true> {
+        lanes.fill(alike);
+        let [x, y, z] = lanes.origin;
+        let middle = self.middle_m;
+        let origin = [(x, middle.x), (y, middle.y), (z, middle.z)]
+            .map(|(of, middle)| f64x8::simd_from(simd, of) - middle);
+        let direction = lanes.direction.map(|of| f64x8::simd_from(simd, of));
+        Beam::about(&spread(origin), &spread(direction), self.tree.reach_m)
+    }
+
+    /// Whether all lanes go so nearly the same way that walking together is faster.
+    #[inline(always)]
+    fn go_together<S: Simd>(&self, simd: S, lanes: &Lanes) -> bool {
+        let width = |of: [[f64; LANES]; 3]| {
+            let [x, y, z] = of.map(|of| {
+                let of = f64x8::simd_from(simd, of);
+                of.reduce_max() - of.reduce_min()
+            });
+            x.max(y).max(z)
+        };
+        width(lanes.direction) <= WIDE && width(lanes.origin) <= FAR_APART * self.tree.reach_m
+    }
+}
+
+/// Origin and direction.
+#[inline(always)]
+fn arrays(ray: &Ray) -> ([f64; 3], [f64; 3]) {
+    (ray.origin_m().to_array(), ray.direction().to_array())
+}

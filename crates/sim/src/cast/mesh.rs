@@ -1,0 +1,267 @@
+//! Triangle meshes.
+//!
+//! Vertices are kept from an origin of the mesh's own, whose coordinates are short, so that taking it away is exact and map
+//! coordinates cost no precision. Left out: files, materials, normals of vertices.
+
+use fearless_simd::{Simd, f64x8, prelude::*};
+use glam::DVec3;
+use thiserror::Error;
+
+use super::beam::{Beam, up_to};
+use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
+use super::packet::{Ask, Best, Lanes, Nearest, spread};
+use super::ray::FARTHEST_M;
+use super::triangle::{Corners, Sheared, Sheared8};
+
+/// With fewer rays than this that go the same way, one by one is faster.
+const LEAST_TOGETHER: u32 = 3;
+
+/// Triangles with shared vertices, and the tree over them.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    origin_m: DVec3,
+    vertices: Vec<[f64; 3]>,
+    /// In the order of the tree's leaves.
+    faces: Vec<Face>,
+    /// Where each triangle of the list is among the faces.
+    places: Vec<u32>,
+    bvh: Bvh,
+    bounds: Bounds,
+}
+
+/// A triangle: its vertices and its number in the list.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    corners: [u32; 3],
+    id: u32,
+}
+
+/// What is no mesh.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum MeshError {
+    /// More triangles than a tree holds.
+    #[error("sim: mesh: expected at most 2^27 triangles, got {0}")]
+    TooMany(usize),
+    /// A vertex that is not finite, or too far away.
+    #[error("sim: vertex {vertex} of a mesh: expected coordinates within 1e15 m, got {got}")]
+    Vertex {
+        /// Its number, from 0.
+        vertex: usize,
+        /// Its coordinates, metres.
+        got: DVec3,
+    },
+    /// A triangle names a vertex that is not there.
+    #[error("sim: triangle {triangle} of a mesh: expected vertices below {vertices}, got {got}")]
+    Index {
+        /// Its number, from 0.
+        triangle: usize,
+        /// How many vertices there are.
+        vertices: usize,
+        /// The vertex it names.
+        got: u32,
+    },
+}
+
+impl Mesh {
+    /// The mesh of these triangles, each three numbers of vertices (metres), counterclockwise as seen from outside. Triangles without an area
+    /// are kept, so that numbers stay, and are never hit.
+    ///
+    /// # Errors
+    /// [`MeshError`] for a vertex that is not finite, a number that has no vertex, or more than 2^27 triangles.
+    pub fn new(vertices_m: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        if triangles.len() > MOST_ITEMS {
+            return Err(MeshError::TooMany(triangles.len()));
+        }
+        for (vertex, &got) in vertices_m.iter().enumerate() {
+            if got.is_nan() || got.abs().max_element() > FARTHEST_M {
+                return Err(MeshError::Vertex { vertex, got });
+            }
+        }
+        let whole = Bounds::of(vertices_m.iter().map(DVec3::to_array));
+        let origin_m = short_middle(&whole);
+        let vertices: Vec<[f64; 3]> = vertices_m
+            .iter()
+            .map(|vertex| (vertex - origin_m).to_array())
+            .collect();
+        let mut boxes = Vec::with_capacity(triangles.len());
+        for (triangle, corners) in triangles.iter().enumerate() {
+            let mut bounds = Bounds::EMPTY;
+            for &got in corners {
+                let Some(&vertex) = vertices.get(got as usize) else {
+                    return Err(MeshError::Index {
+                        triangle,
+                        vertices: vertices.len(),
+                        got,
+                    });
+                };
+                bounds.join(&Bounds::of([vertex]));
+            }
+            boxes.push(bounds);
+        }
+        let (bvh, order) = Bvh::over(&boxes);
+        let mut places = vec![0; triangles.len()];
+        let mut faces = Vec::with_capacity(triangles.len());
+        for id in order {
+            let Some((&corners, place)) = triangles
+                .get(id as usize)
+                .zip(places.get_mut(id as usize))
+            else {
+                continue;
+            };
+            *place = faces.len() as u32;
+            faces.push(Face { corners, id });
+        }
+        let mut bounds = Bounds::EMPTY;
+        for of in &boxes {
+            bounds.join(of);
+        }
+        Ok(Self {
+            origin_m,
+            vertices,
+            faces,
+            places,
+            bvh,
+            bounds,
+        })
+    }
+
+    /// How many triangles there are.
+    #[must_use]
+    pub fn triangles(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Where the mesh's own coordinates begin, metres.
+    #[inline(always)]
+    pub(super) fn origin_m(&self) -> DVec3 {
+        self.origin_m
+    }
+
+    /// From [`Mesh::origin_m`].
+    pub(super) fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// The normal of a triangle; zero for one without an area.
+    pub(super) fn normal(&self, primitive: u32) -> DVec3 {
+        let face = self
+            .places
+            .get(primitive as usize)
+            .and_then(|&place| self.face(place));
+        let Some((_, corners)) = face else {
+            return DVec3::ZERO;
+        };
+        let [a, b, c] = corners.map(DVec3::from_array);
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    #[inline(always)]
+    fn face(&self, leaf: u32) -> Option<(u32, Corners)> {
+        let face = self.faces.get(leaf as usize)?;
+        let [a, b, c] = face.corners;
+        Some((
+            face.id,
+            [
+                *self.vertices.get(a as usize)?,
+                *self.vertices.get(b as usize)?,
+                *self.vertices.get(c as usize)?,
+            ],
+        ))
+    }
+
+    /// Offers what one ray hits; stops at the first hit if `ANY`.
+    #[inline(always)]
+    pub(super) fn one<S: Simd, const ANY: bool>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        (origin, direction): ([f64; 3], [f64; 3]),
+        ask: Ask,
+        best: &mut Best,
+    ) {
+        let ray = Sheared::new(origin, direction);
+        let beam = Beam::thin(origin, direction, self.bvh.reach_m);
+        let far = up_to(best.range_m);
+        self.bvh.walk(simd, stack, &beam, far, |leaf| {
+            if let Some((id, corners)) = self.face(leaf) {
+                let range_m = ray.meet(&corners);
+                if range_m > ask.above_m && best.offer(range_m, ask.object, id) && ANY {
+                    return -1.0;
+                }
+            }
+            up_to(best.range_m)
+        });
+    }
+
+    /// Offers what these lanes hit.
+    #[inline(always)]
+    pub(super) fn eight<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        lanes: &Lanes,
+        mut wanted: u64,
+        ask: Ask,
+        nearest: &mut Nearest,
+    ) {
+        while wanted != 0 {
+            let (alike, axis) = lanes.alike(simd, wanted);
+            wanted &= !alike;
+            if alike.count_ones() >= LEAST_TOGETHER {
+                self.together(simd, stack, lanes, (alike, axis), ask, nearest);
+                continue;
+            }
+            let mut alone = alike;
+            while alone != 0 {
+                let lane = alone.trailing_zeros() as usize;
+                alone &= alone - 1;
+                let mut best = nearest.best(lane);
+                self.one::<S, false>(simd, stack, lanes.ray(lane), ask, &mut best);
+                nearest.put(lane, best);
+            }
+        }
+    }
+
+    /// Lanes that go the same way.
+    #[inline(always)]
+    fn together<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        lanes: &Lanes,
+        (alike, axis): (u64, usize),
+        ask: Ask,
+        nearest: &mut Nearest,
+    ) {
+        let mut lanes = *lanes;
+        if alike != ALL {
+            lanes.fill(alike);
+        }
+        let origin = lanes.origin.map(|of| f64x8::simd_from(simd, of));
+        let direction = lanes.direction.map(|of| f64x8::simd_from(simd, of));
+        let rays = Sheared8::new(simd, axis, origin, direction);
+        let beam = Beam::<true>::about(&spread(origin), &spread(direction), self.bvh.reach_m);
+        let mut far = up_to(nearest.farthest(simd, alike));
+        self.bvh.walk(simd, stack, &beam, far, |leaf| {
+            if let Some((id, corners)) = self.face(leaf)
+                && let Some(met) = rays.meet(&corners)
+                && nearest.offer8(simd, alike, met, ask, id)
+            {
+                far = up_to(nearest.farthest(simd, alike));
+            }
+            far
+        });
+    }
+}
+
+/// Every lane of a packet.
+const ALL: u64 = 0xff;
+
+/// The middle of a box in coordinates of 24 bits; zero for an empty one.
+pub(super) fn short_middle(bounds: &Bounds) -> DVec3 {
+    if bounds.low[0] > bounds.high[0] {
+        return DVec3::ZERO;
+    }
+    let middle = |axis| f64::from((0.5 * bounds.middle2(axis)) as f32);
+    DVec3::new(middle(0), middle(1), middle(2))
+}

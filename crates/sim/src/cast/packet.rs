@@ -1,0 +1,218 @@
+//! Eight rays side by side, and the nearest that each has hit.
+//!
+//! Rays of a lidar that follow one another go nearly the same way: they walk a tree together. Where they do not, or a scene turns
+//! them apart, they walk it one by one; a result is the same either way, bit for bit. Left out: what they hit.
+
+use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
+
+use glam::DVec3;
+
+use super::beam::Spread;
+use super::ray::{Hit, ObjectId};
+
+/// Rays of a packet.
+pub(super) const LANES: usize = 8;
+
+/// Origins and directions by coordinate, in some frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lanes {
+    pub origin: [[f64; LANES]; 3],
+    pub direction: [[f64; LANES]; 3],
+}
+
+impl Lanes {
+    pub(super) const ZERO: Self = Self {
+        origin: [[0.0; LANES]; 3],
+        direction: [[0.0; LANES]; 3],
+    };
+
+    /// One of the rays: origin and direction.
+    #[inline(always)]
+    pub(super) fn ray(&self, lane: usize) -> ([f64; 3], [f64; 3]) {
+        (
+            self.origin.map(|of| of[lane % LANES]),
+            self.direction.map(|of| of[lane % LANES]),
+        )
+    }
+
+    /// Sets one of the rays.
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, origin: DVec3, direction: DVec3) {
+        for (of, value) in self.origin.iter_mut().zip(origin.to_array()) {
+            of[lane % LANES] = value;
+        }
+        for (of, value) in self.direction.iter_mut().zip(direction.to_array()) {
+            of[lane % LANES] = value;
+        }
+    }
+
+    /// Puts the first of these lanes in place of all others, so that those widen no beam.
+    #[inline(always)]
+    pub(super) fn fill(&mut self, lanes: u64) {
+        let first = lanes.trailing_zeros() as usize % LANES;
+        for of in self.origin.iter_mut().chain(&mut self.direction) {
+            let filler = of[first];
+            for (lane, value) in of.iter_mut().enumerate() {
+                if lanes >> lane & 1 == 0 {
+                    *value = filler;
+                }
+            }
+        }
+    }
+
+    /// Those of the lanes that go the way of the first of them: farthest along the same axis, to the same sides; and that axis.
+    #[inline(always)]
+    pub(super) fn alike<S: Simd>(&self, simd: S, lanes: u64) -> (u64, usize) {
+        let [x, y, z] = self.direction.map(|of| f64x8::simd_from(simd, of));
+        let mut alike = lanes;
+        let first = lanes.trailing_zeros();
+        for d in [x, y, z] {
+            let negative = d.simd_lt(0.0).to_bitmask();
+            alike &= if negative >> first & 1 == 1 {
+                negative
+            } else {
+                !negative
+            };
+        }
+        let (x, y, z) = (x.abs(), y.abs(), z.abs());
+        let along_x = (x.simd_ge(y) & x.simd_ge(z)).to_bitmask();
+        let along_y = !along_x & y.simd_ge(z).to_bitmask();
+        let (axis, along) = if along_x >> first & 1 == 1 {
+            (0, along_x)
+        } else if along_y >> first & 1 == 1 {
+            (1, along_y)
+        } else {
+            (2, !(along_x | along_y))
+        };
+        (alike & along, axis)
+    }
+}
+
+/// The least and the greatest of each coordinate.
+#[inline(always)]
+pub(super) fn spread<S: Simd>(of: [f64x8<S>; 3]) -> Spread {
+    Spread {
+        low: of.map(|c| c.reduce_min()),
+        high: of.map(|c| c.reduce_max()),
+    }
+}
+
+/// What an object is told: how far away hits begin, and by which number it goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ask {
+    pub above_m: f64,
+    pub object: u32,
+}
+
+/// Behind every object.
+const NONE: u64 = u64::MAX;
+
+/// The nearest hit of one ray so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Best {
+    pub range_m: f64,
+    /// Object, then primitive, in the order that decides between equal distances; [`NONE`] before any.
+    what: u64,
+}
+
+impl Best {
+    /// Nothing yet; nothing farther than this will count.
+    #[inline(always)]
+    pub(super) const fn within(up_to_m: f64) -> Self {
+        Self {
+            range_m: up_to_m,
+            what: NONE,
+        }
+    }
+
+    /// Takes a hit if it is nearer than what is there; the caller has looked at the lower end.
+    #[inline(always)]
+    pub(super) fn offer(&mut self, range_m: f64, object: u32, primitive: u32) -> bool {
+        let what = u64::from(object) << 32 | u64::from(primitive);
+        let nearer = range_m < self.range_m || range_m == self.range_m && what < self.what;
+        if nearer {
+            *self = Self { range_m, what };
+        }
+        nearer
+    }
+
+    /// What was hit.
+    #[inline(always)]
+    pub(super) fn hit(self) -> Option<Hit> {
+        (self.what != NONE).then(|| Hit {
+            range_m: self.range_m,
+            object: ObjectId::new((self.what >> 32) as u32),
+            primitive: self.what as u32,
+            normal: (),
+        })
+    }
+}
+
+/// The nearest hits of eight rays so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest {
+    range_m: [f64; LANES],
+    what: [u64; LANES],
+}
+
+impl Nearest {
+    /// Nothing yet; nothing farther than this will count.
+    #[inline(always)]
+    pub(super) const fn within(up_to_m: f64) -> Self {
+        Self {
+            range_m: [up_to_m; LANES],
+            what: [NONE; LANES],
+        }
+    }
+
+    /// How far any of the lanes still looks.
+    #[inline(always)]
+    pub(super) fn farthest<S: Simd>(&self, simd: S, lanes: u64) -> f64 {
+        let ranges = f64x8::simd_from(simd, self.range_m);
+        let wanted = mask64x8::from_bitmask(simd, lanes);
+        wanted
+            .select(ranges, f64x8::splat(simd, f64::NEG_INFINITY))
+            .reduce_max()
+    }
+
+    /// One ray's.
+    #[inline(always)]
+    pub(super) fn best(&self, lane: usize) -> Best {
+        Best {
+            range_m: self.range_m[lane % LANES],
+            what: self.what[lane % LANES],
+        }
+    }
+
+    /// One ray's, taken back.
+    #[inline(always)]
+    pub(super) fn put(&mut self, lane: usize, best: Best) {
+        self.range_m[lane % LANES] = best.range_m;
+        self.what[lane % LANES] = best.what;
+    }
+
+    /// As [`Best::offer`] to those of the lanes that met it above the lower end; whether any took it.
+    #[inline(always)]
+    pub(super) fn offer8<S: Simd>(
+        &mut self,
+        simd: S,
+        lanes: u64,
+        met: f64x8<S>,
+        ask: Ask,
+        primitive: u32,
+    ) -> bool {
+        let had = f64x8::simd_from(simd, self.range_m);
+        // Of a NaN neither is true.
+        let mut taken = (met.simd_gt(ask.above_m) & met.simd_le(had)).to_bitmask() & lanes;
+        let any = taken != 0;
+        let met: [f64; LANES] = met.into();
+        while taken != 0 {
+            let lane = taken.trailing_zeros() as usize;
+            taken &= taken - 1;
+            let mut best = self.best(lane);
+            best.offer(met[lane % LANES], ask.object, primitive);
+            self.put(lane, best);
+        }
+        any
+    }
+}

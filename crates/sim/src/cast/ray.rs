@@ -1,0 +1,175 @@
+//! What a caster is asked and what it answers.
+//!
+//! Left out: what a surface is made of; object and primitive say where to look that up.
+
+use std::fmt::Debug;
+use std::num::NonZeroU32;
+
+use glam::DVec3;
+use thiserror::Error;
+
+/// How far from 1 the length of a direction may be.
+const LENGTH_TOLERANCE: f64 = 1e-6;
+/// The greatest coordinate of anything, metres: within it no f32 of a tree overflows.
+pub(super) const FARTHEST_M: f64 = 1e15;
+
+/// A half-line whose origin is finite and whose direction has length 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    origin_m: DVec3,
+    direction: DVec3,
+}
+
+/// What is no ray.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum RayError {
+    /// The origin is not finite, or so far away that nothing is known there.
+    #[error("sim: origin of a ray: expected coordinates within 1e15 m, got {0}")]
+    Origin(DVec3),
+    /// The direction is not finite or not of length 1.
+    #[error("sim: direction of a ray: expected length 1 within 1e-6, got {0}")]
+    Direction(DVec3),
+}
+
+impl Ray {
+    /// The ray from `origin_m` (metres) along `direction` (length 1 within 1e-6).
+    ///
+    /// # Errors
+    /// [`RayError`] for an origin or direction with NaN or an infinity, or a direction of another length.
+    #[inline]
+    pub fn new(origin_m: DVec3, direction: DVec3) -> Result<Self, RayError> {
+        // A NaN fails either comparison.
+        let known = origin_m.abs().max_element() <= FARTHEST_M && !origin_m.is_nan();
+        if !known {
+            return Err(RayError::Origin(origin_m));
+        }
+        let sound = (direction.length_squared() - 1.0).abs() <= 2.0 * LENGTH_TOLERANCE;
+        if !sound {
+            return Err(RayError::Direction(direction));
+        }
+        Ok(Self {
+            origin_m,
+            direction,
+        })
+    }
+
+    /// Where it starts, metres.
+    #[inline]
+    #[must_use]
+    pub const fn origin_m(&self) -> DVec3 {
+        self.origin_m
+    }
+
+    /// Where it goes, length 1.
+    #[inline]
+    #[must_use]
+    pub const fn direction(&self) -> DVec3 {
+        self.direction
+    }
+
+    /// The point at a distance from the origin, metres.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, range_m: f64) -> DVec3 {
+        self.origin_m + range_m * self.direction
+    }
+}
+
+/// Which hits count: those farther than `above_m` and no farther than `up_to_m` from the ray's origin, metres. Others are not there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Exclusive. What is below zero counts as zero: a surface on which a ray starts is not hit.
+    pub above_m: f64,
+    /// Inclusive.
+    pub up_to_m: f64,
+}
+
+impl Default for Reach {
+    fn default() -> Self {
+        Self {
+            above_m: 0.0,
+            up_to_m: f64::INFINITY,
+        }
+    }
+}
+
+impl Reach {
+    /// From the origin to a distance in metres.
+    #[must_use]
+    pub const fn up_to(up_to_m: f64) -> Self {
+        Self {
+            above_m: 0.0,
+            up_to_m,
+        }
+    }
+
+    /// With a lower end of zero at least; a NaN at either end makes it empty.
+    #[inline]
+    pub(super) fn clean(self) -> Self {
+        let empty = self.above_m.is_nan() || self.up_to_m.is_nan();
+        Self {
+            above_m: self.above_m.max(0.0),
+            up_to_m: if empty { -1.0 } else { self.up_to_m },
+        }
+    }
+}
+
+/// The number of an object in its caster, from 0 in the order in which they were given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ObjectId(NonZeroU32);
+
+impl ObjectId {
+    #[inline]
+    pub(super) const fn new(index: u32) -> Self {
+        // Casters hold fewer than 2^27 objects.
+        Self(NonZeroU32::MIN.saturating_add(index))
+    }
+
+    /// The number.
+    #[inline]
+    #[must_use]
+    pub const fn index(self) -> usize {
+        (self.0.get() - 1) as usize
+    }
+}
+
+/// What a ray hit first. Of several things at exactly one distance it is the one with the least object, then primitive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit<N = ()> {
+    /// Distance along the ray, metres.
+    pub range_m: f64,
+    /// Which object.
+    pub object: ObjectId,
+    /// Which part of it: the triangle of a mesh by its place in the list, the face of a box (-x, +x, -y, +y, -z, +z), of a
+    /// cylinder 0 for the mantle, 1 for the bottom, 2 for the top; else 0.
+    pub primitive: u32,
+    /// The surface's normal there, if it was asked for.
+    pub normal: N,
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for () {}
+    impl Sealed for glam::DVec3 {}
+}
+
+/// Whether hits come with normals: `()` is no, and costs nothing; [`DVec3`] is yes.
+pub trait Normal: sealed::Sealed + Copy + Debug + Send + Sync {
+    /// The normal, if it is wanted.
+    #[doc(hidden)]
+    fn wanted(normal: impl FnOnce() -> DVec3) -> Self;
+}
+
+impl Normal for () {
+    #[inline(always)]
+    fn wanted(_: impl FnOnce() -> DVec3) -> Self {}
+}
+
+/// Length 1, in the frame of the rays. It points out of solids, up from planes and height fields, and from the side where a triangle's
+/// vertices go round counterclockwise; a triangle without an area has none (zero).
+impl Normal for DVec3 {
+    #[inline(always)]
+    fn wanted(normal: impl FnOnce() -> DVec3) -> Self {
+        normal()
+    }
+}

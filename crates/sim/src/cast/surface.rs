@@ -1,0 +1,238 @@
+//! An object: one of the surfaces, and where it stands.
+//!
+//! Left out: what a surface is made of.
+
+use std::sync::Arc;
+
+use fearless_simd::Simd;
+use glam::DVec3;
+
+use super::bvh::{Bounds, Stack};
+use super::mesh::Mesh;
+use super::packet::{Ask, Best, LANES, Lanes, Nearest};
+use super::placement::Placement;
+use super::solids::{Crossings, Cuboid, Cylinder, Plane, Sphere, first_above};
+
+/// Anything that a ray can meet, in its own frame.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Surface {
+    /// The endless plane z = 0.
+    Plane,
+    /// A sphere about the origin.
+    Sphere(Sphere),
+    /// A box along the axes.
+    Cuboid(Cuboid),
+    /// A cylinder about the z axis.
+    Cylinder(Cylinder),
+    /// Triangles; a height field becomes such ([`super::HeightField::mesh`]). Several objects can share one mesh.
+    Mesh(Arc<Mesh>),
+}
+
+macro_rules! surfaces {
+    ($($name:ident),*) => {$(
+        impl From<$name> for Surface {
+            fn from(surface: $name) -> Self {
+                Self::$name(surface)
+            }
+        }
+    )*};
+}
+surfaces!(Sphere, Cuboid, Cylinder);
+
+impl From<Plane> for Surface {
+    fn from(_: Plane) -> Self {
+        Self::Plane
+    }
+}
+
+impl From<Mesh> for Surface {
+    fn from(mesh: Mesh) -> Self {
+        Self::Mesh(Arc::new(mesh))
+    }
+}
+
+impl From<Arc<Mesh>> for Surface {
+    fn from(mesh: Arc<Mesh>) -> Self {
+        Self::Mesh(mesh)
+    }
+}
+
+/// A surface at a place.
+#[derive(Clone, Debug)]
+pub struct Object {
+    surface: Surface,
+    pub(super) placement: Placement,
+}
+
+impl Object {
+    /// The surface where its own frame is the world's.
+    #[must_use]
+    pub fn new(surface: impl Into<Surface>) -> Self {
+        Self {
+            surface: surface.into(),
+            placement: Placement::default(),
+        }
+    }
+
+    /// The same elsewhere.
+    #[must_use]
+    pub fn placed(mut self, placement: Placement) -> Self {
+        self.placement = placement;
+        self
+    }
+
+    /// What it is.
+    #[must_use]
+    pub const fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// Where it stands.
+    #[must_use]
+    pub const fn placement(&self) -> &Placement {
+        &self.placement
+    }
+
+    /// Box in the object's frame, or rather from [`Object::origin_m`]; `None` of what is endless.
+    fn own_bounds(&self) -> Option<Bounds> {
+        match &self.surface {
+            Surface::Plane => None,
+            Surface::Sphere(sphere) => Some(sphere.bounds()),
+            Surface::Cuboid(cuboid) => Some(cuboid.bounds()),
+            Surface::Cylinder(cylinder) => Some(cylinder.bounds()),
+            Surface::Mesh(mesh) => Some(mesh.bounds()),
+        }
+    }
+
+    /// Box in the world, with room for what the motion rounds off; `None` of what is endless. An object without extent in its own frame
+    /// (NaN, ends the wrong way round) gives `Err`.
+    pub(super) fn bounds(&self) -> Result<Option<Bounds>, Bounds> {
+        let Some(own) = self.own_bounds() else {
+            return Ok(None);
+        };
+        if matches!(&self.surface, Surface::Mesh(mesh) if mesh.triangles() == 0) {
+            return Ok(Some(Bounds::EMPTY));
+        }
+        let sound = (0..3).all(|axis| own.low[axis] <= own.high[axis]);
+        if !sound || own.reach() > super::ray::FARTHEST_M {
+            return Err(own);
+        }
+        let origin_m = self.origin_m();
+        let corners = (0..8).map(|corner: u32| {
+            let [x, y, z] = [0, 1, 2].map(|axis| {
+                if corner >> axis & 1 == 0 {
+                    own.low[axis]
+                } else {
+                    own.high[axis]
+                }
+            });
+            let corner = DVec3::new(x, y, z) + origin_m;
+            self.placement.world_point(corner).to_array()
+        });
+        let mut bounds = Bounds::of(corners);
+        // 2^-40 of the coordinates that went in: thousands of roundings.
+        let room = (bounds.reach() + own.reach() + origin_m.abs().max_element()) * 1e-12;
+        for axis in 0..3 {
+            bounds.low[axis] -= room;
+            bounds.high[axis] += room;
+        }
+        Ok(Some(bounds))
+    }
+
+    /// Where coordinates of the surface begin in its frame: meshes have an origin of their own.
+    #[inline(always)]
+    fn origin_m(&self) -> DVec3 {
+        match &self.surface {
+            Surface::Mesh(mesh) => mesh.origin_m(),
+            _ => DVec3::ZERO,
+        }
+    }
+
+    /// A ray in the object's frame.
+    #[inline(always)]
+    fn own_ray(&self, (origin, direction): ([f64; 3], [f64; 3])) -> (DVec3, DVec3) {
+        let origin = self.placement.own_point(DVec3::from_array(origin)) - self.origin_m();
+        let direction = self.placement.own_direction(DVec3::from_array(direction));
+        (origin, direction)
+    }
+
+    /// Where a line crosses a surface that is not a mesh.
+    #[inline(always)]
+    fn crossings(&self, origin: DVec3, direction: DVec3) -> Crossings {
+        match &self.surface {
+            Surface::Plane | Surface::Mesh(_) => Plane::crossings(origin, direction),
+            Surface::Sphere(sphere) => sphere.crossings(origin, direction),
+            Surface::Cuboid(cuboid) => cuboid.crossings(origin, direction),
+            Surface::Cylinder(cylinder) => cylinder.crossings(origin, direction),
+        }
+    }
+
+    /// Offers what one ray hits; if `ANY`, the first hit found will do.
+    #[inline(always)]
+    pub(super) fn one<S: Simd, const ANY: bool>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        ray: ([f64; 3], [f64; 3]),
+        ask: Ask,
+        best: &mut Best,
+    ) {
+        let (origin, direction) = self.own_ray(ray);
+        if let Surface::Mesh(mesh) = &self.surface {
+            let own = (origin.to_array(), direction.to_array());
+            mesh.one::<S, ANY>(simd, stack, own, ask, best);
+        } else if let Some((range_m, primitive)) =
+            first_above(self.crossings(origin, direction), ask.above_m)
+        {
+            best.offer(range_m, ask.object, primitive);
+        }
+    }
+
+    /// Offers what these lanes hit.
+    #[inline(always)]
+    pub(super) fn eight<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        lanes: &Lanes,
+        wanted: u64,
+        ask: Ask,
+        nearest: &mut Nearest,
+    ) {
+        if let Surface::Mesh(mesh) = &self.surface {
+            let mut own = Lanes::ZERO;
+            for lane in 0..LANES {
+                let (origin, direction) = self.own_ray(lanes.ray(lane));
+                own.set(lane, origin, direction);
+            }
+            mesh.eight(simd, stack, &own, wanted, ask, nearest);
+            return;
+        }
+        let mut left = wanted;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let mut best = nearest.best(lane);
+            let (origin, direction) = self.own_ray(lanes.ray(lane));
+            let crossings = self.crossings(origin, direction);
+            if let Some((range_m, primitive)) = first_above(crossings, ask.above_m)
+                && best.offer(range_m, ask.object, primitive)
+            {
+                nearest.put(lane, best);
+            }
+        }
+    }
+
+    /// The normal in the world at a point of a primitive.
+    pub(super) fn normal(&self, primitive: u32, point: DVec3) -> DVec3 {
+        let own = self.placement.own_point(point);
+        self.placement.world_direction(match &self.surface {
+            Surface::Plane => DVec3::Z,
+            Surface::Sphere(_) => Sphere::normal(own),
+            Surface::Cuboid(_) => Cuboid::normal(primitive),
+            Surface::Cylinder(_) => Cylinder::normal(primitive, own),
+            Surface::Mesh(mesh) => mesh.normal(primitive),
+        })
+    }
+}
