@@ -20,6 +20,15 @@ pub(super) struct Spread {
     pub high: [f64; 3],
 }
 
+impl Spread {
+    /// The greatest difference along any axis.
+    #[inline(always)]
+    pub(super) fn width(&self) -> f64 {
+        let ([a, b, c], [d, e, f]) = (self.low, self.high);
+        (d - a).max(e - b).max(f - c)
+    }
+}
+
 /// Along one axis, where rays of one sign of direction meet the planes of boxes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Axis {
@@ -30,6 +39,34 @@ struct Axis {
     far_origin: f32,
     /// One over the direction: of the steepest and of the flattest ray.
     inverse: [f32; 2],
+}
+
+impl Axis {
+    #[inline(always)]
+    fn new(axis: usize, origin: &Spread, direction: &Spread, slack: f64) -> Self {
+        let (from, to) = (origin.low[axis], origin.high[axis]);
+        let (least, most) = (direction.low[axis], direction.high[axis]);
+        let (low, high) = (2 * axis, 2 * axis + 1);
+        if most >= 0.0 {
+            let (steep, flat) = (most.max(LEAST_DIRECTION), least.max(LEAST_DIRECTION));
+            Self {
+                near: low,
+                far: high,
+                near_origin: (to + slack) as f32,
+                far_origin: (from - slack) as f32,
+                inverse: [1.0 / steep as f32, 1.0 / flat as f32],
+            }
+        } else {
+            let (steep, flat) = (least.min(-LEAST_DIRECTION), most.min(-LEAST_DIRECTION));
+            Self {
+                near: high,
+                far: low,
+                near_origin: (from - slack) as f32,
+                far_origin: (to + slack) as f32,
+                inverse: [1.0 / steep as f32, 1.0 / flat as f32],
+            }
+        }
+    }
 }
 
 /// Rays whose directions have the same signs: one, or several if `THICK`.
@@ -57,28 +94,11 @@ impl<const THICK: bool> Beam<THICK> {
     #[inline(always)]
     pub(super) fn about(origin: &Spread, direction: &Spread, reach_m: f64) -> Self {
         let slack = Self::slack(origin, reach_m);
-        Self([0, 1, 2].map(|axis| {
-            let (from, to) = (origin.low[axis], origin.high[axis]);
-            let (flat, steep) = (direction.low[axis], direction.high[axis]);
-            let (low, high) = (2 * axis, 2 * axis + 1);
-            if steep >= 0.0 {
-                Axis {
-                    near: low,
-                    far: high,
-                    near_origin: (to + slack) as f32,
-                    far_origin: (from - slack) as f32,
-                    inverse: [steep, flat].map(|d| d.max(LEAST_DIRECTION).recip() as f32),
-                }
-            } else {
-                Axis {
-                    near: high,
-                    far: low,
-                    near_origin: (from - slack) as f32,
-                    far_origin: (to + slack) as f32,
-                    inverse: [flat, steep].map(|d| d.min(-LEAST_DIRECTION).recip() as f32),
-                }
-            }
-        }))
+        Self([
+            Axis::new(0, origin, direction, slack),
+            Axis::new(1, origin, direction, slack),
+            Axis::new(2, origin, direction, slack),
+        ])
     }
 
     /// How far slabs are moved outward, metres: by what f32 makes of the coordinates.
@@ -103,8 +123,8 @@ impl<const THICK: bool> Beam<THICK> {
         let mut leave = f32x8::splat(simd, up_to);
         for axis in &self.0 {
             let [steep, flat] = axis.inverse;
-            let near = f32x8::simd_from(simd, node.slabs[axis.near % 6]) - axis.near_origin;
-            let far = f32x8::simd_from(simd, node.slabs[axis.far % 6]) - axis.far_origin;
+            let near = f32x8::load_array_ref(simd, &node.slabs[axis.near % 6]) - axis.near_origin;
+            let far = f32x8::load_array_ref(simd, &node.slabs[axis.far % 6]) - axis.far_origin;
             let (mut first, mut last) = (near * steep, far * steep);
             if THICK {
                 first = first.min(near * flat);

@@ -3,7 +3,7 @@
 //! Finite objects are in a tree of their own, about the middle of the scene; endless planes are asked one after the other. Left out: how one object
 //! is met.
 
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use fearless_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::beam::{Beam, up_to};
 use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
 use super::mesh::short_middle;
-use super::packet::{Ask, Best, LANES, Lanes, Nearest, spread};
+use super::packet::{Ask, Best, LANES, Lanes, Nearest, loaded, spread};
 use super::placement::Placement;
 use super::ray::{Hit, Normal, Ray, Reach};
 use super::surface::Object;
@@ -289,43 +289,57 @@ impl Caster {
         reach: Reach,
     ) -> Best {
         let mut best = Best::within(reach.up_to_m);
-        let inner = &mut stacks.inner;
-        let mut ask = |id: u32, best: &mut Best| {
-            if let Some(object) = self.objects.get(id as usize) {
-                let ask = Ask {
-                    above_m: reach.above_m,
-                    object: id,
-                };
-                object.one::<S, ANY>(simd, inner, ray, ask, best);
-            }
-            ANY && best.hit().is_some()
-        };
-        for &id in &self.endless {
-            if ask(id, &mut best) {
+        let Stacks { objects, inner } = stacks;
+        let above_m = reach.above_m;
+        let few = self.finite.len() <= FEW;
+        let at_once = if few { self.finite.as_slice() } else { &[] };
+        for &object in self.endless.iter().chain(at_once) {
+            let ask = Ask { above_m, object };
+            self.ask::<S, ANY>(simd, inner, ray, ask, &mut best);
+            if ANY && best.has_hit() {
                 return best;
             }
         }
-        if self.finite.len() <= FEW {
-            for &id in &self.finite {
-                if ask(id, &mut best) {
-                    return best;
-                }
-            }
+        if few {
             return best;
         }
         let (origin, direction) = ray;
         let origin = (DVec3::from_array(origin) - self.middle_m).to_array();
         let beam = Beam::thin(origin, direction, self.tree.reach_m);
         let far = up_to(best.range_m);
-        self.tree
-            .walk(simd, &mut stacks.objects, &beam, far, |leaf| {
-                let id = self.finite.get(leaf as usize);
-                if id.is_some_and(|&id| ask(id, &mut best)) {
-                    return -1.0;
+        self.tree.walk(
+            simd,
+            objects,
+            &beam,
+            far,
+            #[inline(always)]
+            |leaf| {
+                if let Some(&object) = self.finite.get(leaf as usize) {
+                    let ask = Ask { above_m, object };
+                    self.ask::<S, ANY>(simd, inner, ray, ask, &mut best);
+                    if ANY && best.has_hit() {
+                        return -1.0;
+                    }
                 }
                 up_to(best.range_m)
-            });
+            },
+        );
         best
+    }
+
+    /// One ray and one object.
+    #[inline(always)]
+    fn ask<S: Simd, const ANY: bool>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        ray: ([f64; 3], [f64; 3]),
+        ask: Ask,
+        best: &mut Best,
+    ) {
+        if let Some(object) = self.objects.get(ask.object as usize) {
+            object.one::<S, ANY>(simd, stack, ray, ask, best);
+        }
     }
 
     /// What eight rays hit, or those of them that are wanted.
@@ -349,23 +363,15 @@ impl Caster {
             }
             return nearest;
         }
-        let inner = &mut stacks.inner;
-        let mut ask = |id: u32, wanted: u64, nearest: &mut Nearest| {
-            if let Some(object) = self.objects.get(id as usize) {
-                let ask = Ask {
-                    above_m: reach.above_m,
-                    object: id,
-                };
-                object.eight(simd, inner, lanes, wanted, ask, nearest);
-            }
-        };
-        for &id in &self.endless {
-            ask(id, wanted, &mut nearest);
+        let Stacks { objects, inner } = stacks;
+        let above_m = reach.above_m;
+        let few = self.finite.len() <= FEW;
+        let at_once = if few { self.finite.as_slice() } else { &[] };
+        for &object in self.endless.iter().chain(at_once) {
+            let ask = Ask { above_m, object };
+            self.ask_eight(simd, inner, (lanes, wanted), ask, &mut nearest);
         }
-        if self.finite.len() <= FEW {
-            for &id in &self.finite {
-                ask(id, wanted, &mut nearest);
-            }
+        if few {
             return nearest;
         }
         while wanted != 0 {
@@ -373,40 +379,56 @@ impl Caster {
             wanted &= !alike;
             let beam = self.beam(simd, *lanes, alike);
             let far = up_to(nearest.farthest(simd, alike));
-            self.tree
-                .walk(simd, &mut stacks.objects, &beam, far, |leaf| {
-                    if let Some(&id) = self.finite.get(leaf as usize) {
-                        ask(id, alike, &mut nearest);
+            self.tree.walk(
+                simd,
+                objects,
+                &beam,
+                far,
+                #[inline(always)]
+                |leaf| {
+                    if let Some(&object) = self.finite.get(leaf as usize) {
+                        let ask = Ask { above_m, object };
+                        self.ask_eight(simd, inner, (lanes, alike), ask, &mut nearest);
                     }
                     up_to(nearest.farthest(simd, alike))
-                });
+                },
+            );
         }
         nearest
+    }
+
+    /// Some of eight rays and one object.
+    #[inline(always)]
+    fn ask_eight<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        (lanes, wanted): (&Lanes, u64),
+        ask: Ask,
+        nearest: &mut Nearest,
+    ) {
+        if let Some(object) = self.objects.get(ask.object as usize) {
+            object.eight(simd, stack, lanes, wanted, ask, nearest);
+        }
     }
 
     /// Some of the lanes in the tree of objects.
     #[inline(always)]
     fn beam<S: Simd>(&self, simd: S, mut lanes: Lanes, alike: u64) -> Beam<true> {
         lanes.fill(alike);
-        let [x, y, z] = lanes.origin;
+        let [x, y, z] = loaded(simd, &lanes.origin);
         let middle = self.middle_m;
-        let origin = [(x, middle.x), (y, middle.y), (z, middle.z)]
-            .map(|(of, middle)| f64x8::simd_from(simd, of) - middle);
-        let direction = lanes.direction.map(|of| f64x8::simd_from(simd, of));
+        let origin = [x - middle.x, y - middle.y, z - middle.z];
+        let direction = loaded(simd, &lanes.direction);
         Beam::about(&spread(origin), &spread(direction), self.tree.reach_m)
     }
 
     /// Whether all lanes go so nearly the same way that walking together is faster.
     #[inline(always)]
     fn go_together<S: Simd>(&self, simd: S, lanes: &Lanes) -> bool {
-        let width = |of: [[f64; LANES]; 3]| {
-            let [x, y, z] = of.map(|of| {
-                let of = f64x8::simd_from(simd, of);
-                of.reduce_max() - of.reduce_min()
-            });
-            x.max(y).max(z)
-        };
-        width(lanes.direction) <= WIDE && width(lanes.origin) <= FAR_APART * self.tree.reach_m
+        let direction = spread(loaded(simd, &lanes.direction));
+        let origin = spread(loaded(simd, &lanes.origin));
+        direction.width() <= WIDE && origin.width() <= FAR_APART * self.tree.reach_m
     }
 }
 

@@ -3,13 +3,13 @@
 //! Vertices are kept from an origin of the mesh's own, whose coordinates are short, so that taking it away is exact and map
 //! coordinates cost no precision. Left out: files, materials, normals of vertices.
 
-use fearless_simd::{Simd, f64x8, prelude::*};
+use fearless_simd::Simd;
 use glam::DVec3;
 use thiserror::Error;
 
 use super::beam::{Beam, up_to};
 use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
-use super::packet::{Ask, Best, Lanes, Nearest, spread};
+use super::packet::{Ask, Best, Lanes, Nearest, loaded, spread};
 use super::ray::FARTHEST_M;
 use super::triangle::{Corners, Sheared, Sheared8};
 
@@ -182,15 +182,22 @@ impl Mesh {
         let ray = Sheared::new(origin, direction);
         let beam = Beam::thin(origin, direction, self.bvh.reach_m);
         let far = up_to(best.range_m);
-        self.bvh.walk(simd, stack, &beam, far, |leaf| {
-            if let Some((id, corners)) = self.face(leaf) {
-                let range_m = ray.meet(&corners);
-                if range_m > ask.above_m && best.offer(range_m, ask.object, id) && ANY {
-                    return -1.0;
+        self.bvh.walk(
+            simd,
+            stack,
+            &beam,
+            far,
+            #[inline(always)]
+            |leaf| {
+                if let Some((id, corners)) = self.face(leaf) {
+                    let range_m = ray.meet(&corners);
+                    if range_m > ask.above_m && best.offer(range_m, ask.object, id) && ANY {
+                        return -1.0;
+                    }
                 }
-            }
-            up_to(best.range_m)
-        });
+                up_to(best.range_m)
+            },
+        );
     }
 
     /// Offers what these lanes hit.
@@ -237,20 +244,26 @@ impl Mesh {
         if alike != ALL {
             lanes.fill(alike);
         }
-        let origin = lanes.origin.map(|of| f64x8::simd_from(simd, of));
-        let direction = lanes.direction.map(|of| f64x8::simd_from(simd, of));
+        let (origin, direction) = (loaded(simd, &lanes.origin), loaded(simd, &lanes.direction));
         let rays = Sheared8::new(simd, axis, origin, direction);
         let beam = Beam::<true>::about(&spread(origin), &spread(direction), self.bvh.reach_m);
         let mut far = up_to(nearest.farthest(simd, alike));
-        self.bvh.walk(simd, stack, &beam, far, |leaf| {
-            if let Some((id, corners)) = self.face(leaf)
-                && let Some(met) = rays.meet(&corners)
-                && nearest.offer8(simd, alike, met, ask, id)
-            {
-                far = up_to(nearest.farthest(simd, alike));
-            }
-            far
-        });
+        self.bvh.walk(
+            simd,
+            stack,
+            &beam,
+            far,
+            #[inline(always)]
+            |leaf| {
+                if let Some((id, corners)) = self.face(leaf)
+                    && let Some(met) = rays.meet(&corners)
+                    && nearest.offer8(simd, alike, met, ask, id)
+                {
+                    far = up_to(nearest.farthest(simd, alike));
+                }
+                far
+            },
+        );
     }
 }
 

@@ -29,33 +29,28 @@ impl Lanes {
     /// One of the rays: origin and direction.
     #[inline(always)]
     pub(super) fn ray(&self, lane: usize) -> ([f64; 3], [f64; 3]) {
-        (
-            self.origin.map(|of| of[lane % LANES]),
-            self.direction.map(|of| of[lane % LANES]),
-        )
+        let lane = lane % LANES;
+        let ([a, b, c], [d, e, f]) = (&self.origin, &self.direction);
+        ([a[lane], b[lane], c[lane]], [d[lane], e[lane], f[lane]])
     }
 
     /// Sets one of the rays.
     #[inline(always)]
     pub(super) fn set(&mut self, lane: usize, origin: DVec3, direction: DVec3) {
-        for (of, value) in self.origin.iter_mut().zip(origin.to_array()) {
-            of[lane % LANES] = value;
-        }
-        for (of, value) in self.direction.iter_mut().zip(direction.to_array()) {
-            of[lane % LANES] = value;
-        }
+        let lane = lane % LANES;
+        let ([a, b, c], [d, e, f]) = (&mut self.origin, &mut self.direction);
+        (a[lane], b[lane], c[lane]) = (origin.x, origin.y, origin.z);
+        (d[lane], e[lane], f[lane]) = (direction.x, direction.y, direction.z);
     }
 
     /// Puts the first of these lanes in place of all others, so that those widen no beam.
     #[inline(always)]
     pub(super) fn fill(&mut self, lanes: u64) {
         let first = lanes.trailing_zeros() as usize % LANES;
-        for of in self.origin.iter_mut().chain(&mut self.direction) {
-            let filler = of[first];
-            for (lane, value) in of.iter_mut().enumerate() {
-                if lanes >> lane & 1 == 0 {
-                    *value = filler;
-                }
+        let (origin, direction) = self.ray(first);
+        for lane in 0..LANES {
+            if lanes >> lane & 1 == 0 {
+                self.set(lane, origin.into(), direction.into());
             }
         }
     }
@@ -63,7 +58,7 @@ impl Lanes {
     /// Those of the lanes that go the way of the first of them: farthest along the same axis, to the same sides; and that axis.
     #[inline(always)]
     pub(super) fn alike<S: Simd>(&self, simd: S, lanes: u64) -> (u64, usize) {
-        let [x, y, z] = self.direction.map(|of| f64x8::simd_from(simd, of));
+        let [x, y, z] = loaded(simd, &self.direction);
         let mut alike = lanes;
         let first = lanes.trailing_zeros();
         for d in [x, y, z] {
@@ -88,12 +83,23 @@ impl Lanes {
     }
 }
 
+/// Coordinates in registers.
+#[inline(always)]
+pub(super) fn loaded<S: Simd>(simd: S, [x, y, z]: &[[f64; LANES]; 3]) -> [f64x8<S>; 3] {
+    [
+        f64x8::load_array_ref(simd, x),
+        f64x8::load_array_ref(simd, y),
+        f64x8::load_array_ref(simd, z),
+    ]
+}
+
 /// The least and the greatest of each coordinate.
 #[inline(always)]
 pub(super) fn spread<S: Simd>(of: [f64x8<S>; 3]) -> Spread {
+    let [x, y, z] = of;
     Spread {
-        low: of.map(|c| c.reduce_min()),
-        high: of.map(|c| c.reduce_max()),
+        low: [x.reduce_min(), y.reduce_min(), z.reduce_min()],
+        high: [x.reduce_max(), y.reduce_max(), z.reduce_max()],
     }
 }
 
@@ -136,10 +142,18 @@ impl Best {
         nearer
     }
 
+    #[inline(always)]
+    pub(super) const fn has_hit(&self) -> bool {
+        self.what != NONE
+    }
+
     /// What was hit.
     #[inline(always)]
     pub(super) fn hit(self) -> Option<Hit> {
-        (self.what != NONE).then(|| Hit {
+        if !self.has_hit() {
+            return None;
+        }
+        Some(Hit {
             range_m: self.range_m,
             object: ObjectId::new((self.what >> 32) as u32),
             primitive: self.what as u32,

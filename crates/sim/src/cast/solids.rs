@@ -18,7 +18,14 @@ const NOWHERE: Crossings = [(f64::NAN, 0); 2];
 /// The first crossing farther than this.
 #[inline(always)]
 pub(super) fn first_above(crossings: Crossings, above_m: f64) -> Option<(f64, u32)> {
-    crossings.into_iter().find(|(at, _)| *at > above_m)
+    let [first, second] = crossings;
+    if first.0 > above_m {
+        Some(first)
+    } else if second.0 > above_m {
+        Some(second)
+    } else {
+        None
+    }
 }
 
 /// The sphere about the origin.

@@ -58,18 +58,23 @@ impl Sheared {
         }
     }
 
+    /// A vertex where the ray is the z axis; its depth is not stretched yet.
+    #[inline(always)]
+    fn sheared(&self, corner: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = turned(self.axis, corner);
+        let z = z - self.origin[2];
+        [
+            self.shear[0].mul_add(z, x - self.origin[0]),
+            self.shear[1].mul_add(z, y - self.origin[1]),
+            z,
+        ]
+    }
+
     /// Where the ray's line meets the triangle, in lengths of the direction; NaN if it does not.
     #[inline(always)]
     pub(super) fn meet(&self, corners: &Corners) -> f64 {
-        let [a, b, c] = corners.map(|corner| {
-            let [x, y, z] = turned(self.axis, corner);
-            let z = z - self.origin[2];
-            [
-                self.shear[0].mul_add(z, x - self.origin[0]),
-                self.shear[1].mul_add(z, y - self.origin[1]),
-                z,
-            ]
-        });
+        let [a, b, c] = *corners;
+        let (a, b, c) = (self.sheared(a), self.sheared(b), self.sheared(c));
         let weights = [edge(c, b), edge(a, c), edge(b, a)];
         let least = weights[0].min(weights[1]).min(weights[2]);
         let greatest = weights[0].max(weights[1]).max(weights[2]);
@@ -118,18 +123,25 @@ impl<S: Simd> Sheared8<S> {
         }
     }
 
+    /// As [`Sheared::sheared`].
+    #[inline(always)]
+    fn sheared(&self, corner: [f64; 3]) -> [f64x8<S>; 3] {
+        let [x, y, z] = turned(self.axis, corner);
+        let z = f64x8::splat(self.simd, z) - self.origin[2];
+        let x = f64x8::splat(self.simd, x) - self.origin[0];
+        let y = f64x8::splat(self.simd, y) - self.origin[1];
+        [
+            self.shear[0].mul_add_precise(z, x),
+            self.shear[1].mul_add_precise(z, y),
+            z,
+        ]
+    }
+
     /// As [`Sheared::meet`], of those lanes that hit; `None` if no lane does.
     #[inline(always)]
     pub(super) fn meet(&self, corners: &Corners) -> Option<f64x8<S>> {
-        let [a, b, c] = corners.map(|corner| {
-            let [x, y, z] = turned(self.axis, corner).map(|c| f64x8::splat(self.simd, c));
-            let z = z - self.origin[2];
-            [
-                self.shear[0].mul_add_precise(z, x - self.origin[0]),
-                self.shear[1].mul_add_precise(z, y - self.origin[1]),
-                z,
-            ]
-        });
+        let [a, b, c] = *corners;
+        let (a, b, c) = (self.sheared(a), self.sheared(b), self.sheared(c));
         let weights = [edge8(c, b), edge8(a, c), edge8(b, a)];
         let least = weights[0].min(weights[1]).min(weights[2]);
         let greatest = weights[0].max(weights[1]).max(weights[2]);
