@@ -2,12 +2,10 @@
 //!
 //! One input gives one tree, on any machine. Left out: triangles cut in two, several threads.
 
-use super::bvh::{Bounds, Bvh, LEAF, Node};
+use super::bvh::{Bounds, Bvh, LEAF, LEVELS, Node};
 
 /// Places along an axis where a cut is tried.
 const BINS: usize = 16;
-/// Below this level cuts go through the middle, so that no input makes a tree too deep for the stack.
-const DEEPEST_BY_AREA: usize = 24;
 
 /// An item while the tree is built.
 struct Item {
@@ -100,7 +98,9 @@ fn parts(items: &mut [Item], job: &Job) -> Vec<Part> {
             .map(|at| Part::over(items, at, at + 1))
             .collect();
     }
-    let by_area = job.level < DEEPEST_BY_AREA;
+    // Cuts go through the middle where the best ones could make a tree too deep for the stack.
+    let balanced = (end - begin - 1).ilog2() as usize / 3 + 1;
+    let by_area = job.level + balanced < LEVELS;
     let mut parts = vec![Part::over(items, begin, end)];
     while parts.len() < 8 {
         let size = |part: &Part| {
@@ -140,9 +140,7 @@ fn cut(items: &mut [Item], part: &Part, by_area: bool) -> usize {
             high: centre,
         });
     }
-    if by_area
-        && let Some((axis, bin)) = cheapest(slice, &centres)
-    {
+    if by_area && let Some((axis, bin)) = cheapest(slice, &centres) {
         let binning = Binning::new(&centres, axis);
         let mut before = 0;
         for at in 0..slice.len() {

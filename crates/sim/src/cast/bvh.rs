@@ -11,10 +11,12 @@ use super::build;
 
 /// Set in a child that is an item.
 pub(super) const LEAF: u32 = 1 << 31;
-/// The most items: below it a balanced rest of the tree has at most nine levels.
+/// The most items: a balanced tree of them has nine levels.
 pub(super) const MOST_ITEMS: usize = 1 << 27;
-/// Room for seven waiting children on every level that [`build`] can make.
-const STACK: usize = 256;
+/// The most levels that [`build`] makes.
+pub(super) const LEVELS: usize = 18;
+/// Room for seven waiting children on every level, and a power of two.
+const STACK: usize = 128;
 
 /// A box, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +117,12 @@ pub(super) struct Stack([Waiting; STACK]);
 
 impl Stack {
     pub(super) const fn new() -> Self {
-        Self([Waiting { enter: 0.0, node: 0 }; STACK])
+        Self(
+            [Waiting {
+                enter: 0.0,
+                node: 0,
+            }; STACK],
+        )
     }
 }
 

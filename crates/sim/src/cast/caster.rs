@@ -65,7 +65,7 @@ pub struct Caster {
     /// Where the tree's coordinates begin.
     middle_m: DVec3,
     /// Which registers there are. They change no result.
-    level: Level,
+    pub(super) level: Level,
 }
 
 /// Where children wait, for the tree of objects and that of one object.

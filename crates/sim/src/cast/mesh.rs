@@ -102,9 +102,8 @@ impl Mesh {
         let mut places = vec![0; triangles.len()];
         let mut faces = Vec::with_capacity(triangles.len());
         for id in order {
-            let Some((&corners, place)) = triangles
-                .get(id as usize)
-                .zip(places.get_mut(id as usize))
+            let Some((&corners, place)) =
+                triangles.get(id as usize).zip(places.get_mut(id as usize))
             else {
                 continue;
             };

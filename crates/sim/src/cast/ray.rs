@@ -78,7 +78,8 @@ impl Ray {
 /// Which hits count: those farther than `above_m` and no farther than `up_to_m` from the ray's origin, metres. Others are not there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// Exclusive. What is below zero counts as zero: a surface on which a ray starts is not hit.
+    /// Exclusive; what is below zero counts as zero. At zero a ray that starts on a surface can hit it at once, as its origin was rounded
+    /// to one side or the other: see [`Reach::ON_SURFACE_M`].
     pub above_m: f64,
     /// Inclusive.
     pub up_to_m: f64,
@@ -86,19 +87,20 @@ pub struct Reach {
 
 impl Default for Reach {
     fn default() -> Self {
-        Self {
-            above_m: 0.0,
-            up_to_m: f64::INFINITY,
-        }
+        Self::up_to(f64::INFINITY)
     }
 }
 
 impl Reach {
-    /// From the origin to a distance in metres.
+    /// What is no farther than this from a ray's origin is the surface it starts on: a nanometre, some roundings of coordinates of half a
+    /// million metres.
+    pub const ON_SURFACE_M: f64 = 1e-9;
+
+    /// From just ahead of the origin ([`Reach::ON_SURFACE_M`]) to a distance in metres.
     #[must_use]
     pub const fn up_to(up_to_m: f64) -> Self {
         Self {
-            above_m: 0.0,
+            above_m: Self::ON_SURFACE_M,
             up_to_m,
         }
     }

@@ -180,7 +180,13 @@ impl Cylinder {
             return NOWHERE;
         };
         if !self.capped {
-            let within = |at: f64| if low <= at && at <= high { at } else { f64::NAN };
+            let within = |at: f64| {
+                if low <= at && at <= high {
+                    at
+                } else {
+                    f64::NAN
+                }
+            };
             return [(within(near), 0), (within(far), 0)];
         }
         let (first, last) = if direction.z > 0.0 { (1, 2) } else { (2, 1) };

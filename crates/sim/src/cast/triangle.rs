@@ -150,10 +150,8 @@ impl<S: Simd> Sheared8<S> {
             return None;
         }
         let whole = weights[0] + weights[1] + weights[2];
-        let depth = weights[0].mul_add_precise(
-            a[2],
-            weights[1].mul_add_precise(b[2], weights[2] * c[2]),
-        );
+        let depth =
+            weights[0].mul_add_precise(a[2], weights[1].mul_add_precise(b[2], weights[2] * c[2]));
         let met = depth * self.stretch / whole;
         Some(inside.select(met, f64x8::splat(self.simd, f64::NAN)))
     }

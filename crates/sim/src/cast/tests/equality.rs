@@ -1,0 +1,224 @@
+//! The same bits however it is asked: tree or every triangle, one ray or eight, one thread or several, narrow registers or wide.
+
+use fearless_simd::Level;
+use proptest::prelude::*;
+
+use super::super::triangle::Sheared;
+use super::*;
+
+/// Every triangle, one after the other, and no box.
+fn brute(ray: &Ray, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Option<(f64, u32)> {
+    let whole = vertices.iter().copied();
+    let (low, high) = whole.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| {
+        (low.min(v), high.max(v))
+    });
+    let middle = (0.5 * (low + high)).as_vec3().as_dvec3();
+    let sheared = Sheared::new(
+        (ray.origin_m() - middle).to_array(),
+        ray.direction().to_array(),
+    );
+    let mut best: Option<(f64, u32)> = None;
+    for (corners, id) in triangles.iter().zip(0..) {
+        let at = sheared.meet(&corners.map(|at| (vertices[at as usize] - middle).to_array()));
+        if at > Reach::ON_SURFACE_M && best.is_none_or(|(had, _)| at < had) {
+            best = Some((at, id));
+        }
+    }
+    best
+}
+
+fn bits(hit: Option<Hit>) -> Option<(u64, u32)> {
+    hit.map(|hit| (hit.range_m.to_bits(), hit.primitive))
+}
+
+/// Triangles of every kind: soup, slivers, points, doubles, far away, huge.
+fn soup(numbers: &mut Numbers, count: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let offset = [DVec3::ZERO, DVec3::new(5e5, 5.4e6, 120.0)][numbers.below(2)];
+    let scale = [1e-3, 1.0, 50.0][numbers.below(3)];
+    let mut vertices = Vec::new();
+    let mut triangles = Vec::new();
+    for _ in 0..count {
+        let first = vertices.len() as u32;
+        let a = numbers.vector() * 4.0;
+        let (b, c) = match numbers.below(6) {
+            0 => (a + numbers.vector() * 1e-9, a + numbers.vector()),
+            1 => (a, a + numbers.vector()),
+            2 => (a + DVec3::X, a + DVec3::Y),
+            3 => (a + numbers.vector() * 9.0, a + numbers.vector() * 9.0),
+            _ => (a + 0.4 * numbers.vector(), a + 0.4 * numbers.vector()),
+        };
+        vertices.extend([a, b, c].map(|v| v * scale + offset));
+        triangles.push([first, first + 1, first + 2]);
+        if numbers.below(8) == 0 {
+            triangles.push([first + 1, first + 2, first]);
+        }
+    }
+    (vertices, triangles)
+}
+
+/// A ray at something: at a vertex, along an edge, into the middle, or anywhere.
+fn aimed(numbers: &mut Numbers, vertices: &[DVec3]) -> Option<Ray> {
+    let target = vertices[numbers.below(vertices.len())];
+    let other = vertices[numbers.below(vertices.len())];
+    let origin = match numbers.below(4) {
+        0 => other,
+        1 => target + numbers.vector() * 1e3,
+        _ => target + numbers.vector() * 10.0,
+    };
+    let along = match numbers.below(5) {
+        0 => [DVec3::X, DVec3::NEG_Y, DVec3::Z][numbers.below(3)],
+        1 => numbers.direction(),
+        _ => (target - origin).normalize_or_zero(),
+    };
+    Ray::new(origin, along).ok()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn the_tree_gives_what_every_triangle_gives_bit_for_bit(seed: u64, count in 1_usize..400) {
+        let mut numbers = Numbers(seed);
+        let (vertices, triangles) = soup(&mut numbers, count);
+        let caster = mesh(&(vertices.clone(), triangles.clone()));
+        let rays: Vec<Ray> = (0..64).filter_map(|_| aimed(&mut numbers, &vertices)).collect();
+        let mut together = vec![None; rays.len()];
+        caster.nearest_of(&Rays::new(&rays, 1), Reach::default(), &Threads::ONE, &mut together);
+        for (ray, together) in rays.iter().zip(together) {
+            let slow = brute(ray, &vertices, &triangles).map(|(at, id)| (at.to_bits(), id));
+            prop_assert_eq!(bits(first(&caster, ray)), slow);
+            prop_assert_eq!(bits(together), slow);
+            prop_assert_eq!(caster.any(ray, Reach::default()), slow.is_some());
+        }
+    }
+
+    #[test]
+    fn beams_of_rays_give_what_every_triangle_gives_bit_for_bit(
+        seed: u64, step in 1e-5_f64..2e-2, tilted: bool,
+    ) {
+        let mut numbers = Numbers(seed);
+        let (vertices, triangles) = soup(&mut numbers, 200);
+        let caster = mesh(&(vertices.clone(), triangles.clone()));
+        let turned = if tilted { numbers.rotation() } else { DMat3::IDENTITY };
+        let origin = vertices[numbers.below(vertices.len())] + numbers.vector();
+        // Past the axes and the diagonals, where lanes of a packet part ways.
+        let rays: Vec<Ray> = (0..35 * 4).map(|at| {
+            let turn = f64::from(at / 4) * step + f64::from(at % 4) * std::f64::consts::FRAC_PI_4 - 17.0 * step;
+            let along = DVec3::new(turn.sin(), turn.cos(), 0.02 * f64::from(at % 4) - 0.04);
+            ray(origin + 1e-4 * f64::from(at) * DVec3::Z, (turned * along).normalize())
+        }).collect();
+        let mut together = vec![None; rays.len()];
+        caster.nearest_of(&Rays::new(&rays, 4), Reach::default(), &Threads::ONE, &mut together);
+        for (ray, together) in rays.iter().zip(together) {
+            let slow = brute(ray, &vertices, &triangles).map(|(at, id)| (at.to_bits(), id));
+            prop_assert_eq!(bits(together), slow);
+        }
+    }
+}
+
+/// Many objects, some shared, some turned, and planes.
+fn scene() -> Caster {
+    let mut numbers = Numbers(5);
+    let (vertices, triangles) = ball(12, 14, 1.0, 0.2);
+    let shared = Arc::new(Mesh::new(&vertices, &triangles).unwrap());
+    let mut objects = vec![
+        Object::new(Plane).placed(Placement::at(DVec3::NEG_Z * 3.0).unwrap()),
+        Object::new(Cuboid::new(DVec3::splat(-60.0), DVec3::splat(60.0))),
+    ];
+    for at in 0..60 {
+        let place = Placement::new(numbers.rotation(), numbers.vector() * 40.0).unwrap();
+        let surface: Surface = match at % 4 {
+            0 => Sphere { radius_m: 1.5 }.into(),
+            1 => Cuboid::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)).into(),
+            2 => Cylinder {
+                radius_m: 0.5,
+                bottom_m: -1.0,
+                top_m: 2.0,
+                capped: at % 8 == 2,
+            }
+            .into(),
+            _ => shared.clone().into(),
+        };
+        objects.push(Object::new(surface).placed(place));
+    }
+    Caster::new(objects).unwrap()
+}
+
+fn firings(count: usize) -> Vec<Ray> {
+    let tilt = DMat3::from_rotation_x(-0.3);
+    (0..count * 16)
+        .map(|at| {
+            let azimuth = (at / 16) as f64 * 0.0035;
+            let elevation = ((at % 16) as f64 * 2.0 - 15.0).to_radians();
+            let along = DVec3::new(
+                elevation.cos() * azimuth.sin(),
+                elevation.cos() * azimuth.cos(),
+                elevation.sin(),
+            );
+            ray(tilt * DVec3::new(0.0, 0.2, 0.1), (tilt * along).normalize())
+        })
+        .collect()
+}
+
+#[test]
+fn one_ray_or_many_any_threads_any_registers_give_the_same_bits() {
+    let caster = scene();
+    let rays = firings(1800);
+    let alone: Vec<Option<Hit<DVec3>>> = rays
+        .iter()
+        .map(|ray| caster.nearest(ray, Reach::default()))
+        .collect();
+    assert!(alone.iter().all(Option::is_some));
+    assert!(alone.iter().flatten().any(|hit| hit.object.index() > 2));
+    let mut plain = caster.clone();
+    plain.level = Level::baseline();
+    for threads in [1, 2, 3, 7] {
+        let threads = Threads::new(NonZeroUsize::new(threads).unwrap()).unwrap();
+        for (caster, beams) in [(&caster, 16), (&caster, 1), (&plain, 16), (&caster, 0)] {
+            let mut hits = vec![None; rays.len()];
+            caster.nearest_of(
+                &Rays::new(&rays, beams),
+                Reach::default(),
+                &threads,
+                &mut hits,
+            );
+            assert!(hits == alone, "{threads:?} {beams}");
+        }
+    }
+    for ray in rays.iter().step_by(37) {
+        let hit = plain.nearest(ray, Reach::default());
+        assert_eq!(hit, caster.nearest::<()>(ray, Reach::default()));
+    }
+}
+
+#[test]
+fn objects_in_a_tree_give_what_each_alone_gives() {
+    let caster = scene();
+    let alone: Vec<Caster> = caster
+        .objects()
+        .iter()
+        .map(|object| Caster::new([object.clone()]).unwrap())
+        .collect();
+    let mut numbers = Numbers(11);
+    for _ in 0..2_000 {
+        let ray = ray(numbers.vector() * 50.0, numbers.direction());
+        let mut best: Option<(f64, usize, u32)> = None;
+        for (number, one) in alone.iter().enumerate() {
+            if let Some(hit) = first(one, &ray)
+                && best.is_none_or(|(range, ..)| hit.range_m < range)
+            {
+                best = Some((hit.range_m, number, hit.primitive));
+            }
+        }
+        let hit = first(&caster, &ray).map(|hit| (hit.range_m, hit.object.index(), hit.primitive));
+        assert_eq!(hit, best);
+        // Any hit is the same as some hit, and a reach short of it is none.
+        let range = best.unwrap().0;
+        assert!(caster.any(&ray, Reach::up_to(range)));
+        assert!(!caster.any(&ray, Reach::up_to(range.next_down())));
+        assert_eq!(
+            caster.nearest::<()>(&ray, Reach::up_to(range.next_down())),
+            None
+        );
+    }
+}

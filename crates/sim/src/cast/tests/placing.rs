@@ -1,0 +1,107 @@
+//! Objects elsewhere and turned.
+
+use super::*;
+
+#[test]
+fn turning_object_and_ray_together_changes_nothing() {
+    let mut numbers = Numbers(21);
+    let (vertices, triangles) = ball(10, 12, 1.0, 0.3);
+    let shape = Arc::new(Mesh::new(&vertices, &triangles).unwrap());
+    let surfaces: [Surface; 4] = [
+        shape.into(),
+        Sphere { radius_m: 0.8 }.into(),
+        Cuboid::new(DVec3::splat(-0.5), DVec3::new(0.5, 0.6, 0.7)).into(),
+        Cylinder {
+            radius_m: 0.5,
+            bottom_m: -0.6,
+            top_m: 0.9,
+            capped: true,
+        }
+        .into(),
+    ];
+    let mut met = 0;
+    for surface in surfaces {
+        let own = Caster::new([Object::new(surface.clone())]).unwrap();
+        for _ in 0..300 {
+            let (rotation, translation) = (numbers.rotation(), numbers.vector() * 100.0);
+            let place = Placement::new(rotation, translation).unwrap();
+            let placed = Caster::new([Object::new(surface.clone()).placed(place)]).unwrap();
+            let origin = numbers.direction() * 3.0;
+            let along = (numbers.vector() * 0.4 - origin).normalize();
+            let there = ray(
+                rotation * origin + translation,
+                (rotation * along).normalize(),
+            );
+            let a: Option<Hit<DVec3>> = own.nearest(&ray(origin, along), Reach::default());
+            let b: Option<Hit<DVec3>> = placed.nearest(&there, Reach::default());
+            if let Some((a, b)) = a.zip(b) {
+                met += 1;
+                assert!((a.range_m - b.range_m).abs() < 1e-11);
+                if a.primitive == b.primitive {
+                    assert!((rotation * a.normal - b.normal).length() < 1e-9);
+                }
+                assert!(a.normal.dot(along) < 1e-9, "seen from outside");
+            } else {
+                assert!(a.is_none() && b.is_none());
+            }
+        }
+    }
+    assert!(met > 1_000, "{met}");
+}
+
+#[test]
+fn an_object_that_moves_is_met_where_it_went() {
+    let objects = (0..10).map(|at| {
+        let place = Placement::at(DVec3::X * 10.0 * f64::from(at)).unwrap();
+        Object::new(Sphere { radius_m: 1.0 }).placed(place)
+    });
+    let mut caster = Caster::new(objects).unwrap();
+    let down = ray(DVec3::new(30.0, 50.0, 9.0), DVec3::NEG_Z);
+    assert_eq!(first(&caster, &down), None);
+    caster
+        .place(3, Placement::at(DVec3::new(30.0, 50.0, 0.0)).unwrap())
+        .unwrap();
+    let hit = first(&caster, &down).unwrap();
+    assert_eq!((hit.range_m, hit.object.index()), (8.0, 3));
+    assert_eq!(
+        caster.place(10, Placement::default()),
+        Err(CastError::NoObject {
+            objects: 10,
+            got: 10
+        })
+    );
+}
+
+#[test]
+fn what_stretches_or_mirrors_is_no_placement() {
+    for bad in [
+        DMat3::IDENTITY * 2.0,
+        DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)),
+        DMat3::ZERO,
+        DMat3::NAN,
+    ] {
+        assert!(matches!(
+            Placement::new(bad, DVec3::ZERO),
+            Err(PlacementError::Rotation(_))
+        ));
+    }
+}
+
+#[test]
+fn of_two_at_one_distance_the_first_given_counts() {
+    let wall = || Object::new(Cuboid::new(DVec3::X, DVec3::new(2.0, 1.0, 1.0)));
+    for copies in [2, 9] {
+        let caster = Caster::new((0..copies).map(|_| wall())).unwrap();
+        let hit = first(
+            &caster,
+            &ray(DVec3::splat(0.5) * DVec3::new(0.0, 1.0, 1.0), DVec3::X),
+        );
+        assert_eq!(hit.unwrap().object.index(), 0);
+    }
+}
+
+#[test]
+fn an_answer_is_no_larger_than_what_it_says() {
+    assert_eq!(size_of::<Option<Hit>>(), 16);
+    assert_eq!(size_of::<Option<Hit<DVec3>>>(), 40);
+}
