@@ -188,17 +188,19 @@ impl Caster {
     /// What a ray hits first within its reach; [`Hit`] says which of equals. `N` is `()` or, for normals, [`DVec3`].
     #[must_use]
     pub fn nearest<N: Normal>(&self, ray: &Ray, reach: Reach) -> Option<Hit<N>> {
-        let (own, reach) = (arrays(ray), reach.clean());
-        let best = dispatch!(self.level, simd => self.one::<_, false>(simd, &mut Stacks::new(), own, reach));
-        self.finish(ray, best.hit())
+        self.finish(ray, self.best::<false>(ray, reach).hit())
     }
 
     /// Whether a ray hits anything within its reach.
     #[must_use]
     pub fn any(&self, ray: &Ray, reach: Reach) -> bool {
-        let (own, reach) = (arrays(ray), reach.clean());
-        let best = dispatch!(self.level, simd => self.one::<_, true>(simd, &mut Stacks::new(), own, reach));
-        best.hit().is_some()
+        self.best::<true>(ray, reach).has_hit()
+    }
+
+    /// Not generic over what is asked, so that it is compiled here and once.
+    fn best<const ANY: bool>(&self, ray: &Ray, reach: Reach) -> Best {
+        let (ray, reach) = (arrays(ray), reach.clean());
+        dispatch!(self.level, simd => self.one::<_, ANY>(simd, &mut Stacks::new(), ray, reach))
     }
 
     /// As [`Caster::nearest`] for every ray, in their order: the first of `hits` for the first ray, up to the shorter of both.
@@ -212,7 +214,11 @@ impl Caster {
         let (beams, reach) = (rays.beams, reach.clean());
         let piece = beams.saturating_mul(LANES * PACKETS_AT_A_TIME);
         let work = |(rays, hits): (&[Ray], &mut [Option<Hit<N>>])| {
-            dispatch!(self.level, simd => self.piece(simd, rays, beams, reach, hits));
+            self.piece(rays, beams, reach, &mut |at, best| {
+                if let Some((ray, hit)) = rays.get(at).zip(hits.get_mut(at)) {
+                    *hit = self.finish(ray, best.hit());
+                }
+            });
         };
         match threads.pool() {
             None => rays
@@ -227,15 +233,20 @@ impl Caster {
         }
     }
 
-    /// The piece of a batch that one thread does at a time.
+    /// The piece of a batch that one thread does at a time, handed over as (place, hit).
+    fn piece(&self, rays: &[Ray], beams: usize, reach: Reach, take: &mut dyn FnMut(usize, Best)) {
+        dispatch!(self.level, simd => self.packets(simd, rays, beams, reach, take));
+    }
+
+    /// The same in the registers there are.
     #[inline(always)]
-    fn piece<S: Simd, N: Normal>(
+    fn packets<S: Simd>(
         &self,
         simd: S,
         rays: &[Ray],
         beams: usize,
         reach: Reach,
-        hits: &mut [Option<Hit<N>>],
+        take: &mut dyn FnMut(usize, Best),
     ) {
         let mut stacks = Stacks::new();
         let mut lanes = Lanes::ZERO;
@@ -251,10 +262,7 @@ impl Caster {
                 }
                 let nearest = self.eight(simd, &mut stacks, &mut lanes, wanted, reach);
                 for lane in 0..LANES {
-                    let at = first + lane * beams;
-                    if let Some((ray, hit)) = rays.get(at).zip(hits.get_mut(at)) {
-                        *hit = self.finish(ray, nearest.best(lane).hit());
-                    }
+                    take(first + lane * beams, nearest.best(lane));
                 }
                 first += LANES * beams;
             }

@@ -178,6 +178,22 @@ impl Mesh {
         ask: Ask,
         best: &mut Best,
     ) {
+        // A function of its own in machine code: it is called from several places.
+        simd.vectorize(
+            #[inline(always)]
+            || self.walk_one::<S, ANY>(simd, stack, (origin, direction), ask, best),
+        );
+    }
+
+    #[inline(always)]
+    fn walk_one<S: Simd, const ANY: bool>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        (origin, direction): ([f64; 3], [f64; 3]),
+        ask: Ask,
+        best: &mut Best,
+    ) {
         let ray = Sheared::new(origin, direction);
         let beam = Beam::thin(origin, direction, self.bvh.reach_m);
         let far = up_to(best.range_m);
@@ -214,7 +230,10 @@ impl Mesh {
             let (alike, axis) = lanes.alike(simd, wanted);
             wanted &= !alike;
             if alike.count_ones() >= LEAST_TOGETHER {
-                self.together(simd, stack, lanes, (alike, axis), ask, nearest);
+                simd.vectorize(
+                    #[inline(always)]
+                    || self.together(simd, stack, lanes, (alike, axis), ask, nearest),
+                );
                 continue;
             }
             let mut alone = alike;
