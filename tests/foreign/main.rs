@@ -3,6 +3,8 @@
 //! Each test says what it skipped where its program is missing; with `VELOMOTION_FOREIGN=required`, as in CI, that is a failure.
 //! `VELOMOTION_PYTHON` names a python3 that has `requirements.txt` installed.
 
+mod ray_casting;
+
 use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;

@@ -20,11 +20,26 @@ pub fn obvhs(of: &Triangles, rays: &[Ray]) -> String {
     let triangles: Vec<Triangle> = of
         .triangles
         .iter()
-        .map(|&[a, b, c]| Triangle { v0: corner(a), v1: corner(b), v2: corner(c) })
+        .map(|&[a, b, c]| Triangle {
+            v0: corner(a),
+            v1: corner(b),
+            v2: corner(c),
+        })
         .collect();
-    let tree = build_cwbvh_from_tris(&triangles, BvhBuildParams::very_slow_build(), &mut Default::default());
-    let ordered: Vec<Triangle> = tree.primitive_indices.iter().map(|&at| triangles[at as usize]).collect();
-    let rays: Vec<(Vec3A, Vec3A)> = rays.iter().map(|ray| (ray.origin_m().as_vec3a(), ray.direction().as_vec3a())).collect();
+    let tree = build_cwbvh_from_tris(
+        &triangles,
+        BvhBuildParams::very_slow_build(),
+        &mut Default::default(),
+    );
+    let ordered: Vec<Triangle> = tree
+        .primitive_indices
+        .iter()
+        .map(|&at| triangles[at as usize])
+        .collect();
+    let rays: Vec<(Vec3A, Vec3A)> = rays
+        .iter()
+        .map(|ray| (ray.origin_m().as_vec3a(), ray.direction().as_vec3a()))
+        .collect();
     let mut ranges = vec![0.0; rays.len()];
     timed(rays.len(), || {
         for ((origin, direction), range) in rays.iter().zip(&mut ranges) {
@@ -62,8 +77,14 @@ impl BHShape<f64, 3> for Shape {
 /// bvh: two children, f64 as ours. Its triangle test takes one side only, so that each triangle is asked from both.
 pub fn bvh(of: &Triangles, rays: &[Ray]) -> String {
     let corner = |at: u32| Point3::from(of.vertices[at as usize].to_array());
-    let mut shapes: Vec<Shape> =
-        of.triangles.iter().map(|corners| Shape { corners: corners.map(corner), node: 0 }).collect();
+    let mut shapes: Vec<Shape> = of
+        .triangles
+        .iter()
+        .map(|corners| Shape {
+            corners: corners.map(corner),
+            node: 0,
+        })
+        .collect();
     let tree = Bvh::build(&mut shapes);
     // A hundredth of the rays: it takes long.
     let rays: Vec<bvh::ray::Ray<f64, 3>> = rays
@@ -80,11 +101,17 @@ pub fn bvh(of: &Triangles, rays: &[Ray]) -> String {
             let mut nearest = f64::INFINITY;
             // Boxes in their order along the ray.
             for shape in tree.nearest_traverse_iterator(ray, &shapes) {
-                if ray.intersection_slice_for_aabb(&shape.aabb()).is_some_and(|(enter, _)| enter > nearest) {
+                if ray
+                    .intersection_slice_for_aabb(&shape.aabb())
+                    .is_some_and(|(enter, _)| enter > nearest)
+                {
                     break;
                 }
                 let [a, b, c] = &shape.corners;
-                let there = ray.intersects_triangle(a, b, c).distance.min(ray.intersects_triangle(a, c, b).distance);
+                let there = ray
+                    .intersects_triangle(a, b, c)
+                    .distance
+                    .min(ray.intersects_triangle(a, c, b).distance);
                 nearest = nearest.min(there);
             }
             *range = nearest;

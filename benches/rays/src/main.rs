@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use nix::time::{ClockId, clock_gettime};
-use sim::cast::{Caster, Cuboid, Hit, Mesh, Object, Rays, Ray, Reach, Threads};
+use sim::cast::{Caster, Cuboid, Hit, Mesh, Object, Ray, Rays, Reach, Threads};
 
 mod crates;
 mod scene;
@@ -26,14 +26,23 @@ fn seconds(clock: ClockId) -> f64 {
 /// How many rays went through, how long the process computed for it, and how long it took.
 fn timed(rays: usize, mut work: impl FnMut()) -> String {
     work();
-    let (cpu, wall) = (seconds(ClockId::CLOCK_PROCESS_CPUTIME_ID), seconds(ClockId::CLOCK_MONOTONIC));
+    let (cpu, wall) = (
+        seconds(ClockId::CLOCK_PROCESS_CPUTIME_ID),
+        seconds(ClockId::CLOCK_MONOTONIC),
+    );
     let mut passes = 0;
     while seconds(ClockId::CLOCK_MONOTONIC) - wall < TURN_S {
         work();
         passes += 1;
     }
-    let (cpu, wall) = (seconds(ClockId::CLOCK_PROCESS_CPUTIME_ID) - cpu, seconds(ClockId::CLOCK_MONOTONIC) - wall);
-    format!(r#"{{"rays": {}, "seconds": {cpu}, "wall_s": {wall}}}"#, rays * passes)
+    let (cpu, wall) = (
+        seconds(ClockId::CLOCK_PROCESS_CPUTIME_ID) - cpu,
+        seconds(ClockId::CLOCK_MONOTONIC) - wall,
+    );
+    format!(
+        r#"{{"rays": {}, "seconds": {cpu}, "wall_s": {wall}}}"#,
+        rays * passes
+    )
 }
 
 fn write<const N: usize>(path: &Path, rows: impl Iterator<Item = [f64; N]>) -> std::io::Result<()> {
@@ -45,14 +54,24 @@ fn write<const N: usize>(path: &Path, rows: impl Iterator<Item = [f64; N]>) -> s
 }
 
 fn publish(folder: &Path, name: &str, of: &Triangles) -> std::io::Result<()> {
-    write(&folder.join(format!("{name}.vertices.f64")), of.vertices.iter().map(|v| v.to_array()))?;
+    write(
+        &folder.join(format!("{name}.vertices.f64")),
+        of.vertices.iter().map(|v| v.to_array()),
+    )?;
     let triangles = of.triangles.iter().map(|corners| corners.map(f64::from));
     write(&folder.join(format!("{name}.triangles.f64")), triangles)
 }
 
 fn together(caster: &Caster, rays: &[Ray], threads: &Threads) -> String {
     let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
-    timed(rays.len(), || caster.nearest_of(&Rays::new(rays, scene::BEAMS), Reach::default(), threads, &mut hits))
+    timed(rays.len(), || {
+        caster.nearest_of(
+            &Rays::new(rays, scene::BEAMS),
+            Reach::default(),
+            threads,
+            &mut hits,
+        )
+    })
 }
 
 fn one_by_one(caster: &Caster, rays: &[Ray]) -> String {
@@ -68,38 +87,63 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args_os().nth(1).ok_or("usage: rays FOLDER")?;
     let folder = Path::new(&folder);
     let rays = scene::rays();
-    write(&folder.join("rays.f64"), rays.iter().map(|ray| {
-        let ([a, b, c], [d, e, f]) = (ray.origin_m().to_array(), ray.direction().to_array());
-        [a, b, c, d, e, f]
-    }))?;
+    write(
+        &folder.join("rays.f64"),
+        rays.iter().map(|ray| {
+            let ([a, b, c], [d, e, f]) = (ray.origin_m().to_array(), ray.direction().to_array());
+            [a, b, c, d, e, f]
+        }),
+    )?;
     let scenes = [("box", scene::room()), ("mesh", scene::cave())];
     let mut casters = Vec::new();
     for (name, of) in &scenes {
         publish(folder, name, of)?;
         let caster = Caster::new([Object::new(Mesh::new(&of.vertices, &of.triangles)?)])?;
         let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
-        caster.nearest_of(&Rays::new(&rays, scene::BEAMS), Reach::default(), &Threads::ONE, &mut hits);
-        write(&folder.join(format!("{name}.ranges.f64")), hits.iter().map(|hit| [hit.map_or(f64::INFINITY, |hit| hit.range_m)]))?;
+        caster.nearest_of(
+            &Rays::new(&rays, scene::BEAMS),
+            Reach::default(),
+            &Threads::ONE,
+            &mut hits,
+        );
+        write(
+            &folder.join(format!("{name}.ranges.f64")),
+            hits.iter()
+                .map(|hit| [hit.map_or(f64::INFINITY, |hit| hit.range_m)]),
+        )?;
         casters.push(caster);
     }
-    let solid = Caster::new([Object::new(Cuboid::new(glam::DVec3::new(-10.0, -10.0, -2.0), glam::DVec3::new(10.0, 10.0, 3.0)))])?;
+    let solid = Caster::new([Object::new(Cuboid::new(
+        glam::DVec3::new(-10.0, -10.0, -2.0),
+        glam::DVec3::new(10.0, 10.0, 3.0),
+    ))])?;
     let cores = Threads::all_cores()?;
-    println!(r#"{{"rays": {}, "triangles": {}}}"#, rays.len(), scenes[1].1.triangles.len());
+    println!(
+        r#"{{"rays": {}, "triangles": {}}}"#,
+        rays.len(),
+        scenes[1].1.triangles.len()
+    );
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         let (name, how) = line.split_once(' ').ok_or("expected a scene and a way")?;
         let at = usize::from(name == "mesh");
         let (of, caster) = (&scenes[at].1, &casters[at]);
-        println!("{}", match how {
-            "together" => together(caster, &rays, &Threads::ONE),
-            "one" => one_by_one(caster, &rays),
-            "cores" => together(caster, &rays, &cores),
-            "solid" => together(&solid, &rays, &Threads::ONE),
-            "build" => timed(of.triangles.len(), || drop(Mesh::new(&of.vertices, &of.triangles))),
-            "obvhs" => crates::obvhs(of, &rays),
-            "bvh" => crates::bvh(of, &rays),
-            _ => return Err(format!("unknown: {line}").into()),
-        });
+        println!(
+            "{}",
+            match how {
+                "together" => together(caster, &rays, &Threads::ONE),
+                "one" => one_by_one(caster, &rays),
+                "cores" => together(caster, &rays, &cores),
+                "solid" => together(&solid, &rays, &Threads::ONE),
+                "build" => timed(of.triangles.len(), || drop(Mesh::new(
+                    &of.vertices,
+                    &of.triangles
+                ))),
+                "obvhs" => crates::obvhs(of, &rays),
+                "bvh" => crates::bvh(of, &rays),
+                _ => return Err(format!("unknown: {line}").into()),
+            }
+        );
     }
     Ok(())
 }

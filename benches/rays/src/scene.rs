@@ -24,25 +24,45 @@ pub fn room() -> Triangles {
         let [x, y, z] = [at >> 2 & 1, at >> 1 & 1, at & 1].map(f64::from);
         DVec3::new(20.0 * x - 10.0, 20.0 * y - 10.0, 5.0 * z - 2.0)
     };
-    let faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let faces = [
+        [0, 1, 3, 2],
+        [4, 6, 7, 5],
+        [0, 4, 5, 1],
+        [2, 3, 7, 6],
+        [0, 2, 6, 4],
+        [1, 5, 7, 3],
+    ];
     Triangles {
         vertices: (0..8).map(corner).collect(),
-        triangles: faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+        triangles: faces
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect(),
     }
 }
 
 /// A lumpy cave of 88,000 triangles with 50 boulders of 240 in it: 100,000 together.
 pub fn cave() -> Triangles {
-    let mut cave = Triangles { vertices: Vec::new(), triangles: Vec::new() };
+    let mut cave = Triangles {
+        vertices: Vec::new(),
+        triangles: Vec::new(),
+    };
     add_ball(&mut cave, 201, 220, |along| {
-        let lumps = (7.0 * along.x).sin() * (9.0 * along.y).cos() + 0.3 * (31.0 * along.z + 17.0 * along.x).sin();
+        let lumps = (7.0 * along.x).sin() * (9.0 * along.y).cos()
+            + 0.3 * (31.0 * along.z + 17.0 * along.x).sin();
         along * (20.0 + 3.0 * lumps) * DVec3::new(1.0, 1.0, 0.4)
     });
     for boulder in 0..50_u32 {
         let turn = f64::from(boulder) * TAU / 50.0;
         let away = 6.0 + 8.0 * (f64::from(boulder) * 0.618).fract();
-        let centre = DVec3::new(away * turn.cos(), away * turn.sin(), 3.0 * (f64::from(boulder) * 0.382).fract() - 3.0);
-        add_ball(&mut cave, 11, 12, |along| centre + along * (0.4 + 0.1 * (5.0 * along.x).sin()));
+        let centre = DVec3::new(
+            away * turn.cos(),
+            away * turn.sin(),
+            3.0 * (f64::from(boulder) * 0.382).fract() - 3.0,
+        );
+        add_ball(&mut cave, 11, 12, |along| {
+            centre + along * (0.4 + 0.1 * (5.0 * along.x).sin())
+        });
     }
     cave
 }
@@ -56,7 +76,8 @@ fn add_ball(to: &mut Triangles, rings: u32, sectors: u32, place: impl Fn(DVec3) 
         let radius = (1.0 - height * height).sqrt();
         for sector in 0..sectors {
             let (y, x) = (f64::from(sector) * TAU / f64::from(sectors)).sin_cos();
-            to.vertices.push(place(DVec3::new(radius * x, radius * y, height)));
+            to.vertices
+                .push(place(DVec3::new(radius * x, radius * y, height)));
         }
     }
     to.vertices.push(place(DVec3::Z));
@@ -85,10 +106,15 @@ pub fn rays() -> Vec<Ray> {
     let mut rays = Vec::with_capacity(FIRINGS * BEAMS);
     for firing in 0..FIRINGS {
         let azimuth = (firing as f64 * 0.199_065_6).to_radians();
-        let tilt = DMat3::from_rotation_x((45.0 * (firing as f64 / FIRINGS as f64 - 1.0)).to_radians());
+        let tilt =
+            DMat3::from_rotation_x((45.0 * (firing as f64 / FIRINGS as f64 - 1.0)).to_radians());
         for beam in 0..BEAMS {
             let elevation = (2.0 * beam as f64 - 15.0).to_radians();
-            let along = DVec3::new(elevation.cos() * azimuth.sin(), elevation.cos() * azimuth.cos(), elevation.sin());
+            let along = DVec3::new(
+                elevation.cos() * azimuth.sin(),
+                elevation.cos() * azimuth.cos(),
+                elevation.sin(),
+            );
             let origin = tilt * DVec3::new(0.0, 0.2, 0.0);
             rays.push(Ray::new(origin, (tilt * along).normalize()).expect("finite, of length 1"));
         }
