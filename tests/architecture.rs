@@ -18,7 +18,7 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 10] = [
 ];
 
 /// A library, and the crates of the workspace that may use it directly.
-const CONFINED: [(&str, &[&str]); 9] = [
+const CONFINED: [(&str, &[&str]); 10] = [
     ("serialport", &["io"]),
     ("socket2", &["io"]),
     ("nix", &["io"]),
@@ -28,6 +28,7 @@ const CONFINED: [(&str, &[&str]); 9] = [
     ("indicatif", &["velomotion"]),
     ("signal-hook", &["velomotion"]),
     ("las", &["cloud"]),
+    ("rayon", &["sim", "analysis"]),
 ];
 
 /// What `sim` must never see, not even in its tests: it states the geometry its own way (invariant 3).
