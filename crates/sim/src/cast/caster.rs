@@ -169,12 +169,10 @@ impl Caster {
             }
         }
         self.middle_m = short_middle(&whole);
-        let middle = self.middle_m.to_array();
-        for bounds in &mut boxes {
-            for axis in 0..3 {
-                bounds.low[axis] -= middle[axis];
-                bounds.high[axis] -= middle[axis];
-            }
+        let middle = self.middle_m;
+        for Bounds { low, high } in &mut boxes {
+            *low = (DVec3::from_array(*low) - middle).to_array();
+            *high = (DVec3::from_array(*high) - middle).to_array();
         }
         let (tree, order) = Bvh::over(&boxes);
         self.tree = tree;

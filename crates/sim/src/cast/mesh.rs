@@ -64,7 +64,7 @@ pub enum MeshError {
 
 impl Mesh {
     /// The mesh of these triangles, each three numbers of vertices (metres), counterclockwise as seen from outside. Triangles without an area
-    /// are kept, so that numbers stay, and are never hit.
+    /// keep their numbers and are never hit.
     ///
     /// # Errors
     /// [`MeshError`] for a vertex that is not finite, a number that has no vertex, or more than 2^27 triangles.
@@ -84,9 +84,11 @@ impl Mesh {
             .map(|vertex| (vertex - origin_m).to_array())
             .collect();
         let mut boxes = Vec::with_capacity(triangles.len());
-        for (triangle, corners) in triangles.iter().enumerate() {
+        let mut kept = Vec::with_capacity(triangles.len());
+        for ((triangle, corners), id) in triangles.iter().enumerate().zip(0_u32..) {
             let mut bounds = Bounds::EMPTY;
-            for &got in corners {
+            let mut points = [DVec3::ZERO; 3];
+            for (&got, point) in corners.iter().zip(&mut points) {
                 let Some(&vertex) = vertices.get(got as usize) else {
                     return Err(MeshError::Index {
                         triangle,
@@ -95,13 +97,22 @@ impl Mesh {
                     });
                 };
                 bounds.join(&Bounds::of([vertex]));
+                *point = DVec3::from_array(vertex);
             }
-            boxes.push(bounds);
+            // Three points on a line: rounding could let a ray meet them, where there is no normal.
+            let [a, b, c] = points;
+            if (b - a).cross(c - a) != DVec3::ZERO {
+                boxes.push(bounds);
+                kept.push(id);
+            }
         }
         let (bvh, order) = Bvh::over(&boxes);
-        let mut places = vec![0; triangles.len()];
+        let mut places = vec![u32::MAX; triangles.len()];
         let mut faces = Vec::with_capacity(triangles.len());
-        for id in order {
+        for id in order
+            .iter()
+            .filter_map(|&at| kept.get(at as usize).copied())
+        {
             let Some((&corners, place)) =
                 triangles.get(id as usize).zip(places.get_mut(id as usize))
             else {
@@ -124,7 +135,7 @@ impl Mesh {
         })
     }
 
-    /// How many triangles there are.
+    /// How many triangles with an area there are.
     #[must_use]
     pub fn triangles(&self) -> usize {
         self.faces.len()
