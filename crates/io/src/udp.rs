@@ -4,6 +4,7 @@
 //! many milliseconds when the machine is busy. IPv4 only, as the lidars of this family are. A payload is looked into only to count whose
 //! it is; every datagram from a wanted source is given on.
 
+mod batch;
 mod listener;
 mod socket;
 

@@ -5,7 +5,9 @@ use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket as StdSocket};
 use std::os::fd::AsRawFd;
 use std::task::{Context, Poll};
 
-use nix::sys::socket::{ControlMessageOwned, MsgFlags, SockaddrIn, recvmsg, setsockopt, sockopt};
+use nix::sys::socket::{
+    ControlMessageOwned, MsgFlags, RecvMsg, SockaddrIn, recvmsg, setsockopt, sockopt,
+};
 use nix::sys::time::TimeSpec;
 use socket2::{Domain, Protocol, Socket, Type};
 use tokio::io::Interest;
@@ -13,6 +15,7 @@ use tokio::net::UdpSocket;
 use units::{Host, Stamp};
 
 use super::UdpError;
+use super::batch::Batch;
 use crate::clock;
 
 /// A datagram received into a buffer.
@@ -118,7 +121,7 @@ impl LidarSocket {
             socket,
             address: bound,
             receive_buffer: granted,
-            control: nix::cmsg_space!(TimeSpec, u32),
+            control: control_space(),
             overflow_counter: 0,
             dropped: 0,
         })
@@ -164,26 +167,48 @@ impl LidarSocket {
     /// # Errors
     /// [`UdpError::Io`].
     pub fn try_recv(&mut self, buffer: &mut [u8]) -> Result<Option<Received>, UdpError> {
-        let fd = self.socket.as_raw_fd();
         let control = &mut self.control;
         control.resize(control.capacity(), 0);
-        let mut asked = false;
-        let mut read = self.socket.try_io(Interest::READABLE, || {
-            asked = true;
-            receive(fd, buffer, control)
-        });
-        if !asked {
-            // tokio says no unless its reactor has run since the datagram came; the kernel knows.
-            read = receive(fd, buffer, control);
-        }
-        match read {
-            Ok((received, overflow)) => {
-                if let Some(overflow) = overflow {
-                    self.dropped += u64::from(overflow.wrapping_sub(self.overflow_counter));
-                    self.overflow_counter = overflow;
-                }
+        let read = attempt(&self.socket, |fd| receive(fd, buffer, control));
+        match self.unless_nothing(read)? {
+            Some((received, counter)) => {
+                counter
+                    .into_iter()
+                    .for_each(|counter| self.overflow(counter));
                 Ok(Some(received))
             }
+            None => Ok(None),
+        }
+    }
+
+    /// What is there, as much as the batch takes; what was still in it is gone.
+    ///
+    /// # Errors
+    /// [`UdpError::Io`].
+    pub(super) fn try_recv_batch(&mut self, batch: &mut Batch) -> Result<(), UdpError> {
+        let mut counters = (self.overflow_counter, self.dropped);
+        let read = attempt(&self.socket, |fd| {
+            batch.receive(fd, |counter| counters = counted(counters, counter))?;
+            match batch.was_full() {
+                true => Ok(()),
+                // The socket is empty, and tokio would have to try once more to know.
+                false => Err(io::ErrorKind::WouldBlock.into()),
+            }
+        });
+        (self.overflow_counter, self.dropped) = counters;
+        self.unless_nothing(read).map(drop)
+    }
+
+    /// Takes the drop counter that came with a datagram.
+    fn overflow(&mut self, counter: u32) {
+        (self.overflow_counter, self.dropped) =
+            counted((self.overflow_counter, self.dropped), counter);
+    }
+
+    /// `None` where nothing was there.
+    fn unless_nothing<T>(&self, read: io::Result<T>) -> Result<Option<T>, UdpError> {
+        match read {
+            Ok(read) => Ok(Some(read)),
             Err(e)
                 if matches!(
                     e.kind(),
@@ -220,10 +245,38 @@ fn enlarge_buffer(socket: &Socket, wanted: usize) -> io::Result<usize> {
     socket.recv_buffer_size()
 }
 
+/// Reads from a socket, whatever tokio thinks of it: it says no unless its reactor has run since the datagram came; the kernel knows.
+fn attempt<T>(socket: &UdpSocket, mut read: impl FnMut(i32) -> io::Result<T>) -> io::Result<T> {
+    let fd = socket.as_raw_fd();
+    let mut asked = false;
+    let tried = socket.try_io(Interest::READABLE, || {
+        asked = true;
+        read(fd)
+    });
+    if asked { tried } else { read(fd) }
+}
+
+/// The kernel's counter (32 bits, wraps) as last seen and what it adds up to, after it was seen anew.
+fn counted((last, dropped): (u32, u64), counter: u32) -> (u32, u64) {
+    (counter, dropped + u64::from(counter.wrapping_sub(last)))
+}
+
+/// Room for the control messages of one datagram: its time and the drop counter.
+pub(super) fn control_space() -> Vec<u8> {
+    nix::cmsg_space!(TimeSpec, u32)
+}
+
 /// One `recvmsg`: the datagram, and the drop counter if the kernel sent it along.
 fn receive(fd: i32, buffer: &mut [u8], control: &mut [u8]) -> io::Result<(Received, Option<u32>)> {
     let mut parts = [IoSliceMut::new(buffer)];
     let message = recvmsg::<SockaddrIn>(fd, &mut parts, Some(control), MsgFlags::empty())?;
+    described(&message)
+}
+
+/// A datagram without its payload, and the drop counter if the kernel sent it along.
+pub(super) fn described(
+    message: &RecvMsg<'_, '_, SockaddrIn>,
+) -> io::Result<(Received, Option<u32>)> {
     let mut kernel_time = None;
     let mut overflow = None;
     for part in message.cmsgs()? {

@@ -214,6 +214,55 @@ fn heard(listener: &mut Listener) -> Vec<([u8; 4], u16, usize)> {
 }
 
 #[test]
+fn what_waits_on_several_ports_comes_whole_and_in_the_order_of_its_times() {
+    let mut listener = Listener::bind(&local(4 << 20)).unwrap();
+    let [data, position] = [0, 1].map(|n: usize| listener.sockets()[n].address());
+    let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    // Several batches, of which one port has far more than the other; the longest datagram there is among them.
+    let mut sent = Vec::new();
+    for n in 0..600_usize {
+        let to = if n % 10 == 0 { position } else { data };
+        let length = if n == 301 { 65_507 } else { 1000 + n };
+        sender.send_to(&vec![n as u8; length], to).unwrap();
+        sent.push((to.port(), length));
+    }
+    let mut times = Vec::new();
+    let mut got = Vec::new();
+    let counts = listener
+        .run(&AtomicBool::new(true), |record| {
+            times.push(record.host);
+            let Wire::Lidar { port, payload, .. } = record.wire else {
+                panic!("{record:?}");
+            };
+            assert!(payload.iter().all(|&byte| byte == got.len() as u8));
+            got.push((port, payload.len()));
+        })
+        .unwrap();
+    assert_eq!(got, sent);
+    assert!(times.is_sorted());
+    assert_eq!((counts.data, counts.position), (540, 60));
+}
+
+#[test]
+fn drops_are_counted_though_batches_without_any_came_before() {
+    let mut listener = Listener::bind(&local(65_536)).unwrap();
+    let to = listener.sockets()[0].address();
+    let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let mut sent = 0;
+    // From the third round on more than the buffer holds.
+    for burst in [1, 8, 500, 3, 500, 1] {
+        for _ in 0..burst {
+            sender.send_to(&[7; 1206], to).unwrap();
+        }
+        sent += burst;
+        listener.run(&AtomicBool::new(true), |_| {}).unwrap();
+    }
+    let counts = listener.counts();
+    assert!(counts.dropped > 0, "{counts:?}");
+    assert_eq!(counts.data + counts.dropped, sent);
+}
+
+#[test]
 fn sensors_on_one_port_and_on_several_are_told_apart_by_source() {
     let config = ListenConfig {
         more_ports: vec![0],
