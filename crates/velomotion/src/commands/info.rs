@@ -330,6 +330,10 @@ fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
             "IP fragments could not be put together",
         ),
         (
+            pass.counts.reassembled,
+            "packets came in IP fragments and were put together",
+        ),
+        (
             pass.counts.snapped,
             "packets were recorded only in part: record again with the full snap length",
         ),
