@@ -52,6 +52,14 @@ pub struct Device {
     /// Local address on which the lidar's packets arrive.
     #[serde(default = "any_address")]
     pub lidar: Ipv4Addr,
+    /// Multicast group that the lidar sends to; none where it sends to this machine alone or to all.
+    pub lidar_group: Option<Ipv4Addr>,
+    /// The lidar's own address, where others send to the same ports; none: whoever sends.
+    pub lidar_source: Option<Ipv4Addr>,
+    /// UDP port of the lidar's data packets, where it is not the factory's.
+    pub data_port: Option<u16>,
+    /// UDP port of its position packets, where it is not the factory's.
+    pub position_port: Option<u16>,
     /// Acceleration used without `--accel`, degrees per second squared.
     #[serde(default = "gentle")]
     pub accel_deg_s2: f64,
@@ -196,6 +204,10 @@ impl Device {
             interface: None,
             baud: None,
             lidar: Ipv4Addr::LOCALHOST,
+            lidar_group: None,
+            lidar_source: None,
+            data_port: None,
+            position_port: None,
             accel_deg_s2: 5000.0,
         }
     }
@@ -206,10 +218,9 @@ impl Device {
         Self {
             kind: DeviceKind::Usb,
             port: Some(port),
-            interface: None,
-            baud: None,
             lidar: any_address(),
             accel_deg_s2: gentle(),
+            ..Self::simulator()
         }
     }
 }
@@ -349,6 +360,50 @@ impl Device {
                 "device.{name}.baud: expected on a serial port only, got {baud} on a device without one"
             ));
         }
+        self.check_lidar()
+            .map_err(|what| format!("device.{name}.{what}"))
+    }
+
+    /// The key and what is wrong with it.
+    fn check_lidar(&self) -> Result<(), String> {
+        let ports = [
+            ("data_port", self.data_port),
+            ("position_port", self.position_port),
+        ];
+        let addresses = [
+            ("lidar_group", self.lidar_group),
+            ("lidar_source", self.lidar_source),
+        ];
+        if self.kind == DeviceKind::Sim {
+            let port = ports.iter().find(|(_, port)| port.is_some());
+            let address = addresses.iter().find(|(_, address)| address.is_some());
+            let key = port.map(|(key, _)| key).or(address.map(|(key, _)| key));
+            return key.map_or(Ok(()), |key| {
+                Err(format!(
+                    "{key}: expected with a real lidar only, got it on software devices"
+                ))
+            });
+        }
+        if let Some((key, _)) = ports.iter().find(|(_, port)| *port == Some(0)) {
+            return Err(format!("{key}: expected a port from 1 to 65535, got 0"));
+        }
+        if let Some(group) = self.lidar_group.filter(|group| !group.is_multicast()) {
+            return Err(format!(
+                "lidar_group: expected a multicast address, 224.0.0.0 to 239.255.255.255, got {group}"
+            ));
+        }
+        if self.lidar.is_multicast() {
+            return Err(format!(
+                "lidar: expected an address of this machine, got the multicast address {}, which belongs into lidar_group",
+                self.lidar
+            ));
+        }
+        let nobody = |ip: &Ipv4Addr| ip.is_unspecified() || ip.is_multicast() || ip.is_broadcast();
+        if let Some(source) = self.lidar_source.filter(nobody) {
+            return Err(format!(
+                "lidar_source: expected the lidar's own address, got {source}, which no device has"
+            ));
+        }
         Ok(())
     }
 }
@@ -409,6 +464,28 @@ mod tests {
         for (keys, key) in [
             ("kind = 'usb'\naccel_deg_s2 = -5.0", "device.a.accel_deg_s2"),
             ("kind = 'can'\nbaud = 9600", "device.a.baud"),
+            ("kind = 'usb'\ndata_port = 0", "device.a.data_port"),
+            ("kind = 'usb'\nposition_port = 0", "device.a.position_port"),
+            (
+                "kind = 'usb'\nlidar_group = '192.168.1.201'",
+                "device.a.lidar_group: expected a multicast address",
+            ),
+            (
+                "kind = 'usb'\nlidar = '239.1.2.3'",
+                "device.a.lidar: expected an address of this machine",
+            ),
+            (
+                "kind = 'usb'\nlidar_source = '255.255.255.255'",
+                "device.a.lidar_source",
+            ),
+            (
+                "kind = 'sim'\ndata_port = 2369",
+                "device.a.data_port: expected with a real lidar only",
+            ),
+            (
+                "kind = 'sim'\nlidar_source = '127.0.0.1'",
+                "device.a.lidar_source: expected with a real lidar only",
+            ),
         ] {
             let config: Config = toml::from_str(&format!("[device.a]\n{keys}")).unwrap();
             assert!(config.check().unwrap_err().starts_with(key), "{keys}");
@@ -455,6 +532,15 @@ mod tests {
             let error = toml::from_str::<Config>(text).unwrap_err().to_string();
             assert!(error.contains("line "), "{error}");
             assert!(error.contains("unknown field"), "{error}");
+        }
+        // Nor does a value that is none pass.
+        for (key, what) in [
+            ("data_port = 70000", "70000"),
+            ("lidar_group = '239.1.2'", "IPv4"),
+        ] {
+            let text = format!("[device.a]\nkind = 'usb'\n{key}");
+            let error = toml::from_str::<Config>(&text).unwrap_err().to_string();
+            assert!(error.contains("line 3") && error.contains(what), "{error}");
         }
     }
 }

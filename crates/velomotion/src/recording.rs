@@ -11,6 +11,7 @@ use io::udp::{ListenConfig, ListenCounts, Listener, UdpError};
 use protocol::record::{DriveLink, Record, Wire};
 use scanner::ScanConfig;
 
+use crate::config::Device;
 use crate::failure::{Failure, Kind};
 use crate::simulated::Destinations;
 
@@ -23,6 +24,19 @@ pub const POSITION_PORT: u16 = 8308;
 pub struct Ear {
     listener: Listener,
     ports: Destinations,
+}
+
+/// Where a device's lidar is to be heard.
+#[must_use]
+pub fn listen_config(device: &Device) -> ListenConfig {
+    ListenConfig {
+        address: device.lidar,
+        data_port: device.data_port.unwrap_or(DATA_PORT),
+        position_port: Some(device.position_port.unwrap_or(POSITION_PORT)),
+        group: device.lidar_group,
+        sources: device.lidar_source.into_iter().collect(),
+        ..ListenConfig::default()
+    }
 }
 
 /// A recording under way.
@@ -180,6 +194,10 @@ fn lidar_failure(error: &UdpError) -> Failure {
         }
         UdpError::NoInterface { .. } => {
             "give lidar in the device's profile an address of this machine, or 0.0.0.0"
+        }
+        UdpError::Io { action: "join", .. } => {
+            "see whether lidar in the device's profile is the address of an interface that is up, or, where it is 0.0.0.0, whether a\n\
+             route to lidar_group exists (ip route get GROUP)"
         }
         UdpError::NoRuntime { .. } | UdpError::Io { .. } => {
             "see whether the network interface is up and this user may open sockets"

@@ -237,6 +237,34 @@ pub struct Sync {
     pub angle_bound_deg: Option<f64>,
 }
 
+/// What a capture heard of the lidar, and what of it was lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Reception {
+    /// Packets heard, position packets included.
+    pub packets: u64,
+    /// Packets that the kernel dropped because this program was too slow.
+    pub dropped_by_kernel: u64,
+    /// Records, the drive's included, that the disk was too slow for or that the log cannot hold.
+    pub dropped_by_log: u64,
+    /// Of `packets`: those without a kernel time.
+    pub without_kernel_time: u64,
+    /// Packets of other senders than the configuration's; not in `packets`.
+    pub from_others: u64,
+}
+
+impl Reception {
+    fn line(&self) -> String {
+        let others = match self.from_others {
+            0 => String::new(),
+            n => format!(", {n} of other senders left out"),
+        };
+        format!(
+            "{} lidar packets, {} dropped by the kernel{others}; {} records dropped by the log",
+            self.packets, self.dropped_by_kernel, self.dropped_by_log
+        )
+    }
+}
+
 /// A cloud against the simulator's truth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Truth {
@@ -269,6 +297,9 @@ pub struct Scan {
     pub log: String,
     /// Records that a capture lost: packets that the kernel dropped, records that the disk was too slow for.
     pub lost_records: u64,
+    /// What a capture heard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reception: Option<Reception>,
     /// Against the simulator's truth; real scans have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<Truth>,
@@ -401,6 +432,9 @@ impl Scan {
         }
         rows.push(("cloud", self.cloud()));
         rows.push(("log", self.log.clone()));
+        if let Some(reception) = &self.reception {
+            rows.push(("recorded", reception.line()));
+        }
         rows.extend(self.contents.warning_rows());
         table(rows)
     }

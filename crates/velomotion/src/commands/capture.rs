@@ -22,9 +22,9 @@ use crate::failure::{Failure, Kind};
 use crate::motion::{self, Told};
 use crate::output::{self, Aside, Target};
 use crate::progress::Progress;
-use crate::recording::{Ear, Recorded, Recording};
+use crate::recording::{Ear, Recorded, Recording, listen_config};
 use crate::recordings::Source;
-use crate::report::Scan;
+use crate::report::{Reception, Scan};
 use crate::session::{Session, SessionError};
 use crate::setup::Setup;
 use crate::signals;
@@ -59,10 +59,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
     let (truth, ended) = if devices::simulated(&setup.device) {
         simulate(&setup, &interrupt, &mut progress)?
     } else {
-        let ear = Ear::bind(&ListenConfig {
-            address: setup.device.lidar,
-            ..ListenConfig::default()
-        })?;
+        let ear = Ear::bind(&listen_config(&setup.device))?;
         let place = ports::place(&setup.name, &setup.device)?;
         (
             None,
@@ -131,9 +128,18 @@ fn record(
     let recording = Recording::start(ear, &setup.log, &scan, opened.link)?;
     if let Err(failure) = await_lidar(&recording, setup, interrupt) {
         // Nothing has moved and nothing is recorded.
-        let _ = recording.finish();
+        let unwanted = recording.finish().map_or(0, |heard| heard.lidar.unwanted);
         let _ = std::fs::remove_file(&setup.log);
-        return Err(failure);
+        return Err(match unwanted {
+            0 => failure,
+            _ => Failure {
+                message: format!(
+                    "{}; {unwanted} packets came from other addresses",
+                    failure.message
+                ),
+                ..failure
+            },
+        });
     }
     let control = Control::listen(place, interrupt);
     let log = recording.handle();
@@ -189,20 +195,37 @@ fn await_lidar(
                 .help("nothing had moved yet"));
         }
         if waited >= LIDAR_WAIT {
-            let address = setup.device.lidar;
-            return Err(Failure::new(
-                Kind::NoDevice,
-                format!("no lidar: no packet came to {address}, UDP ports 2368 and 8308, in 2 s"),
-            )
-            .help(
-                "see whether the lidar is powered and turns, its cable is in, this machine's address is the one it sends to\n\
-                 (its web page, or tcpdump -n udp port 2368), and no firewall drops its packets",
-            ));
+            return Err(silence(&listen_config(&setup.device)));
         }
         std::thread::sleep(pause);
         waited += pause;
     }
     Ok(())
+}
+
+/// Nothing came to where a lidar was to be heard.
+fn silence(config: &ListenConfig) -> Failure {
+    let data = config.data_port;
+    let ports = match config.position_port.filter(|&position| position != data) {
+        Some(position) => format!("UDP ports {data} and {position}"),
+        None => format!("UDP port {data}"),
+    };
+    let source = match config.sources.as_slice() {
+        [source, ..] => format!(" from {source}"),
+        [] => String::new(),
+    };
+    let to = match config.group {
+        Some(group) => format!("the group {group} on {}", config.address),
+        None => config.address.to_string(),
+    };
+    Failure::new(
+        Kind::NoDevice,
+        format!("no lidar: no packet came{source} to {to}, {ports}, in 2 s"),
+    )
+    .help(format!(
+        "see whether the lidar is powered and turns, its cable is in, this machine's address is the one it sends to\n\
+         (its web page, or tcpdump -n udp port {data}), and no firewall drops its packets"
+    ))
 }
 
 /// Says how it ended. What went wrong first is what the user must hear first.
@@ -225,6 +248,7 @@ fn conclude(
         ),
     };
     let lost = ended.recorded.as_ref().map_or(0, lost_records);
+    let reception = ended.recorded.as_ref().ok().map(reception);
     let failure = match (ended.motion, ended.recorded) {
         // The log's failure is why the session was interrupted.
         (Err(SessionError::Interrupted), Err(failure)) | (Ok(()), Err(failure)) => Some(failure),
@@ -242,6 +266,7 @@ fn conclude(
         (Ok(scan), failure) => {
             let scan = Scan {
                 lost_records: lost,
+                reception,
                 ..scan
             };
             Ok(Said::scan(&scan, failure, stdout))
@@ -267,6 +292,18 @@ fn without_cloud(failure: Failure, log: &Path) -> Failure {
         .as_ref()
         .map_or(saved.clone(), |help| format!("{help}\n{saved}"));
     Failure { kind, ..failure }.help(help)
+}
+
+/// What the lidar's sockets and the log did.
+fn reception(recorded: &Recorded) -> Reception {
+    let Recorded { lidar, log } = recorded;
+    Reception {
+        packets: lidar.data + lidar.position,
+        dropped_by_kernel: lidar.dropped,
+        dropped_by_log: log.dropped + log.refused,
+        without_kernel_time: lidar.without_kernel_time,
+        from_others: lidar.unwanted,
+    }
 }
 
 fn lost_records(recorded: &Recorded) -> u64 {
@@ -320,6 +357,26 @@ fn motion_failure(error: &SessionError, recorded: Option<Failure>) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_listened_for_in_vain_is_said() {
+        let of = |config: &ListenConfig| silence(config).message;
+        assert_eq!(
+            of(&ListenConfig::default()),
+            "no lidar: no packet came to 0.0.0.0, UDP ports 2368 and 8308, in 2 s"
+        );
+        let group = ListenConfig {
+            data_port: 2369,
+            position_port: Some(2369),
+            group: Some([239, 1, 2, 3].into()),
+            sources: vec![[192, 168, 1, 201].into()],
+            ..ListenConfig::default()
+        };
+        assert_eq!(
+            of(&group),
+            "no lidar: no packet came from 192.168.1.201 to the group 239.1.2.3 on 0.0.0.0, UDP port 2369, in 2 s"
+        );
+    }
 
     #[test]
     fn a_capture_without_a_cloud_says_where_its_log_is() {

@@ -323,6 +323,7 @@ fn report(
         output: output.display().to_string(),
         log: path.display().to_string(),
         lost_records: 0,
+        reception: None,
         truth: None,
     })
 }
