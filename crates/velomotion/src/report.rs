@@ -238,7 +238,7 @@ pub struct Sync {
 }
 
 /// What a capture heard of the lidar, and what of it was lost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Reception {
     /// Packets heard, position packets included.
     pub packets: u64,
@@ -485,5 +485,32 @@ impl Scan {
             worst_m: report.worst_m,
         });
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_dropped_is_in_the_summary() {
+        let heard = Reception {
+            packets: 700,
+            dropped_by_kernel: 3,
+            dropped_by_log: 2,
+            ..Reception::default()
+        };
+        assert_eq!(
+            heard.line(),
+            "700 lidar packets, 3 dropped by the kernel; 2 records dropped by the log"
+        );
+        let others = Reception {
+            from_others: 9,
+            ..Reception::default()
+        };
+        assert_eq!(
+            others.line(),
+            "0 lidar packets, 0 dropped by the kernel, 9 of other senders left out; 0 records dropped by the log"
+        );
     }
 }
