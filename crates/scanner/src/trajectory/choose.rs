@@ -127,8 +127,9 @@ impl<'a> Candidates<'a> {
                     else {
                         continue;
                     };
-                    // The motion alone is quickly fitted, and mostly it is that.
-                    if method == Method::Profile || one.leaves_less_than(0.25) {
+                    // The motion alone is quickly fitted, and mostly it is that; where a look leaves as much as that, it is not.
+                    let doubtful = if method == Method::Profile { 1.0 } else { 0.25 };
+                    if one.leaves_less_than(doubtful) {
                         self.look_closer(&mut one, servo(method));
                     }
                     // Of a motion that leaves nothing more would be fitted to scatter.
