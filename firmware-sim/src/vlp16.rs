@@ -6,10 +6,12 @@
 
 mod data;
 mod dual;
+mod model;
 mod position;
 
 pub use data::PacketBuilder;
 pub use dual::DualPacketBuilder;
+pub use model::{Model, ModelPacket, ReturnMode};
 pub use position::{Pps, position_packet};
 
 /// Bytes of a data packet's UDP payload.
@@ -77,12 +79,17 @@ struct Blocks {
 impl Blocks {
     /// Blocks with flags, azimuth 0 and no returns.
     fn empty(return_mode: u8) -> Self {
+        Self::of(return_mode, PRODUCT)
+    }
+
+    /// The same of another product.
+    fn of(return_mode: u8, product: u8) -> Self {
         let mut bytes = [0; DATA_LEN];
         let (blocks, tail) = bytes.split_at_mut(BLOCKS * BLOCK_LEN);
         for block in blocks.chunks_exact_mut(BLOCK_LEN) {
             put(block, 0, &FLAG);
         }
-        put(tail, 4, &[return_mode, PRODUCT]);
+        put(tail, 4, &[return_mode, product]);
         Self { bytes }
     }
 
@@ -98,12 +105,14 @@ impl Blocks {
 
     /// Writes the first (0) or second (1) sequence of a block.
     fn returns(&mut self, block: usize, half: usize, returns: &Returns) {
-        let at = block * BLOCK_LEN + 4 + half * HALF_LEN;
-        let channels = self.bytes.get_mut(at..at + HALF_LEN).into_iter();
-        for (channel, &(distance, reflectivity)) in channels
-            .flat_map(|half| half.chunks_exact_mut(3))
-            .zip(returns)
-        {
+        self.channels(block, half * LASERS, returns);
+    }
+
+    /// Writes channels of a block from `first` on; what does not fit is not written.
+    fn channels(&mut self, block: usize, first: usize, returns: &[(u16, u8)]) {
+        let (from, to) = (block * BLOCK_LEN + 4 + 3 * first, (block + 1) * BLOCK_LEN);
+        let channels = self.bytes.get_mut(from..to).unwrap_or_default();
+        for (channel, &(distance, reflectivity)) in channels.chunks_exact_mut(3).zip(returns) {
             let [low, high] = distance.to_le_bytes();
             channel.copy_from_slice(&[low, high, reflectivity]);
         }

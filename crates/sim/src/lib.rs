@@ -5,8 +5,8 @@
 //! so that the two agreeing is evidence. There is no I/O, no clock and no global randomness: time and seeds are
 //! arguments, and one seed gives one result.
 //!
-//! [`effects`] are absent unless asked for, and cost nothing then. Left out: range noise, beam divergence, loss, jitter of the
-//! sensor's own clock.
+//! [`simulate`] is the other way to make bytes: whole scenes, every model of lidar, as fast as the machine goes, without the firmware of the
+//! drive. [`effects`] are absent unless asked for, and cost nothing then.
 
 mod attached;
 pub mod cast;
@@ -14,12 +14,16 @@ mod clock;
 pub mod effects;
 mod head;
 pub mod link;
+pub mod motion;
 pub mod packet_clock;
+pub mod random;
 mod rig;
 mod scene;
 pub mod scenes;
+pub mod sensor;
 mod shaft;
 mod shapes;
+pub mod simulate;
 mod spinning;
 mod truth;
 mod world;

@@ -1,0 +1,155 @@
+//! Random numbers by key instead of by turn: the seed, an effect's name, a firing and a channel give a draw, whoever asks first.
+//!
+//! So one more effect leaves the draws of the others as they were, and any number of threads gives the same bytes. The mixing is that of
+//! SplitMix64 (Steele, Lea and Flood 2014), a bijection of 64 bits, once for each part of the key. Left out: security.
+
+use core::f64::consts::TAU;
+
+/// The odd number next to 2^64 divided by the golden ratio.
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+/// Another odd number with as little structure (from the same paper's second mixer).
+const SECOND: u64 = 0xD605_BBB5_8C8A_BC03;
+
+/// Where one effect's draws come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Source {
+    key: u64,
+}
+
+/// The draws of one key, one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Draws {
+    state: u64,
+}
+
+impl Source {
+    /// The source of the effect `name` in a run with `seed`.
+    #[must_use]
+    pub fn new(seed: u64, name: &str) -> Self {
+        let key = name.bytes().fold(mix(seed ^ GOLDEN), |key, byte| {
+            mix(key ^ u64::from(byte)).wrapping_add(GOLDEN)
+        });
+        Self { key }
+    }
+
+    /// The draws of a channel at an index: of a firing, a packet, a poll.
+    #[inline]
+    #[must_use]
+    pub const fn at(self, index: u64, channel: u32) -> Draws {
+        let row = mix(self.key.wrapping_add(index.wrapping_mul(GOLDEN)));
+        Draws {
+            state: mix(row.wrapping_add((channel as u64 + 1).wrapping_mul(SECOND))),
+        }
+    }
+}
+
+impl Draws {
+    /// 64 random bits.
+    #[inline]
+    pub const fn bits(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(GOLDEN);
+        mix(self.state)
+    }
+
+    /// From 0 to below 1, in steps of 2^-53.
+    #[inline]
+    pub const fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+    }
+
+    /// Two independent draws of the normal distribution with mean 0 and standard deviation 1 (Box and Muller 1958).
+    #[inline]
+    pub fn normals(&mut self) -> [f64; 2] {
+        // Above 0, so that its logarithm is finite: at most 8.6 standard deviations.
+        let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();
+        let (sin, cos) = (TAU * self.unit()).sin_cos();
+        [radius * cos, radius * sin]
+    }
+
+    /// One of them.
+    #[inline]
+    pub fn normal(&mut self) -> f64 {
+        self.normals()[0]
+    }
+}
+
+/// A bijection that spreads every bit over all others.
+const fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_gives_its_draws_whatever_was_asked_before() {
+        let source = Source::new(7, "range noise");
+        let once = source.at(12, 3).bits();
+        let _ = source.at(12, 4).bits();
+        assert_eq!(source.at(12, 3).bits(), once);
+        for other in [
+            Source::new(8, "range noise").at(12, 3),
+            Source::new(7, "range nois").at(12, 3),
+            source.at(13, 3),
+            source.at(12, 2),
+        ] {
+            assert_ne!(other.clone().bits(), once);
+        }
+    }
+
+    /// SplitMix64 as its authors print it, seeded with 0: the first output.
+    #[test]
+    fn the_mixer_is_the_published_one() {
+        assert_eq!(mix(GOLDEN), 0xE220_A839_7B1D_CDAF);
+    }
+
+    /// Means, variances and correlations of 2^18 draws, each with its own standard error.
+    #[test]
+    fn neighbouring_keys_are_strangers() {
+        let source = Source::new(1, "x");
+        let n = 1 << 18;
+        let draws: Vec<f64> = (0..n)
+            .map(|i| source.at(i / 16, (i % 16) as u32).unit() - 0.5)
+            .collect();
+        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / n as f64;
+        let error = (1.0 / 12.0 / n as f64).sqrt();
+        assert!(mean(&mut draws.iter().copied()).abs() < 4.0 * error);
+        let variance = mean(&mut draws.iter().map(|x| x * x));
+        assert!((variance - 1.0 / 12.0).abs() < 4.0 * (1.0 / 180.0 / n as f64).sqrt());
+        for lag in [1, 2, 15, 16, 17, 32] {
+            let product = mean(&mut draws.iter().zip(draws.iter().skip(lag)).map(|(a, b)| a * b));
+            assert!(
+                product.abs() < 4.0 / 12.0 / (n as f64).sqrt(),
+                "lag {lag}: {product}"
+            );
+        }
+    }
+
+    #[test]
+    fn normal_draws_are_normal() {
+        let source = Source::new(2, "x");
+        let n = 1 << 17;
+        let (mut sum, mut squares, mut within, mut joint) = (0.0, 0.0, 0, 0.0);
+        for index in 0..n {
+            let [a, b] = source.at(index, 0).normals();
+            sum += a + b;
+            squares += a * a + b * b;
+            within += u32::from(a.abs() < 1.0) + u32::from(b.abs() < 1.0);
+            joint += a * b;
+        }
+        let count = 2.0 * n as f64;
+        assert!((sum / count).abs() < 4.0 / count.sqrt());
+        assert!((squares / count - 1.0).abs() < 4.0 * (2.0 / count).sqrt());
+        assert!((f64::from(within) / count - 0.682_689).abs() < 4.0 * (0.2166 / count).sqrt());
+        assert!((joint / n as f64).abs() < 4.0 / (n as f64).sqrt());
+    }
+
+    #[test]
+    fn units_stay_below_one() {
+        let mut draws = Source::new(3, "x").at(0, 0);
+        assert!((0..10_000).all(|_| (0.0..1.0).contains(&draws.unit())));
+    }
+}

@@ -1,0 +1,80 @@
+//! What rays meet: the one place where the simulation calls the ray caster.
+//!
+//! Every thread has surroundings of its own, which moving objects are placed in. Left out: how rays are cast ([`Scene`]).
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::firing::{Echo, Firing};
+use crate::effects::Needs;
+use crate::scene::Scene;
+use crate::sensor::{MOST_LASERS, Reach};
+
+/// The scene around the scanner at the moment.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    scene: Arc<Scene>,
+    needs: Needs,
+    reach: Reach,
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// How far away, metres.
+    pub range_m: f64,
+    /// Calibrated reflectivity of what it met: 0..=100 diffuse, above that retroreflecting.
+    pub reflectivity: f64,
+    /// The surface's normal, length 1, whichever way it points; 0 where no effect needs it ([`Needs::normals`]).
+    pub normal: DVec3,
+}
+
+impl Surroundings {
+    pub(super) const fn new(scene: Arc<Scene>, needs: Needs, reach: Reach) -> Self {
+        Self {
+            scene,
+            needs,
+            reach,
+        }
+    }
+
+    /// How far the sensor sees.
+    #[must_use]
+    pub const fn reach(&self) -> Reach {
+        self.reach
+    }
+
+    /// What a ray from `origin_m` along `direction` (length 1) meets first within the sensor's reach, in the frame of the base. A nearer surface
+    /// blocks it.
+    #[inline]
+    #[must_use]
+    pub fn meet(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+        let Reach { min_m, max_m } = self.reach;
+        let hit = self.scene.cast(origin_m, direction, min_m, max_m)?;
+        Some(Met {
+            range_m: hit.range_m,
+            reflectivity: f64::from(hit.reflectivity),
+            normal: DVec3::ZERO,
+        })
+    }
+
+    /// The same for all lasers of a firing that are alive; the others have no echo.
+    #[inline]
+    pub(super) fn meet_all(&self, firing: &Firing, echoes: &mut [Echo; MOST_LASERS]) {
+        debug_assert!(
+            !self.needs.normals || cfg!(test),
+            "normals come with the caster"
+        );
+        let rays = firing.origins_m.iter().zip(&firing.directions);
+        let lasers = echoes.iter_mut().zip(rays).take(firing.lasers);
+        for (laser, (echo, (origin, direction))) in lasers.enumerate() {
+            *echo = Echo::NONE;
+            if firing.is_alive(laser)
+                && let Some(met) = self.meet(*origin, *direction)
+            {
+                *echo = Echo::of(&met);
+            }
+        }
+    }
+}

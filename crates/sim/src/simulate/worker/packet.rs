@@ -1,0 +1,251 @@
+//! One packet after the other: what a thread does.
+
+use firmware_sim::vlp16::ModelPacket;
+
+use super::{Chunk, Job, Packet};
+use crate::effects::{Beam, Clock, FiringEffects, Objects, Surface, View};
+use crate::sensor::{MOST_LASERS, ReturnMode};
+use crate::simulate::{Echo, Echoes, Firing, Spin, Surroundings, TruePoint};
+
+/// What a thread works with.
+pub(super) struct Worker<'a, F> {
+    job: &'a Job<'a>,
+    effects: F,
+    surroundings: Surroundings,
+    firing: Firing,
+    echoes: Echoes,
+    packet: ModelPacket,
+}
+
+/// A return on the wire: distance in the sensor's units, calibrated reflectivity.
+type Raw = (u16, u8);
+
+/// What is reported of a firing.
+struct Reported {
+    /// In a single-return mode that one, in dual return the last.
+    first: [Echo; MOST_LASERS],
+    /// In dual return the other; the same where only one came back.
+    second: [Echo; MOST_LASERS],
+}
+
+impl<'a, F: FiringEffects> Worker<'a, F> {
+    pub fn new(job: &'a Job<'a>, effects: F) -> Self {
+        let simulation = job.simulation;
+        let two = simulation.returns != ReturnMode::Strongest;
+        Self {
+            surroundings: Surroundings::new(
+                simulation.scene.clone(),
+                job.needs,
+                simulation.sensor.reach(),
+            ),
+            firing: Firing::new(job.rays.count),
+            echoes: Echoes::new(job.rays.count, two),
+            packet: ModelPacket::new(simulation.sensor.model(), simulation.returns),
+            job,
+            effects,
+        }
+    }
+
+    pub fn into_effects(self) -> F {
+        self.effects
+    }
+
+    /// Makes a packet.
+    pub fn packet(&mut self, number: u64, chunk: &mut Chunk) {
+        let job = self.job;
+        let model = job.simulation.sensor.model();
+        let per_block = model.firings_per_block() as u64;
+        let mut made = Counts::default();
+        let points = chunk.points.len();
+        let (mut first_ns, mut end_ns) = (None, 0);
+        for block in job.schedule.blocks(number) {
+            let first = block.saturating_mul(per_block);
+            let begin_ns = signed(first).saturating_mul(model.firing_period_ns());
+            first_ns.get_or_insert(begin_ns);
+            end_ns = begin_ns.saturating_add(model.block_period_ns());
+            for firing in first..first.saturating_add(per_block) {
+                self.fire(firing, &mut made, &mut chunk.points);
+            }
+        }
+        let stamp_us = job.clock.stamp_us(first_ns.unwrap_or(0));
+        chunk.packets.push(Packet {
+            payload: self.packet.finish(stamp_us),
+            leaves_ns: self.effects.parts().clock.host_ns(end_ns),
+            stamp_us: job.clock.stamp_us(end_ns),
+            points: chunk.points.len() - points,
+            shots: made.shots,
+            returned: made.returned,
+            returns: made.returns,
+        });
+    }
+
+    /// One firing of all lasers: from the clock to the packet. Where each effect acts is to be read here.
+    fn fire(&mut self, number: u64, made: &mut Counts, points: &mut Vec<TruePoint>) {
+        let job = self.job;
+        let simulation = job.simulation;
+        let effects = self.effects.parts();
+        let device_ns = signed(number).saturating_mul(simulation.sensor.model().firing_period_ns());
+        let firing = &mut self.firing;
+        firing.number = number;
+        firing.at_s = effects.clock.host_ns(device_ns) as f64 * 1e-9;
+        firing.azimuth_deg = simulation.spin.azimuth_deg(device_ns);
+        firing.tilt = job.course.platform(firing.at_s);
+        firing.alive = simulation.sensor.used();
+        firing.aim(&job.rays, &simulation.mount);
+        made.shots += firing.alive.count_ones();
+        effects.view.look(firing);
+        if job.needs.moving {
+            effects.objects.place(firing.at_s, &mut self.surroundings);
+        }
+        self.surroundings
+            .meet_all(firing, &mut self.echoes.strongest);
+        if self.echoes.two {
+            self.echoes.other = [Echo::NONE; MOST_LASERS];
+        }
+        effects
+            .beam
+            .receive(firing, &self.surroundings, &mut self.echoes);
+        effects.surface.reflect(firing, &mut self.echoes);
+        self.report(device_ns, made, points);
+    }
+
+    /// Puts what came back into the packet, and into the truth where that is wanted.
+    fn report(&mut self, device_ns: i64, made: &mut Counts, points: &mut Vec<TruePoint>) {
+        let job = self.job;
+        let simulation = job.simulation;
+        let model = simulation.sensor.model();
+        let per_m = 1e3 / f64::from(model.distance_unit_mm());
+        let azimuth_cdeg = simulation.spin.azimuth_cdeg(device_ns);
+        let lasers = self.firing.lasers;
+        let reported = match simulation.returns {
+            ReturnMode::Strongest => None,
+            ReturnMode::Last | ReturnMode::Dual => Some(by_range(&self.echoes)),
+        };
+        let (first, second) = match &reported {
+            None => (&self.echoes.strongest, &[][..]),
+            Some(both) if simulation.returns == ReturnMode::Dual => {
+                (&both.first, both.second.get(..lasers).unwrap_or_default())
+            }
+            Some(both) => (&both.first, &[][..]),
+        };
+        let mut raw = [[(0, 0); MOST_LASERS]; 2];
+        let [raw_first, raw_second] = &mut raw;
+        for (laser, (echo, raw)) in first.iter().zip(raw_first).enumerate().take(lasers) {
+            *raw = on_the_wire(echo, per_m);
+            let there = u32::from(raw.0 > 0);
+            made.returned += there;
+            made.returns += there;
+            if job.truth && raw.0 > 0 {
+                points.extend(self.point(laser, 0, echo, raw.1, device_ns));
+            }
+        }
+        for (laser, (echo, raw)) in second.iter().zip(raw_second).enumerate() {
+            *raw = on_the_wire(echo, per_m);
+            // One return alone is in both blocks.
+            if raw.0 == 0 || first.get(laser) == Some(echo) {
+                continue;
+            }
+            made.returns += 1;
+            if job.truth {
+                points.extend(self.point(laser, 1, echo, raw.1, device_ns));
+            }
+        }
+        let [raw_first, raw_second] = &raw;
+        self.packet.firing(azimuth_cdeg, raw_first, raw_second);
+    }
+
+    /// The truth of an echo; none where no surface made it.
+    fn point(
+        &self,
+        laser: usize,
+        echo: u8,
+        of: &Echo,
+        reflectivity: u8,
+        device_ns: i64,
+    ) -> Option<TruePoint> {
+        let simulation = self.job.simulation;
+        let beam = simulation.sensor.beams().get(laser)?;
+        let (origin, direction) = (
+            self.firing.origins_m.get(laser)?,
+            self.firing.directions.get(laser)?,
+        );
+        if !of.true_range_m.is_finite() {
+            return None;
+        }
+        let device_ns = device_ns.saturating_add(beam.delay_ns);
+        let after_s = beam.delay_ns as f64 * 1e-9;
+        let ahead_deg = beam.azimuth_deg + simulation.spin.deg_per_s() * after_s;
+        let host_ns = self.effects.parts().clock.host_ns(device_ns);
+        let tilt = self.firing.tilt;
+        Some(TruePoint {
+            position_m: *origin + of.true_range_m * *direction,
+            host: simulation.host(host_ns),
+            device_ns,
+            laser: u8::try_from(laser).ok()?,
+            echo,
+            reflectivity,
+            range_m: of.true_range_m,
+            azimuth_deg: (self.firing.azimuth_deg + ahead_deg).rem_euclid(360.0),
+            tilt_deg: tilt.angle_deg + tilt.rate_deg_s * after_s,
+        })
+    }
+}
+
+/// What was counted of a packet.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    shots: u32,
+    returned: u32,
+    returns: u32,
+}
+
+/// The farther of two returns, and the nearer; one alone is both.
+fn by_range(echoes: &Echoes) -> Reported {
+    let mut reported = Reported {
+        first: echoes.strongest,
+        second: echoes.strongest,
+    };
+    let both = reported.first.iter_mut().zip(&mut reported.second);
+    for ((last, other), also) in both.zip(&echoes.other) {
+        if also.is_there() {
+            let farther = also.range_m > last.range_m || !last.is_there();
+            *(if farther { last } else { other }) = *also;
+        }
+    }
+    reported
+}
+
+/// The nearest whole units; none where the packet cannot say it.
+#[inline(always)]
+fn on_the_wire(echo: &Echo, per_m: f64) -> Raw {
+    if !echo.is_there() {
+        return (0, 0);
+    }
+    // Saturates: a negative range is 0, which is no return, as is one that does not fit.
+    let units = (echo.range_m * per_m + 0.5) as u32;
+    match u16::try_from(units) {
+        Ok(units) if units > 0 => (units, (echo.reflectivity + 0.5) as u8),
+        _ => (0, 0),
+    }
+}
+
+fn signed(number: u64) -> i64 {
+    i64::try_from(number).unwrap_or(i64::MAX)
+}
+
+impl Spin {
+    /// The azimuth at a device time, 0..360 degrees, exact for any length of run.
+    pub(super) fn azimuth_deg(self, device_ns: i64) -> f64 {
+        let spin = crate::world::Spin {
+            rpm: self.rpm,
+            at_start: units::Degrees(self.start_deg),
+        };
+        spin.azimuth(device_ns).0
+    }
+
+    /// The same as the wire has it.
+    fn azimuth_cdeg(self, device_ns: i64) -> u16 {
+        let cdeg = (self.azimuth_deg(device_ns) * 100.0 + 0.5) as u16;
+        cdeg % firmware_sim::vlp16::TURN_CDEG
+    }
+}
