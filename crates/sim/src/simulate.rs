@@ -94,22 +94,41 @@ pub enum Event<'a> {
         /// The UDP payload.
         payload: &'a [u8],
     },
-    /// The host asks the drive where it is.
+    /// The host asks something of the drive.
     Request {
         /// When it hands the request on.
         at: Stamp<Host>,
-        /// Which request, from 0.
-        poll: u64,
+        /// What.
+        ask: Ask,
     },
     /// The drive's answer arrives.
     Answer {
         /// When.
         at: Stamp<Host>,
-        /// To which request.
-        poll: u64,
-        /// Where the motor's shaft is, quadcounts (6064).
+        /// To what.
+        ask: Ask,
+        /// Where the motor's shaft is, quadcounts (6064); for other requests than [`Ask::Position`] nobody says so.
         position_qc: i32,
     },
+}
+
+/// What the host asks of the drive: where its shaft is, all the time, and before each way the six writes that command it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ask {
+    /// Say where the shaft is.
+    Position,
+    /// Here the next way ends, quadcounts.
+    Target(i32),
+    /// So fast it is to be, degrees of tilt per second.
+    Speed(f64),
+    /// So quickly that is to be reached, degrees per second squared; infinite where at once.
+    Acceleration(f64),
+    /// So quickly it is to end.
+    Deceleration(f64),
+    /// Be ready for a new target.
+    Ready,
+    /// Go there.
+    Go,
 }
 
 /// A return as it truly was.

@@ -1,10 +1,11 @@
 //! Both devices' traffic in order of time, through the links and out.
 //!
-//! The host asks the drive at even intervals, but never before the last answer has come or has been given up. Left out: what a request looks
-//! like on its link.
+//! The host asks the drive at even intervals, but never before the last answer has come or has been given up. Before each way of the motion it
+//! writes what commands it, again and again until it is acknowledged; the axis goes its way on time whatever becomes of that. Left out: what a
+//! request looks like on its link.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::cmp::{Ordering, Reverse};
+use std::collections::{BinaryHeap, VecDeque};
 use std::ops::ControlFlow;
 
 use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT, Pps, position_packet};
@@ -12,31 +13,60 @@ use units::{Degrees, Gearing, Span};
 
 use super::course::Course;
 use super::worker::{Chunk, Packet};
-use super::{Event, Out, Polls, Simulation, Summary};
+use super::{Ask, Event, Out, Polls, Simulation, Summary};
 use crate::effects::{Encoder, Parcel, ParcelKind, Wire};
+use crate::motion::Leg;
 
 /// Data packets from one position packet to the next, about as often as real sensors send one.
 const DATA_PER_POSITION: u64 = 5;
 /// An answer that has not come after so many periods is given up.
 const PATIENCE_PERIODS: i64 = 8;
 
+/// So many periods before a way begins its commands are written: six, and two to spare.
+const COMMAND_PERIODS: i64 = 8;
+
 /// What is on its way, in the order of arrival.
 type Pending = BinaryHeap<Reverse<Waiting>>;
 
-/// Something that will arrive.
-#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// Something that will arrive. Of two that arrive at once, the one that was sent first comes first.
+#[derive(Debug)]
 struct Waiting {
     arrives_ns: i64,
-    /// Of two that arrive at once the one that was sent first.
     order: u64,
     what: What,
 }
 
-#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug)]
 enum What {
     Datagram { port: u16, payload: Vec<u8> },
-    Request { poll: u64 },
-    Answer { poll: u64, position_qc: i32 },
+    Request(Ask),
+    Answer { ask: Ask, position_qc: i32 },
+}
+
+impl Waiting {
+    const fn key(&self) -> (i64, u64) {
+        (self.arrives_ns, self.order)
+    }
+}
+
+impl PartialEq for Waiting {
+    fn eq(&self, other: &Self) -> bool {
+        self.key() == other.key()
+    }
+}
+
+impl Eq for Waiting {}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Waiting {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.key().cmp(&other.key())
+    }
 }
 
 pub(super) struct Merge<'a, E, W> {
@@ -47,6 +77,10 @@ pub(super) struct Merge<'a, E, W> {
     out: &'a mut dyn Out,
     polls: Option<(Polls, Gearing)>,
     next_poll_ns: i64,
+    /// Ways that were not commanded yet.
+    legs: std::slice::Iter<'a, Leg>,
+    /// What is to be written for the next one.
+    commands: VecDeque<Ask>,
     pending: Pending,
     order: u64,
     summary: Summary,
@@ -71,6 +105,8 @@ impl<'a, E: Encoder, W: Wire> Merge<'a, E, W> {
                 .polls
                 .map(|polls| (polls, gearing.unwrap_or(polls.gearing))),
             next_poll_ns: 0,
+            legs: simulation.motion.legs().iter(),
+            commands: VecDeque::new(),
             pending: Pending::new(),
             order: 0,
             summary: Summary::default(),
@@ -158,55 +194,83 @@ impl<'a, E: Encoder, W: Wire> Merge<'a, E, W> {
     }
 
     fn poll(&mut self, polls: Polls, gearing: Gearing) {
-        let (poll, asked_ns) = (self.summary.polls, self.next_poll_ns);
+        let (number, asked_ns) = (self.summary.polls, self.next_poll_ns);
         self.summary.polls += 1;
+        self.command(asked_ns, polls, gearing);
+        let ask = self.commands.front().copied().unwrap_or(Ask::Position);
         push(
             &mut self.pending,
             &mut self.order,
             asked_ns,
-            What::Request { poll },
+            What::Request(ask),
         );
-        let request = Parcel {
-            kind: ParcelKind::Request,
-            number: poll,
-            leaves_ns: asked_ns,
+        let parcel = |kind, leaves_ns| Parcel {
+            kind,
+            number,
+            leaves_ns,
         };
         let mut heard = Vec::new();
-        self.wire.deliver(request, &mut |arrived| {
-            heard.push(arrived.leaves_ns.max(asked_ns))
-        });
-        let given_up_ns = asked_ns.saturating_add(PATIENCE_PERIODS.saturating_mul(polls.period_ns));
+        self.wire
+            .deliver(parcel(ParcelKind::Request, asked_ns), &mut |arrived| {
+                heard.push(arrived.leaves_ns.max(asked_ns));
+            });
         let mut answered_ns = None;
         for heard_ns in heard {
             // The shaft is read in the middle of what the drive takes to answer.
             let read_ns = heard_ns.saturating_add(polls.answer_ns / 2);
             let shaft = Degrees(self.course.shaft_deg(read_ns as f64 * 1e-9));
-            let shown = self.encoder.read(poll, shaft);
-            // Saturates for angles that no counter holds.
-            let position_qc = (shown.0 / gearing.degrees_per_qc()).round() as i32;
-            let leaves_ns = heard_ns.saturating_add(polls.answer_ns);
-            let answer = Parcel {
-                kind: ParcelKind::Answer,
-                number: poll,
-                leaves_ns,
+            let position_qc = match ask {
+                Ask::Position => quadcounts(self.encoder.read(number, shaft), gearing),
+                _ => 0,
             };
+            let leaves_ns = heard_ns.saturating_add(polls.answer_ns);
             let (pending, order) = (&mut self.pending, &mut self.order);
-            self.wire.deliver(answer, &mut |arrived| {
-                let arrives_ns = arrived.leaves_ns.max(leaves_ns);
-                let first = *answered_ns.get_or_insert(arrives_ns);
-                answered_ns = Some(first.min(arrives_ns));
-                push(
-                    pending,
-                    order,
-                    arrives_ns,
-                    What::Answer { poll, position_qc },
-                );
-            });
+            self.wire
+                .deliver(parcel(ParcelKind::Answer, leaves_ns), &mut |arrived| {
+                    let arrives_ns = arrived.leaves_ns.max(leaves_ns);
+                    let first = *answered_ns.get_or_insert(arrives_ns);
+                    answered_ns = Some(first.min(arrives_ns));
+                    push(
+                        pending,
+                        order,
+                        arrives_ns,
+                        What::Answer { ask, position_qc },
+                    );
+                });
+        }
+        if answered_ns.is_some() {
+            self.commands.pop_front();
         }
         // The next even interval after that.
+        let given_up_ns = asked_ns.saturating_add(PATIENCE_PERIODS.saturating_mul(polls.period_ns));
         let free_ns = answered_ns.unwrap_or(given_up_ns).min(given_up_ns);
         let taken = (free_ns.saturating_sub(asked_ns) / polls.period_ns).max(0);
         self.next_poll_ns = asked_ns.saturating_add((taken + 1).saturating_mul(polls.period_ns));
+    }
+
+    /// Sees whether it is time to command the next way.
+    fn command(&mut self, now_ns: i64, polls: Polls, gearing: Gearing) {
+        let ahead_s = COMMAND_PERIODS.saturating_mul(polls.period_ns) as f64 * 1e-9;
+        let due = |leg: &&Leg| now_ns as f64 * 1e-9 >= leg.begin_s - ahead_s;
+        if !self.commands.is_empty() {
+            return;
+        }
+        if let Some(leg) = self.legs.as_slice().first().filter(due) {
+            self.legs.next();
+            let speed = leg.cruise_deg_s.abs();
+            let accel = match leg.ramp_s > 0.0 {
+                true => speed / leg.ramp_s,
+                false => f64::INFINITY,
+            };
+            self.commands.extend([
+                Ask::Target(quadcounts(Degrees(leg.to_deg), gearing)),
+                Ask::Speed(speed),
+                Ask::Acceleration(accel),
+                Ask::Deceleration(accel),
+                Ask::Ready,
+                Ask::Go,
+            ]);
+        }
     }
 
     /// Hands on what arrives until then: nothing that is sent later can be earlier.
@@ -226,10 +290,10 @@ impl<'a, E: Encoder, W: Wire> Merge<'a, E, W> {
                     port: *port,
                     payload,
                 },
-                What::Request { poll } => Event::Request { at, poll: *poll },
-                What::Answer { poll, position_qc } => Event::Answer {
+                What::Request(ask) => Event::Request { at, ask: *ask },
+                What::Answer { ask, position_qc } => Event::Answer {
                     at,
-                    poll: *poll,
+                    ask: *ask,
                     position_qc: *position_qc,
                 },
             };
@@ -248,6 +312,11 @@ impl<'a, E: Encoder, W: Wire> Merge<'a, E, W> {
         self.summary.lasted = Span::from_nanos(self.simulation.end_ns());
         self.summary
     }
+}
+
+/// The nearest count; saturates for angles that no counter holds.
+fn quadcounts(angle: Degrees, gearing: Gearing) -> i32 {
+    (angle.0 / gearing.degrees_per_qc()).round() as i32
 }
 
 fn push(pending: &mut Pending, order: &mut u64, arrives_ns: i64, what: What) {

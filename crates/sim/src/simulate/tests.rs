@@ -11,6 +11,7 @@ struct Taken {
     times: Vec<i64>,
     datagrams: Vec<(u16, Vec<u8>)>,
     answers: Vec<(Stamp<Host>, i32)>,
+    commands: Vec<Ask>,
     points: Vec<TruePoint>,
     stop_after: Option<usize>,
 }
@@ -24,9 +25,14 @@ impl Out for Taken {
             }
             Event::Request { at, .. } => at,
             Event::Answer {
-                at, position_qc, ..
+                at,
+                ask,
+                position_qc,
             } => {
-                self.answers.push((*at, *position_qc));
+                match ask {
+                    Ask::Position => self.answers.push((*at, *position_qc)),
+                    other => self.commands.push(*other),
+                }
                 at
             }
         };
@@ -57,7 +63,7 @@ fn hall(sensor: Sensor) -> Simulation {
         accel_deg_s2: Some(5_000.0),
         count: 1,
         both_ways: false,
-        rest_s: 0.01,
+        rest_s: 0.03,
     });
     Simulation {
         scene: Arc::new(scenes::hall()),
@@ -165,7 +171,16 @@ fn events_come_in_order_and_a_break_ends_them() {
     // 0.17 s: 0.15 s of cruise, one ramp of 0.06 s less what it saves.
     let lasted = summary.lasted.as_secs_f64();
     assert_eq!(summary.packets, (lasted / 1_327.104e-6) as u64);
-    assert_eq!(taken.answers.len() as u64, summary.polls);
+    assert_eq!((taken.answers.len() + 6) as u64, summary.polls);
+    let commanded = [
+        Ask::Target(-30_000),
+        Ask::Speed(300.0),
+        Ask::Acceleration(5_000.0),
+        Ask::Deceleration(5_000.0),
+        Ask::Ready,
+        Ask::Go,
+    ];
+    assert_eq!(taken.commands, commanded);
     assert_eq!(summary.polls, (lasted / 2.5e-3) as u64 + 1);
     for count in [1, 2] {
         let mut taken = Taken {
