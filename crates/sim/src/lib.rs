@@ -19,6 +19,7 @@ pub mod packet_clock;
 pub mod random;
 mod rig;
 mod scene;
+pub mod scene_file;
 pub mod scenes;
 pub mod sensor;
 mod shaft;

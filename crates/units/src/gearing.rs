@@ -76,6 +76,12 @@ impl Gearing {
         self.qc_per_turn
     }
 
+    /// Turns of the motor for so many turns of the axis, as they were given: `[120, 1]` is 120:1.
+    #[must_use]
+    pub const fn turns(self) -> [u32; 2] {
+        [self.motor_turns, self.axis_turns]
+    }
+
     /// Degrees of tilt in one quadcount.
     #[must_use]
     pub fn degrees_per_qc(self) -> f64 {

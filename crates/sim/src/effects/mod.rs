@@ -74,7 +74,7 @@ impl Needs {
 }
 
 /// What all effects have.
-pub trait Effect {
+pub trait Effect: core::fmt::Debug {
     /// What the scene file's `[effects]` calls it, and the name its random draws go by.
     fn name(&self) -> &'static str;
 

@@ -1,0 +1,91 @@
+use super::*;
+use crate::effects::{Effect, Surface};
+use crate::sensor::{PacketModel, ReturnMode};
+
+const LEAST: &str = "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 1.0\n";
+
+fn error(text: &str) -> (usize, String) {
+    let error = Scene::parse(text, None, None).unwrap_err();
+    (error.line, error.what)
+}
+
+#[test]
+fn the_least_scene_is_a_vlp16_that_stands_without_effects() {
+    let scene = Scene::parse(LEAST, None, None).unwrap();
+    let simulation = &scene.simulation;
+    assert_eq!(simulation.sensor.model(), PacketModel::Vlp16);
+    assert_eq!(simulation.returns, ReturnMode::Strongest);
+    assert_eq!(simulation.spin.rpm, 600);
+    assert!(simulation.polls.is_none());
+    assert!(scene.effects.is_none());
+    assert!(scene.effects.effects.firings.surface.is_empty());
+}
+
+#[test]
+fn shipped_scenes_are_sound() {
+    for (name, text) in SHIPPED {
+        let scene = Scene::parse(text, None, None);
+        assert!(scene.is_ok(), "{name}: {scene:?}");
+    }
+}
+
+#[test]
+fn everything_said_is_heard() {
+    let text = format!(
+        "seed = 7\nlidar_clock_us = 5\nstart_unix_s = 10.5\n{LEAST}[sensor]\nmodel = \"hdl32e\"\nreturns = \"dual\"\nrpm = 1200\n\
+         start_deg = 90.0\nonly_laser = 15\n[mount]\nd_m = 0.25\n\n[effects.range_noise]\nsd_m = 0.02\n"
+    );
+    let scene = Scene::parse(&text, Some(9), None).unwrap();
+    assert_eq!(scene.seed, 9);
+    let simulation = &scene.simulation;
+    assert_eq!(simulation.sensor.used(), 1 << 15);
+    assert_eq!(simulation.returns, ReturnMode::Dual);
+    assert_eq!(simulation.spin.rpm, 1_200);
+    assert_eq!(simulation.mount, Mount::above(0.25));
+    assert_eq!(simulation.start.as_nanos(), 10_500_000_000);
+    let line = text
+        .lines()
+        .position(|l| l.starts_with("[effects"))
+        .unwrap()
+        + 1;
+    let name = "range_noise";
+    assert_eq!(scene.effects.lines, [EffectLine { name, line }]);
+    let [listed] = &scene.effects.effects.firings.surface[..] else {
+        panic!()
+    };
+    assert_eq!(listed.effect().name(), name);
+    let _: &dyn Surface = &**listed.effect();
+}
+
+#[test]
+fn errors_name_the_line_and_what_is_wrong() {
+    let with = |more: &str| format!("{LEAST}{more}\n");
+    assert_eq!(error("scene = \"hall\"\n[motion\n").0, 2);
+    let (line, what) = error(&with("[sensor]\nmodle = \"vlp16\""));
+    assert!(line == 6 && what.contains("modle"), "{line} {what}");
+    let (line, what) = error(&with("[effects]\nrange_nois = { sd_m = 1 }"));
+    assert!(line == 6 && what.contains("range_nois"), "{line} {what}");
+    let (line, what) = error(&with("[effects.range_noise]\nsd_m = -0.1"));
+    assert!(line == 6 && what.contains("-0.1"), "{line} {what}");
+    let (line, what) = error(&with("[sensor]\nrpm = 0"));
+    assert!(line == 6 && what.contains("1 to 2400"), "{line} {what}");
+    let (line, what) = error(&with("[sensor]\nonly_laser = 16"));
+    assert!(line == 6 && what.contains("16"), "{line} {what}");
+    let (line, what) = error(&LEAST.replace("hall", "castle"));
+    assert!(line == 1 && what.contains("castle"), "{line} {what}");
+    let (line, what) = error(&with("from_deg = 1.0"));
+    assert!(line == 5 && what.contains("stands"), "{line} {what}");
+    let (line, what) = error("scene = \"hall\"\n\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0.0\n");
+    assert!(line == 3 && what.contains("to_deg"), "{line} {what}");
+    let sweeps = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = 1\nspeed_deg_s = 0\n";
+    let (line, what) = error(sweeps);
+    assert!(line == 2 && what.contains("speed above 0"), "{line} {what}");
+}
+
+#[test]
+fn any_text_is_read_or_refused() {
+    let whole = SHIPPED[0].1;
+    for end in 0..whole.len() {
+        let _ = Scene::parse(&whole[..end], None, None);
+    }
+}
