@@ -1,5 +1,6 @@
 //! The command line. Other programs drive it: names and meanings are a contract.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -48,6 +49,8 @@ pub enum Command {
     Capture(Capture),
     /// Make the point cloud of a log or of a plain lidar recording
     Replay(Replay),
+    /// Simulate a scene into a log, with the truth beside it
+    Simulate(Simulate),
     /// Say what a file holds
     Info(Info),
     /// Measure, on this machine and now, what accuracy costs in time
@@ -122,6 +125,29 @@ pub struct Replay {
     /// Where the cloud goes
     #[command(flatten)]
     pub output: Output,
+}
+
+/// `simulate`.
+#[derive(Clone, Debug, Args)]
+pub struct Simulate {
+    /// Scene file (TOML), or the name of a scene that comes with the program: hall
+    #[arg(value_name = "SCENE.toml|NAME")]
+    pub scene: PathBuf,
+    /// Log to write [default: named after the scene]
+    #[arg(short, long, value_name = "LOG.pcapng")]
+    pub output: Option<PathBuf>,
+    /// Cloud of the true points: .ply .pcd .las .laz .csv; - is PLY on stdout
+    #[arg(long, value_name = "CLOUD")]
+    pub truth: Option<PathBuf>,
+    /// What chance depends on [default: the scene's]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Threads that make packets; the log does not depend on it [default: one a core]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Overwrite files that exist
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// How accurate a cloud is to be.

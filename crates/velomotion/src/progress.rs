@@ -14,6 +14,7 @@ pub struct Progress {
     quiet: bool,
     terminal: bool,
     sweep: Option<Sweep>,
+    run: Option<ProgressBar>,
 }
 
 /// A move that is under way.
@@ -33,6 +34,7 @@ impl Progress {
             quiet: common.quiet,
             terminal: std::io::stderr().is_terminal(),
             sweep: None,
+            run: None,
         }
     }
 
@@ -87,6 +89,39 @@ impl Progress {
         ));
     }
 
+    /// A simulation begins that will last so many seconds in its own world.
+    pub fn begin_run(&mut self, seconds: f64) {
+        self.end_run();
+        if self.quiet || !self.terminal {
+            return;
+        }
+        let length = ((seconds * 1e3) as u64).max(1);
+        let bar =
+            ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr_with_hz(20));
+        if let Ok(style) = ProgressStyle::with_template("{bar:40} {msg}, {eta} left") {
+            bar.set_style(style);
+        }
+        self.run = Some(bar);
+    }
+
+    /// So much of it is simulated.
+    pub fn ran(&mut self, seconds: f64) {
+        if let Some(bar) = &self.run {
+            let milliseconds = (seconds * 1e3) as u64;
+            if milliseconds > bar.position() {
+                bar.set_position(milliseconds);
+                bar.set_message(format!("{seconds:.1} s simulated"));
+            }
+        }
+    }
+
+    /// The simulation is over.
+    pub fn end_run(&mut self) {
+        if let Some(bar) = self.run.take() {
+            bar.finish_and_clear();
+        }
+    }
+
     /// The move is over.
     pub fn end_move(&mut self) {
         if let Some(sweep) = self.sweep.take() {
@@ -102,6 +137,7 @@ pub fn to_stderr(line: &str) {
 
 impl Drop for Progress {
     fn drop(&mut self) {
+        self.end_run();
         self.end_move();
     }
 }

@@ -6,6 +6,7 @@ pub mod firmware_sim;
 pub mod frames;
 pub mod info;
 pub mod replay;
+pub mod simulate;
 pub mod tilt;
 pub mod tradeoff;
 
@@ -32,6 +33,7 @@ pub fn run(cli: &Cli) -> Result<Said, Failure> {
     match &cli.command {
         Command::Capture(arguments) => capture::run(arguments, &cli.common),
         Command::Replay(arguments) => replay::run(arguments, &cli.common),
+        Command::Simulate(arguments) => simulate::run(arguments, &cli.common),
         Command::Info(arguments) => info::run(arguments),
         Command::Tradeoff(arguments) => tradeoff::run(arguments, &cli.common),
         Command::Tilt(arguments) => tilt::run(arguments, &cli.common),

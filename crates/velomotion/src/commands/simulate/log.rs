@@ -1,0 +1,295 @@
+//! What the simulation says, as records of a log and points of a cloud.
+
+use std::fs::File;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use cloud::{Fields, Point, Points};
+use drive::cia402::control;
+use io::log::LogWriter;
+use protocol::epos2::message::{ReadObject, WriteObject};
+use protocol::epos2::objects::{self, Address};
+use protocol::epos2::{Frame, usb};
+use protocol::record::{Direction, DriveLink, Record, Wire};
+use scanner::config::{AxisConfig, MountConfig};
+use scanner::{LidarConfig, ScanConfig, SweepPlan};
+use sim::scene_file::Scene;
+use sim::simulate::{Ask, Event, Out, Simulation, TruePoint};
+use units::{Degrees, Gearing, Host, Lidar, Span, Stamp};
+
+use crate::failure::{Failure, Kind};
+use crate::output::{Target, sink_failure};
+use crate::progress::Progress;
+
+/// Where a sensor's packets come from unless it was configured otherwise (63-9243).
+const SOURCE: [u8; 4] = [192, 168, 1, 201];
+/// The drive's node id.
+const NODE: u8 = 1;
+/// Points handed on at a time.
+const BATCH: usize = 16_384;
+
+/// Writes the log, and the truth where it is wanted.
+pub(super) struct Log<'a> {
+    writer: LogWriter<File>,
+    gearing: Option<Gearing>,
+    truth: Option<Target>,
+    batch: Points,
+    rings: Vec<u8>,
+    clock_ns: i64,
+    interrupt: &'a AtomicBool,
+    progress: Progress,
+    began: Stamp<Host>,
+    failure: Option<Failure>,
+}
+
+impl<'a> Log<'a> {
+    pub fn new(
+        simulation: &Simulation,
+        writer: LogWriter<File>,
+        gearing: Option<Gearing>,
+        truth: Option<Target>,
+        interrupt: &'a AtomicBool,
+        mut progress: Progress,
+    ) -> Self {
+        progress.begin_run(simulation.motion.end_s());
+        Self {
+            writer,
+            gearing,
+            truth,
+            batch: Points::with_capacity(Fields::FILE, BATCH),
+            rings: rings(simulation),
+            clock_ns: i64::from(simulation.clock_at_start_us).saturating_mul(1_000),
+            interrupt,
+            progress,
+            began: simulation.start,
+            failure: None,
+        }
+    }
+
+    fn record(&mut self, record: &Record<'_>) -> ControlFlow<()> {
+        match self.writer.write(record) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => self.fail(
+                Failure::new(Kind::Incomplete, error.to_string())
+                    .help("free some space or name another place with -o"),
+            ),
+        }
+    }
+
+    fn fail(&mut self, failure: Failure) -> ControlFlow<()> {
+        self.failure = Some(failure);
+        ControlFlow::Break(())
+    }
+
+    fn frame(&mut self, host: Stamp<Host>, direction: Direction, frame: &Frame) -> ControlFlow<()> {
+        let bytes = usb::to_bytes(frame);
+        self.record(&Record {
+            host,
+            wire: Wire::Drive {
+                link: DriveLink::Usb,
+                direction,
+                frame: &bytes,
+            },
+        })
+    }
+
+    fn flush(&mut self) -> ControlFlow<()> {
+        let Some(truth) = &mut self.truth else {
+            return ControlFlow::Continue(());
+        };
+        let written = truth.sink().points(&self.batch);
+        let written = written.map_err(|error| sink_failure(truth.path(), &error));
+        self.batch.clear();
+        match written {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(failure) => self.fail(failure),
+        }
+    }
+
+    /// Completes the files; what was cut short comes beside the name of the truth.
+    pub fn finish(mut self, path: &Path) -> Result<(Option<PathBuf>, Option<Failure>), Failure> {
+        self.progress.end_run();
+        let _ = self.flush();
+        self.writer
+            .finish()
+            .map_err(|error| super::cannot_write(path, &error))?;
+        let name = match self.truth {
+            Some(truth) => {
+                let name = truth.path().to_owned();
+                truth.commit()?;
+                Some(name)
+            }
+            None => None,
+        };
+        Ok((name, self.failure))
+    }
+}
+
+impl Out for Log<'_> {
+    fn event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match *event {
+            Event::Datagram { at, port, payload } => {
+                self.progress.ran((at - self.began).as_secs_f64());
+                if self.interrupt.load(Ordering::Relaxed) {
+                    return self.fail(
+                        Failure::new(Kind::Interrupted, "stopped by the user while simulating")
+                            .help(
+                                "the log of what came before is whole; run it again for all of it",
+                            ),
+                    );
+                }
+                self.record(&Record {
+                    host: at,
+                    wire: Wire::Lidar {
+                        source: SOURCE,
+                        port,
+                        payload,
+                    },
+                })
+            }
+            Event::Request { at, ask } => {
+                let frame = self.gearing.map(|gearing| request(ask, gearing));
+                frame.map_or(ControlFlow::Continue(()), |frame| {
+                    self.frame(at, Direction::ToDevice, &frame)
+                })
+            }
+            Event::Answer {
+                at,
+                ask,
+                position_qc,
+            } => {
+                let answer = match ask {
+                    Ask::Position => ReadObject::answer(Ok(position_qc as u32)),
+                    _ => WriteObject::answer(Ok(())),
+                };
+                self.frame(at, Direction::FromDevice, &answer)
+            }
+        }
+    }
+
+    fn wants_truth(&self) -> bool {
+        self.truth.is_some()
+    }
+
+    fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
+        for point in points {
+            self.batch.push(Point {
+                position_m: point.position_m.to_array(),
+                intensity: point.reflectivity,
+                ring: self
+                    .rings
+                    .get(usize::from(point.laser))
+                    .copied()
+                    .unwrap_or(0),
+                laser: point.laser,
+                time: point.host,
+                device_time: Stamp::<Lidar>::from_nanos(point.device_ns)
+                    .saturating_add(Span::from_nanos(self.clock_ns)),
+                tilt: Degrees(point.tilt_deg),
+                sd_m: 0.0,
+            });
+        }
+        match self.batch.len() >= BATCH {
+            true => self.flush(),
+            false => ControlFlow::Continue(()),
+        }
+    }
+}
+
+/// Each laser's place by elevation, 0 the lowest.
+fn rings(simulation: &Simulation) -> Vec<u8> {
+    let beams = simulation.sensor.beams();
+    let below = |elevation_deg: f64| {
+        beams
+            .iter()
+            .filter(move |b| b.elevation_deg < elevation_deg)
+    };
+    beams
+        .iter()
+        .map(|beam| u8::try_from(below(beam.elevation_deg).count()).unwrap_or(u8::MAX))
+        .collect()
+}
+
+/// The frame that asks for something.
+fn request(ask: Ask, gearing: Gearing) -> Frame {
+    let write = |address: Address, value: u32| {
+        let write = WriteObject {
+            node: NODE,
+            address,
+            value,
+        };
+        write.to_frame()
+    };
+    let rpm = |deg: f64| (deg / gearing.deg_s_per_rpm()).round() as u32;
+    match ask {
+        Ask::Position => {
+            let read = ReadObject {
+                node: NODE,
+                address: objects::POSITION_ACTUAL.address,
+            };
+            read.to_frame()
+        }
+        Ask::Target(qc) => write(objects::TARGET_POSITION.address, qc as u32),
+        Ask::Speed(deg_s) => write(objects::PROFILE_VELOCITY.address, rpm(deg_s)),
+        Ask::Acceleration(deg_s2) => write(objects::PROFILE_ACCELERATION.address, rpm(deg_s2)),
+        Ask::Deceleration(deg_s2) => write(objects::PROFILE_DECELERATION.address, rpm(deg_s2)),
+        Ask::Ready => write(
+            objects::CONTROLWORD.address,
+            u32::from(control::ENABLE_OPERATION),
+        ),
+        Ask::Go => write(
+            objects::CONTROLWORD.address,
+            u32::from(control::ENABLE_OPERATION | NEW_SETPOINT | AT_ONCE),
+        ),
+    }
+}
+
+/// Controlword in profile position mode (Firmware Specification, 8.3): a new setpoint, to be taken at once.
+const NEW_SETPOINT: u16 = 0x0010;
+const AT_ONCE: u16 = 0x0020;
+
+/// What the log says of itself.
+pub(super) fn scan_config(scene: &Scene, gearing: Option<Gearing>) -> ScanConfig {
+    let simulation = &scene.simulation;
+    let step_m = f64::from(simulation.sensor.model().distance_unit_mm()) * 1e-3;
+    let axis = gearing.map_or_else(AxisConfig::default, |gearing| AxisConfig {
+        node: NODE,
+        encoder_lines: gearing.qc_per_motor_turn() / 4,
+        gear: gearing.turns(),
+    });
+    ScanConfig {
+        device: "simulate".to_owned(),
+        simulated: true,
+        mount: MountConfig {
+            d_m: simulation.mount.at_m.z,
+        },
+        lidar: LidarConfig {
+            range_sd_m: step_m / f64::sqrt(12.0),
+        },
+        axis,
+        sweep: plan(simulation),
+        ..ScanConfig::default()
+    }
+}
+
+/// The sweeps that the motion makes.
+fn plan(simulation: &Simulation) -> Option<SweepPlan> {
+    let sweeps = || simulation.motion.legs().iter().filter(|leg| leg.sweep);
+    let first = sweeps().next()?;
+    let speed = first.cruise_deg_s.abs();
+    Some(SweepPlan {
+        from_deg: first.from_deg,
+        to_deg: first.to_deg,
+        cruise_deg_s: speed,
+        accel_deg_s2: if first.ramp_s > 0.0 {
+            speed / first.ramp_s
+        } else {
+            f64::INFINITY
+        },
+        sweeps: u32::try_from(sweeps().count()).unwrap_or(u32::MAX),
+        both_ways: sweeps()
+            .nth(1)
+            .is_some_and(|second| second.from_deg == first.to_deg),
+    })
+}

@@ -1,0 +1,349 @@
+//! `velomotion simulate`: a log of a scene that never was, and the truth beside it.
+//!
+//! The log is one that `replay` reads: the lidar's datagrams, and the drive's USB frames where there is a drive. Left out: how anything is
+//! simulated (`sim::simulate`), and what it costs which effect.
+
+mod log;
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use cloud::{Fields, Metadata};
+use io::log::{LogConfig, LogError, LogWriter};
+use protocol::record::DriveLink;
+use serde::Serialize;
+use sim::effects::{Effects, OnFirings};
+use sim::scene_file::{SHIPPED, Scene};
+use sim::simulate::{SimulateError, Summary};
+
+use super::Said;
+use crate::cli::{self, Common};
+use crate::failure::{Failure, Kind};
+use crate::output::{self, Target};
+use crate::progress::Progress;
+use crate::{report, signals};
+use log::{Log, scan_config};
+
+/// What was simulated.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// The scene as it was named.
+    pub scene: String,
+    /// What draws depended on.
+    pub seed: u64,
+    /// Effects that the scene asks for.
+    pub effects: Vec<Effect>,
+    /// Data packets that left the lidar.
+    pub packets: u64,
+    /// Shots in them.
+    pub shots: u64,
+    /// Shots that returned.
+    pub returned: u64,
+    /// Share of shots that returned, 0..=1.
+    pub share_returned: f64,
+    /// Returns, two of one shot counted twice.
+    pub returns: u64,
+    /// Requests to the drive.
+    pub polls: u64,
+    /// How long it took in the scene, seconds.
+    pub duration_s: f64,
+    /// How long it took to make, seconds.
+    pub took_s: f64,
+    /// How many times faster than real time that is.
+    pub times_real_time: f64,
+    /// Threads that made packets.
+    pub threads: usize,
+    /// The log.
+    pub log: String,
+    /// The cloud of the truth, where one was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub truth: Option<String>,
+}
+
+/// An effect that a scene asks for.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Effect {
+    /// Its name.
+    pub name: String,
+    /// The line of the scene file.
+    pub line: usize,
+}
+
+/// What to make of a scene.
+pub struct Request<'a> {
+    /// How the scene is called.
+    pub name: String,
+    /// The log to write.
+    pub log: &'a Path,
+    /// Where the truth goes.
+    pub truth: Option<Target>,
+    /// Threads that make packets.
+    pub threads: NonZeroUsize,
+    /// Whether an older log may be overwritten.
+    pub force: bool,
+    /// Set where the user wants no more of it.
+    pub interrupt: &'a AtomicBool,
+    /// What to tell about how far it is.
+    pub progress: Progress,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Failure`] for a scene that cannot be read and files that cannot be written.
+pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> {
+    let interrupt = signals::interrupt_flag()?;
+    let (name, text) = find(&arguments.scene)?;
+    let scene = read(&name, &text, arguments.seed)?;
+    let log = arguments
+        .output
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(stem(&name)).with_extension("pcapng"));
+    if let Some(truth) = &arguments.truth {
+        output::two_files(&log, truth)?;
+        output::one_for_stdout(Some(truth), common.json)?;
+    }
+    let truth = match &arguments.truth {
+        Some(truth) => Some(Target::open(truth, Fields::FILE, arguments.force)?),
+        None => None,
+    };
+    let stdout_taken = truth.as_ref().is_some_and(Target::is_stdout);
+    let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let request = Request {
+        name,
+        log: &log,
+        truth,
+        threads: arguments.threads.unwrap_or_else(cores),
+        force: arguments.force,
+        interrupt: &interrupt,
+        progress: Progress::new(common),
+    };
+    let (report, failure) = make(scene, request)?;
+    Ok(Said {
+        json: super::json(&report),
+        text: report.table(),
+        failure,
+        stdout_taken,
+    })
+}
+
+/// A scene by the path of its file or its name.
+fn find(scene: &Path) -> Result<(String, String), Failure> {
+    let name = scene.display().to_string();
+    if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
+        return Ok((name, (*text).to_owned()));
+    }
+    let text = std::fs::read_to_string(scene).map_err(|error| {
+        let shipped: Vec<&str> = SHIPPED.iter().map(|(name, _)| *name).collect();
+        Failure::new(
+            Kind::BadInput,
+            format!("scene {name}: cannot read: {error}"),
+        )
+        .help(format!(
+            "name a scene file (TOML), or one that comes with the program: {}",
+            shipped.join(", ")
+        ))
+    })?;
+    Ok((name, text))
+}
+
+/// Reads a scene file's text.
+///
+/// # Errors
+/// [`Kind::BadInput`] naming the line.
+pub fn read(name: &str, text: &str, seed: Option<u64>) -> Result<Scene, Failure> {
+    Scene::parse(text, seed, None).map_err(|error| {
+        Failure::new(Kind::BadInput, format!("scene {name}, {error}"))
+            .help("correct the scene file there; docs: Scenes")
+    })
+}
+
+fn stem(name: &str) -> &str {
+    let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str());
+    stem.unwrap_or("scene")
+}
+
+/// Simulates a scene into a log. A failure that left something worth having comes beside the report.
+///
+/// # Errors
+/// [`Failure`] where nothing came of it.
+pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Failure>), Failure> {
+    let Request {
+        name,
+        log: path,
+        mut truth,
+        threads,
+        force,
+        interrupt,
+        progress,
+    } = request;
+    let gearing = scene.simulation.polls.map(|polls| {
+        use sim::effects::Encoder;
+        let encoder = &scene.effects.effects.encoder;
+        encoder.gearing().unwrap_or(polls.gearing)
+    });
+    let config = scan_config(&scene, gearing);
+    let head = LogConfig {
+        metadata: toml::to_string(&config).map_err(|error| cannot_write(path, &error))?,
+        drive: gearing.map(|_| DriveLink::Usb),
+    };
+    let writer = LogWriter::create(path, &head, output::overwrite(force))
+        .map_err(|error| log_failure(path, &error))?;
+    if let Some(truth) = &mut truth {
+        let begun = truth.sink().begin(&metadata(&name));
+        begun.map_err(|error| output::sink_failure(truth.path(), &error))?;
+    }
+    let began = Instant::now();
+    let mut out = Log::new(
+        &scene.simulation,
+        writer,
+        gearing,
+        truth,
+        interrupt,
+        progress,
+    );
+    let effects: Vec<Effect> = (scene.effects.lines.iter())
+        .map(|asked| Effect {
+            name: asked.name.to_owned(),
+            line: asked.line,
+        })
+        .collect();
+    // Two engines: one that has effects in it, and one that has none.
+    let summary = match scene.effects.is_none() {
+        true => {
+            let mut none = Effects::<OnFirings>::default();
+            scene.simulation.run(&mut none, threads, &mut out)
+        }
+        false => {
+            let asked = &mut scene.effects.effects;
+            scene.simulation.run(asked, threads, &mut out)
+        }
+    };
+    let summary = summary.map_err(|error| cannot_simulate(&name, &error))?;
+    let (truth, failure) = out.finish(path)?;
+    let took = began.elapsed();
+    let report = Report {
+        effects,
+        seed: scene.seed,
+        threads: threads.get(),
+        log: path.display().to_string(),
+        truth: truth.map(|path| path.display().to_string()),
+        ..Report::new(name, &summary, took)
+    };
+    Ok((report, failure))
+}
+
+impl Report {
+    fn new(scene: String, summary: &Summary, took: Duration) -> Self {
+        let (duration_s, took_s) = (summary.lasted.as_secs_f64(), took.as_secs_f64());
+        Self {
+            scene,
+            seed: 0,
+            effects: Vec::new(),
+            packets: summary.packets,
+            shots: summary.shots,
+            returned: summary.returned,
+            share_returned: share(summary.returned, summary.shots),
+            returns: summary.returns,
+            polls: summary.polls,
+            duration_s,
+            took_s,
+            times_real_time: if took_s > 0.0 {
+                duration_s / took_s
+            } else {
+                0.0
+            },
+            threads: 0,
+            log: String::new(),
+            truth: None,
+        }
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let effects = match self.effects.is_empty() {
+            true => "none".to_owned(),
+            false => {
+                let named = self.effects.iter();
+                let named: Vec<_> = named
+                    .map(|e| format!("{} (line {})", e.name, e.line))
+                    .collect();
+                named.join(", ")
+            }
+        };
+        let mut rows = vec![
+            ("scene", format!("{}, seed {}", self.scene, self.seed)),
+            ("effects", effects),
+            (
+                "packets",
+                format!("{} over {:.3} s", self.packets, self.duration_s),
+            ),
+            (
+                "returned",
+                format!(
+                    "{} of {} shots, {:.1} %",
+                    self.returned,
+                    self.shots,
+                    100.0 * self.share_returned
+                ),
+            ),
+        ];
+        if self.polls > 0 {
+            rows.push(("drive", format!("asked {} times", self.polls)));
+        }
+        rows.push((
+            "took",
+            format!(
+                "{:.2} s on {} threads, {:.0} times faster than real time",
+                self.took_s, self.threads, self.times_real_time
+            ),
+        ));
+        rows.push(("log", self.log.clone()));
+        rows.extend(self.truth.iter().map(|truth| ("truth", truth.clone())));
+        report::table(rows)
+    }
+}
+
+fn share(part: u64, of: u64) -> f64 {
+    if of == 0 {
+        0.0
+    } else {
+        part as f64 / of as f64
+    }
+}
+
+fn metadata(name: &str) -> Metadata {
+    Metadata {
+        simulated: true,
+        source: format!("the truth of the simulated scene {}", stem(name)),
+        software: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
+        time_reference: "Unix seconds (UTC) of the simulated host's clock".to_owned(),
+        comments: Vec::new(),
+    }
+}
+
+fn cannot_simulate(name: &str, error: &SimulateError) -> Failure {
+    Failure::new(Kind::BadInput, format!("scene {name}: {error}"))
+        .help("ask for less in the scene file's [motion] or [drive]")
+}
+
+fn cannot_write(path: &Path, error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(
+        Kind::Incomplete,
+        format!("the log {} cannot be written: {error}", path.display()),
+    )
+    .help("free some space or name another place with -o")
+}
+
+fn log_failure(path: &Path, error: &LogError) -> Failure {
+    match error {
+        LogError::Exists { .. } => Failure::new(Kind::Usage, error.to_string())
+            .help("choose another name with -o, or overwrite it with --force"),
+        LogError::Create { .. } => Failure::new(Kind::BadInput, error.to_string())
+            .help("name a file in a folder that exists and may be written to"),
+        _ => cannot_write(path, error),
+    }
+}
