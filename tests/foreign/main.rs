@@ -4,6 +4,7 @@
 //! `VELOMOTION_PYTHON` names a python3 that has `requirements.txt` installed.
 
 mod ray_casting;
+mod simulated;
 
 use std::path::Path;
 use std::process::Command;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::effects::{Effect as _, Surface};
+use crate::effects::Surface;
 use crate::sensor::{PacketModel, ReturnMode};
 
 const LEAST: &str = "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 1.0\n";

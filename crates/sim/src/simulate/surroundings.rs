@@ -6,8 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::firing::{Echo, Firing};
-use crate::effects::Needs;
+use super::firing::{Echo, Echoes, Firing};
 use crate::scene::Scene;
 use crate::sensor::{MOST_LASERS, Reach};
 
@@ -15,7 +14,6 @@ use crate::sensor::{MOST_LASERS, Reach};
 #[derive(Clone, Debug)]
 pub struct Surroundings {
     scene: Arc<Scene>,
-    needs: Needs,
     reach: Reach,
 }
 
@@ -26,17 +24,13 @@ pub struct Met {
     pub range_m: f64,
     /// Calibrated reflectivity of what it met: 0..=100 diffuse, above that retroreflecting.
     pub reflectivity: f64,
-    /// The surface's normal, length 1, whichever way it points; 0 where no effect needs it ([`Needs::normals`]).
+    /// The surface's normal, length 1, whichever way it points; 0 where no effect needs it.
     pub normal: DVec3,
 }
 
 impl Surroundings {
-    pub(super) const fn new(scene: Arc<Scene>, needs: Needs, reach: Reach) -> Self {
-        Self {
-            scene,
-            needs,
-            reach,
-        }
+    pub(super) const fn new(scene: Arc<Scene>, reach: Reach) -> Self {
+        Self { scene, reach }
     }
 
     /// How far the sensor sees.
@@ -59,21 +53,21 @@ impl Surroundings {
         })
     }
 
-    /// The same for all lasers of a firing that are alive; the others have no echo.
+    /// The same for all lasers of firings that follow one another; those that are not alive have no echo, and nobody has a second one.
     #[inline]
-    pub(super) fn meet_all(&self, firing: &Firing, echoes: &mut [Echo; MOST_LASERS]) {
-        debug_assert!(
-            !self.needs.normals || cfg!(test),
-            "normals come with the caster"
-        );
-        let rays = firing.origins_m.iter().zip(&firing.directions);
-        let lasers = echoes.iter_mut().zip(rays).take(firing.lasers);
-        for (laser, (echo, (origin, direction))) in lasers.enumerate() {
-            *echo = Echo::NONE;
-            if firing.is_alive(laser)
-                && let Some(met) = self.meet(*origin, *direction)
-            {
-                *echo = Echo::of(&met);
+    pub(super) fn meet_all(&self, firings: &[Firing], echoes: &mut [Echoes]) {
+        for (firing, echoes) in firings.iter().zip(echoes) {
+            let rays = firing.origins_m.iter().zip(&firing.directions);
+            let lasers = echoes.strongest.iter_mut().zip(rays).take(firing.lasers);
+            for (laser, (echo, (origin, direction))) in lasers.enumerate() {
+                let met = firing
+                    .is_alive(laser)
+                    .then(|| self.meet(*origin, *direction))
+                    .flatten();
+                *echo = met.map_or(Echo::NONE, |met| Echo::of(&met));
+            }
+            if echoes.two {
+                echoes.other = [Echo::NONE; MOST_LASERS];
             }
         }
     }

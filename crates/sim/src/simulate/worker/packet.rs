@@ -12,8 +12,9 @@ pub(super) struct Worker<'a, F> {
     job: &'a Job<'a>,
     effects: F,
     surroundings: Surroundings,
-    firing: Firing,
-    echoes: Echoes,
+    /// The firings of a packet, and what comes back to each.
+    firings: Vec<Firing>,
+    echoes: Vec<Echoes>,
     packet: ModelPacket,
 }
 
@@ -32,14 +33,12 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
     pub fn new(job: &'a Job<'a>, effects: F) -> Self {
         let simulation = job.simulation;
         let two = simulation.returns != ReturnMode::Strongest;
+        let model = simulation.sensor.model();
+        let firings = simulation.returns.blocks() * model.firings_per_block();
         Self {
-            surroundings: Surroundings::new(
-                simulation.scene.clone(),
-                job.needs,
-                simulation.sensor.reach(),
-            ),
-            firing: Firing::new(job.rays.count),
-            echoes: Echoes::new(job.rays.count, two),
+            surroundings: Surroundings::new(simulation.scene.clone(), simulation.sensor.reach()),
+            firings: vec![Firing::new(job.rays.count); firings],
+            echoes: vec![Echoes::new(job.rays.count, two); firings],
             packet: ModelPacket::new(simulation.sensor.model(), simulation.returns),
             job,
             effects,
@@ -50,27 +49,50 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
         self.effects
     }
 
-    /// Makes a packet.
+    /// Makes a packet: all its firings side by side. Where each effect acts is to be read here.
     pub fn packet(&mut self, number: u64, chunk: &mut Chunk) {
         let job = self.job;
-        let model = job.simulation.sensor.model();
-        let per_block = model.firings_per_block() as u64;
+        let effects = self.effects.parts();
         let mut made = Counts::default();
         let points = chunk.points.len();
-        let (mut first_ns, mut end_ns) = (None, 0);
-        for block in job.schedule.blocks(number) {
-            let first = block.saturating_mul(per_block);
-            let begin_ns = signed(first).saturating_mul(model.firing_period_ns());
-            first_ns.get_or_insert(begin_ns);
-            end_ns = begin_ns.saturating_add(model.block_period_ns());
-            for firing in first..first.saturating_add(per_block) {
-                self.fire(firing, &mut made, &mut chunk.points);
+        let per_block = job.simulation.sensor.model().firings_per_block() as u64;
+        let blocks = job.schedule.blocks(number);
+        let numbers = blocks.flat_map(|block| (0..per_block).map(move |n| block * per_block + n));
+        for (firing, number) in self.firings.iter_mut().zip(numbers) {
+            job.aim(firing, number, effects.clock);
+            made.shots += firing.alive.count_ones();
+            effects.view.look(firing);
+        }
+        // Where nothing moves all of them meet one and the same scene.
+        let at_once = if job.needs.moving {
+            1
+        } else {
+            self.firings.len()
+        };
+        let firings = self.firings.chunks(at_once.max(1));
+        for (firings, echoes) in firings.zip(self.echoes.chunks_mut(at_once.max(1))) {
+            if let Some(first) = firings.first().filter(|_| job.needs.moving) {
+                effects.objects.place(first.at_s, &mut self.surroundings);
+            }
+            self.surroundings.meet_all(firings, echoes);
+            for (firing, echoes) in firings.iter().zip(echoes) {
+                effects.beam.receive(firing, &self.surroundings, echoes);
+                effects.surface.reflect(firing, echoes);
+                let told = Told {
+                    job,
+                    clock: effects.clock,
+                    firing,
+                };
+                told.report(echoes, &mut self.packet, &mut made, &mut chunk.points);
             }
         }
-        let stamp_us = job.clock.stamp_us(first_ns.unwrap_or(0));
+        let device_ns = |firing: &Firing| job.device_ns(firing.number);
+        let first_ns = self.firings.first().map_or(0, device_ns);
+        let last_ns = self.firings.last().map_or(0, device_ns);
+        let end_ns = last_ns.saturating_add(job.simulation.sensor.model().firing_period_ns());
         chunk.packets.push(Packet {
-            payload: self.packet.finish(stamp_us),
-            leaves_ns: self.effects.parts().clock.host_ns(end_ns),
+            payload: self.packet.finish(job.clock.stamp_us(first_ns)),
+            leaves_ns: effects.clock.host_ns(end_ns),
             stamp_us: job.clock.stamp_us(end_ns),
             points: chunk.points.len() - points,
             shots: made.shots,
@@ -78,51 +100,56 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
             returns: made.returns,
         });
     }
+}
 
-    /// One firing of all lasers: from the clock to the packet. Where each effect acts is to be read here.
-    fn fire(&mut self, number: u64, made: &mut Counts, points: &mut Vec<TruePoint>) {
-        let job = self.job;
-        let simulation = job.simulation;
-        let effects = self.effects.parts();
-        let device_ns = signed(number).saturating_mul(simulation.sensor.model().firing_period_ns());
-        let firing = &mut self.firing;
-        firing.number = number;
-        firing.at_s = effects.clock.host_ns(device_ns) as f64 * 1e-9;
-        firing.azimuth_deg = simulation.spin.azimuth_deg(device_ns);
-        firing.tilt = job.course.platform(firing.at_s);
-        firing.alive = simulation.sensor.used();
-        firing.aim(&job.rays, &simulation.mount);
-        made.shots += firing.alive.count_ones();
-        effects.view.look(firing);
-        if job.needs.moving {
-            effects.objects.place(firing.at_s, &mut self.surroundings);
-        }
-        self.surroundings
-            .meet_all(firing, &mut self.echoes.strongest);
-        if self.echoes.two {
-            self.echoes.other = [Echo::NONE; MOST_LASERS];
-        }
-        effects
-            .beam
-            .receive(firing, &self.surroundings, &mut self.echoes);
-        effects.surface.reflect(firing, &mut self.echoes);
-        self.report(device_ns, made, points);
+impl Job<'_> {
+    /// When a firing begins, in the lidar's own time since the start.
+    fn device_ns(&self, firing: u64) -> i64 {
+        signed(firing).saturating_mul(self.simulation.sensor.model().firing_period_ns())
     }
 
+    /// A firing's time, azimuth, tilt and rays.
+    #[inline]
+    fn aim<C: Clock>(&self, firing: &mut Firing, number: u64, clock: &C) {
+        let device_ns = self.device_ns(number);
+        firing.number = number;
+        firing.at_s = clock.host_ns(device_ns) as f64 * 1e-9;
+        firing.azimuth_deg = self.simulation.spin.azimuth_deg(device_ns);
+        firing.tilt = self.course.platform(firing.at_s);
+        firing.alive = self.simulation.sensor.used();
+        firing.aim(&self.rays, &self.simulation.mount);
+    }
+}
+
+/// A firing that is over, to be told of.
+struct Told<'a, C> {
+    job: &'a Job<'a>,
+    clock: &'a C,
+    firing: &'a Firing,
+}
+
+impl<C: Clock> Told<'_, C> {
     /// Puts what came back into the packet, and into the truth where that is wanted.
-    fn report(&mut self, device_ns: i64, made: &mut Counts, points: &mut Vec<TruePoint>) {
+    fn report(
+        &self,
+        echoes: &Echoes,
+        packet: &mut ModelPacket,
+        made: &mut Counts,
+        points: &mut Vec<TruePoint>,
+    ) {
         let job = self.job;
         let simulation = job.simulation;
+        let device_ns = job.device_ns(self.firing.number);
         let model = simulation.sensor.model();
         let per_m = 1e3 / f64::from(model.distance_unit_mm());
         let azimuth_cdeg = simulation.spin.azimuth_cdeg(device_ns);
         let lasers = self.firing.lasers;
         let reported = match simulation.returns {
             ReturnMode::Strongest => None,
-            ReturnMode::Last | ReturnMode::Dual => Some(by_range(&self.echoes)),
+            ReturnMode::Last | ReturnMode::Dual => Some(by_range(echoes)),
         };
         let (first, second) = match &reported {
-            None => (&self.echoes.strongest, &[][..]),
+            None => (&echoes.strongest, &[][..]),
             Some(both) if simulation.returns == ReturnMode::Dual => {
                 (&both.first, both.second.get(..lasers).unwrap_or_default())
             }
@@ -151,7 +178,7 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
             }
         }
         let [raw_first, raw_second] = &raw;
-        self.packet.firing(azimuth_cdeg, raw_first, raw_second);
+        packet.firing(azimuth_cdeg, raw_first, raw_second);
     }
 
     /// The truth of an echo; none where no surface made it.
@@ -175,7 +202,7 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
         let device_ns = device_ns.saturating_add(beam.delay_ns);
         let after_s = beam.delay_ns as f64 * 1e-9;
         let ahead_deg = beam.azimuth_deg + simulation.spin.deg_per_s() * after_s;
-        let host_ns = self.effects.parts().clock.host_ns(device_ns);
+        let host_ns = self.clock.host_ns(device_ns);
         let tilt = self.firing.tilt;
         Some(TruePoint {
             position_m: *origin + of.true_range_m * *direction,

@@ -1,0 +1,86 @@
+//! Somebody else's decoder reads simulated packets: its points lie on the scene's surfaces.
+
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use glam::DVec3;
+use velomotion::cli::Common;
+use velomotion::commands::simulate;
+use velomotion::progress::Progress;
+
+use crate::python;
+
+/// How far a point is from the nearest surface: along the axes and their diagonals, which is at most 1.1 times too far.
+fn from_surface_m(scene: &sim::Scene, point: DVec3) -> f64 {
+    let steps = || [-1.0, 0.0, 1.0].into_iter();
+    let ways =
+        steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| DVec3::new(x, y, z))));
+    ways.filter_map(DVec3::try_normalize)
+        .filter_map(|way| scene.cast(point, way, 0.0, 100.0))
+        .map(|hit| hit.range_m)
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn velodyne_decoder_puts_simulated_points_on_the_scenes_surfaces() {
+    let hall = sim::scenes::hall();
+    for (model, theirs, unit_m) in [
+        ("vlp16", "VLP16", 0.002),
+        ("hi-res", "PuckHiRes", 0.002),
+        ("hdl32e", "HDL32E", 0.002),
+        ("vlp32c", "VLP32C", 0.004),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let (log, points) = (folder.path().join("s.pcapng"), folder.path().join("points"));
+        let text = format!(
+            "scene = \"hall\"\n[sensor]\nmodel = \"{model}\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.31\n"
+        );
+        let common = Common {
+            device: None,
+            config: None,
+            json: false,
+            quiet: true,
+            verbose: 0,
+        };
+        let request = simulate::Request {
+            name: model.to_owned(),
+            log: &log,
+            truth: None,
+            threads: NonZeroUsize::MIN,
+            force: false,
+            interrupt: &AtomicBool::new(false),
+            progress: Progress::new(&common),
+        };
+        let scene = simulate::read(model, &text, None).unwrap();
+        let (report, _) = simulate::make(scene, request).unwrap();
+        let arguments = [log.as_path(), Path::new(theirs), points.as_path()];
+        let modules = "velodyne_decoder, dpkt, numpy";
+        let Some(said) = python("velodyne_decoder_points.py", &arguments, modules) else {
+            return;
+        };
+        assert_eq!(said["points"].as_u64(), Some(report.returns), "{model}");
+        let bytes = std::fs::read(&points).unwrap();
+        let numbers: Vec<f64> = (bytes.as_chunks().0.iter())
+            .map(|bytes| f64::from_le_bytes(*bytes))
+            .collect();
+        let (mut worst_mm, mut over) = (0.0_f64, 0);
+        for [x, y, z] in numbers.as_chunks().0 {
+            let point = DVec3::new(*x, *y, *z);
+            let off_m = from_surface_m(&hall, point);
+            // 2 mm, half a unit of range, and the azimuth that they round to a hundredth of a degree.
+            let bound_m = 0.002 + 0.5 * unit_m + point.length() * 0.0125_f64.to_radians();
+            over += u32::from(off_m > 0.002 + 0.5 * unit_m);
+            worst_mm = worst_mm.max(off_m * 1e3);
+            assert!(off_m < bound_m, "{model}: {off_m} m at {point}");
+        }
+        println!(
+            "{model}: worst {worst_mm:.2} mm, {over} of {} beyond 2 mm and half a unit",
+            report.returns
+        );
+        assert!(
+            f64::from(over) < 0.001 * report.returns as f64,
+            "{model}: {over}"
+        );
+    }
+}

@@ -1,0 +1,146 @@
+//! Simulated scenes through their logs: what is read out of them is what truly was there.
+
+mod models;
+mod round_trip;
+
+use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use cloud::{Fields, Points};
+use scanner::TiltSource;
+use sim::scene_file::Scene;
+use sim::simulate::{Event, Out, TruePoint};
+use tempfile::TempDir;
+use velomotion::cli::Common;
+use velomotion::commands::{replay, simulate};
+use velomotion::progress::Progress;
+use velomotion::recordings::Source;
+use velomotion::report::Scan;
+
+/// A scene that was simulated: its log, and the truth by firing and laser.
+struct Simulated {
+    folder: TempDir,
+    report: simulate::Report,
+    truth: BTreeMap<(i64, u8), Vec<TruePoint>>,
+    firing_ns: i64,
+    clock_ns: i64,
+}
+
+#[derive(Default)]
+struct Truth(Vec<TruePoint>);
+
+impl Out for Truth {
+    fn event(&mut self, _: &Event<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn wants_truth(&self) -> bool {
+        true
+    }
+
+    fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
+        self.0.extend_from_slice(points);
+        ControlFlow::Continue(())
+    }
+}
+
+impl Simulated {
+    /// Simulates it twice: into a log, and for the truth alone. `more` adds to the scene.
+    fn new(text: &str, more: impl Fn(&mut Scene)) -> Self {
+        let read = || {
+            let mut scene = simulate::read("test", text, None).unwrap();
+            more(&mut scene);
+            scene
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let common = Common {
+            device: None,
+            config: None,
+            json: false,
+            quiet: true,
+            verbose: 0,
+        };
+        let request = simulate::Request {
+            name: "test".to_owned(),
+            log: &folder.path().join("scene.pcapng"),
+            truth: None,
+            threads: NonZeroUsize::new(2).unwrap(),
+            force: false,
+            interrupt: &AtomicBool::new(false),
+            progress: Progress::new(&common),
+        };
+        let (report, failure) = simulate::make(read(), request).unwrap();
+        assert!(failure.is_none(), "{failure:?}");
+        let mut scene = read();
+        let mut truth = Truth::default();
+        let effects = &mut scene.effects.effects;
+        let one = NonZeroUsize::MIN;
+        scene.simulation.run(effects, one, &mut truth).unwrap();
+        let model = scene.simulation.sensor.model();
+        let mut found = Self {
+            folder,
+            report,
+            truth: BTreeMap::new(),
+            firing_ns: model.firing_period_ns(),
+            clock_ns: i64::from(scene.simulation.clock_at_start_us) * 1_000,
+        };
+        for point in truth.0 {
+            let key = found.key(point.device_ns + found.clock_ns, point.laser);
+            found.truth.entry(key).or_default().push(point);
+        }
+        found
+    }
+
+    fn log(&self) -> PathBuf {
+        self.folder.path().join("scene.pcapng")
+    }
+
+    /// The firing whose laser fired at a time of the lidar's hour: its delay is less than a period.
+    fn key(&self, device_ns: i64, laser: u8) -> (i64, u8) {
+        let since = (device_ns - self.clock_ns).rem_euclid(3_600_000_000_000);
+        // Stamps are cut off to whole microseconds.
+        ((since + 1_000) / self.firing_ns, laser)
+    }
+
+    /// Every point of a cloud with the truth nearest to it among those of its firing and laser: distance and range, metres.
+    fn errors(&self, cloud: &Points) -> Vec<(f64, f64)> {
+        let shots = cloud.device_time().iter().zip(cloud.laser());
+        cloud
+            .positions()
+            .zip(shots)
+            .map(|(seen, (time, laser))| {
+                let truth = &self.truth[&self.key(time.as_nanos(), *laser)];
+                let distance = |point: &TruePoint| {
+                    let there = point.position_m.to_array();
+                    let apart = seen.iter().zip(there).map(|(a, b)| (a - b) * (a - b));
+                    apart.sum::<f64>().sqrt()
+                };
+                let nearest = truth
+                    .iter()
+                    .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                let nearest = nearest.unwrap();
+                (distance(nearest), nearest.range_m)
+            })
+            .collect()
+    }
+}
+
+/// The program's report and the cloud of a log.
+fn replayed(log: &Path, tilt: TiltSource) -> (Scan, Points) {
+    let mut points = Points::new(Fields::ALL);
+    let request = replay::Request {
+        recording: &Source::open(log, None).unwrap(),
+        tilt,
+        options: lidar::Options::default(),
+        time: velomotion::cli::TimeOf::Host,
+        accuracy: scanner::Accuracy::Best,
+        pace: None,
+        truth: None,
+        interrupt: &AtomicBool::new(false),
+    };
+    let scan = replay::scan(&request, &mut points, Path::new("memory")).unwrap();
+    (scan, points)
+}

@@ -1,0 +1,65 @@
+//! A tilting scanner: log, replay, and the cloud against the truth.
+
+use scanner::TiltSource;
+use sim::scene_file::SHIPPED;
+
+use crate::{Simulated, replayed};
+
+fn rms_and_worst(errors: &[(f64, f64)]) -> (f64, f64) {
+    let squares: f64 = errors.iter().map(|(error, _)| error * error).sum();
+    let worst = errors.iter().map(|(error, _)| *error).fold(0.0, f64::max);
+    ((squares / errors.len() as f64).sqrt(), worst)
+}
+
+fn hall() -> &'static str {
+    SHIPPED.iter().find(|(name, _)| *name == "hall").unwrap().1
+}
+
+/// Range in steps of 2 mm and azimuth in hundredths of a degree are all that the ideal scanner loses.
+#[test]
+fn the_hall_comes_back_as_it_was() {
+    let scene = Simulated::new(hall(), |_| {});
+    let (scan, cloud) = replayed(&scene.log(), TiltSource::Log);
+    assert!(scan.contents.simulated);
+    let [sweep] = scan.sweeps[..] else {
+        panic!("{:?}", scan.sweeps)
+    };
+    assert!(sweep.from_deg.abs() < 1e-3 && (sweep.to_deg + 45.0).abs() < 1e-3);
+    assert!((sweep.cruise_deg_s + 56.25).abs() < 1e-3, "{sweep:?}");
+    assert!(cloud.len() > 230_000, "{}", cloud.len());
+    let (rms_m, worst_m) = rms_and_worst(&scene.errors(&cloud));
+    println!("rms {rms_m} worst {worst_m}");
+    assert!(rms_m < 1.0e-3, "{rms_m}");
+    assert!(worst_m < 2.6e-3, "{worst_m}");
+}
+
+/// The ideal motion of scan patterns has no ramps.
+#[test]
+fn sweeps_both_ways_without_ramps_come_back() {
+    let text = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = -10.0\nto_deg = 30.0\nspeed_deg_s = 100.0\nboth_ways = true\n\
+                [mount]\nd_m = 0.1\n";
+    let scene = Simulated::new(text, |_| {});
+    let (scan, cloud) = replayed(&scene.log(), TiltSource::Log);
+    let ways: Vec<_> = scan
+        .sweeps
+        .iter()
+        .map(|s| (s.from_deg.round(), s.to_deg.round()))
+        .collect();
+    assert_eq!(ways, [(-10.0, 30.0), (30.0, -10.0)]);
+    let (rms_m, worst_m) = rms_and_worst(&scene.errors(&cloud));
+    println!("rms {rms_m} worst {worst_m}");
+    assert!(rms_m < 1.5e-3, "{rms_m}");
+    assert!(worst_m < 10e-3, "{worst_m}");
+}
+
+#[test]
+fn noise_of_ranges_is_as_large_as_asked_for() {
+    let text = hall().to_owned() + "\n[effects.range_noise]\nsd_m = 0.03\n";
+    let scene = Simulated::new(&text, |_| {});
+    assert_eq!(scene.report.effects.len(), 1);
+    let (_, cloud) = replayed(&scene.log(), TiltSource::Log);
+    let (rms_m, worst_m) = rms_and_worst(&scene.errors(&cloud));
+    // 3 cm and half a percent of it for 2.4e5 draws; none beyond six standard deviations.
+    assert!((rms_m - 0.03).abs() < 2e-4, "{rms_m}");
+    assert!((0.11..0.19).contains(&worst_m), "{worst_m}");
+}
