@@ -642,3 +642,38 @@ fn study_is_whole(study: &serde_json::Value) {
         );
     }
 }
+
+#[test]
+fn simulate_makes_a_log_that_replay_reads_and_says_what_is_wrong_where() {
+    let place = Place::new();
+    place.fails("simulate castle", 3, &["scene castle", "hall"]);
+    let scene = "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.05\n";
+    std::fs::write(
+        place.path("wrong.toml"),
+        format!("{scene}[effects]\nrange_nois = 1\n"),
+    )
+    .unwrap();
+    place.fails(
+        "simulate wrong.toml",
+        3,
+        &["wrong.toml, line 6", "range_nois"],
+    );
+    std::fs::write(place.path("stand.toml"), scene).unwrap();
+    place.fails("simulate stand.toml --truth t.xyz", 2, &["t.xyz", ".ply"]);
+    place.fails("simulate stand.toml --truth - --json", 2, &["stdout"]);
+    let output = place.run("simulate stand.toml --truth t.csv --json --threads 2");
+    assert!(output.status.success(), "{output:?}");
+    let said = json(&output);
+    assert_eq!(said["packets"], 37);
+    assert_eq!(said["share_returned"], 1.0);
+    assert_eq!(said["effects"].as_array().unwrap().len(), 0);
+    assert_eq!(said["log"], "stand.pcapng");
+    let truth = std::fs::read_to_string(place.path("t.csv")).unwrap();
+    assert!(truth.contains("SIMULATED"), "{:?}", truth.lines().next());
+    let rows = truth.lines().filter(|line| !line.starts_with('#')).count() - 1;
+    assert_eq!(said["returned"].as_u64(), Some(rows as u64));
+    place.fails("simulate stand.toml", 2, &["exists"]);
+    let output = place.run("replay stand.pcapng --tilt none -o s.ply --json");
+    assert_eq!(json(&output)["points"].as_u64(), Some(rows as u64));
+    assert_eq!(json(&output)["simulated"], true);
+}

@@ -60,3 +60,51 @@ impl Surface for RangeNoise {
         acted
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The same length for all lasers of many firings: what it is changed by.
+    fn changes(sd_m: f64, two: bool) -> Vec<f64> {
+        let noise = RangeNoise::new(sd_m, 5);
+        let mut firing = Firing::new(32);
+        let mut all = Vec::new();
+        for number in 0..1_000 {
+            firing.number = number;
+            let mut echoes = Echoes::new(32, two);
+            for echo in echoes.all_mut().flatten().filter(|_| number % 2 == 0) {
+                echo.range_m = 10.0;
+                echo.true_range_m = 10.0;
+            }
+            noise.reflect(&firing, &mut echoes);
+            for echo in echoes.all_mut().flatten().filter(|echo| echo.is_there()) {
+                assert_eq!(echo.true_range_m, 10.0);
+                all.push(echo.range_m - 10.0);
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn it_is_as_large_as_asked_for_and_every_return_has_its_own() {
+        let all = changes(0.02, true);
+        assert_eq!(all.len(), 32_000);
+        let count = all.len() as f64;
+        let mean = all.iter().sum::<f64>() / count;
+        let variance = all.iter().map(|x| x * x).sum::<f64>() / count;
+        assert!(mean.abs() < 4.0 * 0.02 / count.sqrt(), "{mean}");
+        assert!((variance.sqrt() / 0.02 - 1.0).abs() < 4.0 / (2.0 * count).sqrt());
+        let mut distinct = all.clone();
+        distinct.sort_by(f64::total_cmp);
+        distinct.dedup();
+        assert_eq!(distinct.len(), all.len());
+    }
+
+    #[test]
+    fn what_is_no_deviation_changes_nothing() {
+        for sd_m in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(changes(sd_m, false).iter().all(|change| *change == 0.0));
+        }
+    }
+}

@@ -91,7 +91,7 @@ impl Echo {
 }
 
 impl Echoes {
-    pub(super) const fn new(lasers: usize, two: bool) -> Self {
+    pub(crate) const fn new(lasers: usize, two: bool) -> Self {
         Self {
             strongest: [Echo::NONE; MOST_LASERS],
             other: [Echo::NONE; MOST_LASERS],
@@ -120,7 +120,7 @@ impl Echoes {
 const SMALL: f64 = 1e-3;
 
 impl Firing {
-    pub(super) const fn new(lasers: usize) -> Self {
+    pub(crate) const fn new(lasers: usize) -> Self {
         Self {
             number: 0,
             at_s: 0.0,

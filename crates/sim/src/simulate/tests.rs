@@ -1,8 +1,11 @@
 use super::*;
-use crate::effects::{OnFirings, RangeNoise};
+use crate::effects::{
+    Absorb, Asked, Axis, Clock, Effect, Listed, Needs, OnFirings, Parcel, RangeNoise, Surface, View,
+};
 use crate::head::Head;
 use crate::motion::Sweeps;
 use crate::scenes;
+use firmware_sim::vlp16::DATA_PORT;
 use units::{Degrees, Metres};
 
 /// What a run gave.
@@ -208,4 +211,331 @@ fn the_drive_says_where_its_shaft_was_in_the_middle() {
         let angle = simulation.motion.at(read_s).angle_deg;
         assert!((f64::from(position_qc) * 0.0015 - angle).abs() <= 0.000_750_1);
     }
+}
+
+/// A sensor that fires to the right alone, from 90 to 180 degrees.
+#[derive(Clone, Debug)]
+struct Window;
+
+impl Effect for Window {
+    fn name(&self) -> &'static str {
+        "window"
+    }
+
+    fn needs(&self) -> Needs {
+        Needs {
+            azimuths: true,
+            ..Needs::NOTHING
+        }
+    }
+}
+
+impl Absorb for Window {}
+
+impl View for Window {
+    fn fires(&self, azimuth_deg: f64) -> bool {
+        (90.0..180.0).contains(&azimuth_deg)
+    }
+}
+
+fn with<V, S, C>(view: V, surface: S, clock: C) -> Effects<OnFirings<(), V, (), S, C>> {
+    Effects {
+        firings: OnFirings {
+            objects: (),
+            view,
+            beam: (),
+            surface,
+            clock,
+        },
+        mechanism: (),
+        encoder: (),
+        wire: (),
+    }
+}
+
+fn run_with<F: FiringEffects, M: Mechanism, E: Encoder, W: Wire>(
+    simulation: &Simulation,
+    effects: &mut Effects<F, M, E, W>,
+) -> (Taken, Summary) {
+    let mut taken = Taken::default();
+    let summary = simulation.run(effects, threads(2), &mut taken);
+    (taken, summary.unwrap())
+}
+
+#[test]
+fn a_window_leaves_blocks_out_and_packets_straddle_the_gap() {
+    let mut simulation = hall(Sensor::vlp16());
+    simulation.motion = Motion::fixed(0.0, 0.5).unwrap();
+    simulation.polls = None;
+    let (taken, summary) = run_with(&simulation, &mut with(Window, (), ()));
+    // A quarter of five turns.
+    assert!((92..=94).contains(&summary.packets), "{summary:?}");
+    let mut straddling = 0;
+    for (_, packet) in taken
+        .datagrams
+        .iter()
+        .filter(|(port, _)| *port == DATA_PORT)
+    {
+        let azimuth =
+            |block: usize| u16::from_le_bytes([packet[100 * block + 2], packet[100 * block + 3]]);
+        let azimuths: Vec<u16> = (0..12).map(azimuth).collect();
+        assert!(
+            azimuths.iter().all(|cdeg| (9_000..=18_000).contains(cdeg)),
+            "{azimuths:?}"
+        );
+        straddling += u32::from(!azimuths.is_sorted());
+    }
+    assert!((3..=5).contains(&straddling), "{straddling}");
+    // Every point is where it was seen, at its own time.
+    for point in &taken.points {
+        let azimuth = 200.0 + 3.6e-6 * point.device_ns as f64;
+        let turned = (point.azimuth_deg - azimuth).rem_euclid(360.0);
+        assert!(!(1e-9..=360.0 - 1e-9).contains(&turned));
+    }
+}
+
+/// Half as bright.
+#[derive(Clone, Debug)]
+struct Dim;
+
+impl Effect for Dim {
+    fn name(&self) -> &'static str {
+        "dim"
+    }
+}
+
+impl Absorb for Dim {}
+
+impl Surface for Dim {
+    fn reflect(&self, _: &Firing, echoes: &mut Echoes) -> u32 {
+        let mut acted = 0;
+        for echo in echoes.all_mut().flatten().filter(|echo| echo.is_there()) {
+            echo.reflectivity *= 0.5;
+            acted += 1;
+        }
+        acted
+    }
+}
+
+fn distances(taken: &Taken) -> Vec<u16> {
+    let data = taken
+        .datagrams
+        .iter()
+        .filter(|(port, _)| *port == DATA_PORT);
+    data.flat_map(|(_, packet)| {
+        let places =
+            (0..12).flat_map(|block| (0..32).map(move |channel| 100 * block + 4 + 3 * channel));
+        places
+            .map(|at| u16::from_le_bytes([packet[at], packet[at + 1]]))
+            .collect::<Vec<_>>()
+    })
+    .collect()
+}
+
+#[test]
+fn one_more_effect_leaves_the_draws_of_the_others_as_they_were() {
+    let simulation = hall(Sensor::vlp16());
+    let noise = RangeNoise::new(0.05, 3);
+    let (alone, _) = run_with(&simulation, &mut with((), noise, ()));
+    let (both, _) = run_with(&simulation, &mut with((), (Dim, noise), ()));
+    assert_eq!(distances(&alone), distances(&both));
+    assert_ne!(alone.datagrams, both.datagrams);
+    let (none, _) = run(&simulation, 1);
+    assert_ne!(distances(&alone), distances(&none));
+}
+
+#[test]
+fn lists_do_what_pairs_do_and_count_it() {
+    let simulation = hall(Sensor::hdl32e());
+    let noise = RangeNoise::new(0.05, 3);
+    let (pair, summary) = run_with(&simulation, &mut with((), (noise, Dim), ()));
+    let mut asked = Asked::default();
+    let surface = &mut asked.firings.surface;
+    surface.push(Listed::new(Arc::new(noise), None));
+    surface.push(Listed::new(Arc::new(Dim), Some(|| 5)));
+    for times in 1..=2 {
+        let (list, _) = run_with(&simulation, &mut asked);
+        assert_eq!(list.datagrams, pair.datagrams);
+        for listed in &asked.firings.surface {
+            let usage = listed.usage();
+            assert_eq!(usage.asked, times * summary.shots / 32);
+            assert_eq!(usage.acted, usage.asked);
+            assert_eq!(usage.changed, times * summary.returns);
+            assert_eq!(usage.spent_ns, 0);
+        }
+    }
+}
+
+/// A platform a degree ahead of its motor.
+#[derive(Debug)]
+struct Ahead;
+
+impl Effect for Ahead {
+    fn name(&self) -> &'static str {
+        "ahead"
+    }
+
+    fn needs(&self) -> Needs {
+        Needs {
+            motion: true,
+            ..Needs::NOTHING
+        }
+    }
+}
+
+impl Mechanism for Ahead {
+    fn step(&mut self, _: f64, axis: &mut Axis) -> bool {
+        axis.platform_deg += 1.0;
+        true
+    }
+}
+
+#[test]
+fn a_mechanism_stands_between_encoder_and_platform() {
+    let simulation = hall(Sensor::vlp16());
+    let (ideal, _) = run(&simulation, 1);
+    let mut effects = Effects {
+        firings: OnFirings::default(),
+        mechanism: Ahead,
+        encoder: (),
+        wire: (),
+    };
+    let (ahead, _) = run_with::<OnFirings, _, _, _>(&simulation, &mut effects);
+    let apart = ideal.answers.iter().zip(&ahead.answers);
+    assert!(apart.clone().count() > 50);
+    for ((_, ideal), (_, ahead)) in apart {
+        assert!((ideal - ahead).abs() <= 1);
+    }
+    for (ideal, ahead) in ideal.points.iter().zip(&ahead.points) {
+        // Straight between steps of 250 us: 5000 deg/s2 x (250 us)^2 / 8.
+        let off = ahead.tilt_deg - ideal.tilt_deg - 1.0;
+        assert!(off.abs() < 5e-5, "{off}");
+    }
+}
+
+/// Every third parcel is lost, every fifth comes twice, and all are late by up to 4 ms, so that they overtake each other.
+#[derive(Debug)]
+struct Bad(crate::random::Source);
+
+impl Effect for Bad {
+    fn name(&self) -> &'static str {
+        "bad"
+    }
+}
+
+impl Wire for Bad {
+    fn deliver(&mut self, parcel: Parcel, arrive: &mut dyn FnMut(Parcel)) -> u32 {
+        let times = match (parcel.number % 3, parcel.number % 5) {
+            (0, _) => 0,
+            (_, 0) => 2,
+            _ => 1,
+        };
+        let mut draws = self.0.at(parcel.number, parcel.kind as u32);
+        for _ in 0..times {
+            let late_ns = (4e6 * draws.unit()) as i64;
+            arrive(Parcel {
+                leaves_ns: parcel.leaves_ns + late_ns,
+                ..parcel
+            });
+        }
+        1
+    }
+}
+
+#[test]
+fn whatever_a_link_does_events_come_in_order_and_moves_are_commanded() {
+    let simulation = hall(Sensor::vlp16());
+    let mut effects = Effects {
+        firings: OnFirings::default(),
+        mechanism: (),
+        encoder: (),
+        wire: (Bad(crate::random::Source::new(1, "bad")), ()),
+    };
+    let (taken, summary) = run_with::<OnFirings, _, _, _>(&simulation, &mut effects);
+    assert!(taken.times.is_sorted());
+    let numbers = 0..summary.packets;
+    let expected: u64 = numbers
+        .map(|n| match (n % 3, n % 5) {
+            (0, _) => 0,
+            (_, 0) => 2,
+            _ => 1,
+        })
+        .sum();
+    let data = taken
+        .datagrams
+        .iter()
+        .filter(|(port, _)| *port == DATA_PORT);
+    assert_eq!(data.clone().count() as u64, expected);
+    let stamps: Vec<u32> = data
+        .map(|(_, packet)| u32::from_le_bytes(packet[1200..1204].try_into().unwrap()))
+        .collect();
+    assert!(
+        !stamps.is_sorted(),
+        "nothing overtook anything: the test is blind"
+    );
+    // A command is repeated until it is acknowledged, and an acknowledgement may come twice.
+    let mut commands = taken.commands.clone();
+    commands.dedup();
+    assert_eq!(commands.len(), 6, "{commands:?}");
+    // The truth does not care.
+    assert_eq!(taken.points.len() as u64, summary.returns);
+}
+
+/// A lidar whose clock is 1000 ppm fast: it is ahead of the host's.
+#[derive(Clone, Debug)]
+struct Fast;
+
+impl Effect for Fast {
+    fn name(&self) -> &'static str {
+        "fast"
+    }
+}
+
+impl Absorb for Fast {}
+
+impl Clock for Fast {
+    fn host_ns(&self, device_ns: i64) -> i64 {
+        device_ns - device_ns / 1_001
+    }
+}
+
+#[test]
+fn the_lidars_clock_decides_when_it_fires() {
+    let simulation = hall(Sensor::vlp16());
+    let (taken, _) = run_with(&simulation, &mut with((), (), Fast));
+    let last = taken.points.last().unwrap();
+    let host_ns = (last.host - START).as_nanos();
+    assert!((last.device_ns - host_ns - last.device_ns / 1_001).abs() <= 1);
+    let commanded = simulation.motion.at(host_ns as f64 * 1e-9);
+    assert!((last.tilt_deg - commanded.angle_deg).abs() < 1e-5);
+}
+
+#[test]
+fn a_laser_that_is_covered_never_fires() {
+    let mut simulation = hall(Sensor::single_beam());
+    simulation.motion = Motion::fixed(0.0, 0.1).unwrap();
+    let (taken, summary) = run(&simulation, 1);
+    assert_eq!(summary.shots, 24 * summary.packets);
+    assert_eq!(summary.returned, summary.shots);
+    assert!(taken.points.iter().all(|point| point.laser == 14));
+}
+
+#[test]
+fn what_cannot_be_run_is_refused() {
+    let mut simulation = hall(Sensor::vlp16());
+    simulation.motion = Motion::fixed(0.0, 86_401.0).unwrap();
+    let mut none = Effects::<OnFirings>::default();
+    let refused = simulation.run(&mut none, threads(1), &mut Taken::default());
+    assert!(matches!(refused, Err(SimulateError::TooLong { .. })));
+    simulation.motion = Motion::fixed(0.0, 1e-4).unwrap();
+    simulation.polls = simulation.polls.map(|polls| Polls {
+        period_ns: 0,
+        ..polls
+    });
+    let refused = simulation.run(&mut none, threads(1), &mut Taken::default());
+    assert!(matches!(refused, Err(SimulateError::Polls { .. })));
+    // Shorter than a packet: nothing, and no complaint.
+    simulation.polls = None;
+    let (taken, summary) = run(&simulation, 5);
+    assert_eq!((summary.packets, taken.times.len()), (0, 0));
 }
