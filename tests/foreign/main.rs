@@ -5,6 +5,7 @@
 
 mod ray_casting;
 mod simulated;
+mod scenes;
 
 use std::path::Path;
 use std::process::Command;

@@ -29,8 +29,8 @@ fn the_hall_comes_back_as_it_was() {
     assert!(cloud.len() > 230_000, "{}", cloud.len());
     let (rms_m, worst_m) = rms_and_worst(&scene.errors(&cloud));
     println!("rms {rms_m} worst {worst_m}");
-    assert!(rms_m < 1.0e-3, "{rms_m}");
-    assert!(worst_m < 2.6e-3, "{worst_m}");
+    assert!(rms_m < 0.8e-3, "{rms_m}");
+    assert!(worst_m < 2.2e-3, "{worst_m}");
 }
 
 /// The ideal motion of scan patterns has no ramps.
@@ -48,8 +48,8 @@ fn sweeps_both_ways_without_ramps_come_back() {
     assert_eq!(ways, [(-10.0, 30.0), (30.0, -10.0)]);
     let (rms_m, worst_m) = rms_and_worst(&scene.errors(&cloud));
     println!("rms {rms_m} worst {worst_m}");
-    assert!(rms_m < 1.5e-3, "{rms_m}");
-    assert!(worst_m < 10e-3, "{worst_m}");
+    assert!(rms_m < 0.8e-3, "{rms_m}");
+    assert!(worst_m < 2.2e-3, "{worst_m}");
 }
 
 #[test]

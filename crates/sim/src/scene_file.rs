@@ -140,12 +140,9 @@ impl Scene {
             what: error.message().to_owned(),
         })?;
         let seed = seed.unwrap_or(file.seed);
-        Self::new(&file, seed, clock)
-            .and_then(|mut scene| {
-                scene.effects.find_lines(|at| line_of(text, at));
-                Ok(scene)
-            })
-            .map_err(|wrong| wrong.in_file(text))
+        let mut scene = Self::new(&file, seed, clock).map_err(|wrong| wrong.in_file(text))?;
+        scene.effects.find_lines(|at| line_of(text, at));
+        Ok(scene)
     }
 
     fn new(file: &File, seed: u64, clock: Option<fn() -> u64>) -> Result<Self, Wrong> {

@@ -228,9 +228,11 @@ impl<T: Clock + ?Sized> Clock for Vec<Listed<Arc<T>>> {
 
 impl<T: Mechanism + ?Sized> Mechanism for Vec<Listed<Box<T>>> {
     fn step(&mut self, at_s: f64, axis: &mut Axis) -> bool {
-        self.iter_mut().fold(false, |acted, listed| {
-            listed.ask_mut(|effect| effect.step(at_s, axis), |acted| u32::from(*acted)) || acted
-        })
+        let mut any = false;
+        for listed in self {
+            any |= listed.ask_mut(|effect| effect.step(at_s, axis), |acted| u32::from(*acted));
+        }
+        any
     }
 }
 

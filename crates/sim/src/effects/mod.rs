@@ -239,7 +239,7 @@ pub trait FiringEffects: Clone + Send {
 
 /// The five, borrowed.
 #[derive(Debug)]
-pub struct Parts<'a, F: FiringEffects + ?Sized> {
+pub struct Parts<'a, F: FiringEffects> {
     /// What moves.
     pub objects: &'a F::Objects,
     /// What keeps beams in.
