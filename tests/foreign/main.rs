@@ -4,7 +4,6 @@
 //! `VELOMOTION_PYTHON` names a python3 that has `requirements.txt` installed.
 
 mod ray_casting;
-mod simulated;
 mod scenes;
 
 use std::path::Path;

@@ -188,6 +188,7 @@ impl Out for Log<'_> {
                     .saturating_add(Span::from_nanos(self.clock_ns)),
                 tilt: Degrees(point.tilt_deg),
                 sd_m: 0.0,
+                echo: 0,
             });
         }
         match self.batch.len() >= BATCH {
