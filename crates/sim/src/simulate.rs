@@ -1,8 +1,8 @@
 //! The whole way of the data on one page: a scene, a sensor and a motion in, the devices' bytes and the truth out.
 //!
-//! For every packet of the lidar ([`worker`]): when its blocks fire; where the scanner stands then ([`course`]); which way each ray goes
-//! ([`firing`]); what it meets ([`surroundings`]); what comes back, as a packet and as truth. Packets are made by threads in chunks; in order
-//! of time they are then merged with the drive's polls and go through the links ([`merge`]). Effects act where their trait says
+//! For every packet of the lidar (`worker`): when its blocks fire; where the scanner stands then (`course`); which way each ray goes
+//! (`firing`); what it meets (`surroundings`); what comes back, as a packet and as truth. Packets are made by threads in chunks; in order
+//! of time they are then merged with the drive's polls and go through the links (`merge`). Effects act where their trait says
 //! ([`crate::effects`]); [`Simulation::run`] is generic over them, so that where there are none nothing is left of them.
 //! One simulation, one seed: the same bytes on any number of threads.
 //!
