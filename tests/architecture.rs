@@ -18,7 +18,7 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 10] = [
 ];
 
 /// A library, and the crates of the workspace that may use it directly.
-const CONFINED: [(&str, &[&str]); 10] = [
+const CONFINED: [(&str, &[&str]); 13] = [
     ("serialport", &["io"]),
     ("socket2", &["io"]),
     ("nix", &["io"]),
@@ -29,6 +29,9 @@ const CONFINED: [(&str, &[&str]); 10] = [
     ("signal-hook", &["velomotion"]),
     ("las", &["cloud"]),
     ("rayon", &["sim", "analysis"]),
+    ("gltf", &["sim"]),
+    ("ply-rs-bw", &["sim"]),
+    ("tobj", &["sim"]),
 ];
 
 /// What `sim` must never see, not even in its tests: it states the geometry its own way (invariant 3).

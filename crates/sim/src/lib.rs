@@ -20,6 +20,7 @@ pub mod random;
 mod rig;
 mod scene;
 pub mod scene_file;
+pub mod scenery;
 pub mod scenes;
 pub mod sensor;
 mod shaft;

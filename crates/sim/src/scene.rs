@@ -1,17 +1,22 @@
-//! A scene: primitives about a local origin, and the first that a ray meets.
+//! A scene: primitives about a local origin, or what a scene file places, and the first that a ray meets.
 //!
 //! Coordinates are f64 metres in the frame of the platform's base: origin on the tilt axis, z up, the lidar's forward
 //! direction along y. Keeping the origin local keeps the precision; map coordinates are for whoever places the scene.
-//! Left out: normals, materials beyond one reflectivity a face, moving objects, acceleration structures.
+//! A few primitives are asked one after the other; what a scene file places has its own trees ([`crate::cast`]). Left out: moving objects.
+
+use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::cast::{CastError, Caster, Normal, Ray as CastRay, Reach};
+use crate::scenery::Placed;
 use crate::shapes::{Ray, Shape};
 
 /// Primitives that rays are cast at.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Scene {
     shapes: Vec<Shape>,
+    placed: Option<Arc<(Placed, Caster)>>,
 }
 
 /// Where a ray met the scene.
@@ -37,6 +42,42 @@ impl Scene {
         self
     }
 
+    /// What a scene file places.
+    ///
+    /// # Errors
+    /// [`CastError`] for what cannot be cast at.
+    pub fn of(placed: Placed) -> Result<Self, CastError> {
+        let caster = placed.caster()?;
+        Ok(Self {
+            shapes: Vec::new(),
+            placed: Some(Arc::new((placed, caster))),
+        })
+    }
+
+    /// What a scene file placed, and the caster of it.
+    #[must_use]
+    pub fn placed(&self) -> Option<(&Placed, &Caster)> {
+        self.placed
+            .as_deref()
+            .map(|(placed, caster)| (placed, caster))
+    }
+
+    /// As [`Scene::cast`], with the normal of the surface, length 1; zero for primitives, whose normals nobody keeps.
+    #[inline]
+    #[must_use]
+    pub fn cast_with_normal(
+        &self,
+        origin_m: DVec3,
+        direction: DVec3,
+        min_m: f64,
+        max_m: f64,
+    ) -> Option<(Hit, DVec3)> {
+        match self.placed() {
+            Some(scene) => meet::<DVec3>(scene, origin_m, direction, min_m, max_m),
+            None => Some((self.cast(origin_m, direction, min_m, max_m)?, DVec3::ZERO)),
+        }
+    }
+
     /// The primitives.
     #[must_use]
     pub fn shapes(&self) -> &[Shape] {
@@ -52,6 +93,10 @@ impl Scene {
     pub fn cast(&self, origin_m: DVec3, direction: DVec3, min_m: f64, max_m: f64) -> Option<Hit> {
         if !(origin_m.is_finite() && direction.is_finite()) {
             return None;
+        }
+        if let Some(scene) = self.placed() {
+            let (hit, ()) = meet::<()>(scene, origin_m, direction, min_m, max_m)?;
+            return Some(hit);
         }
         let ray = Ray {
             origin: origin_m,
@@ -75,6 +120,25 @@ impl Scene {
             nearest.range_m.is_finite() && min_m <= nearest.range_m && nearest.range_m <= max_m;
         within.then_some(nearest)
     }
+}
+
+/// What a ray meets of what a scene file placed. What absorbs returns nothing.
+#[inline]
+fn meet<N: Normal>(
+    (placed, caster): (&Placed, &Caster),
+    origin_m: DVec3,
+    direction: DVec3,
+    min_m: f64,
+    max_m: f64,
+) -> Option<(Hit, N)> {
+    let ray = CastRay::new(origin_m, direction).ok()?;
+    let hit = caster.nearest::<N>(&ray, Reach::up_to(max_m))?;
+    let material = placed.material(hit.object.index(), hit.primitive)?;
+    let seen = Hit {
+        range_m: hit.range_m,
+        reflectivity: material.reflectivity,
+    };
+    (hit.range_m >= min_m && !material.absorbing).then_some((seen, hit.normal))
 }
 
 #[cfg(test)]

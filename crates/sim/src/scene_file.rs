@@ -1,28 +1,29 @@
 //! Scene files: TOML in, a [`Simulation`] and its effects out.
 //!
 //! Every key of `[effects]` is a table of its own and the name of one file in [`crate::effects`]; a scene file without it has no such effect, and
-//! without any there is none at all. Keys that are not known are errors, and errors name the line. Left out: reading the file, and geometry
-//! beyond the scenes that come with the simulator.
+//! without any there is none at all. What stands around the scanner is [`crate::scenery`]'s, of the file itself or of a scene that comes with the simulator
+//! (`scene = "hall"`). Keys that are not known are errors, and errors name the line. Left out: reading files.
 
+mod around;
 mod drive;
 mod effects;
 mod motion;
 mod sensor;
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use glam::DVec3;
 use serde::Deserialize;
 use thiserror::Error;
 use toml::Spanned;
 use units::{Host, Stamp};
 
-use crate::scenes;
+pub use crate::scenery::SHIPPED;
+use crate::scenery::{MaterialTable, Moving, ObjectTable, no_files, rotation};
 use crate::simulate::{Mount, Simulation};
 pub use effects::{AskedFor, EffectLine};
-
-/// Scenes that come with the simulator: name and file.
-pub const SHIPPED: [(&str, &str); 1] = [("hall", include_str!("../scenes/hall.toml"))];
 
 /// What a scene file asks for.
 #[derive(Debug)]
@@ -33,6 +34,8 @@ pub struct Scene {
     pub effects: AskedFor,
     /// What draws depend on.
     pub seed: u64,
+    /// What moves, and how; where it is in [`Simulation::scene`] is where it starts.
+    pub moving: Vec<Moving>,
 }
 
 /// What is wrong with a scene file.
@@ -58,8 +61,17 @@ struct File {
     /// What the lidar's clock shows then, microseconds past the hour.
     #[serde(default)]
     lidar_clock_us: u32,
-    /// A scene by name.
-    scene: Spanned<String>,
+    /// What it shows, for people.
+    #[serde(default, rename = "about")]
+    _about: String,
+    /// What stands around, by the name of a scene that comes with the simulator; else the next two say it.
+    scene: Option<Spanned<String>>,
+    /// What things are made of.
+    #[serde(default)]
+    materials: BTreeMap<Spanned<String>, Spanned<MaterialTable>>,
+    /// What there is.
+    #[serde(default)]
+    objects: Vec<Spanned<ObjectTable>>,
     #[serde(default)]
     sensor: sensor::Section,
     motion: Spanned<motion::Section>,
@@ -78,6 +90,33 @@ struct MountSection {
     /// Height of the lidar's origin above the tilt axis, metres (d of Eq. 4-6).
     #[serde(default)]
     d_m: Option<Spanned<f64>>,
+    /// How far it is moved beside that, metres in the frame of the platform: x right, y along the axis, z up.
+    position_m: Option<Spanned<[f64; 3]>>,
+    /// How it is turned about x, then y, then z of the platform, degrees.
+    rotation_deg: Option<Spanned<[f64; 3]>>,
+}
+
+impl MountSection {
+    fn build(&self) -> Result<Mount, Wrong> {
+        let d_m = match &self.d_m {
+            Some(d_m) => finite(d_m, "a height in metres")?,
+            None => 0.0,
+        };
+        let three = |key: &Option<Spanned<[f64; 3]>>| match key {
+            Some(three) if three.get_ref().iter().all(|number| number.is_finite()) => {
+                Ok(*three.get_ref())
+            }
+            Some(three) => {
+                let what = format!("expected three numbers, got {:?}", three.get_ref());
+                Err(Wrong::new(three.span(), what))
+            }
+            None => Ok([0.0; 3]),
+        };
+        let mut mount = Mount::above(d_m);
+        mount.at_m += DVec3::from_array(three(&self.position_m)?);
+        mount.turn = rotation(three(&self.rotation_deg)?);
+        Ok(mount)
+    }
 }
 
 /// A time in November 2026.
@@ -135,12 +174,26 @@ impl Scene {
         seed: Option<u64>,
         clock: Option<fn() -> u64>,
     ) -> Result<Self, SceneError> {
+        Self::parse_with(text, seed, clock, &mut no_files)
+    }
+
+    /// The same for a scene that names mesh files: `files` gives the bytes of each by its name in the scene, or says why it cannot.
+    ///
+    /// # Errors
+    /// [`SceneError`], for files that cannot be had too.
+    pub fn parse_with(
+        text: &str,
+        seed: Option<u64>,
+        clock: Option<fn() -> u64>,
+        files: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, SceneError> {
         let file: File = toml::from_str(text).map_err(|error| SceneError {
             line: error.span().map_or(1, |at| line_of(text, at.start)),
             what: error.message().to_owned(),
         })?;
         let seed = seed.unwrap_or(file.seed);
         let mut scene = Self::new(&file, seed, clock).map_err(|wrong| wrong.in_file(text))?;
+        (scene.simulation.scene, scene.moving) = around::build(text, file, seed, files)?;
         scene.effects.find_lines(|at| line_of(text, at));
         Ok(scene)
     }
@@ -148,10 +201,6 @@ impl Scene {
     fn new(file: &File, seed: u64, clock: Option<fn() -> u64>) -> Result<Self, Wrong> {
         let (sensor, returns, spin) = file.sensor.build()?;
         let motion = file.motion.get_ref().build(file.motion.span())?;
-        let d_m = match &file.mount.d_m {
-            Some(d_m) => finite(d_m, "a height in metres")?,
-            None => 0.0,
-        };
         let polls = match motion.is_fixed() {
             true => None,
             false => Some(file.drive.build()?),
@@ -161,20 +210,13 @@ impl Scene {
             let what = format!("expected Unix seconds from 0 to 1e10, got {start_s}");
             return Err(Wrong::new(file.start_unix_s.span(), what));
         }
-        let scene = match file.scene.get_ref().as_str() {
-            "hall" => scenes::hall(),
-            other => {
-                let what = format!("expected a scene that is known (hall), got {other:?}");
-                return Err(Wrong::new(file.scene.span(), what));
-            }
-        };
         Ok(Self {
             simulation: Simulation {
-                scene: Arc::new(scene),
+                scene: Arc::default(),
                 sensor,
                 returns,
                 spin,
-                mount: Mount::above(d_m),
+                mount: file.mount.build()?,
                 motion,
                 polls,
                 start: Stamp::<Host>::from_nanos((start_s * 1e9).round() as i64),
@@ -182,6 +224,7 @@ impl Scene {
             },
             effects: file.effects.build(seed, clock)?,
             seed,
+            moving: Vec::new(),
         })
     }
 }

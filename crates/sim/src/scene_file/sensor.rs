@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::{Wrong, finite};
-use crate::sensor::{ReturnMode, Sensor};
+use crate::sensor::{Reach, ReturnMode, Sensor};
 use crate::simulate::Spin;
 
 /// The section as it is written.
@@ -15,6 +15,10 @@ pub(super) struct Section {
     model: Model,
     /// The one laser that is used, by its number in the order of firing; all if absent.
     only_laser: Option<Spanned<usize>>,
+    /// Whether all lasers of a firing start from one point at one instant.
+    ideal: bool,
+    /// From where to where it sees, metres; what the model sees if absent.
+    range_m: Option<Spanned<[f64; 2]>>,
     /// What it reports.
     returns: Returns,
     /// Turns a minute.
@@ -63,6 +67,17 @@ impl Section {
                 let what = format!("this sensor has no laser {} to use", laser.get_ref());
                 return Err(Wrong::new(laser.span(), what));
             }
+        }
+        if self.ideal {
+            sensor = sensor.ideal();
+        }
+        if let Some(range_m) = &self.range_m {
+            let [min_m, max_m] = *range_m.get_ref();
+            if !(0.0 <= min_m && min_m < max_m && max_m.is_finite()) {
+                let what = format!("expected 0 <= from < to in metres, got {min_m} and {max_m}");
+                return Err(Wrong::new(range_m.span(), what));
+            }
+            sensor = sensor.seeing(Reach { min_m, max_m });
         }
         let returns = match self.returns {
             Returns::Strongest => ReturnMode::Strongest,

@@ -89,3 +89,76 @@ fn any_text_is_read_or_refused() {
         let _ = Scene::parse(&whole[..end], None, None);
     }
 }
+
+#[test]
+fn what_stands_around_is_the_files_own_or_a_shipped_scene() {
+    let own = LEAST.replace("scene = \"hall\"", "about = \"a ball\"")
+        + "[materials]\ndull = { reflectivity = 7 }\n[[objects]]\nmaterial = \"dull\"\nsphere = { radius_m = 4 }\n\
+           velocity_m_s = [1, 0, 0]\n";
+    let look = |text: &str| {
+        let scene = Scene::parse(text, None, None).unwrap();
+        let hit = scene
+            .simulation
+            .scene
+            .cast(glam::DVec3::ZERO, -glam::DVec3::Z, 1.0, 100.0);
+        (hit.unwrap(), scene.moving.len())
+    };
+    let (hit, moving) = look(&own);
+    assert_eq!((hit.range_m, hit.reflectivity, moving), (4.0, 7, 1));
+    let (hit, moving) = look(LEAST);
+    assert_eq!((hit.range_m, hit.reflectivity, moving), (1.2, 28, 0));
+    let (line, what) = error(&format!("{LEAST}[[objects]]\nplane = {{}}\n"));
+    assert!(line == 1 && what.contains("got both"), "{line} {what}");
+    let (line, what) = error(&own.replace("radius_m", "radius"));
+    assert!(
+        line == 9 && what.contains("`radius`, expected `radius_m`"),
+        "{line} {what}"
+    );
+    let (line, what) =
+        error(&own.replace("sphere = { radius_m = 4 }", "mesh = { file = \"a.ply\" }"));
+    assert!(line == 7 && what.contains("a.ply"), "{line} {what}");
+}
+
+#[test]
+fn ideal_sensors_other_ranges_and_mounts_in_general() {
+    let text = format!(
+        "{LEAST}[sensor]\nmodel = \"vlp32c\"\nideal = true\nrange_m = [0.5, 20]\n[mount]\nd_m = 0.1\nposition_m = [0.2, 0, 0.3]\n\
+         rotation_deg = [0, 0, 90]\n"
+    );
+    let simulation = Scene::parse(&text, None, None).unwrap().simulation;
+    let beams = simulation.sensor.beams();
+    assert!(
+        beams
+            .iter()
+            .all(|beam| beam.origin_m == 0.0 && beam.azimuth_deg == 0.0 && beam.delay_ns == 0)
+    );
+    assert_eq!(
+        (
+            simulation.sensor.reach().min_m,
+            simulation.sensor.reach().max_m
+        ),
+        (0.5, 20.0)
+    );
+    assert_eq!(simulation.mount.at_m, glam::DVec3::new(0.2, 0.0, 0.4));
+    assert_eq!(simulation.mount.turn * glam::DVec3::X, glam::DVec3::Y);
+    let (line, what) = error(&text.replace("0.5, 20", "5, 2"));
+    assert!(
+        line == 8 && what.contains("0 <= from < to"),
+        "{line} {what}"
+    );
+    let (line, what) = error(&text.replace("0, 0, 90", "0, nan, 90"));
+    assert!(
+        line == 12 && what.contains("three numbers"),
+        "{line} {what}"
+    );
+}
+
+/// What the documentation shows is a scene.
+#[test]
+fn the_example_of_the_documentation_is_a_scene() {
+    let page = include_str!("../../../../docs/src/scenes.md");
+    let example = page.split("```toml\n").nth(1).unwrap();
+    let example = example.split("```").next().unwrap();
+    let scene = Scene::parse(example, None, None).unwrap();
+    assert!(scene.simulation.scene.placed().is_some());
+}

@@ -87,6 +87,17 @@ impl Sensor {
         self
     }
 
+    /// The same sensor as scan patterns on paper have it: all lasers of a firing start from one point, in one direction of the head, at one instant.
+    #[must_use]
+    pub fn ideal(mut self) -> Self {
+        for beam in &mut self.beams {
+            beam.origin_m = 0.0;
+            beam.azimuth_deg = 0.0;
+            beam.delay_ns = 0;
+        }
+        self
+    }
+
     fn new(model: Model, beams: Vec<Beam>, max_m: f64) -> Self {
         let used = u32::MAX >> (MOST_LASERS - beams.len().clamp(1, MOST_LASERS));
         let reach = Reach { min_m: 1.0, max_m };

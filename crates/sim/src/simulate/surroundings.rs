@@ -15,6 +15,7 @@ use crate::sensor::{MOST_LASERS, Reach};
 pub struct Surroundings {
     scene: Arc<Scene>,
     reach: Reach,
+    normals: bool,
 }
 
 /// What a ray met.
@@ -30,7 +31,16 @@ pub struct Met {
 
 impl Surroundings {
     pub(super) const fn new(scene: Arc<Scene>, reach: Reach) -> Self {
-        Self { scene, reach }
+        Self {
+            scene,
+            reach,
+            normals: false,
+        }
+    }
+
+    /// The same with normals of surfaces, or without.
+    pub(super) fn with_normals(self, normals: bool) -> Self {
+        Self { normals, ..self }
     }
 
     /// How far the sensor sees.
@@ -45,11 +55,19 @@ impl Surroundings {
     #[must_use]
     pub fn meet(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
         let Reach { min_m, max_m } = self.reach;
-        let hit = self.scene.cast(origin_m, direction, min_m, max_m)?;
+        let (hit, normal) = match self.normals {
+            true => self
+                .scene
+                .cast_with_normal(origin_m, direction, min_m, max_m)?,
+            false => (
+                self.scene.cast(origin_m, direction, min_m, max_m)?,
+                DVec3::ZERO,
+            ),
+        };
         Some(Met {
             range_m: hit.range_m,
             reflectivity: f64::from(hit.reflectivity),
-            normal: DVec3::ZERO,
+            normal,
         })
     }
 

@@ -36,7 +36,8 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
         let model = simulation.sensor.model();
         let firings = simulation.returns.blocks() * model.firings_per_block();
         Self {
-            surroundings: Surroundings::new(simulation.scene.clone(), simulation.sensor.reach()),
+            surroundings: Surroundings::new(simulation.scene.clone(), simulation.sensor.reach())
+                .with_normals(job.needs.normals),
             firings: vec![Firing::new(job.rays.count); firings],
             echoes: vec![Echoes::new(job.rays.count, two); firings],
             packet: ModelPacket::new(simulation.sensor.model(), simulation.returns),

@@ -149,12 +149,17 @@ fn find(scene: &Path) -> Result<(String, String), Failure> {
     Ok((name, text))
 }
 
-/// Reads a scene file's text.
+/// Reads a scene file's text; mesh files that it names lie beside it.
 ///
 /// # Errors
 /// [`Kind::BadInput`] naming the line.
 pub fn read(name: &str, text: &str, seed: Option<u64>) -> Result<Scene, Failure> {
-    Scene::parse(text, seed, None).map_err(|error| {
+    let folder = Path::new(name).parent().unwrap_or(Path::new(""));
+    let mut meshes = |file: &str| {
+        let path = folder.join(file);
+        std::fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))
+    };
+    Scene::parse_with(text, seed, None, &mut meshes).map_err(|error| {
         Failure::new(Kind::BadInput, format!("scene {name}, {error}"))
             .help("correct the scene file there; docs: Scenes")
     })

@@ -1,0 +1,62 @@
+//! Geometry that is made up: cars in a car park, trees, facades, a quarry. One seed gives one result.
+//!
+//! Drawn to be like such places, measured nowhere. Left out: terrain of a file (`height_field` with heights), anything that moves.
+
+mod draws;
+mod facade;
+mod parked_cars;
+mod quarry;
+mod trees;
+
+pub(super) use draws::{Draws, seed};
+pub(super) use facade::facade;
+pub use parked_cars::ParkedCars;
+pub(super) use parked_cars::parked_cars;
+pub use quarry::Quarry;
+pub(super) use quarry::quarry;
+pub use trees::Trees;
+pub(super) use trees::trees;
+
+use glam::{DMat3, DVec3};
+
+use super::coats::Coat;
+use crate::cast::{Cuboid, Surface};
+
+/// A surface of what a table stands for, in the table's own frame.
+#[derive(Clone, Debug)]
+pub(super) struct Part {
+    pub surface: Surface,
+    pub coat: Coat,
+    pub rotation: DMat3,
+    pub position_m: DVec3,
+}
+
+impl Part {
+    /// At the table's origin.
+    pub fn new(surface: impl Into<Surface>, coat: Coat) -> Self {
+        Self {
+            surface: surface.into(),
+            coat,
+            rotation: DMat3::IDENTITY,
+            position_m: DVec3::ZERO,
+        }
+    }
+
+    /// A box between two corners, of one material.
+    fn cuboid(from_m: [f64; 3], to_m: [f64; 3], material: u32) -> Self {
+        Self::new(Cuboid::new(from_m.into(), to_m.into()), Coat::One(material))
+    }
+
+    /// Moved and not turned, metres.
+    pub fn moved(mut self, by_m: DVec3) -> Self {
+        self.position_m += by_m;
+        self
+    }
+
+    /// Turned about the vertical through the origin, then moved.
+    fn set_down(mut self, turn: DMat3, at_m: DVec3) -> Self {
+        self.rotation = turn * self.rotation;
+        self.position_m = turn * self.position_m + at_m;
+        self
+    }
+}

@@ -1,0 +1,25 @@
+//! Scenes that come with the simulator.
+
+macro_rules! scenes {
+    ($($name:literal),*) => {
+        [$(($name, include_str!(concat!("../../scenes/", $name, ".toml")))),*]
+    };
+}
+
+/// All of them: name and scene file. None needs a file beside it.
+pub const SHIPPED: [(&str, &str); 6] = scenes!(
+    "hollow-sphere",
+    "planes",
+    "hall",
+    "parking",
+    "quarry",
+    "rig"
+);
+
+/// The scene file of this name.
+#[must_use]
+pub fn shipped(name: &str) -> Option<&'static str> {
+    SHIPPED
+        .into_iter()
+        .find_map(|(known, text)| (known == name).then_some(text))
+}

@@ -1,0 +1,391 @@
+mod mesh_files;
+
+use glam::DVec3;
+
+use super::*;
+use crate::Head;
+use crate::cast::{Caster, Ray, Reach};
+use crate::scenes;
+use units::{Degrees, Metres};
+
+fn placed(text: &str) -> Placed {
+    Scenery::parse(text)
+        .unwrap()
+        .place(1, &mut no_files)
+        .unwrap()
+}
+
+fn wrong(text: &str) -> String {
+    let error = match Scenery::parse(text) {
+        Err(error) => error,
+        Ok(scenery) => scenery.place(1, &mut no_files).unwrap_err(),
+    };
+    error.to_string()
+}
+
+/// How far off a ray hits, of which reflectivity; and its normal.
+fn hit(placed: &Placed, caster: &Caster, from: DVec3, to: DVec3) -> Option<(f64, u8, DVec3)> {
+    let ray = Ray::new(from, to.normalize()).unwrap();
+    let hit = caster.nearest::<DVec3>(&ray, Reach::default())?;
+    let material = placed.material(hit.object.index(), hit.primitive).unwrap();
+    Some((hit.range_m, material.reflectivity, hit.normal))
+}
+
+fn range(text: &str, from: [f64; 3], to: [f64; 3]) -> Option<f64> {
+    let placed = placed(text);
+    let caster = placed.caster().unwrap();
+    hit(&placed, &caster, from.into(), to.into()).map(|(range_m, _, _)| range_m)
+}
+
+#[test]
+fn every_shipped_scene_can_be_cast_at() {
+    for (name, text) in SHIPPED {
+        let placed = placed(text);
+        let caster = placed.caster().unwrap();
+        assert_eq!(placed.objects.len(), placed.coats.len());
+        assert_eq!(placed.objects.len(), placed.lines.len());
+        let down = hit(&placed, &caster, DVec3::ZERO, -DVec3::Z).unwrap();
+        assert!((1.0..=10.0).contains(&down.0), "{}: {down:?}", name);
+        for object in 0..placed.objects.len() {
+            assert!(placed.material(object, 0).is_some(), "{}", name);
+        }
+    }
+    assert!(shipped("hall").is_some() && shipped("nowhere").is_none());
+}
+
+/// The hall of the scene file is the one that the rig has, beam by beam.
+#[test]
+fn the_hall_is_the_rigs() {
+    let (old, head) = (scenes::hall(), Head::new(Metres(0.06)));
+    for name in ["hall", "rig"] {
+        let new = placed(shipped(name).unwrap());
+        let caster = new.caster().unwrap();
+        for tilt in (0..=9).map(|step| Degrees(-5.0 * f64::from(step))) {
+            for azimuth in (0..720).map(|step| Degrees(0.5 * f64::from(step))) {
+                for laser in 0..16 {
+                    let (from, to) = head.beam(laser, azimuth, tilt).unwrap();
+                    let (range_m, reflectivity, _) = hit(&new, &caster, from, to).unwrap();
+                    let expected = old.cast(from, to, 0.0, 1e3).unwrap();
+                    assert!((range_m - expected.range_m).abs() < 1e-12);
+                    assert_eq!(reflectivity, expected.reflectivity);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_papers_sphere_and_planes_are_exact() {
+    let sphere = shipped("hollow-sphere").unwrap();
+    for to in [[1.0, 0.0, 0.0], [-0.3, 0.7, 0.2], [0.0, 0.0, -1.0]] {
+        assert!((range(sphere, [0.0; 3], to).unwrap() - 10.0).abs() < 1e-14);
+    }
+    let planes = shipped("planes").unwrap();
+    for (to, expected) in [
+        ([0.0, 0.0, -1.0], Some(1.5)),
+        ([1.0, 0.0, 0.0], Some(10.0)),
+        ([0.0, 1.0, 0.0], Some(10.0)),
+        ([1.0, 1.0, 0.0], Some(10.0 * 2_f64.sqrt())),
+        ([-1.0, -1.0, 0.0], None),
+    ] {
+        let got = range(planes, [0.0; 3], to);
+        let near = got
+            .zip(expected)
+            .map(|(got, expected)| (got - expected).abs() < 1e-13);
+        assert_eq!(near, expected.map(|_| true), "{to:?}: {got:?}");
+    }
+}
+
+#[test]
+fn a_key_that_is_not_known_names_itself_the_keys_there_are_and_its_line() {
+    let text = "[[objects]]\nname = \"ball\"\nsphere = { radios_m = 1 }\n";
+    assert_eq!(
+        wrong(text),
+        "sim: scene, line 3, column 12: unknown field `radios_m`, expected `radius_m`"
+    );
+    let text = "[materials.a]\nreflectivity = 1\n[materials.b]\nshiny = 2\n";
+    let said = wrong(text);
+    assert!(
+        said.starts_with("sim: scene, line 4, column 1: unknown field `shiny`"),
+        "{said}"
+    );
+    assert!(said.contains("`specular`"), "{said}");
+    let said = wrong("[[objects]]\nsphere = { radius_m = 1 }\n\n[[objects]]\ncone = {}\n");
+    assert!(
+        said.starts_with("sim: scene, line 5, column 1: unknown field `cone`"),
+        "{said}"
+    );
+    let said = wrong("[[objects]]\nsphere = { radius_m = }\n");
+    assert!(said.starts_with("sim: scene, line 2, column"), "{said}");
+}
+
+#[test]
+fn values_that_cannot_be_are_told_with_their_line() {
+    let object = |rest: &str| {
+        format!("\n[materials]\ngrey = {{ reflectivity = 50 }}\n[[objects]]\n{rest}\n")
+    };
+    for (rest, says) in [
+        (
+            "sphere = { radius_m = 0 }",
+            "sphere.radius_m: expected a number above 0, got 0.0",
+        ),
+        ("sphere = { radius_m = nan }", "got NaN"),
+        ("name = \"nothing\"", "exactly one of sphere, plane, box"),
+        (
+            "plane = {}\nsphere = { radius_m = 1 }",
+            r#"got ["sphere", "plane"]"#,
+        ),
+        (
+            "plane = {}\nmaterial = \"gray\"",
+            r#"material: expected one of grey, got "gray""#,
+        ),
+        (
+            "plane = {}\nposition_m = [0, inf, 0]",
+            "position_m: expected finite numbers",
+        ),
+        (
+            "plane = {}\nposition_m = [0, 1e16, 0]",
+            "placement: expected coordinates within 1e15 m",
+        ),
+        ("plane = {}\nvelocity_m_s = [nan, 0, 0]", "velocity_m_s"),
+        ("box = { size_m = [1, 0, 1] }", "edges longer than 0"),
+        ("box = { size_m = [1, -1, 1] }", "edges longer than 0"),
+        (
+            "box = { from_m = [0, 0, 0] }",
+            "either size_m, or from_m and to_m",
+        ),
+        (
+            "cylinder = { radius_m = 1, height_m = -1 }",
+            "cylinder.height_m",
+        ),
+        (
+            "height_field = { columns = 2 }",
+            "columns, spacing_m and heights_m, or quarry",
+        ),
+        (
+            "height_field = { columns = 2, spacing_m = [1, 1], heights_m = [0, 0, 0] }",
+            "2 x 2",
+        ),
+        (
+            "height_field = { columns = 2, spacing_m = [1, 1], heights_m = [0, 0, 0, nan] }",
+            "vertex 3",
+        ),
+        (
+            "height_field = { columns = 2, spacing_m = [0, 1], heights_m = [0, 0, 0, 0] }",
+            "spacings",
+        ),
+        (
+            "height_field = { quarry = { size_m = 1e9 } }",
+            "2 to 5000 spacings",
+        ),
+        (
+            "plane = {}\ncopies = { counts = [0, 1, 1] }",
+            "copies: expected 1 to 100000, got 0",
+        ),
+        (
+            "plane = {}\ncopies = { counts = [99999, 99999, 99999] }",
+            "copies",
+        ),
+        (
+            "trees = { count = 1, from_m = [0, 0], to_m = [1, 1], height_m = [3, 2], foliage = \"grey\" }",
+            "trees.height_m",
+        ),
+    ] {
+        let said = wrong(&object(rest));
+        assert!(said.starts_with("sim: scene, line 4, column 1: "), "{said}");
+        assert!(said.contains(says), "{said}");
+    }
+    let said = wrong("[materials]\nsky = { specular = 0.5 }\n");
+    assert!(
+        said.contains("line 2") && said.contains("absorbing"),
+        "{said}"
+    );
+    assert!(wrong("[materials]\nsky = { reflectivity = 256 }\n").contains("line 2"));
+    assert!(wrong("[materials]\nsky = { reflectivity = 5, specular = 2 }\n").contains("0 to 1"));
+}
+
+#[test]
+fn each_kind_of_geometry_stands_where_it_is_put() {
+    let at = |shape: &str| {
+        format!("[[objects]]\nposition_m = [5, 0, 0]\nrotation_deg = [0, 0, 90]\n{shape}\n")
+    };
+    let x = [1.0, 0.0, 0.0];
+    for (shape, from, to, expected) in [
+        ("sphere = { radius_m = 2 }", [0.0; 3], x, Some(3.0)),
+        // From inside.
+        ("sphere = { radius_m = 2 }", [5.0, 0.0, 0.0], x, Some(2.0)),
+        ("box = { size_m = [2, 4, 2] }", [0.0; 3], x, Some(3.0)),
+        (
+            "box = { from_m = [0, 1, -1], to_m = [1, 2, 1] }",
+            [3.5, -5.0, 0.0],
+            [0.0, 1.0, 0.0],
+            Some(5.0),
+        ),
+        (
+            "cylinder = { radius_m = 1, height_m = 3 }",
+            [0.0, 0.0, 1.0],
+            x,
+            Some(4.0),
+        ),
+        (
+            "cylinder = { radius_m = 1, height_m = 3 }",
+            [5.0, 0.0, 9.0],
+            [0.0, 0.0, -1.0],
+            Some(6.0),
+        ),
+        (
+            "cylinder = { radius_m = 1, height_m = 3, capped = false }",
+            [5.0, 0.0, 9.0],
+            [0.0, 0.0, -1.0],
+            None,
+        ),
+        ("plane = {}", [0.0, 0.0, 2.0], [0.0, 0.0, -1.0], Some(2.0)),
+        // The grid's x goes along the world's y, its y against the world's x.
+        (
+            "height_field = { columns = 2, spacing_m = [4, 2], heights_m = [1, 1, 1, 1] }",
+            [3.5, 3.5, 9.0],
+            [0.0, 0.0, -1.0],
+            Some(8.0),
+        ),
+        (
+            "height_field = { columns = 2, spacing_m = [4, 2], heights_m = [1, 1, 1, 1] }",
+            [5.5, 3.5, 9.0],
+            [0.0, 0.0, -1.0],
+            None,
+        ),
+    ] {
+        let got = range(&at(shape), from, to);
+        let near = got
+            .zip(expected)
+            .map(|(got, expected)| (got - expected).abs() < 1e-12);
+        assert_eq!(near, expected.map(|_| true), "{shape}: {got:?}");
+    }
+}
+
+#[test]
+fn rotations_go_about_x_then_y_then_z_and_are_exact_at_quarters() {
+    let turned = |degrees| place::rotation(degrees) * DVec3::new(1.0, 2.0, 3.0);
+    assert_eq!(turned([90.0, 0.0, 0.0]), DVec3::new(1.0, -3.0, 2.0));
+    assert_eq!(turned([90.0, 90.0, 0.0]), DVec3::new(2.0, -3.0, -1.0));
+    assert_eq!(turned([90.0, 90.0, -270.0]), DVec3::new(3.0, 2.0, -1.0));
+    let glams = glam::DMat3::from_rotation_z(0.3)
+        * glam::DMat3::from_rotation_y(-0.8)
+        * glam::DMat3::from_rotation_x(2.9);
+    let ours = place::rotation([2.9_f64, -0.8, 0.3].map(f64::to_degrees));
+    assert!(glams.abs_diff_eq(ours, 1e-15));
+}
+
+#[test]
+fn faces_copies_and_openings() {
+    let text = r#"
+[materials]
+dark = { reflectivity = 10 }
+light = { reflectivity = 90 }
+hole = { absorbing = true }
+[[objects]]
+box = { size_m = [20, 20, 20], faces = ["dark", "light", "dark", "hole", "light", "dark"] }
+[[objects]]
+material = "light"
+position_m = [0, -5, 0]
+copies = { at_m = [[1, 0, 0], [3, 0, 0]], counts = [1, 1, 2], step_m = [0, 0, 4] }
+sphere = { radius_m = 0.5 }
+"#;
+    let placed = placed(text);
+    let caster = placed.caster().unwrap();
+    assert_eq!(placed.objects.len(), 5);
+    assert_eq!(placed.lines, [6, 8, 8, 8, 8]);
+    let of = |to: [f64; 3]| hit(&placed, &caster, DVec3::ZERO, to.into()).unwrap().1;
+    assert_eq!(
+        [
+            of([-1.0, 0.0, 0.0]),
+            of([1.0, 0.0, 0.0]),
+            of([0.0, 0.0, -1.0])
+        ],
+        [10, 90, 90]
+    );
+    assert_eq!(of([3.0, -5.0, 4.0]), 90);
+    assert_eq!(of([2.0, -5.0, 4.0]), 10);
+    let ahead = caster.nearest::<()>(&Ray::new(DVec3::ZERO, DVec3::Y).unwrap(), Reach::default());
+    let ahead = ahead.unwrap();
+    assert!(
+        placed
+            .material(ahead.object.index(), ahead.primitive)
+            .unwrap()
+            .absorbing
+    );
+}
+
+#[test]
+fn what_moves_is_where_its_velocity_takes_it() {
+    let text = "[[objects]]\nplane = {}\n[[objects]]\nposition_m = [5, 0, 0]\nvelocity_m_s = [0, 2, 0]\nturn_deg_s = [0, 0, 45]\n\
+                box = { size_m = [4, 1, 1] }\n";
+    let scenery = Scenery::parse(text).unwrap();
+    assert_eq!(scenery.moving_line(), Some(3));
+    let placed = scenery.place(0, &mut no_files).unwrap();
+    let [moving] = &placed.moving[..] else {
+        panic!()
+    };
+    assert_eq!((moving.object, moving.at.line), (1, 3));
+    let mut caster = placed.caster().unwrap();
+    let x = |caster: &Caster, y| {
+        hit(&placed, caster, DVec3::new(0.0, y, 0.2), DVec3::X)
+            .unwrap()
+            .0
+    };
+    assert_eq!(x(&caster, 0.0), 3.0);
+    // In two seconds it is 4 m along y, and a quarter turn on.
+    caster.place(1, moving.at_time(2.0).unwrap()).unwrap();
+    assert!((x(&caster, 4.0) - 4.5).abs() < 1e-12);
+    assert!((x(&caster, 5.9) - 4.5).abs() < 1e-12);
+    assert!(moving.at_time(1e18).is_err());
+}
+
+#[test]
+fn what_is_made_up_depends_on_the_seed_alone() {
+    for name in ["parking", "quarry"] {
+        let scenery = Scenery::parse(shipped(name).unwrap()).unwrap();
+        let look = |seed| {
+            let placed = scenery.place(seed, &mut no_files).unwrap();
+            let caster = placed.caster().unwrap();
+            let ways = (0..400).map(|i| {
+                DVec3::new(
+                    (0.1 * f64::from(i)).cos(),
+                    (0.1 * f64::from(i)).sin(),
+                    -0.03,
+                )
+            });
+            ways.map(|to| hit(&placed, &caster, DVec3::ZERO, to).map(|hit| hit.0.to_bits()))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(look(5), look(5));
+        assert_ne!(look(5), look(6), "{name}");
+    }
+}
+
+#[test]
+fn cars_stand_on_the_ground_in_their_bays() {
+    let text = r#"
+[materials]
+grey = { reflectivity = 50 }
+[[objects]]
+parked_cars = { bays = 40, share = 1, paints = ["grey"], glass = "grey", tyres = "grey", plates = "grey" }
+"#;
+    let placed = placed(text);
+    let caster = placed.caster().unwrap();
+    for bay in 0..40 {
+        let middle = DVec3::new(2.5 * (f64::from(bay) + 0.5), 0.0, 5.0);
+        let roof = 5.0 - hit(&placed, &caster, middle, -DVec3::Z).unwrap().0;
+        assert!((0.8..1.65).contains(&roof), "{roof}");
+        // Between two cars there is air.
+        let gap = middle + 1.25 * DVec3::X;
+        assert!(hit(&placed, &caster, gap, -DVec3::Z).is_none());
+        // Wheels reach the ground and not beyond.
+        let up = |x: i32, y: i32| {
+            let from = DVec3::new(middle.x + 0.05 * f64::from(x), 0.05 * f64::from(y), -1.0);
+            hit(&placed, &caster, from, DVec3::Z).map_or(f64::MAX, |hit| hit.0)
+        };
+        let lowest = (-20..=20).flat_map(|x| (-40..=40).map(move |y| (x, y)));
+        let lowest = lowest.map(|(x, y)| up(x, y)).fold(f64::MAX, f64::min);
+        assert!((1.0..1.01).contains(&(lowest + 1e-12)), "{lowest}");
+    }
+}
