@@ -121,3 +121,30 @@ fn light(material: &Material) -> f64 {
         _ => 1e4,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Within 5 points of the paper's shares, level and fast, and its ratios within a twentieth.
+    #[test]
+    fn shares_of_returns_are_near_the_papers() {
+        for (name, _, level, fast) in PLACES {
+            let text = shipped(name).unwrap();
+            let placed = Scenery::parse(text).unwrap();
+            let placed = placed.place(seed(text), &mut no_files).unwrap();
+            let caster = placed.caster().unwrap();
+            let of = |seconds, speed| scan(&placed, &caster, seconds, speed).unwrap();
+            let ours = [of(0.1, 0.0), of(0.8, -56.25)];
+            for (ours, paper) in ours.iter().zip([level, fast]) {
+                let off = 100.0 * (ours.returned - paper) / ours.fired;
+                assert!(off.abs() < 5.0, "{name}: {off} points");
+            }
+            let ratio = ours[1].returned / ours[0].returned;
+            assert!(
+                (ratio / (fast / level) - 1.0).abs() < 0.05,
+                "{name}: {ratio}"
+            );
+        }
+    }
+}
