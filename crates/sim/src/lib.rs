@@ -19,6 +19,7 @@ pub mod packet_clock;
 pub mod random;
 mod rig;
 mod scene;
+#[cfg(feature = "effects")]
 pub mod scene_file;
 pub mod scenery;
 pub mod scenes;

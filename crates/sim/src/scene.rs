@@ -88,7 +88,8 @@ impl Scene {
     ///
     /// A surface nearer than `min_m` blocks the ray and does not return it. A ray that starts on a surface does not meet it
     /// there. What is not finite meets nothing.
-    #[inline]
+    // One copy for all who call it: else their number decides what is inlined in it, and one more slows the others down.
+    #[inline(never)]
     #[must_use]
     pub fn cast(&self, origin_m: DVec3, direction: DVec3, min_m: f64, max_m: f64) -> Option<Hit> {
         if !(origin_m.is_finite() && direction.is_finite()) {

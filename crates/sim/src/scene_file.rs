@@ -20,6 +20,7 @@ use thiserror::Error;
 use toml::Spanned;
 use units::{Host, Stamp};
 
+use crate::effects::Wishes;
 pub use crate::scenery::SHIPPED;
 use crate::scenery::{MaterialTable, Moving, ObjectTable, no_files, rotation};
 use crate::simulate::{Mount, Simulation};
@@ -80,7 +81,7 @@ struct File {
     #[serde(default)]
     drive: drive::Section,
     #[serde(default)]
-    effects: effects::Section,
+    effects: Wishes,
 }
 
 /// `[mount]`.
@@ -192,13 +193,13 @@ impl Scene {
             what: error.message().to_owned(),
         })?;
         let seed = seed.unwrap_or(file.seed);
-        let mut scene = Self::new(&file, seed, clock).map_err(|wrong| wrong.in_file(text))?;
+        let mut scene = Self::new(&file, text, seed, clock).map_err(|wrong| wrong.in_file(text))?;
         (scene.simulation.scene, scene.moving) = around::build(text, file, seed, files)?;
         scene.effects.find_lines(|at| line_of(text, at));
         Ok(scene)
     }
 
-    fn new(file: &File, seed: u64, clock: Option<fn() -> u64>) -> Result<Self, Wrong> {
+    fn new(file: &File, text: &str, seed: u64, clock: Option<fn() -> u64>) -> Result<Self, Wrong> {
         let (sensor, returns, spin) = file.sensor.build()?;
         let motion = file.motion.get_ref().build(file.motion.span())?;
         let polls = match motion.is_fixed() {
@@ -222,7 +223,7 @@ impl Scene {
                 start: Stamp::<Host>::from_nanos((start_s * 1e9).round() as i64),
                 clock_at_start_us: file.lidar_clock_us,
             },
-            effects: file.effects.build(seed, clock)?,
+            effects: AskedFor::new(&file.effects, text, seed, clock)?,
             seed,
             moving: Vec::new(),
         })

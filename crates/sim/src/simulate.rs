@@ -28,7 +28,7 @@ use crate::scene::Scene;
 use crate::sensor::{ReturnMode, Sensor};
 use course::Course;
 pub use firing::{Echo, Echoes, Firing};
-pub use surroundings::{Met, Surroundings};
+pub use surroundings::{Body, Met, Surroundings};
 
 /// What is to be simulated.
 #[derive(Clone, Debug)]

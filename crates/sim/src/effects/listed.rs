@@ -45,6 +45,61 @@ pub struct Usage {
     pub spent_ns: u64,
 }
 
+/// An effect of a run, and what it did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Used {
+    /// What the scene file calls it.
+    pub name: &'static str,
+    /// What it is asked for each of: firings, polls...
+    pub each: &'static str,
+    /// What it did.
+    pub usage: Usage,
+    /// Why it was not needed, if it never acted.
+    pub why_idle: &'static str,
+}
+
+impl Asked {
+    /// All effects of the lists and what they did, in the order in which they act.
+    #[must_use]
+    pub fn used(&self) -> Vec<Used> {
+        let mut used = Vec::new();
+        let OnFirings {
+            objects,
+            view,
+            beam,
+            surface,
+            clock,
+        } = &self.firings;
+        note(&mut used, "firings", objects);
+        for listed in view {
+            let each = match listed.effect.needs().azimuths {
+                true => "blocks",
+                false => "firings",
+            };
+            note(&mut used, each, core::slice::from_ref(listed));
+        }
+        note(&mut used, "firings", beam);
+        note(&mut used, "firings", surface);
+        note(&mut used, "readings", clock);
+        note(&mut used, "steps", &self.mechanism);
+        note(&mut used, "polls", &self.encoder);
+        note(&mut used, "parcels", &self.wire);
+        used
+    }
+}
+
+fn note<P>(used: &mut Vec<Used>, each: &'static str, list: &[Listed<P>])
+where
+    P: core::ops::Deref<Target: Effect>,
+{
+    used.extend(list.iter().map(|listed| Used {
+        name: listed.effect.name(),
+        each,
+        usage: listed.usage(),
+        why_idle: listed.effect.why_idle(),
+    }));
+}
+
 /// An effect in a list. `P` is an `Arc` or a `Box` of one.
 #[derive(Debug)]
 pub struct Listed<P> {
@@ -191,7 +246,9 @@ impl<T: View + ?Sized> View for Vec<Listed<Arc<T>>> {
     }
 
     fn look(&self, firing: &mut Firing) -> u32 {
+        // Who says which azimuths fire has been asked for all of them beforehand.
         self.iter()
+            .filter(|listed| !listed.effect.needs().azimuths)
             .map(|listed| listed.ask(|effect| effect.look(firing), as_said))
             .sum()
     }

@@ -22,18 +22,90 @@
 //! A servo's lag is the drive's own ([`firmware_sim::epos2::Servo`]) in the rig, as its encoder shows it. Left out here: what each effect is.
 
 mod absent;
+#[cfg(feature = "effects")]
+mod backlash;
+#[cfg(feature = "effects")]
+mod batching;
+#[cfg(feature = "effects")]
+mod catalogue;
+#[cfg(feature = "effects")]
+mod divergence;
+#[cfg(feature = "effects")]
+mod duplicate;
+#[cfg(feature = "effects")]
+mod encoder_quantisation;
+#[cfg(feature = "effects")]
+mod explain;
 mod gear_ripple;
+#[cfg(feature = "effects")]
+mod lidar_clock;
+#[cfg(feature = "effects")]
+mod light;
+#[cfg(feature = "effects")]
+mod limited_field_of_view;
+#[cfg(feature = "effects")]
+mod link_jitter;
+#[cfg(feature = "effects")]
 mod listed;
+#[cfg(feature = "effects")]
+mod loss;
+#[cfg(feature = "effects")]
+mod moving_objects;
+#[cfg(feature = "effects")]
+mod own_shadow;
 mod pair;
+#[cfg(feature = "effects")]
 mod range_noise;
+#[cfg(feature = "effects")]
+mod reflectance;
+#[cfg(feature = "effects")]
+mod reorder;
+#[cfg(feature = "effects")]
+mod returns;
+#[cfg(feature = "effects")]
+mod servo_lag;
+#[cfg(feature = "effects")]
+mod settings;
+#[cfg(all(test, feature = "effects"))]
+mod testing;
+#[cfg(feature = "effects")]
+mod tilt_limits;
+#[cfg(feature = "effects")]
+mod uneven_gear;
+#[cfg(feature = "effects")]
+mod weather;
 
 use units::{Degrees, Gearing};
 
 use crate::simulate::{Echoes, Firing, Surroundings};
 
 pub use gear_ripple::GearRipple;
-pub use listed::{Asked, Listed, Usage};
-pub use range_noise::RangeNoise;
+
+#[cfg(feature = "effects")]
+pub use self::{
+    backlash::{Backlash, BacklashSettings},
+    batching::{Batching, BatchingSettings},
+    catalogue::{Misplaced, Wish, Wishes},
+    divergence::{Divergence, DivergenceSettings},
+    duplicate::{Duplicate, DuplicateSettings},
+    encoder_quantisation::{EncoderQuantisation, EncoderQuantisationSettings},
+    explain::{Explained, Explanation},
+    lidar_clock::{DriftingClock, LidarClockSettings},
+    limited_field_of_view::{LimitedFieldOfView, LimitedFieldOfViewSettings},
+    link_jitter::{LinkJitter, LinkJitterSettings},
+    listed::{Asked, Listed, Usage, Used},
+    loss::{Loss, LossSettings},
+    moving_objects::{Mover, MovingBox, MovingObjects, MovingObjectsSettings},
+    own_shadow::{OwnShadow, OwnShadowSettings, ShadowSector},
+    range_noise::{RangeNoise, RangeNoiseSettings},
+    reflectance::{Reflectance, ReflectanceSettings},
+    reorder::{Reorder, ReorderSettings},
+    servo_lag::{ServoLag, ServoLagSettings},
+    settings::{Settings, Stopwatch, Unfit},
+    tilt_limits::{TiltLimits, TiltLimitsSettings},
+    uneven_gear::{GearRippleSettings, UnevenGear},
+    weather::{Weather, WeatherSettings},
+};
 
 /// Seconds from one step of the mechanism to the next; it moves evenly in between.
 pub const STEP_S: f64 = 250e-6;
@@ -82,6 +154,11 @@ pub trait Effect: core::fmt::Debug {
     #[inline]
     fn needs(&self) -> Needs {
         Needs::NOTHING
+    }
+
+    /// Why it was not needed, where it never acted in a whole run.
+    fn why_idle(&self) -> &'static str {
+        "it never changed anything"
     }
 }
 
@@ -179,6 +256,25 @@ pub enum ParcelKind {
     Request,
     /// The drive's answer.
     Answer,
+}
+
+impl ParcelKind {
+    /// Whether it comes from the lidar; else it goes to the drive or comes from there.
+    #[must_use]
+    pub const fn is_lidars(self) -> bool {
+        matches!(self, Self::Data | Self::Position)
+    }
+
+    /// The channel of its random draws.
+    #[must_use]
+    pub const fn channel(self) -> u32 {
+        match self {
+            Self::Data => 0,
+            Self::Position => 1,
+            Self::Request => 2,
+            Self::Answer => 3,
+        }
+    }
 }
 
 /// The links.

@@ -3,9 +3,31 @@
 //! The VLP-16's manual (63-9243, specifications) says +-3 cm typical, the HDL-32E's +-2 cm, without saying of what kind; here the number is one
 //! standard deviation. Left out: noise that depends on range or strength, and errors that stay the same for a laser.
 
-use super::{Absorb, Effect, Surface};
+use std::sync::Arc;
+
+use serde::Deserialize;
+
+use super::settings::{Check, Settings, Stopwatch, Unfit};
+use super::{Absorb, Asked, Effect, Listed, Surface};
 use crate::random::Source;
 use crate::simulate::{Echoes, Firing};
+
+/// `[effects.range_noise]`.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct RangeNoiseSettings {
+    /// One standard deviation, metres.
+    pub sd_m: f64,
+}
+
+impl Settings for RangeNoiseSettings {
+    fn ask(&self, seed: u64, clock: Stopwatch, asked: &mut Asked) -> Result<(), Unfit> {
+        let sd_m = Check(RangeNoise::NAME).not_negative("sd_m", self.sd_m)?;
+        let effect = Arc::new(RangeNoise::new(sd_m, seed));
+        asked.firings.surface.push(Listed::new(effect, clock));
+        Ok(())
+    }
+}
 
 /// Normal noise of ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +54,10 @@ impl RangeNoise {
 impl Effect for RangeNoise {
     fn name(&self) -> &'static str {
         Self::NAME
+    }
+
+    fn why_idle(&self) -> &'static str {
+        "nothing came back"
     }
 }
 

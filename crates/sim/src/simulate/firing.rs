@@ -152,7 +152,7 @@ impl Firing {
     /// Aims all rays: the head at its azimuth on the mount, the platform tilted about y, positive from z to x. While the firing lasts the
     /// platform turns at the rate it has at its beginning.
     #[inline]
-    pub(super) fn aim(&mut self, rays: &Rays, mount: &Mount) {
+    pub(crate) fn aim(&mut self, rays: &Rays, mount: &Mount) {
         let head = DMat3::from_rotation_z(-self.azimuth_deg.to_radians());
         let platform = DMat3::from_rotation_y(self.tilt.angle_deg.to_radians());
         let sensor = platform * mount.turn;

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::firing::{Echo, Echoes, Firing};
 use crate::scene::Scene;
@@ -16,6 +16,19 @@ pub struct Surroundings {
     scene: Arc<Scene>,
     reach: Reach,
     normals: bool,
+    still: bool,
+    bodies: Vec<Body>,
+}
+
+/// Something that can move: its surfaces in its own frame, and where that stands.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// What it looks like.
+    pub scene: Arc<Scene>,
+    /// How its frame is turned.
+    pub turn: DMat3,
+    /// Where its frame's origin is, metres in the frame of the base.
+    pub at_m: DVec3,
 }
 
 /// What a ray met.
@@ -30,17 +43,26 @@ pub struct Met {
 }
 
 impl Surroundings {
-    pub(super) const fn new(scene: Arc<Scene>, reach: Reach) -> Self {
+    /// A scene as far as a sensor sees it; `still` if nothing in it ever moves.
+    pub(crate) const fn new(scene: Arc<Scene>, reach: Reach, still: bool) -> Self {
         Self {
             scene,
             reach,
             normals: false,
+            still,
+            bodies: Vec::new(),
         }
     }
 
     /// The same with normals of surfaces, or without.
-    pub(super) fn with_normals(self, normals: bool) -> Self {
+    pub(crate) fn with_normals(self, normals: bool) -> Self {
         Self { normals, ..self }
+    }
+
+    /// Whether nothing ever moves: what a ray meets now it meets always.
+    #[must_use]
+    pub const fn is_still(&self) -> bool {
+        self.still
     }
 
     /// How far the sensor sees.
@@ -54,15 +76,25 @@ impl Surroundings {
     #[inline]
     #[must_use]
     pub fn meet(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
-        let Reach { min_m, max_m } = self.reach;
+        match self.bodies.is_empty() {
+            true => self.meet_still(origin_m, direction),
+            false => self.nearest(origin_m, direction),
+        }
+    }
+
+    /// The same where nothing moves.
+    #[inline]
+    fn meet_still(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+        self.cast(&self.scene, origin_m, direction, self.reach.min_m)
+    }
+
+    /// What a ray meets of a scene, no nearer than `min_m`.
+    #[inline]
+    fn cast(&self, scene: &Scene, origin_m: DVec3, direction: DVec3, min_m: f64) -> Option<Met> {
+        let max_m = self.reach.max_m;
         let (hit, normal) = match self.normals {
-            true => self
-                .scene
-                .cast_with_normal(origin_m, direction, min_m, max_m)?,
-            false => (
-                self.scene.cast(origin_m, direction, min_m, max_m)?,
-                DVec3::ZERO,
-            ),
+            true => scene.cast_with_normal(origin_m, direction, min_m, max_m)?,
+            false => (scene.cast(origin_m, direction, min_m, max_m)?, DVec3::ZERO),
         };
         Some(Met {
             range_m: hit.range_m,
@@ -71,21 +103,70 @@ impl Surroundings {
         })
     }
 
-    /// The same for all lasers of firings that follow one another; those that are not alive have no echo, and nobody has a second one.
+    /// The nearest of what stands and what moves. Either can be what blocks the ray.
+    #[cold]
+    #[inline(never)]
+    fn nearest(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+        let still = self.cast(&self.scene, origin_m, direction, 0.0);
+        let mets = self
+            .nearest_body(origin_m, direction)
+            .into_iter()
+            .chain(still);
+        let nearest = mets.min_by(|a, b| a.range_m.total_cmp(&b.range_m))?;
+        (nearest.range_m >= self.reach.min_m).then_some(nearest)
+    }
+
+    /// The nearest of what moves.
+    fn nearest_body(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+        let mets = self.bodies.iter().filter_map(|body| {
+            let own = body.turn.transpose();
+            let from = own * (origin_m - body.at_m);
+            let met = self.cast(&body.scene, from, own * direction, 0.0)?;
+            let normal = body.turn * met.normal;
+            Some(Met { normal, ..met })
+        });
+        mets.min_by(|a, b| a.range_m.total_cmp(&b.range_m))
+    }
+
+    /// What moves, as it stands at the moment. Empty unless an effect fills it.
+    pub const fn bodies_mut(&mut self) -> &mut Vec<Body> {
+        &mut self.bodies
+    }
+
+    /// What stands, as all lasers meet it of firings that follow one another; those that are not alive have no echo, and nobody has a second one.
     #[inline]
-    pub(super) fn meet_all(&self, firings: &[Firing], echoes: &mut [Echoes]) {
+    pub(crate) fn meet_all(&self, firings: &[Firing], echoes: &mut [Echoes]) {
         for (firing, echoes) in firings.iter().zip(echoes) {
             let rays = firing.origins_m.iter().zip(&firing.directions);
             let lasers = echoes.strongest.iter_mut().zip(rays).take(firing.lasers);
             for (laser, (echo, (origin, direction))) in lasers.enumerate() {
                 let met = firing
                     .is_alive(laser)
-                    .then(|| self.meet(*origin, *direction))
+                    .then(|| self.meet_still(*origin, *direction))
                     .flatten();
                 *echo = met.map_or(Echo::NONE, |met| Echo::of(&met));
             }
             if echoes.two {
                 echoes.other = [Echo::NONE; MOST_LASERS];
+            }
+        }
+    }
+
+    /// Puts what moves before what stands. Apart from [`Surroundings::meet_all`], so that a scene in which nothing moves is not asked ray by ray.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn meet_bodies(&self, firings: &[Firing], echoes: &mut [Echoes]) {
+        for (firing, echoes) in firings.iter().zip(echoes) {
+            for laser in firing.alive() {
+                if let (Some(echo), Some(origin), Some(direction)) = (
+                    echoes.strongest.get_mut(laser),
+                    firing.origins_m.get(laser),
+                    firing.directions.get(laser),
+                ) && self.nearest_body(*origin, *direction).is_some()
+                {
+                    let met = self.nearest(*origin, *direction);
+                    *echo = met.map_or(Echo::NONE, |met| Echo::of(&met));
+                }
             }
         }
     }

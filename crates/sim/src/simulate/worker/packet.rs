@@ -1,9 +1,14 @@
 //! One packet after the other: what a thread does.
+//!
+//! Where no effect is asked for, what is called here is `()` and compiles to nothing. A build without the feature `effects` does not even call it: a test holds
+//! the two against each other.
 
 use firmware_sim::vlp16::ModelPacket;
 
 use super::{Chunk, Job, Packet};
-use crate::effects::{Beam, Clock, FiringEffects, Objects, Surface, View};
+#[cfg(feature = "effects")]
+use crate::effects::{Beam, Objects, Surface, View};
+use crate::effects::{Clock, FiringEffects};
 use crate::sensor::{MOST_LASERS, ReturnMode};
 use crate::simulate::{Echo, Echoes, Firing, Spin, Surroundings, TruePoint};
 
@@ -36,8 +41,12 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
         let model = simulation.sensor.model();
         let firings = simulation.returns.blocks() * model.firings_per_block();
         Self {
-            surroundings: Surroundings::new(simulation.scene.clone(), simulation.sensor.reach())
-                .with_normals(job.needs.normals),
+            surroundings: Surroundings::new(
+                simulation.scene.clone(),
+                simulation.sensor.reach(),
+                !job.needs.moving,
+            )
+            .with_normals(job.needs.normals),
             firings: vec![Firing::new(job.rays.count); firings],
             echoes: vec![Echoes::new(job.rays.count, two); firings],
             packet: ModelPacket::new(simulation.sensor.model(), simulation.returns),
@@ -62,6 +71,7 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
         for (firing, number) in self.firings.iter_mut().zip(numbers) {
             job.aim(firing, number, effects.clock);
             made.shots += firing.alive.count_ones();
+            #[cfg(feature = "effects")]
             effects.view.look(firing);
         }
         // Where nothing moves all of them meet one and the same scene.
@@ -72,12 +82,19 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
         };
         let firings = self.firings.chunks(at_once.max(1));
         for (firings, echoes) in firings.zip(self.echoes.chunks_mut(at_once.max(1))) {
+            #[cfg(feature = "effects")]
             if let Some(first) = firings.first().filter(|_| job.needs.moving) {
                 effects.objects.place(first.at_s, &mut self.surroundings);
             }
             self.surroundings.meet_all(firings, echoes);
+            #[cfg(feature = "effects")]
+            if job.needs.moving {
+                self.surroundings.meet_bodies(firings, echoes);
+            }
             for (firing, echoes) in firings.iter().zip(echoes) {
+                #[cfg(feature = "effects")]
                 effects.beam.receive(firing, &self.surroundings, echoes);
+                #[cfg(feature = "effects")]
                 effects.surface.reflect(firing, echoes);
                 let told = Told {
                     job,

@@ -1,0 +1,105 @@
+//! Mechanism: play between gear and platform. The platform stands until the gear has crossed the play, then goes along on its other side.
+//!
+//! It starts in the middle of the play. The encoder on the motor's shaft sees nothing of it. Left out: elasticity, and a platform that falls
+//! through the play by its own weight.
+
+use serde::Deserialize;
+
+use super::settings::{Check, Settings, Stopwatch, Unfit};
+use super::{Absorb, Asked, Axis, Effect, Listed, Mechanism, Needs};
+
+/// `[effects.backlash]`.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct BacklashSettings {
+    /// All of the play, at the platform, degrees.
+    pub play_deg: f64,
+}
+
+/// Play, and where the platform was left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Backlash {
+    half_deg: f64,
+    left_deg: Option<f64>,
+}
+
+impl Backlash {
+    /// What the scene file calls it.
+    pub const NAME: &'static str = "backlash";
+
+    /// With these settings.
+    ///
+    /// # Errors
+    /// [`Unfit`] for a play below 0 or above 10 degrees.
+    pub fn new(settings: &BacklashSettings) -> Result<Self, Unfit> {
+        let play_deg = Check(Self::NAME).within("play_deg", settings.play_deg, 0.0..=10.0)?;
+        Ok(Self {
+            half_deg: 0.5 * play_deg,
+            left_deg: None,
+        })
+    }
+}
+
+impl Settings for BacklashSettings {
+    fn ask(&self, _: u64, clock: Stopwatch, asked: &mut Asked) -> Result<(), Unfit> {
+        let effect = Box::new(Backlash::new(self)?);
+        asked.mechanism.push(Listed::new(effect, clock));
+        Ok(())
+    }
+}
+
+impl Effect for Backlash {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn needs(&self) -> Needs {
+        Needs {
+            motion: true,
+            ..Needs::NOTHING
+        }
+    }
+
+    fn why_idle(&self) -> &'static str {
+        "the axis never moves, or there is no play"
+    }
+}
+
+impl Absorb for Backlash {}
+
+impl Mechanism for Backlash {
+    fn step(&mut self, _: f64, axis: &mut Axis) -> bool {
+        let gear_deg = axis.platform_deg;
+        let left_deg = self.left_deg.unwrap_or(gear_deg);
+        let (low, high) = (gear_deg - self.half_deg, gear_deg + self.half_deg);
+        let platform_deg = left_deg.max(low).min(high);
+        self.left_deg = Some(platform_deg);
+        axis.platform_deg = platform_deg;
+        platform_deg != gear_deg
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::testing::at;
+
+    #[test]
+    fn the_platform_lags_by_half_the_play_either_way() {
+        let mut backlash = Backlash::new(&BacklashSettings { play_deg: 0.2 }).unwrap();
+        let mut platform = |gear: f64| {
+            let mut axis = at(gear);
+            backlash.step(0.0, &mut axis);
+            assert_eq!(axis.shaft_deg, gear);
+            axis.platform_deg
+        };
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        near(platform(0.0), 0.0);
+        near(platform(0.05), 0.0);
+        near(platform(1.0), 0.9);
+        near(platform(0.85), 0.9);
+        near(platform(0.7), 0.8);
+        near(platform(1.0), 0.9);
+        assert!(Backlash::new(&BacklashSettings { play_deg: -0.1 }).is_err());
+    }
+}

@@ -1,0 +1,188 @@
+//! Beam: a pulse lights a patch, not a point. Where the patch lies across an edge, parts of the pulse come back from either side of it.
+//!
+//! A VLP-16's beam widens by 3 mrad along the scan and 1.5 mrad across it, all of it, and is about evenly bright (63-9243, appendix F). The patch is
+//! sampled by sub-rays, each with as much of the light as any other; what comes back within `separation_m` is one return at the mean range by light (a mixed
+//! pixel, which lies where nothing is), what is farther apart is two returns, of which the sensor reports the strongest, the last or both: it tells
+//! them apart from 1 m on (section 6.2).
+//!
+//! Sub-rays are cast only where the patch can lie across an edge: not where everything around is one plane ([`plain`]), else where one of the
+//! four corners of the patch is not on the plane of the others and the middle, or is of another reflectivity. Left out: the width that the
+//! beam has when it leaves the lens, its side lobes, and edges of what fits between the corners.
+
+mod footprint;
+mod plain;
+mod pulses;
+
+use std::sync::{Arc, OnceLock};
+
+use serde::Deserialize;
+
+use super::returns::reported;
+use super::settings::{Check, Settings, Stopwatch, Unfit};
+use super::{Absorb, Asked, Beam, Effect, Listed};
+use crate::simulate::{Echoes, Firing, Surroundings};
+use footprint::{Footprint, scan_axis};
+use plain::Plain;
+use pulses::{MOST_SAMPLES, Pulse, Sample};
+
+/// `[effects.divergence]`.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct DivergenceSettings {
+    /// Whole angle along the scan, milliradians; 3 unless said.
+    pub horizontal_mrad: f64,
+    /// Whole angle across it; 1.5 unless said.
+    pub vertical_mrad: f64,
+    /// Sub-rays along the scan; 5 unless said, 15 at most.
+    pub columns: usize,
+    /// Sub-rays across it; 3 unless said, 15 at most.
+    pub rows: usize,
+    /// Surfaces nearer to each other make one return, metres; 1 unless said.
+    pub separation_m: f64,
+    /// A return with less of the pulse than this goes unnoticed, 0 to 1; 0.05 unless said.
+    pub least_share: f64,
+    /// What is off its plane by less than this is no edge, metres; 2 mm unless said, the step of the sensor's ranges.
+    pub flat_m: f64,
+}
+
+impl Default for DivergenceSettings {
+    fn default() -> Self {
+        Self {
+            horizontal_mrad: 3.0,
+            vertical_mrad: 1.5,
+            columns: 5,
+            rows: 3,
+            separation_m: 1.0,
+            least_share: 0.05,
+            flat_m: 0.002,
+        }
+    }
+}
+
+/// A beam that widens. For one run: it remembers where that run's scene is plain.
+#[derive(Clone, Debug)]
+pub struct Divergence {
+    /// Half the width and height of the patch at 1 m.
+    half: [f64; 2],
+    settings: DivergenceSettings,
+    plain: OnceLock<Plain>,
+}
+
+/// The most sub-rays along a side.
+const MOST: f64 = 15.0;
+
+impl Divergence {
+    /// What the scene file calls it.
+    pub const NAME: &'static str = "divergence";
+
+    /// With these settings.
+    ///
+    /// # Errors
+    /// [`Unfit`] for numbers out of their range.
+    pub fn new(settings: &DivergenceSettings) -> Result<Self, Unfit> {
+        let check = Check(Self::NAME);
+        let half = |setting, mrad| Ok(0.5e-3 * check.within(setting, mrad, 0.0..=100.0)?);
+        check.within("columns", settings.columns as f64, 1.0..=MOST)?;
+        check.within("rows", settings.rows as f64, 1.0..=MOST)?;
+        check.within("separation_m", settings.separation_m, 0.0..=1e3)?;
+        check.within("least_share", settings.least_share, 0.0..=1.0)?;
+        check.above_0("flat_m", settings.flat_m)?;
+        Ok(Self {
+            half: [
+                half("horizontal_mrad", settings.horizontal_mrad)?,
+                half("vertical_mrad", settings.vertical_mrad)?,
+            ],
+            settings: *settings,
+            plain: OnceLock::new(),
+        })
+    }
+
+    /// Whether a patch needs no look at all.
+    fn is_plain(&self, patch: &Footprint, range_m: f64, surroundings: &Surroundings) -> bool {
+        // Things that move are not where they were.
+        surroundings.is_still()
+            && self
+                .plain
+                .get_or_init(|| Plain::new(surroundings, self.settings.flat_m))
+                .is_around(patch.origin_m, patch.direction, range_m)
+    }
+
+    /// What comes back of a pulse: the strongest return and the other.
+    fn pulse(&self, patch: &Footprint, surroundings: &Surroundings) -> [crate::simulate::Echo; 2] {
+        let mut samples = [Sample::NOTHING; MOST_SAMPLES];
+        let mut count = 0;
+        let (columns, rows) = (self.settings.columns, self.settings.rows);
+        let along = |place: usize, of: usize| (2 * place + 1) as f64 / of as f64 - 1.0;
+        for row in 0..rows {
+            for column in 0..columns {
+                let (x, y) = (along(column, columns), along(row, rows));
+                let direction = patch.towards(x, y);
+                if let Some(met) = surroundings.meet(patch.origin_m, direction)
+                    && let Some(place) = samples.get_mut(count)
+                {
+                    *place = Sample::new(&met, direction, x * x + y * y);
+                    count += 1;
+                }
+            }
+        }
+        let pulse = Pulse {
+            rays: columns * rows,
+            separation_m: self.settings.separation_m,
+            least_share: self.settings.least_share,
+        };
+        let samples = samples.get_mut(..count).unwrap_or_default();
+        let (returns, found) = pulse.returns(samples);
+        reported(returns.get(..found).unwrap_or_default())
+    }
+}
+
+impl Settings for DivergenceSettings {
+    fn ask(&self, _: u64, clock: Stopwatch, asked: &mut Asked) -> Result<(), Unfit> {
+        let effect = Arc::new(Divergence::new(self)?);
+        asked.firings.beam.push(Listed::new(effect, clock));
+        Ok(())
+    }
+}
+
+impl Effect for Divergence {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn why_idle(&self) -> &'static str {
+        "no edge lies within a footprint: 0 % of firings took sub-rays"
+    }
+}
+
+impl Absorb for Divergence {}
+
+impl Beam for Divergence {
+    fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
+        let Some(scan) = scan_axis(firing) else {
+            return 0;
+        };
+        let mut acted = 0;
+        for laser in firing.alive() {
+            let (Some(origin_m), Some(direction), Some(strongest), Some(other)) = (
+                firing.origins_m.get(laser),
+                firing.directions.get(laser),
+                echoes.strongest.get_mut(laser),
+                echoes.other.get_mut(laser),
+            ) else {
+                continue;
+            };
+            let patch = Footprint::new(*origin_m, *direction, scan, self.half);
+            if self.is_plain(&patch, strongest.range_m, surroundings)
+                || patch.is_flat(strongest, self.settings.flat_m, surroundings)
+            {
+                continue;
+            }
+            [*strongest, *other] = self.pulse(&patch, surroundings);
+            acted += 1;
+        }
+        acted
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,257 @@
+//! Beam: fog and rain, which take light away and send some back.
+//!
+//! Light falls with exp(-2 s R) there and back (Beer and Lambert). In fog s follows from the visibility, at which 5 % of light is left (WMO): s = ln 20 / V, for
+//! droplets larger than the wave; in rain it is 1.076 h^0.67 dB/km at h mm/h (Carbonneau and Wisely 1998). Drops send back s / 18.8 per steradian (O'Connor,
+//! Illingworth and Hogan 2004, at 905 nm), which over the 0.9 m that a pulse of 6 ns lights at once is a faint surface of reflectivity
+//! pi * 0.9 m * s / 18.8; how many drops are in it varies exponentially. At most one such return a pulse, at a distance drawn as light comes back from it (1 / R^2), if it is
+//! noticed: above what a target of 10 % at 50 m sends. Left out: multiple scattering, gusts, and drops on the window.
+
+use std::sync::Arc;
+
+use serde::Deserialize;
+
+use super::light;
+use super::returns::{Return, reported};
+use super::settings::{Check, Settings, Stopwatch, Unfit};
+use super::{Absorb, Asked, Beam, Effect, Listed};
+use crate::random::Source;
+use crate::simulate::{Echo, Echoes, Firing, Surroundings};
+
+/// `[effects.weather]`; what is not said is not there.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct WeatherSettings {
+    /// Visibility in fog (meteorological optical range), metres.
+    pub visibility_m: Option<f64>,
+    /// Rain, millimetres an hour.
+    pub rain_mm_h: Option<f64>,
+}
+
+/// Air that is not clear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weather {
+    /// Light lost along a metre, one way.
+    extinction_per_m: f64,
+    /// Of the drops within a pulse.
+    drops: f64,
+    random: Source,
+}
+
+/// Share of light that is left at the visibility.
+const VISIBLE: f64 = 0.05;
+/// Extinction to backscatter of water drops at 905 nm, steradians.
+const LIDAR_RATIO_SR: f64 = 18.8;
+/// What a pulse lights at once, metres.
+const PULSE_M: f64 = 0.9;
+/// Light that is noticed.
+const LEAST: f64 = 0.01 * light::HALF_REFLECTIVITY / (light::HALF_RANGE_M * light::HALF_RANGE_M);
+
+impl Weather {
+    /// What the scene file calls it.
+    pub const NAME: &'static str = "weather";
+
+    /// With these settings, in a run with `seed`.
+    ///
+    /// # Errors
+    /// [`Unfit`] for a visibility below 1 m, or rain that is none or above 500 mm/h.
+    pub fn new(settings: &WeatherSettings, seed: u64) -> Result<Self, Unfit> {
+        let check = Check(Self::NAME);
+        let mut extinction_per_m = 0.0;
+        if let Some(visibility_m) = settings.visibility_m {
+            let visibility_m = check.within("visibility_m", visibility_m, 1.0..=1e6)?;
+            extinction_per_m += -VISIBLE.ln() / visibility_m;
+        }
+        if let Some(rain_mm_h) = settings.rain_mm_h {
+            let rain_mm_h = check.within("rain_mm_h", rain_mm_h, 0.0..=500.0)?;
+            let db_per_km = 1.076 * rain_mm_h.powf(0.67);
+            extinction_per_m += db_per_km * 1e-4 * core::f64::consts::LN_10;
+        }
+        Ok(Self {
+            extinction_per_m,
+            drops: core::f64::consts::PI * PULSE_M * extinction_per_m / LIDAR_RATIO_SR,
+            random: Source::new(seed, Self::NAME),
+        })
+    }
+
+    /// What is left of light after a range, there and back.
+    fn left(&self, range_m: f64) -> f64 {
+        (-2.0 * self.extinction_per_m * range_m).exp()
+    }
+
+    /// A surface behind so much weather, if it is noticed.
+    fn dimmed(&self, echo: &Echo) -> Option<Return> {
+        let light = light::of_reflectivity(echo.reflectivity) * self.left(echo.range_m);
+        let echo = Echo {
+            reflectivity: light::to_reflectivity(light),
+            ..*echo
+        };
+        noticed(echo, light)
+    }
+
+    /// Drops between here and there, if they are noticed.
+    fn drops(&self, from_m: f64, to_m: f64, draw: (u64, u32)) -> Option<Return> {
+        let mut draws = self.random.at(draw.0, draw.1);
+        let (place, many) = (draws.unit(), -(1.0 - draws.unit()).ln());
+        if to_m <= from_m {
+            return None;
+        }
+        // As 1 / R^2 between the two.
+        let range_m = 1.0 / (1.0 / from_m - place * (1.0 / from_m - 1.0 / to_m));
+        let light = self.drops * many * self.left(range_m);
+        let echo = Echo {
+            range_m,
+            // No surface: no point of the truth.
+            true_range_m: f64::INFINITY,
+            reflectivity: light::to_reflectivity(light),
+            share: 1.0,
+            normal: glam::DVec3::ZERO,
+        };
+        noticed(echo, light)
+    }
+}
+
+fn noticed(echo: Echo, light: f64) -> Option<Return> {
+    let strength = light / (echo.range_m * echo.range_m);
+    (strength >= LEAST).then_some(Return { echo, strength })
+}
+
+impl Settings for WeatherSettings {
+    fn ask(&self, seed: u64, clock: Stopwatch, asked: &mut Asked) -> Result<(), Unfit> {
+        let effect = Arc::new(Weather::new(self, seed)?);
+        asked.firings.beam.push(Listed::new(effect, clock));
+        Ok(())
+    }
+}
+
+impl Effect for Weather {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn why_idle(&self) -> &'static str {
+        "the air is clear: neither visibility_m nor rain_mm_h takes light away"
+    }
+}
+
+impl Absorb for Weather {}
+
+impl Beam for Weather {
+    fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
+        if self.extinction_per_m == 0.0 {
+            return 0;
+        }
+        let (reach, two) = (surroundings.reach(), echoes.two);
+        let mut acted = 0;
+        for laser in firing.alive() {
+            let (Some(strongest), Some(other)) =
+                (echoes.strongest.get_mut(laser), echoes.other.get_mut(laser))
+            else {
+                continue;
+            };
+            let farthest_m = match strongest.is_there() {
+                true => strongest.range_m,
+                false => reach.max_m,
+            };
+            let mut returns = [None; 3];
+            // Where nobody looks at the other it is whatever it was.
+            let others = if two { *other } else { Echo::NONE };
+            for (place, echo) in returns.iter_mut().zip([*strongest, others]) {
+                *place = echo.is_there().then(|| self.dimmed(&echo)).flatten();
+            }
+            let [_, _, last] = &mut returns;
+            let draw = (firing.number, laser as u32);
+            *last = self.drops(reach.min_m.max(0.1), farthest_m, draw);
+            let mut heard = [Return {
+                echo: Echo::NONE,
+                strength: 0.0,
+            }; 3];
+            let mut count = 0;
+            for (place, found) in heard.iter_mut().zip(returns.into_iter().flatten()) {
+                *place = found;
+                count += 1;
+            }
+            let was = *strongest;
+            [*strongest, *other] = reported(heard.get(..count).unwrap_or_default());
+            acted += u32::from(*strongest != was);
+        }
+        acted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Sphere;
+    use crate::effects::testing::{around, cast, firing};
+    use crate::scene::Scene;
+    use glam::DVec3;
+
+    fn seen(settings: WeatherSettings, radius_m: f64, reflectivity: u8) -> (f64, f64, f64) {
+        let weather = Weather::new(&settings, 11).unwrap();
+        let scene = Scene::new().with(Sphere::new(DVec3::ZERO, radius_m, reflectivity));
+        let surroundings = around(scene);
+        let mut firing = firing(0.0, 0.0);
+        let (mut wall, mut fog, mut reported) = (0, 0, 0.0);
+        for number in 0..500 {
+            firing.number = number;
+            let mut echoes = cast(&firing, &surroundings);
+            weather.receive(&firing, &surroundings, &mut echoes);
+            for echo in echoes.strongest.iter().take(16).filter(|e| e.is_there()) {
+                if echo.true_range_m.is_finite() {
+                    wall += 1;
+                    reported = echo.reflectivity;
+                } else {
+                    fog += 1;
+                    assert!(echo.range_m >= 1.0 && echo.range_m <= radius_m);
+                }
+            }
+        }
+        (f64::from(wall) / 8e3, f64::from(fog) / 8e3, reported)
+    }
+
+    #[test]
+    fn light_falls_as_beer_and_lambert_say() {
+        let fog = |visibility_m| WeatherSettings {
+            visibility_m: Some(visibility_m),
+            rain_mm_h: None,
+        };
+        // There and back a fifth of the visibility.
+        let (wall, fog_share, reported) = seen(fog(100.0), 10.0, 80);
+        assert!(wall > 0.5 && wall + fog_share == 1.0, "{wall} {fog_share}");
+        assert!(
+            (reported - 80.0 * 0.05_f64.powf(0.2)).abs() < 0.05,
+            "{reported}"
+        );
+        // 80 % at 40 m sends 5e-4, of which exp(-12) is nothing.
+        let (wall, fog_share, _) = seen(fog(20.0), 40.0, 80);
+        assert_eq!(wall, 0.0);
+        assert!(fog_share > 0.3, "{fog_share}");
+        let (wall, fog_share, _) = seen(fog(10_000.0), 20.0, 80);
+        assert!(wall == 1.0 && fog_share == 0.0);
+    }
+
+    #[test]
+    fn rain_is_much_clearer_than_fog() {
+        let rain = Weather::new(
+            &WeatherSettings {
+                visibility_m: None,
+                rain_mm_h: Some(25.0),
+            },
+            1,
+        )
+        .unwrap();
+        // 9.3 dB/km.
+        assert!((rain.extinction_per_m - 2.14e-3).abs() < 1e-5);
+        let none = Weather::new(&WeatherSettings::default(), 1).unwrap();
+        let (firing, around) = (firing(0.0, 0.0), around(Scene::new()));
+        assert_eq!(
+            none.receive(&firing, &around, &mut cast(&firing, &around)),
+            0
+        );
+        let wrong = WeatherSettings {
+            visibility_m: Some(0.0),
+            rain_mm_h: None,
+        };
+        assert!(Weather::new(&wrong, 1).is_err());
+    }
+}
