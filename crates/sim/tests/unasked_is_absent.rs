@@ -1,0 +1,76 @@
+//! Unasked is absent: a scene without effects costs as many instructions as in a build in which effects do not exist.
+//!
+//! Instructions are counted by valgrind's callgrind, which is exact where times are not. Where there is no valgrind the test says so and does
+//! nothing, unless `VELOMOTION_CALLGRIND=required` says that it must be there.
+
+// A test that panics fails, as it should.
+#![allow(clippy::panic, clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const EXAMPLE: &str = "hall_without_effects";
+
+fn said(command: &mut Command) -> String {
+    let output = command.output().unwrap_or_else(|error| {
+        panic!("{command:?} does not run: {error}");
+    });
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {errors}");
+    format!("{}{errors}", String::from_utf8_lossy(&output.stdout))
+}
+
+/// The example as it is released, with these features and no others.
+fn built(features: &[&str], into: &Path) -> PathBuf {
+    said(
+        Command::new(env!("CARGO"))
+            .args(["build", "--release", "--locked", "-p", "sim"])
+            .args(["--example", EXAMPLE, "--no-default-features"])
+            .args(features)
+            .arg("--target-dir")
+            .arg(into)
+            .current_dir(env!("CARGO_MANIFEST_DIR")),
+    );
+    let example = into.join("release/examples").join(EXAMPLE);
+    let kept = into.join(format!("{EXAMPLE}-{}", features.len()));
+    std::fs::copy(&example, &kept).unwrap();
+    kept
+}
+
+/// Instructions of a run, and what it printed.
+fn counted(program: &Path, into: &Path) -> (u64, String) {
+    let text = said(
+        Command::new("valgrind")
+            .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+            .arg(program)
+            .current_dir(into),
+    );
+    let line = |start: &str| text.lines().find_map(|line| line.split_once(start));
+    let (_, refs) = line("Collected :").unwrap_or_else(|| panic!("no count in {text}"));
+    let (shots, checksum) = line(" shots ").unwrap_or_else(|| panic!("no checksum in {text}"));
+    (refs.trim().parse().unwrap(), format!("{shots} {checksum}"))
+}
+
+#[test]
+fn a_scene_without_effects_costs_what_it_did_before_there_were_any() {
+    let required = std::env::var("VELOMOTION_CALLGRIND").is_ok_and(|value| value == "required");
+    if !required && Command::new("valgrind").arg("--version").output().is_err() {
+        eprintln!("skipped: there is no valgrind (VELOMOTION_CALLGRIND=required fails instead)");
+        return;
+    }
+    let into = Path::new(env!("CARGO_TARGET_TMPDIR")).join("unasked");
+    std::fs::create_dir_all(&into).unwrap();
+    let without = built(&[], &into);
+    let with = built(&["--features", "effects"], &into);
+    let (absent, first) = counted(&without, &into);
+    let (unasked, second) = counted(&with, &into);
+    assert_eq!(first, second, "the same bytes");
+    let more = unasked as f64 / absent as f64 - 1.0;
+    println!(
+        "{absent} instructions without effects, {unasked} with none asked for: {:+.4} %",
+        100.0 * more
+    );
+    assert!(more.abs() < 0.005, "{absent} against {unasked}");
+    // More than a thousand instructions a packet, so that there is something to count.
+    assert!(absent > 1_000_000);
+}
