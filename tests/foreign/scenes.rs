@@ -49,11 +49,12 @@ fn velodyne_decoder_puts_simulated_points_on_the_scenes_surfaces() {
             log: &log,
             truth: None,
             threads: NonZeroUsize::MIN,
+            explain: false,
             force: false,
             interrupt: &AtomicBool::new(false),
             progress: Progress::new(&common),
         };
-        let scene = simulate::read(model, &text, None).unwrap();
+        let scene = simulate::read(model, &text, None, None).unwrap();
         let (report, _) = simulate::make(scene, request).unwrap();
         let arguments = [log.as_path(), Path::new(theirs), points.as_path()];
         let modules = "velodyne_decoder, dpkt, numpy";

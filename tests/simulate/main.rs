@@ -51,7 +51,7 @@ impl Simulated {
     /// Simulates it twice: into a log, and for the truth alone. `more` adds to the scene.
     fn new(text: &str, more: impl Fn(&mut Scene)) -> Self {
         let read = || {
-            let mut scene = simulate::read("test", text, None).unwrap();
+            let mut scene = simulate::read("test", text, None, None).unwrap();
             more(&mut scene);
             scene
         };
@@ -68,6 +68,7 @@ impl Simulated {
             log: &folder.path().join("scene.pcapng"),
             truth: None,
             threads: NonZeroUsize::new(2).unwrap(),
+            explain: false,
             force: false,
             interrupt: &AtomicBool::new(false),
             progress: Progress::new(&common),

@@ -145,6 +145,9 @@ pub struct Simulate {
     /// Threads that make packets; the log does not depend on it [default: one a core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
+    /// Say what each effect did and cost, which line asked for it, and which were not needed
+    #[arg(long)]
+    pub explain: bool,
     /// Overwrite files that exist
     #[arg(long)]
     pub force: bool,

@@ -1,12 +1,13 @@
 //! `velomotion simulate`: a log of a scene that never was, and the truth beside it.
 //!
 //! The log is one that `replay` reads: the lidar's datagrams, and the drive's USB frames where there is a drive. Left out: how anything is
-//! simulated (`sim::simulate`), and what it costs which effect.
+//! simulated (`sim::simulate`), and how what effects did is told ([`Explanation`]).
 
 mod log;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -14,7 +15,7 @@ use cloud::{Fields, Metadata};
 use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
 use serde::Serialize;
-use sim::effects::{Effects, OnFirings};
+use sim::effects::{Effects, Explanation, OnFirings, Stopwatch};
 use sim::scene_file::{SHIPPED, Scene};
 use sim::simulate::{SimulateError, Summary};
 
@@ -60,6 +61,9 @@ pub struct Report {
     /// The cloud of the truth, where one was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<String>,
+    /// What effects did and cost, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explanation: Option<Explanation>,
 }
 
 /// An effect that a scene asks for.
@@ -81,6 +85,8 @@ pub struct Request<'a> {
     pub truth: Option<Target>,
     /// Threads that make packets.
     pub threads: NonZeroUsize,
+    /// Whether to tell what effects did.
+    pub explain: bool,
     /// Whether an older log may be overwritten.
     pub force: bool,
     /// Set where the user wants no more of it.
@@ -96,7 +102,11 @@ pub struct Request<'a> {
 pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> {
     let interrupt = signals::interrupt_flag()?;
     let (name, text) = find(&arguments.scene)?;
-    let scene = read(&name, &text, arguments.seed)?;
+    let clock: Stopwatch = match arguments.explain {
+        true => Some(nanoseconds),
+        false => None,
+    };
+    let scene = read(&name, &text, arguments.seed, clock)?;
     let log = arguments
         .output
         .clone()
@@ -116,6 +126,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> 
         log: &log,
         truth,
         threads: arguments.threads.unwrap_or_else(cores),
+        explain: arguments.explain,
         force: arguments.force,
         interrupt: &interrupt,
         progress: Progress::new(common),
@@ -123,7 +134,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> 
     let (report, failure) = make(scene, request)?;
     Ok(Said {
         json: super::json(&report),
-        text: report.table(),
+        text: report.text(),
         failure,
         stdout_taken,
     })
@@ -149,17 +160,24 @@ fn find(scene: &Path) -> Result<(String, String), Failure> {
     Ok((name, text))
 }
 
-/// Reads a scene file's text; mesh files that it names lie beside it.
+/// Nanoseconds since this was first asked.
+fn nanoseconds() -> u64 {
+    static BEGINNING: OnceLock<Instant> = OnceLock::new();
+    let since = BEGINNING.get_or_init(Instant::now).elapsed();
+    u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// Reads a scene file's text; mesh files that it names lie beside it. With a clock the cost of effects is measured.
 ///
 /// # Errors
 /// [`Kind::BadInput`] naming the line.
-pub fn read(name: &str, text: &str, seed: Option<u64>) -> Result<Scene, Failure> {
+pub fn read(name: &str, text: &str, seed: Option<u64>, clock: Stopwatch) -> Result<Scene, Failure> {
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     let mut meshes = |file: &str| {
         let path = folder.join(file);
         std::fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))
     };
-    Scene::parse_with(text, seed, None, &mut meshes).map_err(|error| {
+    Scene::parse_with(text, seed, clock, &mut meshes).map_err(|error| {
         Failure::new(Kind::BadInput, format!("scene {name}, {error}"))
             .help("correct the scene file there; docs: Scenes")
     })
@@ -180,6 +198,7 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
         log: path,
         mut truth,
         threads,
+        explain,
         force,
         interrupt,
         progress,
@@ -229,12 +248,20 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
     let summary = summary.map_err(|error| cannot_simulate(&name, &error))?;
     let (truth, failure) = out.finish(path)?;
     let took = began.elapsed();
+    let explanation = explain.then(|| {
+        let lines = scene.effects.lines.iter();
+        let lines: Vec<_> = lines.map(|asked| (asked.name, asked.line)).collect();
+        let busy_ns = took.as_nanos().saturating_mul(threads.get() as u128);
+        let busy_ns = u64::try_from(busy_ns).unwrap_or(u64::MAX);
+        Explanation::new(&scene.effects.effects.used(), &lines, busy_ns)
+    });
     let report = Report {
         effects,
         seed: scene.seed,
         threads: threads.get(),
         log: path.display().to_string(),
         truth: truth.map(|path| path.display().to_string()),
+        explanation,
         ..Report::new(name, &summary, took)
     };
     Ok((report, failure))
@@ -263,10 +290,20 @@ impl Report {
             threads: 0,
             log: String::new(),
             truth: None,
+            explanation: None,
         }
     }
 
-    /// For people.
+    /// For people: the table, and what effects did where that was asked for.
+    #[must_use]
+    pub fn text(&self) -> String {
+        match &self.explanation {
+            Some(explanation) => format!("{}\n{explanation}", self.table()),
+            None => self.table(),
+        }
+    }
+
+    /// Its table.
     #[must_use]
     pub fn table(&self) -> String {
         let effects = match self.effects.is_empty() {
