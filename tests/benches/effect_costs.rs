@@ -1,0 +1,186 @@
+//! What each effect of the simulator adds to a sweep through the hall, alone and all together.
+//!
+//! `cargo bench -p velomotion-tests --bench effect_costs` prints the table of docs/src/effects.md. Instructions are counted by valgrind's callgrind
+//! and are the same on any day; times are the least of `-- --rounds N` (9) on one thread, all taking turns.
+//! Left out: other scenes. What an effect costs depends on how often it has to act.
+
+use std::env;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::process::Command;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use sim::effects::{Asked, Effects, OnFirings, Wishes};
+use sim::motion::{Motion, Sweeps};
+use sim::scenes;
+use sim::sensor::{ReturnMode, Sensor};
+use sim::simulate::{Event, Mount, Out, Polls, Simulation, Spin};
+use units::{Gearing, Stamp};
+
+/// First argument of the process that callgrind watches.
+const ONE: &str = "--one";
+
+/// Settings as one would have them.
+const TABLES: [(&str, &str); 18] = [
+    ("limited_field_of_view", "from_deg = 30.0\nto_deg = 330.0"),
+    (
+        "own_shadow",
+        "sectors = [{ azimuth_from_deg = 170.0, azimuth_to_deg = 190.0 }]\nbelow_deg = -50.0",
+    ),
+    (
+        "moving_objects",
+        "boxes = [{ at_m = [3.0, 4.0, 0.0], size_m = [0.6, 0.6, 1.8], velocity_m_s = [-1.5, 0.0, 0.0] }]",
+    ),
+    ("divergence", ""),
+    ("weather", "visibility_m = 200.0"),
+    ("reflectance", ""),
+    ("range_noise", "sd_m = 0.01"),
+    ("lidar_clock", "drift_ppm = 12.0\nwander_us = 5.0"),
+    ("servo_lag", "frequency_hz = 20.0\ndamping = 0.7"),
+    ("tilt_limits", "from_deg = -44.0\nto_deg = 1.0"),
+    ("gear_ripple", "amplitude_deg = 0.003"),
+    ("backlash", "play_deg = 0.02"),
+    ("encoder_quantisation", ""),
+    ("duplicate", "share = 0.01"),
+    ("loss", "lidar_share = 0.01\ndrive_share = 0.01"),
+    ("link_jitter", ""),
+    ("reorder", "share = 0.01"),
+    ("batching", ""),
+];
+
+/// Takes everything and keeps nothing.
+struct Nowhere;
+
+impl Out for Nowhere {
+    fn event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        std::hint::black_box(event);
+        ControlFlow::Continue(())
+    }
+}
+
+/// The rig's sweep, down at full speed.
+fn sweep() -> Simulation {
+    let motion = Motion::sweeps(&Sweeps {
+        from_deg: 0.0,
+        to_deg: -45.0,
+        speed_deg_s: 56.25,
+        accel_deg_s2: Some(5_000.0),
+        count: 1,
+        both_ways: false,
+        rest_s: 0.1,
+    });
+    Simulation {
+        scene: Arc::new(scenes::hall()),
+        sensor: Sensor::vlp16(),
+        returns: ReturnMode::Strongest,
+        spin: Spin {
+            rpm: 600,
+            start_deg: 0.0,
+        },
+        mount: Mount::above(0.06),
+        motion: motion.expect("a sweep"),
+        polls: Some(Polls {
+            period_ns: 2_500_000,
+            answer_ns: 1_000_000,
+            gearing: Gearing::new(500, 120, 1).expect("a gearing"),
+        }),
+        start: Stamp::from_nanos(1_795_226_733_000_000_000),
+        clock_at_start_us: 0,
+    }
+}
+
+/// The tables of an effect, of `all`, or of `none`.
+fn wishes(name: &str) -> Wishes {
+    let asked = TABLES
+        .iter()
+        .filter(|(other, _)| name == "all" || *other == name);
+    let text: String = asked
+        .map(|(name, table)| format!("[{name}]\n{table}\n"))
+        .collect();
+    toml::from_str(&text).expect("tables as they are")
+}
+
+/// A run; what it gives is how often effects acted.
+fn run(simulation: &Simulation, name: &str) -> Asked {
+    let mut asked = wishes(name).make(1, None).expect("settings as they are");
+    let one = NonZeroUsize::MIN;
+    let ran = match name {
+        // The engine that has no effects in it, as for a scene that asks for none.
+        "none" => simulation.run(&mut Effects::<OnFirings>::default(), one, &mut Nowhere),
+        _ => simulation.run(&mut asked, one, &mut Nowhere),
+    };
+    ran.expect("a run");
+    asked
+}
+
+fn instructions(name: &str) -> Option<u64> {
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(env::current_exe().ok()?)
+        .args([ONE, name])
+        .output()
+        .ok()?;
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    let counted = text.lines().find_map(|line| line.split_once("Collected :"));
+    counted?.1.trim().parse().ok()
+}
+
+fn main() {
+    let arguments: Vec<String> = env::args().collect();
+    let after = |name: &str| {
+        let at = arguments.iter().position(|argument| argument == name)?;
+        arguments.get(at + 1).cloned()
+    };
+    let simulation = sweep();
+    if let Some(name) = after(ONE) {
+        run(&simulation, &name);
+        return;
+    }
+    let rounds = after("--rounds")
+        .and_then(|rounds| rounds.parse().ok())
+        .unwrap_or(9);
+    let mut names = vec!["none"];
+    names.extend(TABLES.iter().map(|(name, _)| *name));
+    names.push("all");
+    let mut times = vec![Duration::MAX; names.len()];
+    for _ in 0..rounds {
+        for (name, least) in names.iter().zip(&mut times) {
+            let begun = Instant::now();
+            run(&simulation, name);
+            *least = begun.elapsed().min(*least);
+        }
+    }
+    let counts: Vec<Option<u64>> = names.iter().map(|name| instructions(name)).collect();
+    println!("| effect | acted in | instructions | time |\n|---|---|---|---|");
+    for ((name, time), count) in names.iter().zip(&times).zip(&counts) {
+        let acted = match *name {
+            "none" | "all" => String::new(),
+            name => run(&simulation, name)
+                .used()
+                .iter()
+                .fold(String::new(), |_, used| {
+                    let share = 100.0 * used.usage.acted as f64 / used.usage.asked.max(1) as f64;
+                    format!("{share:.1} % of {}", used.each)
+                }),
+        };
+        let base = counts.first().copied().flatten();
+        let counted = match (count, base) {
+            (Some(count), Some(_)) if *name == "none" => {
+                format!("{:.1} million", *count as f64 * 1e-6)
+            }
+            (Some(count), Some(base)) => {
+                format!("{:+.2} %", 100.0 * (*count as f64 / base as f64 - 1.0))
+            }
+            _ => "not counted".to_owned(),
+        };
+        let took = match *name {
+            "none" => format!("{:.1} ms", time.as_secs_f64() * 1e3),
+            _ => {
+                let more = time.as_secs_f64() / times[0].as_secs_f64() - 1.0;
+                format!("{:+.0} %", 100.0 * more)
+            }
+        };
+        println!("| `{name}` | {acted} | {counted} | {took} |");
+    }
+}
