@@ -673,6 +673,13 @@ fn simulate_makes_a_log_that_replay_reads_and_says_what_is_wrong_where() {
     let rows = truth.lines().filter(|line| !line.starts_with('#')).count() - 1;
     assert_eq!(said["returned"].as_u64(), Some(rows as u64));
     place.fails("simulate stand.toml", 2, &["exists"]);
+    let asks = format!("{scene}[effects.tilt_limits]\nfrom_deg = -45.0\nto_deg = 45.0\n");
+    std::fs::write(place.path("asks.toml"), asks).unwrap();
+    let output = place.run("simulate asks.toml --explain --json");
+    let told = &json(&output)["explanation"]["on"][0];
+    assert_eq!(told["effect"], "tilt_limits");
+    assert_eq!((&told["line"], &told["acted"]), (&5.into(), &0.into()));
+    assert!(told["not_needed"].as_str().unwrap().contains("stops"));
     let output = place.run("replay stand.pcapng --tilt none -o s.ply --json");
     assert_eq!(json(&output)["points"].as_u64(), Some(rows as u64));
     assert_eq!(json(&output)["simulated"], true);
