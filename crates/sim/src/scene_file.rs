@@ -22,7 +22,7 @@ use units::{Host, Stamp};
 
 use crate::effects::Wishes;
 pub use crate::scenery::SHIPPED;
-use crate::scenery::{MaterialTable, Moving, ObjectTable, no_files, rotation};
+use crate::scenery::{MaterialTable, ObjectTable, no_files, rotation};
 use crate::simulate::{Mount, Simulation};
 pub use effects::{AskedFor, EffectLine};
 
@@ -35,8 +35,6 @@ pub struct Scene {
     pub effects: AskedFor,
     /// What draws depend on.
     pub seed: u64,
-    /// What moves, and how; where it is in [`Simulation::scene`] is where it starts.
-    pub moving: Vec<Moving>,
 }
 
 /// What is wrong with a scene file.
@@ -194,7 +192,7 @@ impl Scene {
         })?;
         let seed = seed.unwrap_or(file.seed);
         let mut scene = Self::new(&file, text, seed, clock).map_err(|wrong| wrong.in_file(text))?;
-        (scene.simulation.scene, scene.moving) = around::build(text, file, seed, files)?;
+        scene.simulation.scene = around::build(text, file, seed, files)?;
         scene.effects.find_lines(|at| line_of(text, at));
         Ok(scene)
     }
@@ -225,7 +223,6 @@ impl Scene {
             },
             effects: AskedFor::new(&file.effects, text, seed, clock)?,
             seed,
-            moving: Vec::new(),
         })
     }
 }

@@ -4,17 +4,18 @@ use std::sync::Arc;
 
 use super::{File, SHIPPED, SceneError, line_of};
 use crate::scene::Scene;
-use crate::scenery::{Moving, Scenery, SceneryError, Sections, shipped};
+use crate::scenery::{Scenery, SceneryError, Sections, shipped};
 
 type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
-/// What can be cast at, and what of it moves.
+/// What can be cast at. Objects of a scenery that move are refused: the simulation moves what `[effects.moving_objects]` names, and an object
+/// that stood still for all that would look right.
 pub(super) fn build(
     text: &str,
     file: File,
     seed: u64,
     files: Files<'_>,
-) -> Result<(Arc<Scene>, Vec<Moving>), SceneError> {
+) -> Result<Arc<Scene>, SceneError> {
     let own = Sections {
         materials: file.materials,
         objects: file.objects,
@@ -24,7 +25,7 @@ pub(super) fn build(
         what: error.what(),
     };
     let (line, scenery) = match file.scene {
-        None if own.objects.is_empty() => return Ok((Arc::default(), Vec::new())),
+        None if own.objects.is_empty() => return Ok(Arc::default()),
         None => (1, Scenery::new(text, own)),
         Some(name) => {
             let line = line_of(text, name.span().start);
@@ -43,13 +44,19 @@ pub(super) fn build(
             (line, Scenery::parse(text))
         }
     };
-    let mut placed = scenery
+    let placed = scenery
         .and_then(|scenery| scenery.place(seed, files))
         .map_err(said)?;
-    let moving = std::mem::take(&mut placed.moving);
+    if let Some(moving) = placed.moving.first() {
+        return Err(SceneError {
+            line: moving.at.line,
+            what: "expected an object that stands, got one that moves; boxes that move go into [effects.moving_objects]"
+                .to_owned(),
+        });
+    }
     let scene = Scene::of(placed).map_err(|error| SceneError {
         line,
         what: error.to_string(),
     })?;
-    Ok((Arc::new(scene), moving))
+    Ok(Arc::new(scene))
 }
