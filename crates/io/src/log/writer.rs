@@ -51,8 +51,13 @@ pub enum LogError {
         source: io::Error,
     },
     /// An earlier write failed; what follows would not be readable.
-    #[error("log: not written, since an earlier write failed")]
-    Failed,
+    #[error("log: nothing was written after byte {offset}, since writing there failed: {source}")]
+    Failed {
+        /// Bytes that were surely written.
+        offset: u64,
+        /// The system's reason then.
+        source: io::Error,
+    },
     /// The configuration does not fit the comment.
     #[error("log: configuration: expected at most {expected} bytes, got {got}")]
     Metadata {
@@ -103,7 +108,8 @@ pub struct LogWriter<W> {
     buffer: Vec<u8>,
     drives: Vec<DriveLink>,
     counts: LogCounts,
-    failed: bool,
+    /// Why a write failed.
+    failed: Option<io::Error>,
 }
 
 impl LogWriter<File> {
@@ -150,7 +156,7 @@ impl<W: Write> LogWriter<W> {
             buffer: Vec::with_capacity(BUFFER_LEN + 4096),
             drives: Vec::new(),
             counts: LogCounts::default(),
-            failed: false,
+            failed: None,
         };
         block::section_header(&mut writer.buffer, &config.metadata);
         block::interface(
@@ -172,9 +178,7 @@ impl<W: Write> LogWriter<W> {
     /// [`LogError::TooLong`] and [`LogError::Time`] leave the log as it was, fit for further records;
     /// [`LogError::Write`] ends it.
     pub fn write(&mut self, record: &Record<'_>) -> Result<(), LogError> {
-        if self.failed {
-            return Err(LogError::Failed);
-        }
+        self.check_sound()?;
         let time_ns = u64::try_from(record.host.as_nanos())
             .map_err(|_| LogError::Time { got: record.host })?;
         match record.wire {
@@ -222,20 +226,28 @@ impl<W: Write> LogWriter<W> {
         Ok(())
     }
 
+    /// Whether all writes so far went well.
+    fn check_sound(&self) -> Result<(), LogError> {
+        self.failed.as_ref().map_or(Ok(()), |source| {
+            Err(LogError::Failed {
+                offset: self.counts.bytes,
+                source: same(source),
+            })
+        })
+    }
+
     /// Hands all bytes to the system, so that they survive this process.
     ///
     /// # Errors
-    /// [`LogError::Write`]; [`LogError::Failed`] ever after.
+    /// [`LogError::Write`]; [`LogError::Failed`] with the same reason ever after.
     pub fn flush(&mut self) -> Result<(), LogError> {
-        if self.failed {
-            return Err(LogError::Failed);
-        }
+        self.check_sound()?;
         let written = self
             .out
             .write_all(&self.buffer)
             .and_then(|()| self.out.flush());
         if let Err(source) = written {
-            self.failed = true;
+            self.failed = Some(same(&source));
             return Err(LogError::Write {
                 offset: self.counts.bytes,
                 source,
@@ -270,6 +282,14 @@ impl<W: Write> LogWriter<W> {
         });
         // Three links at most, behind the lidar's interface 0.
         at as u32 + 1
+    }
+}
+
+/// The same error once more.
+fn same(error: &io::Error) -> io::Error {
+    match error.raw_os_error() {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => io::Error::new(error.kind(), error.to_string()),
     }
 }
 

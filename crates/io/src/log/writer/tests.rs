@@ -211,13 +211,17 @@ fn a_full_disk_is_said_once_and_the_rest_of_the_log_is_readable() {
     let LogError::Write { offset, source } = error else {
         panic!("{error}");
     };
+    let first = source.to_string();
     assert_eq!(source.kind(), io::ErrorKind::StorageFull);
     assert!(offset <= 200_000);
     assert!(matches!(
         writer.write(&lidar(1, &payload)),
-        Err(LogError::Failed)
+        Err(LogError::Failed { .. })
     ));
-    assert!(matches!(writer.flush(), Err(LogError::Failed)));
+    // What is said last says why, too.
+    let last = writer.flush().unwrap_err();
+    assert!(matches!(&last, LogError::Failed { offset: at, .. } if *at == offset));
+    assert!(last.to_string().contains(&first.to_string()), "{last}");
 
     let mut recording = Recording::new(writer.out.bytes.as_slice(), "log")
         .unwrap()
