@@ -28,6 +28,15 @@ pub struct Hit {
     pub reflectivity: u8,
 }
 
+/// The surface there, as light meets it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Facet {
+    /// Its normal, length 1, whichever way it points; zero for primitives, whose normals nobody keeps.
+    pub normal: DVec3,
+    /// Share of the light that goes off as from a mirror, 0..=1.
+    pub specular: f64,
+}
+
 impl Scene {
     /// An empty scene: no ray returns.
     #[must_use]
@@ -62,20 +71,22 @@ impl Scene {
             .map(|(placed, caster)| (placed, caster))
     }
 
-    /// As [`Scene::cast`], with the normal of the surface, length 1; zero for primitives, whose normals nobody keeps.
+    /// As [`Scene::cast`], with what light needs to know of the surface.
     #[inline]
     #[must_use]
-    pub fn cast_with_normal(
+    pub fn cast_with_facet(
         &self,
         origin_m: DVec3,
         direction: DVec3,
         min_m: f64,
         max_m: f64,
-    ) -> Option<(Hit, DVec3)> {
-        match self.placed() {
-            Some(scene) => meet::<DVec3>(scene, origin_m, direction, min_m, max_m),
-            None => Some((self.cast(origin_m, direction, min_m, max_m)?, DVec3::ZERO)),
-        }
+    ) -> Option<(Hit, Facet)> {
+        let Some(scene) = self.placed() else {
+            let hit = self.cast(origin_m, direction, min_m, max_m)?;
+            return Some((hit, Facet::default()));
+        };
+        let (hit, normal, specular) = meet::<DVec3>(scene, origin_m, direction, min_m, max_m)?;
+        Some((hit, Facet { normal, specular }))
     }
 
     /// The primitives.
@@ -96,7 +107,7 @@ impl Scene {
             return None;
         }
         if let Some(scene) = self.placed() {
-            let (hit, ()) = meet::<()>(scene, origin_m, direction, min_m, max_m)?;
+            let (hit, (), _) = meet::<()>(scene, origin_m, direction, min_m, max_m)?;
             return Some(hit);
         }
         let ray = Ray {
@@ -123,7 +134,7 @@ impl Scene {
     }
 }
 
-/// What a ray meets of what a scene file placed. What absorbs returns nothing.
+/// What a ray meets of what a scene file placed, its normal and how much of it is a mirror. What absorbs returns nothing.
 #[inline]
 fn meet<N: Normal>(
     (placed, caster): (&Placed, &Caster),
@@ -131,7 +142,7 @@ fn meet<N: Normal>(
     direction: DVec3,
     min_m: f64,
     max_m: f64,
-) -> Option<(Hit, N)> {
+) -> Option<(Hit, N, f64)> {
     let ray = CastRay::new(origin_m, direction).ok()?;
     let hit = caster.nearest::<N>(&ray, Reach::up_to(max_m))?;
     let material = placed.material(hit.object.index(), hit.primitive)?;
@@ -139,7 +150,8 @@ fn meet<N: Normal>(
         range_m: hit.range_m,
         reflectivity: material.reflectivity,
     };
-    (hit.range_m >= min_m && !material.absorbing).then_some((seen, hit.normal))
+    let returns = hit.range_m >= min_m && !material.absorbing;
+    returns.then_some((seen, hit.normal, material.specular))
 }
 
 #[cfg(test)]

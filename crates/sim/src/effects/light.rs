@@ -1,4 +1,9 @@
-//! Calibrated reflectivity against the light that comes back.
+//! The light that comes back of a surface, and calibrated reflectivity against it.
+//!
+//! What a surface scatters falls with the cosine of incidence (Lambert). What it mirrors goes off the other way, and comes back only of what faces
+//! the sensor: a normalised lobe of Phong's about the mirrored ray (Lafortune and Willems 1994; for terrestrial scanners Tan and Cheng 2017),
+//! `(n + 2) / 2 cos^n(2 i)` of it, where a white wall gives 1. For all that is glossy n is [`GLOSS`] here, between car paint and window panes: head-on it outshines
+//! a white wall a hundred times, at 2.4 degrees of incidence half as much, and at 9 less than a hundredth of one is left. Left out: light that goes on through glass or from one surface to the next.
 //!
 //! The sensor reports 0..=100 for diffuse surfaces, in percent, and 101..=255 for retroreflectors, 255 for an ideal one (63-9243, section 6.1).
 //! The manual does not say how much more light a retroreflector returns; here the scale from 100 to 255 is logarithmic and ends at
@@ -10,6 +15,8 @@ pub(super) const RETRO_GAIN: f64 = 300.0;
 pub(super) const HALF_RANGE_M: f64 = 50.0;
 /// See [`HALF_RANGE_M`].
 pub(super) const HALF_REFLECTIVITY: f64 = 10.0;
+/// Exponent of the lobe of what is mirrored.
+const GLOSS: i32 = 200;
 /// Reflectivities between a white wall and an ideal retroreflector.
 const RETRO_STEPS: f64 = 155.0;
 
@@ -21,6 +28,19 @@ pub(super) fn of_reflectivity(reflectivity: f64) -> f64 {
     } else {
         (RETRO_GAIN.ln() * (reflectivity.min(255.0) - 100.0) / RETRO_STEPS).exp()
     }
+}
+
+/// The part of that light which comes back at an incidence by its cosine, if `specular` of it (0..=1) is mirrored. Nothing is mirrored better than
+/// all there is.
+#[inline]
+pub(super) fn of_surface(light: f64, specular: f64, cosine: f64) -> f64 {
+    let scattered = (1.0 - specular) * light;
+    if specular == 0.0 {
+        return scattered * cosine;
+    }
+    let off_mirror = (2.0 * cosine * cosine - 1.0).max(0.0);
+    let lobe = 0.5 * f64::from(GLOSS + 2) * off_mirror.powi(GLOSS);
+    (scattered + specular * light.min(1.0) * lobe) * cosine
 }
 
 /// The reflectivity that a sensor reports of it, 0..=255.
@@ -47,6 +67,24 @@ mod tests {
         assert!((of_reflectivity(255.0) - RETRO_GAIN).abs() < 1e-9);
         assert_eq!(to_reflectivity(1e9), 255.0);
         assert_eq!(of_reflectivity(-1.0), 0.0);
+        // Lambert's cosine for what is dull; of what is glossy only what it scatters, but for the few degrees in which it shines.
+        let of = |specular, deg: f64| of_surface(0.06, specular, deg.to_radians().cos());
+        assert!((of(0.0, 60.0) - 0.03).abs() < 1e-12);
+        assert!((of(0.8, 60.0) - 0.006).abs() < 1e-12);
+        assert!((of(0.8, 0.0) - (0.012 + 0.048 * 101.0)).abs() < 1e-12);
+        // cos(4.77 deg)^200 is 1/2.
+        let half = 2.385_f64.to_radians().cos();
+        assert!((of(1.0, 2.385) / (0.06 * 101.0 * half) - 0.5).abs() < 1e-2);
+        assert!(of(1.0, 9.0) < 0.06 * 0.01 && of(1.0, 60.0) == 0.0);
+        // As much as there is, all ways together: over the hemisphere of ways out, 2 pi sin a da of them at a off the mirrored ray.
+        let steps = 10_000;
+        let all: f64 = (0..steps)
+            .map(|step| (f64::from(step) + 0.5) / f64::from(steps) * core::f64::consts::FRAC_PI_2)
+            .map(|a| 0.5 * f64::from(GLOSS + 2) * a.cos().powi(GLOSS) * a.cos() * 2.0 * a.sin())
+            .sum::<f64>()
+            * core::f64::consts::FRAC_PI_2
+            / f64::from(steps);
+        assert!((all - 1.0).abs() < 1e-4, "{all}");
         // Half of a retroreflector's light is still a retroreflector's.
         assert!(to_reflectivity(0.5 * RETRO_GAIN) > 200.0);
     }

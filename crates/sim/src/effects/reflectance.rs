@@ -1,10 +1,10 @@
 //! Surface: how much light comes back, whether the sensor notices it, and what reflectivity it reports.
 //!
-//! The light from a surface that fills the beam falls with the cosine of incidence (Lambert) and the square of range. A return is noticed if light
+//! The light from a surface that fills the beam falls with incidence ([`light::of_surface`]: a cosine, but for what is mirrored) and the square of range. A return is noticed if light
 //! and noise together are above a threshold, noise being normal and `1 / threshold_snr` of it: so the probability is the normal distribution's, 1/2 where
 //! the light is just the threshold. The sensor makes up for range when it reports reflectivity (63-9243, section 6.1), but knows
 //! nothing of incidence. The manual gives 1 to 100 m without a target for it; by default a target of 10 % is noticed half the time at 50 m,
-//! and so everything from 50 % on always to the end of that range. Left out: speckle, and surfaces that are neither dull nor retroreflecting.
+//! and so everything from 50 % on always to the end of that range. Left out: speckle, and where mirrored light goes.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub struct ReflectanceSettings {
     pub half_reflectivity: f64,
     /// The threshold in standard deviations of the noise.
     pub threshold_snr: f64,
-    /// Whether light falls with the cosine of incidence; normals are found only then.
+    /// Whether light falls with incidence; normals are found only then. Without, all light counts as scattered.
     pub incidence: bool,
 }
 
@@ -74,11 +74,11 @@ impl Reflectance {
     /// What the sensor makes of an echo.
     #[inline]
     fn seen(&self, echo: &Echo, direction: DVec3, mut unit: impl FnMut() -> f64) -> Echo {
-        let cosine = match self.incidence && echo.normal != DVec3::ZERO {
-            true => echo.normal.dot(direction).abs(),
-            false => 1.0,
+        let head_on = light::of_reflectivity(echo.reflectivity);
+        let light = match self.incidence && echo.normal != DVec3::ZERO {
+            true => light::of_surface(head_on, echo.specular, echo.normal.dot(direction).abs()),
+            false => head_on,
         };
-        let light = light::of_reflectivity(echo.reflectivity) * cosine;
         let above = light / (echo.range_m * echo.range_m * self.threshold) - 1.0;
         let sure = self.snr * above;
         // Beyond six standard deviations there is nothing to draw.
@@ -86,9 +86,9 @@ impl Reflectance {
             return Echo::NONE;
         }
         Echo {
-            reflectivity: match cosine < 1.0 {
-                true => light::to_reflectivity(light),
-                false => echo.reflectivity,
+            reflectivity: match light == head_on {
+                true => echo.reflectivity,
+                false => light::to_reflectivity(light),
             },
             ..*echo
         }
@@ -214,6 +214,26 @@ mod tests {
         assert!(!blind.needs().normals && reflectance.needs().normals);
         let slanted = slant(89.99);
         assert_eq!(blind.seen(&slanted, DVec3::Y, || 0.5), slanted);
+    }
+
+    /// A window: at an angle it returns what little it scatters, head-on it dazzles.
+    #[test]
+    fn glass_is_seen_where_it_faces_the_sensor() {
+        let reflectance = Reflectance::new(&ReflectanceSettings::default(), 1).unwrap();
+        let seen = |deg: f64, range_m| {
+            let pane = Echo {
+                normal: DVec3::new(deg.to_radians().sin(), -deg.to_radians().cos(), 0.0),
+                specular: 0.8,
+                ..echo(range_m, 6.0)
+            };
+            reflectance.seen(&pane, DVec3::Y, || 0.5)
+        };
+        assert!(seen(0.0, 30.0).reflectivity > 100.0);
+        assert!(!seen(10.0, 30.0).is_there());
+        // 1.2 % scattered, seen half the time at 50 m * sqrt(0.12) = 17.3 m.
+        let near = seen(45.0, 10.0);
+        assert!((near.reflectivity - 1.2 * 0.5_f64.sqrt()).abs() < 1e-9);
+        assert!(!seen(45.0, 18.0).is_there());
     }
 
     #[test]

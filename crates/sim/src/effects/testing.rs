@@ -49,6 +49,7 @@ pub fn echo(range_m: f64, reflectivity: f64) -> Echo {
         reflectivity,
         share: 1.0,
         normal: DVec3::ZERO,
+        specular: 0.0,
     }
 }
 

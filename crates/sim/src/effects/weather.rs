@@ -105,6 +105,7 @@ impl Weather {
             reflectivity: light::to_reflectivity(light),
             share: 1.0,
             normal: glam::DVec3::ZERO,
+            specular: 0.0,
         };
         noticed(echo, light)
     }

@@ -45,6 +45,8 @@ pub struct Echo {
     pub share: f64,
     /// The surface's normal, length 1, whichever way it points; 0 where no effect needs it.
     pub normal: DVec3,
+    /// Share of its light that goes off as from a mirror, 0..=1; 0 where no effect needs the normal.
+    pub specular: f64,
 }
 
 /// What comes back to all lasers: the strongest return of each, and another.
@@ -67,6 +69,7 @@ impl Echo {
         reflectivity: 0.0,
         share: 0.0,
         normal: DVec3::ZERO,
+        specular: 0.0,
     };
 
     /// All of a pulse from one surface.
@@ -79,6 +82,7 @@ impl Echo {
             reflectivity: met.reflectivity,
             share: 1.0,
             normal: met.normal,
+            specular: met.specular,
         }
     }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::firing::{Echo, Echoes, Firing};
-use crate::scene::Scene;
+use crate::scene::{Facet, Scene};
 use crate::sensor::{MOST_LASERS, Reach};
 
 /// The scene around the scanner at the moment.
@@ -40,6 +40,8 @@ pub struct Met {
     pub reflectivity: f64,
     /// The surface's normal, length 1, whichever way it points; 0 where no effect needs it.
     pub normal: DVec3,
+    /// Share of the light that goes off as from a mirror, 0..=1; 0 where no effect needs the normal.
+    pub specular: f64,
 }
 
 impl Surroundings {
@@ -92,14 +94,18 @@ impl Surroundings {
     #[inline]
     fn cast(&self, scene: &Scene, origin_m: DVec3, direction: DVec3, min_m: f64) -> Option<Met> {
         let max_m = self.reach.max_m;
-        let (hit, normal) = match self.normals {
-            true => scene.cast_with_normal(origin_m, direction, min_m, max_m)?,
-            false => (scene.cast(origin_m, direction, min_m, max_m)?, DVec3::ZERO),
+        let (hit, facet) = match self.normals {
+            true => scene.cast_with_facet(origin_m, direction, min_m, max_m)?,
+            false => (
+                scene.cast(origin_m, direction, min_m, max_m)?,
+                Facet::default(),
+            ),
         };
         Some(Met {
             range_m: hit.range_m,
             reflectivity: f64::from(hit.reflectivity),
-            normal,
+            normal: facet.normal,
+            specular: facet.specular,
         })
     }
 

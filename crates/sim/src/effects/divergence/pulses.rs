@@ -22,6 +22,8 @@ pub(super) struct Sample {
     /// How much light it sends head-on, 1 for a white wall.
     light: f64,
     normal: DVec3,
+    /// Share of its light that it mirrors.
+    specular: f64,
     /// The square of how far it is from the middle.
     off_middle: f64,
     /// How much of it reaches the sensor.
@@ -41,22 +43,24 @@ impl Sample {
         range_m: f64::INFINITY,
         light: 0.0,
         normal: DVec3::ZERO,
+        specular: 0.0,
         off_middle: f64::INFINITY,
         strength: 0.0,
     };
 
     pub fn new(met: &Met, direction: DVec3, off_middle: f64) -> Self {
         let light = light::of_reflectivity(met.reflectivity).max(BLACK);
-        let cosine = match met.normal == DVec3::ZERO {
-            true => 1.0,
-            false => met.normal.dot(direction).abs().max(BLACK),
+        let back = match met.normal == DVec3::ZERO {
+            true => light,
+            false => light::of_surface(light, met.specular, met.normal.dot(direction).abs()),
         };
         Self {
             range_m: met.range_m,
             light,
             normal: met.normal,
+            specular: met.specular,
             off_middle,
-            strength: light * cosine / (met.range_m * met.range_m),
+            strength: back.max(BLACK * BLACK) / (met.range_m * met.range_m),
         }
     }
 }
@@ -96,6 +100,7 @@ impl Pulse {
         let middle = samples.iter().min_by(nearest)?;
         let strength: f64 = samples.iter().map(|sample| sample.strength).sum();
         let light: f64 = samples.iter().map(|sample| sample.light).sum();
+        let mirrored: f64 = samples.iter().map(|s| s.specular * s.light).sum();
         let ranges = samples.iter().map(|s| s.strength * s.range_m).sum::<f64>();
         Some(Return {
             echo: Echo {
@@ -104,6 +109,7 @@ impl Pulse {
                 reflectivity: light::to_reflectivity(light / rays),
                 share,
                 normal: middle.normal,
+                specular: mirrored / light,
             },
             strength: strength / rays,
         })
