@@ -1,22 +1,29 @@
 //! What a scan becomes: columns of points, where the tilt mount puts them, and the sinks that keep them.
 //!
 //! [`Points`] is a structure of arrays that holds only the columns someone asked for ([`Fields`]); [`mount`] is
-//! the paper's Eq. 4-6; a [`Sink`] takes batches of points; [`formats`] are the sinks that write a file.
+//! the paper's Eq. 4-6; a [`Sink`] takes batches of points; [`formats`] are the sinks that write a file, [`messages`] what a scan says in
+//! ROS 2's terms.
 //!
 //! Left out on purpose: where the points come from (`scanner`), opening files (`io`), and reading clouds back.
 
+mod check;
 mod error;
 mod fields;
 pub mod formats;
+pub mod messages;
 mod metadata;
 pub mod mount;
 mod points;
+mod rows;
 mod sink;
 mod summary;
+mod tilt_track;
 
+pub use check::{Check, Level};
 pub use error::SinkError;
 pub use fields::{Column, Fields, MissingColumns};
 pub use metadata::Metadata;
 pub use points::{Point, Points, Spare};
-pub use sink::Sink;
+pub use sink::{Companion, Sink};
 pub use summary::{Bounds, Summary};
+pub use tilt_track::TiltTrack;

@@ -3,9 +3,19 @@
 //! A sink declares its columns and takes batches; producers compute only what is declared. Nothing here knows
 //! files: a writer, a live view, a message queue and a comparison with the truth are all sinks.
 
-use crate::{Fields, Metadata, Points, SinkError, Summary};
+use crate::{Check, Fields, Metadata, Points, SinkError, Summary, TiltTrack};
 
-/// Where points go. Only [`Sink::points`] is required. Calls come in the order begin, points (any number), finish.
+/// A small file that belongs beside a sink's own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Companion {
+    /// Its name, in the same folder.
+    pub name: &'static str,
+    /// What is in it.
+    pub text: String,
+}
+
+/// Where points go. Only [`Sink::points`] is required. Calls come in the order begin, tilt, points and turn (any number), checks, finish,
+/// companion.
 pub trait Sink {
     /// Takes a batch, which has at least the columns of [`Sink::fields`]. The batch is reused afterwards.
     ///
@@ -25,6 +35,43 @@ pub trait Sink {
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
         let _ = metadata;
         Ok(())
+    }
+
+    /// Whether [`Sink::tilt`] is worth calling; by default not.
+    fn wants_tilt(&self) -> bool {
+        false
+    }
+
+    /// Called at most once, after begin and before the first batch; by default does nothing.
+    ///
+    /// # Errors
+    /// [`SinkError`] where it cannot be kept.
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        let _ = track;
+        Ok(())
+    }
+
+    /// What came since the last time, or since the begin, is a turn of the lidar and what comes is another; by default does nothing.
+    ///
+    /// # Errors
+    /// [`SinkError`] where it cannot be kept.
+    fn turn(&mut self) -> Result<(), SinkError> {
+        Ok(())
+    }
+
+    /// Called at most once, after the last batch: what was found out about the scan; by default does nothing.
+    ///
+    /// # Errors
+    /// [`SinkError`] where it cannot be kept.
+    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
+        let _ = checks;
+        Ok(())
+    }
+
+    /// What belongs beside the file `file_name` that the sink wrote; to be asked after finish. By default nothing.
+    fn companion(&self, file_name: &str) -> Option<Companion> {
+        let _ = file_name;
+        None
     }
 
     /// Called once after the last batch: what the sink stored. By default nothing.
@@ -67,6 +114,31 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
         self.1.begin(metadata)
     }
 
+    fn wants_tilt(&self) -> bool {
+        self.0.wants_tilt() || self.1.wants_tilt()
+    }
+
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        self.0.tilt(track)?;
+        self.1.tilt(track)
+    }
+
+    fn turn(&mut self) -> Result<(), SinkError> {
+        self.0.turn()?;
+        self.1.turn()
+    }
+
+    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
+        self.0.checks(checks)?;
+        self.1.checks(checks)
+    }
+
+    fn companion(&self, file_name: &str) -> Option<Companion> {
+        self.0
+            .companion(file_name)
+            .or_else(|| self.1.companion(file_name))
+    }
+
     fn finish(&mut self) -> Result<Summary, SinkError> {
         let first = self.0.finish();
         self.1.finish()?;
@@ -87,6 +159,26 @@ macro_rules! forward {
 
             fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
                 (**self).begin(metadata)
+            }
+
+            fn wants_tilt(&self) -> bool {
+                (**self).wants_tilt()
+            }
+
+            fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+                (**self).tilt(track)
+            }
+
+            fn turn(&mut self) -> Result<(), SinkError> {
+                (**self).turn()
+            }
+
+            fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
+                (**self).checks(checks)
+            }
+
+            fn companion(&self, file_name: &str) -> Option<Companion> {
+                (**self).companion(file_name)
             }
 
             fn finish(&mut self) -> Result<Summary, SinkError> {
@@ -139,6 +231,51 @@ mod tests {
         assert_eq!(pair.finish().unwrap().points, 2);
         drop(pair);
         assert_eq!((whole.len(), whole.fields()), (2, Fields::RING));
+    }
+
+    #[test]
+    fn what_is_not_about_points_reaches_both_of_a_pair() {
+        #[derive(Default)]
+        struct Heard(usize);
+        impl Sink for Heard {
+            fn points(&mut self, _: &Points) -> Result<(), SinkError> {
+                Ok(())
+            }
+            fn wants_tilt(&self) -> bool {
+                true
+            }
+            fn tilt(&mut self, _: &TiltTrack) -> Result<(), SinkError> {
+                self.0 += 1;
+                Ok(())
+            }
+            fn turn(&mut self) -> Result<(), SinkError> {
+                self.0 += 10;
+                Ok(())
+            }
+            fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
+                self.0 += 100 * (1 + checks.len());
+                Ok(())
+            }
+            fn companion(&self, file_name: &str) -> Option<Companion> {
+                let text = file_name.to_owned();
+                Some(Companion {
+                    name: "beside",
+                    text,
+                })
+            }
+        }
+        let (mut first, mut second) = (Heard::default(), Heard::default());
+        let mut pair: Box<dyn Sink + '_> =
+            Box::new((&mut first, (Points::new(Fields::NONE), &mut second)));
+        assert!(pair.wants_tilt());
+        pair.tilt(&TiltTrack::default()).unwrap();
+        pair.turn().unwrap();
+        pair.checks(&[]).unwrap();
+        assert_eq!(pair.companion("scan").unwrap().text, "scan");
+        drop(pair);
+        assert_eq!((first.0, second.0), (111, 111));
+        let plain = Points::new(Fields::NONE);
+        assert!(!plain.wants_tilt() && plain.companion("scan").is_none());
     }
 
     #[test]

@@ -20,9 +20,9 @@ use las::{Builder, GpsTimeType, PointData, PointDataBuilder, Transform, Vector, 
 
 use self::extra_bytes::Extra;
 use self::output::{Fault, Output};
-use super::rows::fill;
 use super::seconds::seconds;
 use super::stage::Stage;
+use crate::rows::fill;
 use crate::{Column, Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const SCALE_M: f64 = 1e-4;

@@ -1,7 +1,7 @@
 //! Rows of little-endian bytes as PLY and PCD have them: f32 positions, then the columns asked for.
 
-use super::rows::Rows;
 use super::seconds::seconds;
+use crate::rows::Rows;
 use crate::{Column, Fields, Points, SinkError};
 
 /// How a value stands in a row.

@@ -16,7 +16,6 @@ pub mod las;
 mod layout;
 pub mod pcd;
 pub mod ply;
-mod rows;
 mod seconds;
 mod stage;
 

@@ -1,6 +1,6 @@
 //! What the format tests share: a cloud, metadata, and outputs that keep or refuse bytes.
 
-use std::io::{self, Cursor, Seek, SeekFrom, Write};
+use std::io::{self, Cursor, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex};
 
 use units::{Degrees, Stamp};
@@ -20,8 +20,16 @@ pub fn metadata() -> Metadata {
     }
 }
 
+/// A time that every format can hold: ROS counts seconds until 2038.
+pub const NOW_NS: i64 = 1_795_226_733_000_000_000;
+
 /// `count` points over the whole range of a VLP-16, with every column.
 pub fn cloud(count: u32) -> Points {
+    cloud_from(count, LATE_NS)
+}
+
+/// The same from `start_ns` on.
+pub fn cloud_from(count: u32, start_ns: i64) -> Points {
     let mut points = Points::new(Fields::ALL);
     for i in 0..count {
         let turn = f64::from(i) * 2.399_963;
@@ -35,7 +43,7 @@ pub fn cloud(count: u32) -> Points {
             intensity: (i % 256) as u8,
             ring: (i % 16) as u8,
             laser: (i * 7 % 16) as u8,
-            time: Stamp::from_nanos(LATE_NS + i64::from(i) * 2_304),
+            time: Stamp::from_nanos(start_ns + i64::from(i) * 2_304),
             device_time: Stamp::from_nanos(i64::from(i) * 2_304),
             tilt: Degrees(-45.0 + 45.0 * f64::from(i) / f64::from(count)),
             sd_m: 1e-3 * (1.0 + f64::from(i % 9)),
@@ -61,6 +69,12 @@ impl Write for Shared {
     }
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+impl Read for Shared {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.0.lock().unwrap().read(bytes)
     }
 }
 
@@ -97,6 +111,12 @@ impl Write for SmallDisk {
     }
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+impl Read for SmallDisk {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.file.read(bytes)
     }
 }
 

@@ -2,14 +2,14 @@
 
 /// Rows of one length, reused from batch to batch.
 #[derive(Clone, Debug)]
-pub(super) struct Rows {
+pub(crate) struct Rows {
     row_bytes: usize,
     bytes: Vec<u8>,
 }
 
 impl Rows {
     /// Rows of `row_bytes` bytes (at least one).
-    pub(super) fn new(row_bytes: usize) -> Self {
+    pub(crate) fn new(row_bytes: usize) -> Self {
         Self {
             row_bytes: row_bytes.max(1),
             bytes: Vec::new(),
@@ -17,19 +17,19 @@ impl Rows {
     }
 
     /// `count` rows; what stood in them before may still stand there.
-    pub(super) fn reset(&mut self, count: usize) {
+    pub(crate) fn reset(&mut self, count: usize) {
         self.bytes.resize(count * self.row_bytes, 0);
     }
 
     /// Every row; none where rows are not of `N` bytes.
-    pub(super) fn each<const N: usize>(&mut self) -> impl Iterator<Item = &mut [u8; N]> {
+    pub(crate) fn each<const N: usize>(&mut self) -> impl Iterator<Item = &mut [u8; N]> {
         let fits = N == self.row_bytes;
         let (rows, _) = self.bytes.as_chunks_mut::<N>();
         rows.iter_mut().take(if fits { usize::MAX } else { 0 })
     }
 
     /// Writes a column at byte `offset` of every row.
-    pub(super) fn fill<const N: usize>(
+    pub(crate) fn fill<const N: usize>(
         &mut self,
         offset: usize,
         values: impl Iterator<Item = [u8; N]>,
@@ -37,13 +37,13 @@ impl Rows {
         fill(&mut self.bytes, self.row_bytes, offset, values);
     }
 
-    pub(super) fn bytes(&self) -> &[u8] {
+    pub(crate) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 }
 
 /// The same over rows that someone else keeps.
-pub(super) fn fill<const N: usize>(
+pub(crate) fn fill<const N: usize>(
     rows: &mut [u8],
     row_bytes: usize,
     offset: usize,

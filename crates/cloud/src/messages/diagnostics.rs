@@ -1,0 +1,59 @@
+//! `diagnostic_msgs/DiagnosticArray`: how good a scan is.
+
+use super::cdr::Cdr;
+use super::{Time, header};
+use crate::Check;
+
+/// Checks as they were found by `stamp`, of the device `hardware`.
+pub fn diagnostic_array(cdr: &mut Cdr, stamp: Time, hardware: &str, checks: &[Check]) {
+    cdr.clear();
+    header(cdr, stamp, "");
+    cdr.length(checks.len());
+    for check in checks {
+        cdr.u8(check.level as u8);
+        cdr.string(&check.name);
+        cdr.string(&check.message);
+        cdr.string(hardware);
+        cdr.length(check.values.len());
+        for (key, value) in &check.values {
+            cdr.string(key);
+            cdr.string(value);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::Reader;
+    use super::*;
+    use crate::Level;
+
+    #[test]
+    fn checks_are_read_back() {
+        let check = |level, values| Check {
+            name: "clock".into(),
+            level,
+            message: "steps".into(),
+            values,
+        };
+        let checks = [
+            check(Level::Warn, vec![("by".into(), "1 s".into())]),
+            check(Level::Ok, vec![]),
+        ];
+        let mut cdr = Cdr::new();
+        diagnostic_array(&mut cdr, Time { sec: 1, nanosec: 2 }, "VLP-16", &checks);
+        let mut reader = Reader::new(cdr.bytes());
+        assert_eq!(reader.header(), (1, 2, String::new()));
+        assert_eq!(reader.u32(), 2);
+        for (level, values) in [(1, 1), (0, 0)] {
+            assert_eq!(reader.u8(), level);
+            let texts = [reader.string(), reader.string(), reader.string()];
+            assert_eq!(texts, ["clock", "steps", "VLP-16"]);
+            assert_eq!(reader.u32(), values);
+            for _ in 0..values {
+                assert_eq!([reader.string(), reader.string()], ["by", "1 s"]);
+            }
+        }
+        assert!(reader.is_done());
+    }
+}

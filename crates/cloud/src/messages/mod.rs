@@ -1,0 +1,203 @@
+//! What a scan says in ROS 2's messages: clouds, the tilt joint, transforms, diagnostics. Bytes alone: a recording keeps them
+//! ([`formats::mcap`](crate::formats::mcap)), a network would send the same.
+//!
+//! Frames: clouds of a tilting platform are in [`frames::BASE`], the frame of every other format (x right, y forward, z up, on the tilt axis);
+//! [`frames::ROOT`] is the same place with ROS's axes (REP 103: x forward, y left). Left out: reading messages, any transport.
+
+pub mod cdr;
+mod definitions;
+mod diagnostics;
+mod joint_state;
+mod point_cloud2;
+mod transforms;
+
+use units::{Host, Stamp};
+
+use self::cdr::Cdr;
+
+pub use diagnostics::diagnostic_array;
+pub use joint_state::joint_state;
+pub use point_cloud2::{CloudMessage, CloudMessageError, Message, fields_of};
+pub use transforms::{Rotation, Transform, tf_message};
+
+/// The names of coordinate frames.
+pub mod frames {
+    /// The scanner with ROS's axes: x forward, y left, z up.
+    pub const ROOT: &str = "base_link";
+    /// The tilt axis, which does not tilt: x right, y forward, z up. What clouds are in.
+    pub const BASE: &str = "tilt_base";
+    /// The tilting platform.
+    pub const PLATFORM: &str = "tilt_platform";
+    /// The lidar: x right, y forward, z up. What clouds of a platform that does not tilt are in.
+    pub const LIDAR: &str = "lidar";
+}
+
+/// The joint between [`frames::BASE`] and [`frames::PLATFORM`].
+pub const TILT_JOINT: &str = "tilt";
+
+/// What may be said, each on a topic of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Topic {
+    /// Clouds.
+    Points,
+    /// The tilt joint, sample by sample.
+    JointStates,
+    /// The platform against its base.
+    Transforms,
+    /// How the parts of the scanner sit on each other; kept for whoever asks later.
+    StaticTransforms,
+    /// How good the scan is.
+    Diagnostics,
+}
+
+/// A type of messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MessageType {
+    /// Its full name, such as `sensor_msgs/msg/PointCloud2`.
+    pub name: &'static str,
+    /// Its definition with all that it is made of, in the form `ros2msg`.
+    pub definition: &'static str,
+}
+
+impl Topic {
+    /// Every topic.
+    pub const ALL: [Self; 5] = [
+        Self::Points,
+        Self::JointStates,
+        Self::Transforms,
+        Self::StaticTransforms,
+        Self::Diagnostics,
+    ];
+
+    /// Its name: where the convention has one, that.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Points => "/velomotion/points",
+            Self::JointStates => "/joint_states",
+            Self::Transforms => "/tf",
+            Self::StaticTransforms => "/tf_static",
+            Self::Diagnostics => "/diagnostics",
+        }
+    }
+
+    /// The type of its messages.
+    #[must_use]
+    pub const fn message_type(self) -> MessageType {
+        let (name, definition) = match self {
+            Self::Points => ("sensor_msgs/msg/PointCloud2", definitions::POINT_CLOUD2),
+            Self::JointStates => ("sensor_msgs/msg/JointState", definitions::JOINT_STATE),
+            Self::Transforms | Self::StaticTransforms => {
+                ("tf2_msgs/msg/TFMessage", definitions::TF_MESSAGE)
+            }
+            Self::Diagnostics => (
+                "diagnostic_msgs/msg/DiagnosticArray",
+                definitions::DIAGNOSTIC_ARRAY,
+            ),
+        };
+        MessageType { name, definition }
+    }
+
+    /// Whether the last message is kept for subscribers that come later (durability "transient local").
+    #[must_use]
+    pub const fn is_latched(self) -> bool {
+        matches!(self, Self::StaticTransforms)
+    }
+}
+
+/// `builtin_interfaces/Time`: seconds in 32 bits, until 2038.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Time {
+    /// Whole seconds since 1970.
+    pub sec: i32,
+    /// Nanoseconds beyond.
+    pub nanosec: u32,
+}
+
+/// A time that ROS cannot say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "messages: time {got_ns} ns, expected between 1970 and 2038, as ROS counts seconds in 31 bits"
+)]
+pub struct UnsayableTime {
+    /// The time, nanoseconds since 1970.
+    pub got_ns: i64,
+}
+
+impl Time {
+    /// A time of the host's clock.
+    ///
+    /// # Errors
+    /// [`UnsayableTime`] before 1970 and from 2038 on.
+    pub fn of(stamp: Stamp<Host>) -> Result<Self, UnsayableTime> {
+        let got_ns = stamp.as_nanos();
+        let parts = (
+            i32::try_from(got_ns.div_euclid(1_000_000_000)),
+            u32::try_from(got_ns.rem_euclid(1_000_000_000)),
+        );
+        match parts {
+            (Ok(sec), Ok(nanosec)) if sec >= 0 => Ok(Self { sec, nanosec }),
+            _ => Err(UnsayableTime { got_ns }),
+        }
+    }
+}
+
+/// `std_msgs/Header`.
+fn header(cdr: &mut Cdr, stamp: Time, frame: &str) {
+    cdr.i32(stamp.sec);
+    cdr.u32(stamp.nanosec);
+    cdr.string(frame);
+}
+
+#[cfg(test)]
+pub(crate) mod testing;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_said_from_1970_to_2038() {
+        let of = |ns| Time::of(Stamp::from_nanos(ns));
+        assert_eq!(
+            of(1_795_226_733_000_000_001),
+            Ok(Time {
+                sec: 1_795_226_733,
+                nanosec: 1
+            })
+        );
+        let last = 0x7FFF_FFFF * 1_000_000_000 + 999_999_999;
+        assert!(of(0).is_ok() && of(last).is_ok());
+        assert_eq!(of(-1), Err(UnsayableTime { got_ns: -1 }));
+        assert_eq!(of(last + 1), Err(UnsayableTime { got_ns: last + 1 }));
+    }
+
+    /// Every type that a definition names is defined in it.
+    #[test]
+    fn definitions_are_whole() {
+        for topic in Topic::ALL {
+            let MessageType { name, definition } = topic.message_type();
+            let mut defined = vec![name.replace("/msg/", "/")];
+            defined.extend(
+                definition
+                    .lines()
+                    .filter_map(|l| l.strip_prefix("MSG: "))
+                    .map(String::from),
+            );
+            for line in definition.lines() {
+                if line.starts_with("MSG: ") || line.starts_with("====") || line.contains('=') {
+                    continue;
+                }
+                let kind = line.split(' ').next().unwrap().trim_end_matches("[]");
+                let plain = [
+                    "bool", "byte", "uint8", "int32", "uint32", "float64", "string",
+                ];
+                let known = plain.contains(&kind)
+                    || defined
+                        .iter()
+                        .any(|d| d == kind || d.ends_with(&format!("/{kind}")));
+                assert!(known, "{name}: {kind}");
+            }
+        }
+    }
+}

@@ -1,0 +1,439 @@
+//! `sensor_msgs/PointCloud2`, filled batch by batch in the form in which it will go out, so that a cloud is held once.
+//!
+//! The fields of ROS 2's Velodyne driver in its order: x, y, z, intensity (float32), ring (uint16), time (float32, seconds after the header's
+//! stamp), 22 bytes a point without padding; then whatever else was asked for. Left out: organised clouds.
+
+use std::ops::Range;
+
+use units::{Host, Stamp};
+
+use super::cdr::Cdr;
+use super::{Time, UnsayableTime, header};
+use crate::rows::fill;
+use crate::{Column, Fields, MissingColumns, Points};
+
+const UINT8: u8 = 2;
+const UINT16: u8 = 4;
+const FLOAT32: u8 = 7;
+const FLOAT64: u8 = 8;
+
+/// The columns of a cloud message: intensity, ring and time are always there, the tilt never, as the joint says it.
+#[must_use]
+pub fn fields_of(wanted: Fields) -> Fields {
+    (wanted | Fields::INTENSITY | Fields::RING | Fields::TIME) - Fields::TILT
+}
+
+/// Data type and bytes.
+const fn kind(column: Column) -> (u8, usize) {
+    match column {
+        Column::Intensity | Column::Time | Column::Tilt | Column::Sd => (FLOAT32, 4),
+        Column::Ring => (UINT16, 2),
+        Column::Laser | Column::Echo => (UINT8, 1),
+        Column::DeviceTime => (FLOAT64, 8),
+    }
+}
+
+/// A cloud on its way into a message.
+#[derive(Clone, Debug)]
+pub struct CloudMessage {
+    columns: Fields,
+    point_bytes: usize,
+    cdr: Cdr,
+    places: Places,
+    first: Stamp<Host>,
+    last: Stamp<Host>,
+    points: u32,
+}
+
+/// Where the message says what is only known at its end.
+#[derive(Clone, Copy, Debug, Default)]
+struct Places {
+    width: usize,
+    row_bytes: usize,
+    length: usize,
+}
+
+/// What keeps points out of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CloudMessageError {
+    /// A column is missing.
+    #[error(transparent)]
+    Columns(#[from] MissingColumns),
+    /// A time that ROS cannot say.
+    #[error(transparent)]
+    Time(#[from] UnsayableTime),
+}
+
+impl CloudMessage {
+    /// An empty cloud with the columns [`fields_of`] `wanted`.
+    #[must_use]
+    pub fn new(wanted: Fields) -> Self {
+        let columns = fields_of(wanted);
+        let bytes: usize = columns.columns().map(|column| kind(column).1).sum();
+        Self {
+            columns,
+            point_bytes: 3 * 4 + bytes,
+            cdr: Cdr::new(),
+            places: Places::default(),
+            first: Stamp::from_nanos(0),
+            last: Stamp::from_nanos(0),
+            points: 0,
+        }
+    }
+
+    /// Its columns beside the position.
+    #[must_use]
+    pub const fn fields(&self) -> Fields {
+        self.columns
+    }
+
+    /// Points so far.
+    #[must_use]
+    pub const fn points(&self) -> u32 {
+        self.points
+    }
+
+    /// The stamp of its header, which is the time of its earliest point; and the time of its last. Of an empty cloud both are 0.
+    #[must_use]
+    pub const fn times(&self) -> (Stamp<Host>, Stamp<Host>) {
+        (self.first, self.last)
+    }
+
+    /// Forgets the points and keeps the memory.
+    pub fn clear(&mut self) {
+        self.points = 0;
+        self.first = Stamp::from_nanos(0);
+        self.last = Stamp::from_nanos(0);
+    }
+
+    /// Adds `rows` of a batch, in the frame `frame`, which is that of the first batch. The first batch tells the header's stamp.
+    ///
+    /// # Errors
+    /// [`CloudMessageError`]; nothing is added then.
+    pub fn push(
+        &mut self,
+        batch: &Points,
+        rows: Range<usize>,
+        frame: &str,
+    ) -> Result<(), CloudMessageError> {
+        batch.fields().require(self.columns)?;
+        let Some(times) = batch.time().get(rows.clone()).filter(|t| !t.is_empty()) else {
+            return Ok(());
+        };
+        let earliest = times
+            .iter()
+            .copied()
+            .fold(Stamp::from_nanos(i64::MAX), Stamp::min);
+        let latest = times
+            .iter()
+            .copied()
+            .fold(Stamp::from_nanos(i64::MIN), Stamp::max);
+        if self.points == 0 {
+            self.begin(earliest, frame)?;
+        }
+        self.last = if self.points == 0 {
+            latest
+        } else {
+            self.last.max(latest)
+        };
+        let (point_bytes, count) = (self.point_bytes, rows.len());
+        let space = self.cdr.room(count * point_bytes);
+        encode(space, point_bytes, self.columns, batch, rows, self.first);
+        self.points = self
+            .points
+            .saturating_add(u32::try_from(count).unwrap_or(u32::MAX));
+        Ok(())
+    }
+
+    /// The whole message. More points may follow, for a longer one.
+    pub fn message(&mut self) -> Message<'_> {
+        let bytes = u32::try_from(self.point_bytes)
+            .unwrap_or(u32::MAX)
+            .saturating_mul(self.points);
+        let places = self.places;
+        self.cdr.set_u32(places.width, self.points);
+        self.cdr.set_u32(places.row_bytes, bytes);
+        self.cdr.set_u32(places.length, bytes);
+        // is_dense: every point has a place.
+        self.cdr.u8(1);
+        Message(&mut self.cdr)
+    }
+
+    /// All before the points.
+    fn begin(&mut self, first: Stamp<Host>, frame: &str) -> Result<(), UnsayableTime> {
+        let stamp = Time::of(first)?;
+        self.first = first;
+        let cdr = &mut self.cdr;
+        cdr.clear();
+        header(cdr, stamp, frame);
+        cdr.u32(1);
+        self.places.width = place(cdr);
+        let columns = self.columns.columns();
+        cdr.length(3 + columns.count());
+        let mut offset = 0;
+        let mut field = |name: &str, (datatype, bytes): (u8, usize)| {
+            cdr.string(name);
+            cdr.u32(offset);
+            cdr.u8(datatype);
+            cdr.u32(1);
+            offset += bytes as u32;
+        };
+        for axis in ["x", "y", "z"] {
+            field(axis, (FLOAT32, 4));
+        }
+        for column in self.columns.columns() {
+            field(column.name(), kind(column));
+        }
+        cdr.u8(0); // is_bigendian
+        cdr.u32(offset);
+        self.places.row_bytes = place(cdr);
+        self.places.length = place(cdr);
+        Ok(())
+    }
+}
+
+/// A whole message; what ends it is taken back when this is dropped.
+#[derive(Debug)]
+pub struct Message<'a>(&'a mut Cdr);
+
+impl Message<'_> {
+    /// Its bytes, encapsulation header included.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        self.0.bytes()
+    }
+}
+
+impl Drop for Message<'_> {
+    fn drop(&mut self) {
+        self.0.pop();
+    }
+}
+
+/// A number that is filled in later, and where it stands.
+fn place(cdr: &mut Cdr) -> usize {
+    cdr.u32(0);
+    cdr.len() - 4
+}
+
+fn encode(
+    space: &mut [u8],
+    point_bytes: usize,
+    columns: Fields,
+    batch: &Points,
+    rows: Range<usize>,
+    first: Stamp<Host>,
+) {
+    let mut at = 0;
+    for axis in [batch.x_m(), batch.y_m(), batch.z_m()] {
+        let axis = part(axis, &rows).iter();
+        fill(
+            space,
+            point_bytes,
+            at,
+            axis.map(|v| (*v as f32).to_le_bytes()),
+        );
+        at += 4;
+    }
+    for column in columns.columns() {
+        fill_column(space, point_bytes, at, column, batch, rows.clone(), first);
+        at += kind(column).1;
+    }
+}
+
+fn fill_column(
+    space: &mut [u8],
+    step: usize,
+    at: usize,
+    column: Column,
+    batch: &Points,
+    rows: Range<usize>,
+    first: Stamp<Host>,
+) {
+    let singles = |v: &f64| (*v as f32).to_le_bytes();
+    match column {
+        Column::Intensity => {
+            let values = part(batch.intensity(), &rows).iter();
+            fill(space, step, at, values.map(|v| f32::from(*v).to_le_bytes()));
+        }
+        Column::Ring => {
+            let values = part(batch.ring(), &rows).iter();
+            fill(space, step, at, values.map(|v| u16::from(*v).to_le_bytes()));
+        }
+        Column::Laser => fill(
+            space,
+            step,
+            at,
+            part(batch.laser(), &rows).iter().map(|v| [*v]),
+        ),
+        Column::Echo => fill(
+            space,
+            step,
+            at,
+            part(batch.echo(), &rows).iter().map(|v| [*v]),
+        ),
+        Column::Tilt => fill(
+            space,
+            step,
+            at,
+            part(batch.tilt_deg(), &rows).iter().map(singles),
+        ),
+        Column::Sd => fill(
+            space,
+            step,
+            at,
+            part(batch.sd_m(), &rows).iter().map(singles),
+        ),
+        Column::Time => {
+            let since = |t: &Stamp<Host>| t.saturating_since(first).as_secs_f64() as f32;
+            let times = part(batch.time(), &rows).iter();
+            fill(space, step, at, times.map(|t| since(t).to_le_bytes()));
+        }
+        Column::DeviceTime => {
+            let times = part(batch.device_time(), &rows).iter();
+            fill(
+                space,
+                step,
+                at,
+                times.map(|t| t.as_secs_f64().to_le_bytes()),
+            );
+        }
+    }
+}
+
+/// Some rows of a column; none where it is shorter.
+fn part<'a, T>(column: &'a [T], rows: &Range<usize>) -> &'a [T] {
+    column.get(rows.clone()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::Reader;
+    use super::*;
+    use crate::formats::testing;
+
+    const START_NS: i64 = testing::NOW_NS;
+
+    /// Name, offset and data type.
+    type Field = (String, u32, u8);
+
+    /// Fields by name: offset and data type; then the bytes of the points and how many each has.
+    fn read(message: &[u8]) -> (Vec<Field>, &[u8], usize) {
+        let mut reader = Reader::new(message);
+        let (sec, nanosec, frame) = reader.header();
+        assert_eq!(
+            (
+                i64::from(sec) * 1_000_000_000 + i64::from(nanosec),
+                frame.as_str()
+            ),
+            (START_NS, "lidar")
+        );
+        let (height, width, fields) = (reader.u32(), reader.u32(), reader.u32());
+        let fields: Vec<_> = (0..fields)
+            .map(|_| {
+                let field = (reader.string(), reader.u32(), reader.u8());
+                assert_eq!(reader.u32(), 1);
+                field
+            })
+            .collect();
+        assert_eq!(reader.u8(), 0);
+        let (point_step, row_step) = (reader.u32(), reader.u32());
+        let length = reader.u32();
+        assert_eq!(
+            (height, row_step, length),
+            (1, width * point_step, row_step)
+        );
+        let data = reader.take(length as usize);
+        assert_eq!(reader.u8(), 1);
+        assert!(reader.is_done());
+        (fields, data, point_step as usize)
+    }
+
+    #[test]
+    fn the_usual_fields_are_the_velodyne_drivers() {
+        let cloud = testing::cloud_from(100, START_NS);
+        let mut message = CloudMessage::new(Fields::FILE);
+        // In three batches, the middle one empty.
+        for rows in [0..60, 60..60, 60..100] {
+            message.push(&cloud, rows, "lidar").unwrap();
+        }
+        assert_eq!(message.points(), 100);
+        let whole = message.message();
+        let (fields, data, step) = read(whole.bytes());
+        let names: Vec<_> = fields
+            .iter()
+            .map(|(n, o, d)| (n.as_str(), *o, *d))
+            .collect();
+        assert_eq!(
+            names,
+            [
+                ("x", 0, 7),
+                ("y", 4, 7),
+                ("z", 8, 7),
+                ("intensity", 12, 7),
+                ("ring", 16, 4),
+                ("time", 18, 7)
+            ]
+        );
+        assert_eq!((step, data.len()), (22, 2200));
+        for (row, point) in data.chunks(22).zip(cloud.iter()) {
+            let float = |at: usize| f32::from_le_bytes(row[at..at + 4].try_into().unwrap());
+            for axis in 0..3 {
+                assert_eq!(float(4 * axis), point.position_m[axis] as f32);
+            }
+            assert_eq!(float(12), f32::from(point.intensity));
+            assert_eq!(row[16..18], [point.ring, 0]);
+            let since = (point.time.as_nanos() - START_NS) as f64 * 1e-9;
+            assert!((f64::from(float(18)) - since).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn every_column_has_a_place() {
+        let cloud = testing::cloud_from(3, START_NS);
+        let mut message = CloudMessage::new(Fields::ALL);
+        message.push(&cloud, 0..3, "lidar").unwrap();
+        let whole = message.message();
+        let (fields, data, step) = read(whole.bytes());
+        assert_eq!(step, 22 + 1 + 8 + 4 + 1);
+        assert!(!fields.iter().any(|(name, ..)| name == "tilt"));
+        for (row, point) in data.chunks(step).zip(cloud.iter()) {
+            let of = |name: &str| fields.iter().find(|f| f.0 == name).unwrap().1 as usize;
+            assert_eq!(row[of("laser")], point.laser);
+            assert_eq!(row[of("echo")], point.echo);
+            let sd = f32::from_le_bytes(row[of("sd")..][..4].try_into().unwrap());
+            assert_eq!(sd, point.sd_m as f32);
+            let device = f64::from_le_bytes(row[of("device_time")..][..8].try_into().unwrap());
+            assert_eq!(device, point.device_time.as_secs_f64());
+        }
+    }
+
+    #[test]
+    fn a_message_can_grow_and_be_reused() {
+        let cloud = testing::cloud_from(10, START_NS);
+        let mut message = CloudMessage::new(Fields::FILE);
+        message.push(&cloud, 0..4, "lidar").unwrap();
+        drop(message.message());
+        message.push(&cloud, 4..10, "lidar").unwrap();
+        let grown = message.message().bytes().to_vec();
+        message.clear();
+        assert_eq!((message.points(), message.times().1.as_nanos()), (0, 0));
+        message.push(&cloud, 0..10, "lidar").unwrap();
+        assert_eq!(message.message().bytes(), grown);
+        let (first, last) = message.times();
+        assert_eq!((first.as_nanos(), last), (START_NS, cloud.time()[9]));
+    }
+
+    #[test]
+    fn what_cannot_be_said_is_an_error() {
+        let mut message = CloudMessage::new(Fields::FILE);
+        let late = testing::cloud(1);
+        let error = message.push(&late, 0..1, "lidar").unwrap_err();
+        assert!(error.to_string().contains("2038"), "{error}");
+        let error = message
+            .push(&Points::new(Fields::RING), 0..0, "lidar")
+            .unwrap_err();
+        assert!(matches!(error, CloudMessageError::Columns(_)));
+        assert_eq!(message.points(), 0);
+    }
+}

@@ -1,0 +1,131 @@
+//! `tf2_msgs/TFMessage`: where frames are in each other.
+
+use units::Degrees;
+
+use super::cdr::Cdr;
+use super::{Time, header};
+
+/// A rotation as a unit quaternion x, y, z, w.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation {
+    /// x, y, z, w.
+    pub quaternion: [f64; 4],
+}
+
+impl Rotation {
+    /// None.
+    pub const NONE: Self = Self {
+        quaternion: [0.0, 0.0, 0.0, 1.0],
+    };
+
+    /// The tilt by `angle`: about y, positive from z towards x, as Eq. 4-6 have it ([`crate::mount::Mount::place`]).
+    #[must_use]
+    pub fn tilt(angle: Degrees) -> Self {
+        let (sin, cos) = (angle.to_radians().0 / 2.0).sin_cos();
+        Self {
+            quaternion: [0.0, sin, 0.0, cos],
+        }
+    }
+
+    /// From axes x right, y forward to ROS's x forward, y left: a quarter turn about z.
+    #[must_use]
+    pub const fn to_ros() -> Self {
+        const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
+        Self {
+            quaternion: [0.0, 0.0, -HALF, HALF],
+        }
+    }
+}
+
+/// Where a frame is in another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform {
+    /// The frame in which the other one is.
+    pub parent: &'static str,
+    /// The frame that is there.
+    pub child: &'static str,
+    /// Its origin, metres.
+    pub translation_m: [f64; 3],
+    /// Its turn.
+    pub rotation: Rotation,
+}
+
+/// Transforms that hold at `stamp`.
+pub fn tf_message(cdr: &mut Cdr, stamp: Time, transforms: &[Transform]) {
+    cdr.clear();
+    cdr.length(transforms.len());
+    for transform in transforms {
+        header(cdr, stamp, transform.parent);
+        cdr.string(transform.child);
+        for value in transform.translation_m {
+            cdr.f64(value);
+        }
+        for value in transform.rotation.quaternion {
+            cdr.f64(value);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DQuat, DVec3};
+    use units::Metres;
+
+    use super::super::testing::Reader;
+    use super::*;
+    use crate::mount::{Mount, Tilt};
+
+    fn turned(rotation: Rotation, v: [f64; 3]) -> [f64; 3] {
+        let quaternion = DQuat::from_array(rotation.quaternion);
+        assert!(quaternion.is_normalized());
+        quaternion.mul_vec3(DVec3::from_array(v)).to_array()
+    }
+
+    fn close(a: [f64; 3], b: [f64; 3]) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12)
+    }
+
+    #[test]
+    fn the_tilt_is_that_of_eq_4_to_6() {
+        for degrees in [-90.0, -45.0, 0.0, 12.3, 180.0] {
+            let placed =
+                Mount::new(Metres(0.0)).place([1.0, 2.0, 3.0], Tilt::new(Degrees(degrees)));
+            let said = turned(Rotation::tilt(Degrees(degrees)), [1.0, 2.0, 3.0]);
+            assert!(close(placed, said), "{degrees}: {placed:?} {said:?}");
+        }
+    }
+
+    #[test]
+    fn forward_is_ros_x_and_left_is_ros_y() {
+        assert!(close(
+            turned(Rotation::to_ros(), [0.0, 1.0, 0.0]),
+            [1.0, 0.0, 0.0]
+        ));
+        assert!(close(
+            turned(Rotation::to_ros(), [-1.0, 0.0, 0.0]),
+            [0.0, 1.0, 0.0]
+        ));
+    }
+
+    #[test]
+    fn transforms_are_read_back() {
+        let mut cdr = Cdr::new();
+        let stamp = Time { sec: 1, nanosec: 2 };
+        let mount = Transform {
+            parent: "a",
+            child: "bcd",
+            translation_m: [0.0, 0.5, 0.06],
+            rotation: Rotation::NONE,
+        };
+        tf_message(&mut cdr, stamp, &[mount, mount]);
+        let mut reader = Reader::new(cdr.bytes());
+        assert_eq!(reader.u32(), 2);
+        for _ in 0..2 {
+            assert_eq!(reader.header(), (1, 2, "a".to_owned()));
+            assert_eq!(reader.string(), "bcd");
+            let values: Vec<f64> = (0..7).map(|_| reader.f64()).collect();
+            assert_eq!(values, [0.0, 0.5, 0.06, 0.0, 0.0, 0.0, 1.0]);
+        }
+        assert!(reader.is_done());
+    }
+}
