@@ -42,23 +42,30 @@ pub trait Port {
     }
 }
 
-impl<P: Port + ?Sized> Port for Box<P> {
-    fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
-        (**self).write_frame(frame)
-    }
+macro_rules! forward {
+    ($pointer:ty) => {
+        impl<P: Port + ?Sized> Port for $pointer {
+            fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
+                (**self).write_frame(frame)
+            }
 
-    fn read(
-        &mut self,
-        buffer: &mut [u8],
-        timeout: Span,
-    ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
-        (**self).read(buffer, timeout)
-    }
+            fn read(
+                &mut self,
+                buffer: &mut [u8],
+                timeout: Span,
+            ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
+                (**self).read(buffer, timeout)
+            }
 
-    fn now(&self) -> Stamp<Host> {
-        (**self).now()
-    }
+            fn now(&self) -> Stamp<Host> {
+                (**self).now()
+            }
+        }
+    };
 }
+
+forward!(Box<P>);
+forward!(&mut P);
 
 /// Why a port could not be opened or used.
 #[derive(Debug, thiserror::Error)]

@@ -9,6 +9,8 @@ pub mod config;
 pub mod control;
 pub mod devices;
 pub mod failure;
+pub mod hearing;
+pub mod job;
 pub mod motion;
 pub mod names;
 pub mod output;

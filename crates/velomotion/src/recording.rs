@@ -1,18 +1,17 @@
-//! A recording under way: the lidar's socket on a thread of its own, both devices' traffic into one log.
+//! A recording under way: both devices' traffic into one log.
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::thread::JoinHandle;
 
 use io::files::Overwrite;
 use io::log::{LogConfig, LogError, LogWriter, Recorder, RecorderCounts, RecorderHandle};
-use io::udp::{ListenConfig, ListenCounts, Listener, UdpError};
-use protocol::record::{DriveLink, Record, Wire};
+use io::udp::{ListenConfig, ListenCounts, Listener};
+use protocol::record::DriveLink;
 use scanner::ScanConfig;
 
 use crate::config::Device;
 use crate::failure::{Failure, Kind};
+use crate::hearing::{Hearing, lidar_failure};
 use crate::simulated::Destinations;
 
 /// UDP port of data packets (VLP-16 manual, section 9).
@@ -42,9 +41,10 @@ pub fn listen_config(device: &Device) -> ListenConfig {
 /// A recording under way.
 pub struct Recording {
     log: Recorder,
-    stop: Arc<AtomicBool>,
-    packets: Arc<AtomicU64>,
-    lidar: JoinHandle<Result<ListenCounts, UdpError>>,
+    hearing: Arc<Hearing>,
+    /// What was heard before it began.
+    before: ListenCounts,
+    packets_before: u64,
 }
 
 /// What was recorded.
@@ -76,15 +76,21 @@ impl Ear {
     pub fn ports(&self) -> Destinations {
         self.ports
     }
+
+    /// The sockets, and which local ports they have.
+    pub(crate) fn into_parts(self) -> (Listener, Destinations) {
+        (self.listener, self.ports)
+    }
 }
 
 impl Recording {
-    /// Makes the log and records from now on.
+    /// Makes the log and records from now on what `hearing` hears.
     ///
     /// # Errors
-    /// [`Kind::Usage`] where the log exists and may not be replaced, [`Kind::BadInput`] where it cannot be made.
+    /// [`Kind::Usage`] where the log exists and may not be replaced, [`Kind::BadInput`] where it cannot be made, and where the lidar's
+    /// sockets have failed.
     pub fn start(
-        ear: Ear,
+        hearing: &Arc<Hearing>,
         path: &Path,
         config: &ScanConfig,
         link: DriveLink,
@@ -102,14 +108,13 @@ impl Recording {
         let writer =
             LogWriter::create(path, &head, Overwrite::Refuse).map_err(|e| log_failure(&e))?;
         let log = Recorder::start(writer).map_err(|e| log_failure(&e))?;
-        let stop = Arc::new(AtomicBool::new(false));
-        let packets = Arc::new(AtomicU64::new(0));
-        let lidar = listen(ear, log.handle(), Arc::clone(&stop), Arc::clone(&packets))?;
+        let packets_before = hearing.packets();
+        let before = hearing.record_to(Some(log.handle()))?;
         Ok(Self {
             log,
-            stop,
-            packets,
-            lidar,
+            hearing: Arc::clone(hearing),
+            before,
+            packets_before,
         })
     }
 
@@ -122,7 +127,7 @@ impl Recording {
     /// Lidar packets heard so far.
     #[must_use]
     pub fn packets(&self) -> u64 {
-        self.packets.load(Ordering::Relaxed)
+        self.hearing.packets().saturating_sub(self.packets_before)
     }
 
     /// Whether the log cannot be written any more.
@@ -131,79 +136,32 @@ impl Recording {
         self.log.failed()
     }
 
-    /// Stops listening and closes the log.
+    /// Takes what has come until now and closes the log.
     ///
     /// # Errors
     /// [`Kind::Incomplete`] where the log could not be written to its end or the lidar's socket failed; what was written stays.
     pub fn finish(self) -> Result<Recorded, Failure> {
-        self.stop.store(true, Ordering::Release);
-        let lidar = self.lidar.join();
+        let heard = self.hearing.record_to(None);
         let log = self.log.finish().map_err(|e| log_failure(&e))?;
-        match lidar {
-            Ok(Ok(lidar)) => Ok(Recorded { lidar, log }),
-            Ok(Err(error)) => Err(Failure {
-                kind: Kind::Incomplete,
-                ..lidar_failure(&error)
-            }),
-            Err(_) => Err(
-                Failure::new(Kind::Incomplete, "the lidar's thread panicked")
-                    .help("this is a defect of the program; run with -vv and report what it says"),
-            ),
-        }
-    }
-}
-
-fn listen(
-    ear: Ear,
-    log: RecorderHandle,
-    stop: Arc<AtomicBool>,
-    packets: Arc<AtomicU64>,
-) -> Result<JoinHandle<Result<ListenCounts, UdpError>>, Failure> {
-    let Ear {
-        mut listener,
-        ports,
-    } = ear;
-    std::thread::Builder::new()
-        .name("lidar".to_owned())
-        .spawn(move || {
-            listener.run(&stop, |record| {
-                packets.fetch_add(1, Ordering::Relaxed);
-                log.record(&with_port_of_the_lidar(record, ports));
-            })
+        Ok(Recorded {
+            lidar: since(heard?, self.before),
+            log,
         })
-        .map_err(|error| Failure::new(Kind::NoDevice, format!("no thread for the lidar: {error}")))
-}
-
-/// In a log the lidar's packets stand under the ports that they have by the manual, whatever the socket's was.
-fn with_port_of_the_lidar<'a>(record: &Record<'a>, local: Destinations) -> Record<'a> {
-    let mut record = *record;
-    if let Wire::Lidar { port, .. } = &mut record.wire {
-        if *port == local.data {
-            *port = DATA_PORT;
-        } else if *port == local.position {
-            *port = POSITION_PORT;
-        }
     }
-    record
 }
 
-fn lidar_failure(error: &UdpError) -> Failure {
-    let help = match error {
-        UdpError::Busy { .. } => {
-            "close the other program that listens to the lidar (another capture, VeloView, a ROS driver)"
-        }
-        UdpError::NoInterface { .. } => {
-            "give lidar in the device's profile an address of this machine, or 0.0.0.0"
-        }
-        UdpError::Io { action: "join", .. } => {
-            "see whether lidar in the device's profile is the address of an interface that is up, or, where it is 0.0.0.0, whether a\n\
-             route to lidar_group exists (ip route get GROUP)"
-        }
-        UdpError::NoRuntime { .. } | UdpError::Io { .. } => {
-            "see whether the network interface is up and this user may open sockets"
-        }
-    };
-    Failure::new(Kind::NoDevice, error.to_string()).help(help)
+/// What was heard between two counts.
+fn since(now: ListenCounts, before: ListenCounts) -> ListenCounts {
+    ListenCounts {
+        data: now.data.saturating_sub(before.data),
+        position: now.position.saturating_sub(before.position),
+        dropped: now.dropped.saturating_sub(before.dropped),
+        without_kernel_time: now
+            .without_kernel_time
+            .saturating_sub(before.without_kernel_time),
+        foreign: now.foreign.saturating_sub(before.foreign),
+        unwanted: now.unwanted.saturating_sub(before.unwanted),
+    }
 }
 
 fn log_failure(error: &LogError) -> Failure {

@@ -3,14 +3,102 @@
 use std::path::PathBuf;
 use std::time::SystemTime;
 
-use scanner::{ScanConfig, SweepPlan};
+use scanner::{Accuracy, ScanConfig, SweepPlan, Tolerance};
+use serde::{Deserialize, Serialize};
 use units::{DegPerS, DegPerS2, Degrees};
 
 use crate::cli::{self, Common};
 use crate::config::{self, Config, Device};
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::motion::{self, Step, Wish};
 use crate::{devices, names, output, simulated};
+
+/// A capture as it is asked for. What is left out is the axis's or the device's own.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Asked {
+    /// Cruise speed of the tilt axis, degrees per second.
+    pub speed_deg_s: f64,
+    /// Angle where the sweep starts, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_deg: Option<f64>,
+    /// Angle where it ends, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to_deg: Option<f64>,
+    /// Acceleration, degrees per second squared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accel_deg_s2: Option<f64>,
+    /// How many sweeps; both ways 2, else 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweeps: Option<u32>,
+    /// Whether the way back is a sweep too.
+    #[serde(default)]
+    pub both_ways: bool,
+    /// How far off points may be at a distance, such as `2mm@20m`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<String>,
+    /// What the scan is to be called, where it is kept by name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+/// Most sweeps of one capture.
+pub const MOST_SWEEPS: u32 = 10_000;
+
+impl From<&cli::Capture> for Asked {
+    fn from(arguments: &cli::Capture) -> Self {
+        Self {
+            speed_deg_s: arguments.speed,
+            from_deg: arguments.from,
+            to_deg: arguments.to,
+            accel_deg_s2: arguments.accel,
+            sweeps: arguments.sweeps,
+            both_ways: arguments.both_ways,
+            tolerance: arguments
+                .accuracy
+                .tolerance
+                .map(|t| format!("{}m@{}m", t.off.0, t.at.0)),
+            name: None,
+        }
+    }
+}
+
+impl Asked {
+    /// How accurate the cloud is to be.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for a tolerance that cannot be read.
+    pub fn accuracy(&self) -> Result<Accuracy, Failure> {
+        let Some(text) = &self.tolerance else {
+            return Ok(Accuracy::Best);
+        };
+        let tolerance: Result<Tolerance, _> = text.parse();
+        tolerance.map(Accuracy::Within).map_err(|error| {
+            Failure::new(Kind::Usage, format!("tolerance: {error}"))
+                .help("give a length at a distance, such as 2mm@20m")
+        })
+    }
+
+    /// The same with every default of this axis and device put in.
+    fn wish(&self, config: &Config, device: &Device) -> Result<Wish, Failure> {
+        let sweeps = self.sweeps.unwrap_or(if self.both_ways { 2 } else { 1 });
+        if !(1..=MOST_SWEEPS).contains(&sweeps) {
+            return Err(Failure::new(
+                Kind::Usage,
+                format!("sweeps: expected 1 to {MOST_SWEEPS}, got {sweeps}"),
+            )
+            .help("make several captures"));
+        }
+        Ok(Wish {
+            from: Degrees(self.from_deg.unwrap_or(config.axis.max_deg)),
+            to: Degrees(self.to_deg.unwrap_or(config.axis.min_deg)),
+            speed: DegPerS(self.speed_deg_s),
+            acceleration: DegPerS2(self.accel_deg_s2.unwrap_or(device.accel_deg_s2)),
+            sweeps,
+            both_ways: self.both_ways,
+        })
+    }
+}
 
 /// A capture, decided.
 pub struct Setup {
@@ -24,6 +112,8 @@ pub struct Setup {
     pub steps: Vec<Step>,
     /// What the log carries.
     pub scan: ScanConfig,
+    /// How accurate the cloud is to be.
+    pub accuracy: Accuracy,
     /// Where the cloud goes.
     pub cloud: PathBuf,
     /// Where the log goes.
@@ -33,27 +123,15 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Checks what was asked for against the axis, and plans the moves.
+    /// Checks what the command line asks for against the axis, and plans the moves.
     ///
     /// # Errors
-    /// [`Kind::Usage`](crate::failure::Kind::Usage) for what this axis cannot do or names that clash, [`Kind::BadInput`](crate::failure::Kind::BadInput) for a wrong configuration,
-    /// [`Kind::NoDevice`](crate::failure::Kind::NoDevice) where none is plugged in.
+    /// [`Kind::Usage`] for what this axis cannot do or names that clash, [`Kind::BadInput`] for a wrong configuration,
+    /// [`Kind::NoDevice`] where none is plugged in.
     pub fn new(arguments: &cli::Capture, common: &Common) -> Result<Self, Failure> {
         let start = SystemTime::now();
         let config = config::load(common.config.as_deref())?;
         let (name, device) = devices::choose(&config, common.device.as_deref())?;
-        let axis = devices::axis(&config.axis)?;
-        let wish = Wish {
-            from: Degrees(arguments.from.unwrap_or(config.axis.max_deg)),
-            to: Degrees(arguments.to.unwrap_or(config.axis.min_deg)),
-            speed: DegPerS(arguments.speed),
-            acceleration: DegPerS2(arguments.accel.unwrap_or(device.accel_deg_s2)),
-            sweeps: arguments
-                .sweeps
-                .unwrap_or(if arguments.both_ways { 2 } else { 1 }),
-            both_ways: arguments.both_ways,
-        };
-        let steps = motion::steps(&wish, &axis, Degrees(config.axis.homing.to_deg))?;
         let simulated = devices::simulated(&device);
         let cloud = arguments
             .output
@@ -64,16 +142,45 @@ impl Setup {
             .log
             .clone()
             .unwrap_or_else(|| names::log_of(&cloud, start, simulated));
-        output::two_files(&log, &cloud)?;
+        let setup = Self {
+            force: arguments.output.force,
+            ..Self::of(
+                &Asked::from(arguments),
+                &config,
+                (&name, &device),
+                cloud,
+                log,
+            )?
+        };
+        output::two_files(&setup.log, &setup.cloud)?;
+        Ok(setup)
+    }
+
+    /// Checks what was asked for against the axis, and plans the moves of a capture into these files.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for what this axis cannot do, [`Kind::BadInput`] for a wrong configuration.
+    pub fn of(
+        asked: &Asked,
+        config: &Config,
+        (name, device): (&str, &Device),
+        cloud: PathBuf,
+        log: PathBuf,
+    ) -> Result<Self, Failure> {
+        let axis = devices::axis(&config.axis)?;
+        let wish = asked.wish(config, device)?;
+        let steps = motion::steps(&wish, &axis, Degrees(config.axis.homing.to_deg))?;
+        let simulated = devices::simulated(device);
         Ok(Self {
-            scan: scan_config(&config, &name, simulated, &wish, &steps),
-            name,
-            device,
+            scan: scan_config(config, name, simulated, &wish, &steps),
+            name: name.to_owned(),
+            device: device.clone(),
             axis,
             steps,
+            accuracy: asked.accuracy()?,
             cloud,
             log,
-            force: arguments.output.force,
+            force: false,
         })
     }
 
