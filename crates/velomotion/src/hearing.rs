@@ -231,7 +231,11 @@ mod tests {
     #[test]
     fn a_log_gets_exactly_what_came_between_its_turns() {
         let (hearing, socket) = hearing();
-        let send = |n| (0..n).for_each(|_| drop(socket.send(&[7; 100]).unwrap()));
+        let send = |n| {
+            (0..n).for_each(|_| {
+                socket.send(&[7; 100]).unwrap();
+            });
+        };
         send(3);
         // On loopback a datagram is in the receiver's queue when it is sent.
         let writer = LogWriter::new(Vec::new(), &LogConfig::default()).unwrap();
