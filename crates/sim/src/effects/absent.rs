@@ -47,6 +47,11 @@ impl Clock for () {
 
 impl Mechanism for () {
     #[inline(always)]
+    fn is_there(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
     fn step(&mut self, _: f64, _: &mut Axis) -> bool {
         false
     }

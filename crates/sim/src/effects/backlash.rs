@@ -6,7 +6,7 @@
 use serde::Deserialize;
 
 use super::settings::{Check, Settings, Stopwatch, Unfit};
-use super::{Absorb, Asked, Axis, Effect, Listed, Mechanism, Needs};
+use super::{Asked, Axis, Effect, Listed, Mechanism};
 
 /// `[effects.backlash]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -53,19 +53,10 @@ impl Effect for Backlash {
         Self::NAME
     }
 
-    fn needs(&self) -> Needs {
-        Needs {
-            motion: true,
-            ..Needs::NOTHING
-        }
-    }
-
     fn why_idle(&self) -> &'static str {
         "the axis never moves, or there is no play"
     }
 }
-
-impl Absorb for Backlash {}
 
 impl Mechanism for Backlash {
     fn step(&mut self, _: f64, axis: &mut Axis) -> bool {

@@ -6,7 +6,7 @@
 use serde::Deserialize;
 
 use super::settings::{Check, Settings, Stopwatch, Unfit};
-use super::{Absorb, Asked, Effect, Listed, Parcel, Wire};
+use super::{Asked, Effect, Listed, Parcel, Wire};
 
 /// `[effects.batching]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -61,8 +61,6 @@ impl Effect for Batching {
         "no packet of the lidar had to wait"
     }
 }
-
-impl Absorb for Batching {}
 
 impl Wire for Batching {
     fn deliver(&mut self, parcel: Parcel, arrive: &mut dyn FnMut(Parcel)) -> u32 {

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use units::{Degrees, Gearing};
 
 use super::settings::{Check, Settings, Stopwatch, Unfit};
-use super::{Absorb, Asked, Effect, Encoder, Listed};
+use super::{Asked, Effect, Encoder, Listed};
 
 /// `[effects.encoder_quantisation]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
@@ -81,8 +81,6 @@ impl Effect for EncoderQuantisation {
         "the shaft stood on an edge at every poll, or there was none"
     }
 }
-
-impl Absorb for EncoderQuantisation {}
 
 impl Encoder for EncoderQuantisation {
     fn read(&mut self, _: u64, shaft: Degrees) -> Degrees {

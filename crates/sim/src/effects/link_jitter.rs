@@ -6,7 +6,7 @@
 use serde::Deserialize;
 
 use super::settings::{Check, Settings, Stopwatch, Unfit};
-use super::{Absorb, Asked, Effect, Listed, Parcel, ParcelKind, Wire};
+use super::{Asked, Effect, Listed, Parcel, ParcelKind, Wire};
 use crate::random::Source;
 
 /// `[effects.link_jitter]`, microseconds.
@@ -96,8 +96,6 @@ impl Effect for LinkJitter {
         "all its delays are 0"
     }
 }
-
-impl Absorb for LinkJitter {}
 
 impl Wire for LinkJitter {
     fn deliver(&mut self, parcel: Parcel, arrive: &mut dyn FnMut(Parcel)) -> u32 {

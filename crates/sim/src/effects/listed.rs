@@ -59,6 +59,25 @@ pub struct Used {
 }
 
 impl Asked {
+    /// Leaves out the effects whose names do not fit.
+    pub fn retain(&mut self, keep: impl Fn(&str) -> bool) {
+        let OnFirings {
+            objects,
+            view,
+            beam,
+            surface,
+            clock,
+        } = &mut self.firings;
+        objects.retain(|listed| keep(listed.effect.name()));
+        view.retain(|listed| keep(listed.effect.name()));
+        beam.retain(|listed| keep(listed.effect.name()));
+        surface.retain(|listed| keep(listed.effect.name()));
+        clock.retain(|listed| keep(listed.effect.name()));
+        self.mechanism.retain(|listed| keep(listed.effect.name()));
+        self.encoder.retain(|listed| keep(listed.effect.name()));
+        self.wire.retain(|listed| keep(listed.effect.name()));
+    }
+
     /// All effects of the lists and what they did, in the order in which they act.
     #[must_use]
     pub fn used(&self) -> Vec<Used> {
@@ -284,6 +303,10 @@ impl<T: Clock + ?Sized> Clock for Vec<Listed<Arc<T>>> {
 }
 
 impl<T: Mechanism + ?Sized> Mechanism for Vec<Listed<Box<T>>> {
+    fn is_there(&self) -> bool {
+        !self.is_empty()
+    }
+
     fn step(&mut self, at_s: f64, axis: &mut Axis) -> bool {
         let mut any = false;
         for listed in self {

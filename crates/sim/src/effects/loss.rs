@@ -5,7 +5,7 @@
 use serde::Deserialize;
 
 use super::settings::{Check, Settings, Stopwatch, Unfit};
-use super::{Absorb, Asked, Effect, Listed, Parcel, Wire};
+use super::{Asked, Effect, Listed, Parcel, Wire};
 use crate::random::Source;
 
 /// `[effects.loss]`.
@@ -61,8 +61,6 @@ impl Effect for Loss {
         "nothing happened to be lost"
     }
 }
-
-impl Absorb for Loss {}
 
 impl Wire for Loss {
     fn deliver(&mut self, parcel: Parcel, arrive: &mut dyn FnMut(Parcel)) -> u32 {

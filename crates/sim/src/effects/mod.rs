@@ -66,6 +66,8 @@ mod returns;
 mod servo_lag;
 #[cfg(feature = "effects")]
 mod settings;
+#[cfg(feature = "effects")]
+mod some_later;
 #[cfg(all(test, feature = "effects"))]
 mod testing;
 #[cfg(feature = "effects")]
@@ -119,8 +121,6 @@ pub struct Needs {
     pub azimuths: bool,
     /// To be asked where objects stand ([`Objects::place`]).
     pub moving: bool,
-    /// To be asked how the platform moves ([`Mechanism::step`]).
-    pub motion: bool,
 }
 
 impl Needs {
@@ -129,7 +129,6 @@ impl Needs {
         normals: false,
         azimuths: false,
         moving: false,
-        motion: false,
     };
 
     /// What either needs.
@@ -140,7 +139,6 @@ impl Needs {
             normals: self.normals | other.normals,
             azimuths: self.azimuths | other.azimuths,
             moving: self.moving | other.moving,
-            motion: self.motion | other.motion,
         }
     }
 }
@@ -217,6 +215,12 @@ pub struct Axis {
 
 /// Servo, gear and stops. It starts at rest, its shaft and platform where they are commanded.
 pub trait Mechanism: Effect {
+    /// Whether it has to be asked at all, step by step; else the axis is where it is commanded.
+    #[inline]
+    fn is_there(&self) -> bool {
+        true
+    }
+
     /// Goes on by [`STEP_S`] to `at_s` seconds after the start, and changes where shaft and platform are to be there. Both come as commanded,
     /// or as the effect before left them: what moves the shaft moves `platform_deg` by as much. Whether it acted.
     fn step(&mut self, at_s: f64, axis: &mut Axis) -> bool;

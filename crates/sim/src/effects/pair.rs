@@ -68,6 +68,11 @@ impl<A: Clock, B: Clock> Clock for (A, B) {
 
 impl<A: Mechanism, B: Mechanism> Mechanism for (A, B) {
     #[inline]
+    fn is_there(&self) -> bool {
+        self.0.is_there() || self.1.is_there()
+    }
+
+    #[inline]
     fn step(&mut self, at_s: f64, axis: &mut Axis) -> bool {
         let first = self.0.step(at_s, axis);
         self.1.step(at_s, axis) || first

@@ -4,9 +4,9 @@
 
 use serde::Deserialize;
 
-use super::settings::{Check, Settings, Stopwatch, Unfit};
-use super::{Absorb, Asked, Effect, Listed, Parcel, Wire};
-use crate::random::Source;
+use super::settings::{Settings, Stopwatch, Unfit};
+use super::some_later::SomeLater;
+use super::{Asked, Effect, Listed, Parcel, Wire};
 
 /// `[effects.reorder]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -26,9 +26,7 @@ const fn more_than_a_packet() -> f64 {
 /// A link that lets packets overtake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reorder {
-    share: f64,
-    later_ns: i64,
-    random: Source,
+    some: SomeLater,
 }
 
 impl Reorder {
@@ -40,13 +38,8 @@ impl Reorder {
     /// # Errors
     /// [`Unfit`] for a share that is not within 0 and 1, or a time below 0 or above a second.
     pub fn new(settings: &ReorderSettings, seed: u64) -> Result<Self, Unfit> {
-        let check = Check(Self::NAME);
-        let later_us = check.within("later_us", settings.later_us, 0.0..=1e6)?;
-        Ok(Self {
-            share: check.within("share", settings.share, 0.0..=1.0)?,
-            later_ns: (later_us * 1e3).round() as i64,
-            random: Source::new(seed, Self::NAME),
-        })
+        let some = SomeLater::new(Self::NAME, settings.share, settings.later_us, seed)?;
+        Ok(Self { some })
     }
 }
 
@@ -68,16 +61,12 @@ impl Effect for Reorder {
     }
 }
 
-impl Absorb for Reorder {}
-
 impl Wire for Reorder {
     fn deliver(&mut self, parcel: Parcel, arrive: &mut dyn FnMut(Parcel)) -> u32 {
-        let late = parcel.kind.is_lidars()
-            && self.random.at(parcel.number, parcel.kind.channel()).unit() < self.share;
-        let more_ns = if late { self.later_ns } else { 0 };
-        arrive(Parcel {
-            leaves_ns: parcel.leaves_ns.saturating_add(more_ns),
-            ..parcel
+        let late = self.some.picks(&parcel);
+        arrive(match late {
+            true => self.some.later(parcel),
+            false => parcel,
         });
         u32::from(late)
     }

@@ -8,7 +8,7 @@ use core::f64::consts::TAU;
 use serde::Deserialize;
 
 use super::settings::{Check, Settings, Stopwatch, Unfit};
-use super::{Absorb, Asked, Axis, Effect, Listed, Mechanism, Needs, STEP_S};
+use super::{Asked, Axis, Effect, Listed, Mechanism, STEP_S};
 
 /// `[effects.servo_lag]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -120,19 +120,10 @@ impl Effect for ServoLag {
         Self::NAME
     }
 
-    fn needs(&self) -> Needs {
-        Needs {
-            motion: true,
-            ..Needs::NOTHING
-        }
-    }
-
     fn why_idle(&self) -> &'static str {
         "the axis never moves"
     }
 }
-
-impl Absorb for ServoLag {}
 
 impl Mechanism for ServoLag {
     fn step(&mut self, _: f64, axis: &mut Axis) -> bool {

@@ -5,7 +5,7 @@
 use serde::Deserialize;
 
 use super::settings::{Check, Settings, Stopwatch, Unfit};
-use super::{Absorb, Asked, Axis, Effect, Listed, Mechanism, Needs};
+use super::{Asked, Axis, Effect, Listed, Mechanism};
 
 /// `[effects.tilt_limits]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -53,19 +53,10 @@ impl Effect for TiltLimits {
         Self::NAME
     }
 
-    fn needs(&self) -> Needs {
-        Needs {
-            motion: true,
-            ..Needs::NOTHING
-        }
-    }
-
     fn why_idle(&self) -> &'static str {
         "the motion stays within the stops"
     }
 }
-
-impl Absorb for TiltLimits {}
 
 impl Mechanism for TiltLimits {
     fn step(&mut self, _: f64, axis: &mut Axis) -> bool {

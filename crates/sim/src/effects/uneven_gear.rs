@@ -6,7 +6,7 @@ use serde::Deserialize;
 use units::Degrees;
 
 use super::settings::{Check, Settings, Stopwatch, Unfit};
-use super::{Absorb, Asked, Axis, Effect, GearRipple, Listed, Mechanism, Needs};
+use super::{Asked, Axis, Effect, GearRipple, Listed, Mechanism};
 
 /// `[effects.gear_ripple]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -75,19 +75,10 @@ impl Effect for UnevenGear {
         Self::NAME
     }
 
-    fn needs(&self) -> Needs {
-        Needs {
-            motion: true,
-            ..Needs::NOTHING
-        }
-    }
-
     fn why_idle(&self) -> &'static str {
         "its amplitude is 0"
     }
 }
-
-impl Absorb for UnevenGear {}
 
 impl Mechanism for UnevenGear {
     fn step(&mut self, _: f64, axis: &mut Axis) -> bool {

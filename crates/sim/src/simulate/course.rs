@@ -25,7 +25,7 @@ impl Course {
     /// The course of a motion. A mechanism is asked only if it says that it needs to be.
     pub fn new<M: Mechanism>(motion: &Motion, mechanism: &mut M) -> Self {
         let mut steps = Vec::new();
-        if mechanism.needs().motion {
+        if mechanism.is_there() {
             let count = (motion.end_s() / STEP_S).ceil() as usize + BEYOND;
             steps.reserve_exact(count);
             steps.extend((0..count).map(|step| {

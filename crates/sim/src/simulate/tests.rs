@@ -374,13 +374,6 @@ impl Effect for Ahead {
     fn name(&self) -> &'static str {
         "ahead"
     }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            motion: true,
-            ..Needs::NOTHING
-        }
-    }
 }
 
 impl Mechanism for Ahead {
