@@ -1,6 +1,6 @@
 //! Beam: fog and rain, which take light away and send some back.
 //!
-//! Light falls with exp(-2 s R) there and back (Beer and Lambert). In fog s follows from the visibility, at which 5 % of light is left (WMO): s = ln 20 / V, for
+//! Light falls with exp(-2 s R) there and back (Beer and Lambert). In fog s follows from the visibility, at which 5 % of light is left (Koschmieder 1924; the meteorological optical range of WMO): s = ln 20 / V = 3 / V, for
 //! droplets larger than the wave; in rain it is 1.076 h^0.67 dB/km at h mm/h (Carbonneau and Wisely 1998). Drops send back s / 18.8 per steradian (O'Connor,
 //! Illingworth and Hogan 2004, at 905 nm), which over the 0.9 m that a pulse of 6 ns lights at once is a faint surface of reflectivity
 //! pi * 0.9 m * s / 18.8; how many drops are in it varies exponentially. At most one such return a pulse, at a distance drawn as light comes back from it (1 / R^2), if it is
@@ -229,6 +229,45 @@ mod tests {
         assert!(fog_share > 0.3, "{fog_share}");
         let (wall, fog_share, _) = seen(fog(10_000.0), 20.0, 80);
         assert!(wall == 1.0 && fog_share == 0.0);
+    }
+
+    /// What is left of a target's light, there and back, against the law in its own words: 5 % one way at the visibility (Koschmieder's 3 / V), and
+    /// decibels in a kilometre of rain; of both the sum.
+    #[test]
+    fn extinction_is_koschmieders_and_rain_comes_on_top() {
+        let one_way = |visibility_m: f64, rain_mm_h: f64, range_m: f64| {
+            let fog = match visibility_m {
+                clear if clear.is_infinite() => 1.0,
+                visibility_m => 0.05_f64.powf(range_m / visibility_m),
+            };
+            fog * 10_f64.powf(-0.1 * 1.076 * rain_mm_h.powf(0.67) * range_m / 1_000.0)
+        };
+        for (visibility_m, rain_mm_h) in [
+            (200.0, 0.0),
+            (500.0, 0.0),
+            (2_000.0, 0.0),
+            (f64::INFINITY, 5.0),
+            (f64::INFINITY, 50.0),
+            (500.0, 25.0),
+        ] {
+            let settings = WeatherSettings {
+                visibility_m: visibility_m.is_finite().then_some(visibility_m),
+                rain_mm_h: (rain_mm_h > 0.0).then_some(rain_mm_h),
+            };
+            let weather = Weather::new(&settings, 1).unwrap();
+            if rain_mm_h == 0.0 {
+                let koschmieder = weather.extinction_per_m * visibility_m;
+                assert!((koschmieder - 3.0).abs() < 5e-3, "{koschmieder}");
+            }
+            for range_m in [2.0, 10.0, 30.0] {
+                let left = one_way(visibility_m, rain_mm_h, range_m).powi(2);
+                assert!((weather.left(range_m) / left - 1.0).abs() < 1e-12);
+                // Where drops outshine the wall it is the other return.
+                let (wall, _, reported) = seen(settings, range_m, 90);
+                assert!(wall > 0.5, "{wall}");
+                assert!((reported - 90.0 * left).abs() < 0.05, "{reported} {left}");
+            }
+        }
     }
 
     #[test]

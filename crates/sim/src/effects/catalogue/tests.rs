@@ -1,11 +1,12 @@
-use std::collections::BTreeSet;
+mod independence;
+
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::*;
-use crate::effects::testing::{arrivals, line};
-use crate::effects::{Effects, OnFirings, ParcelKind};
+use crate::effects::testing::line;
+use crate::effects::{Effects, OnFirings};
 use crate::motion::{Motion, Sweeps};
 use crate::scenes;
 use crate::sensor::{ReturnMode, Sensor};
@@ -44,7 +45,11 @@ const TABLES: [(&str, &str); 18] = [
 ];
 
 fn wishes(names: &[&str]) -> Wishes {
-    let tables = TABLES.iter().filter(|(name, _)| names.contains(name));
+    wishes_of(&TABLES, names)
+}
+
+fn wishes_of(tables: &[(&str, &str)], names: &[&str]) -> Wishes {
+    let tables = tables.iter().filter(|(name, _)| names.contains(name));
     let text: String = tables
         .map(|(name, table)| format!("[{name}]\n{table}\n"))
         .collect();
@@ -121,9 +126,13 @@ fn hall() -> Simulation {
 }
 
 fn run(asked: &mut Asked, threads: usize) -> Taken {
+    run_of(&hall(), asked, threads)
+}
+
+fn run_of(simulation: &Simulation, asked: &mut Asked, threads: usize) -> Taken {
     let mut taken = Taken::default();
     let threads = NonZeroUsize::new(threads).unwrap();
-    hall().run(asked, threads, &mut taken).unwrap();
+    simulation.run(asked, threads, &mut taken).unwrap();
     taken
 }
 
@@ -190,88 +199,4 @@ fn one_seed_one_result() {
         assert!(a.all == b.all && a.points == b.points, "{name}");
         assert!(a.all != nothing.all, "{name} changes nothing");
     }
-}
-
-/// Distances of a run's packets, in steps of 2 mm, by firing and laser.
-fn distances(taken: &Taken) -> Vec<u16> {
-    let blocks = taken
-        .packets
-        .iter()
-        .flat_map(|packet| packet[..1_200].chunks(100));
-    blocks
-        .flat_map(|block| block[4..].chunks(3))
-        .map(|channel| u16::from_le_bytes([channel[0], channel[1]]))
-        .collect()
-}
-
-/// Noise of the same shots is the same, whatever else is asked for.
-#[test]
-fn one_more_effect_leaves_the_noise_as_it_was() {
-    let noise = |with: &[&str], without: &[&str]| -> Vec<Option<i32>> {
-        let (with, without) = (run(&mut asked(with), 1), run(&mut asked(without), 1));
-        let pairs = distances(&with).into_iter().zip(distances(&without));
-        let both = |(a, b): (u16, u16)| (a > 0 && b > 0).then(|| i32::from(a) - i32::from(b));
-        pairs.map(both).collect()
-    };
-    let alone = noise(&["range_noise"], &[]);
-    // These leave what is fired when, and in which packet it arrives.
-    for other in [
-        "own_shadow",
-        "reflectance",
-        "lidar_clock",
-        "servo_lag",
-        "tilt_limits",
-        "gear_ripple",
-        "backlash",
-        "encoder_quantisation",
-        "link_jitter",
-        "batching",
-    ] {
-        let beside = noise(&["range_noise", other], &[other]);
-        let shots = alone.iter().zip(&beside);
-        let mut seen = 0;
-        for (a, b) in shots.filter_map(|(a, b)| a.zip(*b)) {
-            // Either rounds to its own steps.
-            assert!((a - b).abs() <= 1, "{other}: {a} {b}");
-            seen += 1;
-        }
-        assert!(seen * 2 > alone.len(), "{other}: {seen}");
-    }
-}
-
-/// What is lost, late, twice or waits is so by its number alone.
-#[test]
-fn one_more_effect_leaves_the_links_draws_as_they_were() {
-    let sent: Vec<i64> = (0..2_000).map(|number| number * 1_327_104).collect();
-    let lost = |names: &[&str]| -> BTreeSet<u64> {
-        let mut wire = asked(names).wire;
-        let arrived = arrivals(&mut wire, ParcelKind::Data, &sent);
-        let there: BTreeSet<u64> = arrived.iter().map(|parcel| parcel.number).collect();
-        (0..2_000)
-            .filter(|number| !there.contains(number))
-            .collect()
-    };
-    let twice = |names: &[&str]| -> BTreeSet<u64> {
-        let mut wire = asked(names).wire;
-        let mut there = BTreeSet::new();
-        let arrived = arrivals(&mut wire, ParcelKind::Data, &sent);
-        arrived
-            .iter()
-            .filter(|parcel| !there.insert(parcel.number))
-            .map(|parcel| parcel.number)
-            .collect()
-    };
-    let alone = (lost(&["loss"]), twice(&["duplicate"]));
-    assert!(!alone.0.is_empty() && !alone.1.is_empty());
-    for other in [
-        "link_jitter",
-        "reorder",
-        "batching",
-        "range_noise",
-        "weather",
-    ] {
-        assert_eq!(lost(&["loss", other]), alone.0, "{other}");
-        assert_eq!(twice(&["duplicate", other]), alone.1, "{other}");
-    }
-    assert_eq!(lost(&["loss", "duplicate"]), alone.0);
 }
