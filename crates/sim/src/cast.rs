@@ -22,6 +22,7 @@ mod surface;
 mod threads;
 mod triangle;
 
+pub use build::Quality;
 pub use caster::{CastError, Caster, Rays};
 pub use height_field::{HeightField, HeightFieldError};
 pub use mesh::{Mesh, MeshError};
@@ -30,6 +31,7 @@ pub use ray::{Hit, Normal, ObjectId, Ray, RayError, Reach};
 pub use solids::{Cuboid, Cylinder, Plane, Sphere};
 pub use surface::{Object, Surface};
 pub use threads::{Threads, ThreadsError};
+pub use triangle::Sheared8;
 
 #[cfg(test)]
 mod tests;

@@ -1,11 +1,41 @@
 //! Building the tree: the surface area heuristic (MacDonald and Booth 1990; binned, Wald 2007), eight children at a time.
 //!
-//! One input gives one tree, on any machine. Left out: triangles cut in two, several threads.
+//! One input and one [`Quality`] give one tree, on any machine. Left out: triangles cut in two, several threads.
 
-use super::bvh::{Bounds, Bvh, LEAF, LEVELS, Node};
+use super::bvh::{Bounds, Bvh, LEVELS, MOST_SHARING, Node, leaf};
 
-/// Places along an axis where a cut is tried.
-const BINS: usize = 16;
+/// More places along an axis than this are not tried.
+const MOST_BINS: usize = 64;
+
+/// How much work goes into the tree over a mesh. It changes how long rays take, never what they meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quality {
+    /// Parts of each axis between which a cut is tried, up to 64: the one with the least expected cost is made. Below two there is nothing to try,
+    /// and every cut goes through the middle of the triangles along their widest axis.
+    pub bins: usize,
+    /// So many triangles may share a box, 1 to 16.
+    pub sharing: usize,
+}
+
+/// What casters are fast with: 16 bins, and a box of its own for every triangle.
+impl Default for Quality {
+    fn default() -> Self {
+        Self {
+            bins: 16,
+            sharing: 1,
+        }
+    }
+}
+
+impl Quality {
+    /// Within its bounds.
+    fn clean(self) -> Self {
+        Self {
+            bins: self.bins.min(MOST_BINS),
+            sharing: self.sharing.clamp(1, MOST_SHARING),
+        }
+    }
+}
 
 /// An item while the tree is built.
 struct Item {
@@ -42,7 +72,9 @@ struct Job {
     level: usize,
 }
 
-pub(super) fn build(boxes: &[Bounds]) -> (Bvh, Vec<u32>) {
+pub(super) fn build(boxes: &[Bounds], quality: Quality) -> (Bvh, Vec<u32>) {
+    let quality = quality.clean();
+    let mut bins = Bins::new(quality.bins);
     let mut items: Vec<Item> = boxes
         .iter()
         .zip(0..)
@@ -61,15 +93,15 @@ pub(super) fn build(boxes: &[Bounds]) -> (Bvh, Vec<u32>) {
         level: 0,
     }];
     while let Some(job) = jobs.pop() {
-        let parts = parts(&mut items, &job);
+        let parts = parts(&mut items, &job, &mut bins);
         let mut made = Node::EMPTY;
         for (lane, part) in parts.iter().enumerate() {
             for axis in 0..3 {
                 made.slabs[2 * axis][lane] = below(part.bounds.low[axis]);
                 made.slabs[2 * axis + 1][lane] = above(part.bounds.high[axis]);
             }
-            made.child[lane] = if part.len() == 1 {
-                part.begin as u32 | LEAF
+            made.child[lane] = if part.len() <= quality.sharing {
+                leaf(part.begin, part.len())
             } else {
                 jobs.push(Job {
                     node: nodes.len(),
@@ -91,7 +123,7 @@ pub(super) fn build(boxes: &[Bounds]) -> (Bvh, Vec<u32>) {
 }
 
 /// Up to eight parts of the items of a node: the largest is cut until there are eight.
-fn parts(items: &mut [Item], job: &Job) -> Vec<Part> {
+fn parts(items: &mut [Item], job: &Job, bins: &mut Bins) -> Vec<Part> {
     let (begin, end) = (job.begin, job.end);
     if end - begin <= 8 {
         return (begin..end)
@@ -100,7 +132,7 @@ fn parts(items: &mut [Item], job: &Job) -> Vec<Part> {
     }
     // Cuts go through the middle where the best ones could make a tree too deep for the stack.
     let balanced = (end - begin - 1).ilog2() as usize / 3 + 1;
-    let by_area = job.level + balanced < LEVELS;
+    let by_area = bins.can_cut() && job.level + balanced < LEVELS;
     let mut parts = vec![Part::over(items, begin, end)];
     while parts.len() < 8 {
         let size = |part: &Part| {
@@ -117,7 +149,7 @@ fn parts(items: &mut [Item], job: &Job) -> Vec<Part> {
             break;
         };
         let part = parts.swap_remove(largest);
-        let cut = cut(items, &part, by_area);
+        let cut = cut(items, &part, by_area.then_some(&mut *bins));
         parts.push(Part::over(items, part.begin, cut));
         parts.push(Part::over(items, cut, part.end));
     }
@@ -127,7 +159,7 @@ fn parts(items: &mut [Item], job: &Job) -> Vec<Part> {
 }
 
 /// Orders the items of a part so that those before the answer are one side of the best cut.
-fn cut(items: &mut [Item], part: &Part, by_area: bool) -> usize {
+fn cut(items: &mut [Item], part: &Part, bins: Option<&mut Bins>) -> usize {
     let middle = part.begin + part.len() / 2;
     let Some(slice) = items.get_mut(part.begin..part.end) else {
         return middle;
@@ -140,8 +172,10 @@ fn cut(items: &mut [Item], part: &Part, by_area: bool) -> usize {
             high: centre,
         });
     }
-    if by_area && let Some((axis, bin)) = cheapest(slice, &centres) {
-        let binning = Binning::new(&centres, axis);
+    if let Some(bins) = bins
+        && let Some((axis, bin)) = bins.cheapest(slice, &centres)
+    {
+        let binning = Binning::new(&centres, axis, bins.count());
         let mut before = 0;
         for at in 0..slice.len() {
             if binning.bin(&slice[at]) < bin {
@@ -172,60 +206,88 @@ struct Binning {
     axis: usize,
     low: f64,
     scale: f64,
+    last: usize,
 }
 
 impl Binning {
-    fn new(centres: &Bounds, axis: usize) -> Self {
+    fn new(centres: &Bounds, axis: usize, bins: usize) -> Self {
         let (low, high) = (centres.low[axis], centres.high[axis]);
         Self {
             axis,
             low,
-            scale: BINS as f64 * (1.0 - 1e-9) / (high - low),
+            scale: bins as f64 * (1.0 - 1e-9) / (high - low),
+            last: bins.saturating_sub(1),
         }
     }
 
     fn bin(&self, item: &Item) -> usize {
-        (((item.bounds.middle2(self.axis) - self.low) * self.scale) as usize).min(BINS - 1)
+        (((item.bounds.middle2(self.axis) - self.low) * self.scale) as usize).min(self.last)
     }
 }
 
-/// Axis and first bin behind the cut with the least expected cost; `None` if no cut separates anything.
-fn cheapest(items: &[Item], centres: &Bounds) -> Option<(usize, usize)> {
-    let mut best = (f64::INFINITY, None);
-    for axis in 0..3 {
-        if centres.high[axis] <= centres.low[axis] {
-            continue;
-        }
-        let binning = Binning::new(centres, axis);
-        let mut bins = [(Bounds::EMPTY, 0_usize); BINS];
-        for item in items {
-            let (bounds, count) = &mut bins[binning.bin(item)];
-            bounds.join(&item.bounds);
-            *count += 1;
-        }
-        // What lies at or behind each bin.
-        let mut behind = [(0.0, 0_usize); BINS + 1];
-        let (mut bounds, mut count) = (Bounds::EMPTY, 0);
-        for bin in (0..BINS).rev() {
-            bounds.join(&bins[bin].0);
-            count += bins[bin].1;
-            behind[bin] = (bounds.area(), count);
-        }
-        let (mut bounds, mut count) = (Bounds::EMPTY, 0);
-        for bin in 1..BINS {
-            bounds.join(&bins[bin - 1].0);
-            count += bins[bin - 1].1;
-            let (area_behind, count_behind) = behind[bin];
-            if count == 0 || count_behind == 0 {
-                continue;
-            }
-            let cost = bounds.area() * blocks(count) + area_behind * blocks(count_behind);
-            if cost < best.0 {
-                best = (cost, Some((axis, bin)));
-            }
+/// What falls into each bin, and what lies at or behind it: room that is used again for every cut.
+struct Bins {
+    of: Vec<(Bounds, usize)>,
+    behind: Vec<(f64, usize)>,
+}
+
+impl Bins {
+    fn new(count: usize) -> Self {
+        Self {
+            of: vec![(Bounds::EMPTY, 0); count],
+            behind: vec![(0.0, 0); count],
         }
     }
-    best.1
+
+    fn count(&self) -> usize {
+        self.of.len()
+    }
+
+    /// Whether there is a place between two of them.
+    fn can_cut(&self) -> bool {
+        self.count() > 1
+    }
+
+    /// Axis and first bin behind the cut with the least expected cost; `None` if no cut separates anything.
+    fn cheapest(&mut self, items: &[Item], centres: &Bounds) -> Option<(usize, usize)> {
+        let mut best = (f64::INFINITY, None);
+        for axis in 0..3 {
+            if centres.high[axis] <= centres.low[axis] {
+                continue;
+            }
+            self.fill(items, &Binning::new(centres, axis, self.count()));
+            let (mut bounds, mut count) = (Bounds::EMPTY, 0);
+            let cuts = self.of.iter().zip(self.behind.iter().enumerate().skip(1));
+            for ((of, of_count), (bin, &(area_behind, count_behind))) in cuts {
+                bounds.join(of);
+                count += of_count;
+                if count == 0 || count_behind == 0 {
+                    continue;
+                }
+                let cost = bounds.area() * blocks(count) + area_behind * blocks(count_behind);
+                if cost < best.0 {
+                    best = (cost, Some((axis, bin)));
+                }
+            }
+        }
+        best.1
+    }
+
+    fn fill(&mut self, items: &[Item], binning: &Binning) {
+        self.of.fill((Bounds::EMPTY, 0));
+        for item in items {
+            if let Some((bounds, count)) = self.of.get_mut(binning.bin(item)) {
+                bounds.join(&item.bounds);
+                *count += 1;
+            }
+        }
+        let (mut bounds, mut count) = (Bounds::EMPTY, 0);
+        for ((of, of_count), behind) in self.of.iter().zip(&mut self.behind).rev() {
+            bounds.join(of);
+            count += of_count;
+            *behind = (bounds.area(), count);
+        }
+    }
 }
 
 /// What testing so many items costs: they go by fours.

@@ -1,5 +1,5 @@
-//! The tree of boxes: up to eight children a node, one item a leaf, so that every triangle has a box of its own and one step tests
-//! eight of them.
+//! The tree of boxes: up to eight children a node, one item a leaf unless its [`Quality`] says otherwise, so that every triangle has a box of its
+//! own and one step tests eight of them.
 //!
 //! Boxes are f32 and hold their items with room to spare; what is in them is tested in f64, so boxes decide what is looked at
 //! and never what is hit. Left out: changing a tree once it is built.
@@ -7,12 +7,28 @@
 use fearless_simd::{Simd, prelude::*};
 
 use super::beam::Beam;
-use super::build;
+use super::build::{self, Quality};
 
-/// Set in a child that is an item.
-pub(super) const LEAF: u32 = 1 << 31;
+/// Set in a child that is items.
+const LEAF: u32 = 1 << 31;
+/// Where a leaf has how many items follow its first.
+const MORE: u32 = 27;
+/// The most items of a leaf.
+pub(super) const MOST_SHARING: usize = 16;
 /// The most items: a balanced tree of them has nine levels.
-pub(super) const MOST_ITEMS: usize = 1 << 27;
+pub(super) const MOST_ITEMS: usize = 1 << MORE;
+
+/// The child that is `count` items from `first` on: 1 to [`MOST_SHARING`] of them, below [`MOST_ITEMS`].
+pub(super) const fn leaf(first: usize, count: usize) -> u32 {
+    first as u32 | (count as u32 - 1) << MORE | LEAF
+}
+
+/// The first item of a leaf and its last.
+#[inline(always)]
+const fn items(leaf: u32) -> (u32, u32) {
+    let first = leaf & (MOST_ITEMS as u32 - 1);
+    (first, first + (leaf >> MORE & (MOST_SHARING as u32 - 1)))
+}
 /// The most levels that [`build`] makes.
 pub(super) const LEVELS: usize = 18;
 /// Room for seven waiting children on every level, and a power of two.
@@ -77,7 +93,7 @@ impl Bounds {
 pub(super) struct Node {
     /// Low x, high x, low y, high y, low z, high z; an empty place has a box that nothing enters.
     pub slabs: [[f32; 8]; 6],
-    /// A node, or an item with [`LEAF`].
+    /// A node, or items with [`LEAF`] ([`leaf`]).
     pub child: [u32; 8],
 }
 
@@ -128,8 +144,8 @@ impl Stack {
 
 impl Bvh {
     /// A tree over items with these boxes, and the order in which its leaves name them: leaf `i` is item `order[i]`.
-    pub(super) fn over(boxes: &[Bounds]) -> (Self, Vec<u32>) {
-        build::build(boxes)
+    pub(super) fn over(boxes: &[Bounds], quality: Quality) -> (Self, Vec<u32>) {
+        build::build(boxes, quality)
     }
 
     /// Calls `visit` for every item whose box the beam may enter no farther than `up_to`, roughly the nearest first; it answers how far
@@ -158,7 +174,14 @@ impl Bvh {
                 let (child, enter) = (node.child[lane], enter[lane]);
                 if child & LEAF != 0 {
                     if enter <= up_to {
-                        up_to = visit(child & !LEAF);
+                        let (mut item, last) = items(child);
+                        loop {
+                            up_to = visit(item);
+                            if item >= last || up_to < 0.0 {
+                                break;
+                            }
+                            item += 1;
+                        }
                     }
                     continue;
                 }

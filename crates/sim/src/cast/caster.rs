@@ -10,6 +10,7 @@ use thiserror::Error;
 use glam::DVec3;
 
 use super::beam::{Beam, up_to};
+use super::build::Quality;
 use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
 use super::mesh::short_middle;
 use super::packet::{Ask, Best, LANES, Lanes, Nearest, loaded, spread};
@@ -113,7 +114,7 @@ impl Caster {
             objects: objects.into_iter().collect(),
             endless: Vec::new(),
             finite: Vec::new(),
-            tree: Bvh::over(&[]).0,
+            tree: Bvh::over(&[], Quality::default()).0,
             middle_m: DVec3::ZERO,
             level: Level::new(),
         };
@@ -174,7 +175,7 @@ impl Caster {
             *low = (DVec3::from_array(*low) - middle).to_array();
             *high = (DVec3::from_array(*high) - middle).to_array();
         }
-        let (tree, order) = Bvh::over(&boxes);
+        let (tree, order) = Bvh::over(&boxes, Quality::default());
         self.tree = tree;
         self.finite = order
             .iter()

@@ -8,6 +8,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::beam::{Beam, up_to};
+use super::build::Quality;
 use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
 use super::packet::{Ask, Best, Lanes, Nearest, loaded, spread};
 use super::ray::FARTHEST_M;
@@ -83,10 +84,8 @@ impl Mesh {
             .iter()
             .map(|vertex| (vertex - origin_m).to_array())
             .collect();
-        let mut boxes = Vec::with_capacity(triangles.len());
         let mut kept = Vec::with_capacity(triangles.len());
-        for ((triangle, corners), id) in triangles.iter().enumerate().zip(0_u32..) {
-            let mut bounds = Bounds::EMPTY;
+        for ((triangle, &corners), id) in triangles.iter().enumerate().zip(0_u32..) {
             let mut points = [DVec3::ZERO; 3];
             for (&got, point) in corners.iter().zip(&mut points) {
                 let Some(&vertex) = vertices.get(got as usize) else {
@@ -96,43 +95,71 @@ impl Mesh {
                         got,
                     });
                 };
-                bounds.join(&Bounds::of([vertex]));
                 *point = DVec3::from_array(vertex);
             }
             // Three points on a line: rounding could let a ray meet them, where there is no normal.
             let [a, b, c] = points;
             if (b - a).cross(c - a) != DVec3::ZERO {
-                boxes.push(bounds);
-                kept.push(id);
+                kept.push(Face { corners, id });
             }
         }
-        let (bvh, order) = Bvh::over(&boxes);
-        let mut places = vec![u32::MAX; triangles.len()];
-        let mut faces = Vec::with_capacity(triangles.len());
-        for id in order
-            .iter()
-            .filter_map(|&at| kept.get(at as usize).copied())
-        {
-            let Some((&corners, place)) =
-                triangles.get(id as usize).zip(places.get_mut(id as usize))
-            else {
-                continue;
-            };
-            *place = faces.len() as u32;
-            faces.push(Face { corners, id });
-        }
-        let mut bounds = Bounds::EMPTY;
-        for of in &boxes {
-            bounds.join(of);
-        }
-        Ok(Self {
+        let mut mesh = Self {
             origin_m,
             vertices,
-            faces,
-            places,
-            bvh,
-            bounds,
-        })
+            faces: kept,
+            places: vec![u32::MAX; triangles.len()],
+            bvh: Bvh::over(&[], Quality::default()).0,
+            bounds: Bounds::EMPTY,
+        };
+        mesh.arrange(Quality::default());
+        Ok(mesh)
+    }
+
+    /// The same triangles with a tree of this quality: rays meet the same, sooner or later. What [`Mesh::new`] makes has the default one.
+    #[must_use]
+    pub fn rebuilt(&self, quality: Quality) -> Self {
+        let mut mesh = Self {
+            origin_m: self.origin_m,
+            vertices: self.vertices.clone(),
+            faces: self.faces.clone(),
+            places: self.places.clone(),
+            bvh: Bvh::over(&[], quality).0,
+            bounds: self.bounds,
+        };
+        // As they came, so that the tree does not depend on the one before.
+        mesh.faces.sort_unstable_by_key(|face| face.id);
+        mesh.arrange(quality);
+        mesh
+    }
+
+    /// Makes the tree over the faces, which are in the order of their numbers, and puts them into the order of its leaves.
+    fn arrange(&mut self, quality: Quality) {
+        let mut boxes = Vec::with_capacity(self.faces.len());
+        self.bounds = Bounds::EMPTY;
+        for face in &self.faces {
+            let corners = face.corners.iter();
+            let points = corners.filter_map(|&at| self.vertices.get(at as usize).copied());
+            let of = Bounds::of(points);
+            self.bounds.join(&of);
+            boxes.push(of);
+        }
+        let (bvh, order) = Bvh::over(&boxes, quality);
+        self.bvh = bvh;
+        self.faces = order
+            .iter()
+            .filter_map(|&at| self.faces.get(at as usize).copied())
+            .collect();
+        for (face, place) in self.faces.iter().zip(0..) {
+            if let Some(of) = self.places.get_mut(face.id as usize) {
+                *of = place;
+            }
+        }
+    }
+
+    /// Boxes of eight in the tree.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.bvh.nodes.len()
     }
 
     /// How many triangles with an area there are.

@@ -9,6 +9,7 @@ mod equality;
 mod exact;
 mod hard_cases;
 mod placing;
+mod quality;
 mod solids;
 
 /// Numbers that look random (SplitMix64; Steele, Lea and Flood 2014).

@@ -11,7 +11,7 @@
 use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Corners in the frame of a mesh, metres.
-pub(super) type Corners = [[f64; 3]; 3];
+pub type Corners = [[f64; 3]; 3];
 
 /// The axis along which a direction goes farthest; of equals the first.
 #[inline(always)]
@@ -96,8 +96,10 @@ fn edge(p: [f64; 3], q: [f64; 3]) -> f64 {
     p[0].mul_add(q[1], -product) + rounding
 }
 
-/// Eight rays that go farthest along one axis.
-pub(super) struct Sheared8<S: Simd> {
+/// Eight rays that go farthest along one axis, moved and sheared until each is the z axis: to meet single triangles with. Scenes are what a
+/// [`Caster`](super::Caster) is for.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheared8<S: Simd> {
     simd: S,
     axis: usize,
     origin: [f64x8<S>; 3],
@@ -106,13 +108,10 @@ pub(super) struct Sheared8<S: Simd> {
 }
 
 impl<S: Simd> Sheared8<S> {
+    /// Origins (metres) and directions by coordinate; each goes farthest along `axis` (0 x, 1 y, 2 z).
     #[inline(always)]
-    pub(super) fn new(
-        simd: S,
-        axis: usize,
-        origin: [f64x8<S>; 3],
-        direction: [f64x8<S>; 3],
-    ) -> Self {
+    #[must_use]
+    pub fn new(simd: S, axis: usize, origin: [f64x8<S>; 3], direction: [f64x8<S>; 3]) -> Self {
         let [x, y, z] = turned(axis, direction);
         Self {
             simd,
@@ -137,9 +136,10 @@ impl<S: Simd> Sheared8<S> {
         ]
     }
 
-    /// As [`Sheared::meet`], of those lanes that hit; `None` if no lane does.
+    /// Where the line of each ray meets a triangle, in lengths of its direction, NaN for those that do not; `None` if none does.
     #[inline(always)]
-    pub(super) fn meet(&self, corners: &Corners) -> Option<f64x8<S>> {
+    #[must_use]
+    pub fn meet(&self, corners: &Corners) -> Option<f64x8<S>> {
         let [a, b, c] = *corners;
         let (a, b, c) = (self.sheared(a), self.sheared(b), self.sheared(c));
         let weights = [edge8(c, b), edge8(a, c), edge8(b, a)];

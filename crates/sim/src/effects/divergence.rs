@@ -20,7 +20,7 @@ use serde::Deserialize;
 use super::returns::reported;
 use super::settings::{Check, Settings, Stopwatch, Unfit};
 use super::{Absorb, Asked, Beam, Effect, Listed};
-use crate::simulate::{Echoes, Firing, Surroundings};
+use crate::simulate::{Echo, Echoes, Firing, Surroundings};
 use footprint::{Footprint, scan_axis};
 use plain::Plain;
 use pulses::{MOST_SAMPLES, Pulse, Sample};
@@ -107,8 +107,49 @@ impl Divergence {
                 .is_around(patch.origin_m, patch.direction, range_m)
     }
 
+    /// As [`Beam::receive`], but with sub-rays at every shot, edge or not: what looking for edges is measured against.
+    pub fn receive_everywhere(
+        &self,
+        firing: &Firing,
+        surroundings: &Surroundings,
+        echoes: &mut Echoes,
+    ) -> u32 {
+        self.act(firing, surroundings, echoes, |_, _| true)
+    }
+
+    /// Samples the patches that can lie across an edge; how many.
+    #[inline(always)]
+    fn act(
+        &self,
+        firing: &Firing,
+        surroundings: &Surroundings,
+        echoes: &mut Echoes,
+        can_straddle: impl Fn(&Footprint, &Echo) -> bool,
+    ) -> u32 {
+        let Some(scan) = scan_axis(firing) else {
+            return 0;
+        };
+        let mut acted = 0;
+        for laser in firing.alive() {
+            let (Some(origin_m), Some(direction), Some(strongest), Some(other)) = (
+                firing.origins_m.get(laser),
+                firing.directions.get(laser),
+                echoes.strongest.get_mut(laser),
+                echoes.other.get_mut(laser),
+            ) else {
+                continue;
+            };
+            let patch = Footprint::new(*origin_m, *direction, scan, self.half);
+            if can_straddle(&patch, strongest) {
+                [*strongest, *other] = self.pulse(&patch, surroundings);
+                acted += 1;
+            }
+        }
+        acted
+    }
+
     /// What comes back of a pulse: the strongest return and the other.
-    fn pulse(&self, patch: &Footprint, surroundings: &Surroundings) -> [crate::simulate::Echo; 2] {
+    fn pulse(&self, patch: &Footprint, surroundings: &Surroundings) -> [Echo; 2] {
         let mut samples = [Sample::NOTHING; MOST_SAMPLES];
         let mut count = 0;
         let (columns, rows) = (self.settings.columns, self.settings.rows);
@@ -158,29 +199,10 @@ impl Absorb for Divergence {}
 
 impl Beam for Divergence {
     fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
-        let Some(scan) = scan_axis(firing) else {
-            return 0;
-        };
-        let mut acted = 0;
-        for laser in firing.alive() {
-            let (Some(origin_m), Some(direction), Some(strongest), Some(other)) = (
-                firing.origins_m.get(laser),
-                firing.directions.get(laser),
-                echoes.strongest.get_mut(laser),
-                echoes.other.get_mut(laser),
-            ) else {
-                continue;
-            };
-            let patch = Footprint::new(*origin_m, *direction, scan, self.half);
-            if self.is_plain(&patch, strongest.range_m, surroundings)
-                || patch.is_flat(strongest, self.settings.flat_m, surroundings)
-            {
-                continue;
-            }
-            [*strongest, *other] = self.pulse(&patch, surroundings);
-            acted += 1;
-        }
-        acted
+        self.act(firing, surroundings, echoes, |patch, middle| {
+            !self.is_plain(patch, middle.range_m, surroundings)
+                && !patch.is_flat(middle, self.settings.flat_m, surroundings)
+        })
     }
 }
 

@@ -1,0 +1,74 @@
+//! Trees of any quality: other trees, the same hits.
+
+use super::*;
+
+fn qualities() -> impl Iterator<Item = Quality> {
+    let bins = [0, 1, 2, 16, usize::MAX];
+    let sharing = [0, 1, 4, usize::MAX];
+    bins.into_iter()
+        .flat_map(move |bins| sharing.map(|sharing| Quality { bins, sharing }))
+}
+
+#[test]
+fn rays_meet_the_same_whatever_the_tree_is_like() {
+    let (vertices, triangles) = ball(14, 18, 4.0, 0.3);
+    let mesh = Mesh::new(&vertices, &triangles).unwrap();
+    let mut numbers = Numbers(21);
+    let rays: Vec<Ray> = (0..200)
+        .map(|_| ray(numbers.vector() * 3.0, numbers.direction()))
+        .collect();
+    let cast = |mesh: Mesh| {
+        let caster = Caster::new([Object::new(mesh)]).unwrap();
+        let mut hits: Vec<Option<Hit<DVec3>>> = vec![None; rays.len()];
+        let batch = Rays::new(&rays, 1);
+        caster.nearest_of(&batch, Reach::default(), &Threads::ONE, &mut hits);
+        for (ray, hit) in rays.iter().zip(&hits) {
+            assert_eq!(caster.nearest::<DVec3>(ray, Reach::default()), *hit);
+            assert_eq!(caster.any(ray, Reach::default()), hit.is_some());
+        }
+        hits
+    };
+    let expected = cast(mesh.clone());
+    assert!(expected.iter().flatten().count() > 100);
+    for quality in qualities() {
+        assert_eq!(cast(mesh.rebuilt(quality)), expected, "{quality:?}");
+    }
+}
+
+#[test]
+fn a_tree_does_not_depend_on_the_one_before() {
+    let (vertices, triangles) = ball(8, 12, 4.0, 0.3);
+    let mesh = Mesh::new(&vertices, &triangles).unwrap();
+    let said = |mesh: &Mesh| format!("{mesh:?}");
+    assert_eq!(said(&mesh.rebuilt(Quality::default())), said(&mesh));
+    for quality in qualities() {
+        let once = mesh.rebuilt(quality);
+        let again = mesh
+            .rebuilt(Quality {
+                bins: 3,
+                sharing: 5,
+            })
+            .rebuilt(quality);
+        assert_eq!(said(&again), said(&once), "{quality:?}");
+    }
+}
+
+#[test]
+fn a_quality_is_what_it_says() {
+    let (vertices, triangles) = ball(40, 60, 4.0, 0.3);
+    let mesh = Mesh::new(&vertices, &triangles).unwrap();
+    let nodes = |bins, sharing| mesh.rebuilt(Quality { bins, sharing }).nodes();
+    assert_eq!(nodes(16, 1), mesh.nodes());
+    // Every node but the root is a child, and every triangle: with eight children a node there are at least an eighth as many.
+    assert!(mesh.nodes() > mesh.triangles() / 8);
+    assert!(nodes(16, 4) < mesh.nodes() && nodes(16, 8) < nodes(16, 4));
+    // Out of bounds counts as the bound.
+    assert_eq!(nodes(16, 16), nodes(16, usize::MAX));
+    assert_eq!(nodes(64, 1), nodes(usize::MAX, 1));
+    assert_eq!(nodes(0, 1), nodes(1, 1));
+    let middle = mesh.rebuilt(Quality {
+        bins: 0,
+        sharing: 1,
+    });
+    assert_ne!(format!("{middle:?}"), format!("{mesh:?}"));
+}
