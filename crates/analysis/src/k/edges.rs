@@ -1,0 +1,164 @@
+//! Edges between bins of angle, and on which side of one a pair of directions lies: exactly.
+//!
+//! Left out: angles of pairs. A bin is found by comparing cosines, and no arc cosine is taken of any.
+
+use glam::DVec3;
+
+use super::KError;
+use super::dd::{COSINE_ERROR, Dd, Expansion, two_product};
+
+/// The most bins.
+pub const MOST_BINS: usize = 32_768;
+
+/// How near to an edge's cosine the dot product of two directions in f64 must be for the pair to count as lying on it. Coordinates
+/// rounded to f64 move a dot product by 4e-16, its own arithmetic by another 4e-16.
+pub const ON_EDGE: f64 = 2e-15;
+
+/// Coordinates below this count as nought where sides are decided exactly: a product of two has all its bits then.
+pub const LEAST_COORDINATE: f64 = 1e-120;
+
+/// What a dot product in f64 and an edge in f64 may be off together: 3 x 2^-53 for products and sums, 2^-53 for the edge, and room for
+/// lengths that are off by [`super::UNIT_WITHIN`].
+pub(super) const F64_BAND: f64 = 1e-15;
+
+/// Bins of equal angle from 0 to 180 degrees.
+///
+/// With `t_j = j pi / bins`, a pair of directions `a`, `b` belongs to the least bin `j >= 1` for which `a.b >= cos t_j`; the last bin takes the
+/// rest. So a pair exactly on an edge belongs to the bin of smaller angles. `a.b` is the dot product in real numbers of the coordinates as given,
+/// `cos t_j` the real cosine: nothing is rounded in the definition, and a comparison that rounding could turn is decided
+/// without it. Bins are counted from 0 in slices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edges {
+    bins: usize,
+    inner: Vec<Edge>,
+}
+
+/// One inner edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Edge {
+    cosine: Dd,
+    /// How far from it the real cosine may be.
+    slack: f64,
+}
+
+impl Edges {
+    /// So many bins of equal angle.
+    ///
+    /// # Errors
+    /// [`KError::Bins`] for none and for more than [`MOST_BINS`].
+    pub fn equal(bins: usize) -> Result<Self, KError> {
+        let whole = u32::try_from(bins).ok();
+        let whole = whole.filter(|_| (1..=MOST_BINS).contains(&bins));
+        let whole = whole.ok_or(KError::Bins { got: bins })?;
+        let inner: Vec<Edge> = (1..whole).map(|part| Edge::new(part, whole)).collect();
+        Ok(Self { bins, inner })
+    }
+
+    /// How many bins.
+    #[must_use]
+    pub const fn bins(&self) -> usize {
+        self.bins
+    }
+
+    /// The upper edges `t_j` of all bins in radians, the last pi.
+    #[must_use]
+    pub fn upper_rad(&self) -> Vec<f64> {
+        let of = |j: usize| j as f64 * std::f64::consts::PI / self.bins as f64;
+        (1..=self.bins).map(of).collect()
+    }
+
+    /// The cosine of the edge above a bin, to the nearest f64; of the last -1.
+    #[must_use]
+    pub fn cosine(&self, bin: usize) -> f64 {
+        self.inner.get(bin).map_or(-1.0, |edge| edge.cosine.hi)
+    }
+
+    /// The bin of a pair of directions.
+    ///
+    /// # Errors
+    /// [`KError::Undecided`] where 98 bits of an irrational cosine do not decide.
+    pub fn bin(&self, a: DVec3, b: DVec3) -> Result<usize, KError> {
+        let dot = dot(a, b);
+        // Edges whose cosine is surely above the dot product are behind it.
+        let mut bin = self
+            .inner
+            .partition_point(|edge| edge.cosine.hi > dot + F64_BAND);
+        while bin + 1 < self.bins && !self.reaches(bin, a, b)? {
+            bin += 1;
+        }
+        Ok(bin)
+    }
+
+    /// Whether `a.b >= cos t` for the edge above a bin, counted from 0. Nothing is behind the last.
+    ///
+    /// # Errors
+    /// [`KError::Undecided`].
+    #[inline]
+    pub fn reaches(&self, bin: usize, a: DVec3, b: DVec3) -> Result<bool, KError> {
+        let Some(edge) = self.inner.get(bin) else {
+            return Ok(true);
+        };
+        let above = dot(a, b) - edge.cosine.hi;
+        if above.abs() > F64_BAND {
+            return Ok(above > 0.0);
+        }
+        edge.reached_exactly(a, b).ok_or(KError::Undecided {
+            bin,
+            first: a.to_array(),
+            second: b.to_array(),
+        })
+    }
+
+    /// Whether a pair lies on the inner edge above a bin, within rounding ([`ON_EDGE`]).
+    #[inline]
+    pub(super) fn is_on(&self, bin: usize, a: DVec3, b: DVec3) -> bool {
+        let edge = self.inner.get(bin);
+        edge.is_some_and(|edge| (dot(a, b) - edge.cosine.hi).abs() <= ON_EDGE)
+    }
+}
+
+impl Edge {
+    /// `cos(part / whole pi)`. It is rational only for 0, 1/3, 1/2, 2/3 and 1 (Niven 1956); those are kept exactly.
+    fn new(part: u32, whole: u32) -> Self {
+        let exact = |cosine: f64| Self {
+            cosine: Dd::of(cosine),
+            slack: 0.0,
+        };
+        if 3 * part == whole {
+            exact(0.5)
+        } else if 2 * part == whole {
+            exact(0.0)
+        } else if 3 * part == 2 * whole {
+            exact(-0.5)
+        } else {
+            Self {
+                cosine: Dd::cosine(part, whole),
+                slack: COSINE_ERROR,
+            }
+        }
+    }
+
+    /// The comparison without rounding: three products of two parts each and the cosine's two parts are added up exactly.
+    #[cold]
+    fn reached_exactly(&self, a: DVec3, b: DVec3) -> Option<bool> {
+        let kept = |c: f64| if c.abs() < LEAST_COORDINATE { 0.0 } else { c };
+        let mut sum = Expansion::<8>::new();
+        for (a, b) in a.to_array().into_iter().zip(b.to_array()) {
+            let (product, rest) = two_product(kept(a), kept(b));
+            sum.add(rest);
+            sum.add(product);
+        }
+        sum.add(-self.cosine.lo);
+        sum.add(-self.cosine.hi);
+        let above = sum.rounded();
+        // Twice the slack, as the rounded sum itself is off by less than half of it.
+        let is_decided = self.slack == 0.0 || above.abs() > 2.0 * self.slack;
+        is_decided.then_some(above >= 0.0)
+    }
+}
+
+/// The dot product in f64, in the one order that all of this module uses.
+#[inline]
+pub(super) fn dot(a: DVec3, b: DVec3) -> f64 {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}

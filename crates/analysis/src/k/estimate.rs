@@ -1,0 +1,79 @@
+//! What a faster method says of the pairs, and how far it may be off.
+//!
+//! Left out: the methods.
+
+use super::{Counts, Edges};
+use serde::Serialize;
+
+/// How far a share of pairs may be off: a share is a count over `n (n - 1) / 2`, as `D` is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
+pub enum Bound {
+    /// Nothing is off.
+    Exact,
+    /// Proven for every set of points: one number a bin.
+    Proven {
+        /// Of the share up to the bin's upper edge.
+        shares: Vec<f64>,
+    },
+    /// Holds for all bins at once with a probability over the method's own draws, whatever the points: one number a bin.
+    Confidence {
+        /// Of the share up to the bin's upper edge.
+        shares: Vec<f64>,
+        /// The probability that one of them does not hold is at most this.
+        risk: f64,
+    },
+}
+
+impl Bound {
+    /// The largest over all bins.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        match self {
+            Self::Exact => 0.0,
+            Self::Proven { shares } | Self::Confidence { shares, .. } => {
+                shares.iter().copied().fold(0.0, f64::max)
+            }
+        }
+    }
+
+    /// Of the share up to a bin's upper edge.
+    #[must_use]
+    pub fn of(&self, bin: usize) -> f64 {
+        match self {
+            Self::Exact => 0.0,
+            Self::Proven { shares } | Self::Confidence { shares, .. } => {
+                shares.get(bin).copied().unwrap_or(0.0)
+            }
+        }
+    }
+}
+
+/// Pairs by angle, with a bound on the error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The method, lower-case.
+    pub method: &'static str,
+    /// The bins.
+    pub edges: Edges,
+    /// The share of all pairs up to the upper edge of each bin, 0 to 1; the last is 1.
+    pub shares: Vec<f64>,
+    /// How far each may be off.
+    pub bound: Bound,
+    /// Directions.
+    pub points: usize,
+}
+
+impl From<Counts> for Estimate {
+    fn from(counts: Counts) -> Self {
+        let all = counts.pairs() as f64;
+        let shares = counts.cumulative();
+        Self {
+            method: "exact",
+            shares: shares.into_iter().map(|sum| sum as f64 / all).collect(),
+            bound: Bound::Exact,
+            points: counts.points,
+            edges: counts.edges,
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Every pair, one after the other: what the faster ways are held against.
+
+use glam::DVec3;
+
+use super::{Counts, Edges, KError, UNIT_WITHIN};
+
+/// Counts every pair by itself.
+///
+/// # Errors
+/// [`KError::NotUnit`] and [`KError::TooMany`] for what are not directions, [`KError::Undecided`].
+pub fn plain(points: &[DVec3], edges: &Edges) -> Result<Counts, KError> {
+    check(points)?;
+    let mut counts = vec![0_u64; edges.bins()];
+    let mut on_edges = 0;
+    for (i, &a) in points.iter().enumerate() {
+        for &b in points.iter().take(i) {
+            let bin = edges.bin(a, b)?;
+            if let Some(count) = counts.get_mut(bin) {
+                *count += 1;
+            }
+            let below = bin.checked_sub(1);
+            let is_on = |bin| edges.is_on(bin, a, b);
+            on_edges += u64::from(is_on(bin) || below.is_some_and(is_on));
+        }
+    }
+    Ok(Counts {
+        edges: edges.clone(),
+        counts,
+        points: points.len(),
+        on_edges,
+    })
+}
+
+/// Whether all are directions, and not too many.
+pub(super) fn check(points: &[DVec3]) -> Result<(), KError> {
+    if u32::try_from(points.len()).is_err() {
+        return Err(KError::TooMany { got: points.len() });
+    }
+    let is_unit = |p: &DVec3| (p.length() - 1.0).abs() <= UNIT_WITHIN;
+    match points.iter().position(|p| !is_unit(p)) {
+        None => Ok(()),
+        Some(index) => Err(KError::NotUnit {
+            index,
+            length: points.get(index).map_or(f64::NAN, |p| p.length()),
+        }),
+    }
+}

@@ -1,0 +1,4 @@
+mod cosines;
+mod hard_cases;
+mod patterns;
+mod truths;
