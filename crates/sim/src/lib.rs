@@ -16,6 +16,7 @@ mod head;
 pub mod link;
 pub mod motion;
 pub mod packet_clock;
+pub mod patterns;
 pub mod random;
 mod rig;
 mod scene;

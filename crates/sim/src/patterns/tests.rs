@@ -1,0 +1,235 @@
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use units::Stamp;
+
+use super::*;
+use crate::effects::{Effects, OnFirings};
+use crate::motion::{Motion, Sweeps};
+use crate::sensor::ReturnMode;
+use crate::simulate::{Event, Out, Simulation, Spin, TruePoint};
+
+fn pattern(text: &str) -> Pattern {
+    Wish::parse(text).unwrap().build().unwrap()
+}
+
+#[test]
+fn the_papers_counts() {
+    for (text, frames, points) in [
+        ("vlp16", 1, 14_416),
+        ("vlp16,seam=once", 1, 14_400),
+        ("hdl32e", 1, 28_832),
+        ("vlp32c", 1, 28_832),
+        ("rmbl:120", 30, 432_480),
+        ("rmbl:50", 72, 1_037_952),
+        ("velomotion16:50", 18, 259_488),
+        ("rsbl:50", 72, 64_872),
+        // 8 frames of 10 Hz at the fastest speed, 0.2 deg.
+        ("velomotion16:56.25,rpm=600", 8, 8 * 16 * 1_801),
+    ] {
+        let pattern = pattern(text);
+        assert_eq!(pattern.frames(), frames, "{text}");
+        let directions = pattern.directions();
+        assert_eq!(directions.len(), points, "{text}");
+        assert!(pattern.turns().is_some(), "{text}");
+        let off = directions.iter().map(|d| (d.length() - 1.0).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-15, "{text}");
+    }
+}
+
+#[test]
+fn each_frame_is_the_first_turned() {
+    for text in [
+        "rmbl:120",
+        "rmbl:50,tilt=stepped",
+        "velomotion16:50",
+        "velomotion16:50,d=0.06",
+        "hdl32e,frames=3",
+        "rmbl:7,frames=5",
+    ] {
+        let pattern = pattern(text);
+        let turns = pattern.turns().unwrap();
+        let first = pattern.frame(0);
+        for number in [1, 2, turns.frames - 1] {
+            let turn = DMat3::from_axis_angle(turns.axis, f64::from(number) * turns.step_rad);
+            let frame = pattern.frame(number);
+            assert_eq!(frame.len(), first.len());
+            let off = first
+                .iter()
+                .zip(&frame)
+                .map(|(a, b)| (turn * *a).distance(*b));
+            let off = off.fold(0.0, f64::max);
+            assert!(off < 1e-14, "{text} {number}: {off}");
+        }
+        assert!(pattern.frame(turns.frames).is_empty());
+        let all: usize = (0..turns.frames).map(|k| pattern.frame(k).len()).sum();
+        assert_eq!(all, pattern.directions().len());
+    }
+}
+
+#[test]
+fn a_sweep_that_is_no_whole_number_of_frames_ends_in_its_last() {
+    // 45 deg at 13 deg/s and 20 Hz: 69.23 frames.
+    let cut = pattern("velomotion16:13");
+    assert_eq!(cut.frames(), 70);
+    assert!(cut.turns().is_none());
+    // 69.23 frames of 900 steps, and the firings at the seams.
+    let steps: f64 = 900.0 * 45.0 / (13.0 / 20.0);
+    let expected = 16 * (69 + (steps.floor() as usize) + 1);
+    assert_eq!(cut.directions().len(), expected);
+    assert!((cut.scan_s() - 45.0 / 13.0).abs() < 1e-12);
+    assert_eq!(pattern("velomotion16:13,frames=70").scan_s(), 3.5);
+}
+
+#[test]
+fn beside_the_axis_rays_meet_the_sphere_where_the_equation_says() {
+    let (level, lifted) = (
+        pattern("velomotion16:50,frames=2"),
+        pattern("velomotion16:50,frames=2,d=0.06"),
+    );
+    let (mut worst, mut most) = (0.0_f64, 0.0_f64);
+    for (k, (a, b)) in level
+        .directions()
+        .iter()
+        .zip(&lifted.directions())
+        .enumerate()
+    {
+        let (firing, frame) = (k / 16 % 901, k / 16 / 901);
+        let gamma = -(2.5 * (frame as f64 + firing as f64 / 900.0)).to_radians();
+        let origin = 0.06 * DVec3::new(gamma.sin(), 0.0, gamma.cos());
+        // The range at which the ray is 10 m from the base's origin.
+        let along = a.dot(origin);
+        let range_m = (along * along + 100.0 - 0.0036).sqrt() - along;
+        worst = worst.max(b.distance((origin + range_m * *a) / 10.0));
+        most = most.max(a.distance(*b));
+    }
+    assert!(worst < 1e-14, "{worst}");
+    assert!((0.005..0.006_1).contains(&most), "{most}");
+}
+
+#[derive(Default)]
+struct Truth(Vec<TruePoint>);
+
+impl Out for Truth {
+    fn event(&mut self, _: &Event<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn wants_truth(&self) -> bool {
+        true
+    }
+
+    fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
+        self.0.extend_from_slice(points);
+        ControlFlow::Continue(())
+    }
+}
+
+/// The simulation's own points, on the hollow sphere, of a frame that begins at a tilt.
+fn simulated(sensor: Sensor, from_deg: f64, speed_deg_s: f64, d_m: f64) -> Vec<TruePoint> {
+    let motion = match speed_deg_s {
+        0.0 => Motion::fixed(from_deg, 0.05).unwrap(),
+        _ => Motion::sweeps(&Sweeps {
+            from_deg,
+            to_deg: from_deg + 0.05 * speed_deg_s,
+            speed_deg_s: speed_deg_s.abs(),
+            accel_deg_s2: None,
+            count: 1,
+            both_ways: false,
+            rest_s: 0.0,
+        })
+        .unwrap(),
+    };
+    let simulation = Simulation {
+        scene: Arc::new(Scene::new().with(Sphere::new(DVec3::ZERO, SPHERE_M, 50))),
+        sensor: sensor.ideal(),
+        returns: ReturnMode::Strongest,
+        spin: Spin {
+            rpm: 1_200,
+            start_deg: 90.0,
+        },
+        mount: Mount::above(d_m),
+        motion,
+        polls: None,
+        start: Stamp::from_nanos(1_790_000_000_000_000_000),
+        clock_at_start_us: 0,
+    };
+    let mut truth = Truth::default();
+    let one = NonZeroUsize::MIN;
+    simulation
+        .run(&mut Effects::<OnFirings>::default(), one, &mut truth)
+        .unwrap();
+    truth.0
+}
+
+#[test]
+fn the_simulation_sees_the_same_directions() {
+    // A VLP-16 fires every 55.296 us, an HDL-32E every 46.08 us: so far its head turns at 7200 deg/s.
+    let (vlp, hdl) = (7_200.0 * 55.296e-6, 7_200.0 * 46.08e-6);
+    let heads: [(&str, Sensor, f64); 5] = [
+        ("vlp16,", Sensor::vlp16(), vlp),
+        ("hdl32e,", Sensor::hdl32e(), hdl),
+        ("velomotion16:50,", Sensor::vlp16(), vlp),
+        ("velomotion16:50,d=0.06,", Sensor::vlp16(), vlp),
+        ("rsbl:50,", Sensor::hdl32e().only(15), hdl),
+    ];
+    for (text, sensor, step_deg) in heads {
+        let pattern = pattern(&format!("{text}frames=3,step={step_deg}"));
+        let d_m = pattern.settings().d_m;
+        for frame in 0..3_u32 {
+            let expected = pattern.frame(frame);
+            let speed = if text.starts_with("velo") {
+                -50.0
+            } else {
+                50.0
+            };
+            let speed = if pattern.step_deg == 0.0 { 0.0 } else { speed };
+            let from_deg = f64::from(frame) * 0.05 * speed;
+            let points = simulated(sensor.clone(), from_deg, speed, d_m);
+            // The simulation ends with its last whole packet.
+            assert!(points.len() > 9 * expected.len() / 10 && points.len() <= expected.len());
+            let off = points
+                .iter()
+                .zip(&expected)
+                .map(|(point, direction)| point.position_m.normalize().distance(*direction));
+            let off = off.fold(0.0, f64::max);
+            assert!(off < 1e-9, "{text} frame {frame}: {off}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_pattern_is_said() {
+    let wrong = |text: &str| {
+        let built = Wish::parse(text).and_then(|wish| wish.build());
+        built.unwrap_err().to_string()
+    };
+    for (text, words) in [
+        ("vlp64", "expected one of vlp16, hdl32e"),
+        (
+            "rmbl",
+            "expected a speed above 0 deg/s, as in rmbl:50, got \"none\"",
+        ),
+        ("rmbl:0", "a speed above 0"),
+        ("rmbl:-3", "a speed above 0"),
+        ("rmbl:fast", "expected a number for speed, got \"fast\""),
+        ("rmbl:NaN", "a number for speed"),
+        ("vlp16:50", "a sensor that stands still"),
+        ("rmbl:50,colour=red", "a number for colour"),
+        ("rmbl:50,colour=3", "expected rpm, step, start"),
+        ("rmbl:50,stepped", "KEY=VALUE"),
+        ("rmbl:50,tilt=jumping", "tilt=stepped or tilt=continuous"),
+        ("rmbl:50,seam=thrice", "seam=once or seam=twice"),
+        ("rmbl:50,frames=0", "frames from 1"),
+        ("rmbl:50,frames=2.5", "frames from 1"),
+        ("rmbl:50,rpm=0", "rpm: expected 1 to 100000"),
+        ("rmbl:50,step=0", "step: expected 0.001"),
+        ("rmbl:50,d=7", "d: expected -5 to 5 m"),
+        ("rmbl:0.001", "at most 100000000 points, got"),
+    ] {
+        let said = wrong(text);
+        assert!(said.contains(words), "{text}: {said}");
+    }
+}
