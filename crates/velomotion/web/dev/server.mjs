@@ -1,0 +1,148 @@
+#!/usr/bin/env node
+// The page without a daemon: the API with made-up data, for working on the page. What counts is `velomotion daemon` with its simulator.
+// node dev/server.mjs PORT [CLOUD.ply] ; /dev/MODE changes what it pretends: idle, live, fault, absent, gone, token.
+import { createHash } from "node:crypto";
+import { readFileSync, statSync } from "node:fs";
+import { createServer } from "node:http";
+import { fileURLToPath } from "node:url";
+
+const [port, cloud] = [Number(process.argv[2] ?? 8017), process.argv[3]];
+const dist = fileURLToPath(new URL("../dist/", import.meta.url));
+const TYPES = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css", svg: "image/svg+xml", txt: "text/plain" };
+const ply = cloud ? readFileSync(cloud) : null;
+let mode = "idle";
+let angle = 0;
+let packets = 120_000;
+const sockets = new Set();
+const now_s = () => Date.now() / 1000;
+
+const scan = (n, more = {}) => ({
+  id: `hall-${n}-simulated-2026-11-21T15-0${n}-11Z`, name: `hall-${n}`, state: "whole", why: null, started_s: 1_763_737_000 + 300 * n, simulated: true,
+  asked: { speed_deg_s: 56.25, name: `hall-${n}` }, points: 243_311, duration_s: 4.9, bytes: 12_345_678, log_bytes: 5e6, cloud_bytes: 7e6, thumbnail: false, ...more,
+});
+let scans = [
+  scan(3),
+  scan(2, { state: "partial", why: { error: "stopped by the user", help: "the cloud holds what was swept", kind: "interrupted" }, points: 97_220, simulated: false, asked: { speed_deg_s: 5 } }),
+  scan(1, { state: "failed", why: { error: "the drive's cable was pulled out", help: "plug it in; the log is kept", kind: "device-fault" }, points: null }),
+];
+const sync = { clock_method: "hull", clock_residual_us: 18.4, clock_bound_us: 36.2, clock_drift_ppm: 12.02, angle_method: "profile", angle_rms_deg: 0.00071, angle_bound_deg: 0.0021 };
+
+const status = () => ({
+  version: "0.1.0", device: "sim", simulated: true, started_s: 1.76e9, now_s: now_s(),
+  activity: mode === "live"
+    ? { doing: "capturing", scan: "live", step: 1, steps: 2, from_deg: 0, to_deg: -45, left_s: (45 + angle) / 5.625 }
+    : { doing: "idle", scan: null, step: 0, steps: 0, from_deg: null, to_deg: null, left_s: null },
+  drive: {
+    state: mode === "fault" ? "fault" : mode === "absent" ? "absent" : "connected",
+    problem: mode === "fault" ? { error: "the drive reports 0x8611: following error", help: "see whether something holds the platform; then clear the fault and home" }
+      : mode === "absent" ? { error: "no drive on /dev/ttyUSB0", help: "see whether its cable is in and it has power; velomotion doctor lists what is there", kind: "no-device" } : null,
+    port: "/dev/pts/4", link: "usb", cia402: mode === "fault" ? "Fault" : mode === "live" ? "Operation Enabled" : "Switch On Disabled", referenced: true,
+    angle_deg: mode === "absent" ? null : angle, speed_deg_s: mode === "live" ? -5.625 : 0, faults: mode === "fault" ? [{ code: "0x8611", meaning: "following error" }] : [],
+  },
+  lidar: { state: "connected", problem: null, model: "VLP-16", return_mode: "strongest", rpm: 600, packets: (packets += 754), packets_per_s: 753 + 2 * Math.random(), lost_packets: 0, dropped_by_kernel: 0 },
+  axis: { min_deg: -45, max_deg: 0, max_speed_deg_s: 98, max_accel_deg_s2: 10_000, accel_deg_s2: 5_000, home_deg: 0 },
+  disk: { free_bytes: 34.1e9, reserve_bytes: 1e9, scans: scans.length, scans_bytes: 37e6, keep_scans: 100, keep_bytes: 5e10 },
+  clients: { events: sockets.size, dropped: 0 },
+});
+
+/** A frame of a WebSocket: text or binary, unmasked as servers send. */
+function frame(data) {
+  const body = Buffer.from(data);
+  const opcode = typeof data === "string" ? 0x81 : 0x82;
+  const head = body.length < 126 ? Buffer.from([opcode, body.length])
+    : body.length < 65_536 ? Buffer.from([opcode, 126, body.length >> 8, body.length & 255])
+      : Buffer.concat([Buffer.from([opcode, 127, 0, 0, 0, 0]), Buffer.from([body.length >>> 24, (body.length >> 16) & 255, (body.length >> 8) & 255, body.length & 255])]);
+  return Buffer.concat([head, body]);
+}
+const tell = (event) => sockets.forEach((socket) => socket.write(frame(typeof event === "object" && !Buffer.isBuffer(event) ? JSON.stringify(event) : event)));
+
+const rows = ply === null ? null : parse();
+function parse() {
+  const end = ply.indexOf("end_header\n") + 11;
+  const count = Number(/element vertex (\d+)/.exec(ply.subarray(0, end).toString("latin1"))[1]);
+  return { at: end, count, bytes: (ply.length - end) / count };
+}
+let sent = 0;
+function points() {
+  if (rows === null || sent >= rows.count) return;
+  const count = Math.min(1_500, rows.count - sent);
+  const out = Buffer.alloc(32 + 22 * count);
+  const row = (i) => rows.at + (sent + i) * rows.bytes;
+  const start = ply.readDoubleLE(row(0) + 17);
+  out.write("VMP1");
+  out.writeUInt32LE(count, 4);
+  out.writeDoubleLE(start, 8);
+  out.writeUInt32LE(sent, 16);
+  angle = ply.readFloatLE(row(count - 1) + 25);
+  out.writeFloatLE(angle, 24);
+  for (let i = 0; i < count; i += 1) {
+    ply.copy(out, 32 + 12 * i, row(i), row(i) + 12);
+    out.writeFloatLE(ply.readDoubleLE(row(i) + 17) - start, 32 + 12 * count + 4 * i);
+    out.writeFloatLE(0.01, 32 + 16 * count + 4 * i);
+    out[32 + 20 * count + i] = ply.readFloatLE(row(i) + 12);
+    out[32 + 21 * count + i] = ply[row(i) + 16];
+  }
+  sent += count;
+  tell(out);
+}
+
+setInterval(() => tell({ type: "status", status: status() }), 1_000);
+setInterval(() => {
+  if (mode !== "live") return;
+  points();
+  tell({ type: "motion", angle_deg: angle, speed_deg_s: -5.625, left_s: (45 + angle) / 5.625, packets: Math.round(sent / 320) });
+}, 50);
+
+function answer(request, response) {
+  const { pathname, searchParams } = new URL(request.url, "http://localhost");
+  const say = (code, said) => response.writeHead(code, { "content-type": "application/json" }).end(JSON.stringify(said));
+  if (pathname.startsWith("/dev/")) {
+    mode = pathname.slice(5);
+    sent = 0;
+    if (mode === "gone") sockets.forEach((socket) => socket.destroy());
+    if (mode === "live") tell({ type: "scan", scan: scan(4, { id: "live", name: "yard", state: "recording", points: null }), deleted: false });
+    tell({ type: "status", status: status() });
+    return say(200, mode);
+  }
+  if (mode === "gone") return request.socket.destroy();
+  if (pathname === "/login") {
+    mode = "idle";
+    return say(200, {});
+  }
+  if (pathname.startsWith("/api/") && mode === "token") return say(401, { error: "a token is needed", help: "sign in", kind: "denied" });
+  if (pathname === "/api/v1/status") return say(200, status());
+  if (pathname === "/api/v1/scans") return say(200, scans);
+  if (pathname === "/api/v1/plan") {
+    const speed = Number(searchParams.get("speed_deg_s"));
+    if (!(speed <= 98)) return say(400, { error: `speed ${speed} deg/s: expected 0.025 to 98`, help: "choose a slower one", kind: "usage" });
+    return say(200, { motor_rpm: Math.round(20 * speed), cruise_deg_s: Math.round(20 * speed) / 20, sweep_s: 45 / speed + 0.011, moves_s: 45 / speed + 0.6, step_deg: speed / 10, frames: 450 / speed, bytes: (45 / speed + 3) * 1.3e6 });
+  }
+  const one = /^\/api\/v1\/scans\/([^/]+)(?:\/(\w+))?$/.exec(pathname);
+  if (one !== null) {
+    const found = scans.find((each) => each.id === one[1]);
+    if (found === undefined) return say(404, { error: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" });
+    if (one[2] === "cloud" && ply !== null) return response.writeHead(200, { "content-type": "application/octet-stream" }).end(ply);
+    if (request.method === "DELETE") scans = scans.filter((each) => each !== found);
+    return say(200, { ...found, report: { lost_packets: 0, sync, truth: { rms_m: 0.00071, worst_m: 0.0018 } }, messages: [] });
+  }
+  if (request.method === "POST") return say(200, {});
+  const name = pathname === "/" ? "index.html" : pathname.slice(1);
+  try {
+    if (!/^[\w.]+$/.test(name) || !statSync(dist + name).isFile()) throw new Error(name);
+    response.writeHead(200, { "content-type": TYPES[name.split(".").pop()], "cache-control": "no-store" }).end(readFileSync(dist + name));
+  } catch {
+    say(404, { error: "no such path", kind: "not-found" });
+  }
+}
+
+const server = createServer(answer);
+server.on("upgrade", (request, socket) => {
+  if (mode === "gone" || mode === "token") return socket.destroy();
+  const key = createHash("sha1").update(`${request.headers["sec-websocket-key"]}258EAFA5-E914-47DA-95CA-C5AB0DC85B11`).digest("base64");
+  socket.write(`HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: ${key}\r\n\r\n`);
+  sockets.add(socket);
+  socket.on("close", () => sockets.delete(socket));
+  socket.on("error", () => sockets.delete(socket));
+  socket.write(frame(JSON.stringify({ type: "status", status: status() })));
+});
+server.listen(port, "127.0.0.1", () => console.log(`http://127.0.0.1:${port}/`));

@@ -1,0 +1,120 @@
+// The WebSocket of events: keeps it open, says at once when it is lost, comes back by itself. Left out: what the events mean.
+
+import { type Scan, type Status, eventsUrl } from "./api.ts";
+import { type Frame, parseFrame } from "./frame.ts";
+
+export interface Motion {
+  angle_deg: number;
+  speed_deg_s: number;
+  left_s?: number | null;
+  packets?: number | null;
+}
+
+export interface Said {
+  level: "info" | "warning" | "error";
+  text: string;
+  help?: string | null;
+}
+
+export interface Listener {
+  opened(): void;
+  /** Lost, and tried again after so many seconds. */
+  lost(again_s: number): void;
+  status(status: Status): void;
+  motion(motion: Motion): void;
+  scan(scan: Scan, deleted: boolean): void;
+  message(said: Said): void;
+  points(frame: Frame): void;
+}
+
+/** The daemon says something every second; after so long without a word the line is dead even if nobody closed it. */
+const SILENCE_MS = 4_000;
+const WAITS_S = [0.5, 1, 2, 4, 8];
+
+export class Events {
+  private socket: WebSocket | null = null;
+  private tries = 0;
+  private thin = 1;
+  private opened_ms = 0;
+  private silence = 0;
+  private again = 0;
+  private capturing = false;
+
+  constructor(private readonly listener: Listener) {}
+
+  open(): void {
+    clearTimeout(this.again);
+    this.close();
+    const socket = new WebSocket(eventsUrl(this.thin));
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    this.listen();
+    socket.onopen = () => {
+      this.tries = 0;
+      this.opened_ms = performance.now();
+      this.listen();
+      this.listener.opened();
+    };
+    socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
+      this.listen();
+      if (typeof event.data === "string") this.text(event.data);
+      else this.binary(event.data);
+    };
+    socket.onclose = () => this.lost(socket);
+  }
+
+  /** For good, until `open`. */
+  close(): void {
+    clearTimeout(this.silence);
+    const socket = this.socket;
+    this.socket = null;
+    socket?.close();
+  }
+
+  private listen(): void {
+    clearTimeout(this.silence);
+    this.silence = window.setTimeout(() => {
+      const socket = this.socket;
+      if (socket !== null) this.lost(socket);
+    }, SILENCE_MS);
+  }
+
+  private lost(socket: WebSocket): void {
+    if (socket !== this.socket) return;
+    // Cut off in mid-sweep after having worked: this device is too slow for all points, so ask for fewer.
+    const worked = performance.now() - this.opened_ms > 1_000 && this.tries === 0;
+    if (this.capturing && worked) this.thin = Math.min(64, this.thin * 4);
+    this.close();
+    const wait_s = WAITS_S[Math.min(this.tries, WAITS_S.length - 1)] ?? 8;
+    this.tries += 1;
+    this.listener.lost(wait_s);
+    this.again = window.setTimeout(() => this.open(), wait_s * 1_000);
+  }
+
+  private text(text: string): void {
+    let event: Record<string, unknown>;
+    try {
+      event = JSON.parse(text) as Record<string, unknown>;
+    } catch {
+      return;
+    }
+    switch (event["type"]) {
+      case "status": {
+        const status = event["status"] as Status;
+        this.capturing = status.activity.doing === "capturing";
+        return this.listener.status(status);
+      }
+      case "motion":
+        return this.listener.motion(event as unknown as Motion);
+      case "scan":
+        return this.listener.scan(event["scan"] as Scan, event["deleted"] === true);
+      case "message":
+        return this.listener.message(event as unknown as Said);
+    }
+  }
+
+  private binary(bytes: ArrayBuffer): void {
+    const frame = parseFrame(bytes);
+    if (frame !== null) this.listener.points(frame);
+  }
+}

@@ -1,0 +1,33 @@
+// Numbers, sizes and moments for people, in the page's own language (English) and the reader's own time zone.
+
+const whole = new Intl.NumberFormat("en", { maximumFractionDigits: 0 });
+const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
+const day = new Intl.DateTimeFormat("en-GB", { day: "numeric", month: "short", hour: "2-digit", minute: "2-digit" });
+
+export const count = (n: number) => whole.format(n);
+export const compact = (n: number) => short.format(n);
+export const moment = (unix_s: number) => day.format(new Date(unix_s * 1_000));
+
+/** With a real minus sign and a fixed number of decimals. */
+export function fixed(n: number, decimals: number): string {
+  const text = n.toFixed(decimals);
+  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "\u2212");
+}
+
+/** With so many significant digits, without trailing zeros. */
+export function digits(n: number, significant = 3): string {
+  return String(Number(n.toPrecision(significant))).replace("-", "\u2212");
+}
+
+export function bytes(n: number): string {
+  const units = ["B", "kB", "MB", "GB", "TB"];
+  let [size, unit] = [n, 0];
+  while (size >= 1_000 && unit < units.length - 1) [size, unit] = [size / 1_000, unit + 1];
+  return `${unit === 0 ? size : size.toPrecision(3)} ${units[unit]}`;
+}
+
+export function duration(seconds: number): string {
+  if (seconds < 60) return `${seconds < 10 ? seconds.toFixed(2) : seconds.toFixed(0)} s`;
+  if (seconds < 3_600) return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
+  return `${Math.floor(seconds / 3_600)} h ${Math.round((seconds % 3_600) / 60)} min`;
+}

@@ -1,0 +1,52 @@
+// Points as they are measured: the binary messages of the events (docs: The daemon, Events). Left out: what is done with them.
+
+const HEAD_BYTES = 32;
+const POINT_BYTES = 22;
+const MOST_POINTS = 16_384;
+/** "VMP1", little-endian. */
+const MAGIC = 0x31504d56;
+
+/** Columns of some points. Lengths: 3 N of positions, N of the others. */
+export interface Columns {
+  count: number;
+  /** Metres. */
+  positions: Float32Array;
+  /** Seconds after the cloud's or frame's first point. */
+  times: Float32Array;
+  /** Metres; empty where nobody worked it out. */
+  sds: Float32Array;
+  intensities: Uint8Array;
+  rings: Uint8Array;
+}
+
+export interface Frame extends Columns {
+  /** Unix seconds of the first point. */
+  start_s: number;
+  /** Within the scan, from 0. */
+  number: number;
+  /** Records left out of the live cloud so far. */
+  left_out: number;
+  tilt_deg: number;
+}
+
+/** A frame, or null where the bytes are none. The columns are views into `bytes`. */
+export function parseFrame(bytes: ArrayBuffer): Frame | null {
+  if (bytes.byteLength < HEAD_BYTES) return null;
+  const head = new DataView(bytes);
+  const count = head.getUint32(4, true);
+  if (head.getUint32(0, true) !== MAGIC || count > MOST_POINTS) return null;
+  if (bytes.byteLength !== HEAD_BYTES + POINT_BYTES * count) return null;
+  const at = (column: number) => HEAD_BYTES + column * count;
+  return {
+    count,
+    start_s: head.getFloat64(8, true),
+    number: head.getUint32(16, true),
+    left_out: head.getUint32(20, true),
+    tilt_deg: head.getFloat32(24, true),
+    positions: new Float32Array(bytes, at(0), 3 * count),
+    times: new Float32Array(bytes, at(12), count),
+    sds: new Float32Array(bytes, at(16), count),
+    intensities: new Uint8Array(bytes, at(20), count),
+    rings: new Uint8Array(bytes, at(21), count),
+  };
+}

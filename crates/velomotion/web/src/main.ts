@@ -1,0 +1,161 @@
+// The page: ties what the daemon says to what is shown. Each part of it is a file in panels/ or view/.
+
+import { type Scan, type Status, Refused, api, ask } from "./api.ts";
+import { id, show, text } from "./dom.ts";
+import { Events, type Listener } from "./events.ts";
+import { count } from "./format.ts";
+import * as control from "./panels/control.ts";
+import * as devices from "./panels/devices.ts";
+import { alarm, announce, note } from "./panels/messages.ts";
+import * as scans from "./panels/scans.ts";
+import * as signin from "./panels/signin.ts";
+import * as sweep from "./panels/sweep.ts";
+import { Viewer } from "./viewer.ts";
+
+/** The newest scan is put in view by itself if it is not larger than this. */
+const SMALL_POINTS = 3_000_000;
+
+let viewer: Viewer | null = null;
+let connected = false;
+
+try {
+  viewer = new Viewer((shown) => scans.setCurrent(shown));
+} catch (error) {
+  text(id("view-failed"), "No 3D view: this browser has no WebGL2. Everything else works.");
+  show(id("view-failed"), true);
+  show(id("view-empty"), false);
+  console.error(error);
+}
+
+const listener: Listener = {
+  opened() {
+    connected = true;
+    devices.setLink("Connected", "good");
+    show(id("lost"), false);
+    control.setConnected(true);
+    void list();
+  },
+  lost(again_s) {
+    if (connected) alarm("Connection to the daemon lost. The scanner goes on by itself.");
+    connected = false;
+    control.setConnected(false);
+    devices.setLink("Offline", "bad");
+    text(id("lost"), `Connection to the daemon lost: what is shown is old, the scanner goes on by itself. Trying again${again_s >= 1 ? ` every ${again_s} s` : ""}.`);
+    show(id("lost"), true);
+    void probe();
+  },
+  status(status: Status) {
+    control.setStatus(status);
+    devices.setStatus(status);
+    sweep.setStatus(status);
+    const { scan } = status.activity;
+    if (typeof scan === "string" && status.activity.doing === "capturing") {
+      const known = scans.get(scan);
+      viewer?.begin(scan, known?.name || scan, status.simulated);
+    }
+    if (typeof status.drive.angle_deg === "number") viewer?.setTilt(status.drive.angle_deg);
+  },
+  motion(motion) {
+    control.setMotion(motion);
+    devices.setMotion(motion);
+    viewer?.setTilt(motion.angle_deg);
+  },
+  scan(scan, deleted) {
+    if (deleted) {
+      scans.remove(scan.id);
+      viewer?.forget(scan.id);
+      return;
+    }
+    const before = scans.get(scan.id)?.state;
+    scans.set(scan);
+    if (scan.state === "recording" && before !== "recording") viewer?.begin(scan.id, scan.name || scan.id, scan.simulated);
+    if (before !== scan.state) void finished(scan);
+  },
+  message(said) {
+    note(said.level, said.text, said.help);
+  },
+  points(frame) {
+    viewer?.frame(frame);
+  },
+};
+
+const events = new Events(listener);
+
+/** A scan that came to its end: said, measured up, and shown if it was watched. */
+async function finished(scan: Scan): Promise<void> {
+  if (scan.state === "recording" || scan.state === "making") return;
+  const title = scan.name || scan.id;
+  const why = scan.why ? `: ${scan.why.error}` : "";
+  if (scan.state === "whole") announce(`Scan ${title} is whole: ${count(scan.points ?? 0)} points`);
+  else note(scan.state === "failed" ? "error" : "warning", `Scan ${title} is ${scan.state}${why}`, scan.why?.help);
+  if (scan.state !== "failed" && viewer?.shown === scan.id) viewer.open(scan);
+  await last();
+}
+
+/** Clock and angle of the newest scan that has a cloud. */
+async function last(): Promise<void> {
+  const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
+  if (newest === undefined) return devices.setLast(null);
+  try {
+    const whole = await api.scan(newest.id);
+    scans.set(whole);
+    devices.setLast(whole);
+  } catch {
+    devices.setLast(newest);
+  }
+}
+
+async function list(): Promise<void> {
+  try {
+    const now = await api.scans();
+    scans.setAll(now);
+    const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
+    if (viewer !== null && viewer.shown === null && newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(newest);
+    await last();
+  } catch (error) {
+    control.refused("List of scans", error);
+  }
+}
+
+/** Whether the daemon wants a token, which a WebSocket that is refused does not tell. */
+async function probe(): Promise<void> {
+  try {
+    listener.status(await api.status());
+  } catch (error) {
+    if (error instanceof Refused && error.status === 401) {
+      events.close();
+      show(id("lost"), false);
+      devices.setLink("Sign in", "warn");
+      signin.open();
+    }
+  }
+}
+
+/** Which formats this daemon makes: its own description says. */
+async function formats(): Promise<void> {
+  try {
+    const description = await ask<{ paths?: Record<string, { get?: { parameters?: { name: string; schema?: { enum?: string[] } }[] } }> }>("GET", "openapi.json");
+    const path = Object.entries(description.paths ?? {}).find(([name]) => name.endsWith("/cloud"))?.[1];
+    const known = path?.get?.parameters?.find((parameter) => parameter.name === "format")?.schema?.enum;
+    if (known !== undefined && known.length > 0) scans.setFormats(known);
+  } catch {
+    // The usual ones are offered then.
+  }
+}
+
+control.wire(() => {
+  const asked = sweep.asked();
+  if (asked !== null) void control.command("Start", () => api.capture(asked));
+});
+sweep.wire();
+scans.wire((scan) => {
+  viewer?.open(scan);
+  id("canvas").scrollIntoView({ block: "nearest" });
+});
+signin.wire(() => {
+  events.open();
+  void formats();
+});
+void formats();
+events.open();
+void probe();

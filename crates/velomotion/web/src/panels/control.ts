@@ -1,0 +1,142 @@
+// Start, home, stop. Stop is never disabled, is the Escape key too, and is sent again until it is answered.
+
+import { type Status, Refused, api } from "../api.ts";
+import { attribute, id, show, text } from "../dom.ts";
+import { duration, fixed } from "../format.ts";
+import type { Motion } from "../events.ts";
+import { announce, note } from "./messages.ts";
+
+const start = id<HTMLButtonElement>("start");
+const home = id<HTMLButtonElement>("home");
+const stop = id<HTMLButtonElement>("stop");
+const why = id("start-why");
+const doing = id("doing");
+const progress = id<HTMLProgressElement>("doing-progress");
+
+const STOP_TRIES = 5;
+const WORDS: Record<string, string> = {
+  idle: "Ready", connecting: "Connecting", homing: "Homing", moving: "Moving", capturing: "Sweeping", stopping: "Stopping",
+};
+
+let status: Status | null = null;
+let connected = false;
+let asking = false;
+let stopping = false;
+/** Seconds that were left when the move began. */
+let whole_s = 0;
+let stepped = 0;
+
+export function wire(asked: () => void): void {
+  stop.addEventListener("click", () => void halt());
+  home.addEventListener("click", () => void command("Home", () => api.home()));
+  id("sweep").addEventListener("submit", (event) => {
+    event.preventDefault();
+    asked();
+  });
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || status === null || status.activity.doing === "idle") return;
+    event.preventDefault();
+    void halt();
+  }, { capture: true });
+}
+
+/** Asks for a motion; says what was refused. */
+export async function command(what: string, go: () => Promise<unknown>): Promise<void> {
+  asking = true;
+  draw();
+  try {
+    await go();
+  } catch (error) {
+    // A stop by the user ends the motion with an answer of its own; that is no news to whoever pressed it.
+    if (!stopping) refused(what, error);
+  } finally {
+    asking = false;
+    draw();
+  }
+}
+
+export function refused(what: string, error: unknown): void {
+  if (error instanceof Refused) note("error", `${what}: ${error.message}`, error.help);
+  else note("error", `${what}: ${String(error)}`);
+}
+
+async function halt(): Promise<void> {
+  if (stopping) return;
+  stopping = true;
+  draw();
+  try {
+    for (let attempt = 1; ; attempt += 1) {
+      try {
+        // A capture is stopped so that what was swept is saved; whatever else moves, as it is.
+        await (status?.activity.doing === "capturing" || status?.activity.scan ? api.stopCapture() : api.stop());
+        announce("Stopped");
+        return;
+      } catch (error) {
+        const lost = error instanceof Refused && error.status === 0;
+        if (!lost || attempt === STOP_TRIES) return refused("Stop", error);
+      }
+    }
+  } finally {
+    stopping = false;
+    draw();
+  }
+}
+
+export function setConnected(now: boolean): void {
+  connected = now;
+  draw();
+}
+
+export function setStatus(now: Status): void {
+  const before = status?.activity.doing;
+  status = now;
+  const { doing: what, step } = now.activity;
+  if (before !== undefined && before !== what) announce(WORDS[what] ?? what);
+  if (what !== before || step !== stepped) whole_s = 0;
+  stepped = step ?? 0;
+  draw();
+}
+
+/** Twenty times a second: how long it still takes. */
+export function setMotion(motion: Motion): void {
+  const left_s = motion.left_s ?? null;
+  if (left_s === null) return;
+  whole_s = Math.max(whole_s, left_s);
+  progress.value = whole_s > 0 ? 1 - left_s / whole_s : 0;
+  if (status !== null) text(doing, said(status, left_s));
+}
+
+function said(now: Status, left_s: number | null): string {
+  const { doing: what, step, steps, to_deg } = now.activity;
+  const parts = [WORDS[what] ?? what];
+  if (typeof to_deg === "number" && (what === "moving" || what === "capturing")) parts[0] += ` to ${fixed(to_deg, 1)}\u00b0`;
+  if (step && steps && steps > 1) parts.push(`${step} of ${steps}`);
+  if (left_s !== null && left_s > 0) parts.push(`${duration(left_s)} left`);
+  return parts.join(" \u00b7 ");
+}
+
+/** Why nothing can be begun; null where it can. */
+function obstacle(): string | null {
+  if (!connected) return "No connection to the daemon.";
+  if (status === null) return "Waiting for the daemon.";
+  if (status.drive.state === "absent") return "No drive: see what to do above.";
+  if (status.drive.state === "fault") return "The drive is in fault: see what to do above.";
+  if (status.lidar.state === "absent") return "No lidar: see what to do above.";
+  return null;
+}
+
+function draw(): void {
+  const moving = status !== null && status.activity.doing !== "idle" && status.activity.doing !== "connecting";
+  const obstacle_now = obstacle();
+  const lidarOnly = obstacle_now?.startsWith("No lidar") ?? false;
+  start.disabled = asking || moving || obstacle_now !== null;
+  home.disabled = asking || moving || (obstacle_now !== null && !lidarOnly);
+  text(why, moving ? "" : (obstacle_now ?? ""));
+  show(why, why.textContent !== "");
+  attribute(stop, "data-moving", String(moving));
+  attribute(doing, "data-moving", String(moving));
+  if (stopping) text(doing, "Stopping");
+  else if (!connected) text(doing, "No connection");
+  else if (status !== null) text(doing, obstacle_now !== null && !moving ? "Not ready" : said(status, status.activity.left_s ?? null));
+  show(progress, moving);
+}

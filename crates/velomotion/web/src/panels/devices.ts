@@ -1,0 +1,166 @@
+// The two devices: chips at the top, what is wrong and what to do, the tilt gauge, facts. Left out: the buttons (control.ts).
+
+import { type Fault, type Problem, type Scan, type Status, api } from "../api.ts";
+import { attribute, h, id, show, text } from "../dom.ts";
+import type { Motion } from "../events.ts";
+import { bytes, count, digits, fixed } from "../format.ts";
+import { command } from "./control.ts";
+import { alarm } from "./messages.ts";
+
+type Tone = "good" | "warn" | "bad" | "off";
+type Fact = [name: string, value: string, tone?: Tone];
+
+function chip(name: string, words: string, tone: Tone): void {
+  const element = id(name);
+  attribute(element, "data-tone", tone);
+  text(element, words);
+}
+
+/** A list of facts; what did not change is not touched. */
+function facts(list: HTMLElement, rows: Fact[]): void {
+  while (list.children.length > rows.length) list.lastElementChild?.remove();
+  rows.forEach(([name, value, tone], i) => {
+    let row = list.children[i];
+    if (row === undefined) {
+      row = h("div", {}, h("dt"), h("dd"));
+      list.append(row);
+    }
+    const [dt, dd] = [row.children[0], row.children[1]];
+    if (dt === undefined || dd === undefined) return;
+    text(dt, name);
+    text(dd, value);
+    attribute(dd, "data-tone", tone ?? "off");
+  });
+}
+
+const TONES: Record<string, Tone> = { connected: "good", absent: "warn", fault: "bad" };
+const STATES: Record<string, string> = { connected: "ready", absent: "absent", fault: "fault" };
+
+export function setLink(words: string, tone: Tone): void {
+  chip("chip-link", words, tone);
+}
+
+export function setStatus(status: Status): void {
+  const { drive, lidar, disk } = status;
+  const silent = lidar.state === "connected" && !lidar.packets_per_s;
+  chip("chip-drive", `Drive ${STATES[drive.state] ?? drive.state}`, TONES[drive.state] ?? "off");
+  chip("chip-lidar", `Lidar ${STATES[lidar.state] ?? lidar.state}`, silent ? "warn" : (TONES[lidar.state] ?? "off"));
+  text(id("device"), `${status.device} \u00b7 ${status.version}`);
+  show(id("simulated"), status.simulated);
+  problems(status);
+  if (typeof drive.angle_deg === "number" && status.activity.doing === "idle") setMotion({ angle_deg: drive.angle_deg, speed_deg_s: drive.speed_deg_s ?? 0 });
+  marks(status.axis.min_deg, status.axis.max_deg);
+
+  const lost = (lidar.lost_packets ?? 0) + (lidar.dropped_by_kernel ?? 0);
+  const share = lidar.packets ? lost / (lidar.packets + lost) : 0;
+  const heard: Fact[] = [
+    ["Model", [lidar.model, lidar.return_mode].filter(Boolean).join(", ") || "\u2013"],
+    ["Turns", lidar.rpm ? `${count(lidar.rpm)} rpm` : "\u2013"],
+    ["Packets", typeof lidar.packets_per_s === "number" ? `${count(lidar.packets_per_s)} /s` : "\u2013", silent ? "warn" : "off"],
+    ["Lost", lost === 0 ? "none" : `${count(lidar.lost_packets ?? 0)} on the way, ${count(lidar.dropped_by_kernel ?? 0)} here (${digits(100 * share, 2)} %)`, lost === 0 ? "off" : "warn"],
+  ];
+  if (status.activity.doing === "capturing") heard.push(["In this scan", `${count(status.activity.packets ?? 0)} packets`]);
+  facts(id("lidar-facts"), heard);
+  spark(lidar.packets_per_s ?? 0);
+  const faults = drive.faults.map(faultWords);
+  const rows: Fact[] = [
+    ["State", drive.cia402 ?? STATES[drive.state] ?? drive.state, drive.state === "fault" ? "bad" : "off"],
+    ["Link", [drive.link, drive.port].filter(Boolean).join(", ") || "\u2013"],
+    ["Angle known", drive.referenced === true ? "yes" : drive.referenced === false ? "no: it homes first" : "\u2013"],
+  ];
+  if (faults.length > 0) rows.push(["Fault history", faults.join("; "), drive.state === "fault" ? "bad" : "off"]);
+  if (typeof disk?.free_bytes === "number") {
+    const near = typeof disk.reserve_bytes === "number" && disk.free_bytes < 2 * disk.reserve_bytes;
+    rows.push(["Disk free", bytes(disk.free_bytes), near ? "warn" : "off"]);
+  }
+  facts(id("drive-facts"), rows);
+}
+
+/** An entry of the drive's error history in words. */
+function faultWords(fault: Fault): string {
+  return [fault.code, fault.name ?? fault.meaning].filter(Boolean).join(" ");
+}
+
+let shown = "";
+
+/** What is wrong with a device, and what to do, above everything else. */
+function problems(status: Status): void {
+  const found: { device: string; state: string; problem: Problem }[] = [];
+  for (const [device, of] of [["Drive", status.drive], ["Lidar", status.lidar]] as const) {
+    if (of.problem) found.push({ device, state: of.state, problem: of.problem });
+    else if (of.state !== "connected") found.push({ device, state: of.state, problem: { error: of.state === "absent" ? "nothing is heard of it" : "it is in fault" } });
+  }
+  const now = JSON.stringify([found, status.activity.doing === "connecting"]);
+  if (now === shown) return;
+  shown = now;
+  const list = id("problems");
+  list.replaceChildren(...found.map(({ device, state, problem }) => h("section", { class: "problem", "data-device": device.toLowerCase(), "data-state": state },
+    h("h2", {}, `${device} ${STATES[state] ?? state}`),
+    h("p", {}, problem.error),
+    problem.help ? h("p", { class: "todo" }, `What to do: ${problem.help}`) : null,
+    device === "Drive" && state === "fault" ? h("div", { class: "row" }, h("button", { type: "button", id: "clear", click: () => void command("Clear", () => api.clear()) }, "Clear the fault")) : null,
+  )));
+  if (found.length > 0) alarm(found.map(({ device, state, problem }) => `${device} ${STATES[state] ?? state}: ${problem.error}. ${problem.help ?? ""}`).join(" "));
+}
+
+const head = id("gauge-head");
+
+export function setMotion(motion: Motion): void {
+  text(id("angle"), `${fixed(motion.angle_deg, 2)}\u00b0`);
+  text(id("speed-now"), `${fixed(Math.abs(motion.speed_deg_s), Math.abs(motion.speed_deg_s) < 10 ? 2 : 1)} \u00b0/s`);
+  attribute(head, "transform", `rotate(${motion.angle_deg.toFixed(2)})`);
+}
+
+let marked = "";
+
+/** The arc of the gauge from limit to limit; 0 is level, and the needle is what the lidar turns about. */
+function marks(min_deg: number, max_deg: number): void {
+  const now = `${min_deg} ${max_deg}`;
+  if (now === marked) return;
+  marked = now;
+  const at = (deg: number, radius: number) => {
+    const turn = (deg * Math.PI) / 180;
+    return `${(radius * Math.sin(turn)).toFixed(1)} ${(-radius * Math.cos(turn)).toFixed(1)}`;
+  };
+  attribute(id("gauge-arc"), "d", `M${at(min_deg, 58)}A58 58 0 ${max_deg - min_deg > 180 ? 1 : 0} 1 ${at(max_deg, 58)}`);
+  const svg = "http://www.w3.org/2000/svg";
+  id("gauge-marks").replaceChildren(...[min_deg, max_deg].map((deg) => {
+    const mark = document.createElementNS(svg, "text");
+    const [x, y] = at(deg, 69).split(" ");
+    mark.setAttribute("x", x ?? "0");
+    mark.setAttribute("y", y ?? "0");
+    mark.setAttribute("text-anchor", "middle");
+    mark.textContent = `${fixed(deg, 0)}\u00b0`;
+    return mark;
+  }));
+}
+
+const rates: number[] = [];
+
+/** Packets a second over the last two minutes. */
+function spark(rate: number): void {
+  rates.push(rate);
+  if (rates.length > 120) rates.shift();
+  const most = Math.max(...rates, 1) * 1.15;
+  const path = rates.map((value, i) => `${i === 0 ? "M" : "L"}${i + 120 - rates.length} ${(23 - (22 * value) / most).toFixed(1)}`).join("");
+  attribute(id("spark").firstElementChild as Element, "d", path);
+}
+
+/** Clock and angle of a scan, with what they may be off by. */
+export function setLast(scan: Scan | null): void {
+  const sync = scan?.report?.sync;
+  if (!scan || !sync) return facts(id("last-facts"), [["Scan", scan ? (scan.name || scan.id) : "none yet"]]);
+  const rows: Fact[] = [["Scan", scan.name || scan.id]];
+  const add = (name: string, value: number | null | undefined, unit: string, scale = 1) => {
+    if (typeof value === "number") rows.push([name, `${digits(value * scale)} ${unit}`]);
+  };
+  add("Clock, packets above it", sync.clock_residual_us, "\u00b5s");
+  add("Clock off by at most", sync.clock_bound_us, "\u00b5s");
+  add("Angle, samples agree to", sync.angle_rms_deg, "\u00b0 RMS");
+  add("Angle off by at most", sync.angle_bound_deg, "\u00b0");
+  if (sync.angle_method) rows.push(["Angle by", sync.angle_method]);
+  const lost = (scan.report?.lost_packets ?? 0) + (scan.report?.lost_records ?? 0);
+  rows.push(["Lost", lost === 0 ? "nothing" : `${count(lost)} packets`, lost === 0 ? "off" : "warn"]);
+  add("Against truth, RMS", scan.report?.truth?.rms_m, "mm", 1e3);
+  facts(id("last-facts"), rows);
+}

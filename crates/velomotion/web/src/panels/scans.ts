@@ -1,0 +1,165 @@
+// The list of scans: pictures, opening, downloads, deleting. Left out: drawing a cloud (viewer.ts).
+
+import { type Problem, type Scan, api, cloudUrl, logUrl, thumbnailUrl } from "../api.ts";
+import { h, id, show, text } from "../dom.ts";
+import { bytes, compact, moment } from "../format.ts";
+import { command } from "./control.ts";
+import { announce } from "./messages.ts";
+
+/** Extensions that the daemon makes clouds in, with what they are good for. */
+const FORMATS: [string, string][] = [
+  ["ply", "PLY"], ["laz", "LAZ"], ["las", "LAS"], ["pcd", "PCD"], ["e57", "E57"], ["csv", "CSV"], ["mcap", "MCAP (ROS 2)"],
+];
+const STATES: Record<string, string> = { recording: "recording", making: "making the cloud", whole: "whole", partial: "partial", failed: "no cloud" };
+
+const list = id<HTMLUListElement>("scans");
+const scans = new Map<string, Scan>();
+const cards = new Map<string, { card: HTMLLIElement; drawn: string }>();
+let formats = FORMATS;
+let current: string | null = null;
+let opened: (scan: Scan) => void = () => {};
+
+export function wire(open: (scan: Scan) => void): void {
+  opened = open;
+}
+
+/** Only these formats, where the daemon says which it knows. */
+export function setFormats(known: string[]): void {
+  const names = new Map(FORMATS);
+  formats = known.map((format) => [format, names.get(format) ?? format.toUpperCase()]);
+}
+
+export const all = () => [...scans.values()].sort((a, b) => b.started_s - a.started_s);
+export const get = (name: string) => scans.get(name);
+
+export function setAll(now: Scan[]): void {
+  scans.clear();
+  for (const scan of now) scans.set(scan.id, scan);
+  draw();
+}
+
+export function set(scan: Scan): void {
+  scans.set(scan.id, { ...scans.get(scan.id), ...scan });
+  draw();
+}
+
+export function remove(name: string): void {
+  scans.delete(name);
+  draw();
+}
+
+/** Marks the scan that is in view. */
+export function setCurrent(name: string | null): void {
+  current = name;
+  for (const [key, { card }] of cards) {
+    if (key === name) card.setAttribute("aria-current", "true");
+    else card.removeAttribute("aria-current");
+  }
+}
+
+function draw(): void {
+  const now = all();
+  for (const [key, { card }] of cards) {
+    if (!scans.has(key)) {
+      card.remove();
+      cards.delete(key);
+    }
+  }
+  now.forEach((scan, place) => {
+    const { report: _report, ...shown } = scan;
+    const drawn = JSON.stringify(shown);
+    let entry = cards.get(scan.id);
+    if (entry === undefined) {
+      entry = { card: h("li", { class: "scan", "data-id": scan.id }), drawn: "" };
+      cards.set(scan.id, entry);
+    }
+    if (entry.drawn !== drawn) {
+      const focused = entry.card.contains(document.activeElement) ? (document.activeElement as HTMLElement).dataset["role"] : undefined;
+      entry.card.replaceChildren(...content(scan));
+      entry.drawn = drawn;
+      if (focused !== undefined) entry.card.querySelector<HTMLElement>(`[data-role="${focused}"]`)?.focus();
+    }
+    if (list.children[place] !== entry.card) list.insertBefore(entry.card, list.children[place] ?? null);
+  });
+  setCurrent(current);
+  show(id("no-scans"), now.length === 0);
+  const sum = now.reduce((total, scan) => total + (scan.bytes ?? 0), 0);
+  text(id("scans-sum"), now.length === 0 ? "" : `${now.length}, ${bytes(sum)}`);
+}
+
+function content(scan: Scan): Node[] {
+  const title = scan.name || scan.id;
+  const there = scan.state === "whole" || scan.state === "partial";
+  const busy = scan.state === "recording" || scan.state === "making";
+  const picture = scan.thumbnail
+    ? h("img", { class: "thumb", src: thumbnailUrl(scan.id), alt: `Picture of ${title}`, loading: "lazy", width: 108, height: 72 })
+    : h("span", { class: "thumb" });
+  const numbers = [
+    scan.points ? `${compact(scan.points)} points` : null,
+    scan.bytes ? bytes(scan.bytes) : null,
+  ].filter((part) => part !== null).join(" \u00b7 ");
+  const speed = scan.asked?.speed_deg_s;
+  const row = h("div", { class: "row" },
+    there ? h("button", { type: "button", "data-role": "open", "aria-label": `Open ${title} in the view`, click: () => opened(scan) }, "Open") : null,
+    busy ? null : downloads(scan, title, there),
+    busy ? null : h("button", { type: "button", "data-role": "delete", "aria-label": `Delete ${title}`, click: () => void ask(scan) }, "Delete"),
+  );
+  return [
+    picture,
+    h("div", {},
+      h("h3", { title }, title),
+      h("p", {}, moment(scan.started_s), typeof speed === "number" ? ` \u00b7 ${speed} \u00b0/s` : null),
+      h("p", {}, numbers),
+      h("p", { class: "badges" }, h("span", { class: "badge", "data-state": scan.state }, STATES[scan.state] ?? scan.state), " ",
+        scan.simulated ? h("span", { class: "badge", "data-state": "simulated" }, "SIMULATED") : null),
+    ),
+    ...(scan.why ? [h("p", { class: "why", title: because(scan.why) }, because(scan.why))] : []),
+    row,
+  ];
+}
+
+function because(why: Problem): string {
+  return [why.error, why.help].filter(Boolean).join(". ");
+}
+
+/** One list of formats; what is chosen is downloaded. */
+function downloads(scan: Scan, title: string, there: boolean): HTMLElement {
+  const choose = h("select", { "data-role": "download", "aria-label": `Download ${title} as` }, h("option", { value: "" }, "Download"),
+    ...(there ? formats.map(([format, words]) => h("option", { value: format }, words)) : []),
+    h("option", { value: "log" }, "log (pcapng)"));
+  choose.addEventListener("change", () => {
+    const format = choose.value;
+    choose.value = "";
+    if (format === "") return;
+    const link = h("a", {
+      href: format === "log" ? logUrl(scan.id) : cloudUrl(scan.id, format),
+      download: `${scan.id}.${format === "log" ? "pcapng" : format}`,
+    });
+    link.click();
+    announce(`Downloading ${title} as ${format}`);
+  });
+  return choose;
+}
+
+async function ask(scan: Scan): Promise<void> {
+  const dialog = id<HTMLDialogElement>("delete");
+  text(id("delete-what"), scan.name ? `${scan.name} (${scan.id})` : scan.id);
+  dialog.returnValue = "";
+  const before = document.activeElement;
+  // Not modal: nothing may stand between the user and stop.
+  dialog.show();
+  const escape = (event: KeyboardEvent) => {
+    if (event.key === "Escape") dialog.close("keep");
+  };
+  dialog.addEventListener("keydown", escape);
+  await new Promise((resolve) => dialog.addEventListener("close", resolve, { once: true }));
+  dialog.removeEventListener("keydown", escape);
+  if (before instanceof HTMLElement) before.focus();
+  if (dialog.returnValue !== "delete") return;
+  await command("Delete", async () => {
+    await api.remove(scan.id);
+    remove(scan.id);
+    announce("Deleted");
+    id("scans-title").scrollIntoView({ block: "nearest" });
+  });
+}

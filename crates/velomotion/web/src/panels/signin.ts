@@ -1,0 +1,34 @@
+// Signing in with the daemon's token. It is sent once; the browser keeps the cookie, this page keeps nothing.
+
+import { Refused, ask } from "../api.ts";
+import { id, text } from "../dom.ts";
+
+const dialog = id<HTMLDialogElement>("signin");
+const field = id<HTMLInputElement>("token");
+const wrong = id("signin-wrong");
+
+export function wire(signed: () => void): void {
+  // Without a token there is nothing to be seen: the dialog stays.
+  dialog.addEventListener("cancel", (event) => event.preventDefault());
+  id("signin-form").addEventListener("submit", (event) => {
+    event.preventDefault();
+    void send(signed);
+  });
+}
+
+export function open(): void {
+  if (!dialog.open) dialog.showModal();
+}
+
+async function send(signed: () => void): Promise<void> {
+  try {
+    await ask("POST", "/login", { token: field.value });
+    field.value = "";
+    text(wrong, "");
+    dialog.close();
+    signed();
+  } catch (error) {
+    text(wrong, error instanceof Refused ? [error.message, error.help].filter(Boolean).join(": ") : String(error));
+    field.select();
+  }
+}

@@ -1,0 +1,112 @@
+// The form of the next scan, and what it would be: time, resolution, bytes. Left out: pressing Start (control.ts).
+
+import { type Asked, type Plan, type Status, Refused, api } from "../api.ts";
+import { attribute, h, id } from "../dom.ts";
+import { bytes, digits, duration } from "../format.ts";
+
+const form = id<HTMLFormElement>("sweep");
+const input = (name: string) => id<HTMLInputElement>(name);
+const speed = input("speed");
+const slide = input("speed-slide");
+const from = input("from");
+const to = input("to");
+const sweeps = input("sweeps");
+const both = input("both");
+const accel = input("accel");
+const name = input("name");
+const tolerance = input("tolerance");
+const out = id<HTMLOutputElement>("plan");
+
+const LEAST_DEG_S = 0.025;
+let most_deg_s = 98;
+let timer = 0;
+let serial = 0;
+let known = "";
+
+export function wire(): void {
+  slide.addEventListener("input", () => {
+    speed.value = String(round(LEAST_DEG_S * (most_deg_s / LEAST_DEG_S) ** Number(slide.value)));
+  });
+  both.addEventListener("change", () => attribute(sweeps, "placeholder", both.checked ? "2" : "1"));
+  form.addEventListener("input", (event) => {
+    if (event.target !== slide) align();
+    later();
+  });
+}
+
+/** One motor turn a minute is 0.05 deg/s behind the usual gear: the slider keeps to speeds that can be. */
+function round(deg_s: number): number {
+  const step = deg_s < 1 ? 0.025 : deg_s < 10 ? 0.05 : 0.25;
+  return Number((Math.round(deg_s / step) * step).toFixed(3));
+}
+
+function align(): void {
+  const deg_s = Number(speed.value);
+  if (deg_s > 0) slide.value = String(Math.log(deg_s / LEAST_DEG_S) / Math.log(most_deg_s / LEAST_DEG_S));
+}
+
+/** The axis's limits and what is taken where a field is empty. */
+export function setStatus(status: Status): void {
+  const { axis } = status;
+  const now = JSON.stringify(axis);
+  if (now === known) return;
+  known = now;
+  most_deg_s = axis.max_speed_deg_s;
+  attribute(speed, "max", String(axis.max_speed_deg_s));
+  attribute(accel, "max", String(axis.max_accel_deg_s2));
+  attribute(accel, "placeholder", String(axis.accel_deg_s2));
+  for (const [field, usual] of [[from, axis.max_deg], [to, axis.min_deg]] as const) {
+    attribute(field, "min", String(axis.min_deg));
+    attribute(field, "max", String(axis.max_deg));
+    attribute(field, "placeholder", String(usual));
+  }
+  align();
+  later();
+}
+
+/** The capture that the form asks for; null where a field is wrong, which the browser then says. */
+export function asked(): Asked | null {
+  if (!form.reportValidity()) return null;
+  return read();
+}
+
+function read(): Asked {
+  const asked: Asked = { speed_deg_s: Number(speed.value) };
+  if (from.value !== "") asked.from_deg = Number(from.value);
+  if (to.value !== "") asked.to_deg = Number(to.value);
+  if (accel.value !== "") asked.accel_deg_s2 = Number(accel.value);
+  if (sweeps.value !== "") asked.sweeps = Number(sweeps.value);
+  if (both.checked) asked.both_ways = true;
+  if (tolerance.value.trim() !== "") asked.tolerance = tolerance.value.trim();
+  if (name.value.trim() !== "") asked.name = name.value.trim();
+  return asked;
+}
+
+/** Asks for the plan a moment after the last change. */
+function later(): void {
+  clearTimeout(timer);
+  timer = window.setTimeout(() => void plan(), 250);
+}
+
+async function plan(): Promise<void> {
+  const mine = ++serial;
+  if (!(Number(speed.value) > 0)) return;
+  try {
+    const found = await api.plan(read());
+    if (mine === serial) draw(found);
+  } catch (error) {
+    if (mine !== serial || (error instanceof Refused && (error.status === 0 || error.status === 401))) return;
+    const words = error instanceof Refused ? [error.message, error.help].filter(Boolean).join(": ") : String(error);
+    out.replaceChildren(h("p", { class: "wrong" }, words));
+  }
+}
+
+function draw(found: Plan): void {
+  const cell = (value: string, words: string) => h("span", {}, h("b", {}, value), words);
+  const step = found.step_deg ?? null;
+  out.replaceChildren(
+    cell(duration(found.sweep_s), "a sweep"),
+    step === null ? cell("\u2013", "resolution: the lidar is not heard") : cell(`${digits(step)}\u00b0`, "vertical resolution"),
+    h("p", {}, `${duration(found.moves_s)} in all \u00b7 ${digits(found.motor_rpm, 4)} rpm \u00b7 ${bytes(found.bytes)} at most`),
+  );
+}

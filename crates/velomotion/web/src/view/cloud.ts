@@ -1,0 +1,173 @@
+// Points on the graphics card, in chunks. Left out: how they are drawn (shaders.ts), where they come from.
+
+import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Points, type RawShaderMaterial, Sphere, Vector3 } from "three";
+
+import type { Columns } from "../frame.ts";
+import { type Ranges, Sample } from "../sample.ts";
+
+/** Points of a chunk of a cloud that grows. */
+const CHUNK = 65_536;
+const FAR = new Sphere(new Vector3(), 1e4);
+
+function chunk(columns: Columns, material: RawShaderMaterial): Points {
+  const geometry = new BufferGeometry();
+  const add = (name: string, array: Float32Array | Uint8Array, size: number) => geometry.setAttribute(name, new BufferAttribute(array, size));
+  add("position", columns.positions, 3);
+  add("time", columns.times, 1);
+  add("intensity", columns.intensities, 1);
+  add("ring", columns.rings, 1);
+  if (columns.sds.length > 0) add("sd", columns.sds, 1);
+  return new Points(geometry, material);
+}
+
+/** A cloud that came whole batches at a time: its points live on the graphics card alone. */
+export class Loaded {
+  readonly group = new Group();
+  ranges: Ranges | null = null;
+  count = 0;
+
+  constructor(private readonly material: RawShaderMaterial) {}
+
+  add(columns: Columns, ranges: Ranges): void {
+    const points = chunk(columns, this.material);
+    points.geometry.computeBoundingSphere();
+    for (const attribute of Object.values(points.geometry.attributes)) {
+      if (attribute instanceof BufferAttribute) attribute.onUpload(forget);
+    }
+    points.userData["count"] = columns.count;
+    this.group.add(points);
+    this.ranges = ranges;
+    this.count += columns.count;
+  }
+
+  /** Draws this share of every chunk: the order in a chunk is by lot. */
+  share(share: number): void {
+    for (const child of this.group.children) {
+      const points = child as Points;
+      points.geometry.setDrawRange(0, Math.ceil(share * (points.userData["count"] as number)));
+    }
+  }
+
+  dispose(): void {
+    for (const child of this.group.children) (child as Points).geometry.dispose();
+    this.group.removeFromParent();
+  }
+}
+
+/** Main memory need not keep what the card has. */
+function forget(this: BufferAttribute): void {
+  (this as { array: ArrayLike<number> }).array = new (this.array.constructor as new (n: number) => Float32Array)(0);
+}
+
+/** A cloud that grows point by point while it is measured. Where there are too many, every second goes. */
+export class Live {
+  readonly group = new Group();
+  /** Points that came, kept or not. */
+  received = 0;
+  private sample = new Sample();
+  private stride = 1;
+  private skip = 0;
+  private kept = 0;
+  private start_s: number | null = null;
+  private chunks: { columns: Columns; points: Points }[] = [];
+
+  constructor(
+    private readonly material: RawShaderMaterial,
+    private readonly most: number,
+  ) {}
+
+  get count(): number {
+    return this.kept;
+  }
+
+  get ranges(): Ranges | null {
+    return this.sample.ranges();
+  }
+
+  add(columns: Columns, start_s: number): void {
+    this.start_s ??= start_s;
+    const offset_s = start_s - this.start_s;
+    this.sample.add(columns, offset_s);
+    this.received += columns.count;
+    let i = this.skip;
+    for (; i < columns.count; i += this.stride) this.append(columns, i, offset_s);
+    this.skip = i - columns.count;
+    for (const { columns: c, points } of this.chunks) upload(points, c.count);
+    if (this.kept > this.most) this.halve();
+  }
+
+  share(): void {
+    // Always drawn whole: it is bounded, and its order is that of time.
+  }
+
+  dispose(): void {
+    for (const { points } of this.chunks) points.geometry.dispose();
+    this.group.removeFromParent();
+  }
+
+  private append(from: Columns, i: number, offset_s: number): void {
+    let last = this.chunks.at(-1);
+    if (last === undefined || last.columns.count === CHUNK) {
+      last = this.grow();
+    }
+    const { columns: to } = last;
+    const at = to.count;
+    to.positions[3 * at] = from.positions[3 * i] ?? 0;
+    to.positions[3 * at + 1] = from.positions[3 * i + 1] ?? 0;
+    to.positions[3 * at + 2] = from.positions[3 * i + 2] ?? 0;
+    to.times[at] = (from.times[i] ?? 0) + offset_s;
+    to.sds[at] = from.sds[i] ?? 0;
+    to.intensities[at] = from.intensities[i] ?? 0;
+    to.rings[at] = from.rings[i] ?? 0;
+    to.count += 1;
+    this.kept += 1;
+  }
+
+  private grow(): { columns: Columns; points: Points } {
+    const columns: Columns = {
+      count: 0,
+      positions: new Float32Array(3 * CHUNK),
+      times: new Float32Array(CHUNK),
+      sds: new Float32Array(CHUNK),
+      intensities: new Uint8Array(CHUNK),
+      rings: new Uint8Array(CHUNK),
+    };
+    const points = chunk(columns, this.material);
+    points.geometry.boundingSphere = FAR;
+    points.frustumCulled = false;
+    for (const attribute of Object.values(points.geometry.attributes)) {
+      if (attribute instanceof BufferAttribute) attribute.setUsage(DynamicDrawUsage);
+    }
+    const grown = { columns, points };
+    points.userData["uploaded"] = 0;
+    this.group.add(points);
+    this.chunks.push(grown);
+    return grown;
+  }
+
+  private halve(): void {
+    const old = this.chunks;
+    this.chunks = [];
+    this.kept = 0;
+    for (const { columns, points } of old) {
+      for (let i = 0; i < columns.count; i += 2) this.append(columns, i, 0);
+      points.geometry.dispose();
+      points.removeFromParent();
+    }
+    this.stride *= 2;
+    for (const { columns, points } of this.chunks) upload(points, columns.count);
+  }
+}
+
+/** Sends what is new of a chunk to the card. */
+function upload(points: Points, count: number): void {
+  const uploaded = points.userData["uploaded"] as number;
+  if (uploaded === count) return;
+  for (const attribute of Object.values(points.geometry.attributes)) {
+    if (!(attribute instanceof BufferAttribute)) continue;
+    attribute.addUpdateRange(uploaded * attribute.itemSize, (count - uploaded) * attribute.itemSize);
+    attribute.needsUpdate = true;
+  }
+  points.geometry.setDrawRange(0, count);
+  points.userData["uploaded"] = count;
+}

@@ -1,0 +1,96 @@
+// Downloads and parses a scan's cloud beside the page, so that the page answers meanwhile. Left out: the pictures.
+//
+// The points of a batch are shuffled: any beginning of it is then an even sample, which is what is drawn while the view moves.
+
+import type { Columns } from "./frame.ts";
+import { PlyReader } from "./ply.ts";
+import { type Ranges, Sample } from "./sample.ts";
+
+export interface Order {
+  url: string;
+  /** Points to keep at most; of more, every second, third... is kept. */
+  most: number;
+}
+
+export type Told =
+  | { kind: "points"; columns: Columns; ranges: Ranges; read: number; total: number; every: number }
+  | { kind: "done"; read: number; total: number; every: number }
+  | { kind: "failed"; error: string; status: number };
+
+const BATCH = 65_536;
+
+/** The worker's own global; the page's types know another. */
+const here = self as unknown as {
+  onmessage: ((event: MessageEvent<Order>) => void) | null;
+  postMessage(told: Told, transfer?: Transferable[]): void;
+};
+
+here.onmessage = (event) => {
+  void load(event.data).catch((error: unknown) => {
+    here.postMessage({ kind: "failed", error: error instanceof Error ? error.message : String(error), status: 0 });
+  });
+};
+
+async function load(order: Order): Promise<void> {
+  const answer = await fetch(order.url, { credentials: "same-origin" });
+  if (!answer.ok || answer.body === null) {
+    const said = (await answer.json().catch(() => null)) as { error?: string; help?: string } | null;
+    const error = [said?.error ?? `the daemon answers ${answer.status}`, said?.help].filter(Boolean).join(": ");
+    here.postMessage({ kind: "failed", error, status: answer.status });
+    return;
+  }
+  const ply = new PlyReader(BATCH);
+  const sample = new Sample();
+  const reader = answer.body.getReader();
+  const deliver = (columns: Columns) => {
+    const total = ply.count ?? 0;
+    const every = Math.max(1, Math.ceil(total / order.most));
+    const kept = shuffled(columns, Math.ceil(columns.count / every));
+    sample.add(columns);
+    const ranges = sample.ranges();
+    if (ranges === null) return;
+    const transfer = [kept.positions, kept.times, kept.sds, kept.intensities, kept.rings].map((array) => array.buffer);
+    here.postMessage({ kind: "points", columns: kept, ranges, read: ply.done + columns.count, total, every }, transfer);
+  };
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    for (const columns of ply.push(value)) deliver(columns);
+  }
+  for (const columns of ply.end()) deliver(columns);
+  const total = ply.count ?? 0;
+  here.postMessage({ kind: "done", read: ply.done, total, every: Math.max(1, Math.ceil(total / order.most)) });
+}
+
+/** `keep` of the points, in an order drawn by lot, the same lot each time. */
+function shuffled(columns: Columns, keep: number): Columns {
+  const { count } = columns;
+  const order = new Uint32Array(count).map((_, i) => i);
+  let seed = 0x9e3779b9;
+  for (let i = count - 1; i > 0; i -= 1) {
+    seed ^= seed << 13;
+    seed ^= seed >>> 17;
+    seed ^= seed << 5;
+    const j = (seed >>> 0) % (i + 1);
+    const other = order[j] ?? 0;
+    order[j] = order[i] ?? 0;
+    order[i] = other;
+  }
+  const out: Columns = {
+    count: keep,
+    positions: new Float32Array(3 * keep),
+    times: new Float32Array(keep),
+    sds: new Float32Array(columns.sds.length > 0 ? keep : 0),
+    intensities: new Uint8Array(keep),
+    rings: new Uint8Array(keep),
+  };
+  for (let i = 0; i < keep; i += 1) {
+    const from = order[i] ?? 0;
+    out.positions.set(columns.positions.subarray(3 * from, 3 * from + 3), 3 * i);
+    out.times[i] = columns.times[from] ?? 0;
+    out.intensities[i] = columns.intensities[from] ?? 0;
+    out.rings[i] = columns.rings[from] ?? 0;
+    if (out.sds.length > 0) out.sds[i] = columns.sds[from] ?? 0;
+  }
+  return out;
+}
