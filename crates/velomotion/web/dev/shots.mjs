@@ -1,11 +1,12 @@
 #!/usr/bin/env node
 // Pictures of the page as the made-up server shows it: node dev/shots.mjs http://127.0.0.1:8017 FOLDER. Needs chromedriver and chromium.
 import { spawn } from "node:child_process";
-import { mkdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 
 const [root, folder] = [process.argv[2] ?? "http://127.0.0.1:8017", process.argv[3] ?? "shots"];
 const only = process.argv[4];
 mkdirSync(folder, { recursive: true });
+const audit = readFileSync(new URL("../../../../tests/browser/audit.js", import.meta.url), "utf8");
 const DRIVER = 9517;
 const driver = spawn("chromedriver", [`--port=${DRIVER}`], { stdio: "ignore" });
 const wait = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -48,10 +49,10 @@ try {
           writeFileSync(`${folder}/${name}-whole.png`, Buffer.from(whole.data, "base64"));
         }
         writeFileSync(`${folder}/${name}.png`, Buffer.from(await ask("GET", `${at}/screenshot`), "base64"));
-        const log = (await ask("POST", `${at}/se/log`, { type: "browser" })).filter((line) => !/favicon/.test(line.message));
+        const log = (await ask("POST", `${at}/se/log`, { type: "browser" })).filter((line) => mode !== "gone" && mode !== "token" && !/openapi/.test(line.message));
         if (log.length > 0) console.log(name, log.map((line) => line.message));
-        const wide = await ask("POST", `${at}/execute/sync`, { script: "return document.documentElement.scrollWidth - innerWidth", args: [] });
-        if (wide > 0) console.log(name, `scrolls sideways by ${wide} px`);
+        const complaints = await ask("POST", `${at}/execute/sync`, { script: audit, args: [] });
+        if (complaints.length > 0) console.log(name, complaints);
         await ask("DELETE", at);
       }
     }

@@ -107,8 +107,7 @@ async function last(): Promise<void> {
 
 async function list(): Promise<void> {
   try {
-    const now = await api.scans();
-    scans.setAll(now);
+    await scans.load(api.scans);
     const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
     if (viewer !== null && viewer.shown === null && newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(newest);
     await last();

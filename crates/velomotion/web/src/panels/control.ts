@@ -109,9 +109,9 @@ export function setMotion(motion: Motion): void {
 function said(now: Status, left_s: number | null): string {
   const { doing: what, step, steps, to_deg } = now.activity;
   const parts = [WORDS[what] ?? what];
-  if (typeof to_deg === "number" && (what === "moving" || what === "capturing")) parts[0] += ` to ${fixed(to_deg, 1)}\u00b0`;
+  if (typeof to_deg === "number" && (what === "moving" || what === "capturing")) parts[0] += ` to ${fixed(to_deg, Number.isInteger(to_deg) ? 0 : 1)}\u00b0`;
   if (step && steps && steps > 1) parts.push(`${step} of ${steps}`);
-  if (left_s !== null && left_s > 0) parts.push(`${duration(left_s)} left`);
+  if (left_s !== null && left_s > 0) parts.push(`${left_s < 60 ? `${left_s.toFixed(1)} s` : duration(left_s)} left`);
   return parts.join(" \u00b7 ");
 }
 

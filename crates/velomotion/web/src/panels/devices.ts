@@ -94,7 +94,7 @@ function problems(status: Status): void {
   if (now === shown) return;
   shown = now;
   const list = id("problems");
-  list.replaceChildren(...found.map(({ device, state, problem }) => h("section", { class: "problem", "data-device": device.toLowerCase(), "data-state": state },
+  list.replaceChildren(...found.map(({ device, state, problem }) => h("section", { class: "problem", "aria-label": `${device}: what is wrong`, "data-device": device.toLowerCase(), "data-state": state },
     h("h2", {}, `${device} ${STATES[state] ?? state}`),
     h("p", {}, problem.error),
     problem.help ? h("p", { class: "todo" }, `What to do: ${problem.help}`) : null,

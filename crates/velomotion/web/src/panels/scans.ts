@@ -14,6 +14,7 @@ const STATES: Record<string, string> = { recording: "recording", making: "making
 
 const list = id<HTMLUListElement>("scans");
 const scans = new Map<string, Scan>();
+const told = new Set<string>();
 const cards = new Map<string, { card: HTMLLIElement; drawn: string }>();
 let formats = FORMATS;
 let current: string | null = null;
@@ -32,18 +33,23 @@ export function setFormats(known: string[]): void {
 export const all = () => [...scans.values()].sort((a, b) => b.started_s - a.started_s);
 export const get = (name: string) => scans.get(name);
 
-export function setAll(now: Scan[]): void {
-  scans.clear();
-  for (const scan of now) scans.set(scan.id, scan);
+/** What was said of a scan while the list was on its way is newer than the list. */
+export async function load(list: () => Promise<Scan[]>): Promise<void> {
+  told.clear();
+  const now = await list();
+  for (const key of [...scans.keys()]) if (!told.has(key)) scans.delete(key);
+  for (const scan of now) if (!told.has(scan.id)) scans.set(scan.id, scan);
   draw();
 }
 
 export function set(scan: Scan): void {
+  told.add(scan.id);
   scans.set(scan.id, { ...scans.get(scan.id), ...scan });
   draw();
 }
 
 export function remove(name: string): void {
+  told.add(name);
   scans.delete(name);
   draw();
 }
