@@ -42,6 +42,11 @@ export class Events {
 
   constructor(private readonly listener: Listener) {}
 
+  /** Of live points every so many-th is sent. */
+  get every(): number {
+    return this.thin;
+  }
+
   open(): void {
     clearTimeout(this.again);
     this.close();

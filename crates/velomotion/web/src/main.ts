@@ -75,7 +75,7 @@ const listener: Listener = {
     note(said.level, said.text, said.help);
   },
   points(frame) {
-    viewer?.frame(frame);
+    viewer?.frame(frame, events.every);
   },
 };
 
@@ -154,6 +154,13 @@ scans.wire((scan) => {
 signin.wire(() => {
   events.open();
   void formats();
+});
+// A phone that was in a pocket comes back at once.
+document.addEventListener("visibilitychange", () => {
+  if (!document.hidden && !connected) events.open();
+});
+addEventListener("online", () => {
+  if (!connected) events.open();
 });
 void formats();
 events.open();

@@ -23,6 +23,7 @@ export class Viewer {
   /** The scan in view, or the one that is being measured. */
   shown: string | null = null;
   private readonly stage: Stage;
+  private begun: string | null = null;
   private live: Live | null = null;
   private loaded: Loaded | null = null;
   private worker: Worker | null = null;
@@ -50,7 +51,9 @@ export class Viewer {
 
   /** A scan begins: what is measured from now on is shown. */
   begin(scan: string, title: string, simulated: boolean): void {
-    if (this.live !== null && this.shown === scan) return;
+    // Whoever opened another scan meanwhile is not taken away from it.
+    if (this.begun === scan) return;
+    this.begun = scan;
     this.clear();
     this.shown = scan;
     this.live = new Live(this.stage.points, small.matches ? 1_500_000 : 6_000_000);
@@ -60,12 +63,13 @@ export class Viewer {
     this.changed(scan);
   }
 
-  frame(frame: Frame): void {
+  /** Of live points every `thin`th comes here. */
+  frame(frame: Frame, thin: number): void {
     this.stage.setTilt(frame.tilt_deg);
     const live = this.live;
     if (live === null) return;
     live.add(frame, frame.start_s);
-    this.say(live.received, [live.count < live.received ? `${count(live.count)} drawn` : "", frame.left_out > 0 ? `${count(frame.left_out)} records not shown live, all are recorded` : ""].filter(Boolean).join("; "));
+    this.say(live.received, [thin > 1 ? `every ${thin}th of those measured` : "", live.count < live.received ? `${count(live.count)} drawn` : "", frame.left_out > 0 ? `${count(frame.left_out)} records not shown live, all are recorded` : ""].filter(Boolean).join("; "));
     const now_ms = performance.now();
     if (now_ms - this.legend_ms > 250) {
       this.legend_ms = now_ms;

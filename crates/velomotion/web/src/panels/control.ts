@@ -68,18 +68,26 @@ async function halt(): Promise<void> {
     for (let attempt = 1; ; attempt += 1) {
       try {
         // A capture is stopped so that what was swept is saved; whatever else moves, as it is.
-        await (status?.activity.doing === "capturing" || status?.activity.scan ? api.stopCapture() : api.stop());
+        if (status?.activity.scan) await api.stopCapture().catch(notNow);
+        else await api.stop();
         announce("Stopped");
         return;
       } catch (error) {
         const lost = error instanceof Refused && error.status === 0;
         if (!lost || attempt === STOP_TRIES) return refused("Stop", error);
+        await new Promise((again) => setTimeout(again, 200));
       }
     }
   } finally {
     stopping = false;
     draw();
   }
+}
+
+/** The scan was over before the daemon heard of it; whatever moves by now is stopped all the same. */
+async function notNow(error: unknown): Promise<unknown> {
+  if (error instanceof Refused && error.status === 409) return api.stop();
+  throw error;
 }
 
 export function setConnected(now: boolean): void {
@@ -139,4 +147,7 @@ function draw(): void {
   else if (!connected) text(doing, "No connection");
   else if (status !== null) text(doing, obstacle_now !== null && !moving ? "Not ready" : said(status, status.activity.left_s ?? null));
   show(progress, moving);
+  const title = !connected ? "No connection" : moving ? (WORDS[status?.activity.doing ?? ""] ?? "Moving") : obstacle_now !== null ? "Not ready" : null;
+  const whole = title === null ? "velomotion" : `${title} \u2013 velomotion`;
+  if (document.title !== whole) document.title = whole;
 }
