@@ -8,6 +8,7 @@
 //! eight rays at a time where they go nearly the same way (`packet`). Why no crate does it: docs/src/rays.md.
 //! Left out: materials, effects, time; files; everything about a sensor.
 
+mod batch;
 mod beam;
 mod build;
 mod bvh;
@@ -18,14 +19,18 @@ mod packet;
 mod placement;
 mod ray;
 mod solids;
+mod solids8;
 mod surface;
 mod threads;
 mod triangle;
 
+pub(crate) use batch::Packets;
+pub use batch::Rays;
 pub use build::Quality;
-pub use caster::{CastError, Caster, Rays};
+pub use caster::{CastError, Caster};
 pub use height_field::{HeightField, HeightFieldError};
 pub use mesh::{Mesh, MeshError};
+pub(crate) use packet::{LANES, Lanes, Nearest};
 pub use placement::{Placement, PlacementError};
 pub use ray::{Hit, Normal, ObjectId, Ray, RayError, Reach};
 pub use solids::{Cuboid, Cylinder, Plane, Sphere};

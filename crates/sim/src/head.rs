@@ -8,8 +8,6 @@ use firmware_sim::vlp16;
 use glam::{DAffine3, DMat3, DVec3};
 use units::{Degrees, Metres};
 
-use crate::shapes::Ray;
-
 /// Nearest surface that returns, metres; a nearer one blocks the beam (data sheet of the VLP-16: 1 m to 100 m).
 pub const MIN_RANGE_M: f64 = 1.0;
 /// Farthest surface that returns, metres.
@@ -79,21 +77,16 @@ impl Head {
     /// the tilt axis, x right, y forward, z up. `None` where there is no such laser.
     ///
     /// The azimuth runs clockwise seen from above (y to x), a positive tilt turns z towards x.
+    #[inline]
     #[must_use]
     pub fn beam(&self, laser: usize, azimuth: Degrees, tilt: Degrees) -> Option<(DVec3, DVec3)> {
-        let ray = self.ray(laser, azimuth, tilt)?;
-        Some((ray.origin, ray.direction))
-    }
-
-    #[inline]
-    pub(crate) fn ray(&self, laser: usize, azimuth: Degrees, tilt: Degrees) -> Option<Ray> {
         let &(origin, aim) = self.beams.get(laser)?;
         let spin = DMat3::from_rotation_z(-azimuth.to_radians().0);
         let platform = DMat3::from_rotation_y(tilt.to_radians().0);
-        Some(Ray {
-            origin: platform * self.mount.transform_point3(spin * origin),
-            direction: platform * self.mount.transform_vector3(spin * aim),
-        })
+        Some((
+            platform * self.mount.transform_point3(spin * origin),
+            platform * self.mount.transform_vector3(spin * aim),
+        ))
     }
 }
 

@@ -20,7 +20,7 @@ use thiserror::Error;
 use toml::Spanned;
 use units::{Host, Stamp};
 
-use crate::effects::Wishes;
+use crate::effects::{MovingObjects, Wishes};
 pub use crate::scenery::SHIPPED;
 use crate::scenery::{MaterialTable, ObjectTable, no_files, rotation};
 use crate::simulate::{Mount, Simulation};
@@ -192,8 +192,19 @@ impl Scene {
         })?;
         let seed = seed.unwrap_or(file.seed);
         let mut scene = Self::new(&file, text, seed, clock).map_err(|wrong| wrong.in_file(text))?;
-        scene.simulation.scene = around::build(text, file, seed, files)?;
+        let boxes = file.effects.moving_objects.clone().map(Spanned::into_inner);
+        let around = around::build(text, file, seed, files)?;
+        scene.simulation.scene = around.scene;
         scene.effects.find_lines(|at| line_of(text, at));
+        if let Some(line) = around.line {
+            let all =
+                MovingObjects::of(&boxes.unwrap_or_default()).map(|boxes| boxes.and(around.movers));
+            let all = all.map_err(|unfit| SceneError {
+                line,
+                what: unfit.to_string(),
+            })?;
+            scene.effects.move_objects(all, line, clock);
+        }
         Ok(scene)
     }
 

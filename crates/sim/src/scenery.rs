@@ -19,7 +19,7 @@ pub use coats::{Coat, Material, Placed};
 pub use error::{At, SceneryError};
 pub use generators::{ParkedCars, Quarry, Trees};
 pub use meshes::{MeshFileError, MeshFormat};
-pub use moving::Moving;
+pub use moving::{Moving, Travel};
 pub use objects::{
     BoxShape, Copies, CylinderShape, Facade, HeightFieldShape, MaterialTable, MeshShape,
     ObjectTable, PlaneShape, SphereShape,
@@ -94,15 +94,6 @@ impl Scenery {
         file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Placed, SceneryError> {
         place::place(self, seed, file)
-    }
-
-    /// The line that first asks for the motion of an object, if any does.
-    #[must_use]
-    pub fn moving_line(&self) -> Option<usize> {
-        self.objects
-            .iter()
-            .find(|(_, object)| object.is_moving())
-            .map(|(at, _)| at.line)
     }
 }
 

@@ -73,11 +73,11 @@ mod tests {
     use units::{Degrees, Gearing, Metres};
 
     use super::*;
+    use crate::cast::{Object, Sphere};
     use crate::clock::{HOUR_NS, LidarClock};
     use crate::head::LASERS as TABLE;
     use crate::scene::Scene;
     use crate::scenes;
-    use crate::shapes::Sphere;
     use crate::truth::Truth;
     use crate::world::Spin;
 
@@ -217,7 +217,9 @@ mod tests {
     #[test]
     fn too_near_and_too_far_do_not_return() {
         let raw = |radius_m| {
-            let scene = Scene::new().with(Sphere::new(DVec3::ZERO, radius_m, 9));
+            let scene = Scene::new()
+                .with(Object::new(Sphere { radius_m }), 9)
+                .unwrap();
             let world = world(scene, 0, 0.0);
             let packet = Spinning::default().data_packet(&world, &sweep(2));
             // Laser 14 at -1 deg, 0.7 mm above the head's origin, 60 mm above the centre.

@@ -58,13 +58,13 @@ impl World {
     pub fn fire(&self, shaft: &Shaft, sequence: i64, laser: usize) -> Option<Return> {
         let elapsed_ns = elapsed(sequence, laser);
         let tilt = shaft.tilt(self.clock.host(elapsed_ns))?;
-        let ray = self.head.ray(laser, self.spin.azimuth(elapsed_ns), tilt)?;
+        let (origin, direction) = self.head.beam(laser, self.spin.azimuth(elapsed_ns), tilt)?;
         let hit = self
             .scene
-            .cast(ray.origin, ray.direction, MIN_RANGE_M, MAX_RANGE_M)?;
+            .cast(origin, direction, MIN_RANGE_M, MAX_RANGE_M)?;
         Some(Return {
             hit,
-            point_m: ray.origin + hit.range_m * ray.direction,
+            point_m: origin + hit.range_m * direction,
         })
     }
 }

@@ -4,7 +4,6 @@
 //! is met.
 
 use fearless_simd::{Level, Simd, dispatch};
-use rayon::prelude::*;
 use thiserror::Error;
 
 use glam::DVec3;
@@ -13,11 +12,10 @@ use super::beam::{Beam, up_to};
 use super::build::Quality;
 use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
 use super::mesh::short_middle;
-use super::packet::{Ask, Best, LANES, Lanes, Nearest, loaded, spread};
+use super::packet::{Ask, Best, Lanes, Nearest, loaded, spread};
 use super::placement::Placement;
 use super::ray::{Hit, Normal, Ray, Reach};
 use super::surface::Object;
-use super::threads::Threads;
 
 /// So few objects are asked one after the other.
 const FEW: usize = 4;
@@ -25,8 +23,6 @@ const FEW: usize = 4;
 const WIDE: f64 = 0.15;
 /// Rays whose origins differ by more than this, relative to the size of the scene, go one by one.
 const FAR_APART: f64 = 1e-3;
-/// How many packets of each beam one thread takes at a time.
-const PACKETS_AT_A_TIME: usize = 8;
 
 /// What cannot be cast at.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -58,10 +54,10 @@ pub enum CastError {
 #[derive(Clone, Debug)]
 pub struct Caster {
     objects: Vec<Object>,
-    /// Planes, by number.
-    endless: Vec<u32>,
-    /// Everything else, by number, in the order of the tree's leaves.
-    finite: Vec<u32>,
+    /// Those that are asked one after the other, by number: planes, and everything else if that is few.
+    each: Vec<u32>,
+    /// All others, by number, in the order of the tree's leaves.
+    leaves: Vec<u32>,
     tree: Bvh,
     /// Where the tree's coordinates begin.
     middle_m: DVec3,
@@ -70,13 +66,13 @@ pub struct Caster {
 }
 
 /// Where children wait, for the tree of objects and that of one object.
-struct Stacks {
+pub(super) struct Stacks {
     objects: Stack,
     inner: Stack,
 }
 
 impl Stacks {
-    const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self {
             objects: Stack::new(),
             inner: Stack::new(),
@@ -84,22 +80,16 @@ impl Stacks {
     }
 }
 
-/// Rays in the order in which a lidar fires: `beams` of them a firing, firing after firing.
-///
-/// Rays of one beam in consecutive firings are cast together. If there is no such order, one beam is right.
-#[derive(Clone, Copy, Debug)]
-pub struct Rays<'a> {
-    rays: &'a [Ray],
-    beams: usize,
-}
-
-impl<'a> Rays<'a> {
-    /// Rays of firings of so many beams; zero counts as one. The last firing need not be whole.
-    #[must_use]
-    pub fn new(rays: &'a [Ray], beams: usize) -> Self {
+impl Default for Caster {
+    /// Nothing to hit.
+    fn default() -> Self {
         Self {
-            rays,
-            beams: beams.max(1),
+            objects: Vec::new(),
+            each: Vec::new(),
+            leaves: Vec::new(),
+            tree: Bvh::over(&[], Quality::default()).0,
+            middle_m: DVec3::ZERO,
+            level: Level::new(),
         }
     }
 }
@@ -112,11 +102,7 @@ impl Caster {
     pub fn new(objects: impl IntoIterator<Item = Object>) -> Result<Self, CastError> {
         let mut caster = Self {
             objects: objects.into_iter().collect(),
-            endless: Vec::new(),
-            finite: Vec::new(),
-            tree: Bvh::over(&[], Quality::default()).0,
-            middle_m: DVec3::ZERO,
-            level: Level::new(),
+            ..Self::default()
         };
         if caster.objects.len() > MOST_ITEMS {
             return Err(CastError::TooMany(caster.objects.len()));
@@ -147,14 +133,14 @@ impl Caster {
         self.arrange()
     }
 
-    /// Sorts objects into endless ones and the tree.
+    /// Sorts objects into those that are asked one after the other and the tree.
     fn arrange(&mut self) -> Result<(), CastError> {
-        self.endless.clear();
+        self.each.clear();
         let (mut finite, mut boxes) = (Vec::new(), Vec::new());
         let mut whole = Bounds::EMPTY;
         for ((number, object), id) in self.objects.iter().enumerate().zip(0_u32..) {
             match object.bounds() {
-                Ok(None) => self.endless.push(id),
+                Ok(None) => self.each.push(id),
                 Ok(Some(bounds)) => {
                     whole.join(&bounds);
                     finite.push(id);
@@ -177,10 +163,15 @@ impl Caster {
         }
         let (tree, order) = Bvh::over(&boxes, Quality::default());
         self.tree = tree;
-        self.finite = order
+        let sorted = order
             .iter()
-            .filter_map(|&at| finite.get(at as usize).copied())
-            .collect();
+            .filter_map(|&at| finite.get(at as usize).copied());
+        self.leaves.clear();
+        if finite.len() <= FEW {
+            self.each.extend(sorted);
+        } else {
+            self.leaves.extend(sorted);
+        }
         Ok(())
     }
 
@@ -202,88 +193,37 @@ impl Caster {
         dispatch!(self.level, simd => self.one::<_, ANY>(simd, &mut Stacks::new(), ray, reach))
     }
 
-    /// As [`Caster::nearest`] for every ray, in their order: the first of `hits` for the first ray, up to the shorter of both.
-    pub fn nearest_of<N: Normal>(
-        &self,
-        rays: &Rays<'_>,
-        reach: Reach,
-        threads: &Threads,
-        hits: &mut [Option<Hit<N>>],
-    ) {
-        let (beams, reach) = (rays.beams, reach.clean());
-        let piece = beams.saturating_mul(LANES * PACKETS_AT_A_TIME);
-        let work = |(rays, hits): (&[Ray], &mut [Option<Hit<N>>])| {
-            self.piece(rays, beams, reach, &mut |at, best| {
-                if let Some((ray, hit)) = rays.get(at).zip(hits.get_mut(at)) {
-                    *hit = self.finish(ray, best.hit());
-                }
-            });
-        };
-        match threads.pool() {
-            None => rays
-                .rays
-                .chunks(piece)
-                .zip(hits.chunks_mut(piece))
-                .for_each(work),
-            Some(pool) => pool.install(|| {
-                let pieces = rays.rays.par_chunks(piece);
-                pieces.zip(hits.par_chunks_mut(piece)).for_each(work);
-            }),
-        }
-    }
-
-    /// The piece of a batch that one thread does at a time, handed over as (place, hit).
-    fn piece(&self, rays: &[Ray], beams: usize, reach: Reach, take: &mut dyn FnMut(usize, Best)) {
-        dispatch!(self.level, simd => self.packets(simd, rays, beams, reach, take));
-    }
-
-    /// The same in the registers there are.
-    #[inline(always)]
-    fn packets<S: Simd>(
-        &self,
-        simd: S,
-        rays: &[Ray],
-        beams: usize,
-        reach: Reach,
-        take: &mut dyn FnMut(usize, Best),
-    ) {
-        let mut stacks = Stacks::new();
-        let mut lanes = Lanes::ZERO;
-        for beam in 0..beams {
-            let mut first = beam;
-            while first < rays.len() {
-                let mut wanted = 0;
-                for lane in 0..LANES {
-                    if let Some(ray) = rays.get(first + lane * beams) {
-                        lanes.set(lane, ray.origin_m(), ray.direction());
-                        wanted |= 1 << lane;
-                    }
-                }
-                let nearest = self.eight(simd, &mut stacks, &mut lanes, wanted, reach);
-                for lane in 0..LANES {
-                    take(first + lane * beams, nearest.best(lane));
-                }
-                first += LANES * beams;
-            }
-        }
-    }
-
     /// Adds what is asked beyond range, object and primitive.
     #[inline(always)]
-    fn finish<N: Normal>(&self, ray: &Ray, hit: Option<Hit>) -> Option<Hit<N>> {
+    pub(super) fn finish<N: Normal>(&self, ray: &Ray, hit: Option<Hit>) -> Option<Hit<N>> {
         hit.map(|hit| Hit {
             range_m: hit.range_m,
             object: hit.object,
             primitive: hit.primitive,
-            normal: N::wanted(|| self.normal(ray, &hit)),
+            normal: N::wanted(|| self.normal(&hit, ray.at(hit.range_m))),
         })
     }
 
-    fn normal(&self, ray: &Ray, hit: &Hit) -> DVec3 {
+    /// The normal of what a ray hit, at the point where it did.
+    pub(crate) fn normal(&self, hit: &Hit, point: DVec3) -> DVec3 {
         let object = self.objects.get(hit.object.index());
-        object.map_or(DVec3::ZERO, |object| {
-            object.normal(hit.primitive, ray.at(hit.range_m))
-        })
+        object.map_or(DVec3::ZERO, |object| object.normal(hit.primitive, point))
+    }
+
+    /// The middle and radius of a ball around all objects, metres; none if one is endless.
+    pub(crate) fn ball(&self) -> Option<(DVec3, f64)> {
+        let mut whole = Bounds::EMPTY;
+        for object in &self.objects {
+            whole.join(&object.bounds().ok()??);
+        }
+        if whole.low[0] > whole.high[0] {
+            return Some((DVec3::ZERO, 0.0));
+        }
+        let (low, high) = (whole.low.into(), whole.high.into());
+        let middle_m = DVec3::midpoint(low, high);
+        // More than the half diagonal by far more than roundings of it.
+        let radius_m = 0.5 * low.distance(high) + 1e-9 * whole.reach();
+        Some((middle_m, radius_m))
     }
 
     /// What one ray hits; if `ANY`, whatever is found first.
@@ -298,16 +238,14 @@ impl Caster {
         let mut best = Best::within(reach.up_to_m);
         let Stacks { objects, inner } = stacks;
         let above_m = reach.above_m;
-        let few = self.finite.len() <= FEW;
-        let at_once = if few { self.finite.as_slice() } else { &[] };
-        for &object in self.endless.iter().chain(at_once) {
+        for &object in &self.each {
             let ask = Ask { above_m, object };
             self.ask::<S, ANY>(simd, inner, ray, ask, &mut best);
             if ANY && best.has_hit() {
                 return best;
             }
         }
-        if few {
+        if self.leaves.is_empty() {
             return best;
         }
         let (origin, direction) = ray;
@@ -321,7 +259,7 @@ impl Caster {
             far,
             #[inline(always)]
             |leaf| {
-                if let Some(&object) = self.finite.get(leaf as usize) {
+                if let Some(&object) = self.leaves.get(leaf as usize) {
                     let ask = Ask { above_m, object };
                     self.ask::<S, ANY>(simd, inner, ray, ask, &mut best);
                     if ANY && best.has_hit() {
@@ -351,7 +289,7 @@ impl Caster {
 
     /// What eight rays hit, or those of them that are wanted.
     #[inline(always)]
-    fn eight<S: Simd>(
+    pub(super) fn eight<S: Simd>(
         &self,
         simd: S,
         stacks: &mut Stacks,
@@ -372,13 +310,11 @@ impl Caster {
         }
         let Stacks { objects, inner } = stacks;
         let above_m = reach.above_m;
-        let few = self.finite.len() <= FEW;
-        let at_once = if few { self.finite.as_slice() } else { &[] };
-        for &object in self.endless.iter().chain(at_once) {
+        for &object in &self.each {
             let ask = Ask { above_m, object };
             self.ask_eight(simd, inner, (lanes, wanted), ask, &mut nearest);
         }
-        if few {
+        if self.leaves.is_empty() {
             return nearest;
         }
         while wanted != 0 {
@@ -393,7 +329,7 @@ impl Caster {
                 far,
                 #[inline(always)]
                 |leaf| {
-                    if let Some(&object) = self.finite.get(leaf as usize) {
+                    if let Some(&object) = self.leaves.get(leaf as usize) {
                         let ask = Ask { above_m, object };
                         self.ask_eight(simd, inner, (lanes, alike), ask, &mut nearest);
                     }

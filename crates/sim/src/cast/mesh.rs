@@ -3,7 +3,7 @@
 //! Vertices are kept from an origin of the mesh's own, whose coordinates are short, so that taking it away is exact and map
 //! coordinates cost no precision. Left out: files, materials, normals of vertices.
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, prelude::*, u64x8};
 use glam::DVec3;
 use thiserror::Error;
 
@@ -313,7 +313,7 @@ impl Mesh {
             |leaf| {
                 if let Some((id, corners)) = self.face(leaf)
                     && let Some(met) = rays.meet(&corners)
-                    && nearest.offer8(simd, alike, met, ask, id)
+                    && nearest.offer8(simd, alike, met, ask, u64x8::splat(simd, u64::from(id)))
                 {
                     far = up_to(nearest.farthest(simd, alike));
                 }

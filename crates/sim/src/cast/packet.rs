@@ -3,21 +3,21 @@
 //! Rays of a lidar that follow one another go nearly the same way: they walk a tree together. Where they do not, or a scene turns
 //! them apart, they walk it one by one; a result is the same either way, bit for bit. Left out: what they hit.
 
-use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
+use fearless_simd::{Simd, f64x8, mask64x8, prelude::*, u64x8};
 
 use glam::DVec3;
 
 use super::beam::Spread;
-use super::ray::{Hit, ObjectId};
+use super::ray::{FARTHEST_M, Hit, LENGTH_TOLERANCE, ObjectId};
 
 /// Rays of a packet.
-pub(super) const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 
 /// Origins and directions by coordinate, in some frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lanes {
-    pub origin: [[f64; LANES]; 3],
-    pub direction: [[f64; LANES]; 3],
+pub(crate) struct Lanes {
+    pub(super) origin: [[f64; LANES]; 3],
+    pub(super) direction: [[f64; LANES]; 3],
 }
 
 impl Lanes {
@@ -36,7 +36,7 @@ impl Lanes {
 
     /// Sets one of the rays.
     #[inline(always)]
-    pub(super) fn set(&mut self, lane: usize, origin: DVec3, direction: DVec3) {
+    pub(crate) fn set(&mut self, lane: usize, origin: DVec3, direction: DVec3) {
         let lane = lane % LANES;
         let ([a, b, c], [d, e, f]) = (&mut self.origin, &mut self.direction);
         (a[lane], b[lane], c[lane]) = (origin.x, origin.y, origin.z);
@@ -53,6 +53,19 @@ impl Lanes {
                 self.set(lane, origin.into(), direction.into());
             }
         }
+    }
+
+    /// Those of the lanes that are rays: as [`super::Ray::new`] has them.
+    #[inline(always)]
+    pub(super) fn sound<S: Simd>(&self, simd: S) -> u64 {
+        let [x, y, z] = loaded(simd, &self.direction);
+        let off = (x * x + y * y + z * z - 1.0).abs();
+        // A NaN fails every comparison.
+        let mut sound = off.simd_le(2.0 * LENGTH_TOLERANCE);
+        for coordinate in loaded(simd, &self.origin) {
+            sound &= coordinate.abs().simd_le(FARTHEST_M);
+        }
+        sound.to_bitmask()
     }
 
     /// Those of the lanes that go the way of the first of them: farthest along the same axis, to the same sides; and that axis.
@@ -115,8 +128,8 @@ const NONE: u64 = u64::MAX;
 
 /// The nearest hit of one ray so far.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Best {
-    pub range_m: f64,
+pub(crate) struct Best {
+    pub(super) range_m: f64,
     /// Object, then primitive, in the order that decides between equal distances; [`NONE`] before any.
     what: u64,
 }
@@ -149,7 +162,7 @@ impl Best {
 
     /// What was hit.
     #[inline(always)]
-    pub(super) fn hit(self) -> Option<Hit> {
+    pub(crate) fn hit(self) -> Option<Hit> {
         if !self.has_hit() {
             return None;
         }
@@ -164,7 +177,7 @@ impl Best {
 
 /// The nearest hits of eight rays so far.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Nearest {
+pub(crate) struct Nearest {
     range_m: [f64; LANES],
     what: [u64; LANES],
 }
@@ -191,7 +204,7 @@ impl Nearest {
 
     /// One ray's.
     #[inline(always)]
-    pub(super) fn best(&self, lane: usize) -> Best {
+    pub(crate) fn best(&self, lane: usize) -> Best {
         Best {
             range_m: self.range_m[lane % LANES],
             what: self.what[lane % LANES],
@@ -205,7 +218,7 @@ impl Nearest {
         self.what[lane % LANES] = best.what;
     }
 
-    /// As [`Best::offer`] to those of the lanes that met it above the lower end; whether any took it.
+    /// As [`Best::offer`] to those of the lanes that met it above the lower end, each its own primitive; whether any took it.
     #[inline(always)]
     pub(super) fn offer8<S: Simd>(
         &mut self,
@@ -213,20 +226,16 @@ impl Nearest {
         lanes: u64,
         met: f64x8<S>,
         ask: Ask,
-        primitive: u32,
+        primitives: u64x8<S>,
     ) -> bool {
-        let had = f64x8::simd_from(simd, self.range_m);
-        // Of a NaN neither is true.
-        let mut taken = (met.simd_gt(ask.above_m) & met.simd_le(had)).to_bitmask() & lanes;
-        let any = taken != 0;
-        let met: [f64; LANES] = met.into();
-        while taken != 0 {
-            let lane = taken.trailing_zeros() as usize;
-            taken &= taken - 1;
-            let mut best = self.best(lane);
-            best.offer(met[lane % LANES], ask.object, primitive);
-            self.put(lane, best);
-        }
-        any
+        let had = f64x8::load_array_ref(simd, &self.range_m);
+        let had_what = u64x8::load_array_ref(simd, &self.what);
+        let what = primitives | u64::from(ask.object) << 32;
+        // Of a NaN none is true.
+        let nearer = met.simd_lt(had) | (met.simd_eq(had) & what.simd_lt(had_what));
+        let taken = nearer & met.simd_gt(ask.above_m) & mask64x8::from_bitmask(simd, lanes);
+        self.range_m = taken.select(met, had).into();
+        self.what = taken.select(what, had_what).into();
+        taken.to_bitmask() != 0
     }
 }

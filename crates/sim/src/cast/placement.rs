@@ -2,6 +2,7 @@
 //!
 //! Left out: scaling and shear, which would change ranges.
 
+use fearless_simd::{Simd, f64x8};
 use glam::{DMat3, DVec3};
 use thiserror::Error;
 
@@ -72,15 +73,23 @@ impl Placement {
         Self::new(DMat3::IDENTITY, translation_m)
     }
 
+    /// The same, moved further in the world, metres.
+    ///
+    /// # Errors
+    /// [`PlacementError::Translation`] if it is not finite or too far away then.
+    pub fn moved(&self, by_m: DVec3) -> Result<Self, PlacementError> {
+        Self::new(self.rotation, self.translation_m + by_m)
+    }
+
     /// A point of the world in the object's frame.
     #[inline(always)]
-    pub(super) fn own_point(&self, point: DVec3) -> DVec3 {
+    pub(crate) fn own_point(&self, point: DVec3) -> DVec3 {
         self.own_direction(point - self.translation_m)
     }
 
     /// A direction of the world in the object's frame.
     #[inline(always)]
-    pub(super) fn own_direction(&self, direction: DVec3) -> DVec3 {
+    pub(crate) fn own_direction(&self, direction: DVec3) -> DVec3 {
         if !self.turned {
             return direction;
         }
@@ -91,13 +100,34 @@ impl Placement {
         )
     }
 
+    /// As [`Placement::own_point`] of eight.
+    #[inline(always)]
+    pub(super) fn own_points<S: Simd>(&self, [x, y, z]: [f64x8<S>; 3]) -> [f64x8<S>; 3] {
+        let at = self.translation_m;
+        self.own_directions([x - at.x, y - at.y, z - at.z])
+    }
+
+    /// As [`Placement::own_direction`] of eight.
+    #[inline(always)]
+    pub(super) fn own_directions<S: Simd>(&self, [x, y, z]: [f64x8<S>; 3]) -> [f64x8<S>; 3] {
+        if !self.turned {
+            return [x, y, z];
+        }
+        let along = |axis: DVec3| x * axis.x + y * axis.y + z * axis.z;
+        [
+            along(self.rotation.x_axis),
+            along(self.rotation.y_axis),
+            along(self.rotation.z_axis),
+        ]
+    }
+
     /// A point of the object in the world.
-    pub(super) fn world_point(&self, point: DVec3) -> DVec3 {
+    pub(crate) fn world_point(&self, point: DVec3) -> DVec3 {
         self.world_direction(point) + self.translation_m
     }
 
     /// A direction of the object in the world.
-    pub(super) fn world_direction(&self, direction: DVec3) -> DVec3 {
+    pub(crate) fn world_direction(&self, direction: DVec3) -> DVec3 {
         if self.turned {
             self.rotation * direction
         } else {

@@ -9,7 +9,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 /// How far from 1 the length of a direction may be.
-const LENGTH_TOLERANCE: f64 = 1e-6;
+pub(super) const LENGTH_TOLERANCE: f64 = 1e-6;
 /// The greatest coordinate of anything, metres: within it no f32 of a tree overflows.
 pub(super) const FARTHEST_M: f64 = 1e15;
 
@@ -147,6 +147,18 @@ pub struct Hit<N = ()> {
     pub primitive: u32,
     /// The surface's normal there, if it was asked for.
     pub normal: N,
+}
+
+impl Hit {
+    /// The same with a normal.
+    pub(crate) const fn with_normal(self, normal: DVec3) -> Hit<DVec3> {
+        Hit {
+            range_m: self.range_m,
+            object: self.object,
+            primitive: self.primitive,
+            normal,
+        }
+    }
 }
 
 mod sealed {

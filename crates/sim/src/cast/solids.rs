@@ -1,7 +1,8 @@
 //! Sphere, box, cylinder and plane, each in its own frame.
 //!
 //! A ray's line crosses each of them at most twice; it hits the first crossing ahead, so that all are seen from inside as from
-//! outside. Nothing is computed from an edge, so that edges and corners have no cracks. Left out: where they stand ([`Placement`]).
+//! outside. Nothing is computed from an edge, so that edges and corners have no cracks. Left out: where they stand ([`Placement`]), and eight rays at
+//! once (`solids8`).
 //!
 //! [`Placement`]: super::Placement
 
@@ -83,8 +84,8 @@ impl Plane {
 /// A box along the axes: a room seen from inside, a crate seen from outside. Its primitives are the faces -x, +x, -y, +y, -z, +z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
-    low_m: DVec3,
-    high_m: DVec3,
+    pub(super) low_m: DVec3,
+    pub(super) high_m: DVec3,
 }
 
 impl Cuboid {

@@ -9,9 +9,10 @@ use glam::DVec3;
 
 use super::bvh::{Bounds, Stack};
 use super::mesh::Mesh;
-use super::packet::{Ask, Best, LANES, Lanes, Nearest};
+use super::packet::{Ask, Best, Lanes, Nearest, loaded};
 use super::placement::Placement;
 use super::solids::{Crossings, Cuboid, Cylinder, Plane, Sphere, first_above};
+use super::solids8::first_above8;
 
 /// Anything that a ray can meet, in its own frame.
 #[derive(Clone, Debug)]
@@ -200,28 +201,28 @@ impl Object {
         ask: Ask,
         nearest: &mut Nearest,
     ) {
-        if let Surface::Mesh(mesh) = &self.surface {
-            let mut own = Lanes::ZERO;
-            for lane in 0..LANES {
-                let (origin, direction) = self.own_ray(lanes.ray(lane));
-                own.set(lane, origin, direction);
+        let origin = self.placement.own_points(loaded(simd, &lanes.origin));
+        let direction = self
+            .placement
+            .own_directions(loaded(simd, &lanes.direction));
+        let met = match &self.surface {
+            Surface::Mesh(mesh) => {
+                let from = mesh.origin_m();
+                let [x, y, z] = origin;
+                let own = Lanes {
+                    origin: [x - from.x, y - from.y, z - from.z].map(Into::into),
+                    direction: direction.map(Into::into),
+                };
+                mesh.eight(simd, stack, &own, wanted, ask, nearest);
+                return;
             }
-            mesh.eight(simd, stack, &own, wanted, ask, nearest);
-            return;
-        }
-        let mut left = wanted;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize;
-            left &= left - 1;
-            let mut best = nearest.best(lane);
-            let (origin, direction) = self.own_ray(lanes.ray(lane));
-            let crossings = self.crossings(origin, direction);
-            if let Some((range_m, primitive)) = first_above(crossings, ask.above_m)
-                && best.offer(range_m, ask.object, primitive)
-            {
-                nearest.put(lane, best);
-            }
-        }
+            Surface::Plane => Plane::crossings8(simd, origin, direction),
+            Surface::Sphere(sphere) => sphere.crossings8(simd, origin, direction),
+            Surface::Cuboid(cuboid) => cuboid.crossings8(simd, origin, direction),
+            Surface::Cylinder(cylinder) => cylinder.crossings8(simd, origin, direction),
+        };
+        let (met, primitives) = first_above8(met, ask.above_m);
+        nearest.offer8(simd, wanted, met, ask, primitives);
     }
 
     /// The normal in the world at a point of a primitive.

@@ -99,8 +99,9 @@ impl Divergence {
 
     /// Whether a patch needs no look at all.
     fn is_plain(&self, patch: &Footprint, range_m: f64, surroundings: &Surroundings) -> bool {
-        // Things that move are not where they were.
-        surroundings.is_still()
+        // What moves is not in the map: it must not be near.
+        let half = self.half[0].hypot(self.half[1]);
+        !surroundings.may_move_near(patch.origin_m, patch.direction, half)
             && self
                 .plain
                 .get_or_init(|| Plain::new(surroundings, self.settings.flat_m))

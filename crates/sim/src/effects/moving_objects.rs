@@ -1,17 +1,19 @@
 //! Objects: things that move while the scan lasts, as a lidar that needs 0.1 s for a turn and the tilt its time see them: sheared, or twice.
 //!
-//! A body goes at a steady velocity and turns steadily about its own origin; every firing meets it where it stands when the first laser fires. Left out:
+//! A body goes at a steady velocity and turns steadily about its own origin; every firing meets it where it stands when the first laser fires. Bodies are the
+//! boxes of this effect's table and whatever of the scene's `[[objects]]` has a velocity or a turn. Left out:
 //! its way during a firing (55 us: 1 mm at 20 m/s), bodies that speed up, and collisions.
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use serde::Deserialize;
 
 use super::settings::{Check, Settings, Stopwatch, Unfit};
 use super::{Absorb, Asked, Effect, Listed, Needs, Objects};
+use crate::cast::{Cuboid, Object};
 use crate::scene::Scene;
-use crate::shapes::Cuboid;
+use crate::scenery::Travel;
 use crate::simulate::{Body, Surroundings};
 
 /// `[effects.moving_objects]`.
@@ -48,12 +50,10 @@ const fn plain() -> u8 {
 /// A body on its way.
 #[derive(Clone, Debug)]
 pub struct Mover {
-    /// How it stands at the start.
-    pub body: Body,
-    /// How its origin goes, metres per second.
-    pub velocity_m_s: DVec3,
-    /// How it turns: about this axis of the base's frame, so many degrees per second as it is long.
-    pub turn_deg_s: DVec3,
+    /// What it is, in its own frame.
+    pub scene: Arc<Scene>,
+    /// How that frame goes and turns.
+    pub travel: Travel,
 }
 
 /// What moves.
@@ -75,7 +75,7 @@ impl MovingObjects {
         Self { movers }
     }
 
-    /// With these settings.
+    /// The boxes of these settings.
     ///
     /// # Errors
     /// [`Unfit`] for numbers out of their range.
@@ -83,9 +83,17 @@ impl MovingObjects {
         let movers = settings.boxes.iter().map(Mover::of);
         Ok(Self::new(movers.collect::<Result<_, _>>()?))
     }
+
+    /// These and more of them.
+    #[must_use]
+    pub fn and(mut self, more: impl IntoIterator<Item = Mover>) -> Self {
+        self.movers.extend(more);
+        self
+    }
 }
 
 impl Mover {
+    /// A box.
     fn of(settings: &MovingBox) -> Result<Self, Unfit> {
         let check = Check(MovingObjects::NAME);
         let all = |setting, values: [f64; 3], least: f64| {
@@ -96,25 +104,22 @@ impl Mover {
         };
         let half = 0.5 * all("size_m", settings.size_m, 0.0)?;
         let turn = check.within("turn_deg_s", settings.turn_deg_s, -36_000.0..=36_000.0)?;
-        Ok(Self {
-            body: Body {
-                scene: Arc::new(Scene::new().with(Cuboid::new(-half, half, settings.reflectivity))),
-                turn: DMat3::IDENTITY,
-                at_m: all("at_m", settings.at_m, -MOST_M)?,
-            },
+        let travel = Travel {
+            from_m: all("at_m", settings.at_m, -MOST_M)?,
             velocity_m_s: all("velocity_m_s", settings.velocity_m_s, -MOST_M)?,
             turn_deg_s: turn * DVec3::Z,
-        })
-    }
-
-    /// Where it stands then.
-    fn at(&self, at_s: f64) -> (DMat3, DVec3) {
-        let rate = self.turn_deg_s.length();
-        let turn = match self.turn_deg_s.try_normalize() {
-            Some(axis) => DMat3::from_axis_angle(axis, (rate * at_s).to_radians()) * self.body.turn,
-            None => self.body.turn,
         };
-        (turn, self.body.at_m + at_s * self.velocity_m_s)
+        let cuboid = Object::new(Cuboid::new(-half, half));
+        let scene = Scene::new().with(cuboid, settings.reflectivity);
+        Ok(Self {
+            scene: Arc::new(scene.map_err(|error| Unfit {
+                effect: MovingObjects::NAME,
+                setting: "size_m",
+                expected: error.to_string(),
+                got: half.max_element(),
+            })?),
+            travel,
+        })
     }
 }
 
@@ -149,13 +154,17 @@ impl Objects for MovingObjects {
     fn place(&self, at_s: f64, surroundings: &mut Surroundings) -> u32 {
         let bodies = surroundings.bodies_mut();
         if bodies.len() != self.movers.len() {
-            *bodies = self.movers.iter().map(|mover| mover.body.clone()).collect();
+            let made = self.movers.iter().map(|mover| {
+                let mut body = Body::new(Arc::clone(&mover.scene));
+                body.place(mover.travel.at(0.0).ok());
+                body
+            });
+            *bodies = made.collect();
         }
         let mut moved = 0;
         for (mover, body) in self.movers.iter().zip(bodies) {
-            let (turn, at_m) = mover.at(at_s);
-            moved += u32::from(turn != body.turn || at_m != body.at_m);
-            (body.turn, body.at_m) = (turn, at_m);
+            // Out of all bounds it is nowhere.
+            moved += u32::from(body.place(mover.travel.at(at_s).ok()));
         }
         moved
     }
@@ -164,8 +173,13 @@ impl Objects for MovingObjects {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cast::Sphere;
     use crate::effects::testing::around;
-    use crate::shapes::Sphere;
+
+    fn ball(radius_m: f64, reflectivity: u8) -> Scene {
+        let ball = Object::new(Sphere { radius_m });
+        Scene::new().with(ball, reflectivity).unwrap()
+    }
 
     fn walker() -> MovingObjects {
         MovingObjects::of(&MovingObjectsSettings {
@@ -183,7 +197,7 @@ mod tests {
     #[test]
     fn a_box_is_met_where_it_stands_then() {
         let objects = walker();
-        let mut surroundings = around(Scene::new().with(Sphere::new(DVec3::ZERO, 9.0, 60)));
+        let mut surroundings = around(ball(9.0, 60));
         let mut range_m = |at_s: f64| {
             objects.place(at_s, &mut surroundings);
             surroundings

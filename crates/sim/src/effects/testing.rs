@@ -27,7 +27,7 @@ pub fn firing(azimuth_deg: f64, tilt_deg: f64) -> Firing {
 
 /// A scene as a VLP-16 sees it.
 pub fn around(scene: Scene) -> Surroundings {
-    Surroundings::new(Arc::new(scene), Sensor::vlp16().reach(), true)
+    Surroundings::new(Arc::new(scene), Sensor::vlp16().reach(), false)
 }
 
 /// What comes back of the middles of beams, both sets looked at.

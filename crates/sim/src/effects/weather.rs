@@ -182,14 +182,15 @@ impl Beam for Weather {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Sphere;
+    use crate::cast::{Object, Sphere};
     use crate::effects::testing::{around, cast, firing};
     use crate::scene::Scene;
-    use glam::DVec3;
 
     fn seen(settings: WeatherSettings, radius_m: f64, reflectivity: u8) -> (f64, f64, f64) {
         let weather = Weather::new(&settings, 11).unwrap();
-        let scene = Scene::new().with(Sphere::new(DVec3::ZERO, radius_m, reflectivity));
+        let scene = Scene::new()
+            .with(Object::new(Sphere { radius_m }), reflectivity)
+            .unwrap();
         let surroundings = around(scene);
         let mut firing = firing(0.0, 0.0);
         let (mut wall, mut fog, mut reported) = (0, 0, 0.0);

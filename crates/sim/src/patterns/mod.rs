@@ -11,9 +11,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 use crate::motion::Stand;
-use crate::scene::Scene;
 use crate::sensor::{Rays, Reach, Sensor};
-use crate::shapes::Sphere;
 use crate::simulate::{Firing, Mount};
 
 pub use wish::{NAMES, Wish};
@@ -315,7 +313,6 @@ impl Pattern {
         let mount = Mount::above(d_m);
         let mut firing = Firing::new(rays.count);
         firing.alive = self.sensor.used();
-        let around = Scene::new().with(Sphere::new(DVec3::ZERO, SPHERE_M, 0));
         for number in 0..self.firings {
             let Some(angle_deg) = self.tilt_deg(f64::from(frame), number) else {
                 break;
@@ -330,12 +327,20 @@ impl Pattern {
             for (_, (origin, direction)) in shots.filter(|(laser, _)| firing.is_alive(*laser)) {
                 if d_m == 0.0 {
                     directions.push(*direction);
-                } else if let Some(hit) = around.cast(*origin, *direction, 0.0, f64::INFINITY) {
-                    directions.push((*origin + hit.range_m * *direction).normalize());
+                } else {
+                    directions.push(on_sphere(*origin, *direction));
                 }
             }
         }
     }
+}
+
+/// The direction, from the middle of the hollow sphere, in which a ray from within meets it.
+fn on_sphere(origin_m: DVec3, direction: DVec3) -> DVec3 {
+    let along = origin_m.dot(direction);
+    let beside = origin_m.length_squared() - along * along;
+    let range_m = (SPHERE_M * SPHERE_M - beside).max(0.0).sqrt() - along;
+    (origin_m + range_m * direction).normalize()
 }
 
 /// Below this share two numbers are one that was rounded.

@@ -6,8 +6,10 @@ use glam::{DMat3, DVec3};
 use units::Stamp;
 
 use super::*;
+use crate::cast::{Object, Sphere};
 use crate::effects::{Effects, OnFirings};
 use crate::motion::{Motion, Sweeps};
+use crate::scene::Scene;
 use crate::sensor::ReturnMode;
 use crate::simulate::{Event, Out, Simulation, Spin, TruePoint};
 
@@ -143,7 +145,11 @@ fn simulated(sensor: Sensor, from_deg: f64, speed_deg_s: f64, d_m: f64) -> Vec<T
         .unwrap(),
     };
     let simulation = Simulation {
-        scene: Arc::new(Scene::new().with(Sphere::new(DVec3::ZERO, SPHERE_M, 50))),
+        scene: Arc::new(
+            Scene::new()
+                .with(Object::new(Sphere { radius_m: SPHERE_M }), 50)
+                .unwrap(),
+        ),
         sensor: sensor.ideal(),
         returns: ReturnMode::Strongest,
         spin: Spin {

@@ -4,14 +4,43 @@ use glam::{DMat3, DVec3, Vec3Swizzles, dvec2, dvec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::shapes::{Cuboid, Cylinder, Plane, Sphere, TurnedCuboid};
+use crate::cast::{Cuboid, Cylinder, Placement, Plane, Sphere};
 
 const FAR: f64 = 1e12;
 
-/// A primitive described twice: to the caster, and as the signed distance to its surface.
+/// An object described twice: to the caster, and as the signed distance to its surface.
 struct Twice {
-    shape: Shape,
+    object: Object,
     distance: Box<dyn Fn(DVec3) -> f64>,
+}
+
+fn scene(objects: impl IntoIterator<Item = (Object, u8)>) -> Scene {
+    let with = |scene: Scene, (object, reflectivity)| scene.with(object, reflectivity).unwrap();
+    objects.into_iter().fold(Scene::new(), with)
+}
+
+fn between(corner: DVec3, opposite: DVec3) -> Object {
+    Object::new(Cuboid::new(corner, opposite))
+}
+
+fn plane_through(point: DVec3, normal: DVec3) -> Object {
+    let x = normal.any_orthonormal_vector();
+    let rotation = DMat3::from_cols(x, normal.cross(x), normal);
+    Object::new(Plane).placed(Placement::new(rotation, point).unwrap())
+}
+
+fn drum(base: DVec3, radius_m: f64, height_m: f64) -> Object {
+    let shape = Cylinder {
+        radius_m,
+        bottom_m: 0.0,
+        top_m: height_m,
+        capped: true,
+    };
+    Object::new(shape).placed(Placement::at(base).unwrap())
+}
+
+fn ball(centre: DVec3, radius_m: f64) -> Object {
+    Object::new(Sphere { radius_m }).placed(Placement::at(centre).unwrap())
 }
 
 fn box_distance(p: DVec3, half: DVec3) -> f64 {
@@ -21,7 +50,7 @@ fn box_distance(p: DVec3, half: DVec3) -> f64 {
 
 fn cuboid(low: DVec3, size: DVec3) -> Twice {
     Twice {
-        shape: Cuboid::new(low + size, low, 1).into(),
+        object: between(low + size, low),
         distance: Box::new(move |p| box_distance(p - (low + 0.5 * size), 0.5 * size)),
     }
 }
@@ -29,7 +58,7 @@ fn cuboid(low: DVec3, size: DVec3) -> Twice {
 fn turned(centre: DVec3, size: DVec3, axis: DVec3, angle: f64) -> Twice {
     let attitude = DMat3::from_axis_angle(axis, angle);
     Twice {
-        shape: TurnedCuboid::new(centre, size, attitude, 2).into(),
+        object: between(-0.5 * size, 0.5 * size).placed(Placement::new(attitude, centre).unwrap()),
         // The other way about: the own axes are measured along the columns.
         distance: Box::new(move |p| {
             let p = p - centre;
@@ -45,14 +74,14 @@ fn turned(centre: DVec3, size: DVec3, axis: DVec3, angle: f64) -> Twice {
 
 fn plane(point: DVec3, normal: DVec3) -> Twice {
     Twice {
-        shape: Plane::new(point, 3.0 * normal, 3).into(),
+        object: plane_through(point, normal),
         distance: Box::new(move |p| (p - point).dot(normal)),
     }
 }
 
 fn cylinder(base: DVec3, radius: f64, height: f64) -> Twice {
     Twice {
-        shape: Cylinder::new(base.xy(), radius, base.z, base.z + height, 4).into(),
+        object: drum(base, radius, height),
         distance: Box::new(move |p| {
             let round = p.xy().distance(base.xy()) - radius;
             let flat = (p.z - (base.z + 0.5 * height)).abs() - 0.5 * height;
@@ -63,7 +92,7 @@ fn cylinder(base: DVec3, radius: f64, height: f64) -> Twice {
 
 fn sphere(centre: DVec3, radius: f64) -> Twice {
     Twice {
-        shape: Sphere::new(centre, radius, 5).into(),
+        object: ball(centre, radius),
         distance: Box::new(move |p| p.distance(centre) - radius),
     }
 }
@@ -129,12 +158,6 @@ fn build((kind, at, size, axis, angle): (u8, DVec3, DVec3, DVec3, f64)) -> Twice
     }
 }
 
-fn ranges(scene: &[Twice]) -> Scene {
-    scene
-        .iter()
-        .fold(Scene::new(), |s, twice| s.with(twice.shape))
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2_000))]
 
@@ -143,7 +166,7 @@ proptest! {
         shapes in prop::collection::vec(any_shape(), 1..6), origin in point(12.0), direction in unit(),
     ) {
         let twice: Vec<Twice> = shapes.into_iter().map(build).collect();
-        let hit = ranges(&twice).cast(origin, direction, 0.0, 99.0);
+        let hit = scene(twice.iter().map(|twice| (twice.object.clone(), 5))).cast(origin, direction, 0.0, 99.0);
         let expected = reference(&twice, origin, direction).filter(|&t| t <= 99.0);
         match (hit, expected) {
             // Where the ray all but touches, a rounding of the place along it is much larger than that of the distance.
@@ -163,10 +186,11 @@ proptest! {
 
 #[test]
 fn the_nearest_of_many_wins_and_brings_its_reflectivity() {
-    let scene = Scene::new()
-        .with(Sphere::new(dvec3(10.0, 0.0, 0.0), 1.0, 10))
-        .with(Plane::new(dvec3(5.0, 0.0, 0.0), DVec3::X, 20))
-        .with(Cylinder::new(dvec2(20.0, 0.0), 1.0, -1.0, 1.0, 30));
+    let scene = scene([
+        (ball(dvec3(10.0, 0.0, 0.0), 1.0), 10),
+        (plane_through(dvec3(5.0, 0.0, 0.0), DVec3::X), 20),
+        (drum(dvec3(20.0, 0.0, -1.0), 1.0, 2.0), 30),
+    ]);
     let hit = scene.cast(DVec3::ZERO, DVec3::X, 1.0, 100.0);
     assert_eq!(
         hit,
@@ -175,16 +199,20 @@ fn the_nearest_of_many_wins_and_brings_its_reflectivity() {
             reflectivity: 20
         })
     );
-    assert_eq!(scene.shapes().len(), 3);
+    assert_eq!(scene.caster().objects().len(), 3);
 }
 
 #[test]
 fn each_face_of_a_box_has_its_own_reflectivity_from_both_sides() {
-    let scene = Scene::new().with(Cuboid::with_faces(
-        DVec3::splat(-2.0),
-        DVec3::splat(2.0),
-        [1, 2, 3, 4, 5, 6],
-    ));
+    let mut placed = scene([(between(DVec3::splat(-2.0), DVec3::splat(2.0)), 0)]).placed;
+    placed.materials = (1..=6)
+        .map(|reflectivity| Material {
+            reflectivity,
+            ..Material::plain()
+        })
+        .collect();
+    placed.coats = vec![Coat::Faces([0, 1, 2, 3, 4, 5])];
+    let scene = Scene::of(placed).unwrap();
     let axes = [
         -DVec3::X,
         DVec3::X,
@@ -203,27 +231,28 @@ fn each_face_of_a_box_has_its_own_reflectivity_from_both_sides() {
 
 #[test]
 fn range_limits_are_closed_and_near_surfaces_block() {
-    let scene = Scene::new()
-        .with(Plane::new(dvec3(1.0, 0.0, 0.0), DVec3::X, 0))
-        .with(Plane::new(dvec3(50.0, 0.0, 0.0), DVec3::X, 0));
-    let from = |x, min, max| {
+    let mut scene = scene([1.0, 50.0].map(|x| (plane_through(dvec3(x, 0.0, 0.0), DVec3::X), 0)));
+    let from = |scene: &Scene, x, min, max| {
         scene
             .cast(dvec3(x, 0.0, 0.0), DVec3::X, min, max)
             .map(|hit| hit.range_m)
     };
-    assert_eq!(from(0.0, 1.0, 100.0), Some(1.0));
-    assert_eq!(from(0.0, 1.001, 100.0), None);
-    assert_eq!(from(2.0, 1.0, 48.0), Some(48.0));
-    assert_eq!(from(2.0, 1.0, 47.999), None);
-    assert_eq!(from(51.0, 0.0, FAR), None);
+    assert_eq!(from(&scene, 0.0, 1.0, 100.0), Some(1.0));
+    assert_eq!(from(&scene, 0.0, 1.001, 100.0), None);
+    assert_eq!(from(&scene, 2.0, 1.0, 48.0), Some(48.0));
+    assert_eq!(from(&scene, 2.0, 1.0, 47.999), None);
+    assert_eq!(from(&scene, 51.0, 0.0, FAR), None);
+    // What absorbs blocks as well.
+    scene.placed.materials[0].absorbing = true;
+    assert_eq!(from(&scene, 0.0, 0.0, 100.0), None);
+    assert_eq!(from(&scene, 2.0, 0.0, 100.0), Some(48.0));
 }
 
 #[test]
 fn a_ray_along_a_face_or_from_it() {
-    let scene = Scene::new().with(Cuboid::new(DVec3::ZERO, DVec3::ONE, 0));
+    let unit = scene([(between(DVec3::ZERO, DVec3::ONE), 0)]);
     let cast = |origin, direction| {
-        scene
-            .cast(origin, direction, 0.0, FAR)
+        unit.cast(origin, direction, 0.0, FAR)
             .map(|hit| hit.range_m)
     };
     // Along a face, along an edge, along a face from within it, and just past it.
@@ -238,14 +267,14 @@ fn a_ray_along_a_face_or_from_it() {
     // From a face: away meets nothing, inwards the opposite one.
     assert_eq!(cast(dvec3(0.5, 0.5, 1.0), DVec3::Z), None);
     assert_eq!(cast(dvec3(0.5, 0.5, 1.0), -DVec3::Z), Some(1.0));
-    let plane = Scene::new().with(Plane::new(DVec3::ZERO, DVec3::Z, 0));
+    let plane = scene([(plane_through(DVec3::ZERO, DVec3::Z), 0)]);
     assert_eq!(plane.cast(DVec3::Z, DVec3::X, 0.0, FAR), None);
     assert_eq!(plane.cast(DVec3::ZERO, DVec3::Z, 0.0, FAR), None);
 }
 
 #[test]
 fn cylinders_from_above_below_and_within() {
-    let scene = Scene::new().with(Cylinder::new(dvec2(1.0, 2.0), 0.5, -1.0, 3.0, 7));
+    let scene = scene([(drum(dvec3(1.0, 2.0, -1.0), 0.5, 4.0), 7)]);
     let cast = |origin, direction| {
         scene
             .cast(origin, direction, 0.0, FAR)
@@ -262,10 +291,10 @@ fn cylinders_from_above_below_and_within() {
 
 #[test]
 fn what_is_not_finite_meets_nothing() {
-    let scene = Scene::new()
-        .with(Cuboid::new(DVec3::splat(-5.0), DVec3::splat(5.0), 0))
-        .with(Plane::new(dvec3(0.0, 0.0, -1.0), DVec3::Z, 0))
-        .with(Plane::new(DVec3::ZERO, DVec3::ZERO, 0));
+    let scene = scene([
+        (between(DVec3::splat(-5.0), DVec3::splat(5.0)), 0),
+        (plane_through(dvec3(0.0, 0.0, -1.0), DVec3::Z), 0),
+    ]);
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for axis in 0..3 {
             let mut v = dvec3(0.0, 0.6, -0.8);
@@ -308,7 +337,7 @@ fn on_edges(low: DVec3, high: DVec3, i: u32) -> DVec3 {
 #[test]
 fn a_closed_room_returns_every_ray_aimed_at_its_edges_and_corners() {
     let (low, high) = (dvec3(-15.4, -10.3, -1.2), dvec3(14.6, 9.7, 4.8));
-    let scene = Scene::new().with(Cuboid::new(low, high, 0));
+    let scene = scene([(between(low, high), 0)]);
     for i in 0..400_000 {
         let origin = low + (high - low) * (0.001 + 0.998 * spread(i + 1));
         let target = on_edges(low, high, i);
@@ -324,14 +353,12 @@ fn a_closed_room_returns_every_ray_aimed_at_its_edges_and_corners() {
 fn stacked_boxes_have_no_cracks() {
     // 4 x 4 boxes side by side, coordinates that no binary fraction holds: every ray at the seams from in front meets one.
     let edge = |i: u32| 0.1 + 0.7 * f64::from(i);
-    let mut scene = Scene::new();
-    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
-        scene = scene.with(Cuboid::new(
-            dvec3(edge(i), 3.3, edge(j)),
-            dvec3(edge(i + 1), 4.1, edge(j + 1)),
-            0,
-        ));
-    }
+    let places = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
+    let boxes = places.map(|(i, j)| {
+        let low = dvec3(edge(i), 3.3, edge(j));
+        between(low, dvec3(edge(i + 1), 4.1, edge(j + 1)))
+    });
+    let scene = scene(boxes.map(|object| (object, 0)));
     for i in 0..200_000 {
         let s = spread(i + 1);
         let origin = dvec3(9.0 * s.x - 4.0, 3.0 * s.y - 1.0, 9.0 * s.z - 4.0);
@@ -351,12 +378,9 @@ fn stacked_boxes_have_no_cracks() {
 #[test]
 fn grazing_a_floor_at_two_hundredths_of_a_degree() {
     let (sin, cos) = 0.02_f64.to_radians().sin_cos();
-    let floor = Scene::new().with(Plane::new(dvec3(0.0, 0.0, -0.03), DVec3::Z, 0));
-    let room = Scene::new().with(Cuboid::new(
-        dvec3(-500.0, -500.0, -0.03),
-        dvec3(500.0, 500.0, 5.0),
-        0,
-    ));
+    let floor = scene([(plane_through(dvec3(0.0, 0.0, -0.03), DVec3::Z), 0)]);
+    let room = between(dvec3(-500.0, -500.0, -0.03), dvec3(500.0, 500.0, 5.0));
+    let room = scene([(room, 0)]);
     for scene in [floor, room] {
         let hit = scene
             .cast(DVec3::ZERO, dvec3(0.0, cos, -sin), 1.0, 100.0)
@@ -371,7 +395,7 @@ fn a_sphere_of_one_metre_at_a_kilometre() {
         let miss = 0.99 * f64::from(i) / 1_000.0;
         // Turned out of the axes, so that nothing cancels by luck.
         let turn = DMat3::from_axis_angle(dvec3(0.6, 0.0, 0.8), 0.3 + f64::from(i));
-        let scene = Scene::new().with(Sphere::new(turn * dvec3(1_000.0, miss, 0.0), 1.0, 0));
+        let scene = scene([(ball(turn * dvec3(1_000.0, miss, 0.0), 1.0), 0)]);
         let hit = scene.cast(DVec3::ZERO, turn * DVec3::X, 0.0, FAR).unwrap();
         let exact = 1_000.0 - (1.0 - miss * miss).sqrt();
         assert!(
@@ -379,6 +403,6 @@ fn a_sphere_of_one_metre_at_a_kilometre() {
             "{miss}: {hit:?} {exact}"
         );
     }
-    let past = Scene::new().with(Sphere::new(dvec3(1_000.0, 1.000_001, 0.0), 1.0, 0));
+    let past = scene([(ball(dvec3(1_000.0, 1.000_001, 0.0), 1.0), 0)]);
     assert_eq!(past.cast(DVec3::ZERO, DVec3::X, 0.0, FAR), None);
 }

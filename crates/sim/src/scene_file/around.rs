@@ -3,19 +3,28 @@
 use std::sync::Arc;
 
 use super::{File, SHIPPED, SceneError, line_of};
+use crate::effects::Mover;
 use crate::scene::Scene;
 use crate::scenery::{Scenery, SceneryError, Sections, shipped};
 
 type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
-/// What can be cast at. Objects of a scenery that move are refused: the simulation moves what `[effects.moving_objects]` names, and an object
-/// that stood still for all that would look right.
+/// What stands around the scanner, and what of it moves.
+#[derive(Debug, Default)]
+pub(super) struct Around {
+    pub scene: Arc<Scene>,
+    pub movers: Vec<Mover>,
+    /// The line that asks for the first of them.
+    pub line: Option<usize>,
+}
+
+/// What can be cast at.
 pub(super) fn build(
     text: &str,
     file: File,
     seed: u64,
     files: Files<'_>,
-) -> Result<Arc<Scene>, SceneError> {
+) -> Result<Around, SceneError> {
     let own = Sections {
         materials: file.materials,
         objects: file.objects,
@@ -25,7 +34,7 @@ pub(super) fn build(
         what: error.what(),
     };
     let (line, scenery) = match file.scene {
-        None if own.objects.is_empty() => return Ok(Arc::default()),
+        None if own.objects.is_empty() => return Ok(Around::default()),
         None => (1, Scenery::new(text, own)),
         Some(name) => {
             let line = line_of(text, name.span().start);
@@ -47,16 +56,20 @@ pub(super) fn build(
     let placed = scenery
         .and_then(|scenery| scenery.place(seed, files))
         .map_err(said)?;
-    if let Some(moving) = placed.moving.first() {
-        return Err(SceneError {
-            line: moving.at.line,
-            what: "expected an object that stands, got one that moves; boxes that move go into [effects.moving_objects]"
-                .to_owned(),
+    let wrong = |line: usize, what: String| SceneError { line, what };
+    let (stands, moves) = (placed.divided()).map_err(|error| wrong(line, error.to_string()))?;
+    let scene = Scene::of(stands).map_err(|error| wrong(line, error.to_string()))?;
+    let mut around = Around {
+        scene: Arc::new(scene),
+        line: moves.first().map(|(moving, _)| moving.at.line),
+        ..Around::default()
+    };
+    for (moving, body) in moves {
+        let scene = Scene::of(body).map_err(|error| wrong(moving.at.line, error.to_string()))?;
+        around.movers.push(Mover {
+            scene: Arc::new(scene),
+            travel: moving.travel,
         });
     }
-    let scene = Scene::of(placed).map_err(|error| SceneError {
-        line,
-        what: error.to_string(),
-    })?;
-    Ok(Arc::new(scene))
+    Ok(around)
 }

@@ -2,8 +2,10 @@
 //!
 //! Which there are, and what their tables say, is [`crate::effects::Wishes`]; here they get their lines.
 
+use std::sync::Arc;
+
 use super::Wrong;
-use crate::effects::{Asked, Wish, Wishes};
+use crate::effects::{Asked, Listed, MovingObjects, Stopwatch, Wish, Wishes};
 
 /// The effects of a scene.
 #[derive(Debug, Default)]
@@ -46,6 +48,21 @@ impl AskedFor {
     #[must_use]
     pub const fn is_none(&self) -> bool {
         self.lines.is_empty()
+    }
+
+    /// Objects of the scene that move, together with those of the effect's own table, if there is one; else the effect is asked for by that line.
+    pub(super) fn move_objects(&mut self, all: MovingObjects, line: usize, clock: Stopwatch) {
+        let name = MovingObjects::NAME;
+        // No other effect moves anything.
+        self.effects.firings.objects = vec![Listed::new(Arc::new(all), clock)];
+        if self.lines.iter().any(|asked| asked.name == name) {
+            return;
+        }
+        let place = |name: &str| Wishes::NAMES.iter().position(|known| *known == name);
+        let at = self
+            .lines
+            .partition_point(|asked| place(asked.name) < place(name));
+        self.lines.insert(at, EffectLine { name, line });
     }
 
     pub(super) fn find_lines(&mut self, line_of: impl Fn(usize) -> usize) {

@@ -64,7 +64,7 @@ pub enum Coat {
 }
 
 /// A scene that can be cast at: its objects in order and, by the same numbers, what they are made of.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Placed {
     /// What rays meet.
     pub objects: Vec<Object>,
@@ -72,7 +72,7 @@ pub struct Placed {
     pub coats: Vec<Coat>,
     /// All materials.
     pub materials: Vec<Material>,
-    /// Those objects that move.
+    /// Which of them move, and how.
     pub moving: Vec<Moving>,
     /// Which line of the scene each object comes from.
     pub lines: Vec<usize>,

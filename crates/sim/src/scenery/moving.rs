@@ -1,40 +1,90 @@
 //! Objects that move: at a steady velocity, turning steadily.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
+use super::coats::Placed;
 use super::error::At;
-use crate::cast::{Placement, PlacementError};
+use crate::cast::{Object, Placement, PlacementError};
 
-/// How an object moves: its origin along a line, the object about its origin.
+/// How something moves: its origin along a line, the thing about its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moving {
-    /// Which object of the placed ones.
-    pub object: usize,
+pub struct Travel {
+    /// Where its origin is at the start, metres in the frame of the base.
+    pub from_m: DVec3,
     /// Metres per second along the axes of the base.
     pub velocity_m_s: DVec3,
     /// Turning about an axis of that direction in the base's frame, degrees per second its length.
     pub turn_deg_s: DVec3,
-    /// Which line of the scene asks for it.
-    pub at: At,
-    /// How it is turned at the start.
-    pub rotation: DMat3,
-    /// Where it is at the start, metres.
-    pub position_m: DVec3,
 }
 
-impl Moving {
-    /// Where the object stands so many seconds after the start.
+impl Travel {
+    /// Where its frame is so many seconds after the start; then its axes are those of the base.
     ///
     /// # Errors
     /// [`PlacementError`] once it has gone out of all bounds.
-    pub fn at_time(&self, since_s: f64) -> Result<Placement, PlacementError> {
+    pub fn at(&self, since_s: f64) -> Result<Placement, PlacementError> {
         let rate = self.turn_deg_s.length();
         let rotation = match self.turn_deg_s.try_normalize() {
-            Some(axis) => {
-                DMat3::from_axis_angle(axis, (rate * since_s).to_radians()) * self.rotation
-            }
-            None => self.rotation,
+            Some(axis) => DMat3::from_axis_angle(axis, (rate * since_s).to_radians()),
+            None => DMat3::IDENTITY,
         };
-        Placement::new(rotation, self.position_m + self.velocity_m_s * since_s)
+        Placement::new(rotation, self.from_m + self.velocity_m_s * since_s)
+    }
+}
+
+/// Something of a scene that moves as one: all parts of an object, or of one of its copies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moving {
+    /// Which of the placed objects, as they stand at the start.
+    pub objects: Range<usize>,
+    /// How they move together.
+    pub travel: Travel,
+    /// Which line of the scene asks for it.
+    pub at: At,
+}
+
+impl Placed {
+    /// What stands, and what moves, each in a frame of its own whose origin is the travel's and whose axes are the base's at the start.
+    ///
+    /// # Errors
+    /// [`PlacementError`] for what stands out of all bounds.
+    pub fn divided(&self) -> Result<(Self, Vec<(Moving, Self)>), PlacementError> {
+        let moves = |object: &usize| {
+            self.moving
+                .iter()
+                .any(|moving| moving.objects.contains(object))
+        };
+        let stands = (0..self.objects.len()).filter(|object| !moves(object));
+        let stands = self.only(stands, DVec3::ZERO)?;
+        let bodies = self.moving.iter().map(|moving| {
+            let body = self.only(moving.objects.clone(), moving.travel.from_m)?;
+            Ok((moving.clone(), body))
+        });
+        Ok((stands, bodies.collect::<Result<_, _>>()?))
+    }
+
+    /// Some of the objects, from an origin of their own.
+    fn only(
+        &self,
+        objects: impl Iterator<Item = usize>,
+        from_m: DVec3,
+    ) -> Result<Self, PlacementError> {
+        let mut only = Self {
+            materials: self.materials.clone(),
+            ..Self::default()
+        };
+        for at in objects {
+            let all = (self.objects.get(at), self.coats.get(at), self.lines.get(at));
+            let (Some(object), Some(coat), Some(line)) = all else {
+                continue;
+            };
+            let placement = object.placement().moved(-from_m)?;
+            only.objects.push(Object::clone(object).placed(placement));
+            only.coats.push(*coat);
+            only.lines.push(*line);
+        }
+        Ok(only)
     }
 }

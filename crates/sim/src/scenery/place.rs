@@ -10,7 +10,7 @@ use super::coats::{Coat, Material, Placed};
 use super::error::{At, SceneryError, wrong};
 use super::generators::{self, Part};
 use super::meshes::{self, MeshFileError, MeshFormat};
-use super::moving::Moving;
+use super::moving::{Moving, Travel};
 use super::objects::{HeightFieldShape, MeshShape, ObjectTable};
 use crate::cast::{
     Cuboid, Cylinder, HeightField, HeightFieldError, Mesh, Object, Placement, Plane, Sphere,
@@ -60,6 +60,7 @@ impl Builder<'_> {
         let turn = rotation(table.rotation_deg);
         for offset_m in table.copies.offsets_m() {
             let origin_m = DVec3::from_array(table.position_m) + turn * DVec3::from_array(offset_m);
+            let first = self.placed.objects.len();
             for part in &parts {
                 let rotation = turn * part.rotation;
                 let position_m = origin_m + turn * part.position_m;
@@ -71,20 +72,21 @@ impl Builder<'_> {
                         error.to_string(),
                     )
                 })?;
-                if table.is_moving() {
-                    self.placed.moving.push(Moving {
-                        object: self.placed.objects.len(),
-                        velocity_m_s: table.velocity_m_s.into(),
-                        turn_deg_s: table.turn_deg_s.into(),
-                        at: *at,
-                        rotation,
-                        position_m,
-                    });
-                }
                 let object = Object::new(part.surface.clone()).placed(placement);
                 self.placed.objects.push(object);
                 self.placed.coats.push(part.coat);
                 self.placed.lines.push(at.line);
+            }
+            if table.is_moving() {
+                self.placed.moving.push(Moving {
+                    objects: first..self.placed.objects.len(),
+                    travel: Travel {
+                        from_m: origin_m,
+                        velocity_m_s: table.velocity_m_s.into(),
+                        turn_deg_s: table.turn_deg_s.into(),
+                    },
+                    at: *at,
+                });
             }
         }
         Ok(())

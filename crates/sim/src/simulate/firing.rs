@@ -58,6 +58,8 @@ pub struct Echoes {
     pub other: [Echo; MOST_LASERS],
     /// Whether anybody looks at `other`.
     pub two: bool,
+    /// How far away what stands is, metres, whether anything comes back of it or not; the sensor's reach where nothing is. Kept only where things move.
+    pub(super) standing_m: [f64; MOST_LASERS],
     lasers: usize,
 }
 
@@ -86,6 +88,12 @@ impl Echo {
         }
     }
 
+    /// The same, or nothing.
+    #[inline]
+    pub(super) fn of_any(met: Option<Met>) -> Self {
+        met.map_or(Self::NONE, |met| Self::of(&met))
+    }
+
     /// Whether anything came back.
     #[inline]
     #[must_use]
@@ -100,6 +108,7 @@ impl Echoes {
             strongest: [Echo::NONE; MOST_LASERS],
             other: [Echo::NONE; MOST_LASERS],
             two,
+            standing_m: [0.0; MOST_LASERS],
             lasers,
         }
     }

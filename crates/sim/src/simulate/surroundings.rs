@@ -1,14 +1,23 @@
 //! What rays meet: the one place where the simulation calls the ray caster.
 //!
-//! Every thread has surroundings of its own, which moving objects are placed in. Left out: how rays are cast ([`Scene`]).
+//! What stands is cast for a whole packet at once (`volley`), what moves for one firing at a time, and the nearer of both counts. Effects that want more rays ask
+//! one by one ([`Surroundings::meet`]); the answers are the same, bit for bit. Every thread has surroundings of its own, which moving objects are
+//! placed in. Left out: how rays are cast ([`Scene`]).
+
+mod body;
+mod volley;
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::firing::{Echo, Echoes, Firing};
-use crate::scene::{Facet, Scene};
-use crate::sensor::{MOST_LASERS, Reach};
+use crate::cast::Hit;
+use crate::scene::Scene;
+use crate::scenery::Material;
+use crate::sensor::Reach;
+
+pub use body::Body;
 
 /// The scene around the scanner at the moment.
 #[derive(Clone, Debug)]
@@ -20,17 +29,6 @@ pub struct Surroundings {
     bodies: Vec<Body>,
 }
 
-/// Something that can move: its surfaces in its own frame, and where that stands.
-#[derive(Clone, Debug)]
-pub struct Body {
-    /// What it looks like.
-    pub scene: Arc<Scene>,
-    /// How its frame is turned.
-    pub turn: DMat3,
-    /// Where its frame's origin is, metres in the frame of the base.
-    pub at_m: DVec3,
-}
-
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
@@ -40,8 +38,31 @@ pub struct Met {
     pub reflectivity: f64,
     /// The surface's normal, length 1, whichever way it points; 0 where no effect needs it.
     pub normal: DVec3,
-    /// Share of the light that goes off as from a mirror, 0..=1; 0 where no effect needs the normal.
+    /// Share of the light that goes off as from a mirror, 0..=1. Whether it comes back the normal decides.
     pub specular: f64,
+}
+
+/// The first surface in a ray's way.
+#[derive(Clone, Copy, Debug)]
+struct First {
+    met: Met,
+    /// Nothing comes back of it.
+    absorbing: bool,
+}
+
+impl First {
+    #[inline]
+    fn new(hit: &Hit<DVec3>, material: &Material) -> Self {
+        Self {
+            met: Met {
+                range_m: hit.range_m,
+                reflectivity: f64::from(material.reflectivity),
+                normal: hit.normal,
+                specular: material.specular,
+            },
+            absorbing: material.absorbing,
+        }
+    }
 }
 
 impl Surroundings {
@@ -61,12 +82,6 @@ impl Surroundings {
         Self { normals, ..self }
     }
 
-    /// Whether nothing ever moves: what a ray meets now it meets always.
-    #[must_use]
-    pub const fn is_still(&self) -> bool {
-        self.still
-    }
-
     /// How far the sensor sees.
     #[must_use]
     pub const fn reach(&self) -> Reach {
@@ -75,63 +90,60 @@ impl Surroundings {
 
     /// What a ray from `origin_m` along `direction` (length 1) meets first within the sensor's reach, in the frame of the base. A nearer surface
     /// blocks it.
-    #[inline]
     #[must_use]
     pub fn meet(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
-        match self.bodies.is_empty() {
-            true => self.meet_still(origin_m, direction),
-            false => self.nearest(origin_m, direction),
+        let stands = self.stands(origin_m, direction);
+        if self.bodies.is_empty() {
+            return self.seen(stands?);
         }
+        let up_to_m = stands.map_or(self.reach.max_m, |first| first.met.range_m);
+        let moves = self.moves(origin_m, direction, up_to_m);
+        self.seen(moves.or(stands)?)
     }
 
-    /// The same where nothing moves.
+    /// The same with nothing there but what stands.
+    #[must_use]
+    pub fn meet_still(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+        self.seen(self.stands(origin_m, direction)?)
+    }
+
+    /// Whether anything that moves can be within a cone about a ray, this wide (radians from its middle to its side, well below 1). It may say so of nothing.
+    #[must_use]
+    pub fn may_move_near(&self, origin_m: DVec3, direction: DVec3, half_width: f64) -> bool {
+        let near = |body: &Body| body.may_be_near(origin_m, direction, half_width);
+        self.bodies.iter().any(near)
+    }
+
+    /// What comes back of the first surface: nothing of one that is too near.
     #[inline]
-    fn meet_still(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
-        self.cast(&self.scene, origin_m, direction, self.reach.min_m)
+    fn seen(&self, first: First) -> Option<Met> {
+        let back = first.met.range_m >= self.reach.min_m && !first.absorbing;
+        back.then_some(first.met)
     }
 
-    /// What a ray meets of a scene, no nearer than `min_m`.
-    #[inline]
-    fn cast(&self, scene: &Scene, origin_m: DVec3, direction: DVec3, min_m: f64) -> Option<Met> {
-        let max_m = self.reach.max_m;
-        let (hit, facet) = match self.normals {
-            true => scene.cast_with_facet(origin_m, direction, min_m, max_m)?,
-            false => (
-                scene.cast(origin_m, direction, min_m, max_m)?,
-                Facet::default(),
-            ),
-        };
-        Some(Met {
-            range_m: hit.range_m,
-            reflectivity: f64::from(hit.reflectivity),
-            normal: facet.normal,
-            specular: facet.specular,
-        })
+    /// The first of what stands.
+    fn stands(&self, origin_m: DVec3, direction: DVec3) -> Option<First> {
+        first_of(
+            &self.scene,
+            origin_m,
+            direction,
+            self.reach.max_m,
+            self.normals,
+        )
     }
 
-    /// The nearest of what stands and what moves. Either can be what blocks the ray.
-    #[cold]
-    #[inline(never)]
-    fn nearest(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
-        let still = self.cast(&self.scene, origin_m, direction, 0.0);
-        let mets = self
-            .nearest_body(origin_m, direction)
-            .into_iter()
-            .chain(still);
-        let nearest = mets.min_by(|a, b| a.range_m.total_cmp(&b.range_m))?;
-        (nearest.range_m >= self.reach.min_m).then_some(nearest)
-    }
-
-    /// The nearest of what moves.
-    fn nearest_body(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
-        let mets = self.bodies.iter().filter_map(|body| {
-            let own = body.turn.transpose();
-            let from = own * (origin_m - body.at_m);
-            let met = self.cast(&body.scene, from, own * direction, 0.0)?;
-            let normal = body.turn * met.normal;
-            Some(Met { normal, ..met })
-        });
-        mets.min_by(|a, b| a.range_m.total_cmp(&b.range_m))
+    /// The first of what moves, if it is no farther than this.
+    fn moves(&self, origin_m: DVec3, direction: DVec3, up_to_m: f64) -> Option<First> {
+        let mut nearest: Option<First> = None;
+        for body in &self.bodies {
+            let up_to_m = nearest.map_or(up_to_m, |first| first.met.range_m);
+            if let Some(first) = body.first(origin_m, direction, up_to_m, self.normals)
+                && nearest.is_none_or(|had| first.met.range_m < had.met.range_m)
+            {
+                nearest = Some(first);
+            }
+        }
+        nearest
     }
 
     /// What moves, as it stands at the moment. Empty unless an effect fills it.
@@ -139,41 +151,37 @@ impl Surroundings {
         &mut self.bodies
     }
 
-    /// What stands, as all lasers meet it of firings that follow one another; those that are not alive have no echo, and nobody has a second one.
-    #[inline]
-    pub(crate) fn meet_all(&self, firings: &[Firing], echoes: &mut [Echoes]) {
-        for (firing, echoes) in firings.iter().zip(echoes) {
-            let rays = firing.origins_m.iter().zip(&firing.directions);
-            let lasers = echoes.strongest.iter_mut().zip(rays).take(firing.lasers);
-            for (laser, (echo, (origin, direction))) in lasers.enumerate() {
-                let met = firing
-                    .is_alive(laser)
-                    .then(|| self.meet_still(*origin, *direction))
-                    .flatten();
-                *echo = met.map_or(Echo::NONE, |met| Echo::of(&met));
-            }
-            if echoes.two {
-                echoes.other = [Echo::NONE; MOST_LASERS];
-            }
-        }
-    }
-
-    /// Puts what moves before what stands. Apart from [`Surroundings::meet_all`], so that a scene in which nothing moves is not asked ray by ray.
+    /// Puts what moves before what stands, as [`Surroundings::meet_all`] found that.
     #[cold]
     #[inline(never)]
-    pub(crate) fn meet_bodies(&self, firings: &[Firing], echoes: &mut [Echoes]) {
-        for (firing, echoes) in firings.iter().zip(echoes) {
-            for laser in firing.alive() {
-                if let (Some(echo), Some(origin), Some(direction)) = (
-                    echoes.strongest.get_mut(laser),
-                    firing.origins_m.get(laser),
-                    firing.directions.get(laser),
-                ) && self.nearest_body(*origin, *direction).is_some()
-                {
-                    let met = self.nearest(*origin, *direction);
-                    *echo = met.map_or(Echo::NONE, |met| Echo::of(&met));
-                }
+    pub(crate) fn meet_bodies(&self, firing: &Firing, echoes: &mut Echoes) {
+        let lasers = echoes.strongest.iter_mut().zip(&echoes.standing_m);
+        let rays = firing.origins_m.iter().zip(&firing.directions);
+        for (laser, ((echo, up_to_m), (origin, direction))) in lasers.zip(rays).enumerate() {
+            if firing.is_alive(laser)
+                && let Some(first) = self.moves(*origin, *direction, *up_to_m)
+            {
+                *echo = Echo::of_any(self.seen(first));
             }
         }
     }
 }
+
+/// The first of a scene, no farther than this.
+fn first_of(
+    scene: &Scene,
+    origin_m: DVec3,
+    direction: DVec3,
+    up_to_m: f64,
+    normals: bool,
+) -> Option<First> {
+    if normals {
+        let (hit, material) = scene.nearest::<DVec3>(origin_m, direction, up_to_m)?;
+        return Some(First::new(&hit, material));
+    }
+    let (hit, material) = scene.nearest::<()>(origin_m, direction, up_to_m)?;
+    Some(First::new(&hit.with_normal(DVec3::ZERO), material))
+}
+
+#[cfg(test)]
+mod tests;

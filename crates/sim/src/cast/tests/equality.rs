@@ -174,7 +174,13 @@ fn one_ray_or_many_any_threads_any_registers_give_the_same_bits() {
     plain.level = Level::baseline();
     for threads in [1, 2, 3, 7] {
         let threads = Threads::new(NonZeroUsize::new(threads).unwrap()).unwrap();
-        for (caster, beams) in [(&caster, 16), (&caster, 1), (&plain, 16), (&caster, 0)] {
+        for (caster, beams) in [
+            (&caster, 16),
+            (&caster, 1),
+            (&plain, 16),
+            (&caster, 0),
+            (&caster, usize::MAX),
+        ] {
             let mut hits = vec![None; rays.len()];
             caster.nearest_of(
                 &Rays::new(&rays, beams),
@@ -189,6 +195,83 @@ fn one_ray_or_many_any_threads_any_registers_give_the_same_bits() {
         let hit = plain.nearest(ray, Reach::default());
         assert_eq!(hit, caster.nearest::<()>(ray, Reach::default()));
     }
+}
+
+/// Along and beside faces, edges and axes, from within and without: where single rays take another branch.
+#[test]
+fn solids_give_the_same_bits_by_one_ray_and_by_eight() {
+    let mut numbers = Numbers(77);
+    let (mut met, mut faces) = (0, [false; 6]);
+    for round in 0..4_000 {
+        let surface: Surface = match round % 5 {
+            0 => Plane.into(),
+            1 => Sphere { radius_m: 1.0 }.into(),
+            2 => Cuboid::new(DVec3::NEG_ONE, DVec3::new(1.0, 2.0, 3.0)).into(),
+            _ => Cylinder {
+                radius_m: 1.0,
+                bottom_m: -1.0,
+                top_m: 2.0,
+                capped: round % 5 == 3,
+            }
+            .into(),
+        };
+        let place = match numbers.below(3) {
+            0 => Placement::default(),
+            1 => Placement::at(numbers.vector()).unwrap(),
+            _ => Placement::new(numbers.rotation(), numbers.vector()).unwrap(),
+        };
+        // Something else, so that there is a tree's reach by which rays are together.
+        let far = Sphere { radius_m: 1e4 };
+        let objects = [Object::new(surface).placed(place), Object::new(far)];
+        let caster = Caster::new(objects).unwrap();
+        let mut plain = caster.clone();
+        plain.level = Level::baseline();
+        let corner = |numbers: &mut Numbers| [-3.0, -1.0, 0.0, 1.0, 2.0, 5.0][numbers.below(6)];
+        let origin = DVec3::from_array([0; 3].map(|_| corner(&mut numbers)));
+        let along = match numbers.below(4) {
+            0 => numbers.direction(),
+            1 => DVec3::new(numbers.signed(), numbers.signed(), 0.0).normalize(),
+            _ => [DVec3::X, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z][numbers.below(4)],
+        };
+        let world = |own: DVec3| place.world_direction(own);
+        let rays: Vec<Ray> = (0..8)
+            .map(|_| {
+                let off = match numbers.below(3) {
+                    0 => DVec3::ZERO,
+                    1 => 0.03 * numbers.vector(),
+                    _ => 0.03 * numbers.signed() * DVec3::X,
+                };
+                let from = match numbers.below(2) {
+                    0 => DVec3::ZERO,
+                    _ => 0.01 * numbers.vector(),
+                };
+                ray(
+                    place.world_point(origin + from),
+                    world((along + off).normalize()).normalize(),
+                )
+            })
+            .collect();
+        for caster in [&caster, &plain] {
+            let mut together = vec![None; rays.len()];
+            caster.nearest_of(
+                &Rays::new(&rays, 1),
+                Reach::default(),
+                &Threads::ONE,
+                &mut together,
+            );
+            for (ray, together) in rays.iter().zip(together) {
+                let one = first(caster, ray);
+                let exactly =
+                    |hit: Option<Hit>| hit.map(|hit| (hit.object.index(), bits(Some(hit))));
+                assert_eq!(exactly(together), exactly(one), "{round} {ray:?}");
+                if let Some(hit) = one.filter(|hit| hit.object.index() == 0) {
+                    met += 1;
+                    faces[hit.primitive as usize] = true;
+                }
+            }
+        }
+    }
+    assert!(met > 5_000 && faces == [true; 6], "{met} {faces:?}");
 }
 
 #[test]

@@ -129,7 +129,7 @@ fn look(surroundings: &Surroundings, side: usize) -> Vec<Seen> {
         .map(|(row, column)| {
             let way = towards(side, place(column), place(row));
             let length = way.length();
-            match surroundings.meet(DVec3::ZERO, way / length) {
+            match surroundings.meet_still(DVec3::ZERO, way / length) {
                 Some(met) => Seen {
                     inverse: length / met.range_m,
                     reflectivity: met.reflectivity,

@@ -1,8 +1,10 @@
 use super::*;
+use crate::cast::{Cuboid, Object, Placement, Plane, Sphere};
 use crate::effects::testing::{around, cast, firing};
+use crate::effects::{MovingBox, MovingObjects, MovingObjectsSettings, Objects};
 use crate::scene::Scene;
-use crate::{Cuboid, Plane, Sphere, scenes};
-use glam::{DVec3, dvec3};
+use crate::scenes;
+use glam::{DMat3, DVec3, dvec3};
 
 fn divergence() -> Divergence {
     Divergence::new(&DivergenceSettings::default()).unwrap()
@@ -10,15 +12,18 @@ fn divergence() -> Divergence {
 
 /// A near screen that ends at a plane through the axis, before a far wall.
 fn screen(near_m: f64, far_m: f64, edge_x_m: f64) -> Surroundings {
-    around(
-        Scene::new()
-            .with(Plane::new(dvec3(0.0, far_m, 0.0), DVec3::Y, 50))
-            .with(Cuboid::new(
-                dvec3(-100.0, near_m, -100.0),
-                dvec3(edge_x_m, near_m + 0.05, 100.0),
-                50,
-            )),
-    )
+    let corner = dvec3(-100.0, near_m, -100.0);
+    let screen = Cuboid::new(corner, dvec3(edge_x_m, near_m + 0.05, 100.0));
+    let scene = wall(far_m * DVec3::Y, DVec3::Y).with(Object::new(screen), 50);
+    around(scene.unwrap())
+}
+
+fn wall(through_m: DVec3, normal: DVec3) -> Scene {
+    let normal = normal.normalize();
+    let x = normal.any_orthonormal_vector();
+    let rotation = DMat3::from_cols(x, normal.cross(x), normal);
+    let plane = Object::new(Plane).placed(Placement::new(rotation, through_m).unwrap());
+    Scene::new().with(plane, 50).unwrap()
 }
 
 fn received(divergence: &Divergence, surroundings: &Surroundings) -> (Firing, Echoes, u32) {
@@ -30,8 +35,7 @@ fn received(divergence: &Divergence, surroundings: &Surroundings) -> (Firing, Ec
 
 #[test]
 fn on_a_plane_nothing_is_changed_and_no_sub_ray_cast() {
-    let wall =
-        around(Scene::new().with(Plane::new(dvec3(0.0, 20.0, 0.0), dvec3(0.3, -1.0, 0.1), 50)));
+    let wall = around(wall(20.0 * DVec3::Y, dvec3(0.3, -1.0, 0.1)));
     let firing = firing(20.0, -30.0);
     let before = cast(&firing, &wall);
     let mut echoes = before.clone();
@@ -39,7 +43,8 @@ fn on_a_plane_nothing_is_changed_and_no_sub_ray_cast() {
     assert_eq!(echoes.strongest, before.strongest);
     let nothing = around(Scene::new());
     assert_eq!(received(&divergence(), &nothing).2, 0);
-    let sphere = around(Scene::new().with(Sphere::new(DVec3::ZERO, 10.0, 50)));
+    let sphere = Object::new(Sphere { radius_m: 10.0 });
+    let sphere = around(Scene::new().with(sphere, 50).unwrap());
     assert_eq!(received(&divergence(), &sphere).2, 0);
 }
 
@@ -122,6 +127,50 @@ fn what_is_left_alone_would_not_have_changed() {
     // Edges of what fits between the corners of a patch.
     assert!(missed * 2_000 < shots, "{missed} of {shots}");
     assert!(acted * 4 < shots && acted > 100, "{acted} of {shots}");
+}
+
+/// Beside what moves the map holds on: the same as without a map, wherever the box is.
+#[test]
+fn a_map_of_what_stands_is_right_beside_what_moves() {
+    let walker = MovingObjects::of(&MovingObjectsSettings {
+        boxes: vec![MovingBox {
+            at_m: [3.0, 4.0, 0.3],
+            size_m: [0.6, 0.4, 1.8],
+            velocity_m_s: [-3.0, 0.0, 0.0],
+            turn_deg_s: 90.0,
+            reflectivity: 50,
+        }],
+    });
+    let (walker, divergence) = (walker.unwrap(), divergence());
+    let mut surroundings = around(scenes::hall());
+    let (mut alone, mut near, mut acted) = (0, 0, 0);
+    for step in 0..400 {
+        let firing = firing(0.2 * f64::from(step) - 40.0, -0.01 * f64::from(step));
+        walker.place(0.005 * f64::from(step), &mut surroundings);
+        let mut echoes = cast(&firing, &surroundings);
+        surroundings.meet_bodies(&firing, &mut echoes);
+        let mut slow = echoes.clone();
+        acted += divergence.receive(&firing, &surroundings, &mut echoes);
+        let scan = scan_axis(&firing).unwrap();
+        for laser in firing.alive() {
+            let (origin, direction) = (firing.origins_m[laser], firing.directions[laser]);
+            let patch = Footprint::new(origin, direction, scan, divergence.half);
+            let met = slow.strongest[laser];
+            let plain = divergence.is_plain(&patch, met.range_m, &surroundings);
+            alone += u32::from(plain);
+            near += u32::from(surroundings.may_move_near(origin, direction, 0.002));
+            if !patch.is_flat(&met, divergence.settings.flat_m, &surroundings) {
+                assert!(!plain, "{step} {laser}");
+                let [strongest, other] = divergence.pulse(&patch, &surroundings);
+                (slow.strongest[laser], slow.other[laser]) = (strongest, other);
+            }
+        }
+        assert_eq!(echoes.strongest, slow.strongest, "{step}");
+    }
+    assert!(
+        alone > 3_000 && near > 200 && acted > 40,
+        "{alone} {near} {acted}"
+    );
 }
 
 #[test]

@@ -74,35 +74,24 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
             #[cfg(feature = "effects")]
             effects.view.look(firing);
         }
-        // Where nothing moves all of them meet one and the same scene.
-        let at_once = if job.needs.moving {
-            1
-        } else {
-            self.firings.len()
-        };
-        let firings = self.firings.chunks(at_once.max(1));
-        for (firings, echoes) in firings.zip(self.echoes.chunks_mut(at_once.max(1))) {
-            #[cfg(feature = "effects")]
-            if let Some(first) = firings.first().filter(|_| job.needs.moving) {
-                effects.objects.place(first.at_s, &mut self.surroundings);
-            }
-            self.surroundings.meet_all(firings, echoes);
+        // What stands, all at once; what moves, firing by firing.
+        self.surroundings.meet_all(&self.firings, &mut self.echoes);
+        for (firing, echoes) in self.firings.iter().zip(&mut self.echoes) {
             #[cfg(feature = "effects")]
             if job.needs.moving {
-                self.surroundings.meet_bodies(firings, echoes);
+                effects.objects.place(firing.at_s, &mut self.surroundings);
+                self.surroundings.meet_bodies(firing, echoes);
             }
-            for (firing, echoes) in firings.iter().zip(echoes) {
-                #[cfg(feature = "effects")]
-                effects.beam.receive(firing, &self.surroundings, echoes);
-                #[cfg(feature = "effects")]
-                effects.surface.reflect(firing, echoes);
-                let told = Told {
-                    job,
-                    clock: effects.clock,
-                    firing,
-                };
-                told.report(echoes, &mut self.packet, &mut made, &mut chunk.points);
-            }
+            #[cfg(feature = "effects")]
+            effects.beam.receive(firing, &self.surroundings, echoes);
+            #[cfg(feature = "effects")]
+            effects.surface.reflect(firing, echoes);
+            let told = Told {
+                job,
+                clock: effects.clock,
+                firing,
+            };
+            told.report(echoes, &mut self.packet, &mut made, &mut chunk.points);
         }
         let device_ns = |firing: &Firing| job.device_ns(firing.number);
         let first_ns = self.firings.first().map_or(0, device_ns);

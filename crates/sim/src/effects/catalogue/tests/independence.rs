@@ -5,13 +5,11 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec3;
-
 use super::*;
+use crate::cast::{Object, Sphere};
 use crate::effects::testing::arrivals;
 use crate::effects::{Clock, ParcelKind};
 use crate::scene::Scene;
-use crate::shapes::Sphere;
 
 /// Those that draw by firing.
 const ON_SHOTS: [&str; 3] = ["weather", "reflectance", "range_noise"];
@@ -32,7 +30,11 @@ fn sphere() -> Simulation {
         rest_s: 0.005,
     });
     Simulation {
-        scene: Arc::new(Scene::new().with(Sphere::new(DVec3::ZERO, 8.0, 10))),
+        scene: Arc::new(
+            Scene::new()
+                .with(Object::new(Sphere { radius_m: 8.0 }), 10)
+                .unwrap(),
+        ),
         spin: Spin {
             rpm: 600,
             start_deg: 120.0,

@@ -1,0 +1,173 @@
+//! Objects of a scene file that move, through the whole simulation: where the truth has them at each firing.
+
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+
+use glam::{DMat3, DVec3};
+
+use super::*;
+use crate::effects::Explanation;
+use crate::simulate::{Event, Out, TruePoint};
+
+/// Bytes and points of a run.
+#[derive(Default, PartialEq)]
+struct Taken {
+    bytes: Vec<u8>,
+    points: Vec<TruePoint>,
+}
+
+impl Out for Taken {
+    fn event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        if let Event::Datagram { payload, .. } = event {
+            self.bytes.extend_from_slice(payload);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn wants_truth(&self) -> bool {
+        true
+    }
+
+    fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
+        self.points.extend_from_slice(points);
+        ControlFlow::Continue(())
+    }
+}
+
+/// A plate that stands upright along x, 2 m wide and high.
+const PLATE: &str = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 2 3 4\n";
+
+/// All but the objects.
+const BEFORE: &str = "[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -20\nspeed_deg_s = 40\n[materials]\nwall = { reflectivity = 60 }\n\
+                      a = { reflectivity = 1 }\nb = { reflectivity = 2 }\nc = { reflectivity = 3 }\nd = { reflectivity = 4 }\ne = { reflectivity = 5 }\n\
+                      f = { reflectivity = 6 }\nplate = { reflectivity = 30 }\n[[objects]]\nmaterial = \"wall\"\nsphere = { radius_m = 20 }\n";
+const BOX: &str = "[[objects]]\nname = \"trolley\"\nposition_m = [1, 4, 0]\nvelocity_m_s = [0, 2, 0]\n\
+                   box = { size_m = [1.5, 1, 2], faces = [\"a\", \"b\", \"c\", \"d\", \"e\", \"f\"] }\n";
+const MESH: &str = "[[objects]]\nmaterial = \"plate\"\nposition_m = [-4, -3, 0]\nrotation_deg = [0, 0, 20]\nturn_deg_s = [0, 0, 120]\n\
+                    velocity_m_s = [1, 0, 0.1]\nmesh = { file = \"plate.obj\" }\n";
+
+fn read(text: &str) -> Scene {
+    let mut files = |name: &str| match name {
+        "plate.obj" => Ok(PLATE.as_bytes().to_vec()),
+        other => Err(format!("no {other}")),
+    };
+    Scene::parse_with(text, None, None, &mut files).unwrap()
+}
+
+fn run(text: &str, threads: usize) -> (Taken, Scene) {
+    let (mut scene, mut taken) = (read(text), Taken::default());
+    let threads = NonZeroUsize::new(threads).unwrap();
+    let effects = &mut scene.effects.effects;
+    scene.simulation.run(effects, threads, &mut taken).unwrap();
+    (taken, scene)
+}
+
+/// When the first laser of a point's firing fired, seconds since the start: things are where they are then.
+fn fired_s(point: &TruePoint) -> f64 {
+    (point.device_ns / 55_296 * 55_296) as f64 * 1e-9
+}
+
+#[test]
+fn a_box_at_2_m_s_is_at_each_firing_where_it_went() {
+    let (taken, scene) = run(&format!("{BEFORE}{BOX}"), 2);
+    let mut faces = [0; 7];
+    for point in &taken.points {
+        if point.reflectivity == 60 {
+            assert!((point.position_m.length() - 20.0).abs() < 1e-9);
+            continue;
+        }
+        let middle = DVec3::new(1.0, 4.0 + 2.0 * fired_s(point), 0.0);
+        let own = point.position_m - middle;
+        let (sides, half) = (own.to_array(), [0.75, 0.5, 1.0]);
+        let face = usize::from(point.reflectivity) - 1;
+        let out = if face % 2 == 0 { -1.0 } else { 1.0 };
+        assert!(
+            (sides[face / 2] - out * half[face / 2]).abs() < 1e-9,
+            "{own} {face}"
+        );
+        assert!(
+            (0..3).all(|axis| sides[axis].abs() < half[axis] + 1e-9),
+            "{own}"
+        );
+        faces[face] += 1;
+    }
+    // It is in front, to the right, and the scanner sees its left as well.
+    assert!(
+        faces[2] > 500 && faces[0] > 100 && faces[1] == 0 && faces[3] == 0,
+        "{faces:?}"
+    );
+    // Sheared: in one turn, 0.1 s, its front is 0.2 m farther where the head comes to it later. Here turn by turn.
+    let front = |from_s: f64| {
+        let turn = taken.points.iter().filter(|point| {
+            point.reflectivity == 3 && (from_s..from_s + 0.1).contains(&fired_s(point))
+        });
+        turn.map(|point| point.position_m.y).fold(0.0, f64::max)
+    };
+    let gone = front(0.3) - front(0.1);
+    assert!((gone - 0.4).abs() < 0.02, "{gone}");
+    let line = BEFORE.lines().count() + 1;
+    let name = "moving_objects";
+    assert_eq!(scene.effects.lines, [EffectLine { name, line }]);
+    let explained = Explanation::new(&scene.effects.effects.used(), &[(name, line)], 0);
+    let [on] = &explained.on[..] else { panic!() };
+    assert_eq!(
+        (on.effect, on.line, on.not_needed),
+        (name, Some(line), None)
+    );
+    assert!(!explained.absent.contains(&name));
+}
+
+#[test]
+fn a_mesh_that_turns_and_goes_is_where_it_turned_to() {
+    let (taken, _) = run(&format!("{BEFORE}{MESH}"), 1);
+    let (mut met, mut turned) = (0, [f64::INFINITY, f64::NEG_INFINITY]);
+    for point in taken.points.iter().filter(|point| point.reflectivity == 30) {
+        let t = fired_s(point);
+        let degrees = 20.0 + 120.0 * t;
+        let from = DVec3::new(-4.0 + t, -3.0, 0.1 * t);
+        let own = DMat3::from_rotation_z(-degrees.to_radians()) * (point.position_m - from);
+        assert!(own.y.abs() < 1e-9, "{own} at {t}");
+        assert!(
+            own.x.abs() < 1.0 + 1e-9 && own.z.abs() < 1.0 + 1e-9,
+            "{own}"
+        );
+        met += 1;
+        turned = [turned[0].min(degrees), turned[1].max(degrees)];
+    }
+    assert!(
+        met > 500 && turned[1] - turned[0] > 40.0,
+        "{met} {turned:?}"
+    );
+}
+
+#[test]
+fn what_moves_together_with_the_effects_own_boxes_on_any_threads() {
+    let table = "[effects.range_noise]\nsd_m = 0.01\n[effects.moving_objects]\n\
+                 boxes = [{ at_m = [0, -5, 0], size_m = [1, 1, 2], reflectivity = 44 }]\n[effects.divergence]\n";
+    let text = format!("{BEFORE}{BOX}{MESH}{table}");
+    let (first, scene) = run(&text, 1);
+    for of in [1, 3, 30, 44, 60] {
+        let there = first.points.iter().any(|point| point.reflectivity == of);
+        assert!(there, "{of}");
+    }
+    for threads in [2, 3, 8] {
+        assert!(run(&text, threads).0 == first, "{threads}");
+    }
+    let names: Vec<_> = scene.effects.lines.iter().map(|asked| asked.name).collect();
+    assert_eq!(names, ["moving_objects", "divergence", "range_noise"]);
+    // Its own table asks for it, wherever else something moves.
+    let line = text
+        .lines()
+        .position(|line| line == "[effects.moving_objects]")
+        .unwrap()
+        + 1;
+    assert_eq!(scene.effects.lines[0].line, line);
+    let after = format!("{BEFORE}{MESH}[effects.range_noise]\nsd_m = 0.01\n");
+    let names: Vec<_> = read(&after)
+        .effects
+        .lines
+        .iter()
+        .map(|asked| asked.name)
+        .collect();
+    assert_eq!(names, ["moving_objects", "range_noise"]);
+}
