@@ -11,14 +11,15 @@ fn rms_and_worst(errors: &[(f64, f64)]) -> (f64, f64) {
     ((squares / errors.len() as f64).sqrt(), worst)
 }
 
-fn hall() -> &'static str {
-    SHIPPED.iter().find(|(name, _)| *name == "hall").unwrap().1
+fn shipped(of: &str) -> &'static str {
+    SHIPPED.iter().find(|(name, _)| *name == of).unwrap().1
 }
 
 /// Range in steps of 2 mm and azimuth in hundredths of a degree are all that the ideal scanner loses.
 #[test]
 fn the_hall_comes_back_as_it_was() {
-    let scene = Simulated::new(hall(), |_| {});
+    let scene = Simulated::new(shipped("hall"), |scene| scene.effects.leave_out(|_| true));
+    assert!(scene.report.effects.is_empty());
     let (scan, cloud) = replayed(&scene.log(), TiltSource::Log);
     assert!(scan.contents.simulated);
     let [sweep] = scan.sweeps[..] else {
@@ -54,7 +55,8 @@ fn sweeps_both_ways_without_ramps_come_back() {
 
 #[test]
 fn noise_of_ranges_is_as_large_as_asked_for() {
-    let text = hall().to_owned() + "\n[effects.range_noise]\nsd_m = 0.03\n";
+    // The same room, which asks for no effect.
+    let text = shipped("rig").to_owned() + "\n[effects.range_noise]\nsd_m = 0.03\n";
     let scene = Simulated::new(&text, |_| {});
     assert_eq!(scene.report.effects.len(), 1);
     let (_, cloud) = replayed(&scene.log(), TiltSource::Log);
@@ -62,4 +64,30 @@ fn noise_of_ranges_is_as_large_as_asked_for() {
     // 3 cm and half a percent of it for 2.4e5 draws; none beyond six standard deviations.
     assert!((rms_m - 0.03).abs() < 2e-4, "{rms_m}");
     assert!((0.11..0.19).contains(&worst_m), "{worst_m}");
+}
+
+/// The hall as it comes, with all that it asks for: noise of 1 cm, and at edges some points that lie between two surfaces.
+#[test]
+fn the_hall_as_a_real_scanner_would_see_it() {
+    let scene = Simulated::new(shipped("hall"), |_| {});
+    assert_eq!(scene.report.effects.len(), 7);
+    let (scan, cloud) = replayed(&scene.log(), TiltSource::Log);
+    let [sweep] = scan.sweeps[..] else {
+        panic!("{:?}", scan.sweeps)
+    };
+    assert!((sweep.to_deg + 45.0).abs() < 0.01, "{sweep:?}");
+    assert_eq!(scan.contents.lost_packets, 0);
+    // Frame and tripod hide a ninth.
+    assert!((200_000..220_000).contains(&cloud.len()), "{}", cloud.len());
+    let mut errors = scene.errors(&cloud);
+    errors.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let quantile = |share: f64| errors[(share * errors.len() as f64) as usize].0;
+    // Half of all normal draws are within 0.674 standard deviations, 95 % within 1.96.
+    println!("{} {} {}", quantile(0.5), quantile(0.95), quantile(0.999));
+    assert!((quantile(0.5) - 0.006_74).abs() < 5e-4, "{}", quantile(0.5));
+    assert!(
+        (0.019..0.022).contains(&quantile(0.95)),
+        "{}",
+        quantile(0.95)
+    );
 }

@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cloud::Fields;
 use protocol::vlp16::{Model, models};
@@ -142,6 +143,9 @@ pub struct Simulate {
     /// What chance depends on [default: the scene's]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    /// Effects of the scene to leave out, by name, or all of them: docs, Effects
+    #[arg(long, value_name = "EFFECT,..|all", value_delimiter = ',', value_parser = effect_or_all(), hide_possible_values = true)]
+    pub without: Vec<String>,
     /// Threads that make packets; the log does not depend on it [default: one a core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
@@ -151,6 +155,15 @@ pub struct Simulate {
     /// Overwrite files that exist
     #[arg(long)]
     pub force: bool,
+}
+
+/// `--without`: all effects.
+pub const ALL: &str = "all";
+
+/// The names of effects, and [`ALL`].
+fn effect_or_all() -> PossibleValuesParser {
+    let names = sim::effects::Wishes::NAMES.iter().copied();
+    PossibleValuesParser::new(names.chain([ALL]))
 }
 
 /// How accurate a cloud is to be.

@@ -680,6 +680,13 @@ fn simulate_makes_a_log_that_replay_reads_and_says_what_is_wrong_where() {
     assert_eq!(told["effect"], "tilt_limits");
     assert_eq!((&told["line"], &told["acted"]), (&5.into(), &0.into()));
     assert!(told["not_needed"].as_str().unwrap().contains("stops"));
+    let output = place.run("simulate asks.toml --without all --force --json");
+    assert_eq!(json(&output)["effects"].as_array().unwrap().len(), 0);
+    let output = place.run("simulate asks.toml --without weather,loss --force --json");
+    assert_eq!(json(&output)["effects"].as_array().unwrap().len(), 1);
+    let unknown = place.run("simulate asks.toml --without fog");
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&unknown.stderr).contains("weather"));
     let output = place.run("replay stand.pcapng --tilt none -o s.ply --json");
     assert_eq!(json(&output)["points"].as_u64(), Some(rows as u64));
     assert_eq!(json(&output)["simulated"], true);

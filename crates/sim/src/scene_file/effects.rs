@@ -65,6 +65,13 @@ impl AskedFor {
         self.lines.insert(at, EffectLine { name, line });
     }
 
+    /// Leaves out effects that the file asks for, by name: as if it did not. What is left draws as before.
+    pub fn leave_out(&mut self, is_out: impl Fn(&str) -> bool) {
+        self.effects.retain(|name| !is_out(name));
+        self.lines.retain(|line| !is_out(line.name));
+        self.wishes.retain(|wish| !is_out(wish.name));
+    }
+
     pub(super) fn find_lines(&mut self, line_of: impl Fn(usize) -> usize) {
         let line = |wish: &Wish| EffectLine {
             name: wish.name,

@@ -59,6 +59,35 @@ fn everything_said_is_heard() {
     let _: &dyn Surface = &**listed.effect();
 }
 
+/// The real places ask for what a real scanner makes of them, the ideal ones for nothing; what is left out is as if nobody asked.
+#[test]
+fn effects_of_shipped_scenes_can_be_left_out() {
+    for (name, text) in SHIPPED {
+        let mut scene = Scene::parse(text, None, None).unwrap();
+        let real = ["hall", "parking", "quarry"].contains(&name);
+        assert_eq!(scene.effects.is_none(), !real, "{name}");
+        let before = scene.effects.effects.used().len();
+        assert_eq!(before, scene.effects.lines.len());
+        scene
+            .effects
+            .leave_out(|effect| ["divergence", "link_jitter"].contains(&effect));
+        let left: Vec<_> = scene
+            .effects
+            .effects
+            .used()
+            .iter()
+            .map(|u| u.name)
+            .collect();
+        assert_eq!(left.len(), if real { before - 2 } else { 0 });
+        assert!(
+            left.iter()
+                .all(|left| scene.effects.lines.iter().any(|line| line.name == *left))
+        );
+        scene.effects.leave_out(|_| true);
+        assert!(scene.effects.is_none() && scene.effects.effects.used().is_empty());
+    }
+}
+
 #[test]
 fn errors_name_the_line_and_what_is_wrong() {
     let with = |more: &str| format!("{LEAST}{more}\n");

@@ -106,7 +106,11 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> 
         true => Some(nanoseconds),
         false => None,
     };
-    let scene = read(&name, &text, arguments.seed, clock)?;
+    let mut scene = read(&name, &text, arguments.seed, clock)?;
+    let out = &arguments.without;
+    scene
+        .effects
+        .leave_out(|effect| out.iter().any(|name| name == effect || name == cli::ALL));
     let log = arguments
         .output
         .clone()
