@@ -1,5 +1,6 @@
 //! Simulated scenes through their logs: what is read out of them is what truly was there.
 
+mod light;
 mod models;
 mod round_trip;
 
