@@ -562,6 +562,9 @@ fn what_accuracy_costs_is_measured_and_shown() {
         "trigonometry",
         "clocks",
         "formats",
+        "beam-sampling",
+        "precision",
+        "bvh-quality",
         "scan-speed",
     ] {
         assert!(names.contains(&name), "{names:?}");

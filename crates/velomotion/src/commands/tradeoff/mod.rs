@@ -3,11 +3,16 @@
 //! One file a study; `studies` lists them. What a study is, and how findings become tables, figures and pages, is
 //! `analysis::tradeoff`'s. Here are the clock, the machine's name and the files.
 
+mod ball;
+mod beam_sampling;
+mod bvh_quality;
 mod clocks;
 mod formats;
 mod granularity;
 mod machine;
+mod precision;
 mod scan_speed;
+mod shots;
 mod trajectory;
 mod trigonometry;
 mod workload;
@@ -32,6 +37,9 @@ fn studies() -> Vec<&'static dyn Study> {
         &trajectory::Trajectories,
         &clocks::Clocks,
         &formats::Formats,
+        &beam_sampling::BeamSampling,
+        &precision::Precision,
+        &bvh_quality::BvhQuality,
         &scan_speed::ScanSpeed,
     ]
 }

@@ -1,0 +1,331 @@
+//! How good a tree of boxes is made: time to build it against time of every ray through it.
+
+use std::f64::consts::TAU;
+use std::hint::black_box;
+use std::sync::Arc;
+
+use analysis::tradeoff::{
+    Bench, Column, Effort, Findings, Row, Scale, Spread, Study, StudyError, Trade, Value, Work,
+    in_rounds,
+};
+use glam::DVec3;
+use sim::cast::{Caster, Hit, Mesh, Object, Quality, Ray, Rays, Reach, Surface, Threads};
+use sim::scenery::{Scenery, no_files, shipped};
+
+use super::ball::Ball;
+use super::shots::Shots;
+use super::workload::workload;
+
+/// The study.
+pub(super) struct BvhQuality;
+
+/// Lasers of a firing.
+const BEAMS: usize = 16;
+/// Rays of ten seconds of a VLP-16, nearly.
+const SCAN_RAYS: f64 = 3_000_000.0;
+
+/// With its boulders 100,000 triangles.
+const CAVE: Ball = Ball {
+    rings: 201,
+    sectors: 220,
+};
+const CAVE_AT_A_LOOK: Ball = Ball {
+    rings: 31,
+    sectors: 40,
+};
+
+/// Name, label and quality; 16 bins and a box for every triangle are what meshes have.
+const QUALITIES: [(&str, &str, Quality); 10] = [
+    ("middle cuts", "middle", of(0, 1)),
+    ("middle cuts, 4 a box", "middle, 4", of(0, 4)),
+    ("4 bins", "4", of(4, 1)),
+    ("8 bins", "8", of(8, 1)),
+    ("16 bins (velomotion's)", "16", of(16, 1)),
+    ("32 bins", "32", of(32, 1)),
+    ("64 bins", "64", of(64, 1)),
+    ("16 bins, 2 a box", "16, 2", of(16, 2)),
+    ("16 bins, 4 a box", "16, 4", of(16, 4)),
+    ("16 bins, 8 a box", "16, 8", of(16, 8)),
+];
+
+const fn of(bins: usize, sharing: usize) -> Quality {
+    Quality { bins, sharing }
+}
+
+impl Study for BvhQuality {
+    fn name(&self) -> &'static str {
+        "bvh-quality"
+    }
+
+    fn title(&self) -> &'static str {
+        "Quality of the tree of boxes"
+    }
+
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+        let plan = bench.plan(3, 9);
+        let shots = Shots::of("quarry", bench.size(48, 14_000))?;
+        let rays = rays(&shots)?;
+        let walls = match bench.effort {
+            Effort::Quick => CAVE_AT_A_LOOK,
+            Effort::Full => CAVE,
+        };
+        let scenes = [
+            Scene::new("cave", cave(walls)?)?,
+            Scene::new("quarry", quarry(shots.seed)?)?,
+        ];
+        (bench.say)(&format!("{} rays, {} rounds", rays.len(), plan.rounds));
+        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
+        let mut named = Vec::new();
+        for scene in &scenes {
+            let expected = hits(&scene.caster(Quality::default())?, &rays);
+            for (name, label, quality) in QUALITIES {
+                let caster = scene.caster(quality)?;
+                let got = hits(&caster, &rays);
+                named.push((name, label, scene.name, differing(&got, &expected)));
+                work.push(Box::new(move || {
+                    scene.meshes().for_each(|mesh| {
+                        black_box(mesh.rebuilt(quality));
+                    });
+                    Ok(())
+                }));
+                let (rays, mut hits) = (&rays, vec![None; rays.len()]);
+                work.push(Box::new(move || {
+                    cast(&caster, black_box(rays), &mut hits);
+                    black_box(&hits);
+                    Ok(())
+                }));
+            }
+        }
+        let times = in_rounds(bench.clock, plan, &mut work)?;
+        drop(work);
+        let rows = named.into_iter().zip(times.chunks(2));
+        let rows = rows.filter_map(|((name, label, scene, differ), times)| match times {
+            [build, trace] => Some(Row {
+                name: format!("{scene}, {name}"),
+                label: label.to_owned(),
+                group: scene,
+                values: values(*build, trace.times(1.0 / rays.len() as f64), differ),
+            }),
+            _ => None,
+        });
+        Ok(Findings {
+            name: self.name(),
+            title: self.title(),
+            about: about(&scenes, rays.len()),
+            choice: "scene, tree",
+            columns: columns(),
+            rows: rows.collect(),
+            trades: vec![Trade {
+                cost: 0,
+                loss: 1,
+                joined: false,
+                apart: true,
+            }],
+        })
+    }
+}
+
+fn columns() -> Vec<Column> {
+    [
+        ("build_ms", "build, ms"),
+        ("trace_ns_per_ray", "ns a ray"),
+        ("scan_ms", "built and 3 M rays, ms"),
+        ("hits_that_differ", "hits that differ"),
+    ]
+    .map(|(key, heading)| Column {
+        key,
+        heading,
+        scale: Scale::Log,
+    })
+    .into()
+}
+
+/// Of a row, by the seconds of a build and of a ray.
+fn values(build: Spread, ray: Spread, differ: usize) -> Vec<Value> {
+    let scan = Spread {
+        median: build.median + SCAN_RAYS * ray.median,
+        min: build.min + SCAN_RAYS * ray.min,
+        max: build.max + SCAN_RAYS * ray.max,
+        runs: build.runs,
+    };
+    vec![
+        Value::Timed(build.times(1e3)),
+        Value::Timed(ray.times(1e9)),
+        Value::Timed(scan.times(1e3)),
+        Value::Computed(differ as f64),
+    ]
+}
+
+fn about(scenes: &[Scene], rays: usize) -> Vec<String> {
+    let counts: Vec<String> = scenes
+        .iter()
+        .map(|scene| {
+            let triangles: usize = scene.meshes().map(|mesh| mesh.triangles()).sum();
+            format!("{} of {triangles} triangles", scene.name)
+        })
+        .collect();
+    vec![
+        format!(
+            "Trees over the simulator's {} and a {}, and {rays} rays of a sweep through the quarry, cast on one thread in the order of a lidar. \
+             A cut through the middle halves the triangles along their widest axis; bins are parts of each axis between which a cut is tried, and the one with \
+             the least expected cost by areas is made. Triangles that share a box are tested together once it is entered.",
+            counts.get(1).map_or("", String::as_str),
+            counts.first().map_or("", String::as_str),
+        ),
+        "What rays meet is the same in every tree, object, triangle and distance to the last bit: the last column counts those for which it is not. The tree is built once a \
+         run, so what it should cost depends on how many rays follow: 3 million are ten seconds of a VLP-16. Nobody chooses the scene, so each has a front of its own."
+            .to_owned(),
+    ]
+}
+
+/// What rays are cast at.
+struct Scene {
+    name: &'static str,
+    objects: Vec<Object>,
+}
+
+impl Scene {
+    fn new(name: &'static str, objects: Vec<Object>) -> Result<Self, StudyError> {
+        let scene = Self { name, objects };
+        if scene.meshes().next().is_none() {
+            return Err(workload(format!("{name}: a scene without a mesh")));
+        }
+        Ok(scene)
+    }
+
+    fn meshes(&self) -> impl Iterator<Item = &Arc<Mesh>> {
+        self.objects
+            .iter()
+            .filter_map(|object| match object.surface() {
+                Surface::Mesh(mesh) => Some(mesh),
+                _ => None,
+            })
+    }
+
+    /// All meshes with trees of this quality.
+    fn caster(&self, quality: Quality) -> Result<Caster, StudyError> {
+        let objects = self.objects.iter().map(|object| match object.surface() {
+            Surface::Mesh(mesh) => Object::new(mesh.rebuilt(quality)).placed(*object.placement()),
+            _ => object.clone(),
+        });
+        Caster::new(objects).map_err(workload)
+    }
+}
+
+/// Rays that met something else, or elsewhere.
+fn differing(hits: &[Option<Hit>], others: &[Option<Hit>]) -> usize {
+    let both = hits.iter().zip(others);
+    both.filter(|(a, b)| a != b).count()
+}
+
+fn hits(caster: &Caster, rays: &[Ray]) -> Vec<Option<Hit>> {
+    let mut hits = vec![None; rays.len()];
+    cast(caster, rays, &mut hits);
+    hits
+}
+
+fn cast(caster: &Caster, rays: &[Ray], hits: &mut [Option<Hit>]) {
+    let batch = Rays::new(rays, BEAMS);
+    caster.nearest_of(&batch, Reach::default(), &Threads::ONE, hits);
+}
+
+/// The rays of all lasers, firing after firing.
+fn rays(shots: &Shots) -> Result<Vec<Ray>, StudyError> {
+    let mut rays = Vec::with_capacity(shots.count());
+    for (firing, _) in &shots.firings {
+        let both = firing.origins_m.iter().zip(&firing.directions);
+        for (from, way) in both.take(BEAMS) {
+            rays.push(Ray::new(*from, *way).map_err(workload)?);
+        }
+    }
+    Ok(rays)
+}
+
+/// What the quarry's scene file places.
+fn quarry(seed: u64) -> Result<Vec<Object>, StudyError> {
+    let scenery = Scenery::parse(shipped("quarry").unwrap_or_default()).map_err(workload)?;
+    let placed = scenery.place(seed, &mut no_files).map_err(workload)?;
+    Ok(placed.objects)
+}
+
+/// Boulders in the cave, and how they are cut.
+const BOULDERS: u32 = 50;
+const BOULDER: Ball = Ball {
+    rings: 11,
+    sectors: 12,
+};
+
+/// A lumpy cave about the origin with boulders in it.
+fn cave(walls: Ball) -> Result<Vec<Object>, StudyError> {
+    let mut vertices = walls.vertices(|along| {
+        let lumps = (7.0 * along.x).sin() * (9.0 * along.y).cos()
+            + 0.3 * (31.0 * along.z + 17.0 * along.x).sin();
+        along * (20.0 + 3.0 * lumps) * DVec3::new(1.0, 1.0, 0.4)
+    });
+    let mut triangles = walls.triangles();
+    for boulder in (0..BOULDERS).map(f64::from) {
+        let turn = boulder / f64::from(BOULDERS) * TAU;
+        let away_m = 6.0 + 8.0 * (boulder * 0.618).fract();
+        let height_m = 3.0 * (boulder * 0.382).fract() - 3.0;
+        let middle_m = DVec3::new(away_m * turn.cos(), away_m * turn.sin(), height_m);
+        let first = u32::try_from(vertices.len()).map_err(workload)?;
+        vertices.extend(
+            BOULDER.vertices(|along| middle_m + along * (0.4 + 0.1 * (5.0 * along.x).sin())),
+        );
+        let own = BOULDER.triangles().into_iter();
+        triangles.extend(own.map(|corners| corners.map(|at| at + first)));
+    }
+    let mesh = Mesh::new(&vertices, &triangles).map_err(workload)?;
+    Ok(vec![Object::new(mesh)])
+}
+
+#[cfg(test)]
+mod tests {
+    use units::{Span, Stamp};
+
+    use super::*;
+
+    #[test]
+    fn rays_meet_the_same_in_every_tree() {
+        let mut now = Stamp::from_nanos(0);
+        // Every look at the clock is 3 ms later: everything takes as long.
+        let mut clock = || {
+            now = now.saturating_add(Span::from_micros(3_000));
+            now
+        };
+        let mut bench = Bench {
+            clock: &mut clock,
+            effort: Effort::Quick,
+            say: &mut |_| {},
+        };
+        let findings = BvhQuality.measure(&mut bench).unwrap();
+        assert_eq!(findings.rows.len(), 2 * QUALITIES.len());
+        for row in &findings.rows {
+            let values: Vec<f64> = row.values.iter().map(Value::middle).collect();
+            assert_eq!(values[3], 0.0, "{row:?}");
+            assert!((values[0] - 3.0).abs() < 1e-9, "{row:?}");
+            assert!(values[1] > 0.0, "{row:?}");
+            assert!((values[2] - 3.0 - 3.0 * values[1]).abs() < 1e-9, "{row:?}");
+        }
+        let velomotions = QUALITIES
+            .iter()
+            .find(|(name, ..)| name.contains("velomotion"));
+        assert_eq!(velomotions.unwrap().2, Quality::default());
+    }
+
+    #[test]
+    fn another_hit_would_be_counted() {
+        let shots = Shots::of("quarry", 8).unwrap();
+        let rays = rays(&shots).unwrap();
+        let moved = cave(BOULDER).unwrap();
+        let scene = Scene::new("cave", moved).unwrap();
+        let caster = scene.caster(Quality::default()).unwrap();
+        let mut met = hits(&caster, &rays);
+        assert!(met.iter().flatten().count() * 2 > rays.len());
+        assert_eq!(differing(&met, &hits(&caster, &rays)), 0);
+        let first = met.iter_mut().flatten().next().unwrap();
+        first.range_m = first.range_m.next_up();
+        assert_eq!(differing(&met, &hits(&caster, &rays)), 1);
+        assert!(Scene::new("empty", Vec::new()).is_err());
+    }
+}

@@ -1,0 +1,276 @@
+//! Eight rays against triangles, in f32 and f64, by two tests.
+//!
+//! Written alike, in the registers there are, so that what differs is the numbers. Left out: which triangles to test.
+
+use analysis::tradeoff::placing::Number;
+use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch, f32x8, f64x8, prelude::*};
+use sim::cast::Sheared8;
+
+/// Rays that are tested together.
+pub const LANES: usize = 8;
+
+/// Eight rays by coordinate: they go farthest along one axis.
+pub struct Eight<T> {
+    pub axis: usize,
+    pub origin: [[T; LANES]; 3],
+    pub direction: [[T; LANES]; 3],
+}
+
+/// Triangles, and rays that are tested against all of them.
+pub struct Patch<T> {
+    pub triangles: Vec<[[T; 3]; 3]>,
+    pub packets: Vec<Eight<T>>,
+}
+
+/// What a test does of patches: the range of every ray, packet after packet, infinite for none.
+pub type Cast<T> = fn(&[Patch<T>], &mut [[T; LANES]]);
+
+/// The tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    MoellerF32,
+    MoellerF64,
+    WatertightF32,
+    WatertightF64,
+}
+
+impl Kernel {
+    pub const ALL: [Self; 4] = [
+        Self::MoellerF32,
+        Self::MoellerF64,
+        Self::WatertightF32,
+        Self::WatertightF64,
+    ];
+
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::MoellerF32 => "Moeller-Trumbore in f32",
+            Self::MoellerF64 => "Moeller-Trumbore in f64",
+            Self::WatertightF32 => "watertight in f32",
+            Self::WatertightF64 => "watertight in f64 (velomotion's)",
+        }
+    }
+
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::MoellerF32 => "M-T f32",
+            Self::MoellerF64 => "M-T f64",
+            Self::WatertightF32 => "tight f32",
+            Self::WatertightF64 => "tight f64",
+        }
+    }
+
+    /// In f64, where it is.
+    pub fn wide(self) -> Option<Cast<f64>> {
+        match self {
+            Self::MoellerF64 => Some(moeller_f64),
+            Self::WatertightF64 => Some(casters),
+            Self::MoellerF32 | Self::WatertightF32 => None,
+        }
+    }
+
+    /// In f32.
+    pub fn narrow(self) -> Cast<f32> {
+        match self {
+            Self::MoellerF32 | Self::MoellerF64 => moeller_f32,
+            Self::WatertightF32 | Self::WatertightF64 => watertight_f32,
+        }
+    }
+}
+
+macro_rules! kernels {
+    ($($name:ident: $number:ty, $vector:ident, $test:ident;)*) => {$(
+        pub fn $name(patches: &[Patch<$number>], ranges: &mut [[$number; LANES]]) {
+            dispatch!(Level::new(), simd => all(patches, ranges, #[inline(always)] |triangles, rays| {
+                let nearest: $vector<_> = $test(simd, triangles, rays);
+                nearest.into()
+            }));
+        }
+    )*};
+}
+
+kernels! {
+    moeller_f32: f32, f32x8, moeller;
+    moeller_f64: f64, f64x8, moeller;
+    watertight_f32: f32, f32x8, watertight;
+    casters: f64, f64x8, sheared;
+}
+
+// To be held against the caster's own.
+#[cfg(test)]
+kernels! {
+    watertight_f64: f64, f64x8, watertight;
+}
+
+/// Every packet of every patch.
+#[inline(always)]
+fn all<T: Number>(
+    patches: &[Patch<T>],
+    ranges: &mut [[T; LANES]],
+    nearest: impl Fn(&[[[T; 3]; 3]], &Eight<T>) -> [T; LANES],
+) {
+    let mut ranges = ranges.iter_mut();
+    for patch in patches {
+        for (rays, range) in patch.packets.iter().zip(&mut ranges) {
+            *range = nearest(&patch.triangles, rays);
+        }
+    }
+}
+
+/// A vector by coordinate, one a lane. No closures below: what is not inlined is not compiled for the registers there are.
+type Three<V> = [V; 3];
+
+#[inline(always)]
+fn loaded<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+    simd: S,
+    [x, y, z]: &[[T; LANES]; 3],
+) -> Three<V> {
+    [
+        V::from_slice(simd, x),
+        V::from_slice(simd, y),
+        V::from_slice(simd, z),
+    ]
+}
+
+#[inline(always)]
+fn everywhere<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+    simd: S,
+    [x, y, z]: [T; 3],
+) -> Three<V> {
+    [V::splat(simd, x), V::splat(simd, y), V::splat(simd, z)]
+}
+
+#[inline(always)]
+fn between<T: Number>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+    [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+}
+
+#[inline(always)]
+fn minus<S: Simd, V: SimdFloat<S>>(a: Three<V>, b: Three<V>) -> Three<V> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn cross<S: Simd, V: SimdFloat<S>>(a: Three<V>, b: Three<V>) -> Three<V> {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+#[inline(always)]
+fn dot<S: Simd, V: SimdFloat<S>>(a: Three<V>, b: Three<V>) -> V {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection (1997), both sides of a triangle.
+#[inline(always)]
+fn moeller<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+    simd: S,
+    triangles: &[[[T; 3]; 3]],
+    rays: &Eight<T>,
+) -> V {
+    let from: Three<V> = loaded(simd, &rays.origin);
+    let along: Three<V> = loaded(simd, &rays.direction);
+    let zero = V::splat(simd, T::of(0.0));
+    let one = V::splat(simd, T::of(1.0));
+    let mut nearest = V::splat(simd, T::of(f64::INFINITY));
+    for [a, b, c] in triangles {
+        let ab: Three<V> = everywhere(simd, between(a, b));
+        let ac: Three<V> = everywhere(simd, between(a, c));
+        let across = cross(along, ac);
+        let inverse = one / dot(ab, across);
+        let off = minus(from, everywhere(simd, *a));
+        let u = dot(off, across) * inverse;
+        let around = cross(off, ab);
+        let v = dot(along, around) * inverse;
+        // Of a NaN none is true.
+        let inside = u.simd_ge(zero) & v.simd_ge(zero) & (u + v).simd_le(one);
+        if !inside.any_true() {
+            continue;
+        }
+        let range = dot(ac, around) * inverse;
+        let nearer = inside & range.simd_gt(zero) & range.simd_lt(nearest);
+        nearest = nearer.select(range, nearest);
+    }
+    nearest
+}
+
+/// The caster's test (`sim::cast::Sheared8`) in numbers of any kind.
+#[inline(always)]
+fn watertight<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+    simd: S,
+    triangles: &[[[T; 3]; 3]],
+    rays: &Eight<T>,
+) -> V {
+    let zero = V::splat(simd, T::of(0.0));
+    let axis = rays.axis;
+    let from: Three<V> = turned(axis, loaded(simd, &rays.origin));
+    let [x, y, z]: Three<V> = turned(axis, loaded(simd, &rays.direction));
+    let shear = [zero - x / z, zero - y / z];
+    let stretch = V::splat(simd, T::of(1.0)) / z;
+    let mut nearest = V::splat(simd, T::of(f64::INFINITY));
+    for [a, b, c] in triangles {
+        let a = moved(shear, minus(everywhere(simd, turned(axis, *a)), from));
+        let b = moved(shear, minus(everywhere(simd, turned(axis, *b)), from));
+        let c = moved(shear, minus(everywhere(simd, turned(axis, *c)), from));
+        let weights = [edge(zero, c, b), edge(zero, a, c), edge(zero, b, a)];
+        let least = weights[0].min(weights[1]).min(weights[2]);
+        let greatest = weights[0].max(weights[1]).max(weights[2]);
+        let inside = least.simd_ge(zero) | greatest.simd_le(zero);
+        if !inside.any_true() {
+            continue;
+        }
+        let whole = weights[0] + weights[1] + weights[2];
+        let depth =
+            weights[0].mul_add_precise(a[2], weights[1].mul_add_precise(b[2], weights[2] * c[2]));
+        let range = depth * stretch / whole;
+        let nearer = inside & range.simd_gt(zero) & range.simd_lt(nearest);
+        nearest = nearer.select(range, nearest);
+    }
+    nearest
+}
+
+/// A vertex where the ray is the z axis.
+#[inline(always)]
+fn moved<S: Simd, V: SimdFloat<S>>(shear: [V; 2], [x, y, z]: Three<V>) -> Three<V> {
+    [
+        shear[0].mul_add_precise(z, x),
+        shear[1].mul_add_precise(z, y),
+        z,
+    ]
+}
+
+/// px qy - py qx, its sign right whatever is rounded.
+#[inline(always)]
+fn edge<S: Simd, V: SimdFloat<S>>(zero: V, p: Three<V>, q: Three<V>) -> V {
+    let product = p[1] * q[0];
+    let rounding = (zero - p[1]).mul_add_precise(q[0], product);
+    p[0].mul_add_precise(q[1], zero - product) + rounding
+}
+
+/// Cyclic, the given axis last.
+#[inline(always)]
+fn turned<T>(axis: usize, [x, y, z]: [T; 3]) -> [T; 3] {
+    match axis {
+        0 => [y, z, x],
+        1 => [z, x, y],
+        _ => [x, y, z],
+    }
+}
+
+/// The caster's own.
+#[inline(always)]
+fn sheared<S: Simd>(simd: S, triangles: &[[[f64; 3]; 3]], rays: &Eight<f64>) -> f64x8<S> {
+    let (origin, direction) = (loaded(simd, &rays.origin), loaded(simd, &rays.direction));
+    let sheared = Sheared8::new(simd, rays.axis, origin, direction);
+    let mut nearest = f64x8::splat(simd, f64::INFINITY);
+    for corners in triangles {
+        if let Some(range) = sheared.meet(corners) {
+            let nearer = range.simd_gt(0.0) & range.simd_lt(nearest);
+            nearest = nearer.select(range, nearest);
+        }
+    }
+    nearest
+}

@@ -1,0 +1,413 @@
+//! In which numbers rays meet triangles: how far off, how many slip through edges, in what time.
+
+mod kernels;
+mod reference;
+
+use std::hint::black_box;
+
+use analysis::tradeoff::placing::Number;
+use analysis::tradeoff::{
+    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+};
+use glam::DVec3;
+
+use super::ball::Ball;
+use super::workload::{Random, workload};
+use kernels::{Cast, Eight, Kernel, LANES, Patch};
+
+/// The study.
+pub(super) struct Precision;
+
+/// The surface: a lumpy ball about the scanner, its triangles 0.8 m wide.
+const SURFACE: Ball = Ball {
+    rings: 160,
+    sectors: 320,
+};
+/// Its radius and how much that varies.
+const RADIUS_M: f64 = 40.0;
+const LUMPS: f64 = 0.25;
+/// Map coordinates of its middle, metres.
+const MAP_M: DVec3 = DVec3::new(500_012.345_6, 500_345.678_9, 312.5);
+/// Cells along a side of a patch; rays go to those in the middle.
+const SIDE: usize = 4;
+/// Triangles of a patch.
+const TRIANGLES: usize = 2 * SIDE * SIDE;
+/// Packets of eight rays to a patch.
+const PACKETS: usize = 8;
+
+/// Where the surface is, and where coordinates begin.
+#[derive(Clone, Copy)]
+struct Circumstance {
+    name: &'static str,
+    group: &'static str,
+    middle_m: DVec3,
+    origin_m: DVec3,
+}
+
+fn circumstances() -> [Circumstance; 3] {
+    let on_map = Circumstance {
+        name: "at 5e5 m as they are",
+        group: "at 5e5 m",
+        middle_m: MAP_M,
+        origin_m: DVec3::ZERO,
+    };
+    [
+        Circumstance {
+            name: "about the origin",
+            group: "about the origin",
+            middle_m: DVec3::ZERO,
+            origin_m: DVec3::ZERO,
+        },
+        on_map,
+        Circumstance {
+            name: "at 5e5 m, local origin",
+            // As meshes have it: in coordinates of 24 bits.
+            origin_m: MAP_M.as_vec3().as_dvec3(),
+            ..on_map
+        },
+    ]
+}
+
+impl Study for Precision {
+    fn name(&self) -> &'static str {
+        "precision"
+    }
+
+    fn title(&self) -> &'static str {
+        "Numbers in which rays are cast"
+    }
+
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+        let patches = match bench.effort {
+            Effort::Quick => 12,
+            Effort::Full => 4_096,
+        };
+        let rays = patches * PACKETS * LANES;
+        let plan = bench.plan(3, 15);
+        (bench.say)(&format!("{rays} rays of each, {} rounds", plan.rounds));
+        let sets: Vec<(Circumstance, Set)> = circumstances()
+            .into_iter()
+            .map(|circumstance| (circumstance, Set::new(circumstance, patches)))
+            .collect();
+        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
+        let mut named = Vec::new();
+        for (circumstance, set) in &sets {
+            for kernel in Kernel::ALL {
+                named.push((*circumstance, kernel, set.off(kernel)?));
+                work.push(set.work(kernel));
+            }
+        }
+        let times = in_rounds(bench.clock, plan, &mut work)?;
+        let rows = named.into_iter().zip(times);
+        let rows = rows.map(|((circumstance, kernel, off), time)| Row {
+            name: format!("{}, {}", circumstance.name, kernel.name()),
+            label: kernel.label().to_owned(),
+            group: circumstance.group,
+            values: vec![
+                Value::Timed(time.times(1e9 / (rays * TRIANGLES) as f64)),
+                Value::Computed(off.rms_m * 1e3),
+                Value::Computed(off.worst_m * 1e3),
+                Value::Computed(off.missed * 1e6),
+            ],
+        });
+        Ok(Findings {
+            name: self.name(),
+            title: self.title(),
+            about: about(rays),
+            choice: "coordinates, test",
+            columns: columns(),
+            rows: rows.collect(),
+            trades: [2, 3]
+                .map(|loss| Trade {
+                    cost: 0,
+                    loss,
+                    joined: false,
+                    apart: true,
+                })
+                .into(),
+        })
+    }
+}
+
+fn columns() -> Vec<Column> {
+    [
+        ("time_ns_per_test", "ns a test"),
+        ("rms_error_mm", "RMS error, mm"),
+        ("worst_error_mm", "worst error, mm"),
+        ("missed_per_million", "slipped through, of a million"),
+    ]
+    .map(|(key, heading)| Column {
+        key,
+        heading,
+        scale: Scale::Log,
+    })
+    .into()
+}
+
+fn about(rays: usize) -> Vec<String> {
+    vec![
+        format!(
+            "{rays} rays from inside a lumpy ball {:.0} to {:.0} m around, one third of them exactly towards vertices of its triangles, one towards edges, one anywhere. Each is tested against \
+             the {TRIANGLES} triangles around where it goes, eight rays at a time, and meets the nearest. The error is the distance to where exact rays meet exact triangles, \
+             in doubled f64 (106 bits): rounding the coordinates is part of it. The ball is closed; who meets nothing has slipped through. A test is one ray and one triangle.",
+            RADIUS_M * (1.0 - LUMPS),
+            RADIUS_M * (1.0 + LUMPS)
+        ),
+        "Moeller and Trumbore's test solves for each triangle by itself. The watertight one (Woop, Benthin and Wald) moves and shears vertices until the ray is an axis, with \
+         Kahan's difference of products; in f64 it is velomotion's. A local origin is taken away in f64 before coordinates are rounded: velomotion does so for every mesh. \
+         f32 is twice as many numbers a register, yet of a whole cast the triangles are a part only: boxes of trees are f32 anyway."
+            .to_owned(),
+    ]
+}
+
+/// How far off a kernel is.
+#[derive(Clone, Copy, Debug)]
+struct Off {
+    rms_m: f64,
+    worst_m: f64,
+    /// Share of the rays that met nothing.
+    missed: f64,
+}
+
+/// The same rays and triangles in both kinds of numbers, and where they meet.
+struct Set {
+    wide: Vec<Patch<f64>>,
+    narrow: Vec<Patch<f32>>,
+    truth_m: Vec<[f64; LANES]>,
+}
+
+impl Set {
+    fn new(circumstance: Circumstance, patches: usize) -> Self {
+        let exact = patches_of(circumstance.middle_m, patches);
+        let origin_m = circumstance.origin_m;
+        Self {
+            truth_m: reference::ranges(&exact),
+            wide: exact.iter().map(|patch| patch.rounded(origin_m)).collect(),
+            narrow: exact.iter().map(|patch| patch.rounded(origin_m)).collect(),
+        }
+    }
+
+    fn off(&self, kernel: Kernel) -> Result<Off, StudyError> {
+        let ranges_m: Vec<[f64; LANES]> = match kernel.wide() {
+            Some(cast) => ranges(&self.wide, cast),
+            None => ranges(&self.narrow, kernel.narrow()),
+        };
+        let (mut squares, mut worst_m, mut met, mut missed) = (0.0, 0.0_f64, 0_u32, 0_u32);
+        for (got, truth) in ranges_m.iter().flatten().zip(self.truth_m.iter().flatten()) {
+            if !truth.is_finite() {
+                return Err(workload("a ray that meets nothing in a closed ball"));
+            }
+            if got.is_finite() {
+                let off_m = (got - truth).abs();
+                squares += off_m * off_m;
+                worst_m = worst_m.max(off_m);
+                met += 1;
+            } else {
+                missed += 1;
+            }
+        }
+        Ok(Off {
+            rms_m: (squares / f64::from(met)).sqrt(),
+            worst_m,
+            missed: f64::from(missed) / f64::from(met + missed),
+        })
+    }
+
+    fn work(&self, kernel: Kernel) -> Work<'_, StudyError> {
+        match kernel.wide() {
+            Some(cast) => work(&self.wide, cast),
+            None => work(&self.narrow, kernel.narrow()),
+        }
+    }
+}
+
+fn room<T: Number>(patches: &[Patch<T>]) -> Vec<[T; LANES]> {
+    let packets: usize = patches.iter().map(|patch| patch.packets.len()).sum();
+    vec![[T::of(f64::INFINITY); LANES]; packets]
+}
+
+fn ranges<T: Number>(patches: &[Patch<T>], cast: Cast<T>) -> Vec<[f64; LANES]> {
+    let mut ranges = room(patches);
+    cast(patches, &mut ranges);
+    ranges.iter().map(|eight| eight.map(T::f64)).collect()
+}
+
+fn work<T: Number>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_, StudyError> {
+    let mut ranges = room(patches);
+    Box::new(move || {
+        cast(black_box(patches), &mut ranges);
+        black_box(&ranges);
+        Ok(())
+    })
+}
+
+impl Patch<f64> {
+    /// In other numbers, from another origin.
+    fn rounded<T: Number>(&self, origin_m: DVec3) -> Patch<T> {
+        let from = origin_m.to_array();
+        let moved = |at: [f64; 3]| [0, 1, 2].map(|axis| T::of(at[axis] - from[axis]));
+        let packets = self.packets.iter().map(|eight| Eight {
+            axis: eight.axis,
+            origin: [0, 1, 2].map(|axis| eight.origin[axis].map(|at| T::of(at - from[axis]))),
+            direction: eight.direction.map(|along| along.map(T::of)),
+        });
+        Patch {
+            triangles: self.triangles.iter().map(|of| of.map(moved)).collect(),
+            packets: packets.collect(),
+        }
+    }
+}
+
+/// Patches of the ball about `middle_m` and rays towards them, as they truly are.
+fn patches_of(middle_m: DVec3, count: usize) -> Vec<Patch<f64>> {
+    let vertices = SURFACE.vertices(|along| {
+        let lumps = (5.0 * along.x + 2.0).sin() * (7.0 * along.y).sin() * (6.0 * along.z).cos();
+        middle_m + along * RADIUS_M * (1.0 + LUMPS * lumps)
+    });
+    let mut chance = Random(6);
+    let mut below = move |end: usize| ((chance.even() * end as f64) as usize).min(end - 1);
+    let mut patches = Vec::with_capacity(count);
+    while patches.len() < count {
+        // Away from the ends, where cells are no squares.
+        let (ring, sector) = (
+            30 + below(SURFACE.rings - 60 - SIDE),
+            below(SURFACE.sectors),
+        );
+        let cells = (0..SIDE * SIDE)
+            .flat_map(|at| SURFACE.cell(ring + at / SIDE, sector + at % SIDE))
+            .map(|corners| corners.map(|at| vertex(&vertices, at)));
+        let triangles: Vec<[DVec3; 3]> = cells.collect();
+        let packets: Vec<Eight<f64>> = (0..PACKETS)
+            .filter_map(|_| eight(&triangles, middle_m, &mut below))
+            .collect();
+        if packets.len() == PACKETS {
+            let triangles = triangles.iter().map(|of| of.map(|at| at.to_array()));
+            patches.push(Patch {
+                triangles: triangles.collect(),
+                packets,
+            });
+        }
+    }
+    patches
+}
+
+fn vertex(vertices: &[DVec3], at: u32) -> DVec3 {
+    vertices.get(at as usize).copied().unwrap_or_default()
+}
+
+/// Eight rays towards the cells in the middle of a patch; `None` where they do not go farthest along one axis.
+fn eight(
+    triangles: &[[DVec3; 3]],
+    middle_m: DVec3,
+    below: &mut impl FnMut(usize) -> usize,
+) -> Option<Eight<f64>> {
+    const STEPS: usize = 1 << 20;
+    let mut part = || below(STEPS) as f64 / STEPS as f64;
+    let from = middle_m + DVec3::new(part(), part(), part()) - 0.5;
+    let mut eight = Eight {
+        axis: 0,
+        origin: from.to_array().map(|at| [at; LANES]),
+        direction: [[0.0; LANES]; 3],
+    };
+    let mut axes = [0; LANES];
+    for (lane, axis) in axes.iter_mut().enumerate() {
+        // The four cells in the middle, both triangles of each.
+        let cell = (1 + lane / 4) * SIDE + 1 + lane / 2 % 2;
+        let [a, b, c] = *triangles.get(2 * cell + lane % 2)?;
+        let (u, v) = (part(), part());
+        let target = match lane % 3 {
+            0 => a,
+            1 => a + u * (b - a),
+            _ => a + u.min(v) * (b - a) + (1.0 - u.max(v)) * (c - a),
+        };
+        let along = (target - from).normalize();
+        *axis = steepest(along);
+        for (direction, along) in eight.direction.iter_mut().zip(along.to_array()) {
+            if let Some(place) = direction.get_mut(lane) {
+                *place = along;
+            }
+        }
+    }
+    let [first, ..] = axes;
+    eight.axis = first;
+    axes.iter().all(|axis| *axis == first).then_some(eight)
+}
+
+/// The axis along which a direction goes farthest.
+fn steepest(along: DVec3) -> usize {
+    along.abs().max_position()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn off(circumstance: usize, kernel: Kernel, patches: usize) -> Off {
+        let set = Set::new(circumstances()[circumstance], patches);
+        set.off(kernel).unwrap()
+    }
+
+    #[test]
+    fn errors_are_as_large_as_their_numbers_steps() {
+        let near = |off: Off, least_m: f64, most_m: f64| {
+            assert!((least_m..most_m).contains(&off.worst_m), "{off:?}");
+            assert!(off.rms_m <= off.worst_m && off.rms_m > 0.0, "{off:?}");
+        };
+        // Steps of f32 at 50 m are 3.8 um, at 5e5 m 31 mm; of f64 7e-15 m and 5.8e-11 m.
+        for kernel in [Kernel::MoellerF32, Kernel::WatertightF32] {
+            near(off(0, kernel, 40), 1e-6, 1e-4);
+            near(off(1, kernel, 40), 1e-2, 0.5);
+            near(off(2, kernel, 40), 1e-6, 1e-4);
+        }
+        for kernel in [Kernel::MoellerF64, Kernel::WatertightF64] {
+            near(off(0, kernel, 40), 1e-15, 1e-12);
+            near(off(1, kernel, 40), 1e-15, 1e-9);
+            near(off(2, kernel, 40), 1e-15, 1e-12);
+        }
+    }
+
+    #[test]
+    fn only_the_watertight_test_lets_nothing_through() {
+        for circumstance in 0..3 {
+            for kernel in [Kernel::WatertightF32, Kernel::WatertightF64] {
+                let off = off(circumstance, kernel, 100);
+                assert_eq!(off.missed, 0.0, "{circumstance} {}", kernel.name());
+            }
+        }
+        assert!(off(0, Kernel::MoellerF32, 100).missed > 0.0);
+    }
+
+    /// In f64 this study's watertight test is the caster's own, bit for bit: so in f32 it is the same in f32.
+    #[test]
+    fn the_watertight_test_is_the_casters() {
+        for circumstance in circumstances() {
+            let set = Set::new(circumstance, 40);
+            let own = ranges(&set.wide, kernels::watertight_f64);
+            let casters = ranges(&set.wide, kernels::casters);
+            assert_eq!(own, casters);
+        }
+    }
+
+    #[test]
+    fn a_quick_look_has_every_row() {
+        let mut now = 0;
+        let mut clock = || {
+            now += 3_000_000;
+            units::Stamp::from_nanos(now)
+        };
+        let mut bench = Bench {
+            clock: &mut clock,
+            effort: Effort::Quick,
+            say: &mut |_| {},
+        };
+        let findings = Precision.measure(&mut bench).unwrap();
+        assert_eq!(findings.rows.len(), 12);
+        let rays = (12 * PACKETS * LANES * TRIANGLES) as f64;
+        for row in &findings.rows {
+            assert!(
+                (row.values[0].middle() - 3e6 / rays).abs() < 1e-9,
+                "{row:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Shots of a VLP-16 in scenes that come with the simulator: where each ray starts and goes, and what is around.
+//!
+//! Taken from the simulation itself, by an effect that changes nothing. Left out: what comes back.
+
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use analysis::tradeoff::StudyError;
+use protocol::vlp16::models::VLP_16;
+use sim::effects::{Absorb, Beam, Effect, Effects, OnFirings};
+use sim::scene_file::Scene;
+use sim::scenery::shipped;
+use sim::sensor::ReturnMode;
+use sim::simulate::{Echoes, Event, Firing, Out, Surroundings};
+
+use super::workload::workload;
+
+/// Firings that stay together: as many as are cast together.
+const TOGETHER: u64 = 8;
+
+/// What a sensor sees of a scene.
+pub(super) struct Shots {
+    /// The scene's.
+    pub seed: u64,
+    /// What is around it.
+    pub surroundings: Surroundings,
+    /// Its firings, and what comes back to the middles of their beams.
+    pub firings: Vec<(Firing, Echoes)>,
+}
+
+impl Shots {
+    /// About `firings` of the sweep in a scene that comes with the simulator, in groups that are evenly spread over it.
+    pub fn of(name: &str, firings: usize) -> Result<Self, StudyError> {
+        let text = shipped(name).ok_or_else(|| workload(format!("there is no scene {name}")))?;
+        let scene = Scene::parse(text, None, None).map_err(workload)?;
+        let mut simulation = scene.simulation;
+        simulation.returns = ReturnMode::Dual;
+        let all = simulation.motion.end_s() * 1e9 / f64::from(VLP_16.firing_period_ns);
+        let taken = Arc::new(Mutex::new(Taken::default()));
+        let take = Take {
+            every: ((all / firings.max(1) as f64) as u64).max(1),
+            taken: Arc::clone(&taken),
+        };
+        let firings = OnFirings {
+            objects: (),
+            view: (),
+            beam: take,
+            surface: (),
+            clock: (),
+        };
+        let mut effects = Effects {
+            firings,
+            mechanism: (),
+            encoder: (),
+            wire: (),
+        };
+        simulation
+            .run(&mut effects, NonZeroUsize::MIN, &mut Nobody)
+            .map_err(workload)?;
+        let mut taken = taken.lock().unwrap_or_else(PoisonError::into_inner);
+        let surroundings = taken.surroundings.take();
+        Ok(Self {
+            seed: scene.seed,
+            surroundings: surroundings.ok_or_else(|| workload("a scene without firings"))?,
+            firings: std::mem::take(&mut taken.firings),
+        })
+    }
+
+    /// Lasers that fire in them.
+    pub fn count(&self) -> usize {
+        let alive = self
+            .firings
+            .iter()
+            .map(|(firing, _)| firing.alive().count());
+        alive.sum()
+    }
+}
+
+/// What was taken so far.
+#[derive(Debug, Default)]
+struct Taken {
+    surroundings: Option<Surroundings>,
+    firings: Vec<(Firing, Echoes)>,
+}
+
+/// The effect that takes firings, one group of `every`.
+#[derive(Clone, Debug)]
+struct Take {
+    every: u64,
+    taken: Arc<Mutex<Taken>>,
+}
+
+impl Effect for Take {
+    fn name(&self) -> &'static str {
+        "take"
+    }
+}
+
+impl Absorb for Take {}
+
+impl Beam for Take {
+    fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
+        if (firing.number / TOGETHER).is_multiple_of(self.every) {
+            let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+            let taken = &mut *taken;
+            taken
+                .surroundings
+                .get_or_insert_with(|| surroundings.clone());
+            taken.firings.push((firing.clone(), echoes.clone()));
+        }
+        0
+    }
+}
+
+/// Takes no notice of packets.
+struct Nobody;
+
+impl Out for Nobody {
+    fn event(&mut self, _: &Event<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shots_are_spread_over_the_sweep_and_met_as_they_are_aimed() {
+        let shots = Shots::of("hall", 100).unwrap();
+        let numbers: Vec<u64> = shots.firings.iter().map(|(f, _)| f.number).collect();
+        assert!((90..130).contains(&numbers.len()), "{}", numbers.len());
+        assert_eq!(numbers[..9], [0, 1, 2, 3, 4, 5, 6, 7, numbers[8]]);
+        assert!(numbers[8] > 1_000 && numbers[numbers.len() - 1] > 12_000);
+        assert_eq!(shots.count(), 16 * numbers.len());
+        for (firing, echoes) in &shots.firings {
+            for laser in firing.alive() {
+                let (from, way) = (firing.origins_m[laser], firing.directions[laser]);
+                let met = shots.surroundings.meet(from, way).unwrap();
+                let off_m = met.range_m - echoes.strongest[laser].range_m;
+                assert!(off_m.abs() < 1e-9, "{off_m}");
+                assert!(!echoes.other[laser].is_there());
+            }
+        }
+        assert!(Shots::of("nowhere", 1).is_err());
+    }
+}
