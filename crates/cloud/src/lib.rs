@@ -2,9 +2,9 @@
 //!
 //! [`Points`] is a structure of arrays that holds only the columns someone asked for ([`Fields`]); [`mount`] is
 //! the paper's Eq. 4-6; a [`Sink`] takes batches of points; [`formats`] are the sinks that write a file, [`messages`] what a scan says in
-//! ROS 2's terms.
+//! ROS 2's terms; [`read`] reads the positions of a file.
 //!
-//! Left out on purpose: where the points come from (`scanner`), opening files (`io`), and reading clouds back.
+//! Left out on purpose: where the points come from (`scanner`), and opening files (`io`).
 
 mod check;
 mod error;
@@ -14,6 +14,7 @@ pub mod messages;
 mod metadata;
 pub mod mount;
 mod points;
+pub mod read;
 mod rows;
 mod sink;
 mod summary;

@@ -1,0 +1,40 @@
+//! Text: a row a point. A header row may name the columns; x, y and z are found by name, else they are the first three.
+
+use super::{Positions, ReadError, Text};
+use crate::formats::Format;
+
+const NAMES: [[&str; 2]; 3] = [["x_m", "x"], ["y_m", "y"], ["z_m", "z"]];
+
+pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
+    let text = Text {
+        format: Format::Csv,
+        bytes,
+    };
+    let mut offset = 0;
+    while let Some((line, next)) = text.line(offset)? {
+        if line.is_empty() || line.starts_with('#') {
+            offset = next;
+            continue;
+        }
+        let is_header = line.split(separates).any(|field| {
+            let field = field.trim();
+            !field.is_empty() && field.parse::<f64>().is_err()
+        });
+        if !is_header {
+            return text.rows(offset, [0, 1, 2], separates, usize::MAX);
+        }
+        let place = |names: [&str; 2]| {
+            let mut fields = line.split(separates).filter(|field| !field.is_empty());
+            fields.position(|field| names.contains(&field.trim().trim_matches('"')))
+        };
+        let [Some(x), Some(y), Some(z)] = NAMES.map(place) else {
+            return Err(text.wrong(offset, "columns x_m, y_m and z_m", super::shown(line)));
+        };
+        return text.rows(next, [x, y, z], separates, usize::MAX);
+    }
+    Ok(Positions::new())
+}
+
+fn separates(character: char) -> bool {
+    matches!(character, ',' | ';') || character.is_ascii_whitespace()
+}

@@ -1,0 +1,166 @@
+//! Clouds read back: where their points are, and nothing else of them.
+//!
+//! What the formats of [`crate::formats`] write, and what other programs write in them: PLY and PCD as text or binary in any layout of columns, LAS and LAZ of
+//! every version that the `las` crate reads, text with a row a point. Positions are in metres as they stand in the file. Left out: all other columns, and opening
+//! files.
+
+mod csv;
+mod las;
+mod pcd;
+mod ply;
+
+use thiserror::Error;
+
+use crate::formats::Format;
+
+/// Where points are: x, y and z in metres.
+pub type Positions = Vec<[f64; 3]>;
+
+/// Why a cloud cannot be read.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{format}: byte {offset}: expected {expected}, got {got}")]
+pub struct ReadError {
+    /// The format.
+    pub format: Format,
+    /// Where, from 0.
+    pub offset: usize,
+    /// What should be there.
+    pub expected: String,
+    /// What is there.
+    pub got: String,
+}
+
+/// The positions of a cloud of this format. An organised PCD has rows for shots without a return, which are no points: those of PCDs
+/// whose coordinates are no numbers are left out.
+///
+/// # Errors
+/// [`ReadError`] for what is not of the format, or ends too early.
+pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError> {
+    match format {
+        Format::Ply => ply::positions(&bytes),
+        Format::Pcd => pcd::positions(&bytes),
+        Format::Las | Format::Laz => las::positions(format, bytes),
+        Format::Csv => csv::positions(&bytes),
+    }
+}
+
+/// A number type of PLY or PCD.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Number {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Number {
+    const fn bytes(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// The number at the begin of some bytes; `None` where they are too few.
+    fn read(self, bytes: &[u8], big_endian: bool) -> Option<f64> {
+        fn take<const N: usize>(bytes: &[u8], big_endian: bool) -> Option<[u8; N]> {
+            let mut bytes: [u8; N] = *bytes.first_chunk()?;
+            if big_endian {
+                bytes.reverse();
+            }
+            Some(bytes)
+        }
+        Some(match self {
+            Self::I8 => i8::from_le_bytes(take(bytes, big_endian)?).into(),
+            Self::U8 => u8::from_le_bytes(take(bytes, big_endian)?).into(),
+            Self::I16 => i16::from_le_bytes(take(bytes, big_endian)?).into(),
+            Self::U16 => u16::from_le_bytes(take(bytes, big_endian)?).into(),
+            Self::I32 => i32::from_le_bytes(take(bytes, big_endian)?).into(),
+            Self::U32 => u32::from_le_bytes(take(bytes, big_endian)?).into(),
+            Self::F32 => f32::from_le_bytes(take(bytes, big_endian)?).into(),
+            Self::F64 => f64::from_le_bytes(take(bytes, big_endian)?),
+        })
+    }
+}
+
+/// A file and what to say of it.
+#[derive(Clone, Copy)]
+struct Text<'a> {
+    format: Format,
+    bytes: &'a [u8],
+}
+
+impl<'a> Text<'a> {
+    fn wrong(
+        &self,
+        offset: usize,
+        expected: impl Into<String>,
+        got: impl Into<String>,
+    ) -> ReadError {
+        ReadError {
+            format: self.format,
+            offset,
+            expected: expected.into(),
+            got: got.into(),
+        }
+    }
+
+    /// The line at `offset` without its end, and where the next begins; `None` at the end of the file.
+    fn line(&self, offset: usize) -> Result<Option<(&'a str, usize)>, ReadError> {
+        let rest = self.bytes.get(offset..).unwrap_or_default();
+        if rest.is_empty() {
+            return Ok(None);
+        }
+        let end = rest.iter().position(|&byte| byte == b'\n');
+        let line = rest.get(..end.unwrap_or(rest.len())).unwrap_or_default();
+        match std::str::from_utf8(line) {
+            Ok(text) => {
+                let next = (offset + line.len() + 1).min(self.bytes.len());
+                Ok(Some((text.trim(), next)))
+            }
+            Err(error) => Err(self.wrong(offset + error.valid_up_to(), "text", "other bytes")),
+        }
+    }
+
+    /// Points as text, a line each from `offset` on, numbers by `separated`; x, y and z stand at these places. Empty lines and `#` are passed over.
+    fn rows(
+        &self,
+        mut offset: usize,
+        places: [usize; 3],
+        separated: impl Fn(char) -> bool + Copy,
+        most: usize,
+    ) -> Result<Positions, ReadError> {
+        let mut positions = Positions::new();
+        while positions.len() < most
+            && let Some((line, next)) = self.line(offset)?
+        {
+            if !line.is_empty() && !line.starts_with('#') {
+                let fields = || line.split(separated).filter(|field| !field.is_empty());
+                let mut position = [0.0; 3];
+                for (axis, place) in position.iter_mut().zip(places) {
+                    let field = fields().nth(place).unwrap_or("the end of the line");
+                    *axis = field
+                        .parse()
+                        .map_err(|_| self.wrong(offset, "a number", format!("{field:?}")))?;
+                }
+                positions.push(position);
+            }
+            offset = next;
+        }
+        Ok(positions)
+    }
+}
+
+/// Shortened for a message.
+fn shown(text: &str) -> String {
+    format!("{:?}", text.chars().take(40).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests;
