@@ -1,0 +1,264 @@
+//! Points a bin, and what can be said of their numbers.
+//!
+//! Left out: drawing them.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{DensityError, Locator, SPHERE_DEG2, check};
+
+/// Points in each bin.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counts(Vec<u64>);
+
+/// What the numbers of points in bins are like.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Bins.
+    pub bins: usize,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation of all bins (divided by their number: they are all that there are, no sample).
+    pub sd: f64,
+    /// Fewest.
+    pub min: u64,
+    /// Most.
+    pub max: u64,
+    /// Mean by the mean area of a bin, points a square degree.
+    pub mean_per_deg2: f64,
+    /// Standard deviation likewise.
+    pub sd_per_deg2: f64,
+    /// Bins without a point.
+    pub empty: usize,
+}
+
+/// A class of a histogram.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Class {
+    /// The fewest points of a bin in it.
+    pub from: u64,
+    /// The most.
+    pub to: u64,
+    /// Bins in it.
+    pub bins: usize,
+}
+
+/// Directions that a thread counts at a time.
+const CHUNK: usize = 1 << 16;
+
+impl Counts {
+    /// Counts directions, in time linear in their number.
+    ///
+    /// # Errors
+    /// [`DensityError::Direction`] for one that is none: the first of them.
+    pub fn new(locator: &Locator, directions: &[DVec3]) -> Result<Self, DensityError> {
+        let bins = locator.bins();
+        // As many parts as threads take at once: each needs a row of bins of its own.
+        let part = directions
+            .len()
+            .div_ceil(rayon::current_num_threads().max(1))
+            .max(CHUNK);
+        let parts: Vec<Result<Vec<u64>, DensityError>> = directions
+            .par_chunks(part)
+            .map(|part| {
+                check(part)?;
+                let mut counts = vec![0_u64; bins];
+                for direction in part {
+                    if let Some(count) = counts.get_mut(locator.bin(*direction) as usize) {
+                        *count += 1;
+                    }
+                }
+                Ok(counts)
+            })
+            .collect();
+        let mut all = vec![0; bins];
+        for (number, counts) in parts.into_iter().enumerate() {
+            let counts = counts.map_err(|error| error.behind(number * part))?;
+            for (sum, count) in all.iter_mut().zip(counts) {
+                *sum += count;
+            }
+        }
+        Ok(Self(all))
+    }
+
+    /// Points in each bin, in the order of [`super::Icosahedron::bins`].
+    #[must_use]
+    pub fn by_bin(&self) -> &[u64] {
+        &self.0
+    }
+
+    /// What they are like.
+    #[must_use]
+    pub fn statistics(&self) -> Statistics {
+        let bins = self.0.len();
+        let points: u64 = self.0.iter().sum();
+        let n = (bins as f64).max(1.0);
+        let mean = points as f64 / n;
+        let off = self.0.iter().map(|&count| (count as f64 - mean).powi(2));
+        let sd = (off.sum::<f64>() / n).sqrt();
+        let per_deg2 = n / SPHERE_DEG2;
+        Statistics {
+            bins,
+            mean,
+            sd,
+            min: self.0.iter().copied().min().unwrap_or(0),
+            max: self.0.iter().copied().max().unwrap_or(0),
+            mean_per_deg2: mean * per_deg2,
+            sd_per_deg2: sd * per_deg2,
+            empty: self.0.iter().filter(|&&count| count == 0).count(),
+        }
+    }
+
+    /// A histogram of at most `classes` equally wide classes (at least one) from 0 to the fullest bin.
+    #[must_use]
+    pub fn histogram(&self, classes: usize) -> Vec<Class> {
+        let most = self.0.iter().copied().max().unwrap_or(0);
+        let width = (most + 1).div_ceil(classes.max(1) as u64).max(1);
+        let number = most / width + 1;
+        let mut histogram: Vec<Class> = (0..number)
+            .map(|class| Class {
+                from: class * width,
+                to: (class + 1) * width - 1,
+                bins: 0,
+            })
+            .collect();
+        for count in &self.0 {
+            if let Some(class) = histogram.get_mut((count / width) as usize) {
+                class.bins += 1;
+            }
+        }
+        histogram
+    }
+}
+
+impl DensityError {
+    /// The same where so many directions stand before.
+    fn behind(self, before: usize) -> Self {
+        match self {
+            Self::Direction { index, got } => Self::Direction {
+                index: before + index,
+                got,
+            },
+            other => other,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Icosahedron;
+    use super::*;
+
+    fn locator(level: u32) -> Locator {
+        Locator::new(&Icosahedron::new(level).unwrap())
+    }
+
+    /// Evenly spread (Fibonacci's lattice).
+    fn lattice(n: usize) -> Vec<DVec3> {
+        let turn = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+        (0..n)
+            .map(|i| {
+                let z = 1.0 - (2.0 * i as f64 + 1.0) / n as f64;
+                let (sin, cos) = (turn * i as f64).sin_cos();
+                let r = (1.0 - z * z).sqrt();
+                DVec3::new(r * cos, r * sin, z)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn counts_are_those_of_one_after_the_other() {
+        let (locator, directions) = (locator(3), lattice(200_000));
+        let counts = Counts::new(&locator, &directions).unwrap();
+        let mut slow = vec![0; 1_280];
+        for bin in locator.bins_of(&directions).unwrap() {
+            slow[bin as usize] += 1;
+        }
+        assert_eq!(counts.by_bin(), slow);
+        let statistics = counts.statistics();
+        assert_eq!(statistics.mean, 156.25);
+        assert_eq!(statistics.empty, 0);
+        assert!((statistics.mean_per_deg2 - 200_000.0 / 41_252.961_249).abs() < 1e-9);
+    }
+
+    #[test]
+    fn all_in_one_bin() {
+        let locator = locator(4);
+        let counts = Counts::new(&locator, &vec![DVec3::Y; 5_120]).unwrap();
+        let statistics = counts.statistics();
+        assert_eq!(
+            (statistics.min, statistics.max, statistics.empty),
+            (0, 5_120, 5_119)
+        );
+        assert_eq!(statistics.mean, 1.0);
+        // sqrt((5119^2 + 5119) / 5120) = sqrt(5119).
+        assert!((statistics.sd - 5_119.0_f64.sqrt()).abs() < 1e-12);
+        let classes = counts.histogram(10);
+        assert_eq!(classes.len(), 10);
+        assert_eq!(classes[0].bins, 5_119);
+        assert_eq!(classes[9].bins, 1);
+    }
+
+    #[test]
+    fn none_one_and_two() {
+        let locator = locator(1);
+        for n in 0..3 {
+            let directions = &[DVec3::Z, DVec3::NEG_Z][..n];
+            let statistics = Counts::new(&locator, directions).unwrap().statistics();
+            assert_eq!(statistics.empty, 80 - n);
+            assert_eq!(statistics.max, n.min(1) as u64);
+            assert!((statistics.mean - n as f64 / 80.0).abs() < 1e-15);
+        }
+        let none = Counts::new(&locator, &[]).unwrap();
+        assert_eq!(
+            none.histogram(8),
+            [Class {
+                from: 0,
+                to: 0,
+                bins: 80
+            }]
+        );
+    }
+
+    #[test]
+    fn what_is_no_direction_is_named() {
+        let locator = locator(2);
+        let wrong = [
+            DVec3::new(f64::NAN, 0.0, 1.0),
+            DVec3::new(f64::INFINITY, 0.0, 0.0),
+            DVec3::ZERO,
+            DVec3::new(0.0, 0.0, 1.001),
+        ];
+        for (place, wrong) in [0, 65_536, 140_000, 199_999].into_iter().zip(wrong) {
+            let mut directions = lattice(200_000);
+            directions[place] = wrong;
+            let error = Counts::new(&locator, &directions).unwrap_err();
+            let said = error.to_string();
+            assert!(
+                said.starts_with(&format!("density: point {place}: expected a direction")),
+                "{said}"
+            );
+        }
+    }
+
+    #[test]
+    fn classes_of_a_histogram_hold_every_bin_once() {
+        let counts = Counts::new(&locator(2), &lattice(9_999)).unwrap();
+        for classes in [0, 1, 2, 7, 100] {
+            let histogram = counts.histogram(classes);
+            assert!(histogram.len() <= classes.max(1));
+            assert_eq!(histogram.iter().map(|class| class.bins).sum::<usize>(), 320);
+            for pair in histogram.windows(2) {
+                assert_eq!(pair[0].to + 1, pair[1].from);
+            }
+            for class in histogram {
+                let within = counts
+                    .by_bin()
+                    .iter()
+                    .filter(|c| (class.from..=class.to).contains(c));
+                assert_eq!(within.count(), class.bins);
+            }
+        }
+    }
+}

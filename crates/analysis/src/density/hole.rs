@@ -1,0 +1,246 @@
+//! The largest hole: the biggest circle on the sphere with no point in it.
+//!
+//! How far the nearest point is changes by no more than one moves, so in a cell it is at most what it is in the middle and the cell's radius more. Cells
+//! are cut, the most promising first, until none promises more than what was found and the tolerance. Where only a few points can matter to a
+//! cell, it is done with exactly: a hole that cannot grow touches three points, or two or one where it is more than a hemisphere, and each of those choices is tried.
+//! What comes out is a hole for sure, and its radius is within the tolerance of the largest. Left out: smaller holes ([`super::holes`]).
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::f64::consts::FRAC_PI_2;
+
+use glam::DVec3;
+
+use super::cells::{Cell, MOST_CUTS};
+use super::nearby::Nearby;
+use super::{DensityError, check};
+
+/// A circle with no point in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hole {
+    /// Its middle, length 1.
+    pub centre: DVec3,
+    /// Its radius, radians: so far is the nearest point.
+    pub radius_rad: f64,
+}
+
+/// The largest hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Largest {
+    /// A hole.
+    pub hole: Hole,
+    /// No hole is larger, radians.
+    pub bound_rad: f64,
+}
+
+/// The tolerance that is always met, radians: a five-thousandth of what the finest encoder step tells apart.
+pub const TOLERANCE_RAD: f64 = 1e-6;
+
+/// The largest hole that some directions leave, to within `tolerance_rad` ([`TOLERANCE_RAD`] and up; less is taken for that). `None` without a direction: then
+/// there is nothing but hole.
+///
+/// # Errors
+/// [`DensityError::Direction`] for what is none.
+pub fn largest_hole(
+    directions: &[DVec3],
+    tolerance_rad: f64,
+) -> Result<Option<Largest>, DensityError> {
+    check(directions)?;
+    Ok(Search::new(&Nearby::new(directions), tolerance_rad.max(TOLERANCE_RAD)).largest())
+}
+
+/// More points than this that can matter to a cell, and the cell is cut.
+const FEW: usize = 10;
+/// Points closer than this, through the sphere, are one.
+const SAME: f64 = 1e-9;
+
+/// A search for holes.
+pub(super) struct Search<'a> {
+    nearby: &'a Nearby,
+    tolerance_rad: f64,
+    open: BinaryHeap<Open>,
+    pub best: Option<Hole>,
+}
+
+/// A cell that is to be looked into.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Open {
+    /// No hole about any of its points is larger, radians.
+    pub bound_rad: f64,
+    cell: Cell,
+    pub middle: DVec3,
+    /// Its ball, through the sphere.
+    ball: f64,
+    /// How far the nearest point is from the middle, radians.
+    pub free_rad: f64,
+}
+
+/// What became of a cell.
+pub(super) enum Done {
+    /// It was cut.
+    Cut,
+    /// Holes that cannot grow, and all that there are about its points; some others, too, and some that are none ([`Search::at`] tells).
+    Holes(Vec<DVec3>),
+    /// Too small to be cut: the hole about its middle stands for all about its points.
+    Tiny,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(nearby: &'a Nearby, tolerance_rad: f64) -> Self {
+        let mut search = Self {
+            nearby,
+            tolerance_rad,
+            open: BinaryHeap::new(),
+            best: None,
+        };
+        for cell in Cell::faces() {
+            search.open(cell);
+        }
+        search
+    }
+
+    fn largest(mut self) -> Option<Largest> {
+        let mut bound_rad = 0.0;
+        while let Some(next) = self.next() {
+            let best_rad = self.best.map_or(0.0, |hole| hole.radius_rad);
+            if next.bound_rad <= best_rad + self.tolerance_rad {
+                bound_rad = next.bound_rad;
+                break;
+            }
+            match self.look_into(&next, next.free_rad) {
+                Done::Cut => {}
+                Done::Holes(centres) => centres.into_iter().for_each(|c| {
+                    self.at(c);
+                }),
+                Done::Tiny => bound_rad = next.bound_rad.max(bound_rad),
+            }
+        }
+        let hole = self.best?;
+        Some(Largest {
+            hole,
+            bound_rad: bound_rad.max(hole.radius_rad),
+        })
+    }
+
+    /// The cell that promises most.
+    pub fn next(&mut self) -> Option<Open> {
+        self.open.pop()
+    }
+
+    fn open(&mut self, cell: Cell) {
+        let (middle, ball) = cell.ball();
+        if let Some(hole) = self.at(middle) {
+            self.open.push(Open {
+                bound_rad: hole.radius_rad + angle(ball),
+                cell,
+                middle,
+                ball,
+                free_rad: hole.radius_rad,
+            });
+        }
+    }
+
+    /// The hole about a direction, remembered if it is the largest so far; `None` without points.
+    pub fn at(&mut self, centre: DVec3) -> Option<Hole> {
+        let nearest = self.nearby.nearest(centre);
+        let hole = nearest.is_finite().then(|| Hole {
+            centre,
+            radius_rad: angle(nearest),
+        })?;
+        if self
+            .best
+            .is_none_or(|best| hole.radius_rad > best.radius_rad)
+        {
+            self.best = Some(hole);
+        }
+        Some(hole)
+    }
+
+    /// Does with a cell what is to be done: of its holes, those of at least `least_rad`.
+    pub fn look_into(&mut self, next: &Open, least_rad: f64) -> Done {
+        let reach = next.free_rad + 2.0 * angle(next.ball);
+        let few = self
+            .nearby
+            .within(next.middle, chord(reach) + SAME, SAME, FEW);
+        if let Some(few) = few {
+            let large = next.bound_rad > FRAC_PI_2 - 1e-6;
+            return Done::Holes(centres(&few, next, least_rad, large));
+        }
+        if angle(next.ball) < 0.25 * self.tolerance_rad || next.cell.level >= MOST_CUTS {
+            return Done::Tiny;
+        }
+        for cell in next.cell.cut() {
+            self.open(cell);
+        }
+        Done::Cut
+    }
+}
+
+/// The middles of holes about points of a cell that touch three of these points; where they may be larger than a hemisphere, two or one.
+fn centres(points: &[DVec3], within: &Open, least_rad: f64, large: bool) -> Vec<DVec3> {
+    let mut centres = Vec::new();
+    let reach = (within.ball + 1e-6) * (within.ball + 1e-6);
+    let mut add = |direction: DVec3| {
+        if let Some(centre) = direction.try_normalize() {
+            for centre in [centre, -centre] {
+                if centre.distance_squared(within.middle) <= reach {
+                    centres.push(centre);
+                }
+            }
+        }
+    };
+    for (i, &a) in points.iter().enumerate() {
+        if large {
+            add(a);
+            add(a.any_orthonormal_vector());
+        }
+        for (j, &b) in points.iter().enumerate().skip(i + 1) {
+            if large {
+                add(a + b);
+            }
+            for &c in points.iter().skip(j + 1) {
+                add((b - a).cross(c - a));
+            }
+        }
+    }
+    // No hole is larger than to the nearest of these points: sorted out cheaply before the search asks all.
+    centres.retain(|centre| {
+        let nearest = points.iter().map(|p| p.distance_squared(*centre));
+        angle(nearest.fold(4.0, f64::min).sqrt()) > least_rad - 1e-7
+    });
+    centres
+}
+
+/// The angle between two directions so far apart, radians: to the last digits near 0, to 3e-8 near a half turn.
+pub(super) fn angle(chord: f64) -> f64 {
+    2.0 * (0.5 * chord).min(1.0).asin()
+}
+
+/// How far apart two directions at an angle are.
+fn chord(angle_rad: f64) -> f64 {
+    2.0 * (0.5 * angle_rad.min(std::f64::consts::PI)).sin()
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_bound = self.bound_rad.total_cmp(&other.bound_rad);
+        by_bound.then_with(|| self.cell.cmp(&other.cell))
+    }
+}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Open {}
+
+#[cfg(test)]
+mod tests;

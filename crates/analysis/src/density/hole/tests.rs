@@ -1,0 +1,148 @@
+use std::f64::consts::{PI, TAU};
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// The nearest point, by the angle itself.
+fn free(points: &[DVec3], centre: DVec3) -> f64 {
+    let angles = points
+        .iter()
+        .map(|p| p.cross(centre).length().atan2(p.dot(centre)));
+    angles.fold(f64::INFINITY, f64::min)
+}
+
+/// By trying the circle through every three points, every two as its diameter's ends, and the far side of every one.
+fn slow(points: &[DVec3]) -> f64 {
+    let mut largest = 0.0_f64;
+    let mut attempt = |direction: DVec3| {
+        if let Some(centre) = direction.try_normalize() {
+            largest = largest.max(free(points, centre)).max(free(points, -centre));
+        }
+    };
+    for (i, &a) in points.iter().enumerate() {
+        attempt(a);
+        attempt(a.any_orthonormal_vector());
+        for (j, &b) in points.iter().enumerate().skip(i + 1) {
+            attempt(a + b);
+            for &c in &points[j + 1..] {
+                attempt((b - a).cross(c - a));
+            }
+        }
+    }
+    largest
+}
+
+fn at(z: f64, turn: f64) -> DVec3 {
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    DVec3::new(r * turn.cos(), r * turn.sin(), z).normalize()
+}
+
+fn largest(points: &[DVec3]) -> Largest {
+    let largest = largest_hole(points, TOLERANCE_RAD).unwrap().unwrap();
+    // What it says of its hole is true.
+    let hole = largest.hole;
+    assert!((free(points, hole.centre) - hole.radius_rad).abs() < 3e-8);
+    assert!(hole.radius_rad <= largest.bound_rad);
+    assert!(largest.bound_rad - hole.radius_rad <= 1.01 * TOLERANCE_RAD);
+    largest
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn it_is_what_trying_all_circles_finds(
+        points in prop::collection::vec((-1.0..1.0_f64, 0.0..TAU), 1..25), squeeze in prop_oneof![Just(1.0), Just(0.3), Just(1e-3), Just(0.0)],
+    ) {
+        // Squeezed, they lie near one circle or one point; at 0 on the equator.
+        let points: Vec<DVec3> = points.iter().map(|&(z, turn)| at(z * squeeze, turn)).collect();
+        let (found, slow) = (largest(&points), slow(&points));
+        prop_assert!((found.hole.radius_rad - slow).abs() < 1.01 * TOLERANCE_RAD, "{:?} {slow}", found);
+        prop_assert!(found.bound_rad > slow - 3e-8);
+    }
+
+    #[test]
+    fn points_close_together_leave_nearly_everything(
+        points in prop::collection::vec((-0.1..0.1_f64, 0.0..0.1_f64), 1..12),
+    ) {
+        let points: Vec<DVec3> = points.iter().map(|&(z, turn)| at(z, turn)).collect();
+        let (found, slow) = (largest(&points), slow(&points));
+        prop_assert!((found.hole.radius_rad - slow).abs() < 1.01 * TOLERANCE_RAD, "{:?} {slow}", found);
+        prop_assert!(slow > 0.9 * PI);
+    }
+}
+
+#[test]
+fn none_one_and_two() {
+    assert_eq!(largest_hole(&[], 1e-6).unwrap(), None);
+    let one = largest(&[DVec3::Z]);
+    assert!((one.hole.radius_rad - PI).abs() < 3e-8 && one.hole.centre.z < -0.999_999);
+    let same = largest(&[DVec3::Z; 500]);
+    assert!((same.hole.radius_rad - PI).abs() < 3e-8);
+    let two = largest(&[DVec3::X, DVec3::Y]);
+    assert!((two.hole.radius_rad - 0.75 * PI).abs() < 1e-7);
+    let antipodes = largest(&[DVec3::X, DVec3::NEG_X]);
+    assert!((antipodes.hole.radius_rad - 0.5 * PI).abs() < 1e-7);
+}
+
+#[test]
+fn a_ring_of_many_leaves_its_poles() {
+    // More points that touch the hole than are tried by threes.
+    let ring = |n: u32, z: f64| (0..n).map(move |k| at(z, TAU * f64::from(k) / f64::from(n)));
+    let points: Vec<DVec3> = ring(900, 0.5).chain(ring(900, -0.9)).collect();
+    let found = largest(&points);
+    assert!(
+        (found.hole.radius_rad - PI / 3.0).abs() < TOLERANCE_RAD,
+        "{found:?}"
+    );
+    assert!(found.hole.centre.z > 0.999_999);
+    let equator: Vec<DVec3> = ring(1_000, 0.0).collect();
+    assert!((largest(&equator).hole.radius_rad - 0.5 * PI).abs() < TOLERANCE_RAD);
+}
+
+#[test]
+fn points_that_come_many_times_are_one() {
+    let corners = [
+        DVec3::X,
+        DVec3::NEG_X,
+        DVec3::Y,
+        DVec3::NEG_Y,
+        DVec3::Z,
+        DVec3::NEG_Z,
+    ];
+    let points: Vec<DVec3> = corners.into_iter().flat_map(|c| [c; 300]).collect();
+    let found = largest(&points);
+    assert!((found.hole.radius_rad - (1.0 / 3.0_f64.sqrt()).acos()).abs() < 1e-7);
+}
+
+#[test]
+fn one_point_taken_out_of_many_leaves_a_hole_where_it_was() {
+    let n = 60_000;
+    let turn = PI * (3.0 - 5.0_f64.sqrt());
+    let mut points: Vec<DVec3> = (0..n)
+        .map(|i| {
+            at(
+                1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(n),
+                turn * f64::from(i),
+            )
+        })
+        .collect();
+    let before = largest(&points).hole;
+    // Six points a point: 0.83 of the spacing sqrt(4 pi / n), and at the poles somewhat more.
+    assert!(before.radius_rad < 1.1 * (4.0 * PI / f64::from(n)).sqrt());
+    let out = points.swap_remove(31_234);
+    let after = largest(&points).hole;
+    assert!(after.centre.distance(out) < before.radius_rad);
+    assert!(after.radius_rad > before.radius_rad);
+}
+
+#[test]
+fn what_is_no_direction_is_named() {
+    let error = largest_hole(&[DVec3::X, DVec3::NAN], 1e-6).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("density: point 1: expected a direction")
+    );
+}

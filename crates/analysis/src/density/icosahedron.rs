@@ -1,0 +1,181 @@
+//! Bins on the sphere: the faces of an icosahedron, each cut into four as often as asked, corners pushed out onto the sphere every time.
+//!
+//! The icosahedron has its corners at (0, +-1, +-phi) and what follows by turning the axes round; each cut halves the edges of a face. Faces
+//! 4f..4f+3 of a level are cut from face f of the level above. Left out: which bin a direction falls into ([`super::Locator`]).
+
+use glam::DVec3;
+
+use super::DensityError;
+
+/// The most cuts: 20 x 4^8 = 1,310,720 bins.
+pub const MOST_LEVEL: u32 = 8;
+
+/// A face: a triangle of great circles, and what encloses it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    /// Corners, length 1, anticlockwise seen from outside.
+    pub corners: [DVec3; 3],
+    /// The middle of the corners, on the sphere.
+    pub centre: DVec3,
+    /// How far off the centre its farthest point is, straight through the sphere: a corner, as a cap below a hemisphere is convex.
+    pub chord: f64,
+}
+
+/// The faces of every level down to one.
+#[derive(Clone, Debug)]
+pub struct Icosahedron {
+    levels: Vec<Vec<Face>>,
+}
+
+impl Face {
+    fn new(corners: [DVec3; 3]) -> Self {
+        let [a, b, c] = corners;
+        let centre = (a + b + c).normalize();
+        let chords = corners.map(|corner| corner.distance_squared(centre));
+        Self {
+            corners,
+            centre,
+            chord: chords.into_iter().fold(0.0, f64::max).sqrt(),
+        }
+    }
+
+    /// The four that it is cut into: at its three corners, and in the middle.
+    #[must_use]
+    pub fn cut(&self) -> [Self; 4] {
+        let [a, b, c] = self.corners;
+        let middle = |a: DVec3, b: DVec3| (a + b).normalize();
+        let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]].map(Self::new)
+    }
+
+    /// The solid angle, steradians (van Oosterom and Strackee 1983).
+    #[must_use]
+    pub fn area_sr(&self) -> f64 {
+        let [a, b, c] = self.corners;
+        let volume = a.dot(b.cross(c));
+        2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+    }
+}
+
+impl Icosahedron {
+    /// The icosahedron cut `level` times.
+    ///
+    /// # Errors
+    /// [`DensityError::Level`] above [`MOST_LEVEL`].
+    pub fn new(level: u32) -> Result<Self, DensityError> {
+        if level > MOST_LEVEL {
+            return Err(DensityError::Level { got: level });
+        }
+        let mut levels = vec![base()];
+        for _ in 0..level {
+            let cut = levels.last().map(|faces| faces.iter().flat_map(Face::cut));
+            let cut = cut.map(Iterator::collect).unwrap_or_default();
+            levels.push(cut);
+        }
+        Ok(Self { levels })
+    }
+
+    /// How often it is cut.
+    #[must_use]
+    pub fn level(&self) -> u32 {
+        self.levels.len().saturating_sub(1) as u32
+    }
+
+    /// The bins: the faces of the last level.
+    #[must_use]
+    pub fn bins(&self) -> &[Face] {
+        self.levels.last().map_or(&[], Vec::as_slice)
+    }
+
+    /// The faces of all levels, the 20 first.
+    #[must_use]
+    pub fn levels(&self) -> &[Vec<Face>] {
+        &self.levels
+    }
+}
+
+/// The 20 faces.
+fn base() -> Vec<Face> {
+    let phi = f64::midpoint(1.0, 5.0_f64.sqrt());
+    let mut corners = Vec::with_capacity(12);
+    for short in [1.0, -1.0] {
+        for long in [phi, -phi] {
+            corners.extend([
+                DVec3::new(0.0, short, long),
+                DVec3::new(short, long, 0.0),
+                DVec3::new(long, 0.0, short),
+            ]);
+        }
+    }
+    // Neighbours are 2 apart, all others farther.
+    let near = |a: DVec3, b: DVec3| a.distance(b) < 2.1;
+    let mut faces = Vec::with_capacity(20);
+    for (i, &a) in corners.iter().enumerate() {
+        for (j, &b) in corners.iter().enumerate().skip(i + 1) {
+            for &c in corners.iter().skip(j + 1) {
+                if near(a, b) && near(b, c) && near(c, a) {
+                    let outwards = a.dot(b.cross(c)) > 0.0;
+                    let corners = if outwards { [a, b, c] } else { [a, c, b] };
+                    faces.push(Face::new(corners.map(DVec3::normalize)));
+                }
+            }
+        }
+    }
+    faces
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn faces_tile_the_sphere() {
+        for level in 0..=6 {
+            let bins = Icosahedron::new(level).unwrap();
+            assert_eq!(bins.bins().len(), 20 << (2 * level));
+            assert_eq!(bins.level(), level);
+            let area: f64 = bins.bins().iter().map(Face::area_sr).sum();
+            assert!((area - 4.0 * PI).abs() < 1e-11, "{level}: {area}");
+        }
+        assert_eq!(
+            Icosahedron::new(9).unwrap_err(),
+            DensityError::Level { got: 9 }
+        );
+    }
+
+    #[test]
+    fn the_papers_bins_are_5120_of_unequal_size() {
+        let bins = Icosahedron::new(4).unwrap();
+        assert_eq!(bins.bins().len(), 5_120);
+        let areas = bins
+            .bins()
+            .iter()
+            .map(|bin| bin.area_sr().to_degrees().to_degrees());
+        let [least, most] = areas.fold([f64::MAX, 0.0_f64], |[least, most], area| {
+            [least.min(area), most.max(area)]
+        });
+        // The mean is 8.057 deg2.
+        assert!(
+            (least - 7.478).abs() < 0.001 && (most - 9.714).abs() < 0.001,
+            "{least} {most}"
+        );
+    }
+
+    #[test]
+    fn faces_lie_in_their_caps_and_in_the_face_they_are_cut_from() {
+        let all = Icosahedron::new(5).unwrap();
+        for (above, below) in all.levels().iter().zip(&all.levels()[1..]) {
+            for (number, face) in below.iter().enumerate() {
+                let parent = &above[number / 4];
+                let [a, b, c] = parent.corners;
+                for corner in face.corners {
+                    assert!(corner.distance(face.centre) <= face.chord * (1.0 + 1e-15));
+                    let sides = [a.cross(b), b.cross(c), c.cross(a)].map(|n| n.dot(corner));
+                    assert!(sides.into_iter().all(|side| side > -1e-15), "{sides:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! Which bin a direction falls into: the one with the nearest centre.
+//!
+//! The directions are divided into the cells of a cube's faces. For each cell the bins that can be nearest to any direction in it are listed
+//! beforehand: a cell lies in a ball of radius r about its middle, so the nearest centre lies at most 2 r farther from the middle than the one nearest
+//! to that. A direction is then compared with the few of its cell. Left out: counting.
+
+use glam::DVec3;
+
+use super::DensityError;
+use super::icosahedron::{Face, Icosahedron};
+
+/// Finds bins.
+#[derive(Clone, Debug)]
+pub struct Locator {
+    /// Cells along a side of a face of the cube.
+    side: usize,
+    /// Where the candidates of each cell begin, and the end.
+    starts: Vec<u32>,
+    /// Bins, ascending within a cell.
+    candidates: Vec<u32>,
+    centres: Vec<DVec3>,
+}
+
+/// More than rounding moves a cell's corner or a distance.
+const MARGIN: f64 = 1e-12;
+
+impl Locator {
+    /// For the bins of an icosahedron.
+    #[must_use]
+    pub fn new(icosahedron: &Icosahedron) -> Self {
+        let side = 4 << icosahedron.level().min(7);
+        let mut locator = Self {
+            side,
+            starts: vec![0],
+            candidates: Vec::new(),
+            centres: icosahedron.bins().iter().map(|bin| bin.centre).collect(),
+        };
+        let mut found = Vec::new();
+        for cell in 0..6 * side * side {
+            let (middle, radius) = locator.ball(cell);
+            candidates(icosahedron, middle, radius, &mut found);
+            locator.candidates.extend_from_slice(&found);
+            locator.starts.push(locator.candidates.len() as u32);
+        }
+        locator
+    }
+
+    /// The middle of a cell, and the radius of a ball about it that holds the cell: great circles bound it, so a corner is farthest.
+    fn ball(&self, cell: usize) -> (DVec3, f64) {
+        let (face, rest) = (
+            cell / (self.side * self.side),
+            cell % (self.side * self.side),
+        );
+        let (row, column) = ((rest / self.side) as f64, (rest % self.side) as f64);
+        let step = 2.0 / self.side as f64;
+        let at = |column: f64, row: f64| {
+            let (u, v) = (column * step - 1.0, row * step - 1.0);
+            let out = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
+            match face / 2 {
+                0 => DVec3::new(out, u, v),
+                1 => DVec3::new(u, out, v),
+                _ => DVec3::new(u, v, out),
+            }
+            .normalize()
+        };
+        let middle = at(column + 0.5, row + 0.5);
+        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
+        let distances = corners.map(|(right, up)| at(column + right, row + up).distance(middle));
+        (middle, distances.into_iter().fold(0.0, f64::max) + MARGIN)
+    }
+
+    /// The bin whose centre is nearest to a direction: the one with the largest dot product in f64, of equal ones the first.
+    #[inline]
+    #[must_use]
+    pub fn bin(&self, direction: DVec3) -> u32 {
+        let cell = self.cell(direction);
+        let range = |i: usize| self.starts.get(i).map_or(0, |&start| start as usize);
+        let candidates = self.candidates.get(range(cell)..range(cell + 1));
+        let mut nearest = (f64::NEG_INFINITY, 0);
+        for &bin in candidates.unwrap_or_default() {
+            let centre = self.centres.get(bin as usize).copied();
+            let dot = centre.map_or(f64::NEG_INFINITY, |centre| centre.dot(direction));
+            if dot > nearest.0 {
+                nearest = (dot, bin);
+            }
+        }
+        nearest.1
+    }
+
+    /// The cell of a direction.
+    #[inline]
+    fn cell(&self, direction: DVec3) -> usize {
+        let [x, y, z] = direction.to_array();
+        let size = direction.abs();
+        let (face, along, u, v) = if size.x >= size.y && size.x >= size.z {
+            (0, x, y, z)
+        } else if size.y >= size.z {
+            (2, y, x, z)
+        } else {
+            (4, z, x, y)
+        };
+        let half = 0.5 * self.side as f64;
+        let scale = half / along.abs();
+        let place = |w: f64| ((w * scale + half) as usize).min(self.side - 1);
+        let face = face + usize::from(along < 0.0);
+        (face * self.side + place(v)) * self.side + place(u)
+    }
+
+    /// Bins there are.
+    #[must_use]
+    pub fn bins(&self) -> usize {
+        self.centres.len()
+    }
+
+    /// The bin of each direction.
+    ///
+    /// # Errors
+    /// [`DensityError::Direction`] for the first that is no direction.
+    pub fn bins_of(&self, directions: &[DVec3]) -> Result<Vec<u32>, DensityError> {
+        super::check(directions)?;
+        Ok(directions.iter().map(|d| self.bin(*d)).collect())
+    }
+}
+
+/// The bins whose centres can be nearest to something at most `radius` from `middle`, ascending.
+fn candidates(icosahedron: &Icosahedron, middle: DVec3, radius: f64, found: &mut Vec<u32>) {
+    let centre = |face: &Face| face.centre.distance(middle);
+    // Down to some bin nearby: no farther than this need be looked.
+    let mut best = usize::MAX;
+    for faces in icosahedron.levels() {
+        let below = if best == usize::MAX {
+            0..faces.len()
+        } else {
+            4 * best..4 * best + 4
+        };
+        let near = below.filter_map(|i| Some((centre(faces.get(i)?), i)));
+        best = near
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or(0, |(_, i)| i);
+    }
+    let first = icosahedron.bins().get(best).map_or(2.0, centre);
+    // Faces that may hold a centre so near, level by level.
+    let within = first + 2.0 * radius + MARGIN;
+    let mut open: Vec<usize> = (0..20).collect();
+    for (level, faces) in icosahedron.levels().iter().enumerate() {
+        if level > 0 {
+            open = open.iter().flat_map(|i| 4 * i..4 * i + 4).collect();
+        }
+        open.retain(|&i| faces.get(i).is_some_and(|f| centre(f) - f.chord <= within));
+    }
+    // Some bin is no farther than the one that was found; the nearest may be nearer.
+    let bins = icosahedron.bins();
+    let distances = || open.iter().filter_map(|&i| Some((i, centre(bins.get(i)?))));
+    let nearest = distances().map(|(_, d)| d).fold(first, f64::min);
+    found.clear();
+    let close = distances().filter(|(_, d)| *d <= nearest + 2.0 * radius + MARGIN);
+    found.extend(close.map(|(i, _)| i as u32));
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn slow(icosahedron: &Icosahedron, direction: DVec3) -> u32 {
+        let mut nearest = (f64::NEG_INFINITY, 0);
+        for (bin, face) in icosahedron.bins().iter().zip(0..).map(|(f, i)| (i, f)) {
+            let dot = face.centre.dot(direction);
+            if dot > nearest.0 {
+                nearest = (dot, bin);
+            }
+        }
+        nearest.1
+    }
+
+    fn direction() -> impl Strategy<Value = DVec3> {
+        // Uniform on the sphere; and near the axes, where the cube's cells meet.
+        let uniform = (-1.0..1.0_f64, 0.0..std::f64::consts::TAU).prop_map(|(z, a)| {
+            let r = (1.0 - z * z).sqrt();
+            DVec3::new(r * a.cos(), r * a.sin(), z)
+        });
+        let near = (0..26_usize, -1e-9..1e-9_f64, -1e-9..1e-9_f64).prop_map(|(k, a, b)| {
+            let k = k + usize::from(k >= 13);
+            let sign = |n: usize| n as f64 - 1.0;
+            let corner = DVec3::new(sign(k % 3), sign(k / 3 % 3), sign(k / 9));
+            (corner.normalize() + DVec3::new(a, b, -a)).normalize()
+        });
+        prop_oneof![3 => uniform, 1 => near]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn it_finds_what_looking_at_every_bin_finds(
+            level in 0..6_u32, directions in prop::collection::vec(direction(), 50),
+        ) {
+            let icosahedron = Icosahedron::new(level).unwrap();
+            let locator = Locator::new(&icosahedron);
+            for direction in directions {
+                prop_assert_eq!(locator.bin(direction), slow(&icosahedron, direction));
+            }
+        }
+    }
+
+    #[test]
+    fn corners_and_edges_of_bins_too() {
+        for level in 0..=4 {
+            let icosahedron = Icosahedron::new(level).unwrap();
+            let locator = Locator::new(&icosahedron);
+            for (number, bin) in icosahedron.bins().iter().enumerate().step_by(7) {
+                assert_eq!(locator.bin(bin.centre), number as u32);
+                let [a, b, c] = bin.corners;
+                for border in [a, b, c, (a + b).normalize(), (b + 3.0 * c).normalize()] {
+                    assert_eq!(locator.bin(border), slow(&icosahedron, border));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn of_equally_near_bins_it_is_the_first() {
+        // A corner of the icosahedron is equally far from five bins, the middle of an edge from two.
+        let icosahedron = Icosahedron::new(0).unwrap();
+        let locator = Locator::new(&icosahedron);
+        let z = DVec3::Z;
+        let dots: Vec<f64> = icosahedron.bins().iter().map(|b| b.centre.dot(z)).collect();
+        let most = dots.iter().copied().fold(f64::MIN, f64::max);
+        let equal: Vec<usize> = (0..20).filter(|&i| dots[i] == most).collect();
+        assert!(equal.len() >= 2, "{dots:?}");
+        assert_eq!(locator.bin(z) as usize, equal[0]);
+    }
+
+    #[test]
+    fn few_are_compared() {
+        let locator = Locator::new(&Icosahedron::new(4).unwrap());
+        let mean = locator.candidates.len() as f64 / (locator.starts.len() - 1) as f64;
+        assert!(mean < 4.0, "{mean}");
+    }
+}

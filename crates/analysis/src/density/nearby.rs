@@ -1,0 +1,221 @@
+//! Points in cells, so that those near a direction are found without asking all.
+//!
+//! Distances are straight through the sphere, which needs no trigonometry and keeps the triangle inequality. Left out: everything that is not about
+//! being near.
+
+use glam::DVec3;
+
+use super::cells::Cell;
+
+/// Points, sorted into cells.
+#[derive(Clone, Debug)]
+pub(super) struct Nearby {
+    points: Vec<DVec3>,
+    /// Where the points of each cell of the last level begin, and the end.
+    starts: Vec<u32>,
+    /// Per level and cell: its middle, and how far off it its points are; negative where it has none.
+    levels: Vec<Vec<Ball>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    middle: DVec3,
+    radius: f64,
+}
+
+/// Points a cell, about.
+const IN_A_CELL: usize = 6;
+
+impl Nearby {
+    pub fn new(directions: &[DVec3]) -> Self {
+        let mut depth = 0_u8;
+        while depth < 11 && (6 * IN_A_CELL) << (2 * depth) < directions.len() {
+            depth += 1;
+        }
+        let cells = 6_usize << (2 * depth);
+        let of: Vec<u32> = directions
+            .iter()
+            .map(|direction| Cell::of(*direction, depth) as u32)
+            .collect();
+        let mut starts = vec![0_u32; cells + 1];
+        for &cell in &of {
+            if let Some(count) = starts.get_mut(cell as usize + 1) {
+                *count += 1;
+            }
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut next = starts.clone();
+        let mut points = vec![DVec3::ZERO; directions.len()];
+        for (direction, &cell) in directions.iter().zip(&of) {
+            if let Some(next) = next.get_mut(cell as usize) {
+                if let Some(slot) = points.get_mut(*next as usize) {
+                    *slot = *direction;
+                }
+                *next += 1;
+            }
+        }
+        let mut nearby = Self {
+            points,
+            starts,
+            levels: Vec::new(),
+        };
+        nearby.levels = nearby.balls(depth);
+        nearby
+    }
+
+    fn balls(&self, depth: u8) -> Vec<Vec<Ball>> {
+        let mut cells = Cell::faces().to_vec();
+        let mut levels = Vec::new();
+        for level in 0..=depth {
+            let below = 2 * (depth - level);
+            let balls = cells.iter().map(|cell| {
+                let (middle, _) = cell.ball();
+                let first = cell.number() << below;
+                let own = self.range(first, first + (1 << below));
+                let off = own.iter().map(|point| point.distance_squared(middle));
+                let farthest = off.fold(-1.0, f64::max);
+                let radius = if farthest < 0.0 {
+                    -1.0
+                } else {
+                    farthest.sqrt()
+                };
+                Ball { middle, radius }
+            });
+            levels.push(balls.collect());
+            if level < depth {
+                cells = cells.iter().flat_map(|cell| cell.cut()).collect();
+            }
+        }
+        levels
+    }
+
+    /// The points of cells of the last level.
+    fn range(&self, first: usize, end: usize) -> &[DVec3] {
+        let start = |cell: usize| self.starts.get(cell).map_or(0, |&start| start as usize);
+        self.points
+            .get(start(first)..start(end))
+            .unwrap_or_default()
+    }
+
+    /// How far off the nearest point is, through the sphere; infinite where there is none.
+    pub fn nearest(&self, to: DVec3) -> f64 {
+        let mut nearest = f64::INFINITY;
+        self.visit(to, &mut |distance, _| {
+            nearest = nearest.min(distance);
+            nearest
+        });
+        nearest
+    }
+
+    /// The points within a distance, those closer than `same` to another once; `None` where they are more than `most`.
+    pub fn within(&self, of: DVec3, distance: f64, same: f64, most: usize) -> Option<Vec<DVec3>> {
+        let mut found: Vec<DVec3> = Vec::new();
+        self.visit(of, &mut |_, points| {
+            for point in points {
+                let known = |other: &DVec3| other.distance_squared(*point) < same * same;
+                let near = point.distance_squared(of) <= distance * distance;
+                if near && found.len() <= most && !found.iter().any(known) {
+                    found.push(*point);
+                }
+            }
+            if found.len() > most { -1.0 } else { distance }
+        });
+        (found.len() <= most).then_some(found)
+    }
+
+    /// Visits cells, near ones first, with the distance of their nearest point, as long as they may hold points within what was last returned.
+    fn visit(&self, to: DVec3, take: &mut dyn FnMut(f64, &[DVec3]) -> f64) {
+        let mut limit = f64::INFINITY;
+        self.descend(to, 0, 0..6, &mut limit, take);
+    }
+
+    fn descend(
+        &self,
+        to: DVec3,
+        level: usize,
+        cells: std::ops::Range<usize>,
+        limit: &mut f64,
+        take: &mut dyn FnMut(f64, &[DVec3]) -> f64,
+    ) {
+        let Some(balls) = self.levels.get(level) else {
+            return;
+        };
+        let last = level + 1 == self.levels.len();
+        let mut order = [(f64::INFINITY, 0_usize); 6];
+        let mut count = 0;
+        for (cell, ball) in cells.clone().zip(balls.get(cells).unwrap_or_default()) {
+            if ball.radius >= 0.0
+                && let Some(slot) = order.get_mut(count)
+            {
+                *slot = (to.distance(ball.middle) - ball.radius, cell);
+                count += 1;
+            }
+        }
+        let order = order.get_mut(..count).unwrap_or_default();
+        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for &mut (least, cell) in order {
+            if least > *limit + 1e-15 {
+                break;
+            }
+            if last {
+                let points = self.range(cell, cell + 1);
+                let off = points.iter().map(|point| point.distance_squared(to));
+                *limit = take(off.fold(f64::INFINITY, f64::min).sqrt(), points);
+            } else {
+                self.descend(to, level + 1, 4 * cell..4 * cell + 4, limit, take);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    prop_compose! {
+        fn direction()(z in -1.0..1.0_f64, a in 0.0..6.3_f64, flat in prop::bool::weighted(0.1)) -> DVec3 {
+            let z = if flat { 0.0 } else { z };
+            let r = (1.0 - z * z).sqrt();
+            DVec3::new(r * a.cos(), r * a.sin(), z).normalize()
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn it_finds_what_asking_all_finds(
+            points in prop::collection::vec(direction(), 0..2_000), asked in prop::collection::vec(direction(), 20), within in 0.0..0.3_f64,
+        ) {
+            let nearby = Nearby::new(&points);
+            for to in asked {
+                let slow = points.iter().map(|p| p.distance_squared(to)).fold(f64::INFINITY, f64::min).sqrt();
+                prop_assert_eq!(nearby.nearest(to), slow);
+                let mut all: Vec<[u64; 3]> = points.iter().filter(|p| p.distance_squared(to) <= within * within)
+                    .map(|p| p.to_array().map(f64::to_bits)).collect();
+                let few = nearby.within(to, within, 0.0, 30);
+                prop_assert_eq!(few.is_some(), all.len() <= 30);
+                if let Some(few) = few {
+                    let mut few: Vec<[u64; 3]> = few.iter().map(|p| p.to_array().map(f64::to_bits)).collect();
+                    few.sort_unstable();
+                    all.sort_unstable();
+                    prop_assert_eq!(few, all);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn equal_points_count_once() {
+        let points = [DVec3::Z, DVec3::Z, DVec3::new(1e-12, 0.0, 1.0), DVec3::X];
+        let nearby = Nearby::new(&points);
+        assert_eq!(nearby.within(DVec3::Z, 0.1, 1e-9, 1), Some(vec![DVec3::Z]));
+        assert_eq!(nearby.within(DVec3::Z, 2.0, 1e-9, 1), None);
+    }
+}
