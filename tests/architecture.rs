@@ -18,7 +18,7 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 10] = [
 ];
 
 /// A library, and the crates of the workspace that may use it directly.
-const CONFINED: [(&str, &[&str]); 13] = [
+const CONFINED: [(&str, &[&str]); 15] = [
     ("serialport", &["io"]),
     ("socket2", &["io"]),
     ("nix", &["io"]),
@@ -28,6 +28,9 @@ const CONFINED: [(&str, &[&str]); 13] = [
     ("indicatif", &["velomotion"]),
     ("signal-hook", &["velomotion"]),
     ("las", &["cloud"]),
+    // velomotion reads back what they wrote.
+    ("e57", &["cloud", "velomotion"]),
+    ("mcap", &["cloud", "velomotion"]),
     ("rayon", &["sim", "analysis"]),
     ("gltf", &["sim"]),
     ("ply-rs-bw", &["sim"]),

@@ -116,6 +116,7 @@ fn replayed(log: &Path, accuracy: Accuracy, cloud: &Path) -> (u64, &'static str)
         accuracy,
         pace: None,
         truth: None,
+        lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };
     let target = Target::open(cloud, Fields::FILE, false).unwrap();

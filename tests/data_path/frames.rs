@@ -21,6 +21,7 @@ fn frames(log: &Path, output: &Path, organised: bool) -> Scan {
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,
+        lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };
     let plan = FramePlan {

@@ -55,6 +55,7 @@ fn scan(log: &Path, sensor: Option<&str>) -> Result<Scan, Failure> {
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,
+        lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };
     replay::scan(

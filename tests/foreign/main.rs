@@ -3,6 +3,7 @@
 //! Each test says what it skipped where its program is missing; with `VELOMOTION_FOREIGN=required`, as in CI, that is a failure.
 //! `VELOMOTION_PYTHON` names a python3 that has `requirements.txt` installed.
 
+mod clouds;
 mod ray_casting;
 mod scenes;
 

@@ -136,6 +136,7 @@ fn scan(log: &Path) -> (Scan, Points) {
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,
+        lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };
     let scan = replay::scan(&request, &mut points, Path::new("memory")).unwrap();

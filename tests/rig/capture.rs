@@ -389,6 +389,7 @@ impl Captured {
             accuracy: scanner::Accuracy::Best,
             pace: None,
             truth: None,
+            lost_records: 0,
             interrupt: &AtomicBool::new(false),
         };
         let scan = replay::scan(&request, &mut points, Path::new("memory"))?;
@@ -424,6 +425,7 @@ impl Captured {
             accuracy: scanner::Accuracy::Best,
             pace: None,
             truth: None,
+            lost_records: 0,
             interrupt: &AtomicBool::new(false),
         };
         replay::make(&request, Target::open(&path, Fields::FILE, false).unwrap()).unwrap();

@@ -5,7 +5,7 @@
 
 use std::env;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// What to do about a file that is already there.
@@ -196,6 +196,13 @@ impl Write for NewFile {
     }
 }
 
+/// What was written can be read again, but for devices and pipes.
+impl Read for NewFile {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.file.read(bytes)
+    }
+}
+
 impl Seek for NewFile {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
@@ -218,6 +225,7 @@ fn create_temporary(path: &Path) -> io::Result<(File, PathBuf)> {
         name.push(format!(".{}-{attempt}.partial", std::process::id()));
         let temporary = folder_of(path).join(name);
         match OpenOptions::new()
+            .read(true)
             .write(true)
             .create_new(true)
             .open(&temporary)

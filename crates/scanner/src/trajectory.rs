@@ -317,6 +317,12 @@ impl Trajectory {
         }
     }
 
+    /// The samples that it goes by, in strictly increasing time; none of a platform that stands still.
+    #[must_use]
+    pub fn samples(&self) -> &[AngleSample] {
+        &self.samples
+    }
+
     /// How the angle is known; of several sweeps the first one's.
     #[must_use]
     pub const fn method(&self) -> Method {

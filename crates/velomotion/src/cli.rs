@@ -111,7 +111,7 @@ pub struct Replay {
     /// Whose clock the points' times are of: the recording host's, or UTC by the lidar's satellite receiver
     #[arg(long, value_enum, default_value_t = TimeOf::Host)]
     pub time: TimeOf,
-    /// Make a cloud of each turn of the lidar, cut at this azimuth; -o NAME.ply gives NAME-00000.ply and so on
+    /// Make a cloud of each turn of the lidar, cut at this azimuth; -o NAME.ply gives NAME-00000.ply and so on, NAME.mcap one file
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = azimuth)]
     pub frames: Option<f64>,
     /// Keep the shots without a return: a row a ring, a column a firing (.pcd, with --frames)
@@ -137,7 +137,7 @@ pub struct Simulate {
     /// Log to write [default: named after the scene]
     #[arg(short, long, value_name = "LOG.pcapng")]
     pub output: Option<PathBuf>,
-    /// Cloud of the true points: .ply .pcd .las .laz .csv; - is PLY on stdout
+    /// Cloud of the true points: .ply .pcd .las .laz .e57 .mcap .csv; - is PLY on stdout
     #[arg(long, value_name = "CLOUD")]
     pub truth: Option<PathBuf>,
     /// What chance depends on [default: the scene's]
@@ -252,7 +252,7 @@ impl ModelName {
 /// Where a cloud goes.
 #[derive(Clone, Debug, Args)]
 pub struct Output {
-    /// Cloud to write: .ply .pcd .las .laz .csv; - is PLY on stdout
+    /// Cloud to write: .ply .pcd .las .laz .e57 .mcap .csv; - is PLY on stdout
     #[arg(short, long, value_name = "CLOUD")]
     pub output: Option<PathBuf>,
     /// Add a column sd: how far each point is expected to be off (root mean square), metres

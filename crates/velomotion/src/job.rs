@@ -90,8 +90,6 @@ pub struct Ended {
 pub struct Outcome {
     /// What went wrong.
     pub failure: Option<Failure>,
-    /// Records that were lost.
-    pub lost_records: u64,
     /// What was heard.
     pub reception: Option<Reception>,
 }
@@ -224,6 +222,7 @@ pub fn silence(config: &ListenConfig) -> Failure {
 pub fn cloud(
     setup: &Setup,
     truth: Option<&Truth>,
+    lost_records: u64,
     interrupt: &AtomicBool,
     target: Target,
 ) -> Result<Scan, Failure> {
@@ -236,6 +235,7 @@ pub fn cloud(
         accuracy: setup.accuracy,
         pace: None,
         truth,
+        lost_records,
         interrupt,
     };
     replay::make(&request, target)
@@ -257,10 +257,15 @@ impl Ended {
         matches!(self.motion, Err(SessionError::Port(_)))
     }
 
+    /// Records that were lost on the way to the log.
+    #[must_use]
+    pub fn lost_records(&self) -> u64 {
+        self.recorded.as_ref().map_or(0, lost_records)
+    }
+
     /// What there is to say of it. What went wrong first is what the user must hear first.
     #[must_use]
     pub fn outcome(self) -> Outcome {
-        let lost_records = self.recorded.as_ref().map_or(0, lost_records);
         let reception = self.recorded.as_ref().ok().map(reception);
         let failure = match (self.motion, self.recorded) {
             // The log's failure is why the session was interrupted.
@@ -272,7 +277,6 @@ impl Ended {
         };
         Outcome {
             failure,
-            lost_records,
             reception,
         }
     }
@@ -309,7 +313,6 @@ pub fn conclude(
     match (made, failure) {
         (Ok(scan), failure) => {
             let scan = Scan {
-                lost_records: outcome.lost_records,
                 reception: outcome.reception,
                 ..scan
             };

@@ -3,6 +3,7 @@
 //! What a scan is and how it becomes a cloud lives in the library crates; here threads are started, files opened and
 //! sentences printed.
 
+pub mod checks;
 pub mod cli;
 pub mod commands;
 pub mod config;

@@ -1,15 +1,15 @@
 //! Where a cloud goes: a file that takes its name when it is complete, or stdout.
 
-use std::fs::File;
 use std::io::{self as stdio, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ::io::files::{FileError, NewFile, Overwrite};
 use cloud::formats::Format;
+use cloud::formats::mcap::McapWriter;
 use cloud::formats::pcd::PcdWriter;
 use cloud::formats::ply::PlyPipe;
-use cloud::{Fields, Sink, SinkError};
+use cloud::{Companion, Fields, Sink, SinkError};
 
 use crate::failure::{Failure, Kind};
 
@@ -35,11 +35,11 @@ impl Target {
                 Failure::new(Kind::BadInput, format!("cannot write to stdout: {error}"))
                     .help("set TMPDIR to a folder with room for the cloud, or name a file with -o")
             })?;
-            let scratch = BufWriter::with_capacity(BUFFER_BYTES, scratch);
+            let scratch = Buffered::new(scratch);
             return Ok(Self {
                 path: path.to_owned(),
                 file: None,
-                sink: Box::new(PlyPipe::new(stdio::stdout(), Scratch(scratch)).with_fields(fields)),
+                sink: Box::new(PlyPipe::new(stdio::stdout(), scratch).with_fields(fields)),
             });
         }
         let format = Format::from_path(path).map_err(|error| {
@@ -59,18 +59,27 @@ impl Target {
         })
     }
 
+    /// Opens `path` for the clouds of many turns of the lidar in one file: an MCAP.
+    ///
+    /// # Errors
+    /// As [`Target::open`].
+    pub fn turns(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
+        Self::file(path, force, |buffered| {
+            Box::new(McapWriter::new(buffered).with_fields(fields).by_turns())
+        })
+    }
+
     fn file(
         path: &Path,
         force: bool,
-        writer: impl FnOnce(BufWriter<Shared>) -> Box<dyn Sink + Send>,
+        writer: impl FnOnce(Buffered<Shared>) -> Box<dyn Sink + Send>,
     ) -> Result<Self, Failure> {
         let file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
         let shared = Shared(Arc::new(Mutex::new(Some(file))));
-        let buffered = BufWriter::with_capacity(BUFFER_BYTES, shared.clone());
         Ok(Self {
             path: path.to_owned(),
-            file: Some(shared),
-            sink: writer(buffered),
+            file: Some(shared.clone()),
+            sink: writer(Buffered::new(shared)),
         })
     }
 
@@ -99,12 +108,65 @@ impl Target {
         self.sink
             .finish()
             .map_err(|error| sink_failure(&self.path, &error))?;
+        let name = self.path.file_name().unwrap_or_default();
+        let companion = self.sink.companion(&name.to_string_lossy());
         drop(self.sink);
-        match self.file.and_then(|shared| shared.take()) {
-            Some(file) => file.commit().map_err(|error| file_failure(&error)),
+        match self.file.and_then(|shared| shared.release()) {
+            Some(file) => file.commit().map_err(|error| file_failure(&error))?,
+            None => return Ok(()),
+        }
+        match companion {
+            Some(companion) => write_beside(&self.path, &companion),
             None => Ok(()),
         }
     }
+}
+
+/// Writes what belongs beside the file `path`. One that is of another file stays: a folder has room for one, and both files are usable
+/// without.
+fn write_beside(path: &Path, companion: &Companion) -> Result<(), Failure> {
+    let beside = path.with_file_name(companion.name);
+    let failed = |what: String| {
+        Failure::new(
+            Kind::Incomplete,
+            format!("the cloud {} is saved, but {what}", path.display()),
+        )
+        .help("see whether the disk is full and the folder may be written to")
+    };
+    let older = match std::fs::read_to_string(&beside) {
+        Ok(text) => Some(text),
+        Err(error) if error.kind() == stdio::ErrorKind::NotFound => None,
+        Err(error) => {
+            return Err(failed(format!(
+                "{} cannot be read: {error}",
+                beside.display()
+            )));
+        }
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let ours = [format!("- {name}"), format!("- \"{name}\"")];
+    let of_this = |text: String| {
+        text.lines()
+            .any(|line| ours.iter().any(|l| l == line.trim()))
+    };
+    if older.is_some_and(|text| !of_this(text)) {
+        tracing::warn!(
+            "{} is of another recording and stays as it is; {name} plays without, or with a folder of its own",
+            beside.display()
+        );
+        return Ok(());
+    }
+    let written = NewFile::create(&beside, Overwrite::Replace).and_then(|mut file| {
+        match file.write_all(companion.text.as_bytes()) {
+            Ok(()) => file.commit(),
+            Err(source) => Err(FileError::Io {
+                path: beside.clone(),
+                action: "write",
+                source,
+            }),
+        }
+    });
+    written.map_err(|error| failed(error.to_string()))
 }
 
 /// Refuses a name that is taken, before anything is opened.
@@ -282,10 +344,16 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
     .help("free some space or name another place; the cloud can be made again from its log with replay")
 }
 
-/// A buffered scratch file: written first, then read.
-struct Scratch(BufWriter<File>);
+/// A file with a buffer for writing, which can be read, too.
+pub(crate) struct Buffered<F: Write>(BufWriter<F>);
 
-impl Write for Scratch {
+impl<F: Write> Buffered<F> {
+    pub(crate) fn new(file: F) -> Self {
+        Self(BufWriter::with_capacity(BUFFER_BYTES, file))
+    }
+}
+
+impl<F: Write> Write for Buffered<F> {
     fn write(&mut self, bytes: &[u8]) -> stdio::Result<usize> {
         self.0.write(bytes)
     }
@@ -295,15 +363,21 @@ impl Write for Scratch {
     }
 }
 
-impl Seek for Scratch {
+impl<F: Write + Seek> Seek for Buffered<F> {
     fn seek(&mut self, to: SeekFrom) -> stdio::Result<u64> {
         self.0.seek(to)
     }
+
+    /// Without writing the buffer out.
+    fn stream_position(&mut self) -> stdio::Result<u64> {
+        self.0.stream_position()
+    }
 }
 
-impl Read for Scratch {
-    fn read(&mut self, buffer: &mut [u8]) -> stdio::Result<usize> {
-        self.0.get_mut().read(buffer)
+impl<F: Read + Write> Read for Buffered<F> {
+    fn read(&mut self, bytes: &mut [u8]) -> stdio::Result<usize> {
+        self.0.flush()?;
+        self.0.get_mut().read(bytes)
     }
 }
 
@@ -312,7 +386,7 @@ impl Read for Scratch {
 struct Shared(Arc<Mutex<Option<NewFile>>>);
 
 impl Shared {
-    fn take(&self) -> Option<NewFile> {
+    fn release(&self) -> Option<NewFile> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
@@ -336,6 +410,12 @@ impl Write for Shared {
 
     fn flush(&mut self) -> stdio::Result<()> {
         self.with(NewFile::flush)
+    }
+}
+
+impl Read for Shared {
+    fn read(&mut self, bytes: &mut [u8]) -> stdio::Result<usize> {
+        self.with(|file| file.read(bytes))
     }
 }
 

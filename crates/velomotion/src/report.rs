@@ -374,6 +374,9 @@ impl Scan {
     fn cloud(&self) -> String {
         match self.clouds {
             None => self.output.clone(),
+            Some(clouds) if self.output.ends_with(".mcap") => {
+                format!("{clouds} frames in {}", self.output)
+            }
             Some(clouds) => format!("{clouds} frames, numbered after the name {}", self.output),
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! Only while the lidar's clock was locked: points of other times have no UTC, are left out and counted.
 
-use cloud::{Fields, Metadata, Points, Sink, SinkError, Summary};
+use cloud::{Check, Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
 use lidar::{Options, Timekeeper, UtcClock};
 use protocol::record::{Record, Wire};
 use protocol::vlp16::PositionPacket;
@@ -91,6 +91,30 @@ impl Sink for InUtc<'_> {
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
         self.batch = Points::new(self.sink.fields());
         self.sink.begin(metadata)
+    }
+
+    fn wants_tilt(&self) -> bool {
+        self.sink.wants_tilt()
+    }
+
+    /// Samples and sweeps have times of the host's clock, which the points have not.
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        self.sink.tilt(&TiltTrack {
+            mount: track.mount,
+            ..TiltTrack::default()
+        })
+    }
+
+    fn turn(&mut self) -> Result<(), SinkError> {
+        self.sink.turn()
+    }
+
+    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
+        self.sink.checks(checks)
+    }
+
+    fn companion(&self, file_name: &str) -> Option<Companion> {
+        self.sink.companion(file_name)
     }
 
     fn finish(&mut self) -> Result<Summary, SinkError> {

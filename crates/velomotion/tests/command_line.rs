@@ -325,6 +325,50 @@ fn frames_in_utc_are_the_cloud_in_utc() {
     assert!(place.run(&organised).status.success());
 }
 
+#[test]
+fn a_recording_for_ros_is_a_bag_and_leaves_the_metadata_of_another_alone() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let place = Place::new();
+    let line = |options: &str| format!("replay {} --tilt none {options}", path.display());
+    let metadata = || std::fs::read_to_string(place.path("metadata.yaml")).unwrap();
+    assert!(place.run(&line("-o scan.mcap")).status.success());
+    let first = metadata();
+    assert!(first.contains("- \"scan.mcap\"\n"), "{first}");
+    let words = &["scan.mcap", "--force"];
+    place.fails(&line("-o scan.mcap"), 2, words);
+    std::fs::write(place.path("metadata.yaml"), "files:\n  - scan.mcap\n").unwrap();
+    assert!(place.run(&line("-o scan.mcap --force")).status.success());
+    assert_eq!(metadata(), first);
+    let output = place.run(&line("-o an.mcap"));
+    assert!(output.status.success() && place.path("an.mcap").is_file());
+    assert_eq!(metadata(), first);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("of another recording"), "{said}");
+}
+
+#[test]
+fn turns_go_into_one_recording() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let place = Place::new();
+    let input = path.display();
+    let line = format!("replay {input} --tilt none --frames 180 -o turns.mcap --json");
+    let report = json(&place.run(&line));
+    let bytes = std::fs::read(place.path("turns.mcap")).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let stats = summary.stats.unwrap();
+    let count = |topic: &str| {
+        let channel = summary.channels.values().find(|c| c.topic == topic);
+        stats.channel_message_counts[&channel.unwrap().id]
+    };
+    assert_eq!(report["clouds"], count("/velomotion/points"));
+    assert!(report["clouds"].as_u64() > Some(3), "{report}");
+    assert_eq!(count("/diagnostics"), 1);
+}
+
 /// The file header of a classic pcap and its records.
 fn records(pcap: &[u8]) -> (Vec<u8>, Vec<Vec<u8>>) {
     let (head, mut rest) = pcap.split_at(24);

@@ -11,15 +11,15 @@
 //! line scanners), colours, reading.
 
 mod extra_bytes;
-mod gps_time;
-mod output;
 
 use std::io::{Seek, Write};
 
 use las::{Builder, GpsTimeType, PointData, PointDataBuilder, Transform, Vector, Vlr};
 
 use self::extra_bytes::Extra;
-use self::output::{Fault, Output};
+use super::check_places;
+use super::fallible::{Fault, Output};
+use super::gps_time;
 use super::seconds::seconds;
 use super::stage::Stage;
 use crate::rows::fill;
@@ -158,26 +158,6 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
             None => result.map_err(|error| self.encoding(error)),
         }
     }
-
-    fn check(&self, batch: &Points) -> Result<(), SinkError> {
-        batch.fields().require(self.fields)?;
-        for (axis, column) in [('x', batch.x_m()), ('y', batch.y_m()), ('z', batch.z_m())] {
-            let outside = column
-                .iter()
-                .enumerate()
-                .find(|(_, value)| value.is_nan() || value.abs() > LIMIT_M);
-            if let Some((index, &got_m)) = outside {
-                return Err(SinkError::Coordinate {
-                    format: self.format,
-                    axis,
-                    point: self.summary.points + index as u64,
-                    got_m,
-                    limit_m: LIMIT_M,
-                });
-            }
-        }
-        Ok(())
-    }
 }
 
 /// Writes a batch's points as records of format 6 into `rows`.
@@ -255,7 +235,8 @@ fn text_record(metadata: &Metadata, marker: &str) -> Vlr {
 impl<W: Write + Seek + Send + Sync + 'static> Sink for LasWriter<W> {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         self.stage.points(self.format)?;
-        self.check(batch)?;
+        batch.fields().require(self.fields)?;
+        check_places(self.format, LIMIT_M, self.summary.points, batch)?;
         let State::Open { writer, slab } = &mut self.state else {
             return Err(SinkError::Order {
                 format: self.format,

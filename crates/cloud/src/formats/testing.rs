@@ -58,7 +58,7 @@ pub fn cloud_from(count: u32, start_ns: i64) -> Points {
 pub struct Shared(Arc<Mutex<Cursor<Vec<u8>>>>);
 
 impl Shared {
-    pub fn bytes(&self) -> Vec<u8> {
+    pub fn content(&self) -> Vec<u8> {
         self.0.lock().unwrap().get_ref().clone()
     }
 }

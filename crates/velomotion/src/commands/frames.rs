@@ -1,8 +1,9 @@
 //! A cloud for each turn of the lidar, cut at an azimuth, firing by firing; on request organised, with the shots that brought nothing
-//! back.
+//! back. A file a turn, or a message a turn in one MCAP.
 
 use std::path::{Path, PathBuf};
 
+use cloud::formats::Format;
 use cloud::{Fields, Metadata, Point, Points};
 use lidar::{
     Decoder, Duplicates, Echo, Firing, Frame, FrameCutter, Options, OrganisedFrame, Stats, UtcClock,
@@ -11,6 +12,7 @@ use protocol::record::{Record, Wire};
 use scanner::{Alignment, Placed};
 use units::{Degrees, Host, Lidar, Span, Stamp};
 
+use super::replay::tilt_track;
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
 
@@ -35,6 +37,8 @@ pub struct FrameWriter<'a> {
     metadata: Metadata,
     decoder: Decoder,
     filling: Filling<'a>,
+    /// The one file of all turns, where the format has room for many clouds.
+    all: Option<Target>,
 }
 
 /// What was written.
@@ -99,7 +103,12 @@ impl<'a> FrameWriter<'a> {
             .help("give -o a name that ends in .pcd, or leave --organised out"));
         }
         let once = options.duplicates == Duplicates::Unique;
+        let all = match Format::from_path(&plan.output) {
+            Ok(Format::Mcap) => Some(one_file(plan, alignment, utc.is_some(), &metadata)?),
+            _ => None,
+        };
         Ok(Self {
+            all,
             plan,
             metadata,
             decoder: Decoder::new(options),
@@ -135,11 +144,11 @@ impl<'a> FrameWriter<'a> {
         self.write(written)
     }
 
-    /// Writes the last frame.
+    /// Writes the last frame. Where all are in one file, that is still to be committed.
     ///
     /// # Errors
     /// As [`FrameWriter::observe`].
-    pub fn finish(mut self, written: &mut Written) -> Result<Stats, Failure> {
+    pub fn finish(mut self, written: &mut Written) -> Result<(Stats, Option<Target>), Failure> {
         let filling = &mut self.filling;
         self.decoder.finish(&mut |firing| filling.firing(firing));
         if let Some(frame) = self.filling.cutter.finish() {
@@ -148,7 +157,7 @@ impl<'a> FrameWriter<'a> {
         self.write(written)?;
         written.placed = self.filling.placed;
         written.without_utc = self.filling.without_utc;
-        Ok(self.decoder.stats().clone())
+        Ok((self.decoder.stats().clone(), self.all))
     }
 
     fn write(&mut self, written: &mut Written) -> Result<(), Failure> {
@@ -156,6 +165,14 @@ impl<'a> FrameWriter<'a> {
             return Err(error);
         }
         for (frame, points, rows) in std::mem::take(&mut self.filling.ended) {
+            if let Some(target) = &mut self.all {
+                let sink = target.sink();
+                sink.points(&points)
+                    .and_then(|()| sink.turn())
+                    .map_err(|error| sink_failure(&self.plan.output, &error))?;
+                written.clouds += 1;
+                continue;
+            }
             let path = name(&self.plan.output, frame.index);
             let mut target = if self.plan.organised {
                 Target::organised(&path, self.plan.fields, self.plan.force, rows)?
@@ -179,6 +196,26 @@ impl<'a> FrameWriter<'a> {
         }
         Ok(())
     }
+}
+
+/// Opens the one file of all turns.
+fn one_file(
+    plan: &FramePlan,
+    alignment: &Alignment,
+    in_utc: bool,
+    metadata: &Metadata,
+) -> Result<Target, Failure> {
+    let mut target = Target::turns(&plan.output, plan.fields, plan.force)?;
+    let mut track = tilt_track(alignment);
+    if in_utc {
+        // Samples have times of the host's clock, which the points have not.
+        track.samples.clear();
+    }
+    let sink = target.sink();
+    sink.begin(metadata)
+        .and_then(|()| sink.tilt(&track))
+        .map_err(|error| sink_failure(&plan.output, &error))?;
+    Ok(target)
 }
 
 impl Filling<'_> {

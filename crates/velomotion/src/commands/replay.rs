@@ -4,10 +4,11 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use analysis::truth::Comparison;
-use cloud::{Metadata, Sink, SinkError};
+use cloud::{Metadata, Sink, SinkError, TiltTrack};
 use io::recording::{Gap, Pacer, Turn};
 use lidar::{Options, Stats, UtcClock};
 use protocol::record::{DriveLink, Record};
+use scanner::trajectory::Method;
 use scanner::{
     Accuracy, Alignment, AngleTable, OutOfReach, Placed, Placer, ScanConfig, ScanError, Survey,
     TableTime, TiltSource,
@@ -18,6 +19,7 @@ use units::{Degrees, Span};
 use super::Said;
 use super::frames::{FramePlan, FrameWriter, Written};
 use super::info::contents;
+use crate::checks;
 use crate::cli::{self, Common, TimeOf};
 use crate::failure::{Failure, Kind};
 use crate::names;
@@ -45,6 +47,8 @@ pub struct Request<'a> {
     pub pace: Option<f64>,
     /// What truly happened, where a simulator knows.
     pub truth: Option<&'a Truth>,
+    /// Records that the recording's making lost.
+    pub lost_records: u64,
     /// Set where the user wants no more of it.
     pub interrupt: &'a AtomicBool,
 }
@@ -65,6 +69,7 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<Said, Failure> {
         accuracy: arguments.accuracy.wanted(),
         pace: arguments.realtime,
         truth: None,
+        lost_records: 0,
         interrupt: &interrupt,
     };
     let progress = Progress::new(common);
@@ -186,18 +191,39 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
     let surveyed = survey(request)?;
     let Some(utc) = surveyed.utc.clone() else {
         let (placed, stats) = place(request, &surveyed, sink, output)?;
-        return report(request, &surveyed, placed, &stats, output);
+        let scan = report(request, &surveyed, placed, &stats, output)?;
+        tell(sink, &scan, output)?;
+        return Ok(scan);
     };
-    let mut sink = InUtc::new(sink, utc);
-    let (mut placed, stats) = place(request, &surveyed, &mut sink, output)?;
-    let without = sink.without();
+    let mut in_utc = InUtc::new(sink, utc);
+    let (mut placed, stats) = place(request, &surveyed, &mut in_utc, output)?;
+    let without = in_utc.without();
     placed.points -= without;
     if placed.points == 0 {
         return Err(never_locked(request));
     }
     let mut scan = report(request, &surveyed, placed, &stats, output)?;
     left_out(&mut scan, without);
+    tell(&mut in_utc, &scan, output)?;
     Ok(scan)
+}
+
+/// Tells a sink what was found out about the scan.
+fn tell(sink: &mut dyn Sink, scan: &Scan, output: &Path) -> Result<(), Failure> {
+    sink.checks(&checks::of(scan))
+        .map_err(|error| sink_failure(output, &error))
+}
+
+/// How the platform tilted, as sinks want it.
+pub(super) fn tilt_track(alignment: &Alignment) -> TiltTrack {
+    let trajectory = &alignment.trajectory;
+    let samples = trajectory.samples().iter();
+    let sweeps = alignment.sweeps.iter();
+    TiltTrack {
+        mount: (trajectory.method() != Method::None).then_some(alignment.mount.d),
+        samples: samples.map(|s| (s.host, s.angle)).collect(),
+        sweeps: sweeps.map(|s| (s.start, s.end)).collect(),
+    }
 }
 
 fn never_locked(request: &Request<'_>) -> Failure {
@@ -232,6 +258,10 @@ fn place(
     let cannot_write = |error: SinkError| sink_failure(output, &error);
     sink.begin(&metadata(&surveyed.config, request))
         .map_err(cannot_write)?;
+    if sink.wants_tilt() {
+        let track = tilt_track(&surveyed.alignment);
+        sink.tilt(&track).map_err(cannot_write)?;
+    }
     let mut placer = Placer::new(&surveyed.alignment, request.options.clone(), sink);
     request.recording.read(|record| {
         if let Some(pace) = &mut pace {
@@ -262,13 +292,17 @@ pub fn frames(request: &Request<'_>, plan: &FramePlan) -> Result<Scan, Failure> 
         writer.observe(record, &mut written)?;
         go_on(request)
     })?;
-    let stats = writer.finish(&mut written)?;
+    let (stats, target) = writer.finish(&mut written)?;
     if written.placed.points == 0 && written.without_utc > 0 {
         return Err(never_locked(request));
     }
     let mut scan = report(request, &surveyed, written.placed, &stats, &plan.output)?;
     scan.clouds = Some(written.clouds);
     left_out(&mut scan, written.without_utc);
+    if let Some(mut target) = target {
+        tell(target.sink(), &scan, &plan.output)?;
+        target.commit()?;
+    }
     Ok(scan)
 }
 
@@ -322,7 +356,7 @@ fn report(
         sync: sync(alignment),
         output: output.display().to_string(),
         log: path.display().to_string(),
-        lost_records: 0,
+        lost_records: request.lost_records,
         reception: None,
         truth: None,
     })

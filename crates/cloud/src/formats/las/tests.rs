@@ -258,7 +258,7 @@ fn a_writer_that_is_dropped_leaves_a_file_of_what_it_had() {
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud(12)).unwrap();
     drop(writer);
-    let mut reader = Reader::new(Cursor::new(file.bytes())).unwrap();
+    let mut reader = Reader::new(Cursor::new(file.content())).unwrap();
     assert_eq!(points_of(&mut reader).count(), 12);
 }
 

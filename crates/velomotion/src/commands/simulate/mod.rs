@@ -11,13 +11,14 @@ use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use cloud::{Fields, Metadata};
+use cloud::{Fields, Metadata, TiltTrack};
 use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
 use serde::Serialize;
 use sim::effects::{Effects, Explanation, OnFirings, Stopwatch};
 use sim::scene_file::{SHIPPED, Scene};
 use sim::simulate::{SimulateError, Summary};
+use units::Metres;
 
 use super::Said;
 use crate::cli::{self, Common};
@@ -220,7 +221,14 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
     let writer = LogWriter::create(path, &head, output::overwrite(force))
         .map_err(|error| log_failure(path, &error))?;
     if let Some(truth) = &mut truth {
-        let begun = truth.sink().begin(&metadata(&name));
+        let placed = TiltTrack {
+            mount: Some(Metres(config.mount.d_m)),
+            ..TiltTrack::default()
+        };
+        let sink = truth.sink();
+        let begun = sink
+            .begin(&metadata(&name))
+            .and_then(|()| sink.tilt(&placed));
         begun.map_err(|error| output::sink_failure(truth.path(), &error))?;
     }
     let began = Instant::now();

@@ -1,5 +1,6 @@
 //! The least that reads back the positions of each format, so that a writer's rounding is measured and not computed by the writer's
-//! own rule. The formats' layouts are those of their specifications; LAZ is unpacked by the `laz` crate. Left out: all other columns.
+//! own rule. The formats' layouts are those of their specifications; LAZ is unpacked by the `laz` crate, E57 and the container of MCAP are read
+//! by the crates that write them. Left out: all other columns.
 
 use std::io::Cursor;
 
@@ -27,6 +28,8 @@ pub(super) fn places(format: Format, bytes: &[u8], points: usize) -> Result<Plac
         Format::Pcd => file.rows_of_f32(b"\nDATA binary\n", "a row of 29 bytes"),
         Format::Las => file.las(),
         Format::Laz => file.laz(points),
+        Format::E57 => file.e57(),
+        Format::Mcap => file.mcap(),
         Format::Csv => file.csv(),
     }?;
     let got = places[0].len();
@@ -158,6 +161,73 @@ impl File<'_> {
             axis.extend(steps.map(|s| f64::from(i32::from_le_bytes(*s)) * scale + offset));
         }
         Ok(places)
+    }
+
+    fn e57(&self) -> Result<Places, StudyError> {
+        let wrong = |error: e57::Error| self.wrong(0, "an E57 file", error.to_string());
+        let mut reader = e57::E57Reader::new(Cursor::new(self.bytes)).map_err(wrong)?;
+        let mut places = Places::default();
+        for cloud in reader.pointclouds() {
+            for point in reader.pointcloud_raw(&cloud).map_err(wrong)? {
+                let point = point.map_err(wrong)?;
+                for ((axis, value), record) in places.iter_mut().zip(&point).zip(&cloud.prototype) {
+                    axis.push(value.to_f64(&record.data_type).map_err(wrong)?);
+                }
+            }
+        }
+        Ok(places)
+    }
+
+    /// The clouds of a recording, one after the other.
+    fn mcap(&self) -> Result<Places, StudyError> {
+        let wrong = |error: mcap::McapError| self.wrong(0, "an MCAP file", error.to_string());
+        let mut places = Places::default();
+        for message in mcap::MessageStream::new(self.bytes).map_err(wrong)? {
+            let message = message.map_err(wrong)?;
+            if message.channel.topic == "/velomotion/points" {
+                let cloud = File {
+                    format: self.format,
+                    bytes: &message.data,
+                };
+                cloud.message(&mut places)?;
+            }
+        }
+        Ok(places)
+    }
+
+    /// The rows of a PointCloud2 in CDR; x, y and z are its first fields.
+    fn message(&self, places: &mut Places) -> Result<(), StudyError> {
+        const ENCAPSULATION: usize = 4;
+        let aligned = |at: usize| (at - ENCAPSULATION).next_multiple_of(4) + ENCAPSULATION;
+        // The header's stamp, then its frame.
+        let mut at = ENCAPSULATION + 8;
+        at = aligned(at.saturating_add(4).saturating_add(self.u32(at)?));
+        // Height and width, then how many fields there are.
+        let fields = self.u32(at.saturating_add(8))?;
+        at = at.saturating_add(12);
+        for _ in 0..fields {
+            // A name, its offset, its type, how many.
+            at = aligned(at.saturating_add(4).saturating_add(self.u32(at)?));
+            at = aligned(at.saturating_add(5)).saturating_add(4);
+        }
+        // Whether it is big-endian, then bytes of a point, of a row and of all.
+        at = aligned(at.saturating_add(1));
+        let (point_bytes, length) = (self.u32(at)?, self.u32(at.saturating_add(8))?);
+        let start = at.saturating_add(12);
+        let rows = self.bytes.get(start..start.saturating_add(length));
+        let short = || {
+            self.wrong(
+                start,
+                &format!("{length} bytes of points"),
+                "the end".to_owned(),
+            )
+        };
+        for row in rows.ok_or_else(short)?.chunks_exact(point_bytes.max(1)) {
+            for (axis, value) in places.iter_mut().zip(row.as_chunks::<4>().0) {
+                axis.push(f64::from(f32::from_le_bytes(*value)));
+            }
+        }
+        Ok(())
     }
 
     fn csv(&self) -> Result<Places, StudyError> {

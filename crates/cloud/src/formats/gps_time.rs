@@ -1,13 +1,13 @@
-//! Host (Unix, UTC) time as LAS wants it: adjusted standard GPS time, seconds since 1980-01-06 without leap
-//! seconds, minus 10^9.
+//! Host (Unix, UTC) time as GPS time, seconds since 1980-01-06 without leap seconds: for E57, and as LAS wants it, adjusted standard GPS
+//! time, minus 10^9.
 //!
-//! Near 2026 an f64 of it steps by 0.06 us, four times finer than Unix seconds. The leap seconds are IERS
+//! Near 2026 an f64 of the adjusted one steps by 0.06 us, four times finer than Unix seconds. The leap seconds are IERS
 //! Bulletin C's; none has been announced after that of 2017. A host whose clock smears a leap second is off by
 //! up to a second around it.
 
 use units::{Host, Stamp};
 
-use super::super::seconds::seconds;
+use super::seconds::seconds;
 
 const NS_PER_S: i64 = 1_000_000_000;
 /// 1980-01-06 00:00:00 UTC.
@@ -36,13 +36,22 @@ const LEAPS_UNIX_S: [i64; 18] = [
     1_483_228_800, // 2017-01-01
 ];
 
+/// GPS time less Unix time at a time, seconds.
+fn shift_s(unix_ns: i64) -> i64 {
+    let unix_s = unix_ns.div_euclid(NS_PER_S);
+    LEAPS_UNIX_S.partition_point(|&start| start <= unix_s) as i64 - GPS_EPOCH_UNIX_S
+}
+
 /// Adjusted standard GPS time in seconds.
 pub(super) fn adjusted_s(time: Stamp<Host>) -> f64 {
     let unix_ns = time.as_nanos();
-    let unix_s = unix_ns.div_euclid(NS_PER_S);
-    let leaps = LEAPS_UNIX_S.partition_point(|&start| start <= unix_s) as i64;
-    let shift_s = leaps - GPS_EPOCH_UNIX_S - ADJUSTMENT_S;
-    seconds(unix_ns.saturating_add(shift_s * NS_PER_S))
+    seconds(unix_ns.saturating_add((shift_s(unix_ns) - ADJUSTMENT_S) * NS_PER_S))
+}
+
+/// GPS time in seconds: coarser than the adjusted one, but whole seconds are exact.
+pub(super) fn gps_s(time: Stamp<Host>) -> f64 {
+    let unix_ns = time.as_nanos();
+    seconds(unix_ns.saturating_add(shift_s(unix_ns) * NS_PER_S))
 }
 
 #[cfg(test)]
@@ -63,6 +72,10 @@ mod tests {
         // 2018-09-18 00:00:00 UTC is GPS week 2019, second 172,818.
         let gps_s = 2019.0 * 604_800.0 + 172_818.0;
         assert_eq!(at_s(1_537_228_800), gps_s - 1e9);
+        assert_eq!(
+            super::gps_s(Stamp::from_nanos(1_537_228_800 * NS_PER_S)),
+            gps_s
+        );
     }
 
     #[test]

@@ -1,19 +1,20 @@
-//! An output whose failures the library never sees.
+//! An output whose failures the libraries that write formats never see.
 //!
-//! The `las` crate completes its file when its writer is dropped and panics if that fails, so on a full disk any
-//! error would end the program. [`Output`] keeps the first error for us and from then on only pretends to write.
+//! The `las` crate completes its file when its writer is dropped and panics if that fails, so on a full disk any error would end the
+//! program; others wrap what the system said in errors of their own, or lose it on a thread. [`Output`] keeps the first error for us and from
+//! then on only pretends to write.
 
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The first error of an [`Output`].
 #[derive(Clone, Default)]
-pub(super) struct Fault(Arc<Mutex<Option<io::Error>>>);
+pub(in crate::formats) struct Fault(Arc<Mutex<Option<io::Error>>>);
 
 impl Fault {
     /// The error, again and again: what was pretended once stays lost. It is rebuilt because an [`io::Error`]
     /// cannot be cloned.
-    pub(super) fn get(&self) -> Option<io::Error> {
+    pub(in crate::formats) fn get(&self) -> Option<io::Error> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         kept.as_ref().map(|error| match error.raw_os_error() {
             Some(code) => io::Error::from_raw_os_error(code),
@@ -28,7 +29,7 @@ impl Fault {
 }
 
 /// Passes everything on until the first error.
-pub(super) struct Output<W> {
+pub(in crate::formats) struct Output<W> {
     inner: W,
     fault: Fault,
     /// Where a pretended write would be; `None` while writing is real.
@@ -36,7 +37,7 @@ pub(super) struct Output<W> {
 }
 
 impl<W: Write + Seek> Output<W> {
-    pub(super) fn new(inner: W) -> (Self, Fault) {
+    pub(in crate::formats) fn new(inner: W) -> (Self, Fault) {
         let fault = Fault::default();
         let output = Self {
             inner,
@@ -46,7 +47,7 @@ impl<W: Write + Seek> Output<W> {
         (output, fault)
     }
 
-    pub(super) fn into_inner(self) -> W {
+    pub(in crate::formats) fn into_inner(self) -> W {
         self.inner
     }
 
@@ -80,6 +81,22 @@ impl<W: Write + Seek> Write for Output<W> {
             self.fail(error);
         }
         Ok(())
+    }
+}
+
+/// For formats that go back to what they wrote. Behind the first error there is nothing to read.
+impl<W: Read + Write + Seek> Read for Output<W> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        if self.pretended.is_some() {
+            return Ok(0);
+        }
+        match self.inner.read(bytes) {
+            Err(error) if error.kind() != io::ErrorKind::Interrupted => {
+                self.fail(error);
+                Ok(0)
+            }
+            other => other,
+        }
     }
 }
 
@@ -120,6 +137,7 @@ mod tests {
         for _ in 0..2 {
             assert_eq!(fault.get().unwrap().kind(), io::ErrorKind::StorageFull);
         }
+        assert_eq!(output.read(&mut [0; 4]).unwrap(), 0);
         assert_eq!(output.into_inner().file.into_inner(), b"12345");
     }
 }

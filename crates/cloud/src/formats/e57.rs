@@ -1,0 +1,196 @@
+//! ASTM E57 (E2807), by the `e57` crate.
+//!
+//! One point cloud with its pose (none: the frame is the file's), bounds, limits, the times at which acquisition began and ended, and what the
+//! metadata says in its description; of software devices that begins with SIMULATED. A point has cartesianX, Y, Z (f32), intensity (0..=255),
+//! rowIndex (the ring) and timeStamp (f64 seconds after the begin, which is a whole second); the tilt and whatever else is asked for
+//! are attributes of an extension, which other readers leave out.
+//!
+//! The library's writer of a cloud borrows its writer of a file, so both live on a thread of their own; batches go there by a short queue.
+//!
+//! Left out: spherical coordinates, columnIndex (a cloud of many turns is no grid), images, a creation date (the same log must give the same
+//! bytes), reading.
+
+mod attributes;
+mod identity;
+mod worker;
+
+use std::io::{Read, Seek, Write};
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::thread::{self, JoinHandle};
+
+use units::{Host, Stamp};
+
+use self::attributes::Attributes;
+use self::worker::{Ending, Order};
+use super::fallible::{Fault, Output};
+use super::stage::Stage;
+use super::{check_places, gps_time};
+use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
+
+const FORMAT: &str = "e57";
+/// Batches under way to the thread: enough that neither side waits for the other's hiccups.
+const QUEUE: usize = 4;
+
+/// Writes E57 to an output that seeks and reads back what it wrote. It writes pages of 1 KiB: give it a buffered output.
+///
+/// A file whose output failed, or whose writer was dropped before [`Sink::finish`], is lost: what describes its points stands at the end.
+pub struct E57Writer<W: Read + Write + Seek + Send + 'static> {
+    fields: Fields,
+    stage: Stage,
+    fault: Fault,
+    output: Option<Output<W>>,
+    worker: Option<Worker>,
+    description: Vec<String>,
+    /// The whole second in which the first point was fired.
+    start: Option<Stamp<Host>>,
+    end: Option<Stamp<Host>>,
+    summary: Summary,
+}
+
+struct Worker {
+    orders: SyncSender<Order>,
+    thread: JoinHandle<e57::Result<()>>,
+}
+
+impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
+    /// A writer into `output`, which is empty, with the columns of [`Fields::FILE`].
+    pub fn new(output: W) -> Self {
+        let (output, fault) = Output::new(output);
+        Self {
+            fields: Fields::FILE,
+            stage: Stage::default(),
+            fault,
+            output: Some(output),
+            worker: None,
+            description: Vec::new(),
+            start: None,
+            end: None,
+            summary: Summary::default(),
+        }
+    }
+
+    /// The same with other columns; only before [`Sink::begin`].
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.fields = fields;
+        self
+    }
+
+    fn encoding(&self, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> SinkError {
+        SinkError::Encode {
+            format: FORMAT,
+            points: self.summary.points,
+            source: source.into(),
+        }
+    }
+
+    /// What the output said comes first: the library was not told.
+    fn written(&self) -> Result<(), SinkError> {
+        match self.fault.get() {
+            Some(source) => Err(SinkError::Write {
+                format: FORMAT,
+                points: self.summary.points,
+                source,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Hands something on to the thread. If that has ended, it says why.
+    fn order(&mut self, order: Order) -> Result<(), SinkError> {
+        self.written()?;
+        let sent = self.worker.as_ref().map(|worker| worker.orders.send(order));
+        match sent {
+            Some(Ok(())) => Ok(()),
+            Some(Err(_)) | None => {
+                self.wait()?;
+                Err(self.encoding("the encoder has ended"))
+            }
+        }
+    }
+
+    /// Waits for the end of the thread.
+    fn wait(&mut self) -> Result<(), SinkError> {
+        let ended = self.worker.take().map(|worker| {
+            drop(worker.orders);
+            worker.thread.join()
+        });
+        self.written()?;
+        match ended {
+            Some(Ok(Err(error))) => Err(self.encoding(error)),
+            Some(Err(_)) => Err(self.encoding("the encoder broke off")),
+            Some(Ok(Ok(()))) | None => Ok(()),
+        }
+    }
+
+    fn note_times(&mut self, batch: &Points) {
+        let times = batch.time();
+        let (Some(least), Some(greatest)) = (times.iter().min(), times.iter().max()) else {
+            return;
+        };
+        let second = |ns: i64| Stamp::from_nanos(ns - ns.rem_euclid(1_000_000_000));
+        self.start.get_or_insert_with(|| second(least.as_nanos()));
+        self.end = self.end.max(Some(*greatest));
+    }
+}
+
+impl<W: Read + Write + Seek + Send + 'static> Sink for E57Writer<W> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        batch.fields().require(self.fields)?;
+        check_places(FORMAT, f64::from(f32::MAX), self.summary.points, batch)?;
+        self.note_times(batch);
+        let start = self.start.unwrap_or(Stamp::from_nanos(0));
+        if let Err(error) = self.order(Order::Points(Box::new(batch.clone()), start)) {
+            self.stage.cut();
+            return Err(error);
+        }
+        self.summary.add(batch.summary());
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.fields
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.stage.begin(FORMAT)?;
+        self.description = metadata.lines();
+        let Some(output) = self.output.take() else {
+            return Ok(());
+        };
+        let attributes = Attributes::new(self.fields);
+        let about = worker::About::new(metadata);
+        let (orders, receiver) = sync_channel(QUEUE);
+        let thread = thread::Builder::new()
+            .name(FORMAT.to_owned())
+            .spawn(move || worker::run(output, &attributes, &about, &receiver))
+            .map_err(|error| self.encoding(error))?;
+        self.worker = Some(Worker { orders, thread });
+        self.stage.opened();
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        self.stage.finish(FORMAT)?;
+        let ending = Ending {
+            identity: identity::of(&self.description, self.summary, [self.start, self.end]),
+            start_gps_s: self.start.map(gps_time::gps_s),
+            end_gps_s: self.end.map(gps_time::gps_s),
+        };
+        self.order(Order::Finish(ending))?;
+        self.wait()?;
+        Ok(self.summary)
+    }
+}
+
+/// The output is free once this returns.
+impl<W: Read + Write + Seek + Send + 'static> Drop for E57Writer<W> {
+    fn drop(&mut self) {
+        // Nobody is left to tell.
+        let _ = self.wait();
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,219 @@
+use std::io::Cursor;
+
+use e57::{E57Reader, RecordName, RecordValue};
+
+use super::*;
+use crate::Point;
+use crate::formats::testing::{LATE_NS, NOW_NS, Shared, SmallDisk, cloud_from, metadata};
+
+fn written(fields: Fields, batches: &[Points]) -> Vec<u8> {
+    let file = Shared::default();
+    let mut writer = E57Writer::new(file.clone()).with_fields(fields);
+    writer.begin(&metadata()).unwrap();
+    for batch in batches {
+        writer.points(batch).unwrap();
+    }
+    let summary = writer.finish().unwrap();
+    assert_eq!(summary.points, batches.iter().map(|b| b.len() as u64).sum());
+    file.content()
+}
+
+#[test]
+fn what_is_read_back_is_what_was_written() {
+    let cloud = cloud_from(20_000, NOW_NS + 123);
+    let bytes = written(Fields::ALL, std::slice::from_ref(&cloud));
+    let mut file = E57Reader::new(Cursor::new(bytes)).unwrap();
+    assert_eq!(file.extensions().len(), 1);
+    let [about] = &file.pointclouds()[..] else {
+        panic!("one cloud")
+    };
+    assert_eq!(about.records, 20_000);
+    let names: Vec<RecordName> = about.prototype.iter().map(|r| r.name.clone()).collect();
+    let raw: Vec<Vec<RecordValue>> = file
+        .pointcloud_raw(about)
+        .unwrap()
+        .map(Result::unwrap)
+        .collect();
+    assert_eq!(raw.len(), cloud.len());
+    for (values, point) in raw.iter().zip(cloud.iter()) {
+        for (name, value) in names.iter().zip(values) {
+            let expected = match name {
+                RecordName::CartesianX => RecordValue::Single(point.position_m[0] as f32),
+                RecordName::CartesianY => RecordValue::Single(point.position_m[1] as f32),
+                RecordName::CartesianZ => RecordValue::Single(point.position_m[2] as f32),
+                RecordName::Intensity => RecordValue::Integer(point.intensity.into()),
+                RecordName::RowIndex => RecordValue::Integer(point.ring.into()),
+                RecordName::TimeStamp => {
+                    let RecordValue::Double(since) = value else {
+                        panic!("{value:?}")
+                    };
+                    let expected = (point.time.as_nanos() - NOW_NS) as f64 * 1e-9;
+                    assert!((since - expected).abs() < 1e-15, "{since} {expected}");
+                    continue;
+                }
+                RecordName::Unknown { name, .. } => match name.as_str() {
+                    "tilt" => RecordValue::Single(point.tilt.0 as f32),
+                    "sd" => RecordValue::Single(point.sd_m as f32),
+                    "laser" => RecordValue::Integer(point.laser.into()),
+                    "echo" => RecordValue::Integer(point.echo.into()),
+                    "device_time" => RecordValue::Double(point.device_time.as_secs_f64()),
+                    other => panic!("{other}"),
+                },
+                other => panic!("{other:?}"),
+            };
+            assert_eq!(*value, expected, "{name:?}");
+        }
+    }
+    assert_eq!(names.len(), 11);
+}
+
+#[test]
+fn the_file_describes_itself() {
+    let cloud = cloud_from(10, NOW_NS + 500_000_000);
+    let file = E57Reader::new(Cursor::new(written(
+        Fields::FILE,
+        std::slice::from_ref(&cloud),
+    )))
+    .unwrap();
+    let about = file.pointclouds().remove(0);
+    assert!(about.description.unwrap().starts_with("SIMULATED"));
+    assert_eq!(about.sensor_model.as_deref(), Some("VLP-16 on a tilt axis"));
+    assert_eq!(about.guid.as_deref(), Some(file.guid()));
+    assert!(!file.guid().contains("0000-0000"), "{}", file.guid());
+    let start = about.acquisition_start.unwrap();
+    assert_eq!(
+        start.gps_time,
+        (NOW_NS / 1_000_000_000 - 315_964_800 + 18) as f64
+    );
+    assert!(about.acquisition_end.unwrap().gps_time > start.gps_time);
+    let limits = about.intensity_limits.unwrap();
+    let of = |value: Option<RecordValue>| value.unwrap();
+    assert_eq!(of(limits.intensity_min), RecordValue::Integer(0));
+    assert_eq!(of(limits.intensity_max), RecordValue::Integer(255));
+    let (bounds, expected) = (
+        about.cartesian_bounds.unwrap(),
+        cloud.summary().bounds.unwrap(),
+    );
+    let near = |got: Option<f64>, wanted: f64| assert!((got.unwrap() - wanted).abs() < 4e-6);
+    for (axis, (min, max)) in [
+        (bounds.x_min, bounds.x_max),
+        (bounds.y_min, bounds.y_max),
+        (bounds.z_min, bounds.z_max),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        near(min, expected.min_m[axis]);
+        near(max, expected.max_m[axis]);
+    }
+    let pose = about.transform.unwrap();
+    assert_eq!((pose.rotation.w, pose.translation.z), (1.0, 0.0));
+}
+
+#[test]
+fn an_empty_cloud_is_a_file_too_and_so_is_one_without_columns() {
+    for (fields, batches) in [
+        (Fields::FILE, vec![]),
+        (Fields::NONE, vec![cloud_from(3, LATE_NS)]),
+    ] {
+        let file = E57Reader::new(Cursor::new(written(fields, &batches))).unwrap();
+        let about = file.pointclouds().remove(0);
+        assert_eq!(about.records, 3 * batches.len() as u64);
+        assert_eq!(file.extensions().is_empty(), fields == Fields::NONE);
+    }
+}
+
+#[test]
+fn the_same_points_give_the_same_bytes_and_others_another_identity() {
+    let cloud = |count| vec![cloud_from(count, NOW_NS)];
+    assert_eq!(
+        written(Fields::FILE, &cloud(500)),
+        written(Fields::FILE, &cloud(500))
+    );
+    let identity = |count| {
+        let bytes = written(Fields::FILE, &cloud(count));
+        E57Reader::new(Cursor::new(bytes))
+            .unwrap()
+            .guid()
+            .to_owned()
+    };
+    assert_ne!(identity(500), identity(501));
+}
+
+#[test]
+fn what_it_says_cannot_break_the_description() {
+    let file = Shared::default();
+    let mut writer = E57Writer::new(file.clone());
+    let metadata = Metadata {
+        source: "]]></description>".into(),
+        comments: vec!["<&>]]>".into()],
+        ..metadata()
+    };
+    writer.begin(&metadata).unwrap();
+    writer.finish().unwrap();
+    let file = E57Reader::new(Cursor::new(file.content())).unwrap();
+    let description = file.pointclouds().remove(0).description.unwrap();
+    assert!(description.contains("<&>]] >"), "{description}");
+}
+
+#[test]
+fn a_place_that_is_none_is_refused_and_what_was_whole_is_kept() {
+    let file = Shared::default();
+    let mut writer = E57Writer::new(file.clone());
+    writer.begin(&metadata()).unwrap();
+    writer.points(&cloud_from(10, NOW_NS)).unwrap();
+    let mut nowhere = Points::new(Fields::FILE);
+    nowhere.push(Point {
+        position_m: [0.0, f64::INFINITY, 0.0],
+        ..Point::default()
+    });
+    let error = writer.points(&nowhere).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            SinkError::Coordinate {
+                point: 10,
+                axis: 'y',
+                ..
+            }
+        ),
+        "{error}"
+    );
+    assert_eq!(writer.finish().unwrap().points, 10);
+    let file = E57Reader::new(Cursor::new(file.content())).unwrap();
+    assert_eq!(file.pointclouds().remove(0).records, 10);
+}
+
+/// The first error comes with one of the calls after it, at the latest with the last.
+#[test]
+fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
+    let cloud = cloud_from(200, NOW_NS);
+    let whole = written(Fields::FILE, std::slice::from_ref(&cloud)).len() as u64;
+    for room in (0..=whole + 100).step_by(97) {
+        let mut writer = E57Writer::new(SmallDisk::new(room));
+        let result = writer
+            .begin(&metadata())
+            .and_then(|()| writer.points(&cloud))
+            .and_then(|()| writer.finish());
+        match result {
+            Ok(summary) => assert!(summary.points == 200 && room >= whole, "{room} of {whole}"),
+            Err(error) => assert!(
+                matches!(error, SinkError::Write { .. }) && room < whole,
+                "{room} of {whole}: {error}"
+            ),
+        }
+        assert!(writer.finish().is_err());
+    }
+}
+
+/// A writer that is not finished leaves what no reader takes for a cloud, and lets go of its output.
+#[test]
+fn a_writer_that_is_dropped_leaves_no_cloud() {
+    let file = Shared::default();
+    let mut writer = E57Writer::new(file.clone());
+    writer.begin(&metadata()).unwrap();
+    writer.points(&cloud_from(10_000, NOW_NS)).unwrap();
+    drop(writer);
+    let bytes = file.content();
+    assert!(bytes.len() > 1000 && E57Reader::new(Cursor::new(bytes)).is_err());
+}

@@ -1,0 +1,439 @@
+//! MCAP with ROS 2's messages: opens in Foxglove, plays with `ros2 bag`.
+//!
+//! Profile `ros2`, every channel CDR with its definition (`ros2msg`), chunks of 1 MiB compressed by LZ4, with an index. A cloud is a
+//! `PointCloud2` a sweep, or a turn of the lidar; one that would be longer than [`MOST_POINTS`] or [`MOST_SPAN`] goes on in further messages,
+//! as 42 seconds of a VLP-16, 360 MB, in one message are of no use to anybody. So memory stays bounded, too: a message is held once,
+//! at most 23 MB of it as usually made.
+//!
+//! Beside the clouds: the tilt joint at every sample, transforms at most every [`TRANSFORMS_EVERY`], how lidar and axis sit on each other
+//! (latched), what was found out about the scan. A message's log time is when what it says was complete: a cloud's is that of its last point,
+//! while its header has that of its first. Messages come in the order of their log times.
+//!
+//! Left out: organised clouds, the tilt as a column (the joint says it), reading.
+
+mod bag;
+mod channels;
+
+use std::collections::BTreeMap;
+use std::io::{Seek, Write};
+use std::ops::Range;
+
+use mcap::{Compression, WriteOptions};
+use units::{Degrees, Host, Metres, Span, Stamp};
+
+use self::channels::Channels;
+use super::fallible::{Fault, Output};
+use super::stage::Stage;
+use crate::messages::cdr::Cdr;
+use crate::messages::{
+    CloudMessage, CloudMessageError, Rotation, Time, Topic, Transform, diagnostic_array, frames,
+    joint_state, tf_message,
+};
+use crate::{Check, Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
+
+const FORMAT: &str = "mcap";
+/// Points of a message at most: 23 MB, four seconds of a VLP-16.
+pub const MOST_POINTS: u32 = 1 << 20;
+/// Time of a message at most: its points' times are f32 after its stamp, which then step by 0.5 us.
+pub const MOST_SPAN: Span = Span::from_secs(8);
+/// Transforms come no closer: on the steepest ramp, 500 deg/s^2, a straight line over this time is off by one step of the encoder.
+pub const TRANSFORMS_EVERY: Span = Span::from_millis(5);
+/// Uncompressed bytes of a chunk, which a reader needs at once, save where a single message is longer.
+const CHUNK_BYTES: u64 = 1 << 20;
+
+/// When clouds end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cut {
+    /// With a sweep.
+    Sweeps,
+    /// Where [`Sink::turn`] says so.
+    Turns,
+}
+
+/// Writes MCAP to an output that seeks.
+///
+/// A file whose output failed cannot be completed; what a killed program leaves has its whole chunks, which `mcap recover` makes a file of.
+pub struct McapWriter<W: Write + Seek> {
+    cut: Cut,
+    stage: Stage,
+    fault: Fault,
+    state: State<W>,
+    hardware: String,
+    track: TiltTrack,
+    /// Samples and sweeps of the track that are written.
+    samples: usize,
+    sweeps: usize,
+    transformed: Option<Stamp<Host>>,
+    cloud: CloudMessage,
+    cdr: Cdr,
+    /// The time up to which messages are written.
+    now: Option<Stamp<Host>>,
+    summary: Summary,
+}
+
+enum State<W: Write + Seek> {
+    Idle(Output<W>),
+    Open {
+        writer: Box<mcap::Writer<Output<W>>>,
+        channels: Channels,
+    },
+    Done {
+        output: Output<W>,
+        channels: Channels,
+    },
+    Lost,
+}
+
+impl<W: Write + Seek> McapWriter<W> {
+    /// A writer into `output` with the columns of [`Fields::FILE`], but for the tilt; a cloud a sweep.
+    pub fn new(output: W) -> Self {
+        let (output, fault) = Output::new(output);
+        Self {
+            cut: Cut::Sweeps,
+            stage: Stage::default(),
+            fault,
+            state: State::Idle(output),
+            hardware: String::new(),
+            track: TiltTrack::default(),
+            samples: 0,
+            sweeps: 0,
+            transformed: None,
+            cloud: CloudMessage::new(Fields::FILE),
+            cdr: Cdr::new(),
+            now: None,
+            summary: Summary::default(),
+        }
+    }
+
+    /// The same with other columns beside x, y, z, intensity, ring and time; only before [`Sink::begin`].
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.cloud = CloudMessage::new(fields);
+        self
+    }
+
+    /// The same with a cloud a turn of the lidar, as [`Sink::turn`] tells; only before [`Sink::begin`].
+    #[must_use]
+    pub const fn by_turns(mut self) -> Self {
+        self.cut = Cut::Turns;
+        self
+    }
+
+    /// Gives the output back; `None` where writing failed or was not finished.
+    pub fn into_inner(self) -> Option<W> {
+        match self.state {
+            State::Idle(output) | State::Done { output, .. } => Some(output.into_inner()),
+            State::Open { .. } | State::Lost => None,
+        }
+    }
+
+    fn frame(&self) -> &'static str {
+        match self.track.mount {
+            Some(_) => frames::BASE,
+            None => frames::LIDAR,
+        }
+    }
+
+    fn encoding(&self, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> SinkError {
+        SinkError::Encode {
+            format: FORMAT,
+            points: self.summary.points,
+            source: source.into(),
+        }
+    }
+
+    /// What the output said comes first: the library was not told.
+    fn outcome<T>(&self, result: mcap::McapResult<T>) -> Result<T, SinkError> {
+        match self.fault.get() {
+            Some(source) => Err(SinkError::Write {
+                format: FORMAT,
+                points: self.summary.points,
+                source,
+            }),
+            None => result.map_err(|error| self.encoding(error)),
+        }
+    }
+
+    fn time(&self, stamp: Stamp<Host>) -> Result<Time, SinkError> {
+        Time::of(stamp).map_err(|error| self.encoding(error))
+    }
+
+    /// Writes what stands in `self.cdr`.
+    fn write(&mut self, topic: Topic, at: Stamp<Host>) -> Result<(), SinkError> {
+        let cdr = std::mem::take(&mut self.cdr);
+        let written = self.write_bytes(topic, at, cdr.bytes());
+        self.cdr = cdr;
+        written
+    }
+
+    fn write_bytes(
+        &mut self,
+        topic: Topic,
+        at: Stamp<Host>,
+        bytes: &[u8],
+    ) -> Result<(), SinkError> {
+        let State::Open { writer, channels } = &mut self.state else {
+            return Err(SinkError::Order {
+                format: FORMAT,
+                expected: "begin",
+                got: "a message",
+            });
+        };
+        let result = channels.write(writer, topic, at, bytes);
+        self.outcome(result)
+    }
+
+    /// Writes all that was to be said by `at`; the first time also what always holds.
+    fn go_on_to(&mut self, at: Stamp<Host>) -> Result<(), SinkError> {
+        if self.now.is_none() {
+            let first = self.track.samples.first().map(|sample| sample.0);
+            self.write_mount(first.map_or(at, |first| first.min(at)))?;
+        }
+        while let Some((time, tilt)) = self.track.samples.get(self.samples).copied() {
+            if time > at {
+                break;
+            }
+            self.samples += 1;
+            self.write_sample(time, tilt)?;
+        }
+        self.now = self.now.max(Some(at));
+        Ok(())
+    }
+
+    fn write_mount(&mut self, at: Stamp<Host>) -> Result<(), SinkError> {
+        let stamp = self.time(at)?;
+        let fixed = |parent, child, Metres(z), rotation| Transform {
+            parent,
+            child,
+            translation_m: [0.0, 0.0, z],
+            rotation,
+        };
+        let axes = fixed(frames::ROOT, self.frame(), Metres(0.0), Rotation::to_ros());
+        let lidar = self
+            .track
+            .mount
+            .map(|d| fixed(frames::PLATFORM, frames::LIDAR, d, Rotation::NONE));
+        let transforms: Vec<Transform> = [axes].into_iter().chain(lidar).collect();
+        tf_message(&mut self.cdr, stamp, &transforms);
+        self.write(Topic::StaticTransforms, at)
+    }
+
+    fn write_sample(&mut self, at: Stamp<Host>, tilt: Degrees) -> Result<(), SinkError> {
+        let stamp = self.time(at)?;
+        joint_state(&mut self.cdr, stamp, tilt);
+        self.write(Topic::JointStates, at)?;
+        let due = self
+            .transformed
+            .is_none_or(|last| at.saturating_since(last) >= TRANSFORMS_EVERY);
+        let last_one = self.samples == self.track.samples.len();
+        if !due && !last_one {
+            return Ok(());
+        }
+        self.transformed = Some(at);
+        let tilted = Transform {
+            parent: frames::BASE,
+            child: frames::PLATFORM,
+            translation_m: [0.0; 3],
+            rotation: Rotation::tilt(tilt),
+        };
+        tf_message(&mut self.cdr, stamp, &[tilted]);
+        self.write(Topic::Transforms, at)
+    }
+
+    /// Writes the cloud that there is.
+    fn end_cloud(&mut self) -> Result<(), SinkError> {
+        if self.cloud.points() == 0 {
+            return Ok(());
+        }
+        let (first, last) = self.cloud.times();
+        if self.now.is_none() {
+            self.go_on_to(first)?;
+        }
+        self.go_on_to(last)?;
+        let mut cloud = std::mem::replace(&mut self.cloud, CloudMessage::new(Fields::NONE));
+        let at = self.now.unwrap_or(last);
+        let written = self.write_bytes(Topic::Points, at, cloud.message().bytes());
+        cloud.clear();
+        self.cloud = cloud;
+        written
+    }
+
+    /// The first of `rows` that belongs into another message than the one that there is.
+    fn cloud_end(&self, times: &[Stamp<Host>], rows: &Range<usize>) -> usize {
+        let room = MOST_POINTS.saturating_sub(self.cloud.points()) as usize;
+        let end = rows.end.min(rows.start.saturating_add(room));
+        let part = times.get(rows.start..end).unwrap_or_default();
+        let first = match self.cloud.points() {
+            0 => part.first().copied(),
+            _ => Some(self.cloud.times().0),
+        };
+        let Some(first) = first else {
+            return end;
+        };
+        let mut latest = first.saturating_add(MOST_SPAN);
+        if let Some((_, sweep_end)) = self.track.sweeps.get(self.sweeps)
+            && self.cut == Cut::Sweeps
+        {
+            latest = latest.min(*sweep_end);
+        }
+        let over = part.iter().position(|time| *time > latest);
+        over.map_or(end, |over| rows.start + over)
+    }
+
+    /// Goes on to the sweep in which `time` is, or which comes after it.
+    fn next_sweep(&mut self, time: Stamp<Host>) {
+        while self
+            .track
+            .sweeps
+            .get(self.sweeps)
+            .is_some_and(|(_, end)| *end < time)
+        {
+            self.sweeps += 1;
+        }
+    }
+
+    fn push(&mut self, batch: &Points) -> Result<(), SinkError> {
+        let mut rows = 0..batch.len();
+        while let Some(time) = batch.time().get(rows.start).copied() {
+            let end = self.cloud_end(batch.time(), &rows);
+            if end == rows.start {
+                self.end_cloud()?;
+                self.next_sweep(time);
+                if self.cloud_end(batch.time(), &rows) > rows.start {
+                    continue;
+                }
+            }
+            // A point always fits into an empty message.
+            let end = end.max(rows.start + 1);
+            let frame = self.frame();
+            let pushed = self.cloud.push(batch, rows.start..end, frame);
+            pushed.map_err(|error| match error {
+                CloudMessageError::Columns(missing) => missing.into(),
+                CloudMessageError::Time(_) => self.encoding(error),
+            })?;
+            rows.start = end;
+        }
+        Ok(())
+    }
+}
+
+/// What the file says of itself, uncompressed.
+fn record(metadata: &Metadata) -> mcap::records::Metadata {
+    let about = metadata.lines().join("\n");
+    let simulated = metadata.simulated.to_string();
+    mcap::records::Metadata {
+        name: "velomotion".to_owned(),
+        metadata: BTreeMap::from([
+            ("about".to_owned(), about),
+            ("simulated".to_owned(), simulated),
+        ]),
+    }
+}
+
+impl<W: Write + Seek> Sink for McapWriter<W> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        batch.fields().require(self.cloud.fields())?;
+        super::check_places(FORMAT, f64::from(f32::MAX), self.summary.points, batch)?;
+        if let Err(error) = self.push(batch) {
+            self.stage.cut();
+            return Err(error);
+        }
+        self.summary.add(batch.summary());
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.cloud.fields()
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.stage.begin(FORMAT)?;
+        self.hardware.clone_from(&metadata.source);
+        let State::Idle(output) = std::mem::replace(&mut self.state, State::Lost) else {
+            return Ok(());
+        };
+        let options = WriteOptions::new()
+            .profile("ros2")
+            .library(&metadata.software)
+            .compression(Some(Compression::Lz4))
+            .chunk_size(Some(CHUNK_BYTES));
+        let writer = options.create(output).and_then(|mut writer| {
+            writer.write_metadata(&record(metadata))?;
+            writer.write_metadata(&bag::record())?;
+            Ok(writer)
+        });
+        self.state = State::Open {
+            writer: Box::new(self.outcome(writer)?),
+            channels: Channels::default(),
+        };
+        self.stage.opened();
+        Ok(())
+    }
+
+    fn wants_tilt(&self) -> bool {
+        true
+    }
+
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        self.track = track.clone();
+        Ok(())
+    }
+
+    fn turn(&mut self) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        match self.cut {
+            Cut::Turns => self.end_cloud(),
+            Cut::Sweeps => Ok(()),
+        }
+    }
+
+    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        self.end_cloud()?;
+        let last = self.track.samples.last().map(|sample| sample.0);
+        let Some(end) = last.max(self.now) else {
+            // Nothing was said, so there is no time to say it at.
+            return Ok(());
+        };
+        self.go_on_to(end)?;
+        let stamp = self.time(end)?;
+        diagnostic_array(&mut self.cdr, stamp, &self.hardware, checks);
+        self.write(Topic::Diagnostics, end)
+    }
+
+    fn companion(&self, file_name: &str) -> Option<Companion> {
+        let State::Done { channels, .. } = &self.state else {
+            return None;
+        };
+        Some(bag::companion(file_name, channels))
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        let whole = self.stage == Stage::Open;
+        self.stage.finish(FORMAT)?;
+        if whole {
+            self.end_cloud()?;
+            if let Some((last, _)) = self.track.samples.last().copied() {
+                self.go_on_to(last)?;
+            }
+        }
+        if let State::Open {
+            mut writer,
+            channels,
+        } = std::mem::replace(&mut self.state, State::Lost)
+        {
+            let finished = writer.finish();
+            self.outcome(finished)?;
+            let mut output = writer.into_inner();
+            let flushed = output.flush().map_err(mcap::McapError::from);
+            self.outcome(flushed)?;
+            self.state = State::Done { output, channels };
+        }
+        Ok(self.summary)
+    }
+}
+
+#[cfg(test)]
+mod tests;

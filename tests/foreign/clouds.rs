@@ -1,0 +1,175 @@
+//! Clouds in other people's readers: MCAP in mcap and rosbags, E57 in pye57, PLY and PCD in Open3D. LAZ in laspy is beside.
+
+use cloud::Summary;
+use serde_json::{Value, json};
+use velomotion_tests::capture::{Captured, Setting};
+
+use super::python;
+
+/// Counts as they are, bounds but for rounding to f32.
+fn same(summary: &Summary, got: &Value, least: &str, greatest: &str) {
+    let bounds = summary.bounds.unwrap();
+    for (name, wanted) in [(least, bounds.min_m), (greatest, bounds.max_m)] {
+        for (axis, wanted) in wanted.iter().enumerate() {
+            let got = got[name][axis].as_f64().unwrap();
+            assert!((got - wanted).abs() < 4e-6, "{name} {axis}: {got} {wanted}");
+        }
+    }
+}
+
+#[test]
+fn mcap_and_rosbags_read_our_recording_whole() {
+    let scan = Captured::new(Setting::default());
+    let recording = scan.cloud_file("cloud.mcap");
+    let (report, cloud) = scan.scan();
+    let Some(got) = python(
+        "mcap_reads.py",
+        &[&recording],
+        "mcap, mcap_ros2, rosbags, numpy",
+    ) else {
+        return;
+    };
+    assert_eq!(got["profile"], "ros2");
+    assert_eq!(got["encodings"], json!([["cdr", "ros2msg"]]));
+    assert_eq!(got["records"]["velomotion"]["simulated"], "true");
+    let about = got["records"]["velomotion"]["about"].as_str().unwrap();
+    assert!(about.starts_with("SIMULATED"), "{about}");
+
+    let summary = cloud.summary();
+    assert_eq!(got["points"].as_u64(), Some(summary.points));
+    assert_eq!(got["bag_points"].as_u64(), Some(summary.points));
+    same(&summary, &got, "min", "max");
+    assert_eq!(got["counts"]["/velomotion/points"], report.sweeps.len());
+    let samples = report.contents.tilt.as_ref().unwrap().samples;
+    assert_eq!(got["counts"]["/joint_states"], samples);
+    for topic in ["/tf", "/tf_static", "/diagnostics"] {
+        assert!(got["counts"][topic].as_u64() > Some(0), "{topic}: {got}");
+    }
+    assert_eq!(got["counts"], got["bag_counts"]);
+    let all: u64 = got["counts"]
+        .as_object()
+        .unwrap()
+        .values()
+        .filter_map(Value::as_u64)
+        .sum();
+    assert_eq!(got["bag_messages"], all);
+    let span = got["log_span_ns"].as_i64().unwrap();
+    // rosbags counts the last nanosecond.
+    assert_eq!(got["bag_duration_ns"].as_i64(), Some(span + 1));
+
+    assert_eq!(
+        got["same_bytes"], true,
+        "encoded anew, messages are what they were"
+    );
+    assert_eq!(
+        got["same_types"], true,
+        "definitions are those of ROS 2 Jazzy"
+    );
+    assert_eq!(got["latched"], json!(["/tf_static"]));
+    assert_eq!(got["sorted"], true);
+    assert_eq!(
+        got["fields"],
+        json!(["x", "y", "z", "intensity", "ring", "time"])
+    );
+    assert_eq!(got["least_time_s"], 0.0);
+    let first = cloud.time().iter().min().unwrap();
+    assert_eq!(got["stamps"][0].as_i64(), Some(first.as_nanos()));
+    assert_eq!(
+        got["frames"],
+        json!([
+            "base_link/tilt_base",
+            "tilt_base",
+            "tilt_base/tilt_platform",
+            "tilt_platform/lidar"
+        ])
+    );
+    let [low, high] = [0, 1].map(|i| got["tilt_deg"][i].as_f64().unwrap());
+    let sweep = report.sweeps[0];
+    let (from, to) = (
+        sweep.from_deg.min(sweep.to_deg),
+        sweep.from_deg.max(sweep.to_deg),
+    );
+    assert!(
+        low < from + 0.01 && high > to - 0.01,
+        "{low} {high} {from} {to}"
+    );
+    let checks = &got["checks"];
+    assert_eq!(checks["velomotion: devices"]["level"], 1, "{checks}");
+    assert_eq!(
+        checks["velomotion: lidar"]["values"]["lost_packets"], "0",
+        "{checks}"
+    );
+    for (check, value) in [
+        ("velomotion: clock", "residual_us"),
+        ("velomotion: tilt", "residual_rms_deg"),
+    ] {
+        let value = checks[check]["values"][value].as_str().unwrap();
+        assert!(value.parse::<f64>().is_ok(), "{check}: {checks}");
+    }
+}
+
+#[test]
+fn pye57_reads_our_e57_with_the_right_count_and_bounds() {
+    let scan = Captured::new(Setting::default());
+    let file = scan.cloud_file("cloud.e57");
+    let Some(got) = python("e57_reads.py", &[&file], "pye57, numpy") else {
+        return;
+    };
+    let cloud = scan.cloud();
+    let summary = cloud.summary();
+    assert_eq!(got["scans"], 1);
+    assert_eq!(got["points"].as_u64(), Some(summary.points));
+    assert_eq!(got["read"], got["points"]);
+    same(&summary, &got, "min", "max");
+    same(&summary, &got, "header_min", "header_max");
+    let span = |values: &[u8]| json!([values.iter().min().unwrap(), values.iter().max().unwrap()]);
+    assert_eq!(got["rows"], span(cloud.ring()));
+    let [least, greatest] = [0, 1].map(|i| got["intensity"][i].as_f64().unwrap() as u8);
+    assert_eq!(json!([least, greatest]), span(cloud.intensity()));
+    // After the whole second in which the first point was fired.
+    let first = cloud.time().iter().min().unwrap().as_nanos();
+    for (i, time) in [cloud.time().iter().min(), cloud.time().iter().max()]
+        .into_iter()
+        .enumerate()
+    {
+        let since = (time.unwrap().as_nanos() - first.div_euclid(1_000_000_000) * 1_000_000_000)
+            as f64
+            * 1e-9;
+        let time = got["times_s"][i].as_f64().unwrap();
+        assert!((time - since).abs() < 1e-9, "{time} {since}");
+    }
+    for (i, wanted) in [f64::min as fn(f64, f64) -> f64, f64::max]
+        .into_iter()
+        .enumerate()
+    {
+        let wanted = cloud.tilt_deg().iter().copied().reduce(wanted).unwrap();
+        let tilt = got["tilt_deg"][i].as_f64().unwrap();
+        assert!((tilt - wanted).abs() < 4e-6, "{tilt} {wanted}");
+    }
+    let description = got["description"].as_str().unwrap();
+    assert!(description.starts_with("SIMULATED"), "{description}");
+    let fields = got["fields"].as_array().unwrap();
+    assert!(
+        fields.iter().any(|field| field == "velomotion:tilt"),
+        "{fields:?}"
+    );
+}
+
+#[test]
+fn open3d_reads_our_ply_and_pcd_with_the_right_count_and_bounds() {
+    let scan = Captured::new(Setting::default());
+    let summary = scan.cloud().summary();
+    for name in ["cloud.ply", "cloud.pcd"] {
+        let file = scan.cloud_file(name);
+        let Some(got) = python("open3d_reads.py", &[&file], "open3d") else {
+            return;
+        };
+        assert_eq!(got["points"].as_u64(), Some(summary.points), "{name}");
+        same(&summary, &got, "min", "max");
+        assert_eq!(
+            got["columns"],
+            json!(["intensity", "positions", "ring", "tilt", "time"]),
+            "{name}"
+        );
+    }
+}
