@@ -27,6 +27,7 @@ pub mod signals;
 pub mod simulated;
 pub mod software_axis;
 pub mod software_drive;
+pub mod thumbnail;
 pub mod utc;
 
 pub use failure::{Failure, Kind};

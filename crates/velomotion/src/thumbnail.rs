@@ -1,0 +1,480 @@
+//! A picture of a cloud for lists: its points from above and one side, coloured by height, edges shaded by depth, on nothing.
+//!
+//! The view is the one that the page opens with. Left out: every format but the PLY that this program writes, and the other columns.
+
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+
+use thiserror::Error;
+
+/// Pixels of the picture.
+pub const WIDTH: usize = 324;
+/// See [`WIDTH`].
+pub const HEIGHT: usize = 216;
+
+/// Samples of a pixel along either side.
+const FINE: usize = 2;
+/// Points that are drawn; of more, every second, third and so on.
+const MOST_POINTS: u64 = 300_000;
+/// A header longer than this is none.
+const HEADER_BYTES: u64 = 64 << 10;
+/// Where the eye is as seen from the scanner: from x towards y, and above the horizon, radians.
+const AZIMUTH: f64 = -2.05;
+const ELEVATION: f64 = 0.62;
+/// Half of the angle that the picture is high: its tangent.
+const HALF_TAN: f64 = 0.466_307_658;
+/// How much of the points' own distance the eye is away.
+const AWAY: f64 = 1.6;
+/// How dark edges are.
+const SHADE: f64 = 9.0;
+/// viridis of matplotlib (CC0), 17 samples.
+const VIRIDIS: [[u8; 3]; 17] = [
+    [68, 1, 84],
+    [72, 24, 106],
+    [71, 45, 123],
+    [66, 64, 134],
+    [59, 82, 139],
+    [51, 99, 141],
+    [44, 114, 142],
+    [38, 130, 142],
+    [33, 145, 140],
+    [31, 160, 136],
+    [40, 174, 128],
+    [63, 188, 115],
+    [94, 201, 98],
+    [132, 212, 75],
+    [173, 220, 48],
+    [216, 226, 25],
+    [253, 231, 37],
+];
+
+/// Why there is no picture.
+#[derive(Debug, Error)]
+pub enum ThumbnailError {
+    /// The cloud cannot be read.
+    #[error("thumbnail: {0}")]
+    Read(#[from] std::io::Error),
+    /// It is no cloud of this program.
+    #[error("thumbnail: the cloud's header: expected {expected}, got {got}")]
+    Header {
+        /// What should be there.
+        expected: &'static str,
+        /// What is.
+        got: String,
+    },
+    /// The picture cannot be packed.
+    #[error("thumbnail: {0}")]
+    Png(#[from] png::EncodingError),
+}
+
+type Point = [f64; 3];
+
+/// The picture of a PLY cloud, as PNG with a transparent ground.
+///
+/// # Errors
+/// Where the cloud cannot be read or is none of this program's. One that ends too early is drawn as far as it goes.
+pub fn of_ply(cloud: &mut (impl Read + Seek)) -> Result<Vec<u8>, ThumbnailError> {
+    let mut cloud = BufReader::with_capacity(1 << 16, cloud);
+    let header = Header::read(&mut cloud)?;
+    encode(&picture(&header.points(&mut cloud)?))
+}
+
+/// Where positions are.
+struct Header {
+    points: u64,
+    row_bytes: usize,
+    /// Offsets of x, y and z in a row.
+    position: [usize; 3],
+    /// Where the rows begin.
+    begin: u64,
+}
+
+fn header_error(expected: &'static str, got: impl Into<String>) -> ThumbnailError {
+    let got = got.into();
+    ThumbnailError::Header { expected, got }
+}
+
+impl Header {
+    fn read(cloud: &mut (impl BufRead + Seek)) -> Result<Self, ThumbnailError> {
+        let (mut points, mut row_bytes, mut position) = (None, 0, [None; 3]);
+        let mut bounded = cloud.take(HEADER_BYTES);
+        for number in 0_u64.. {
+            let mut line = Vec::new();
+            bounded.read_until(b'\n', &mut line)?;
+            let line = String::from_utf8_lossy(&line);
+            let words: Vec<&str> = line.split_whitespace().collect();
+            match words.as_slice() {
+                ["ply"] if number == 0 => {}
+                _ if number == 0 => return Err(header_error("ply", line)),
+                ["comment", ..] => {}
+                ["format", "binary_little_endian", "1.0"] => {}
+                ["element", "vertex", count] => points = count.parse().ok(),
+                ["property", kind, name] => {
+                    let axis = ["x", "y", "z"].iter().position(|axis| axis == name);
+                    if let Some(axis) = axis.and_then(|axis| position.get_mut(axis)) {
+                        *axis = (*kind == "float").then_some(row_bytes);
+                    }
+                    row_bytes += match *kind {
+                        "uchar" => 1,
+                        "float" => 4,
+                        "double" => 8,
+                        _ => return Err(header_error("uchar, float or double", *kind)),
+                    };
+                }
+                ["end_header"] => break,
+                _ => return Err(header_error("a line of a binary PLY cloud", line)),
+            }
+        }
+        let begin = cloud.stream_position()?;
+        match (points, position) {
+            (Some(points), [Some(x), Some(y), Some(z)]) => Ok(Self {
+                points,
+                row_bytes,
+                position: [x, y, z],
+                begin,
+            }),
+            _ => Err(header_error(
+                "a vertex count and float x, y, z",
+                "one without",
+            )),
+        }
+    }
+
+    /// An even sample of the positions, metres.
+    fn points(&self, cloud: &mut (impl BufRead + Seek)) -> Result<Vec<Point>, ThumbnailError> {
+        let end = cloud.seek(SeekFrom::End(0))?;
+        cloud.seek(SeekFrom::Start(self.begin))?;
+        let row_bytes = u64::try_from(self.row_bytes).unwrap_or(u64::MAX).max(1);
+        let there = self.points.min(end.saturating_sub(self.begin) / row_bytes);
+        let stride = there.div_ceil(MOST_POINTS).max(1);
+        let skip = i64::try_from((stride - 1).saturating_mul(row_bytes)).unwrap_or(i64::MAX);
+        let mut row = vec![0; self.row_bytes];
+        let mut points = Vec::new();
+        for _ in 0..there / stride {
+            cloud.read_exact(&mut row)?;
+            let position = self.position.map(|at| {
+                let bytes = row.get(at..).and_then(|rest| rest.first_chunk());
+                bytes.map_or(f64::NAN, |bytes| f64::from(f32::from_le_bytes(*bytes)))
+            });
+            if position.iter().all(|value| value.is_finite()) {
+                points.push(position);
+            }
+            cloud.seek_relative(skip)?;
+        }
+        Ok(points)
+    }
+}
+
+/// The value below which `share` of them are.
+fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    // The list is short enough that its length is exact as f64.
+    let place = (share * values.len().saturating_sub(1) as f64) as usize;
+    if place >= values.len() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(place, f64::total_cmp).1
+}
+
+/// Where a ceiling begins, metres: many points of nearly one height above all others.
+fn ceiling_m(points: &[Point]) -> f64 {
+    let begin = quantile(points.iter().map(|p| p[2]), 0.97) - 0.5;
+    let above = points.iter().filter(|p| p[2] > begin).count();
+    if begin > 0.5 && 10 * above > points.len() {
+        begin
+    } else {
+        f64::INFINITY
+    }
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn unit(a: Point) -> Point {
+    let length = dot(a, a).sqrt().max(f64::MIN_POSITIVE);
+    a.map(|value| value / length)
+}
+
+/// A sample of a pixel: how far away what is seen there is, metres, and its colour.
+#[derive(Clone, Copy)]
+struct Sample {
+    depth_m: f64,
+    colour: [f64; 3],
+}
+
+const NOTHING: Sample = Sample {
+    depth_m: f64::INFINITY,
+    colour: [0.0; 3],
+};
+
+/// The samples of a picture, row by row from above.
+struct Picture {
+    samples: Vec<Sample>,
+}
+
+const ACROSS: usize = WIDTH * FINE;
+const DOWN: usize = HEIGHT * FINE;
+
+fn picture(points: &[Point]) -> Picture {
+    let reach_m = quantile(points.iter().map(|&p| dot(p, p).sqrt()), 0.97);
+    let low = quantile(points.iter().map(|p| p[2]), 0.01);
+    let high = quantile(points.iter().map(|p| p[2]), 0.99).max(low + 1e-3);
+    let ceiling_m = ceiling_m(points);
+    let (sin_a, cos_a) = AZIMUTH.sin_cos();
+    let (sin_e, cos_e) = ELEVATION.sin_cos();
+    let back = [cos_e * cos_a, cos_e * sin_a, sin_e];
+    let right = [-sin_a, cos_a, 0.0];
+    let up = [-sin_e * cos_a, -sin_e * sin_a, cos_e];
+    let away_m = AWAY * reach_m.max(0.1);
+    let eye = back.map(|value| value * away_m);
+    let scale = DOWN as f64 / (2.0 * HALF_TAN);
+    let mut picture = Picture {
+        samples: vec![NOTHING; ACROSS * DOWN],
+    };
+    for &point in points {
+        let to_eye = [eye[0] - point[0], eye[1] - point[1], eye[2] - point[2]];
+        // Every surface was seen from the scanner: what shows its back to the eye stands in the way.
+        let facing = -dot(unit(point), unit(to_eye));
+        let depth_m = away_m - dot(point, back);
+        let hides = (point[2] > -0.5 && facing < -0.1) || point[2] > ceiling_m;
+        if hides || depth_m < 0.05 * away_m {
+            continue;
+        }
+        let x = ACROSS as f64 / 2.0 + scale * dot(point, right) / depth_m;
+        let y = DOWN as f64 / 2.0 - scale * dot(point, up) / depth_m;
+        // Not from the map's very end, which vanishes against a dark page.
+        let colour = viridis(0.12 + 0.88 * (point[2] - low) / (high - low));
+        picture.dot(x, y, Sample { depth_m, colour });
+    }
+    picture
+}
+
+/// The colour of a share from 0 to 1.
+fn viridis(share: f64) -> [f64; 3] {
+    let at = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    // Not negative and below 17.
+    let below = at as usize;
+    let sample = |place: usize| VIRIDIS.get(place).or(VIRIDIS.last()).copied();
+    let (from, to) = (
+        sample(below).unwrap_or_default(),
+        sample(below + 1).unwrap_or_default(),
+    );
+    let part = at.fract();
+    std::array::from_fn(|c| {
+        let colour = |of: [u8; 3]| f64::from(of.get(c).copied().unwrap_or_default());
+        colour(from) + (colour(to) - colour(from)) * part
+    })
+}
+
+impl Picture {
+    fn at(&self, x: i64, y: i64) -> Option<&Sample> {
+        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
+        self.samples.get((x < ACROSS).then(|| y * ACROSS + x)?)
+    }
+
+    /// Puts a dot of three samples by three, where nothing nearer is.
+    fn dot(&mut self, x: f64, y: f64, sample: Sample) {
+        let (x, y) = (x.floor() as i64, y.floor() as i64);
+        for row in y.saturating_sub(1)..=y.saturating_add(1) {
+            for column in x.saturating_sub(1)..=x.saturating_add(1) {
+                let (Ok(column), Ok(row)) = (usize::try_from(column), usize::try_from(row)) else {
+                    continue;
+                };
+                if column >= ACROSS {
+                    continue;
+                }
+                if let Some(there) = self.samples.get_mut(row * ACROSS + column)
+                    && sample.depth_m < there.depth_m
+                {
+                    *there = sample;
+                }
+            }
+        }
+    }
+
+    /// How bright a sample is: the darker, the farther it lies behind its neighbours (eye-dome lighting, Boucheny 2009).
+    fn light(&self, x: i64, y: i64, here: &Sample) -> f64 {
+        const AROUND: [(i64, i64); 8] = [
+            (-2, 0),
+            (2, 0),
+            (0, -2),
+            (0, 2),
+            (-1, -1),
+            (1, 1),
+            (-1, 1),
+            (1, -1),
+        ];
+        let behind: f64 = AROUND
+            .iter()
+            .filter_map(|(dx, dy)| self.at(x + dx, y + dy))
+            .filter(|there| there.depth_m.is_finite())
+            .map(|there| (here.depth_m / there.depth_m).log2().max(0.0))
+            .sum();
+        (-SHADE * behind / 8.0).exp()
+    }
+
+    /// Red, green, blue and opacity of a pixel.
+    fn pixel(&self, x: usize, y: usize) -> [u8; 4] {
+        let (mut sum, mut seen) = ([0.0; 3], 0.0);
+        for sub in 0..FINE * FINE {
+            let at = |place: usize, sub: usize| i64::try_from(place * FINE + sub).ok();
+            let (Some(x), Some(y)) = (at(x, sub % FINE), at(y, sub / FINE)) else {
+                continue;
+            };
+            if let Some(sample) = self.at(x, y)
+                && sample.depth_m.is_finite()
+            {
+                let light = self.light(x, y, sample);
+                for (sum, colour) in sum.iter_mut().zip(sample.colour) {
+                    *sum += colour * light;
+                }
+                seen += 1.0;
+            }
+        }
+        let [r, g, b] = sum.map(|value| if seen > 0.0 { value / seen } else { 0.0 } as u8);
+        [r, g, b, (255.0 * seen / (FINE * FINE) as f64) as u8]
+    }
+}
+
+fn encode(picture: &Picture) -> Result<Vec<u8>, ThumbnailError> {
+    let pixels: Vec<u8> = (0..WIDTH * HEIGHT)
+        .flat_map(|place| picture.pixel(place % WIDTH, place / WIDTH))
+        .collect();
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, WIDTH as u32, HEIGHT as u32);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.write_header()?.write_image_data(&pixels)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use cloud::Sink;
+    use cloud::formats::ply::PlyWriter;
+
+    use super::*;
+
+    /// A cloud as this program writes it.
+    fn ply(points: &[Point]) -> Vec<u8> {
+        let mut writer = PlyWriter::new(Cursor::new(Vec::new()));
+        let mut batch = cloud::Points::new(writer.fields());
+        for &position_m in points {
+            batch.push(cloud::Point {
+                position_m,
+                ..cloud::Point::default()
+            });
+        }
+        writer.begin(&cloud::Metadata::default()).unwrap();
+        writer.points(&batch).unwrap();
+        writer.finish().unwrap();
+        writer.into_inner().into_inner()
+    }
+
+    /// A floor of 10 m by 10 m, 1 m below the scanner, and a wall 4 m high behind it as seen from the eye.
+    fn corner() -> Vec<Point> {
+        let line = || (-100..=100).map(|i| f64::from(i) * 0.05);
+        let floor = line().flat_map(|x| line().map(move |y| [x, y, -1.0]));
+        let wall = line().flat_map(|x| (0..80).map(move |z| [x, 5.0, f64::from(z) * 0.05 - 1.0]));
+        floor.chain(wall).collect()
+    }
+
+    fn decoded(png: &[u8]) -> Vec<[u8; 4]> {
+        let mut reader = png::Decoder::new(Cursor::new(png)).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut bytes).unwrap();
+        assert_eq!((info.width as usize, info.height as usize), (WIDTH, HEIGHT));
+        bytes.as_chunks::<4>().0.to_vec()
+    }
+
+    fn picture_of(points: &[Point]) -> Vec<[u8; 4]> {
+        decoded(&of_ply(&mut Cursor::new(ply(points))).unwrap())
+    }
+
+    #[test]
+    fn what_is_high_is_bright_and_above_and_where_nothing_is_the_ground_shows() {
+        let pixels = picture_of(&corner());
+        let seen = pixels.iter().filter(|pixel| pixel[3] > 0).count();
+        assert!(
+            (pixels.len() / 5..pixels.len()).contains(&seen),
+            "{seen} of {}",
+            pixels.len()
+        );
+        assert_eq!(pixels[0][3], 0);
+        // The floor is at the map's dark end, below; the wall's top at its bright end, above.
+        let rows_of = |wanted: fn(&[u8; 4]) -> bool| {
+            let rows: Vec<usize> = (0..pixels.len())
+                .filter(|&place| pixels[place][3] == 255 && wanted(&pixels[place]))
+                .map(|place| place / WIDTH)
+                .collect();
+            assert!(rows.len() > 100, "{}", rows.len());
+            rows.iter().sum::<usize>() / rows.len()
+        };
+        let (top, floor) = (
+            rows_of(|p| p[0] > 140 && p[1] > 180),
+            rows_of(|p| p[0] > p[1] && p[2] > p[0]),
+        );
+        assert!(top + 40 < floor, "{top} {floor}");
+    }
+
+    #[test]
+    fn a_ceiling_and_the_near_wall_do_not_hide_the_inside() {
+        let line = || (-100..=100).map(|i| f64::from(i) * 0.05);
+        let ceiling = line().flat_map(|x| line().map(move |y| [x, y, 4.0]));
+        let near = line().flat_map(|x| (30..80).map(move |z| [x, -5.0, f64::from(z) * 0.05 - 1.0]));
+        let room: Vec<Point> = corner().into_iter().chain(ceiling).chain(near).collect();
+        let dark = |pixels: Vec<[u8; 4]>| {
+            let floor = |p: &&[u8; 4]| p[3] == 255 && p[0] > p[1] && p[2] > p[0];
+            pixels.iter().filter(floor).count()
+        };
+        let open = dark(picture_of(&corner()));
+        let closed = dark(picture_of(&room));
+        assert!(open > 10_000 && closed > open / 2, "{open} {closed}");
+    }
+
+    #[test]
+    fn a_cloud_of_nothing_is_a_picture_of_nothing() {
+        let pixels = picture_of(&[]);
+        assert!(pixels.iter().all(|&pixel| pixel == [0; 4]));
+    }
+
+    #[test]
+    fn a_cloud_that_is_cut_off_is_drawn_as_far_as_it_goes() {
+        let mut bytes = ply(&corner());
+        bytes.truncate(bytes.len() / 2);
+        let pixels = decoded(&of_ply(&mut Cursor::new(bytes)).unwrap());
+        assert!(pixels.iter().any(|pixel| pixel[3] > 0));
+    }
+
+    #[test]
+    fn of_many_points_an_even_sample_is_read() {
+        let many: Vec<Point> = (0..700_000).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+        let mut file = BufReader::new(Cursor::new(ply(&many)));
+        let points = Header::read(&mut file).unwrap().points(&mut file).unwrap();
+        assert_eq!(points.len(), 233_333);
+        assert_eq!((points[1][0], points[233_332][0]), (3.0, 3.0 * 233_332.0));
+    }
+
+    #[test]
+    fn what_is_no_cloud_is_refused() {
+        let mut endless = b"ply\n".to_vec();
+        endless.extend(b"comment and so on\n".repeat(10_000));
+        for wrong in [
+            b"".as_slice(),
+            b"PNG",
+            b"ply\nformat ascii 1.0\n",
+            b"ply\nproperty list uchar int x\n",
+            b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nend_header\n",
+            b"ply\nelement vertex 1\nproperty double x\nproperty float y\nproperty float z\nend_header\n",
+            &endless,
+        ] {
+            let refused = of_ply(&mut Cursor::new(wrong));
+            assert!(
+                matches!(refused, Err(ThumbnailError::Header { .. })),
+                "{:?}",
+                String::from_utf8_lossy(&wrong[..wrong.len().min(60)])
+            );
+        }
+    }
+}
