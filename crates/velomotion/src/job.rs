@@ -275,10 +275,7 @@ impl Ended {
             (Err(error), recorded) => Some(motion_failure(&error, recorded.err())),
             (Ok(()), Ok(recorded)) => loss(&recorded),
         };
-        Outcome {
-            failure,
-            reception,
-        }
+        Outcome { failure, reception }
     }
 }
 

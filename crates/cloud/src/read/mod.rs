@@ -1,11 +1,13 @@
 //! Clouds read back: where their points are, and nothing else of them.
 //!
 //! What the formats of [`crate::formats`] write, and what other programs write in them: PLY and PCD as text or binary in any layout of columns, LAS and LAZ of
-//! every version that the `las` crate reads, text with a row a point. Positions are in metres as they stand in the file. Left out: all other columns, and opening
+//! every version that the `las` crate reads, E57, PointCloud2 in MCAP, text with a row a point. Positions are in metres as they stand in the file. Left out: all other columns, and opening
 //! files.
 
 mod csv;
+mod e57;
 mod las;
+mod mcap;
 mod pcd;
 mod ply;
 
@@ -40,6 +42,8 @@ pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError>
         Format::Ply => ply::positions(&bytes),
         Format::Pcd => pcd::positions(&bytes),
         Format::Las | Format::Laz => las::positions(format, bytes),
+        Format::E57 => e57::positions(&bytes),
+        Format::Mcap => mcap::positions(&bytes),
         Format::Csv => csv::positions(&bytes),
     }
 }

@@ -9,7 +9,7 @@ fn written(format: Format, points: &crate::Points) -> Vec<u8> {
     writer.points(points).unwrap();
     writer.finish().unwrap();
     drop(writer);
-    output.bytes()
+    output.content()
 }
 
 #[test]
@@ -21,7 +21,7 @@ fn what_is_written_is_read_back() {
         assert_eq!(read.len(), points.len());
         // f32 at 100 m; 0.1 mm steps; shortest decimals.
         let most = match format {
-            Format::Ply | Format::Pcd => 4e-6,
+            Format::Ply | Format::Pcd | Format::E57 | Format::Mcap => 4e-6,
             Format::Las | Format::Laz => 0.51e-4,
             Format::Csv => 0.0,
         };

@@ -52,7 +52,13 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
     interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
     let stdout = target.is_stdout();
-    let made = job::cloud(&setup, truth.as_ref(), ended.lost_records(), &interrupt, target);
+    let made = job::cloud(
+        &setup,
+        truth.as_ref(),
+        ended.lost_records(),
+        &interrupt,
+        target,
+    );
     // A log without a sweep is not worth an older one; any other is.
     if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
         older_log.replaced();

@@ -1,0 +1,118 @@
+//! MCAP with ROS 2's messages, by the `mcap` crate: the points of every `sensor_msgs/msg/PointCloud2`, each in the frame that its message names.
+//!
+//! Left out: transforms between frames, and messages in other encodings than little-endian CDR.
+
+use super::{Number, Positions, ReadError};
+use crate::formats::Format;
+use crate::messages::Topic;
+
+/// Bytes before a CDR message proper; alignment counts from behind them.
+const ENCAPSULATION: usize = 4;
+
+fn wrong(offset: usize, expected: &str, got: impl ToString) -> ReadError {
+    ReadError {
+        format: Format::Mcap,
+        offset,
+        expected: expected.to_owned(),
+        got: got.to_string(),
+    }
+}
+
+pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
+    let bad = |error: mcap::McapError| wrong(0, "an MCAP file", error);
+    let mut positions = Positions::new();
+    for message in mcap::MessageStream::new(bytes).map_err(bad)? {
+        let message = message.map_err(bad)?;
+        let schema = message.channel.schema.as_ref();
+        let is_cloud = schema.is_some_and(|it| it.name == Topic::Points.message_type().name);
+        if is_cloud && message.channel.message_encoding == "cdr" {
+            cloud(&message.data, &mut positions)?;
+        }
+    }
+    Ok(positions)
+}
+
+/// A message, read from its beginning. Offsets of errors are within the message.
+struct Cdr<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Cdr<'a> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], ReadError> {
+        let left = self.bytes.get(self.at..).unwrap_or_default();
+        let taken = left.get(..count);
+        let taken = taken.ok_or_else(|| wrong(self.at, &format!("{count} bytes"), left.len()))?;
+        self.at += count;
+        Ok(taken)
+    }
+
+    fn u8(&mut self) -> Result<u8, ReadError> {
+        Ok(self.take(1)?.first().copied().unwrap_or(0))
+    }
+
+    fn u32(&mut self) -> Result<usize, ReadError> {
+        let padding = (self.at - ENCAPSULATION).next_multiple_of(4) + ENCAPSULATION - self.at;
+        self.take(padding)?;
+        let bytes = self.take(4)?.first_chunk().copied().unwrap_or_default();
+        Ok(u32::from_le_bytes(bytes) as usize)
+    }
+
+    /// A sequence of bytes, or a string with its zero.
+    fn sequence(&mut self) -> Result<&'a [u8], ReadError> {
+        let length = self.u32()?;
+        self.take(length)
+    }
+}
+
+/// Adds the points of a `sensor_msgs/msg/PointCloud2` that have three finite coordinates.
+fn cloud(message: &[u8], positions: &mut Positions) -> Result<(), ReadError> {
+    let mut cdr = Cdr {
+        bytes: message,
+        at: 0,
+    };
+    match cdr.take(ENCAPSULATION)? {
+        [0, 1, ..] => {}
+        other => return Err(wrong(0, "CDR, little-endian", format!("{other:02x?}"))),
+    }
+    // Stamp and frame; height and width.
+    cdr.u32()?;
+    cdr.u32()?;
+    cdr.sequence()?;
+    cdr.u32()?;
+    cdr.u32()?;
+    let mut axes: [Option<(usize, Number)>; 3] = [None; 3];
+    for _ in 0..cdr.u32()? {
+        let name = cdr.sequence()?;
+        let offset = cdr.u32()?;
+        let number = match cdr.u8()? {
+            7 => Some(Number::F32),
+            8 => Some(Number::F64),
+            _ => None,
+        };
+        cdr.u32()?;
+        let axis = [b"x\0", b"y\0", b"z\0"].iter().position(|it| name == *it);
+        if let Some(axis) = axis.and_then(|axis| axes.get_mut(axis)) {
+            *axis = number.map(|number| (offset, number));
+        }
+    }
+    let [Some(x), Some(y), Some(z)] = axes else {
+        return Err(wrong(
+            cdr.at,
+            "fields x, y and z of FLOAT32 or FLOAT64",
+            "others",
+        ));
+    };
+    let big_endian = cdr.u8()? != 0;
+    let point_bytes = cdr.u32()?;
+    cdr.u32()?;
+    for row in cdr.sequence()?.chunks_exact(point_bytes.max(1)) {
+        let read = |(offset, number): (usize, Number)| number.read(row.get(offset..)?, big_endian);
+        if let (Some(x), Some(y), Some(z)) = (read(x), read(y), read(z))
+            && [x, y, z].iter().all(|value| value.is_finite())
+        {
+            positions.push([x, y, z]);
+        }
+    }
+    Ok(())
+}
