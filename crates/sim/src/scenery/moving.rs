@@ -51,13 +51,13 @@ impl Placed {
     /// # Errors
     /// [`PlacementError`] for what stands out of all bounds.
     pub fn divided(&self) -> Result<(Self, Vec<(Moving, Self)>), PlacementError> {
-        let moves = |object: &usize| {
-            self.moving
-                .iter()
-                .any(|moving| moving.objects.contains(object))
-        };
-        let stands = (0..self.objects.len()).filter(|object| !moves(object));
-        let stands = self.only(stands, DVec3::ZERO)?;
+        let mut moves = vec![false; self.objects.len()];
+        for moving in &self.moving {
+            let of = moves.get_mut(moving.objects.clone());
+            of.unwrap_or_default().fill(true);
+        }
+        let stands = moves.iter().enumerate().filter(|(_, moves)| !**moves);
+        let stands = self.only(stands.map(|(object, _)| object), DVec3::ZERO)?;
         let bodies = self.moving.iter().map(|moving| {
             let body = self.only(moving.objects.clone(), moving.travel.from_m)?;
             Ok((moving.clone(), body))
