@@ -40,8 +40,13 @@ fn mcap_and_rosbags_read_our_recording_whole() {
     assert_eq!(got["bag_points"].as_u64(), Some(summary.points));
     same(&summary, &got, "min", "max");
     assert_eq!(got["counts"]["/velomotion/points"], report.sweeps.len());
+    // All but the slowest tenth of the polls, whose instants are not known.
     let samples = report.contents.tilt.as_ref().unwrap().samples;
-    assert_eq!(got["counts"]["/joint_states"], samples);
+    let states = got["counts"]["/joint_states"].as_u64().unwrap();
+    assert!(
+        states * 10 >= samples * 9 && states <= samples,
+        "{states} of {samples}"
+    );
     for topic in ["/tf", "/tf_static", "/diagnostics"] {
         assert!(got["counts"][topic].as_u64() > Some(0), "{topic}: {got}");
     }

@@ -20,6 +20,8 @@ print(
             "max": xyz.max(axis=1).tolist(),
             "header_min": list(las.header.mins),
             "header_max": list(las.header.maxs),
+            "scales": list(las.header.scales),
+            "crs_records": [v.record_id for v in las.header.vlrs if v.user_id == "LASF_Projection"],
             "dimensions": list(las.point_format.dimension_names),
             "system_identifier": las.header.system_identifier,
         }

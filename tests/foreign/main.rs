@@ -177,6 +177,12 @@ fn laspy_reads_our_laz_with_the_right_count_and_bounds() {
             }
         }
     }
+    assert_eq!(
+        result["crs_records"],
+        serde_json::json!([]),
+        "coordinates are local"
+    );
+    assert_eq!(result["scales"], serde_json::json!([1e-4, 1e-4, 1e-4]));
     let dimensions = result["dimensions"].as_array().unwrap();
     for name in ["intensity", "ring", "time", "tilt"] {
         assert!(

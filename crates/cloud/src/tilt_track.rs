@@ -7,7 +7,7 @@ use units::{Degrees, Host, Metres, Stamp};
 pub struct TiltTrack {
     /// Height of the lidar's origin above the tilt axis, metres; `None` where the platform does not tilt and points are in the lidar's frame.
     pub mount: Option<Metres>,
-    /// Every angle measured, in the order of time.
+    /// Every measured angle that the points' tilt goes by, in the order of time.
     pub samples: Vec<(Stamp<Host>, Degrees)>,
     /// When each sweep begins and ends, in the order of time; empty where sweeps are not known.
     pub sweeps: Vec<(Stamp<Host>, Stamp<Host>)>,

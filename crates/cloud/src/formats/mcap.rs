@@ -5,7 +5,7 @@
 //! as 42 seconds of a VLP-16, 360 MB, in one message are of no use to anybody. So memory stays bounded, too: a message is held once,
 //! at most 23 MB of it as usually made.
 //!
-//! Beside the clouds: the tilt joint at every sample, transforms at most every [`TRANSFORMS_EVERY`], how lidar and axis sit on each other
+//! Beside the clouds: the tilt joint at every sample of the track, transforms at most every [`TRANSFORMS_EVERY`], how lidar and axis sit on each other
 //! (latched), what was found out about the scan. A message's log time is when what it says was complete: a cloud's is that of its last point,
 //! while its header has that of its first. Messages come in the order of their log times.
 //!
