@@ -3,6 +3,7 @@
 //! Left out: making clouds (`scanner`), and anything that reads files or clocks.
 
 pub mod density;
+pub mod device;
 pub mod k;
 pub mod tradeoff;
 pub mod truth;

@@ -9,6 +9,7 @@ use cloud::Fields;
 use protocol::vlp16::{Model, models};
 use scanner::Tolerance;
 
+use crate::commands::analyze::Sweep;
 use crate::recordings::SensorName;
 
 /// Dense point clouds from a multi-beam lidar on a tilting platform.
@@ -54,6 +55,8 @@ pub enum Command {
     Simulate(Simulate),
     /// Say what a file holds
     Info(Info),
+    /// Say how densely and evenly scan patterns, clouds or logs cover what is about the scanner
+    Analyze(Analyze),
     /// Measure, on this machine and now, what accuracy costs in time
     Tradeoff(Tradeoff),
     /// Look at the tilt axis, home it, move it, stop it
@@ -285,6 +288,25 @@ pub struct Info {
     /// The lidars' model, where neither their packets' factory byte nor their spacing tells it right
     #[arg(long, value_enum)]
     pub model: Option<ModelName>,
+}
+
+/// `analyze`.
+#[derive(Clone, Debug, Args)]
+pub struct Analyze {
+    /// Patterns by name (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED, each with ,KEY=VALUE: rpm, step,
+    /// start, seam, from, to, tilt, frames, d), clouds, logs or recordings
+    #[arg(value_name = "PATTERN|CLOUD|LOG", required = true)]
+    pub inputs: Vec<String>,
+    /// How often the icosahedron whose faces are the bins is cut: 20 x 4^N bins
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=8))]
+    pub level: u32,
+    /// Try settings of one pattern: ranges of speed, rpm or other numbers, each in steps (8 unless /N says so), and say which are best for their scan time
+    #[arg(
+        long,
+        value_name = "KEY=FROM..TO[/N][,...]",
+        allow_hyphen_values = true
+    )]
+    pub sweep: Option<Sweep>,
 }
 
 /// `tradeoff`.

@@ -115,7 +115,33 @@ impl Progress {
         }
     }
 
-    /// The simulation is over.
+    /// So many things are to be done one after the other.
+    pub fn begin_count(&mut self, count: u64) {
+        self.end_run();
+        if self.quiet || !self.terminal {
+            return;
+        }
+        let bar = ProgressBar::with_draw_target(
+            Some(count.max(1)),
+            ProgressDrawTarget::stderr_with_hz(20),
+        );
+        if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos} of {len}, {eta} left") {
+            bar.set_style(style);
+        }
+        self.run = Some(bar);
+    }
+
+    /// So many of them are done.
+    pub fn counted(&mut self, done: u64) {
+        match &self.run {
+            Some(bar) => bar.set_position(done),
+            // A line now and then where nobody looks at a bar.
+            None if done.is_multiple_of(16) => self.say(&format!("{done} done")),
+            None => {}
+        }
+    }
+
+    /// The run or the count is over.
     pub fn end_run(&mut self) {
         if let Some(bar) = self.run.take() {
             bar.finish_and_clear();

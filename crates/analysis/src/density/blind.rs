@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use serde::Serialize;
 
-use super::hole::{Done, Hole, Search};
+use super::hole::{Depth, Done, Hole, Search};
 use super::nearby::Nearby;
 use super::{DensityError, check};
 
@@ -33,18 +33,31 @@ pub struct Band {
     pub to_deg: f64,
 }
 
+impl Band {
+    /// How wide it is, degrees.
+    #[must_use]
+    pub fn width_deg(&self) -> f64 {
+        self.to_deg - self.from_deg
+    }
+}
+
 /// Holes of at least `least_rad`, the largest first, at most `most`: each as large as there is room for in its place, none with its middle in a larger
-/// one that is listed. Radii are right to a fiftieth of `least_rad`, mostly to rounding.
+/// one that is listed, and only in the region that `depth_rad` tells of ([`super::largest_hole_within`]). Radii are right to a fiftieth of `least_rad`, mostly to rounding.
 ///
 /// # Errors
 /// [`DensityError`] for what is no direction, or a least radius that is not above 0.
-pub fn holes(directions: &[DVec3], least_rad: f64, most: usize) -> Result<Vec<Hole>, DensityError> {
+pub fn holes(
+    directions: &[DVec3],
+    least_rad: f64,
+    most: usize,
+    depth_rad: Depth<'_>,
+) -> Result<Vec<Hole>, DensityError> {
     check(directions)?;
     if !(least_rad > 0.0 && least_rad.is_finite()) {
         return Err(DensityError::Least { got: least_rad });
     }
     let nearby = Nearby::new(directions);
-    let mut search = Search::new(&nearby, 0.02 * least_rad);
+    let mut search = Search::new(&nearby, 0.02 * least_rad, depth_rad);
     let mut found = Vec::new();
     while let Some(next) = search.next() {
         if next.bound_rad < least_rad {
@@ -59,7 +72,7 @@ pub fn holes(directions: &[DVec3], least_rad: f64, most: usize) -> Result<Vec<Ho
             }),
         }
     }
-    found.retain(|hole| hole.radius_rad >= least_rad);
+    found.retain(|hole| hole.radius_rad >= least_rad && depth_rad(hole.centre) >= 0.0);
     Ok(apart(found, least_rad, most))
 }
 
@@ -157,6 +170,7 @@ fn from_axis(direction: DVec3, axis: DVec3) -> f64 {
 mod tests {
     use std::f64::consts::TAU;
 
+    use super::super::hole::EVERYWHERE;
     use super::*;
 
     /// Rings about y at these angles from it, degrees, `n` points each.
@@ -198,7 +212,7 @@ mod tests {
             .map(f64::from)
             .collect();
         let points = rings(&angles, 720);
-        let found = holes(&points, 1.2_f64.to_radians(), usize::MAX).unwrap();
+        let found = holes(&points, 1.2_f64.to_radians(), usize::MAX, &EVERYWHERE).unwrap();
         let rows = rows(&found, DVec3::Y, 0.5_f64.to_radians());
         assert_eq!(rows.len(), 2, "{rows:?}");
         for (row, at) in rows.iter().zip([50.5, 129.5]) {
@@ -228,7 +242,7 @@ mod tests {
         let out: Vec<DVec3> = [3_000, 2_000, 1_500, 800, 555]
             .map(|i| points.swap_remove(i))
             .to_vec();
-        let found = holes(&points, 0.9 * spacing, usize::MAX).unwrap();
+        let found = holes(&points, 0.9 * spacing, usize::MAX, &EVERYWHERE).unwrap();
         assert_eq!(found.len(), out.len());
         for hole in &found {
             assert!(
@@ -239,13 +253,16 @@ mod tests {
             let nearest = nearest.fold(f64::MAX, f64::min);
             assert!((nearest - hole.radius_rad).abs() < 1e-9);
         }
-        assert_eq!(holes(&points, 0.9 * spacing, 2).unwrap(), found[..2]);
+        assert_eq!(
+            holes(&points, 0.9 * spacing, 2, &EVERYWHERE).unwrap(),
+            found[..2]
+        );
     }
 
     #[test]
     fn a_size_that_is_none_is_refused() {
         for got in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let error = holes(&[DVec3::X], got, 10).unwrap_err();
+            let error = holes(&[DVec3::X], got, 10, &EVERYWHERE).unwrap_err();
             assert!(matches!(error, DensityError::Least { .. }), "{got}");
         }
     }

@@ -91,22 +91,30 @@ impl Counts {
     /// What they are like.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
-        let bins = self.0.len();
-        let points: u64 = self.0.iter().sum();
+        self.statistics_of(|_| true)
+    }
+
+    /// What those of some bins are like, by the numbers of the bins.
+    #[must_use]
+    pub fn statistics_of(&self, which: impl Fn(usize) -> bool) -> Statistics {
+        let counts = self.0.iter().enumerate().filter(|(bin, _)| which(*bin));
+        let counts: Vec<u64> = counts.map(|(_, count)| *count).collect();
+        let bins = counts.len();
+        let points: u64 = counts.iter().sum();
         let n = (bins as f64).max(1.0);
         let mean = points as f64 / n;
-        let off = self.0.iter().map(|&count| (count as f64 - mean).powi(2));
+        let off = counts.iter().map(|&count| (count as f64 - mean).powi(2));
         let sd = (off.sum::<f64>() / n).sqrt();
-        let per_deg2 = n / SPHERE_DEG2;
+        let per_deg2 = self.0.len() as f64 / SPHERE_DEG2;
         Statistics {
             bins,
             mean,
             sd,
-            min: self.0.iter().copied().min().unwrap_or(0),
-            max: self.0.iter().copied().max().unwrap_or(0),
+            min: counts.iter().copied().min().unwrap_or(0),
+            max: counts.iter().copied().max().unwrap_or(0),
             mean_per_deg2: mean * per_deg2,
             sd_per_deg2: sd * per_deg2,
-            empty: self.0.iter().filter(|&&count| count == 0).count(),
+            empty: counts.iter().filter(|&&count| count == 0).count(),
         }
     }
 
@@ -198,6 +206,18 @@ mod tests {
         assert_eq!(classes.len(), 10);
         assert_eq!(classes[0].bins, 5_119);
         assert_eq!(classes[9].bins, 1);
+    }
+
+    #[test]
+    fn of_some_bins_only() {
+        let counts = Counts(vec![4, 0, 8, 100]);
+        let some = counts.statistics_of(|bin| bin < 3);
+        assert_eq!(
+            (some.bins, some.mean, some.min, some.max, some.empty),
+            (3, 4.0, 0, 8, 1)
+        );
+        assert!((some.sd - (32.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+        assert_eq!(counts.statistics_of(|_| false).mean, 0.0);
     }
 
     #[test]

@@ -45,9 +45,29 @@ pub fn largest_hole(
     directions: &[DVec3],
     tolerance_rad: f64,
 ) -> Result<Option<Largest>, DensityError> {
-    check(directions)?;
-    Ok(Search::new(&Nearby::new(directions), tolerance_rad.max(TOLERANCE_RAD)).largest())
+    largest_hole_within(directions, tolerance_rad, &EVERYWHERE)
 }
+
+/// The largest hole with its middle in a region, or within a quarter of the tolerance of it. `depth_rad` tells how deep in the region a direction is, radians,
+/// negative outside; from one direction to another it changes by no more than the angle between them. `None` where there is no direction, or no region.
+///
+/// # Errors
+/// [`DensityError::Direction`] for what is none.
+pub fn largest_hole_within(
+    directions: &[DVec3],
+    tolerance_rad: f64,
+    depth_rad: Depth<'_>,
+) -> Result<Option<Largest>, DensityError> {
+    check(directions)?;
+    let nearby = Nearby::new(directions);
+    Ok(Search::new(&nearby, tolerance_rad.max(TOLERANCE_RAD), depth_rad).largest())
+}
+
+/// How deep in a region a direction is, radians.
+pub type Depth<'a> = &'a dyn Fn(DVec3) -> f64;
+
+/// The whole sphere.
+pub(super) const EVERYWHERE: fn(DVec3) -> f64 = |_| f64::INFINITY;
 
 /// More points than this that can matter to a cell, and the cell is cut.
 const FEW: usize = 10;
@@ -58,6 +78,7 @@ const SAME: f64 = 1e-9;
 pub(super) struct Search<'a> {
     nearby: &'a Nearby,
     tolerance_rad: f64,
+    depth_rad: Depth<'a>,
     open: BinaryHeap<Open>,
     pub best: Option<Hole>,
 }
@@ -73,6 +94,8 @@ pub(super) struct Open {
     ball: f64,
     /// How far the nearest point is from the middle, radians.
     pub free_rad: f64,
+    /// Whether it is in the region, and a little more.
+    inside: bool,
 }
 
 /// What became of a cell.
@@ -86,10 +109,11 @@ pub(super) enum Done {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(nearby: &'a Nearby, tolerance_rad: f64) -> Self {
+    pub fn new(nearby: &'a Nearby, tolerance_rad: f64, depth_rad: Depth<'a>) -> Self {
         let mut search = Self {
             nearby,
             tolerance_rad,
+            depth_rad,
             open: BinaryHeap::new(),
             best: None,
         };
@@ -112,7 +136,10 @@ impl<'a> Search<'a> {
                 Done::Holes(centres) => centres.into_iter().for_each(|c| {
                     self.at(c);
                 }),
-                Done::Tiny => bound_rad = next.bound_rad.max(bound_rad),
+                Done::Tiny => {
+                    bound_rad = next.bound_rad.max(bound_rad);
+                    self.at(next.middle);
+                }
             }
         }
         let hole = self.best?;
@@ -129,40 +156,59 @@ impl<'a> Search<'a> {
 
     fn open(&mut self, cell: Cell) {
         let (middle, ball) = cell.ball();
-        if let Some(hole) = self.at(middle) {
+        let depth_rad = (self.depth_rad)(middle);
+        if depth_rad < -angle(ball) {
+            return;
+        }
+        if let Some(hole) = self.about(middle) {
+            if depth_rad >= 0.0 {
+                self.keep(hole);
+            }
             self.open.push(Open {
                 bound_rad: hole.radius_rad + angle(ball),
                 cell,
                 middle,
                 ball,
                 free_rad: hole.radius_rad,
+                inside: depth_rad > angle(ball) + 1e-6,
             });
         }
     }
 
-    /// The hole about a direction, remembered if it is the largest so far; `None` without points.
-    pub fn at(&mut self, centre: DVec3) -> Option<Hole> {
+    /// The hole about a direction; `None` without points.
+    fn about(&self, centre: DVec3) -> Option<Hole> {
         let nearest = self.nearby.nearest(centre);
-        let hole = nearest.is_finite().then(|| Hole {
+        nearest.is_finite().then(|| Hole {
             centre,
             radius_rad: angle(nearest),
-        })?;
+        })
+    }
+
+    fn keep(&mut self, hole: Hole) {
         if self
             .best
             .is_none_or(|best| hole.radius_rad > best.radius_rad)
         {
             self.best = Some(hole);
         }
+    }
+
+    /// The hole about a direction, remembered if it is the largest so far.
+    pub fn at(&mut self, centre: DVec3) -> Option<Hole> {
+        let hole = self.about(centre)?;
+        self.keep(hole);
         Some(hole)
     }
 
     /// Does with a cell what is to be done: of its holes, those of at least `least_rad`.
     pub fn look_into(&mut self, next: &Open, least_rad: f64) -> Done {
         let reach = next.free_rad + 2.0 * angle(next.ball);
-        let few = self
-            .nearby
-            .within(next.middle, chord(reach) + SAME, SAME, FEW);
-        if let Some(few) = few {
+        // At the region's edge a hole that cannot grow there may still grow out of it.
+        let few = next.inside.then(|| {
+            self.nearby
+                .within(next.middle, chord(reach) + SAME, SAME, FEW)
+        });
+        if let Some(few) = few.flatten() {
             let large = next.bound_rad > FRAC_PI_2 - 1e-6;
             return Done::Holes(centres(&few, next, least_rad, large));
         }

@@ -8,6 +8,7 @@
 mod blind;
 mod cells;
 mod count;
+mod gaps;
 mod hole;
 mod icosahedron;
 mod locator;
@@ -18,7 +19,8 @@ use thiserror::Error;
 
 pub use blind::{Band, Row, bands, holes, rows};
 pub use count::{Class, Counts, Statistics};
-pub use hole::{Hole, Largest, TOLERANCE_RAD, largest_hole};
+pub use gaps::{gaps, quantile};
+pub use hole::{Depth, Hole, Largest, TOLERANCE_RAD, largest_hole, largest_hole_within};
 pub use icosahedron::{Face, Icosahedron, MOST_LEVEL};
 pub use locator::Locator;
 

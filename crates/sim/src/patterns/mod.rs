@@ -7,6 +7,8 @@
 
 mod wish;
 
+use std::f64::consts::{PI, TAU};
+
 use glam::DVec3;
 use thiserror::Error;
 
@@ -248,6 +250,12 @@ impl Pattern {
         })
     }
 
+    /// Lasers that fire.
+    #[must_use]
+    pub fn lasers(&self) -> u32 {
+        self.sensor.used().count_ones()
+    }
+
     /// The lowest and the highest elevation of its lasers in the sensor's own frame, degrees.
     #[must_use]
     pub fn elevations_deg(&self) -> [f64; 2] {
@@ -257,6 +265,48 @@ impl Pattern {
             [f64::INFINITY, f64::NEG_INFINITY],
             |[low, high], (_, beam)| [low.min(beam.elevation_deg), high.max(beam.elevation_deg)],
         )
+    }
+
+    /// How deep a direction is within what the scan can see, from its lowest to its highest laser at every tilt on its way: radians, negative
+    /// outside. It changes by no more than the direction does. The sensor is taken to be on the axis.
+    #[must_use]
+    pub fn depth_rad(&self, direction: DVec3) -> f64 {
+        let tilting = self.settings.tilting;
+        let last = self.cut_deg(f64::from(self.frames) * self.step_deg);
+        let (a, b) = (tilting.from_deg, tilting.from_deg + last);
+        let (from, to) = (a.min(b).to_radians(), a.max(b).to_radians());
+        // In the sensor's frame the height of a direction is across x cos(tilt - ahead).
+        let across = direction.x.hypot(direction.z);
+        let ahead = direction.x.atan2(direction.z);
+        let passes = |angle: f64| {
+            let turns = ((from - angle) / TAU).ceil();
+            angle + turns * TAU <= to
+        };
+        let ends = [from, to].map(|tilt| across * (tilt - ahead).cos());
+        let most = if passes(ahead) {
+            across
+        } else {
+            ends[0].max(ends[1])
+        };
+        let least = if passes(ahead + PI) {
+            -across
+        } else {
+            ends[0].min(ends[1])
+        };
+        let elevation = |height: f64| height.clamp(-1.0, 1.0).asin();
+        let [low, high] = self.elevations_deg().map(f64::to_radians);
+        (elevation(most) - low).min(high - elevation(least))
+    }
+
+    /// As far as the way goes, where it ends the scan.
+    fn cut_deg(&self, turned_deg: f64) -> f64 {
+        let tilting = self.settings.tilting;
+        let way_deg = tilting.to_deg - tilting.from_deg;
+        if self.cut() && turned_deg.abs() > way_deg.abs() {
+            way_deg
+        } else {
+            turned_deg
+        }
     }
 
     /// How far the sensor itself sees, metres.

@@ -207,6 +207,44 @@ fn the_simulation_sees_the_same_directions() {
 }
 
 #[test]
+fn what_a_scan_sees_lies_in_its_view_and_fills_it() {
+    for text in [
+        "vlp16",
+        "hdl32e,from=20",
+        "velomotion16:50",
+        "rmbl:120",
+        "velomotion16:50,from=30,to=-200",
+        "rsbl:50,frames=9",
+    ] {
+        let pattern = pattern(text);
+        let directions = pattern.directions();
+        let depths = directions
+            .iter()
+            .map(|direction| pattern.depth_rad(*direction));
+        let least = depths.fold(f64::INFINITY, f64::min);
+        assert!(least > -1e-7, "{text}: {least}");
+        // The outermost rays are on its edge.
+        let [low, high] = pattern.elevations_deg();
+        let way = pattern.settings().tilting;
+        let whole = (way.to_deg - way.from_deg).abs() + high - low >= 180.0;
+        assert!(whole || least < 1e-3, "{text}: {least}");
+        // It changes no faster than the direction.
+        for pair in directions.windows(2).step_by(97) {
+            let middle = (pair[0] + DVec3::new(0.3, -0.2, 0.1)).normalize();
+            let by = (pattern.depth_rad(pair[0]) - pattern.depth_rad(middle)).abs();
+            assert!(by <= pair[0].angle_between(middle) + 1e-7, "{text}");
+        }
+    }
+    let level = pattern("vlp16");
+    assert!((level.depth_rad(DVec3::Z) + 75_f64.to_radians()).abs() < 1e-12);
+    assert!((level.depth_rad(DVec3::Y) - 15_f64.to_radians()).abs() < 1e-12);
+    let swept = pattern("velomotion16:50");
+    // Straight up is 30 deg beyond the highest ray.
+    assert!((swept.depth_rad(DVec3::Z) + 30_f64.to_radians()).abs() < 1e-12);
+    assert!(pattern("rmbl:50").depth_rad(DVec3::Z) > 0.2);
+}
+
+#[test]
 fn what_is_no_pattern_is_said() {
     let wrong = |text: &str| {
         let built = Wish::parse(text).and_then(|wish| wish.build());

@@ -1,5 +1,6 @@
 //! The verbs, one file each.
 
+pub mod analyze;
 pub mod capture;
 pub mod doctor;
 pub mod firmware_sim;
@@ -35,6 +36,7 @@ pub fn run(cli: &Cli) -> Result<Said, Failure> {
         Command::Replay(arguments) => replay::run(arguments, &cli.common),
         Command::Simulate(arguments) => simulate::run(arguments, &cli.common),
         Command::Info(arguments) => info::run(arguments),
+        Command::Analyze(arguments) => analyze::run(arguments, &cli.common),
         Command::Tradeoff(arguments) => tradeoff::run(arguments, &cli.common),
         Command::Tilt(arguments) => tilt::run(arguments, &cli.common),
         Command::Doctor => doctor::run(&cli.common),

@@ -146,3 +146,45 @@ fn what_is_no_direction_is_named() {
             .starts_with("density: point 1: expected a direction")
     );
 }
+
+/// Deep in the belt within so many radians of the equator.
+fn belt(half_rad: f64) -> impl Fn(DVec3) -> f64 {
+    move |direction| half_rad - direction.z.clamp(-1.0, 1.0).asin().abs()
+}
+
+#[test]
+fn in_a_region_only_its_own_holes_count() {
+    // Rings at 40 and -40 deg and a few points between: the poles are the largest holes, but not of the belt.
+    let ring = |z: f64| (0..400).map(move |k| at(z, TAU * f64::from(k) / 400.0));
+    let (sin, degrees) = (40_f64.to_radians().sin(), 1_f64.to_radians());
+    let few = (0..6).map(|k| at(0.0, f64::from(k)));
+    let points: Vec<DVec3> = ring(sin).chain(ring(-sin)).chain(few).collect();
+    assert!((largest(&points).hole.radius_rad - 50.0 * degrees).abs() < 1e-4);
+    let within = |half_rad: f64| {
+        let found = largest_hole_within(&points, TOLERANCE_RAD, &belt(half_rad))
+            .unwrap()
+            .unwrap();
+        assert!(belt(half_rad)(found.hole.centre) > -TOLERANCE_RAD);
+        assert!((free(&points, found.hole.centre) - found.hole.radius_rad).abs() < 3e-8);
+        assert!(found.bound_rad - found.hole.radius_rad <= 1.01 * TOLERANCE_RAD);
+        // No place of a fine lattice in the region has more room.
+        let lattice = (-30..=30).flat_map(|z| (0..360).map(move |a| (z, a)));
+        let most = lattice
+            .map(|(z, a)| {
+                at(
+                    (half_rad * f64::from(z) / 30.0).sin(),
+                    f64::from(a) * degrees,
+                )
+            })
+            .map(|place| free(&points, place))
+            .fold(0.0, f64::max);
+        assert!(most <= found.bound_rad + 1e-12, "{most} {found:?}");
+        assert!(found.hole.radius_rad - most < degrees, "{most} {found:?}");
+        found.hole.radius_rad
+    };
+    // The widest gap between two of the few is 73.5 deg, around +-143 deg; and to where it is the poles' turn.
+    assert!(within(2.0 * degrees) < within(20.0 * degrees) + TOLERANCE_RAD);
+    assert!((within(85.0 * degrees) - 45.0 * degrees).abs() < 0.1 * degrees);
+    let nowhere = largest_hole_within(&points, TOLERANCE_RAD, &|_| -2.0).unwrap();
+    assert_eq!(nowhere, None);
+}

@@ -1,0 +1,72 @@
+//! How far it is from anywhere to the nearest point: what is left unseen on the whole, where the largest hole is only its worst place.
+//!
+//! Left out: choosing the places.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::hole::angle;
+use super::nearby::Nearby;
+use super::{DensityError, check};
+
+/// The angle from each place to the nearest of some directions, radians; infinite where there is none.
+///
+/// # Errors
+/// [`DensityError::Direction`] for what is none, of the directions first.
+pub fn gaps(directions: &[DVec3], places: &[DVec3]) -> Result<Vec<f64>, DensityError> {
+    check(directions)?;
+    check(places)?;
+    let nearby = Nearby::new(directions);
+    let gap = |place: &DVec3| match nearby.nearest(*place) {
+        nearest if nearest.is_finite() => angle(nearest),
+        none => none,
+    };
+    Ok(places.par_iter().map(gap).collect())
+}
+
+/// The least of some numbers that `share` (0..=1) of them do not exceed; `None` of no numbers.
+#[must_use]
+pub fn quantile(numbers: &[f64], share: f64) -> Option<f64> {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let place = (share * sorted.len() as f64).ceil() as usize;
+    let place = place.min(sorted.len()).saturating_sub(1);
+    sorted.get(place).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    #[test]
+    fn gaps_are_angles_to_the_nearest() {
+        let directions = [DVec3::X, DVec3::Y];
+        let places = [DVec3::Z, DVec3::X, DVec3::new(0.6, 0.8, 0.0)];
+        let found = gaps(&directions, &places).unwrap();
+        for (found, expected) in found.iter().zip([FRAC_PI_2, 0.0, 0.8_f64.acos()]) {
+            assert!((found - expected).abs() < 1e-12);
+        }
+        assert_eq!(gaps(&[], &[DVec3::X]).unwrap(), [f64::INFINITY]);
+        assert!(gaps(&[DVec3::ZERO], &[]).is_err());
+        assert!(gaps(&[], &[DVec3::NAN]).is_err());
+    }
+
+    #[test]
+    fn quantiles_are_of_the_numbers_themselves() {
+        let numbers = [5.0, 1.0, 4.0, 2.0, 3.0];
+        let expected = [
+            (0.0, 1.0),
+            (0.2, 1.0),
+            (0.21, 2.0),
+            (0.5, 3.0),
+            (0.99, 5.0),
+            (1.0, 5.0),
+        ];
+        for (share, expected) in expected {
+            assert_eq!(quantile(&numbers, share), Some(expected), "{share}");
+        }
+        assert_eq!(quantile(&[], 0.5), None);
+    }
+}

@@ -1,0 +1,169 @@
+//! `velomotion analyze`: how densely and how evenly scans cover what is about them.
+//!
+//! Patterns come from `sim`, clouds and logs from their files ([`input`]); what is measured is `analysis`'s. Left out: how it is said ([`report`]).
+
+mod input;
+mod report;
+mod sweep;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use analysis::density::{
+    Counts, DensityError, Icosahedron, Largest, Locator, TOLERANCE_RAD, bands, gaps, holes,
+    largest_hole, largest_hole_within, quantile, rows,
+};
+use glam::DVec3;
+use sim::patterns::{AXIS, Pattern};
+
+pub use report::{Blind, Density, DeviceReport, Gaps, HoleReport, PatternReport, Report};
+pub use sweep::Sweep;
+
+use super::Said;
+use crate::cli::{self, Common};
+use crate::failure::{Failure, Kind};
+use crate::progress::Progress;
+use crate::signals;
+use input::{Input, Named};
+
+/// Classes of the histogram.
+const CLASSES: usize = 10;
+/// Holes that are counted one by one.
+const MOST_HOLES: usize = 10_000;
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Kind::Usage`] for patterns that cannot be, [`Kind::BadInput`] for files that cannot be read.
+pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
+    let interrupt = signals::interrupt_flag()?;
+    let progress = Progress::new(common);
+    let measure = Measure::new(arguments.level)?;
+    if let Some(sweep) = &arguments.sweep {
+        let report = sweep.run(&arguments.inputs, &measure, progress, &interrupt)?;
+        return Ok(Said::report(&report, report.text()));
+    }
+    let inputs: Vec<Named<'_>> = arguments
+        .inputs
+        .iter()
+        .map(|argument| Named::new(argument))
+        .collect::<Result<_, _>>()?;
+    let mut patterns = Vec::with_capacity(inputs.len());
+    for (input, name) in inputs.iter().zip(&arguments.inputs) {
+        go_on(&interrupt)?;
+        if inputs.len() > 1 {
+            progress.say(name);
+        }
+        patterns.push(measure.one(&input.read(&interrupt)?, &interrupt)?);
+    }
+    let report = Report { patterns };
+    Ok(Said::report(&report, report.text()))
+}
+
+/// What is the same for all inputs.
+struct Measure {
+    level: u32,
+    locator: Locator,
+    /// Middles of the bins.
+    places: Vec<DVec3>,
+}
+
+impl Measure {
+    fn new(level: u32) -> Result<Self, Failure> {
+        let icosahedron = Icosahedron::new(level).map_err(|error| {
+            Failure::new(Kind::Usage, error.to_string()).help("the paper's is 4: 5120 bins")
+        })?;
+        Ok(Self {
+            level,
+            locator: Locator::new(&icosahedron),
+            places: icosahedron.bins().iter().map(|bin| bin.centre).collect(),
+        })
+    }
+
+    fn one(&self, input: &Input, interrupt: &AtomicBool) -> Result<PatternReport, Failure> {
+        let wrong = |error: DensityError| failure(&input.name, &error);
+        let directions = &input.directions;
+        let depth = |direction: DVec3| depth_rad(input.pattern.as_ref(), direction);
+        let counts = Counts::new(&self.locator, directions).map_err(wrong)?;
+        let largest = largest_hole(directions, TOLERANCE_RAD).map_err(wrong)?;
+        let largest = largest.ok_or_else(|| {
+            Failure::new(Kind::BadInput, format!("{}: no points", input.name))
+                .help("give one that has some")
+        })?;
+        go_on(interrupt)?;
+        let in_view = match &input.pattern {
+            Some(_) => largest_hole_within(directions, TOLERANCE_RAD, &depth).map_err(wrong)?,
+            None => None,
+        };
+        let least_rad = 0.5 * in_view.unwrap_or(largest).hole.radius_rad;
+        go_on(interrupt)?;
+        let found = holes(directions, least_rad, MOST_HOLES, &depth).map_err(wrong)?;
+        let band_rad = report::BAND_DEG.to_radians();
+        Ok(PatternReport {
+            name: input.name.clone(),
+            points: directions.len() as u64,
+            frames: input.frames,
+            scan_s: input.scan_s,
+            without_direction: input.without_direction,
+            density: Density {
+                statistics: counts.statistics(),
+                level: self.level,
+                histogram: counts.histogram(CLASSES),
+            },
+            hole: hole_report(&largest),
+            hole_in_view: in_view.as_ref().map(hole_report),
+            gaps: self.gaps(input).map_err(wrong)?,
+            blind: Blind {
+                least_radius_deg: least_rad.to_degrees(),
+                holes: found.len(),
+                and_more: found.len() == MOST_HOLES,
+                rows: rows(&found, AXIS, 0.5 * least_rad),
+                bands: bands(directions, AXIS, band_rad).map_err(wrong)?,
+            },
+            device: input.pattern.as_ref().and_then(input::device),
+        })
+    }
+
+    fn gaps(&self, input: &Input) -> Result<Gaps, DensityError> {
+        let pattern = input.pattern.as_ref();
+        let places = self.places.iter().copied();
+        let places: Vec<DVec3> = places
+            .filter(|place| depth_rad(pattern, *place) >= 0.0)
+            .collect();
+        let gaps = gaps(&input.directions, &places)?;
+        let of = |share: f64| quantile(&gaps, share).unwrap_or(0.0).to_degrees();
+        Ok(Gaps {
+            median_deg: of(0.5),
+            of_99_percent_deg: of(0.99),
+        })
+    }
+}
+
+/// How deep a direction is in what a pattern can see; where none is known, in the whole sphere.
+fn depth_rad(pattern: Option<&Pattern>, direction: DVec3) -> f64 {
+    pattern.map_or(f64::INFINITY, |pattern| pattern.depth_rad(direction))
+}
+
+fn hole_report(largest: &Largest) -> HoleReport {
+    let hole = largest.hole;
+    HoleReport {
+        radius_deg: hole.radius_rad.to_degrees(),
+        at_most_deg: largest.bound_rad.to_degrees(),
+        centre: hole.centre.to_array(),
+        from_axis_deg: hole.centre.angle_between(AXIS).to_degrees(),
+    }
+}
+
+fn failure(name: &str, error: &DensityError) -> Failure {
+    Failure::new(Kind::BadInput, format!("{name}: {error}")).help("take out what is no point")
+}
+
+/// Unless the user wants no more of it.
+fn go_on(interrupt: &AtomicBool) -> Result<(), Failure> {
+    match interrupt.load(Ordering::Relaxed) {
+        true => Err(
+            Failure::new(Kind::Interrupted, "stopped by the user while analysing")
+                .help("nothing was written; the same command begins anew"),
+        ),
+        false => Ok(()),
+    }
+}

@@ -1,0 +1,382 @@
+//! `velomotion analyze PATTERN --sweep`: many settings of one pattern, and which of them nothing beats for the time that a scan takes.
+//!
+//! Three things are measured where the scan can see: the largest hole; how far it is to the nearest point for 99 % of directions, which unlike the
+//! hole is not decided by the one worst place; and how uneven the bins are (sd over mean). Left out: how patterns are made and measured.
+
+use std::fmt::Write;
+use std::str::FromStr;
+use std::sync::atomic::AtomicBool;
+
+use analysis::density::{Counts, DensityError, TOLERANCE_RAD, gaps, largest_hole_within, quantile};
+use analysis::tradeoff::front::front;
+use glam::DVec3;
+use serde::Serialize;
+use sim::patterns::{Pattern, Wish};
+
+use super::input::pattern_failure;
+use super::report::number;
+use super::{Measure, failure, go_on};
+use crate::failure::{Failure, Kind};
+use crate::progress::Progress;
+
+/// Numbers of a pattern that are tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    ranges: Vec<Range>,
+}
+
+/// One of them.
+#[derive(Clone, Debug, PartialEq)]
+struct Range {
+    key: String,
+    from: f64,
+    to: f64,
+    steps: usize,
+}
+
+/// Steps of a range unless it says.
+const STEPS: usize = 8;
+/// The most settings.
+const MOST: usize = 10_000;
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SweepReport {
+    /// The pattern as it was named.
+    pub pattern: String,
+    /// What was varied, in the order of the settings' values.
+    pub keys: Vec<String>,
+    /// The settings, by the time that a scan takes.
+    pub settings: Vec<Setting>,
+}
+
+/// Of one setting.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Setting {
+    /// Its values.
+    pub values: Vec<f64>,
+    /// How long a scan takes, seconds.
+    pub scan_s: f64,
+    /// Points.
+    pub points: u64,
+    /// Radius of the largest hole in view, degrees.
+    pub hole_deg: f64,
+    /// 99 % of directions in view have a point within this, degrees.
+    pub gap_deg: f64,
+    /// Standard deviation over mean of points a bin, of the bins in view.
+    pub unevenness: f64,
+    /// Whether no other setting is as good in time and largest hole, and better in one of them.
+    pub best_hole: bool,
+    /// The same of time and gap.
+    pub best_gap: bool,
+    /// The same of time and unevenness.
+    pub best_evenness: bool,
+}
+
+impl FromStr for Sweep {
+    type Err = String;
+
+    /// `KEY=FROM..TO[/N]`, several with commas.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ranges: Vec<Range> = text
+            .split(',')
+            .map(Range::from_str)
+            .collect::<Result<_, _>>()?;
+        let settings = ranges
+            .iter()
+            .try_fold(1_usize, |all, range| all.checked_mul(range.steps));
+        match settings {
+            Some(1..=MOST) => Ok(Self { ranges }),
+            _ => Err(format!("expected at most {MOST} settings in all")),
+        }
+    }
+}
+
+impl FromStr for Range {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("expected KEY=FROM..TO or KEY=FROM..TO/STEPS, got {text:?}");
+        let (key, range) = text.split_once('=').ok_or_else(wrong)?;
+        let (range, steps) = match range.split_once('/') {
+            Some((range, steps)) => (range, steps.parse().map_err(|_| wrong())?),
+            None => (range, STEPS),
+        };
+        let (from, to) = range.split_once("..").ok_or_else(wrong)?;
+        let number = |text: &str| text.parse::<f64>().ok().filter(|n| n.is_finite());
+        let (from, to) = (
+            number(from).ok_or_else(wrong)?,
+            number(to).ok_or_else(wrong)?,
+        );
+        if steps == 0 || (steps == 1 && from != to) {
+            return Err(format!(
+                "{key}: expected at least 2 steps from {from} to {to}"
+            ));
+        }
+        let key = key.to_owned();
+        Ok(Self {
+            key,
+            from,
+            to,
+            steps,
+        })
+    }
+}
+
+impl Range {
+    /// The value of a step: by equal factors where both ends are above 0, else by equal differences. The ends are met exactly.
+    fn value(&self, step: usize) -> f64 {
+        if step == 0 {
+            return self.from;
+        }
+        if step + 1 >= self.steps {
+            return self.to;
+        }
+        let share = step as f64 / (self.steps - 1) as f64;
+        if self.from > 0.0 && self.to > 0.0 {
+            self.from * (self.to / self.from).powf(share)
+        } else {
+            self.from + (self.to - self.from) * share
+        }
+    }
+}
+
+impl Sweep {
+    /// Tries all settings of the one pattern that is named.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for anything but one pattern, and for settings that it has not.
+    pub(super) fn run(
+        &self,
+        inputs: &[String],
+        measure: &Measure,
+        mut progress: Progress,
+        interrupt: &AtomicBool,
+    ) -> Result<SweepReport, Failure> {
+        let [name] = inputs else {
+            let what = format!(
+                "--sweep tries settings of one pattern, not of {}",
+                inputs.len()
+            );
+            return Err(Failure::new(Kind::Usage, what).help(EXAMPLE));
+        };
+        let wish = Wish::parse(name).map_err(|error| pattern_failure(&error).help(EXAMPLE))?;
+        // All are checked before the first is made.
+        let patterns = self.patterns(&wish)?;
+        let mut settings = Vec::with_capacity(patterns.len());
+        progress.begin_count(patterns.len() as u64);
+        for (number, (values, pattern)) in patterns.into_iter().enumerate() {
+            go_on(interrupt)?;
+            let measured = measured(values, &pattern, measure);
+            settings.push(measured.map_err(|error| failure(pattern.name(), &error))?);
+            progress.counted(number as u64 + 1);
+        }
+        progress.end_run();
+        settings.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
+        mark(&mut settings);
+        Ok(SweepReport {
+            pattern: name.clone(),
+            keys: self.ranges.iter().map(|range| range.key.clone()).collect(),
+            settings,
+        })
+    }
+
+    fn patterns(&self, wish: &Wish) -> Result<Vec<(Vec<f64>, Pattern)>, Failure> {
+        let all: usize = self.ranges.iter().map(|range| range.steps).product();
+        (0..all)
+            .map(|mut number| {
+                let mut wish = wish.clone();
+                let mut values = Vec::with_capacity(self.ranges.len());
+                for range in &self.ranges {
+                    let value = range.value(number % range.steps);
+                    number /= range.steps;
+                    wish.set_number(&range.key, value)
+                        .map_err(|error| pattern_failure(&error).help(EXAMPLE))?;
+                    values.push(value);
+                }
+                let pattern = wish.build().map_err(|error| pattern_failure(&error))?;
+                Ok((values, pattern))
+            })
+            .collect()
+    }
+}
+
+const EXAMPLE: &str = "as in: velomotion analyze velomotion16 --sweep speed=5..56.25,rpm=300..1200";
+
+fn measured(
+    values: Vec<f64>,
+    pattern: &Pattern,
+    measure: &Measure,
+) -> Result<Setting, DensityError> {
+    let directions = pattern.directions();
+    let depth = |direction: DVec3| pattern.depth_rad(direction);
+    let in_view: Vec<bool> = measure
+        .places
+        .iter()
+        .map(|place| depth(*place) >= 0.0)
+        .collect();
+    let is_in_view = |bin: usize| in_view.get(bin).copied().unwrap_or(false);
+    let counts = Counts::new(&measure.locator, &directions)?;
+    let statistics = counts.statistics_of(is_in_view);
+    let hole = largest_hole_within(&directions, 100.0 * TOLERANCE_RAD, &depth)?;
+    let places = measure
+        .places
+        .iter()
+        .enumerate()
+        .filter(|(bin, _)| is_in_view(*bin));
+    let places: Vec<DVec3> = places.map(|(_, place)| *place).collect();
+    let gap = quantile(&gaps(&directions, &places)?, 0.99);
+    Ok(Setting {
+        values,
+        scan_s: pattern.scan_s(),
+        points: directions.len() as u64,
+        hole_deg: hole.map_or(180.0, |hole| hole.hole.radius_rad.to_degrees()),
+        gap_deg: gap.map_or(180.0, f64::to_degrees),
+        unevenness: statistics.sd / statistics.mean,
+        best_hole: false,
+        best_gap: false,
+        best_evenness: false,
+    })
+}
+
+/// Marks the fronts.
+fn mark(settings: &mut [Setting]) {
+    let costs = |of: fn(&Setting) -> f64| -> Vec<bool> {
+        let costs = settings
+            .iter()
+            .map(|setting| vec![setting.scan_s, of(setting)]);
+        front(&costs.collect::<Vec<_>>())
+    };
+    // Holes are known to 100 times the least tolerance.
+    let holes = costs(|setting| (setting.hole_deg * 100.0).round());
+    let gaps = costs(|setting| setting.gap_deg);
+    let even = costs(|setting| setting.unevenness);
+    for (((setting, hole), gap), even) in settings.iter_mut().zip(holes).zip(gaps).zip(even) {
+        setting.best_hole = hole;
+        setting.best_gap = gap;
+        setting.best_evenness = even;
+    }
+}
+
+impl SweepReport {
+    /// For people: the settings of the fronts.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let best = |s: &&Setting| s.best_hole || s.best_gap || s.best_evenness;
+        let shown = self.settings.iter().filter(best);
+        let mut text = format!(
+            "{}: {} settings; those that no other beats for their scan time\n\n",
+            self.pattern,
+            self.settings.len()
+        );
+        for key in &self.keys {
+            let _ = write!(text, "{key:>9} ");
+        }
+        let _ = writeln!(
+            text,
+            "{:>8} {:>9} {:>9} {:>9} {:>10}  best in",
+            "scan s", "points", "hole deg", "99 % deg", "sd / mean"
+        );
+        for setting in shown {
+            for value in &setting.values {
+                let _ = write!(text, "{:>9} ", number(*value, 8));
+            }
+            let marks = [
+                (setting.best_hole, "hole"),
+                (setting.best_gap, "99 %"),
+                (setting.best_evenness, "sd"),
+            ];
+            let marks: Vec<&str> = marks
+                .iter()
+                .filter(|(is, _)| *is)
+                .map(|(_, m)| *m)
+                .collect();
+            let _ = writeln!(
+                text,
+                "{:>8} {:>9} {:>9} {:>9} {:>10}  {}",
+                number(setting.scan_s, 7),
+                setting.points,
+                number(setting.hole_deg, 7),
+                number(setting.gap_deg, 7),
+                number(setting.unevenness, 7),
+                marks.join(" ")
+            );
+        }
+        text.push_str(
+            "\nwhere the scan can see: radius of the largest hole; 99 % of directions have a\n\
+                       point within; sd over mean of points a bin\n",
+        );
+        text.trim_end().to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_read_and_their_ends_met() {
+        let sweep: Sweep = "speed=5..56.25,start=-90..90/5".parse().unwrap();
+        let [speed, start] = sweep.ranges.as_slice() else {
+            panic!("{sweep:?}");
+        };
+        assert_eq!(
+            (speed.value(0), speed.value(7), speed.steps),
+            (5.0, 56.25, 8)
+        );
+        // Equal factors, and equal differences through 0.
+        assert!((speed.value(1) / speed.value(0) - speed.value(7) / speed.value(6)).abs() < 1e-12);
+        let starts: Vec<f64> = (0..5).map(|step| start.value(step)).collect();
+        assert_eq!(starts, [-90.0, -45.0, 0.0, 45.0, 90.0]);
+    }
+
+    #[test]
+    fn what_is_no_range_is_said() {
+        for text in [
+            "",
+            "speed",
+            "speed=5",
+            "speed=5..",
+            "speed=a..b",
+            "speed=5..6/0",
+            "speed=5..6/1",
+            "speed=5..6/x",
+            "speed=5..inf",
+        ] {
+            assert!(text.parse::<Sweep>().is_err(), "{text}");
+        }
+        let many = "speed=1..2/101,rpm=1..2/100".parse::<Sweep>();
+        assert_eq!(many.unwrap_err(), "expected at most 10000 settings in all");
+        assert!("speed=5..5/1".parse::<Sweep>().is_ok());
+    }
+
+    #[test]
+    fn fronts_hold_what_nothing_beats() {
+        let setting = |scan_s: f64, hole_deg: f64, gap_deg: f64, unevenness: f64| Setting {
+            values: vec![scan_s],
+            scan_s,
+            points: 1,
+            hole_deg,
+            gap_deg,
+            unevenness,
+            best_hole: false,
+            best_gap: false,
+            best_evenness: false,
+        };
+        let mut settings = [
+            setting(1.0, 3.0, 2.0, 0.5),
+            setting(2.0, 3.0, 1.0, 0.6),
+            setting(3.0, 2.0, 1.5, 0.4),
+        ];
+        mark(&mut settings);
+        assert_eq!(
+            settings.each_ref().map(|s| s.best_hole),
+            [true, false, true]
+        );
+        assert_eq!(settings.each_ref().map(|s| s.best_gap), [true, true, false]);
+        assert_eq!(
+            settings.each_ref().map(|s| s.best_evenness),
+            [true, false, true]
+        );
+    }
+}
