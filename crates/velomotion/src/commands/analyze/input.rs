@@ -211,6 +211,7 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
         accuracy: Accuracy::Best,
         pace: None,
         truth: None,
+        lost_records: 0,
         interrupt,
     };
     let mut points = Points::new(Fields::NONE);
