@@ -16,7 +16,9 @@ fn statistics(directions: &[DVec3]) -> Statistics {
 }
 
 /// The table of densities: name, mean, sd, fewest, most, mean and sd a square degree, as printed.
-const PRINTED: [(&str, f64, f64, Option<(u64, u64)>, f64, f64); 3] = [
+type Row = (&'static str, f64, f64, Option<(u64, u64)>, f64, f64);
+
+const PRINTED: [Row; 3] = [
     ("rmbl:120", 84.47, 56.24, Some((25, 365)), 10.48, 6.98),
     ("rmbl:50", 202.73, 133.92, Some((95, 881)), 25.16, 16.62),
     ("velomotion16:50", 50.68, 63.22, None, 6.29, 7.85),

@@ -15,6 +15,7 @@ mod pulses;
 
 use std::sync::{Arc, OnceLock};
 
+use glam::DVec3;
 use serde::Deserialize;
 
 use super::returns::reported;
@@ -68,6 +69,8 @@ pub struct Divergence {
     plain: OnceLock<Plain>,
 }
 
+/// Sub-rays that are cast together.
+const TOGETHER: usize = 16;
 /// The most sub-rays along a side.
 const MOST: f64 = 15.0;
 
@@ -151,18 +154,26 @@ impl Divergence {
 
     /// What comes back of a pulse: the strongest return and the other.
     fn pulse(&self, patch: &Footprint, surroundings: &Surroundings) -> [Echo; 2] {
-        let mut samples = [Sample::NOTHING; MOST_SAMPLES];
-        let mut count = 0;
         let (columns, rows) = (self.settings.columns, self.settings.rows);
         let along = |place: usize, of: usize| (2 * place + 1) as f64 / of as f64 - 1.0;
-        for row in 0..rows {
-            for column in 0..columns {
-                let (x, y) = (along(column, columns), along(row, rows));
-                let direction = patch.towards(x, y);
-                if let Some(met) = surroundings.meet(patch.origin_m, direction)
-                    && let Some(place) = samples.get_mut(count)
-                {
-                    *place = Sample::new(&met, direction, x * x + y * y);
+        let place = |ray: usize| (along(ray % columns, columns), along(ray / columns, rows));
+        let rays = (columns * rows).min(MOST_SAMPLES);
+        let mut samples = [Sample::NOTHING; MOST_SAMPLES];
+        let mut count = 0;
+        for first in (0..rays).step_by(TOGETHER) {
+            let fan = first..rays.min(first + TOGETHER);
+            let mut directions = [DVec3::ZERO; TOGETHER];
+            for (direction, ray) in directions.iter_mut().zip(fan.clone()) {
+                let (x, y) = place(ray);
+                *direction = patch.towards(x, y);
+            }
+            let mut mets = [None; TOGETHER];
+            let directions = directions.get(..fan.len()).unwrap_or_default();
+            surroundings.meet_fan(patch.origin_m, directions, &mut mets);
+            for ((met, direction), ray) in mets.iter().zip(directions).zip(fan) {
+                if let (Some(met), Some(sample)) = (met, samples.get_mut(count)) {
+                    let (x, y) = place(ray);
+                    *sample = Sample::new(met, *direction, x * x + y * y);
                     count += 1;
                 }
             }

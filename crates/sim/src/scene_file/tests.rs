@@ -70,7 +70,7 @@ fn effects_of_shipped_scenes_can_be_left_out() {
         assert_eq!(before, scene.effects.lines.len());
         scene
             .effects
-            .leave_out(|effect| ["divergence", "link_jitter"].contains(&effect));
+            .leave_out(|effect| ["range_noise", "link_jitter"].contains(&effect));
         let left: Vec<_> = scene
             .effects
             .effects

@@ -156,6 +156,13 @@ impl Firing {
         laser < self.lasers && self.alive >> laser & 1 == 1
     }
 
+    /// A laser's ray: where from, metres in the frame of the base, and which way (length 1).
+    #[inline]
+    #[must_use]
+    pub fn ray(&self, laser: usize) -> Option<(DVec3, DVec3)> {
+        Some((*self.origins_m.get(laser)?, *self.directions.get(laser)?))
+    }
+
     /// Lasers that fire, in order.
     pub fn alive(&self) -> impl Iterator<Item = usize> + use<> {
         let (lasers, alive) = (self.lasers, self.alive);

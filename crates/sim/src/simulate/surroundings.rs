@@ -1,10 +1,11 @@
 //! What rays meet: the one place where the simulation calls the ray caster.
 //!
 //! What stands is cast for a whole packet at once (`volley`), what moves for one firing at a time, and the nearer of both counts. Effects that want more rays ask
-//! one by one ([`Surroundings::meet`]); the answers are the same, bit for bit. Every thread has surroundings of its own, which moving objects are
+//! one by one ([`Surroundings::meet`]) or for some from one point (`fan`); the answers are the same, bit for bit. Every thread has surroundings of its own, which moving objects are
 //! placed in. Left out: how rays are cast ([`Scene`]).
 
 mod body;
+mod fan;
 mod volley;
 
 use std::sync::Arc;
@@ -92,7 +93,12 @@ impl Surroundings {
     /// blocks it.
     #[must_use]
     pub fn meet(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
-        let stands = self.stands(origin_m, direction);
+        self.nearer(origin_m, direction, self.stands(origin_m, direction))
+    }
+
+    /// What comes back of the first that stands, or of what moves before it.
+    #[inline]
+    fn nearer(&self, origin_m: DVec3, direction: DVec3, stands: Option<First>) -> Option<Met> {
         if self.bodies.is_empty() {
             return self.seen(stands?);
         }

@@ -54,8 +54,11 @@ impl Footprint {
     /// measured on a plane as well; so in the middle it is the mean of any two opposite corners.
     pub fn is_flat(&self, middle: &Echo, flat_m: f64, surroundings: &Surroundings) -> bool {
         let longer = (self.direction + self.along + self.across).length();
-        let corner = |x, y| surroundings.meet(self.origin_m, self.towards(x, y));
-        let opposite = |x: f64, y: f64| match (corner(x, y), corner(-x, -y)) {
+        let corners = [(1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
+        let mut mets = [None; 4];
+        let directions = corners.map(|(x, y)| self.towards(x, y));
+        surroundings.meet_fan(self.origin_m, &directions, &mut mets);
+        let flat = |a: Option<Met>, b: Option<Met>| match (a, b) {
             (None, None) => !middle.is_there(),
             (Some(a), Some(b)) if middle.is_there() => {
                 let mean = 0.5 * longer * (1.0 / a.range_m + 1.0 / b.range_m);
@@ -65,6 +68,7 @@ impl Footprint {
             }
             _ => false,
         };
-        opposite(1.0, 1.0) && opposite(1.0, -1.0)
+        let [a, opposite_a, b, opposite_b] = mets;
+        flat(a, opposite_a) && flat(b, opposite_b)
     }
 }

@@ -124,20 +124,21 @@ fn cell_of(way: DVec3) -> Option<usize> {
 /// What all rays of a side meet, row by row.
 fn look(surroundings: &Surroundings, side: usize) -> Vec<Seen> {
     let place = |step: usize| 2.0 * (step as f64 - 1.0) / (CELLS * STEPS) as f64 - 1.0;
-    let places = (0..GRID).flat_map(|row| (0..GRID).map(move |column| (row, column)));
-    places
-        .map(|(row, column)| {
-            let way = towards(side, place(column), place(row));
-            let length = way.length();
-            match surroundings.meet_still(DVec3::ZERO, way / length) {
-                Some(met) => Seen {
-                    inverse: length / met.range_m,
-                    reflectivity: met.reflectivity,
-                },
-                None => Seen::default(),
-            }
-        })
-        .collect()
+    let mut seen = Vec::with_capacity(GRID * GRID);
+    let mut mets = vec![None; GRID];
+    for row in 0..GRID {
+        let ways = (0..GRID).map(|column| towards(side, place(column), place(row)));
+        let (lengths, directions): (Vec<f64>, Vec<DVec3>) =
+            ways.map(|way| (way.length(), way / way.length())).unzip();
+        surroundings.meet_fan_still(DVec3::ZERO, &directions, &mut mets);
+        seen.extend(lengths.iter().zip(&mets).map(|(length, met)| {
+            met.map_or(Seen::default(), |met| Seen {
+                inverse: length / met.range_m,
+                reflectivity: met.reflectivity,
+            })
+        }));
+    }
+    seen
 }
 
 /// The nearest distance in a cell that is not one plane, infinite if nothing is there; `None` for a plain one.

@@ -94,6 +94,45 @@ fn a_packet_meets_what_its_rays_meet_one_by_one() {
     }
 }
 
+/// What effects ask for together they would get one by one, too; whatever moves, and whether the fan fills its packets or not.
+#[test]
+fn a_fan_is_its_rays() {
+    for (name, normals) in [("hall", false), ("parking", true)] {
+        let reach = Sensor::vlp16().reach();
+        let mut around = Surroundings::new(scene(name), reach, false).with_normals(normals);
+        let mut body = Body::new(made_of(Object::new(mesh()), 77));
+        let at_m = DVec3::new(3.0, 1.0, 0.0);
+        body.place(Some(Placement::new(DMat3::IDENTITY, at_m).unwrap()));
+        around.bodies_mut().push(body);
+        let (mut moving, mut there) = (0, 0);
+        for (number, firing) in firings(&Sensor::vlp16(), 900, 0).iter().enumerate() {
+            for laser in firing.alive() {
+                let (from, to) = firing.ray(laser).unwrap();
+                let part = |ray: usize| {
+                    let off = [
+                        1.5e-3 * ray as f64,
+                        -1e-3 * (ray % 3) as f64,
+                        2e-3 * (ray % 5) as f64,
+                    ];
+                    (to + DVec3::from_array(off)).normalize()
+                };
+                let parts: Vec<DVec3> = (0..number % 19).map(part).collect();
+                let (mut mets, mut still) = (vec![None; parts.len()], vec![None; parts.len()]);
+                around.meet_fan(from, &parts, &mut mets);
+                around.meet_fan_still(from, &parts, &mut still);
+                for ((part, met), still) in parts.iter().zip(&mets).zip(&still) {
+                    let echo = |met: &Option<Met>| bits(&Echo::of_any(*met));
+                    assert_eq!(echo(met), echo(&around.meet(from, *part)));
+                    assert_eq!(echo(still), echo(&around.meet_still(from, *part)));
+                    there += u32::from(met.is_some());
+                    moving += u32::from(echo(met) != echo(still));
+                }
+            }
+        }
+        assert!(moving > 100 && there > 10_000, "{name}: {moving} {there}");
+    }
+}
+
 #[test]
 fn what_is_no_ray_meets_nothing() {
     let around = Surroundings::new(scene("hall"), Sensor::vlp16().reach(), true);

@@ -48,7 +48,9 @@ impl Packets for Volley<'_> {
         let both = self.firings.iter().zip(&mut *self.echoes);
         for (lane, (firing, echoes)) in both.skip(first).take(LANES).enumerate() {
             let met = match loaded >> lane & 1 {
-                1 => around.first_in(firing, laser, nearest, lane),
+                1 => firing
+                    .ray(laser)
+                    .and_then(|(from, to)| around.first_of_lane(from, to, nearest, lane)),
                 _ => None,
             };
             if !around.still
@@ -81,12 +83,12 @@ impl Surroundings {
         (self.scene.caster()).nearest_in(lasers * per_laser, reach, &mut volley);
     }
 
-    /// What a laser of a firing met, by its lane.
+    /// What a ray met, by its lane.
     #[inline]
-    fn first_in(
+    pub(super) fn first_of_lane(
         &self,
-        firing: &Firing,
-        laser: usize,
+        origin_m: DVec3,
+        direction: DVec3,
         nearest: &Nearest,
         lane: usize,
     ) -> Option<First> {
@@ -94,9 +96,7 @@ impl Surroundings {
         let material = self.scene.material(&hit)?;
         let normal = match self.normals {
             true => {
-                let (origin, direction) =
-                    (firing.origins_m.get(laser)?, firing.directions.get(laser)?);
-                let point = *origin + hit.range_m * *direction;
+                let point = origin_m + hit.range_m * direction;
                 self.scene.caster().normal(&hit, point)
             }
             false => DVec3::ZERO,
