@@ -66,10 +66,11 @@ fn noise_of_ranges_is_as_large_as_asked_for() {
     assert!((0.11..0.19).contains(&worst_m), "{worst_m}");
 }
 
-/// The hall as it comes, with all that it asks for: noise of 1 cm, and at edges some points that lie between two surfaces.
+/// The hall as it comes and the footprint of the beam: noise of 1 cm, and at edges some points that lie between two surfaces.
 #[test]
 fn the_hall_as_a_real_scanner_would_see_it() {
-    let scene = Simulated::new(shipped("hall"), |_| {});
+    let text = shipped("hall").to_owned() + "\n[effects.divergence]\n";
+    let scene = Simulated::new(&text, |_| {});
     assert_eq!(scene.report.effects.len(), 7);
     let (scan, cloud) = replayed(&scene.log(), TiltSource::Log);
     let [sweep] = scan.sweeps[..] else {
