@@ -13,15 +13,16 @@
 
 mod bag;
 mod channels;
+mod cutter;
 
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
-use std::ops::Range;
 
 use mcap::{Compression, WriteOptions};
 use units::{Degrees, Host, Metres, Span, Stamp};
 
 use self::channels::Channels;
+use self::cutter::Cutter;
 use super::fallible::{Fault, Output};
 use super::stage::Stage;
 use crate::messages::cdr::Cdr;
@@ -31,38 +32,26 @@ use crate::messages::{
 };
 use crate::{Check, Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
 
+pub use self::cutter::{MOST_POINTS, MOST_SPAN};
+
 const FORMAT: &str = "mcap";
-/// Points of a message at most: 23 MB, four seconds of a VLP-16.
-pub const MOST_POINTS: u32 = 1 << 20;
-/// Time of a message at most: its points' times are f32 after its stamp, which then step by 0.5 us.
-pub const MOST_SPAN: Span = Span::from_secs(8);
 /// Transforms come no closer: on the steepest ramp, 500 deg/s^2, a straight line over this time is off by one step of the encoder.
 pub const TRANSFORMS_EVERY: Span = Span::from_millis(5);
 /// Uncompressed bytes of a chunk, which a reader needs at once, save where a single message is longer.
 const CHUNK_BYTES: u64 = 1 << 20;
 
-/// When clouds end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Cut {
-    /// With a sweep.
-    Sweeps,
-    /// Where [`Sink::turn`] says so.
-    Turns,
-}
-
 /// Writes MCAP to an output that seeks.
 ///
 /// A file whose output failed cannot be completed; what a killed program leaves has its whole chunks, which `mcap recover` makes a file of.
 pub struct McapWriter<W: Write + Seek> {
-    cut: Cut,
+    cutter: Cutter,
     stage: Stage,
     fault: Fault,
     state: State<W>,
     hardware: String,
     track: TiltTrack,
-    /// Samples and sweeps of the track that are written.
+    /// Samples of the track that are written.
     samples: usize,
-    sweeps: usize,
     transformed: Option<Stamp<Host>>,
     cloud: CloudMessage,
     cdr: Cdr,
@@ -89,14 +78,13 @@ impl<W: Write + Seek> McapWriter<W> {
     pub fn new(output: W) -> Self {
         let (output, fault) = Output::new(output);
         Self {
-            cut: Cut::Sweeps,
+            cutter: Cutter::default(),
             stage: Stage::default(),
             fault,
             state: State::Idle(output),
             hardware: String::new(),
             track: TiltTrack::default(),
             samples: 0,
-            sweeps: 0,
             transformed: None,
             cloud: CloudMessage::new(Fields::FILE),
             cdr: Cdr::new(),
@@ -114,8 +102,8 @@ impl<W: Write + Seek> McapWriter<W> {
 
     /// The same with a cloud a turn of the lidar, as [`Sink::turn`] tells; only before [`Sink::begin`].
     #[must_use]
-    pub const fn by_turns(mut self) -> Self {
-        self.cut = Cut::Turns;
+    pub fn by_turns(mut self) -> Self {
+        self.cutter = Cutter::by_turns();
         self
     }
 
@@ -258,50 +246,16 @@ impl<W: Write + Seek> McapWriter<W> {
         written
     }
 
-    /// The first of `rows` that belongs into another message than the one that there is.
-    fn cloud_end(&self, times: &[Stamp<Host>], rows: &Range<usize>) -> usize {
-        let room = MOST_POINTS.saturating_sub(self.cloud.points()) as usize;
-        let end = rows.end.min(rows.start.saturating_add(room));
-        let part = times.get(rows.start..end).unwrap_or_default();
-        let first = match self.cloud.points() {
-            0 => part.first().copied(),
-            _ => Some(self.cloud.times().0),
-        };
-        let Some(first) = first else {
-            return end;
-        };
-        let mut latest = first.saturating_add(MOST_SPAN);
-        if let Some((_, sweep_end)) = self.track.sweeps.get(self.sweeps)
-            && self.cut == Cut::Sweeps
-        {
-            latest = latest.min(*sweep_end);
-        }
-        let over = part.iter().position(|time| *time > latest);
-        over.map_or(end, |over| rows.start + over)
-    }
-
-    /// Goes on to the sweep in which `time` is, or which comes after it.
-    fn next_sweep(&mut self, time: Stamp<Host>) {
-        while self
-            .track
-            .sweeps
-            .get(self.sweeps)
-            .is_some_and(|(_, end)| *end < time)
-        {
-            self.sweeps += 1;
-        }
-    }
-
     fn push(&mut self, batch: &Points) -> Result<(), SinkError> {
         let mut rows = 0..batch.len();
         while let Some(time) = batch.time().get(rows.start).copied() {
-            let end = self.cloud_end(batch.time(), &rows);
-            if end == rows.start {
+            let end = self.cutter.end(&self.cloud, batch.time(), &rows);
+            if end == rows.start && self.cloud.points() > 0 {
                 self.end_cloud()?;
-                self.next_sweep(time);
-                if self.cloud_end(batch.time(), &rows) > rows.start {
-                    continue;
-                }
+                continue;
+            }
+            if end == rows.start && self.cutter.go_on_to(time) {
+                continue;
             }
             // A point always fits into an empty message.
             let end = end.max(rows.start + 1);
@@ -378,14 +332,15 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
     fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
         self.stage.points(FORMAT)?;
         self.track = track.clone();
+        self.cutter.sweep(&track.sweeps);
         Ok(())
     }
 
     fn turn(&mut self) -> Result<(), SinkError> {
         self.stage.points(FORMAT)?;
-        match self.cut {
-            Cut::Turns => self.end_cloud(),
-            Cut::Sweeps => Ok(()),
+        match self.cutter.is_by_turns() {
+            true => self.end_cloud(),
+            false => Ok(()),
         }
     }
 
