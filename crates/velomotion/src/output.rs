@@ -1,20 +1,23 @@
 //! Where a cloud goes: a file that takes its name when it is complete, or stdout.
 
-use std::io::{self as stdio, BufWriter, Read, Seek, SeekFrom, Write};
+mod beside;
+mod file;
+
+use std::io as stdio;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use ::io::files::{FileError, NewFile, Overwrite};
 use cloud::formats::Format;
 use cloud::formats::mcap::McapWriter;
 use cloud::formats::pcd::PcdWriter;
 use cloud::formats::ply::PlyPipe;
-use cloud::{Companion, Fields, Sink, SinkError};
+use cloud::{Fields, Sink, SinkError};
 
+use self::beside::write_beside;
+use self::file::Shared;
 use crate::failure::{Failure, Kind};
 
-/// Enough for what comes in small pieces (LAZ, CSV); less than a batch of rows, which then goes to the system without being copied.
-const BUFFER_BYTES: usize = 1 << 16;
+pub(crate) use self::file::Buffered;
 
 /// A cloud's destination, checked and opened before anything is measured.
 pub struct Target {
@@ -75,7 +78,7 @@ impl Target {
         writer: impl FnOnce(Buffered<Shared>) -> Box<dyn Sink + Send>,
     ) -> Result<Self, Failure> {
         let file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
-        let shared = Shared(Arc::new(Mutex::new(Some(file))));
+        let shared = Shared::new(file);
         Ok(Self {
             path: path.to_owned(),
             file: Some(shared.clone()),
@@ -120,53 +123,6 @@ impl Target {
             None => Ok(()),
         }
     }
-}
-
-/// Writes what belongs beside the file `path`. One that is of another file stays: a folder has room for one, and both files are usable
-/// without.
-fn write_beside(path: &Path, companion: &Companion) -> Result<(), Failure> {
-    let beside = path.with_file_name(companion.name);
-    let failed = |what: String| {
-        Failure::new(
-            Kind::Incomplete,
-            format!("the cloud {} is saved, but {what}", path.display()),
-        )
-        .help("see whether the disk is full and the folder may be written to")
-    };
-    let older = match std::fs::read_to_string(&beside) {
-        Ok(text) => Some(text),
-        Err(error) if error.kind() == stdio::ErrorKind::NotFound => None,
-        Err(error) => {
-            return Err(failed(format!(
-                "{} cannot be read: {error}",
-                beside.display()
-            )));
-        }
-    };
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let ours = [format!("- {name}"), format!("- \"{name}\"")];
-    let of_this = |text: String| {
-        text.lines()
-            .any(|line| ours.iter().any(|l| l == line.trim()))
-    };
-    if older.is_some_and(|text| !of_this(text)) {
-        tracing::warn!(
-            "{} is of another recording and stays as it is; {name} plays without, or with a folder of its own",
-            beside.display()
-        );
-        return Ok(());
-    }
-    let written = NewFile::create(&beside, Overwrite::Replace).and_then(|mut file| {
-        match file.write_all(companion.text.as_bytes()) {
-            Ok(()) => file.commit(),
-            Err(source) => Err(FileError::Io {
-                path: beside.clone(),
-                action: "write",
-                source,
-            }),
-        }
-    });
-    written.map_err(|error| failed(error.to_string()))
 }
 
 /// Refuses a name that is taken, before anything is opened.
@@ -342,85 +298,4 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
         format!("the cloud {} could not be written: {error}", path.display()),
     )
     .help("free some space or name another place; the cloud can be made again from its log with replay")
-}
-
-/// A file with a buffer for writing, which can be read, too.
-pub(crate) struct Buffered<F: Write>(BufWriter<F>);
-
-impl<F: Write> Buffered<F> {
-    pub(crate) fn new(file: F) -> Self {
-        Self(BufWriter::with_capacity(BUFFER_BYTES, file))
-    }
-}
-
-impl<F: Write> Write for Buffered<F> {
-    fn write(&mut self, bytes: &[u8]) -> stdio::Result<usize> {
-        self.0.write(bytes)
-    }
-
-    fn flush(&mut self) -> stdio::Result<()> {
-        self.0.flush()
-    }
-}
-
-impl<F: Write + Seek> Seek for Buffered<F> {
-    fn seek(&mut self, to: SeekFrom) -> stdio::Result<u64> {
-        self.0.seek(to)
-    }
-
-    /// Without writing the buffer out.
-    fn stream_position(&mut self) -> stdio::Result<u64> {
-        self.0.stream_position()
-    }
-}
-
-impl<F: Read + Write> Read for Buffered<F> {
-    fn read(&mut self, bytes: &mut [u8]) -> stdio::Result<usize> {
-        self.0.flush()?;
-        self.0.get_mut().read(bytes)
-    }
-}
-
-/// The file, shared between the writer inside a sink and the commit after it.
-#[derive(Clone)]
-struct Shared(Arc<Mutex<Option<NewFile>>>);
-
-impl Shared {
-    fn release(&self) -> Option<NewFile> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
-    }
-
-    fn with<T>(&self, act: impl FnOnce(&mut NewFile) -> stdio::Result<T>) -> stdio::Result<T> {
-        match self
-            .0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .as_mut()
-        {
-            Some(file) => act(file),
-            None => Err(stdio::Error::other("the file is complete already")),
-        }
-    }
-}
-
-impl Write for Shared {
-    fn write(&mut self, bytes: &[u8]) -> stdio::Result<usize> {
-        self.with(|file| file.write(bytes))
-    }
-
-    fn flush(&mut self) -> stdio::Result<()> {
-        self.with(NewFile::flush)
-    }
-}
-
-impl Read for Shared {
-    fn read(&mut self, bytes: &mut [u8]) -> stdio::Result<usize> {
-        self.with(|file| file.read(bytes))
-    }
-}
-
-impl Seek for Shared {
-    fn seek(&mut self, to: SeekFrom) -> stdio::Result<u64> {
-        self.with(|file| file.seek(to))
-    }
 }
