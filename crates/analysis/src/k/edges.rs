@@ -31,6 +31,8 @@ pub(super) const F64_BAND: f64 = 1e-15;
 pub struct Edges {
     bins: usize,
     inner: Vec<Edge>,
+    /// Cosines of the inner edges in f32.
+    cosines_f32: Vec<f32>,
 }
 
 /// One inner edge.
@@ -51,7 +53,11 @@ impl Edges {
         let whole = whole.filter(|_| (1..=MOST_BINS).contains(&bins));
         let whole = whole.ok_or(KError::Bins { got: bins })?;
         let inner: Vec<Edge> = (1..whole).map(|part| Edge::new(part, whole)).collect();
-        Ok(Self { bins, inner })
+        Ok(Self {
+            bins,
+            cosines_f32: inner.iter().map(|edge| edge.cosine.hi as f32).collect(),
+            inner,
+        })
     }
 
     /// How many bins.
@@ -71,6 +77,11 @@ impl Edges {
     #[must_use]
     pub fn cosine(&self, bin: usize) -> f64 {
         self.inner.get(bin).map_or(-1.0, |edge| edge.cosine.hi)
+    }
+
+    /// The cosines of the inner edges in f32: one fewer than bins.
+    pub(super) fn cosines_f32(&self) -> &[f32] {
+        &self.cosines_f32
     }
 
     /// The bin of a pair of directions.

@@ -30,6 +30,38 @@ pub enum KError {
         /// Points given.
         got: usize,
     },
+    /// Points that do not make up whole frames, or more frames than are counted.
+    #[error(
+        "analysis: k: expected whole frames, {} at most, got {points} points in {frames} frames",
+        super::MOST_FRAMES
+    )]
+    Frames {
+        /// Points given.
+        points: usize,
+        /// Frames asked for.
+        frames: usize,
+    },
+    /// A tolerance or a risk that means nothing.
+    #[error("analysis: k: expected a {name} above 0 and below 1, got {got}")]
+    Wish {
+        /// Which of the two.
+        name: &'static str,
+        /// What was asked for.
+        got: f64,
+    },
+    /// A point is not where the first frame's, turned, would be.
+    #[error(
+        "analysis: k: point {index} of frame {frame}: expected that of frame 0, turned, within {}, got {off} from it",
+        super::TURNED_WITHIN
+    )]
+    NotTurned {
+        /// Its frame, from 0.
+        frame: usize,
+        /// Its place in the frame.
+        index: usize,
+        /// How far off it is.
+        off: f64,
+    },
     /// A pair is nearer than 2^-97 to an edge whose cosine is irrational. No pair of rounded points has been seen to be.
     #[error(
         "analysis: k: directions {first:?} and {second:?}: expected a side of the edge above bin {bin}, got nearer than 2^-97 to it"

@@ -64,8 +64,25 @@ pub struct Estimate {
     pub points: usize,
 }
 
+impl Estimate {
+    /// Of fewer than two points, which have no pairs: the shares of randomness, exactly.
+    pub(super) fn without_pairs(method: &'static str, edges: &Edges, points: usize) -> Self {
+        let csr = |t: &f64| (t / 2.0).sin().powi(2);
+        Self {
+            method,
+            shares: edges.upper_rad().iter().map(csr).collect(),
+            edges: edges.clone(),
+            bound: Bound::Exact,
+            points,
+        }
+    }
+}
+
 impl From<Counts> for Estimate {
     fn from(counts: Counts) -> Self {
+        if counts.points < 2 {
+            return Self::without_pairs("exact", &counts.edges, counts.points);
+        }
         let all = counts.pairs() as f64;
         let shares = counts.cumulative();
         Self {

@@ -1,34 +1,40 @@
 //! Ripley's K function of directions: how many pairs are how far apart.
 //!
 //! [`exact`] counts every pair, in whole numbers, and says on which side of an edge a pair lies by real numbers, not rounded ones ([`Edges`]).
+//! [`turned`] does the same for scans of turned frames, from one of them. [`sampled`] and [`gridded`] are faster and say how far they may be off:
+//! by a confidence interval, and by a proof. [`choose`] takes the cheapest that is good enough.
 //! Left out: where the directions come from, pictures, files.
 
+mod cells;
+mod choose;
 mod counts;
 mod curve;
 mod dd;
 mod edges;
 mod error;
 mod estimate;
+mod exact;
+mod gridded;
+mod lanes;
+mod leaf_pair;
 mod plain;
+mod reach;
+mod registers;
+mod sampled;
 #[cfg(test)]
 mod tests;
+mod tree;
+mod turned;
 
-use std::num::NonZeroUsize;
-
-use glam::DVec3;
-
+pub use choose::{EXACT_BELOW, Method, choose, estimate};
 pub use counts::Counts;
 pub use curve::KCurve;
 pub use edges::{Edges, LEAST_COORDINATE, MOST_BINS, ON_EDGE};
 pub use error::{KError, UNIT_WITHIN};
 pub use estimate::{Bound, Estimate};
+pub use exact::{exact, exact_by};
+pub use gridded::gridded;
 pub use plain::plain;
-
-/// Counts every pair of directions, on so many threads; the counts do not hang on how many.
-///
-/// # Errors
-/// [`KError::NotUnit`] and [`KError::TooMany`] for what are not directions, [`KError::Undecided`].
-pub fn exact(points: &[DVec3], edges: &Edges, threads: NonZeroUsize) -> Result<Counts, KError> {
-    let _ = threads;
-    plain(points, edges)
-}
+pub use registers::Registers;
+pub use sampled::{Sampling, sampled};
+pub use turned::{MOST_FRAMES, TURNED_WITHIN, Turning, turned, turned_by};

@@ -222,3 +222,21 @@ fn some_of_an_rmbl_is_as_counted_one_by_one() {
         );
     }
 }
+
+#[test]
+fn counters_hold_as_many_pairs_as_32_bits_and_more() {
+    // 92,682 points have 4,294,930,221 pairs and 92,683 have 4,295,022,903: 2^32 is between them. All in one place, and
+    // in two places a quarter turn apart.
+    for (points, pairs) in [(92_682, 4_294_930_221), (92_683, 4_295_022_903)] {
+        let same = counted(&vec![DVec3::Y; points], 151);
+        assert_eq!((same.counts[0], same.pairs()), (pairs, pairs));
+        let mut two = vec![DVec3::Y; points / 2];
+        two.resize(points, DVec3::Z);
+        let between = (points / 2 * points.div_ceil(2)) as u64;
+        let two = counted(&two, 151);
+        assert_eq!((two.counts[0], two.counts[75]), (pairs - between, between));
+    }
+    // The most points there may be: the number of pairs still fits.
+    let most = crate::k::counts::pairs(u32::MAX as usize);
+    assert_eq!(most, (u32::MAX as u64 - 1) / 2 * u32::MAX as u64);
+}

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// Firings of 16 lasers from -15 to 15 degrees, at so many azimuths 0.4 degrees apart from 0.
-pub(in crate::k) fn vlp16(azimuths: u32) -> Vec<DVec3> {
+pub fn vlp16(azimuths: u32) -> Vec<DVec3> {
     let mut points = Vec::new();
     for azimuth in 0..azimuths {
         let (sin_a, cos_a) = (f64::from(azimuth) * 0.4).to_radians().sin_cos();
@@ -16,7 +16,7 @@ pub(in crate::k) fn vlp16(azimuths: u32) -> Vec<DVec3> {
 }
 
 /// Turned about y by a tilt (Eq. 4-6).
-pub(in crate::k) fn tilted(frame: &[DVec3], tilt_deg: f64) -> impl Iterator<Item = DVec3> {
+pub fn tilted(frame: &[DVec3], tilt_deg: f64) -> impl Iterator<Item = DVec3> {
     let (sin_g, cos_g) = tilt_deg.to_radians().sin_cos();
     let turn =
         move |p: &DVec3| DVec3::new(p.x * cos_g + p.z * sin_g, p.y, p.z * cos_g - p.x * sin_g);
@@ -24,7 +24,7 @@ pub(in crate::k) fn tilted(frame: &[DVec3], tilt_deg: f64) -> impl Iterator<Item
 }
 
 /// So many frames of 901 azimuths at tilts evenly from 0 to below 180 degrees, still within a frame.
-pub(in crate::k) fn rmbl(frames: u32) -> Vec<DVec3> {
+pub fn rmbl(frames: u32) -> Vec<DVec3> {
     let frame = vlp16(901);
     let step = 180.0 / f64::from(frames);
     let tilts = (0..frames).map(|k| f64::from(k) * step);
@@ -34,7 +34,7 @@ pub(in crate::k) fn rmbl(frames: u32) -> Vec<DVec3> {
 }
 
 /// Directions that look like chance, from a linear congruential generator.
-pub(in crate::k) fn scattered(count: usize, seed: u64) -> Vec<DVec3> {
+pub fn scattered(count: usize, seed: u64) -> Vec<DVec3> {
     let mut state = seed.wrapping_mul(2) | 1;
     let mut draw = || {
         state = state

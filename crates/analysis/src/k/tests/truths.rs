@@ -1,20 +1,86 @@
-//! Counts of the VLP-16 and of RMBLs known beforehand.
+//! Counts and curves of scan patterns that were known beforehand, by other programs.
 
-use super::patterns::vlp16;
-use crate::k::{Edges, plain};
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::hard_cases::{ONE, counted};
+use super::patterns::{rmbl, vlp16};
+use crate::k::{Counts, Edges, KCurve, Turning, plain, turned};
+
+fn by_turning(frames: u32) -> Counts {
+    let turning = Turning {
+        axis: DVec3::Y,
+        step_rad: PI / f64::from(frames),
+        frames: frames as usize,
+    };
+    let edges = Edges::equal(151).unwrap();
+    turned(&rmbl(frames), &turning, &edges, ONE).unwrap()
+}
+
+fn first_two_and_last(counts: &Counts) -> [u64; 3] {
+    assert_eq!(counts.counts.iter().sum::<u64>(), counts.pairs());
+    assert!(counts.is_well_posed());
+    [counts.counts[0], counts.counts[1], counts.counts[150]]
+}
 
 #[test]
 fn a_frame_of_the_vlp16_has_its_counts() {
     let edges = Edges::equal(151).unwrap();
-    let truths = [
-        (901, [37_900, 138_021, 45_100]),
-        (900, [37_800, 137_700, 45_000]),
-    ];
-    for (azimuths, truth) in truths {
-        let counts = plain(&vlp16(azimuths), &edges).unwrap();
-        let of = [counts.counts[0], counts.counts[1], counts.counts[150]];
-        assert_eq!(of, truth, "{azimuths} azimuths");
-        assert_eq!(counts.counts.iter().sum::<u64>(), counts.pairs());
-        assert!(counts.is_well_posed());
+    let truth = [37_900, 138_021, 45_100];
+    assert_eq!(first_two_and_last(&counted(&vlp16(901), 151)), truth);
+    assert_eq!(
+        first_two_and_last(&plain(&vlp16(901), &edges).unwrap()),
+        truth
+    );
+    let truth = [37_800, 137_700, 45_000];
+    assert_eq!(first_two_and_last(&counted(&vlp16(900), 151)), truth);
+}
+
+#[test]
+fn with_900_azimuths_there_are_as_many_pairs_within_r_as_beyond_pi_less_r_but_for_half_a_pair_a_point()
+ {
+    let counts = counted(&vlp16(900), 151);
+    let within = counts.cumulative();
+    for bins in 1..=75 {
+        // Bins from the far end: as many as from the near end, and 14,400 / 2 antipodes.
+        let beyond = counts.pairs() - within[150 - bins];
+        assert_eq!(beyond, within[bins - 1] + 7200, "{bins} bins");
     }
+}
+
+#[test]
+fn rmbls_have_their_counts_and_curves() {
+    let truths = [
+        (30, [14_413_980, 44_099_850, 14_628_780], Some(0.024_38)),
+        (72, [82_933_920, 250_263_432, 83_444_544], None),
+    ];
+    for (frames, truth, d_max) in truths {
+        let counts = by_turning(frames);
+        assert_eq!(first_two_and_last(&counts), truth, "{frames} frames");
+        let curve = KCurve::of_counts(&counts, 10.0);
+        if let Some(d_max) = d_max {
+            assert!((curve.d_max - d_max).abs() < 1e-5, "{}", curve.d_max);
+        }
+        // An RMBL is antipodally symmetric but for its doubled azimuth: D(t) = -D(pi - t).
+        for (near, far) in curve.d.iter().zip(curve.d.iter().rev().skip(1)) {
+            assert!((near + far).abs() < 1e-4, "{near} {far}");
+        }
+    }
+}
+
+#[test]
+fn the_vlp16_clusters_and_disperses_as_known() {
+    let curve = KCurve::of_counts(&counted(&vlp16(901), 151), 10.0);
+    assert!((curve.d_max - 0.094_86).abs() < 5e-6, "{}", curve.d_max);
+    assert!((curve.d_min + 0.094_93).abs() < 5e-6, "{}", curve.d_min);
+    // K of the whole sphere is its area, whatever the points.
+    assert!((curve.k_m2[150] - 400.0 * PI).abs() < 1e-9);
+    assert!(curve.d[150].abs() < 1e-15);
+    let area = 400.0 * PI;
+    assert!((curve.max_abs_m2 - area * 0.094_93).abs() < area * 5e-6);
+    // The derivative's sum over the bins is the curve's end.
+    let sum: f64 = curve.derivative_m2_rad.iter().sum::<f64>() * PI / 151.0;
+    assert!(sum.abs() < 1e-9);
+    assert_eq!(curve.d_error_bound, 0.0);
 }

@@ -1,0 +1,138 @@
+//! The same counts by any registers, on any number of threads, by whole scans and by the turning of their frames.
+
+use std::f64::consts::PI;
+use std::num::NonZeroUsize;
+
+use glam::{DQuat, DVec3};
+use proptest::prelude::*;
+
+use super::hard_cases::ONE;
+use super::patterns::{rmbl, scattered, vlp16};
+use crate::k::{
+    Edges, KError, MOST_FRAMES, Registers, Turning, exact, exact_by, plain, turned, turned_by,
+};
+
+/// What this processor has, and less.
+const REGISTERS: [Registers; 4] = [
+    Registers::Best,
+    Registers::Avx2,
+    Registers::Sse4,
+    Registers::Least,
+];
+
+fn turning(frames: usize, step_rad: f64) -> Turning {
+    Turning {
+        axis: DVec3::Y,
+        step_rad,
+        frames,
+    }
+}
+
+#[test]
+fn any_registers_and_threads_count_the_same() {
+    let frame = vlp16(901);
+    let few = scattered(1001, 5);
+    for points in [&frame[..2003], &few] {
+        for bins in [2, 151, 180, 1000] {
+            let edges = Edges::equal(bins).unwrap();
+            let one_by_one = plain(points, &edges).unwrap();
+            for registers in REGISTERS {
+                let counts = exact_by(registers, points, &edges, ONE);
+                assert_eq!(counts.unwrap(), one_by_one, "{registers:?}, {bins} bins");
+            }
+            for threads in [2, 5] {
+                let threads = NonZeroUsize::new(threads).unwrap();
+                let counts = exact(points, &edges, threads).unwrap();
+                assert_eq!(counts, one_by_one, "{threads} threads");
+            }
+        }
+    }
+}
+
+#[test]
+fn turned_frames_count_as_their_points_do() {
+    let points: Vec<DVec3> = rmbl(9)
+        .chunks(14_416)
+        .flat_map(|frame| frame[..203].to_vec())
+        .collect();
+    let turning = turning(9, PI / 9.0);
+    // 180 and 36 bins have edges at every frame's step: pairs on them go to either side by roundings.
+    for bins in [1, 36, 151, 180] {
+        let edges = Edges::equal(bins).unwrap();
+        let one_by_one = plain(&points, &edges).unwrap();
+        assert_eq!(
+            exact(&points, &edges, ONE).unwrap(),
+            one_by_one,
+            "{bins} bins"
+        );
+        for registers in REGISTERS {
+            let counts = turned_by(registers, &points, &turning, &edges, ONE);
+            assert_eq!(counts.unwrap(), one_by_one, "{registers:?}, {bins} bins");
+        }
+        let three = NonZeroUsize::new(3).unwrap();
+        assert_eq!(
+            turned(&points, &turning, &edges, three).unwrap(),
+            one_by_one
+        );
+    }
+}
+
+#[test]
+fn frames_that_were_not_turned_so_are_refused() {
+    let edges = Edges::equal(151).unwrap();
+    let mut points: Vec<DVec3> = rmbl(3);
+    let count = |points: &[DVec3], of: Turning| turned(points, &of, &edges, ONE);
+    let wrong = count(&points, turning(3, 1.0));
+    assert!(
+        matches!(wrong, Err(KError::NotTurned { frame: 1, .. })),
+        "{wrong:?}"
+    );
+    let wrong = count(&points, turning(5, PI / 3.0));
+    assert!(
+        matches!(wrong, Err(KError::Frames { frames: 5, .. })),
+        "{wrong:?}"
+    );
+    assert!(count(&points, turning(0, PI / 3.0)).is_err());
+    assert!(count(&points, turning(MOST_FRAMES + 1, PI / 3.0)).is_err());
+    points[30_000] = (points[30_000] + DVec3::X * 1e-8).normalize();
+    let wrong = count(&points, turning(3, PI / 3.0));
+    assert!(
+        matches!(
+            wrong,
+            Err(KError::NotTurned {
+                frame: 2,
+                index: 1168,
+                ..
+            })
+        ),
+        "{wrong:?}"
+    );
+    assert_eq!(count(&[], turning(1, 0.0)).unwrap().pairs(), 0);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Clusters of any size, here and at the antipodes, some in the same place, in any number of bins.
+    #[test]
+    fn clusters_count_as_one_by_one(
+        sizes in prop::collection::vec((1..60_usize, 1e-9..2.0_f64, 0..1000_u64), 1..6),
+        bins in 1..400_usize,
+    ) {
+        let mut points = Vec::new();
+        for (size, width, seed) in sizes {
+            let middle = scattered(1, seed)[0];
+            let turn = DQuat::from_rotation_arc(DVec3::Z, middle);
+            for p in scattered(size, seed + 1) {
+                points.push((turn * (DVec3::Z + p * width)).normalize());
+            }
+            points.push(middle);
+            points.push(-middle);
+        }
+        let edges = Edges::equal(bins).unwrap();
+        let one_by_one = plain(&points, &edges).unwrap();
+        prop_assert_eq!(&exact(&points, &edges, ONE).unwrap(), &one_by_one);
+        let still = turning(1, 0.0);
+        prop_assert_eq!(&turned(&points, &still, &edges, ONE).unwrap(), &one_by_one);
+    }
+}

@@ -1,0 +1,177 @@
+//! Faster methods against every pair: their bounds hold.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::hard_cases::{ONE, counted};
+use super::patterns::{rmbl, scattered, vlp16};
+use crate::k::{
+    Bound, Edges, Estimate, KCurve, KError, Method, Sampling, Turning, choose, estimate, exact,
+    gridded, sampled,
+};
+
+/// How often a share is farther off than its bound, and by how much it is off at most.
+fn against(of: &Estimate, exact: &Estimate) -> (usize, f64) {
+    assert_eq!(of.shares.len(), exact.shares.len());
+    let off = of
+        .shares
+        .iter()
+        .zip(&exact.shares)
+        .map(|(a, b)| (a - b).abs());
+    let beyond = off
+        .clone()
+        .enumerate()
+        .filter(|(bin, off)| *off > of.bound.of(*bin));
+    (beyond.count(), off.fold(0.0, f64::max))
+}
+
+fn wish(tolerance: f64, risk: f64) -> Sampling {
+    Sampling {
+        tolerance,
+        risk,
+        seed: 7,
+    }
+}
+
+fn patterns() -> [Vec<DVec3>; 4] {
+    let mut clustered = vec![DVec3::Z; 700];
+    clustered.extend(
+        scattered(300, 8)
+            .iter()
+            .map(|p| (DVec3::Y * 30.0 + p).normalize()),
+    );
+    clustered.extend(vec![DVec3::NEG_Z; 500]);
+    [
+        vlp16(300),
+        rmbl(4).into_iter().step_by(11).collect(),
+        scattered(3000, 4),
+        clustered,
+    ]
+}
+
+#[test]
+fn grids_hold_their_proven_bounds() {
+    for points in patterns() {
+        for bins in [7, 151, 180] {
+            let truth: Estimate = counted(&points, bins).into();
+            let mut last = 1.0;
+            for side in [3, 10, 40] {
+                let of = gridded(&points, &truth.edges, side).unwrap();
+                assert!(matches!(of.bound, Bound::Proven { .. }));
+                assert_eq!(against(&of, &truth).0, 0, "side {side}, {bins} bins");
+                assert!(of.bound.largest() <= last, "finer cells say as much");
+                last = of.bound.largest();
+            }
+        }
+    }
+}
+
+#[test]
+fn samples_hold_their_confidence_intervals() {
+    // 4 patterns, 2 kinds of bins, 12 seeds at a risk of 1 in 20: 96 intervals, of which 4.8 may fail. Bernstein is careful: none does.
+    for points in patterns() {
+        for bins in [12, 151] {
+            let truth: Estimate = counted(&points, bins).into();
+            let mut mean = vec![0.0; bins];
+            let mut bound = 0.0_f64;
+            for seed in 0..12 {
+                let wish = Sampling {
+                    tolerance: 0.01,
+                    risk: 0.05,
+                    seed,
+                };
+                let of = sampled(&points, &truth.edges, &wish).unwrap();
+                assert!(matches!(of.bound, Bound::Confidence { risk: 0.05, .. }));
+                assert!(of.bound.largest() <= 0.01, "{}", of.bound.largest());
+                let (beyond, off) = against(&of, &truth);
+                assert_eq!(beyond, 0, "seed {seed}, {bins} bins: {off}");
+                for (mean, share) in mean.iter_mut().zip(&of.shares) {
+                    *mean += share / 12.0;
+                }
+                bound = bound.max(of.bound.largest());
+            }
+            // Right in the mean: twelve draws' mean is nearer than the bound of one.
+            for (mean, share) in mean.iter().zip(&truth.shares) {
+                assert!((mean - share).abs() < bound / 2.0, "{mean} {share} {bound}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
+    let points = rmbl(8);
+    let turning = Turning {
+        axis: DVec3::Y,
+        step_rad: PI / 8.0,
+        frames: 8,
+    };
+    let edges = Edges::equal(151).unwrap();
+    let truth = estimate(&points, Some(&turning), &edges, &wish(0.0, 1e-3), ONE).unwrap();
+    assert_eq!((truth.method, &truth.bound), ("turned", &Bound::Exact));
+    let of = sampled(&points, &edges, &Sampling::default()).unwrap();
+    assert!(of.bound.largest() <= 1e-4);
+    assert_eq!(against(&of, &truth).0, 0);
+    let (of, truth) = (
+        KCurve::of_estimate(&of, 1.0),
+        KCurve::of_estimate(&truth, 1.0),
+    );
+    assert!((of.d_max - truth.d_max).abs() <= of.d_error_bound);
+    assert!((of.d_min - truth.d_min).abs() <= of.d_error_bound);
+}
+
+#[test]
+fn the_cheapest_that_is_good_enough_is_taken() {
+    let turning = Turning {
+        axis: DVec3::Y,
+        step_rad: PI / 72.0,
+        frames: 72,
+    };
+    let of = |points, turning, tolerance, risk| choose(points, turning, &wish(tolerance, risk));
+    assert_eq!(of(14_416, None, 1e-2, 0.1), Method::Exact);
+    assert_eq!(of(1_037_952, None, 0.0, 0.1), Method::Exact);
+    assert_eq!(of(1_037_952, Some(&turning), 0.0, 0.1), Method::Turned);
+    assert_eq!(of(1_037_952, None, 1e-4, 1e-3), Method::Sampled);
+    assert_eq!(of(1_037_952, Some(&turning), 1e-4, 1e-3), Method::Sampled);
+    // Without any risk: a proof, or every pair.
+    assert_eq!(of(1_037_952, None, 0.1, 0.0), Method::Gridded);
+    assert_eq!(of(1_037_952, None, 1e-4, 0.0), Method::Exact);
+    assert_eq!(of(1_037_952, None, f64::NAN, 0.1), Method::Exact);
+    let points = scattered(70_000, 6);
+    let edges = Edges::equal(151).unwrap();
+    let truth: Estimate = exact(&points, &edges, ONE).unwrap().into();
+    for (tolerance, risk, method) in [(0.1, 0.0, "gridded"), (1e-3, 1e-3, "sampled")] {
+        let of = estimate(&points, None, &edges, &wish(tolerance, risk), ONE).unwrap();
+        assert!(of.bound.largest() <= tolerance, "{}", of.bound.largest());
+        assert_eq!(of.method, method);
+        assert_eq!(against(&of, &truth).0, 0);
+    }
+}
+
+#[test]
+fn estimates_of_no_and_one_and_two_points() {
+    let edges = Edges::equal(151).unwrap();
+    for points in [&[][..], &[DVec3::X], &[DVec3::X, DVec3::Y]] {
+        for of in [
+            sampled(points, &edges, &Sampling::default()),
+            gridded(points, &edges, 9),
+        ] {
+            assert_eq!(of.unwrap().shares.len(), 151);
+        }
+    }
+    let of = sampled(&[DVec3::X, DVec3::Y], &edges, &Sampling::default()).unwrap();
+    assert_eq!((of.shares[74], of.shares[75]), (0.0, 1.0));
+    let wish = Sampling {
+        risk: 0.0,
+        ..Sampling::default()
+    };
+    let refused = sampled(&[DVec3::X, DVec3::Y], &edges, &wish);
+    assert_eq!(
+        refused,
+        Err(KError::Wish {
+            name: "risk",
+            got: 0.0
+        })
+    );
+}

@@ -1,0 +1,273 @@
+//! Directions in leaves of sixteen neighbours, and how far a leaf or a block of leaves reaches.
+//!
+//! The points are halved by their widest axis until a leaf is left. What a leaf or block reaches is a circle about its middle,
+//! rounded outward. Left out: what is counted with it.
+
+use glam::DVec3;
+
+use super::lanes::LANES;
+use super::reach::Around;
+
+/// The most leaves of a block.
+pub(super) const BLOCK_LEAVES: usize = 32;
+
+/// A circle on the sphere.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Circle {
+    pub middle: DVec3,
+    /// Radians; up to pi.
+    pub radius: f64,
+}
+
+impl Circle {
+    /// Around all of these; around everything where they have no middle.
+    pub(super) fn around<'a>(points: impl Iterator<Item = &'a DVec3> + Clone) -> Self {
+        let sum: DVec3 = points.clone().sum();
+        let Some(middle) = sum.try_normalize() else {
+            return Self {
+                middle: DVec3::X,
+                radius: std::f64::consts::PI,
+            };
+        };
+        let chord = points.map(|p| p.distance_squared(middle));
+        let chord = chord.fold(0.0, f64::max).sqrt();
+        // Lengths of 1 within 1e-6 turn a chord by less than 2e-6.
+        let radius = 2.0 * (chord / 2.0).min(1.0).asin() + 4e-6;
+        Self { middle, radius }
+    }
+
+    /// The least and the greatest angle from a point of this to one of the other, radians, rounded outward.
+    pub(super) fn angles(&self, other: &Self) -> (f64, f64) {
+        let apart = self.middle.dot(other.middle).clamp(-1.0, 1.0).acos();
+        let reach = self.radius + other.radius + 1e-6;
+        ((apart - reach).max(0.0), apart + reach)
+    }
+}
+
+/// Circles in f32 in columns, with [`LANES`] more than there are so that sixteen can be read anywhere.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Circles {
+    middles: [Vec<f32>; 3],
+    /// Rounded up.
+    radii: Vec<f32>,
+}
+
+impl Circles {
+    pub(super) fn new(circles: &[Circle]) -> Self {
+        let column = |of: fn(DVec3) -> f64| {
+            let middles = circles.iter().map(|circle| of(circle.middle) as f32);
+            middles.chain([0.0; LANES]).collect::<Vec<f32>>()
+        };
+        let radii = circles.iter().map(|circle| circle.radius as f32);
+        let radii = radii.map(|radius| radius * (1.0 + 1e-6) + 1e-6);
+        Self {
+            middles: [column(|m| m.x), column(|m| m.y), column(|m| m.z)],
+            radii: radii.chain([0.0; LANES]).collect(),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn one(&self, at: usize) -> Option<Around> {
+        let [x, y, z] = &self.middles;
+        Some(Around {
+            middle: [*x.get(at)?, *y.get(at)?, *z.get(at)?],
+            radius: *self.radii.get(at)?,
+        })
+    }
+
+    /// Sixteen from one, in columns.
+    #[inline(always)]
+    pub(super) fn sixteen(&self, from: usize) -> Option<([&[f32; LANES]; 3], &[f32; LANES])> {
+        let [x, y, z] = &self.middles;
+        let x = x.get(from..)?.first_chunk()?;
+        let y = y.get(from..)?.first_chunk()?;
+        let z = z.get(from..)?.first_chunk()?;
+        Some(([x, y, z], self.radii.get(from..)?.first_chunk()?))
+    }
+}
+
+/// Leaves that follow one another, [`BLOCK_LEAVES`] at most.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block {
+    pub first: usize,
+    /// Behind the last.
+    pub end: usize,
+    pub circle: Circle,
+}
+
+/// Blocks that follow one another: a node above the blocks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    pub first_block: usize,
+    pub end_block: usize,
+    pub circle: Circle,
+    /// Where its halves stand among the nodes; none of a single block.
+    pub halves: Option<(usize, usize)>,
+}
+
+/// Coordinates of sixteen points; those that are missing are nought.
+pub(super) type Leaf = [[f32; LANES]; 3];
+
+/// Directions in leaves.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tree {
+    /// As given, in the order of the leaves.
+    pub points: Vec<DVec3>,
+    /// Where each of them stood.
+    pub order: Vec<u32>,
+    pub leaves: Vec<Leaf>,
+    /// The circles of the leaves.
+    pub around_leaves: Circles,
+    pub blocks: Vec<Block>,
+    /// The circles of the blocks.
+    pub around_blocks: Circles,
+    /// The last is the root; none without points.
+    pub nodes: Vec<Node>,
+}
+
+/// A point while it is sorted.
+#[derive(Clone, Copy)]
+struct Sorted {
+    at: [f32; 3],
+    index: u32,
+}
+
+impl Tree {
+    pub(super) fn new(points: &[DVec3]) -> Self {
+        let sorted = points.iter().zip(0_u32..);
+        let mut sorted: Vec<Sorted> = sorted
+            .map(|(p, index)| Sorted {
+                at: p.as_vec3().to_array(),
+                index,
+            })
+            .collect();
+        let mut blocks = Vec::new();
+        halve(&mut sorted, 0, &mut blocks);
+        let order: Vec<u32> = sorted.iter().map(|s| s.index).collect();
+        Self::ordered(points, order, blocks)
+    }
+
+    /// Leaves of points in an order that is known, with the blocks that belong to it.
+    fn ordered(points: &[DVec3], order: Vec<u32>, blocks: Vec<(usize, usize)>) -> Self {
+        let of = |index: &u32| points.get(*index as usize).copied();
+        let points: Vec<DVec3> = order.iter().filter_map(of).collect();
+        let leaves: Vec<Leaf> = points.chunks(LANES).map(leaf).collect();
+        let circles: Vec<Circle> = points
+            .chunks(LANES)
+            .map(|of| Circle::around(of.iter()))
+            .collect();
+        let block = |&(first, end): &(usize, usize)| {
+            let from = first * LANES..(end * LANES).min(points.len());
+            Block {
+                first,
+                end,
+                circle: Circle::around(points.get(from).unwrap_or_default().iter()),
+            }
+        };
+        let blocks: Vec<Block> = blocks.iter().map(block).collect();
+        let around_blocks: Vec<Circle> = blocks.iter().map(|block| block.circle).collect();
+        let mut tree = Self {
+            around_leaves: Circles::new(&circles),
+            blocks,
+            around_blocks: Circles::new(&around_blocks),
+            points,
+            order,
+            leaves,
+            nodes: Vec::new(),
+        };
+        if !tree.blocks.is_empty() {
+            tree.add_nodes(0, tree.blocks.len());
+        }
+        tree
+    }
+
+    /// Whether a leaf has all its points.
+    #[inline]
+    pub(super) fn is_full(&self, leaf: usize) -> bool {
+        (leaf + 1) * LANES <= self.points.len()
+    }
+
+    /// How many points these leaves have.
+    pub(super) fn points_of(&self, first: usize, end: usize) -> usize {
+        (end * LANES)
+            .min(self.points.len())
+            .saturating_sub(first * LANES)
+    }
+
+    fn add_nodes(&mut self, first_block: usize, end_block: usize) -> usize {
+        let (halves, circle) = if end_block - first_block <= 1 {
+            (None, self.blocks.get(first_block).map(|block| block.circle))
+        } else {
+            let middle = first_block.midpoint(end_block);
+            let halves = (
+                self.add_nodes(first_block, middle),
+                self.add_nodes(middle, end_block),
+            );
+            let first = self.blocks.get(first_block).map_or(0, |block| block.first);
+            let end = self.blocks.get(end_block - 1).map_or(0, |block| block.end);
+            let points = first * LANES..(end * LANES).min(self.points.len());
+            let points = self.points.get(points).unwrap_or_default();
+            (Some(halves), Some(Circle::around(points.iter())))
+        };
+        let everything = Circle {
+            middle: DVec3::X,
+            radius: std::f64::consts::PI,
+        };
+        self.nodes.push(Node {
+            first_block,
+            end_block,
+            circle: circle.unwrap_or(everything),
+            halves,
+        });
+        self.nodes.len() - 1
+    }
+}
+
+/// Sorts points into leaves, and notes the leaves of every block.
+fn halve(points: &mut [Sorted], first_leaf: usize, blocks: &mut Vec<(usize, usize)>) {
+    let leaves = points.len().div_ceil(LANES);
+    if leaves == 0 {
+        return;
+    }
+    let is_block = leaves <= BLOCK_LEAVES;
+    // The first block on the way down that is small enough; its halves are within it.
+    if is_block && blocks.last().is_none_or(|&(_, end)| end <= first_leaf) {
+        blocks.push((first_leaf, first_leaf + leaves));
+    }
+    if leaves == 1 {
+        return;
+    }
+    let left = leaves / 2;
+    let middle = left * LANES;
+    let axis = widest(points);
+    let key = |s: &Sorted| s.at[axis];
+    points.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
+    let (before, behind) = points.split_at_mut(middle);
+    halve(before, first_leaf, blocks);
+    halve(behind, first_leaf + left, blocks);
+}
+
+fn widest(points: &[Sorted]) -> usize {
+    let (mut low, mut high) = ([f32::MAX; 3], [f32::MIN; 3]);
+    for point in points {
+        for ((low, high), at) in low.iter_mut().zip(&mut high).zip(point.at) {
+            *low = low.min(at);
+            *high = high.max(at);
+        }
+    }
+    let [x, y, z] = [high[0] - low[0], high[1] - low[1], high[2] - low[2]];
+    match (x >= y && x >= z, y >= z) {
+        (true, _) => 0,
+        (_, true) => 1,
+        _ => 2,
+    }
+}
+
+fn leaf(points: &[DVec3]) -> Leaf {
+    let mut leaf = [[0.0; LANES]; 3];
+    let [x, y, z] = &mut leaf;
+    for (((p, x), y), z) in points.iter().zip(x).zip(y).zip(z) {
+        (*x, *y, *z) = (p.x as f32, p.y as f32, p.z as f32);
+    }
+    leaf
+}

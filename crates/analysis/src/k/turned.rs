@@ -1,0 +1,389 @@
+//! Every pair of a scan whose frames are one frame, turned on step by step: by the pairs of its first frame alone.
+//!
+//! Points `i` of frame `k` and `j` of frame `k + d` are as far apart as `i` of frame 0 and `j` of frame `d`, but for roundings. So
+//! each pair of frame 0 and any frame stands for as many pairs as there are frames so far apart. Where it is so near to an edge that
+//! roundings could tell them apart, all of them are counted by themselves: the counts are those of the very points, the same as [`super::exact`]'s.
+//! Left out: finding out how a scan was turned.
+
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use fearless_simd::{dispatch, f32x16, prelude::*, u32x16};
+use glam::{DQuat, DVec3};
+
+use super::exact::on_threads;
+use super::lanes::{LANES, Lanes, Portable};
+use super::leaf_pair::{F32_BAND, Tally, loaded};
+use super::plain::check;
+use super::reach::{Around, reach};
+use super::tree::{BLOCK_LEAVES, Tree};
+use super::{Counts, Edges, KError, Registers};
+
+/// The most frames: sixteen rows of sixteen blocks can be added to a lane of 32 bits then.
+pub const MOST_FRAMES: usize = 1 << 17;
+
+/// How far a point may be from where the first frame's, turned, would be: less than what single precision leaves room for.
+pub const TURNED_WITHIN: f64 = 3e-9;
+
+/// What the turning of a point in f64 may itself be off.
+const TURNING_ERROR: f64 = 4e-15;
+
+/// How the frames of a scan follow from the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turning {
+    /// The axis, of length 1.
+    pub axis: DVec3,
+    /// From one frame to the next, radians, by the right hand.
+    pub step_rad: f64,
+    /// Frames; the points are those of the first, then those of the second in the same order, and so on.
+    pub frames: usize,
+}
+
+impl Turning {
+    /// The farthest that any point is from where it should be, with the error of that.
+    fn farthest(&self, points: &[DVec3]) -> Result<f64, KError> {
+        let wrong = || KError::Frames {
+            points: points.len(),
+            frames: self.frames,
+        };
+        let is_whole =
+            (1..=MOST_FRAMES).contains(&self.frames) && points.len().is_multiple_of(self.frames);
+        let size = points.len().checked_div(self.frames).filter(|_| is_whole);
+        let size = size.ok_or_else(wrong)?;
+        if (self.axis.length() - 1.0).abs() > 1e-9 {
+            return Err(KError::NotTurned {
+                frame: 0,
+                index: 0,
+                off: f64::NAN,
+            });
+        }
+        let mut farthest = 0.0_f64;
+        let (first, _) = points.split_at(size);
+        for (k, frame) in points.chunks(size.max(1)).enumerate() {
+            let turn = DQuat::from_axis_angle(self.axis.normalize(), k as f64 * self.step_rad);
+            for (index, (p, from)) in frame.iter().zip(first).enumerate() {
+                let off = (turn * *from).distance(*p) + TURNING_ERROR;
+                if off.is_nan() || off > TURNED_WITHIN {
+                    return Err(KError::NotTurned {
+                        frame: k,
+                        index,
+                        off,
+                    });
+                }
+                farthest = farthest.max(off);
+            }
+        }
+        Ok(farthest)
+    }
+}
+
+/// Counts every pair of a scan of turned frames, bit for bit as [`super::exact`] does.
+///
+/// # Errors
+/// [`KError::NotTurned`] and [`KError::Frames`] where the points are not such a scan; as [`super::exact`].
+pub fn turned(
+    points: &[DVec3],
+    turning: &Turning,
+    edges: &Edges,
+    threads: NonZeroUsize,
+) -> Result<Counts, KError> {
+    turned_by(Registers::Best, points, turning, edges, threads)
+}
+
+/// The same with some registers.
+///
+/// # Errors
+/// As [`turned`].
+pub fn turned_by(
+    registers: Registers,
+    points: &[DVec3],
+    turning: &Turning,
+    edges: &Edges,
+    threads: NonZeroUsize,
+) -> Result<Counts, KError> {
+    check(points)?;
+    let level = registers.level();
+    let scan = Scan::new(points, turning, edges)?;
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut one = One {
+            scan: &scan,
+            tally: Tally::new(edges.bins()),
+            on_edges: 0,
+            wrong: None,
+        };
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        if let Some(avx512) = level.as_avx512() {
+            use fearless_simd::Simd as _;
+            avx512.vectorize(
+                #[inline(always)]
+                || one.all(super::lanes::Wide(avx512), &next),
+            );
+            return one.done();
+        }
+        dispatch!(level, simd => one.all(Portable(simd), &next));
+        one.done()
+    };
+    let mut twice = vec![0_i64; edges.bins()];
+    let mut on_edges = 0;
+    for part in on_threads(threads, &work) {
+        let (of, on) = part?;
+        on_edges += on;
+        for (twice, of) in twice.iter_mut().zip(of) {
+            *twice += of;
+        }
+    }
+    // Every pair has been counted from both ends, and every point with itself.
+    for &p in points {
+        let bin = edges.bin(p, p)?;
+        if let Some(twice) = twice.get_mut(bin) {
+            *twice -= 1;
+        }
+        let below = bin.checked_sub(1);
+        let is_on = |bin| edges.is_on(bin, p, p);
+        on_edges -= u64::from(is_on(bin) || below.is_some_and(is_on));
+    }
+    Ok(Counts {
+        edges: edges.clone(),
+        counts: twice
+            .iter()
+            .map(|twice| twice.cast_unsigned() / 2)
+            .collect(),
+        points: points.len(),
+        on_edges: on_edges / 2,
+    })
+}
+
+/// Rows that are counted together.
+const ROWS: usize = 16;
+
+/// What all threads read.
+struct Scan<'a> {
+    points: &'a [DVec3],
+    edges: &'a Edges,
+    frames: usize,
+    /// Points of a frame.
+    size: usize,
+    /// Nearer to an edge than this, pairs that stand for each other may be on either side of it.
+    band: f64,
+    /// Of all points.
+    tree: Tree,
+    /// For how many pairs a point of each leaf stands, with one of the first frame, from either end.
+    weights: Vec<[u32; LANES]>,
+    /// Their sums, of leaves and of blocks.
+    leaf_weights: Vec<u64>,
+    block_weights: Vec<u64>,
+}
+
+impl<'a> Scan<'a> {
+    fn new(points: &'a [DVec3], turning: &Turning, edges: &'a Edges) -> Result<Self, KError> {
+        let farthest = turning.farthest(points)?;
+        let size = points.len() / turning.frames.max(1);
+        let tree = Tree::new(points);
+        let frames = turning.frames;
+        // From frame 0 to itself both ends are counted as they are.
+        let weight = |index: u32| match index as usize / size.max(1) {
+            0 => frames as u32,
+            apart => 2 * (frames.saturating_sub(apart)) as u32,
+        };
+        let of_leaf = |leaf: &[u32]| {
+            let mut weights = [0; LANES];
+            for (to, index) in weights.iter_mut().zip(leaf) {
+                *to = weight(*index);
+            }
+            weights
+        };
+        let weights: Vec<[u32; LANES]> = tree.order.chunks(LANES).map(of_leaf).collect();
+        let sum = |of: &[u32; LANES]| of.iter().map(|&w| u64::from(w)).sum();
+        let leaf_weights: Vec<u64> = weights.iter().map(sum).collect();
+        let of_block = |first: usize, end: usize| {
+            let of: &[u64] = leaf_weights.get(first..end).unwrap_or_default();
+            of.iter().sum()
+        };
+        Ok(Self {
+            // Both pairs are off by two points each; f64 and what counts as on an edge come on top.
+            band: 4.0 * farthest + 2e-14,
+            block_weights: tree
+                .blocks
+                .iter()
+                .map(|b| of_block(b.first, b.end))
+                .collect(),
+            points,
+            edges,
+            frames,
+            size,
+            tree,
+            weights,
+            leaf_weights,
+        })
+    }
+}
+
+/// What one thread counts.
+struct One<'a> {
+    scan: &'a Scan<'a>,
+    tally: Tally,
+    on_edges: u64,
+    wrong: Option<KError>,
+}
+
+impl One<'_> {
+    fn done(self) -> Result<(Vec<i64>, u64), KError> {
+        match self.wrong {
+            Some(wrong) => Err(wrong),
+            None => Ok((self.tally.counts(), self.on_edges)),
+        }
+    }
+
+    /// Takes rows until none is left, each with all points.
+    #[inline(always)]
+    fn all<L: Lanes>(&mut self, on: L, next: &AtomicUsize) {
+        let scan = self.scan;
+        let bins = scan.edges.bins();
+        loop {
+            let start = next.fetch_add(ROWS, Ordering::Relaxed);
+            let end = start.saturating_add(ROWS).min(scan.size);
+            if start >= end {
+                return;
+            }
+            for first_block in (0..scan.tree.blocks.len()).step_by(LANES) {
+                let Some((middles, radii)) = scan.tree.around_blocks.sixteen(first_block) else {
+                    break;
+                };
+                self.tally
+                    .settle(ROWS * LANES * BLOCK_LEAVES * 2 * scan.frames);
+                for row in start..end {
+                    let Some(point) = scan.points.get(row) else {
+                        continue;
+                    };
+                    let around = Around {
+                        middle: point.as_vec3().to_array(),
+                        radius: 0.0,
+                    };
+                    let of = reach(on.simd(), around, middles, radii, bins);
+                    let end = scan.tree.blocks.len();
+                    for ((block, first), last) in (first_block..end).zip(&of.first).zip(&of.last) {
+                        if first == last {
+                            let weight = scan.block_weights.get(block);
+                            self.tally.add(*first as usize, weight.copied());
+                        } else {
+                            self.block(on, (row, around), block);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// A row with the leaves of a block.
+    #[inline(always)]
+    fn block<L: Lanes>(&mut self, on: L, (row, around): (usize, Around), block: usize) {
+        let scan = self.scan;
+        let Some(block) = scan.tree.blocks.get(block) else {
+            return;
+        };
+        for start in (block.first..block.end).step_by(LANES) {
+            let Some((middles, radii)) = scan.tree.around_leaves.sixteen(start) else {
+                return;
+            };
+            let of = reach(on.simd(), around, middles, radii, scan.edges.bins());
+            for ((leaf, first), last) in (start..block.end).zip(&of.first).zip(&of.last) {
+                let (first, last) = (*first as usize, *last as usize);
+                let weight = scan.leaf_weights.get(leaf);
+                self.tally.add(first, weight.copied());
+                if first < last {
+                    self.leaf(on, (row, around), leaf, (first, last));
+                }
+            }
+        }
+    }
+
+    /// A row with a leaf that edges go through.
+    #[inline(always)]
+    fn leaf<L: Lanes>(
+        &mut self,
+        on: L,
+        (row, around): (usize, Around),
+        leaf: usize,
+        (first, last): (usize, usize),
+    ) {
+        let scan = self.scan;
+        let simd = on.simd();
+        let (Some(of), Some(weights)) = (scan.tree.leaves.get(leaf), scan.weights.get(leaf)) else {
+            return;
+        };
+        let weights = u32x16::load_array_ref(simd, weights);
+        let [bx, by, bz] = loaded(simd, of);
+        let [x, y, z] = around.middle;
+        let dot = bz.mul_add(z, by.mul_add(y, bx * x));
+        let cosines = scan
+            .edges
+            .cosines_f32()
+            .get(first..last)
+            .unwrap_or_default();
+        let tallied = self.tally.lanes.get_mut(first..last).unwrap_or_default();
+        let mut nearest = f32x16::splat(simd, 4.0);
+        for (cosine, lanes) in cosines.iter().zip(tallied) {
+            let above = dot - *cosine;
+            let beyond = above.simd_lt(0.0).select(weights, u32x16::splat(simd, 0));
+            (u32x16::load_array_ref(simd, lanes) + beyond).store_array(lanes);
+            nearest = on.nearer_nought(nearest, above);
+        }
+        if nearest.simd_le(F32_BAND).any_true() {
+            let mut dots = [0.0; LANES];
+            dot.store_array(&mut dots);
+            self.near(row, leaf, first, last, dots);
+        }
+    }
+
+    /// Judges those pairs that are too near to an edge for f32, and puts right what their signs had said.
+    #[inline(never)]
+    fn near(&mut self, row: usize, leaf: usize, first: usize, last: usize, dots: [f32; LANES]) {
+        let scan = self.scan;
+        let cosines = scan
+            .edges
+            .cosines_f32()
+            .get(first..last)
+            .unwrap_or_default();
+        let order = scan.tree.order.chunks(LANES).nth(leaf).unwrap_or_default();
+        for (edge, cosine) in (first..).zip(cosines) {
+            for (lane, (dot, index)) in dots.iter().zip(order).enumerate() {
+                let above = dot - cosine;
+                if above.abs() > F32_BAND {
+                    continue;
+                }
+                let weights = scan.weights.get(leaf);
+                let weight = weights
+                    .and_then(|of| of.get(lane))
+                    .map_or(0, |&w| i64::from(w));
+                let said = if above < 0.0 { weight } else { 0 };
+                let beyond = self.beyond(edge, row, *index as usize, weight);
+                if let Some(of) = self.tally.beyond.get_mut(edge) {
+                    *of += beyond - said;
+                }
+            }
+        }
+    }
+
+    /// How many of the pairs that a pair stands for are beyond an edge.
+    fn beyond(&mut self, edge: usize, row: usize, index: usize, weight: i64) -> i64 {
+        let scan = self.scan;
+        let at = |index: usize| scan.points.get(index).copied().unwrap_or_default();
+        let above = at(row).dot(at(index)) - scan.edges.cosine(edge);
+        if above.abs() > scan.band {
+            return if above < 0.0 { weight } else { 0 };
+        }
+        let apart = index / scan.size.max(1);
+        let ends = if apart == 0 { 1 } else { 2 };
+        let mut beyond = 0;
+        for frame in 0..scan.frames.saturating_sub(apart) {
+            let (a, b) = (at(frame * scan.size + row), at(frame * scan.size + index));
+            self.on_edges += u64::from(scan.edges.is_on(edge, a, b)) * ends;
+            match scan.edges.reaches(edge, a, b) {
+                Ok(reaches) => beyond += if reaches { 0 } else { ends.cast_signed() },
+                Err(wrong) => self.wrong = Some(wrong),
+            }
+        }
+        beyond
+    }
+}
