@@ -92,6 +92,7 @@ export class Viewer {
     this.opened = scan;
     if (!again) this.fitted = false;
     this.head(scan.name || scan.id, scan.simulated);
+    text(id("view-note"), follows ? "live so far, the cloud is loading" : "");
     this.download(scan, this.field === "sd", follows);
     this.changed(scan.id);
   }

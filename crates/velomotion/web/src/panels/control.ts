@@ -136,9 +136,10 @@ function obstacle(): string | null {
 function draw(): void {
   const moving = status !== null && status.activity.doing !== "idle" && status.activity.doing !== "connecting";
   const obstacle_now = obstacle();
-  const lidarOnly = obstacle_now?.startsWith("No lidar") ?? false;
+  // Homing needs no lidar, and takes the drive out of a fault.
+  const homes = obstacle_now === null || (connected && status !== null && status.drive.state !== "absent");
   start.disabled = asking || moving || obstacle_now !== null;
-  home.disabled = asking || moving || (obstacle_now !== null && !lidarOnly);
+  home.disabled = asking || moving || !homes;
   text(why, moving ? "" : (obstacle_now ?? ""));
   show(why, why.textContent !== "");
   attribute(stop, "data-moving", String(moving));

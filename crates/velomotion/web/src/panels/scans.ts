@@ -90,7 +90,7 @@ function draw(): void {
   setCurrent(current);
   show(id("no-scans"), now.length === 0);
   const sum = now.reduce((total, scan) => total + (scan.bytes ?? 0), 0);
-  text(id("scans-sum"), now.length === 0 ? "" : `${now.length}, ${bytes(sum)}`);
+  text(id("scans-sum"), now.length === 0 ? "" : `${now.length === 1 ? "1 scan" : `${now.length} scans`} \u00b7 ${bytes(sum)}`);
 }
 
 function content(scan: Scan): Node[] {
@@ -102,7 +102,7 @@ function content(scan: Scan): Node[] {
     : h("span", { class: "thumb" });
   const numbers = [
     scan.points ? `${compact(scan.points)} points` : null,
-    scan.bytes ? bytes(scan.bytes) : null,
+    scan.bytes && !busy ? bytes(scan.bytes) : null,
   ].filter((part) => part !== null).join(" \u00b7 ");
   const speed = scan.asked?.speed_deg_s;
   const row = h("div", { class: "row" },
