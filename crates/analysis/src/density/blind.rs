@@ -1,4 +1,4 @@
-//! Blind spots: all holes down to a size, the rows that they stand in about an axis, and the bands that no point ever comes into.
+//! Blind spots: all holes that cannot grow, down to a size, the rows that they stand in about an axis, and the bands that no point ever comes into.
 //!
 //! How far a point is from the tilt axis depends on its laser's elevation and its azimuth alone, not on the tilt. So where a head's rays leave a band
 //! of such angles out, no speed fills it: blind spots stand in rows about the axis. [`bands`] tells it from the points alone, [`holes`] and [`rows`] from
@@ -42,7 +42,8 @@ impl Band {
 }
 
 /// Holes of at least `least_rad`, the largest first, at most `most`: each as large as there is room for in its place, none with its middle in a larger
-/// one that is listed, and only in the region that `depth_rad` tells of ([`super::largest_hole_within`]). Radii are right to a fiftieth of `least_rad`, mostly to rounding.
+/// one that is listed, and only in the region that `depth_rad` tells of ([`super::largest_hole_within`]). Radii are right to a
+/// thousandth of `least_rad` where more than ten points touch a hole, else to rounding.
 ///
 /// # Errors
 /// [`DensityError`] for what is no direction, or a least radius that is not above 0.
@@ -57,7 +58,7 @@ pub fn holes(
         return Err(DensityError::Least { got: least_rad });
     }
     let nearby = Nearby::new(directions);
-    let mut search = Search::new(&nearby, 0.02 * least_rad, depth_rad);
+    let mut search = Search::new(&nearby, 1e-3 * least_rad, depth_rad);
     let mut found = Vec::new();
     while let Some(next) = search.next() {
         if next.bound_rad < least_rad {

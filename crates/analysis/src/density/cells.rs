@@ -26,6 +26,15 @@ impl Cell {
         })
     }
 
+    /// All that are cut so often, by their numbers.
+    pub fn all(level: u8) -> Vec<Self> {
+        let mut cells = Self::faces().to_vec();
+        for _ in 0..level {
+            cells = cells.into_iter().flat_map(Self::cut).collect();
+        }
+        cells
+    }
+
     /// The four that it is cut into.
     pub fn cut(self) -> [Self; 4] {
         [0, 1, 2, 3].map(|quarter| Self {
@@ -66,6 +75,7 @@ impl Cell {
     }
 
     /// The number of the cell of a level that a direction is in.
+    #[inline]
     pub fn of(direction: DVec3, level: u8) -> usize {
         let [x, y, z] = direction.to_array();
         let size = direction.abs();
@@ -87,6 +97,7 @@ impl Cell {
 }
 
 /// A zero between every two of 32 bits.
+#[inline]
 fn spread(bits: u64) -> u64 {
     let mut x = bits & 0xffff_ffff;
     for (shift, mask) in [

@@ -7,7 +7,7 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
 
@@ -71,6 +71,8 @@ pub(super) const EVERYWHERE: fn(DVec3) -> f64 = |_| f64::INFINITY;
 
 /// More points than this that can matter to a cell, and the cell is cut.
 const FEW: usize = 10;
+/// More than this, and they are not even looked at.
+const MANY: usize = 1_000;
 /// Points closer than this, through the sphere, are one.
 const SAME: f64 = 1e-9;
 
@@ -102,7 +104,7 @@ pub(super) struct Open {
 pub(super) enum Done {
     /// It was cut.
     Cut,
-    /// Holes that cannot grow, and all that there are about its points; some others, too, and some that are none ([`Search::at`] tells).
+    /// All holes that cannot grow about its points; some of others, too ([`Search::at`] tells how large they are).
     Holes(Vec<DVec3>),
     /// Too small to be cut: the hole about its middle stands for all about its points.
     Tiny,
@@ -131,7 +133,7 @@ impl<'a> Search<'a> {
                 bound_rad = next.bound_rad;
                 break;
             }
-            match self.look_into(&next, next.free_rad) {
+            match self.look_to_the_edge(&next) {
                 Done::Cut => {}
                 Done::Holes(centres) => centres.into_iter().for_each(|c| {
                     self.at(c);
@@ -203,15 +205,29 @@ impl<'a> Search<'a> {
     /// Does with a cell what is to be done: of its holes, those of at least `least_rad`.
     pub fn look_into(&mut self, next: &Open, least_rad: f64) -> Done {
         let reach = next.free_rad + 2.0 * angle(next.ball);
-        // At the region's edge a hole that cannot grow there may still grow out of it.
-        let few = next.inside.then(|| {
-            self.nearby
-                .within(next.middle, chord(reach) + SAME, SAME, FEW)
-        });
-        if let Some(few) = few.flatten() {
-            let large = next.bound_rad > FRAC_PI_2 - 1e-6;
-            return Done::Holes(centres(&few, next, least_rad, large));
+        let points = self.nearby.within(next.middle, chord(reach) + SAME, MANY);
+        if let Some(points) = points {
+            if let Some(few) = distinct(&points) {
+                let large = next.bound_rad > FRAC_PI_2 - 1e-6;
+                return Done::Holes(centres(&few, next, least_rad, large));
+            }
+            if grow(&points, next) {
+                return Done::Holes(Vec::new());
+            }
         }
+        self.cut(next)
+    }
+
+    /// The same where holes at the edge of the region count as they are, though they could grow out of it.
+    pub fn look_to_the_edge(&mut self, next: &Open) -> Done {
+        if next.inside {
+            self.look_into(next, next.free_rad)
+        } else {
+            self.cut(next)
+        }
+    }
+
+    fn cut(&mut self, next: &Open) -> Done {
         if angle(next.ball) < 0.25 * self.tolerance_rad || next.cell.level >= MOST_CUTS {
             return Done::Tiny;
         }
@@ -220,6 +236,63 @@ impl<'a> Search<'a> {
         }
         Done::Cut
     }
+}
+
+/// Whether all holes about points of a cell grow if they are moved one way, and so none of them is as large as it can be: all points that matter lie behind
+/// the plane across that way, by more than the cell's ball. Moved along u from x in the cell, the distance to p grows where u p < (u x)(x p); u is
+/// at right angles to the middle, so that the right side is no more than the ball's radius.
+fn grow(points: &[DVec3], within: &Open) -> bool {
+    let sum: DVec3 = points
+        .iter()
+        .map(|p| p.reject_from_normalized(within.middle))
+        .sum();
+    let Some(way) = (-sum).try_normalize() else {
+        return false;
+    };
+    let nearest = points
+        .iter()
+        .map(|p| way.dot(*p))
+        .fold(f64::NEG_INFINITY, f64::max);
+    nearest < -within.ball - 1e-12
+}
+
+/// The points without those that are as good as equal to another; `None` where more than a few are left.
+fn distinct(points: &[DVec3]) -> Option<Vec<DVec3>> {
+    let mut found: Vec<DVec3> = Vec::new();
+    for point in points {
+        let known = |other: &DVec3| other.distance_squared(*point) < SAME * SAME;
+        if !found.iter().any(known) {
+            found.push(*point);
+            if found.len() > FEW {
+                return None;
+            }
+        }
+    }
+    Some(found)
+}
+
+/// Whether a hole of some points touches them all around, and so cannot grow.
+fn is_held(centre: DVec3, points: &[DVec3]) -> bool {
+    let off = || points.iter().map(|p| p.distance(centre));
+    let nearest = off().fold(f64::INFINITY, f64::min);
+    let right = centre.any_orthonormal_vector();
+    let up = centre.cross(right);
+    let touching = points
+        .iter()
+        .zip(off())
+        .filter(|(_, off)| *off <= nearest + 1e-7);
+    let mut ways: Vec<f64> = touching
+        .map(|(p, _)| p.dot(up).atan2(p.dot(right)))
+        .collect();
+    ways.sort_unstable_by(f64::total_cmp);
+    let (Some(first), Some(last)) = (ways.first(), ways.last()) else {
+        return false;
+    };
+    let around = TAU - (last - first);
+    let between = ways.iter().zip(ways.iter().skip(1)).map(|(a, b)| b - a);
+    let widest = between.fold(around, f64::max);
+    // The far side of one point has nowhere to grow to, either.
+    widest <= PI + 1e-6 || nearest > 2.0 - 1e-9
 }
 
 /// The middles of holes about points of a cell that touch three of these points; where they may be larger than a hemisphere, two or one.
@@ -252,7 +325,7 @@ fn centres(points: &[DVec3], within: &Open, least_rad: f64, large: bool) -> Vec<
     // No hole is larger than to the nearest of these points: sorted out cheaply before the search asks all.
     centres.retain(|centre| {
         let nearest = points.iter().map(|p| p.distance_squared(*centre));
-        angle(nearest.fold(4.0, f64::min).sqrt()) > least_rad - 1e-7
+        angle(nearest.fold(4.0, f64::min).sqrt()) > least_rad - 1e-7 && is_held(*centre, points)
     });
     centres
 }

@@ -1,19 +1,20 @@
 //! Which bin a direction falls into: the one with the nearest centre.
 //!
-//! The directions are divided into the cells of a cube's faces. For each cell the bins that can be nearest to any direction in it are listed
+//! The directions are divided into cells ([`super::cells`]). For each the bins that can be nearest to any direction in it are listed
 //! beforehand: a cell lies in a ball of radius r about its middle, so the nearest centre lies at most 2 r farther from the middle than the one nearest
 //! to that. A direction is then compared with the few of its cell. Left out: counting.
 
 use glam::DVec3;
 
 use super::DensityError;
+use super::cells::Cell;
 use super::icosahedron::{Face, Icosahedron};
 
 /// Finds bins.
 #[derive(Clone, Debug)]
 pub struct Locator {
-    /// Cells along a side of a face of the cube.
-    side: usize,
+    /// How often the cells are cut.
+    cuts: u8,
     /// Where the candidates of each cell begin, and the end.
     starts: Vec<u32>,
     /// Bins, ascending within a cell.
@@ -23,57 +24,38 @@ pub struct Locator {
 
 /// More than rounding moves a cell's corner or a distance.
 const MARGIN: f64 = 1e-12;
+/// Cells are finer than bins by so many cuts, and cut no more often than `MOST_CUTS`.
+const FINER: u8 = 2;
+const MOST_CUTS: u8 = 9;
 
 impl Locator {
     /// For the bins of an icosahedron.
     #[must_use]
     pub fn new(icosahedron: &Icosahedron) -> Self {
-        let side = 4 << icosahedron.level().min(7);
+        let cuts = (icosahedron.level() as u8)
+            .saturating_add(FINER)
+            .min(MOST_CUTS);
         let mut locator = Self {
-            side,
+            cuts,
             starts: vec![0],
             candidates: Vec::new(),
             centres: icosahedron.bins().iter().map(|bin| bin.centre).collect(),
         };
         let mut found = Vec::new();
-        for cell in 0..6 * side * side {
-            let (middle, radius) = locator.ball(cell);
-            candidates(icosahedron, middle, radius, &mut found);
+        for cell in Cell::all(cuts) {
+            let (middle, radius) = cell.ball();
+            candidates(icosahedron, middle, radius + MARGIN, &mut found);
             locator.candidates.extend_from_slice(&found);
             locator.starts.push(locator.candidates.len() as u32);
         }
         locator
     }
 
-    /// The middle of a cell, and the radius of a ball about it that holds the cell: great circles bound it, so a corner is farthest.
-    fn ball(&self, cell: usize) -> (DVec3, f64) {
-        let (face, rest) = (
-            cell / (self.side * self.side),
-            cell % (self.side * self.side),
-        );
-        let (row, column) = ((rest / self.side) as f64, (rest % self.side) as f64);
-        let step = 2.0 / self.side as f64;
-        let at = |column: f64, row: f64| {
-            let (u, v) = (column * step - 1.0, row * step - 1.0);
-            let out = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
-            match face / 2 {
-                0 => DVec3::new(out, u, v),
-                1 => DVec3::new(u, out, v),
-                _ => DVec3::new(u, v, out),
-            }
-            .normalize()
-        };
-        let middle = at(column + 0.5, row + 0.5);
-        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
-        let distances = corners.map(|(right, up)| at(column + right, row + up).distance(middle));
-        (middle, distances.into_iter().fold(0.0, f64::max) + MARGIN)
-    }
-
     /// The bin whose centre is nearest to a direction: the one with the largest dot product in f64, of equal ones the first.
     #[inline]
     #[must_use]
     pub fn bin(&self, direction: DVec3) -> u32 {
-        let cell = self.cell(direction);
+        let cell = Cell::of(direction, self.cuts);
         let range = |i: usize| self.starts.get(i).map_or(0, |&start| start as usize);
         let candidates = self.candidates.get(range(cell)..range(cell + 1));
         let mut nearest = (f64::NEG_INFINITY, 0);
@@ -85,25 +67,6 @@ impl Locator {
             }
         }
         nearest.1
-    }
-
-    /// The cell of a direction.
-    #[inline]
-    fn cell(&self, direction: DVec3) -> usize {
-        let [x, y, z] = direction.to_array();
-        let size = direction.abs();
-        let (face, along, u, v) = if size.x >= size.y && size.x >= size.z {
-            (0, x, y, z)
-        } else if size.y >= size.z {
-            (2, y, x, z)
-        } else {
-            (4, z, x, y)
-        };
-        let half = 0.5 * self.side as f64;
-        let scale = half / along.abs();
-        let place = |w: f64| ((w * scale + half) as usize).min(self.side - 1);
-        let face = face + usize::from(along < 0.0);
-        (face * self.side + place(v)) * self.side + place(u)
     }
 
     /// Bins there are.

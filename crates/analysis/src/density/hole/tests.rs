@@ -154,6 +154,8 @@ fn belt(half_rad: f64) -> impl Fn(DVec3) -> f64 {
 
 #[test]
 fn in_a_region_only_its_own_holes_count() {
+    // At the edge there may be as much room all along: a coarser tolerance, or it takes millions of cells.
+    const TOLERANCE: f64 = 1e-4;
     // Rings at 40 and -40 deg and a few points between: the poles are the largest holes, but not of the belt.
     let ring = |z: f64| (0..400).map(move |k| at(z, TAU * f64::from(k) / 400.0));
     let (sin, degrees) = (40_f64.to_radians().sin(), 1_f64.to_radians());
@@ -161,12 +163,12 @@ fn in_a_region_only_its_own_holes_count() {
     let points: Vec<DVec3> = ring(sin).chain(ring(-sin)).chain(few).collect();
     assert!((largest(&points).hole.radius_rad - 50.0 * degrees).abs() < 1e-4);
     let within = |half_rad: f64| {
-        let found = largest_hole_within(&points, TOLERANCE_RAD, &belt(half_rad))
+        let found = largest_hole_within(&points, TOLERANCE, &belt(half_rad))
             .unwrap()
             .unwrap();
-        assert!(belt(half_rad)(found.hole.centre) > -TOLERANCE_RAD);
+        assert!(belt(half_rad)(found.hole.centre) > -TOLERANCE);
         assert!((free(&points, found.hole.centre) - found.hole.radius_rad).abs() < 3e-8);
-        assert!(found.bound_rad - found.hole.radius_rad <= 1.01 * TOLERANCE_RAD);
+        assert!(found.bound_rad - found.hole.radius_rad <= 1.01 * TOLERANCE);
         // No place of a fine lattice in the region has more room.
         let lattice = (-30..=30).flat_map(|z| (0..360).map(move |a| (z, a)));
         let most = lattice
@@ -183,7 +185,7 @@ fn in_a_region_only_its_own_holes_count() {
         found.hole.radius_rad
     };
     // The widest gap between two of the few is 73.5 deg, around +-143 deg; and to where it is the poles' turn.
-    assert!(within(2.0 * degrees) < within(20.0 * degrees) + TOLERANCE_RAD);
+    assert!(within(2.0 * degrees) < within(20.0 * degrees) + TOLERANCE);
     assert!((within(85.0 * degrees) - 45.0 * degrees).abs() < 0.1 * degrees);
     let nowhere = largest_hole_within(&points, TOLERANCE_RAD, &|_| -2.0).unwrap();
     assert_eq!(nowhere, None);

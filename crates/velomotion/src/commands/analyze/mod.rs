@@ -94,10 +94,16 @@ impl Measure {
             Some(_) => largest_hole_within(directions, TOLERANCE_RAD, &depth).map_err(wrong)?,
             None => None,
         };
-        let least_rad = 0.5 * in_view.unwrap_or(largest).hole.radius_rad;
+        let gaps = self.gaps(input).map_err(wrong)?;
+        let least_rad = gaps.of_99_percent_deg.to_radians().max(TOLERANCE_RAD);
         go_on(interrupt)?;
         let found = holes(directions, least_rad, MOST_HOLES, &depth).map_err(wrong)?;
         let band_rad = report::BAND_DEG.to_radians();
+        // How far a ray is from the axis does not depend on the tilt, if it starts there.
+        let on_axis = input
+            .pattern
+            .as_ref()
+            .is_some_and(|p| p.settings().d_m == 0.0);
         Ok(PatternReport {
             name: input.name.clone(),
             points: directions.len() as u64,
@@ -111,13 +117,14 @@ impl Measure {
             },
             hole: hole_report(&largest),
             hole_in_view: in_view.as_ref().map(hole_report),
-            gaps: self.gaps(input).map_err(wrong)?,
+            gaps,
             blind: Blind {
                 least_radius_deg: least_rad.to_degrees(),
                 holes: found.len(),
                 and_more: found.len() == MOST_HOLES,
                 rows: rows(&found, AXIS, 0.5 * least_rad),
                 bands: bands(directions, AXIS, band_rad).map_err(wrong)?,
+                bands_at_any_speed: on_axis,
             },
             device: input.pattern.as_ref().and_then(input::device),
         })

@@ -76,7 +76,7 @@ pub struct Gaps {
     pub of_99_percent_deg: f64,
 }
 
-/// Holes in view down to half of the largest, and bands about the tilt axis that no point comes into.
+/// Holes in view that are larger than what 99 % of directions have to the nearest point, and bands about the tilt axis that no point comes into.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Blind {
     /// The least radius of the holes counted, degrees.
@@ -89,6 +89,8 @@ pub struct Blind {
     pub rows: Vec<Row>,
     /// Bands of at least [`BAND_DEG`] about the tilt axis without a point.
     pub bands: Vec<Band>,
+    /// Whether they hold no point at any speed of the axis: so with patterns of a sensor on it.
+    pub bands_at_any_speed: bool,
 }
 
 /// What the mount makes of the sensor.
@@ -219,7 +221,7 @@ impl PatternReport {
             rows => format!("{rows} rows"),
         };
         format!(
-            "{more}{} blind spots of {} deg and more, in {rows} about the tilt axis",
+            "{more}{} blind spots (holes of {} deg and more), in {rows} about the tilt axis",
             blind.holes,
             number(blind.least_radius_deg, 6),
         )
@@ -231,8 +233,7 @@ impl PatternReport {
             .iter()
             .max_by(|a, b| a.width_deg().total_cmp(&b.width_deg()))?;
         let sum: f64 = bands.iter().map(Band::width_deg).sum();
-        // How far a ray is from the axis does not depend on the tilt.
-        let why = if self.hole_in_view.is_some() {
+        let why = if self.blind.bands_at_any_speed {
             " at any speed"
         } else {
             ""

@@ -270,41 +270,35 @@ impl SweepReport {
             self.settings.len()
         );
         for key in &self.keys {
-            let _ = write!(text, "{key:>9} ");
+            let _ = write!(text, "{key:>8} ");
         }
         let _ = writeln!(
             text,
-            "{:>8} {:>9} {:>9} {:>9} {:>10}  best in",
-            "scan s", "points", "hole deg", "99 % deg", "sd / mean"
+            "{:>8} {:>9} {:>9} {:>9} {:>10}",
+            "scan s", "points", "hole deg ", "99 % deg ", "sd / mean "
         );
         for setting in shown {
             for value in &setting.values {
-                let _ = write!(text, "{:>9} ", number(*value, 8));
+                let _ = write!(text, "{:>8} ", number(*value, 8));
             }
-            let marks = [
-                (setting.best_hole, "hole"),
-                (setting.best_gap, "99 %"),
-                (setting.best_evenness, "sd"),
-            ];
-            let marks: Vec<&str> = marks
-                .iter()
-                .filter(|(is, _)| *is)
-                .map(|(_, m)| *m)
-                .collect();
+            let marked = |value: f64, best: bool| {
+                let mark = if best { "*" } else { " " };
+                format!("{}{mark}", number(value, 7))
+            };
             let _ = writeln!(
                 text,
-                "{:>8} {:>9} {:>9} {:>9} {:>10}  {}",
+                "{:>8} {:>9} {:>9} {:>9} {:>10}",
                 number(setting.scan_s, 7),
                 setting.points,
-                number(setting.hole_deg, 7),
-                number(setting.gap_deg, 7),
-                number(setting.unevenness, 7),
-                marks.join(" ")
+                marked(setting.hole_deg, setting.best_hole),
+                marked(setting.gap_deg, setting.best_gap),
+                marked(setting.unevenness, setting.best_evenness)
             );
         }
         text.push_str(
             "\nwhere the scan can see: radius of the largest hole; 99 % of directions have a\n\
-                       point within; sd over mean of points a bin\n",
+             point within; sd over mean of points a bin\n\
+             * no other setting is as good in this and as quick, and better in one of them\n",
         );
         text.trim_end().to_owned()
     }

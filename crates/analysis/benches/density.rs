@@ -1,7 +1,13 @@
 //! How long the density of a scan takes, by its points; and its largest hole.
 //!
-//! `cargo bench -p velomotion-tests --bench density` prints the table of docs/src/patterns.md: the least of `-- --rounds N` (5). `RAYON_NUM_THREADS=1` keeps it to one core.
+//! `cargo bench -p analysis --bench density` prints the table of docs/src/patterns.md: the least of `-- --rounds N` (5). `RAYON_NUM_THREADS=1` keeps it to one core.
 //! The largest scan has the points of the 2018 paper's slow one. Left out: making the points.
+
+#![allow(
+    clippy::expect_used,
+    clippy::disallowed_methods,
+    reason = "a bench: it looks at the clock, and fails if it must"
+)]
 
 use std::env;
 use std::time::{Duration, Instant};
