@@ -300,6 +300,12 @@ pub struct Analyze {
     /// How often the icosahedron whose faces are the bins is cut: 20 x 4^N bins
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=8))]
     pub level: u32,
+    /// How far the K function may be off, as a share of all pairs: the cheapest way that is good enough; 0 counts every pair
+    #[arg(long, value_name = "X", default_value_t = 1e-4, value_parser = tolerance)]
+    pub tolerance: f64,
+    /// Bins of the K function, from 0 to 180 degrees
+    #[arg(long, value_name = "N", default_value_t = 151, value_parser = clap::value_parser!(u16).range(1..=3_600))]
+    pub bins: u16,
     /// Try settings of one pattern: ranges of speed, rpm or other numbers, each in steps (8 unless /N says so), and say which are best for their scan time
     #[arg(
         long,
@@ -390,6 +396,14 @@ pub struct FirmwareSim {
     /// Make a symbolic link to the port
     #[arg(long, value_name = "PATH", conflicts_with = "can")]
     pub link: Option<PathBuf>,
+}
+
+/// A share that something may be off by.
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
+        _ => Err("expected a share from 0 (every pair is counted) to below 1".to_owned()),
+    }
 }
 
 /// An azimuth as a user may give it, degrees.

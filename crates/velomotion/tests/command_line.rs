@@ -868,6 +868,8 @@ fn what_cannot_be_analysed_is_said() {
             "ply: byte 4: expected a line of a PLY header",
         ),
         ("analyze velomotion.toml", 3, "velomotion.toml"),
+        ("analyze vlp16 --tolerance 1", 2, "expected a share from 0"),
+        ("analyze vlp16 --bins 0", 2, "0 is not in 1..="),
         ("analyze vlp16 --level 9", 2, "9 is not in 0..=8"),
         (
             "analyze vlp16 rmbl:50 --sweep rpm=300..600",

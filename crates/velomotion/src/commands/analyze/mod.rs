@@ -6,16 +6,18 @@ mod input;
 mod report;
 mod sweep;
 
+use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use analysis::density::{
     Counts, DensityError, Icosahedron, Largest, Locator, TOLERANCE_RAD, bands, gaps, holes,
     largest_hole, largest_hole_within, quantile, rows,
 };
+use analysis::k::{self, Edges, KCurve, Sampling, Turning};
 use glam::DVec3;
 use sim::patterns::{AXIS, Pattern};
 
-pub use report::{Blind, Density, DeviceReport, Gaps, HoleReport, PatternReport, Report};
+pub use report::{Blind, Density, DeviceReport, Gaps, HoleReport, KReport, PatternReport, Report};
 pub use sweep::Sweep;
 
 use super::Said;
@@ -37,7 +39,7 @@ const MOST_HOLES: usize = 10_000;
 pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
     let interrupt = signals::interrupt_flag()?;
     let progress = Progress::new(common);
-    let measure = Measure::new(arguments.level)?;
+    let measure = Measure::new(arguments)?;
     if let Some(sweep) = &arguments.sweep {
         let report = sweep.run(&arguments.inputs, &measure, progress, &interrupt)?;
         return Ok(Said::report(&report, report.text()));
@@ -63,18 +65,28 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
 struct Measure {
     level: u32,
     locator: Locator,
+    /// Bins of the K function.
+    edges: Edges,
+    /// How far that may be off.
+    tolerance: f64,
     /// Middles of the bins.
     places: Vec<DVec3>,
 }
 
 impl Measure {
-    fn new(level: u32) -> Result<Self, Failure> {
+    fn new(arguments: &cli::Analyze) -> Result<Self, Failure> {
+        let level = arguments.level;
+        let edges = Edges::equal(usize::from(arguments.bins)).map_err(|error| {
+            Failure::new(Kind::Usage, error.to_string()).help("the paper's are 151")
+        })?;
         let icosahedron = Icosahedron::new(level).map_err(|error| {
             Failure::new(Kind::Usage, error.to_string()).help("the paper's is 4: 5120 bins")
         })?;
         Ok(Self {
             level,
             locator: Locator::new(&icosahedron),
+            edges,
+            tolerance: arguments.tolerance,
             places: icosahedron.bins().iter().map(|bin| bin.centre).collect(),
         })
     }
@@ -126,7 +138,48 @@ impl Measure {
                 bands: bands(directions, AXIS, band_rad).map_err(wrong)?,
                 bands_at_any_speed: on_axis,
             },
+            k: self.k(input)?,
             device: input.pattern.as_ref().and_then(input::device),
+        })
+    }
+
+    fn k(&self, input: &Input) -> Result<KReport, Failure> {
+        let turns = input.pattern.as_ref().and_then(Pattern::turns);
+        let turning = turns.filter(|turns| turns.frames > 1).map(|turns| Turning {
+            axis: turns.axis,
+            step_rad: turns.step_rad,
+            frames: turns.frames as usize,
+        });
+        let wish = Sampling {
+            tolerance: self.tolerance,
+            ..Sampling::default()
+        };
+        let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        let estimate = k::estimate(
+            &input.directions,
+            turning.as_ref(),
+            &self.edges,
+            &wish,
+            threads,
+        )
+        .map_err(|error| {
+            Failure::new(Kind::BadInput, format!("{}: {error}", input.name))
+                .help("--tolerance 0 counts every pair, whatever the points")
+        })?;
+        let curve = KCurve::of_estimate(&estimate, 1.0);
+        Ok(KReport {
+            method: estimate.method,
+            bins: curve.d.len(),
+            error_bound: curve.d_error_bound,
+            theta_deg: curve
+                .theta_rad
+                .iter()
+                .map(|theta| theta.to_degrees())
+                .collect(),
+            max_abs: curve.d_max.max(-curve.d_min),
+            max: curve.d_max,
+            min: curve.d_min,
+            k_minus_csr: curve.d,
         })
     }
 

@@ -37,6 +37,8 @@ pub struct PatternReport {
     pub gaps: Gaps,
     /// Blind spots.
     pub blind: Blind,
+    /// How evenly points lie, by the angles between them.
+    pub k: KReport,
     /// What the mount makes of the sensor; only where it is tilted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub device: Option<DeviceReport>,
@@ -65,6 +67,28 @@ pub struct HoleReport {
     pub centre: [f64; 3],
     /// The angle of its middle from the tilt axis (+y), degrees.
     pub from_axis_deg: f64,
+}
+
+/// Ripley's K function beside that of points at random, K - K_csr, over the area of the sphere: so much larger is the share of all pairs that are
+/// within an angle. Above 0 points cluster, below they keep apart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KReport {
+    /// How pairs were counted: exact, turned (exact, too), sampled or gridded.
+    pub method: &'static str,
+    /// Bins.
+    pub bins: usize,
+    /// How far any of the numbers may be off: 0 for exact counts.
+    pub error_bound: f64,
+    /// The upper end of each bin, degrees.
+    pub theta_deg: Vec<f64>,
+    /// (K - K_csr) / (4 pi R2) there.
+    pub k_minus_csr: Vec<f64>,
+    /// The largest, whatever its sign.
+    pub max_abs: f64,
+    /// The largest.
+    pub max: f64,
+    /// The smallest.
+    pub min: f64,
 }
 
 /// How far it is to the nearest point, from the middles of bins; of patterns those in view.
@@ -188,6 +212,7 @@ impl PatternReport {
         ));
         lines.push(self.blind_line());
         lines.extend(self.band_line());
+        lines.push(self.k.line());
         if let Some(device) = &self.device {
             lines.extend(device.lines());
         }
@@ -245,6 +270,19 @@ impl PatternReport {
             number(widest.from_deg, 6),
             number(widest.to_deg, 6)
         ))
+    }
+}
+
+impl KReport {
+    fn line(&self) -> String {
+        let how = match self.error_bound {
+            0.0 => "every pair counted".to_owned(),
+            bound => format!("{}, within {bound:.1e}", self.method),
+        };
+        format!(
+            "K - K_csr from {:.5} to {:+.5} of the sphere's area ({how})",
+            self.min, self.max
+        )
     }
 }
 
