@@ -1,6 +1,6 @@
 //! `velomotion analyze`: how densely and how evenly scans cover what is about them.
 //!
-//! Patterns come from `sim`, clouds and logs from their files ([`input`]); what is measured is `analysis`'s. Left out: how it is said ([`report`]).
+//! Patterns come from `sim`, clouds and logs from their files (`input`); what is measured is `analysis`'s. Left out: how it is said (`report`).
 
 mod input;
 mod report;

@@ -111,7 +111,7 @@ pub struct Blind {
     pub and_more: bool,
     /// The rows that they stand in about the tilt axis, by angle.
     pub rows: Vec<Row>,
-    /// Bands of at least [`BAND_DEG`] about the tilt axis without a point.
+    /// Bands of at least `BAND_DEG` about the tilt axis without a point.
     pub bands: Vec<Band>,
     /// Whether they hold no point at any speed of the axis: so with patterns of a sensor on it.
     pub bands_at_any_speed: bool,
