@@ -1,4 +1,4 @@
-//! The host's clock, read in one place. Two ways: [`now`] is the system's time, which the kernel's stamps are of too and whose
+//! The host's clock, read in one place. Two ways and what tells a sleep: [`now`] is the system's time, which the kernel's stamps are of too and whose
 //! steps show in the log; [`steady`] never steps, and is what deadlines are kept by. No steering.
 
 use std::sync::OnceLock;
@@ -27,6 +27,22 @@ pub fn steady() -> Stamp<Host> {
     stamp.saturating_add(Span::from_nanos(since))
 }
 
+/// How long this machine has slept since it was started: what `CLOCK_BOOTTIME` is ahead of `CLOCK_MONOTONIC`. Zero where the system does
+/// not tell.
+#[must_use]
+pub fn suspended() -> Span {
+    use nix::time::{ClockId, clock_gettime};
+    let read = |clock| {
+        let time = clock_gettime(clock).ok()?;
+        time.tv_sec()
+            .checked_mul(1_000_000_000)?
+            .checked_add(time.tv_nsec())
+    };
+    // In this order, so that what passes between the two readings counts for less than nothing.
+    let both = read(ClockId::CLOCK_BOOTTIME).zip(read(ClockId::CLOCK_MONOTONIC));
+    Span::from_nanos(both.map_or(0, |(boot, monotonic)| boot.saturating_sub(monotonic).max(0)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -39,6 +55,13 @@ mod tests {
         let after = now();
         let between = time.tv_sec() * 1_000_000_000 + time.tv_nsec();
         assert!(before.as_nanos() <= between && between <= after.as_nanos());
+    }
+
+    #[test]
+    fn a_machine_that_is_awake_has_not_slept_in_between() {
+        let (first, second) = (suspended(), suspended());
+        let between = (second - first).as_nanos().abs();
+        assert!(between < 1_000_000_000, "{between} ns");
     }
 
     #[test]

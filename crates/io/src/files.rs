@@ -243,8 +243,15 @@ fn create_temporary(path: &Path) -> io::Result<(File, PathBuf)> {
 /// # Errors
 /// Where none can be made there; the error names the folder.
 pub fn scratch() -> io::Result<File> {
-    let folder = scratch_folder();
-    tempfile::tempfile_in(&folder).map_err(|error| {
+    scratch_in(&scratch_folder())
+}
+
+/// The same in a folder of the caller's.
+///
+/// # Errors
+/// As [`scratch`].
+pub fn scratch_in(folder: &Path) -> io::Result<File> {
+    tempfile::tempfile_in(folder).map_err(|error| {
         io::Error::new(
             error.kind(),
             format!("no scratch file in {}: {error}", folder.display()),
@@ -262,6 +269,21 @@ pub fn scratch_folder() -> PathBuf {
     }
 }
 
+/// Bytes that this user can still write to the file system of `path`.
+///
+/// # Errors
+/// Where the path is not there or the system does not tell.
+pub fn free_bytes(path: &Path) -> io::Result<u64> {
+    let stat = nix::sys::statvfs::statvfs(path)?;
+    // Their widths differ between systems.
+    #[allow(clippy::useless_conversion)]
+    let (blocks, size) = (
+        u64::from(stat.blocks_available()),
+        u64::from(stat.fragment_size()),
+    );
+    Ok(blocks.saturating_mul(size))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -273,6 +295,22 @@ mod tests {
             .collect();
         names.sort();
         names
+    }
+
+    #[test]
+    fn the_free_space_is_what_df_says() {
+        let folder = tempfile::tempdir().unwrap();
+        let df = std::process::Command::new("df")
+            .args(["--output=avail", "-B1"])
+            .arg(folder.path())
+            .output()
+            .unwrap();
+        let text = String::from_utf8(df.stdout).unwrap();
+        let says: f64 = text.lines().last().unwrap().trim().parse().unwrap();
+        let free = free_bytes(folder.path()).unwrap() as f64;
+        // Others write in between.
+        assert!((free / says - 1.0).abs() < 0.05, "{free} and {says}");
+        assert!(free_bytes(&folder.path().join("none")).is_err());
     }
 
     #[test]

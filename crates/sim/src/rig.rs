@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use firmware_sim::epos2::{Node, NodeConfig};
 use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT};
-use units::{Degrees, Gearing, Host, Metres, Stamp};
+use units::{Degrees, Gearing, Host, Metres, Span, Stamp};
 
 use crate::attached::{Attached, Server};
 use crate::clock::LidarClock;
@@ -230,6 +230,13 @@ impl Rig {
     #[must_use]
     pub const fn now(&self) -> Stamp<Host> {
         self.now
+    }
+
+    /// Forgets the shaft's motion before `host`, for a world that is to go on for days: its truth begins there. The last second is kept,
+    /// of which packets are made.
+    pub fn forget_before(&mut self, host: Stamp<Host>) {
+        let last_second = self.now.saturating_add(-Span::from_secs(1));
+        self.shaft.forget_before(host.min(last_second));
     }
 
     /// What truly happened so far.

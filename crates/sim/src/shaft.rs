@@ -42,6 +42,16 @@ impl Shaft {
         self.knots.push(position);
     }
 
+    /// Forgets the motion before `host`, as far as whole cycles go. The last one is kept.
+    pub fn forget_before(&mut self, host: Stamp<Host>) {
+        let since = host.saturating_since(self.start).as_nanos();
+        let cycles = usize::try_from(since.div_euclid(CYCLE.as_nanos())).unwrap_or(0);
+        let cycles = cycles.min(self.knots.len().saturating_sub(1));
+        self.knots.drain(..cycles);
+        let ns = i64::try_from(cycles).unwrap_or(0) * CYCLE.as_nanos();
+        self.start = self.start.saturating_add(Span::from_nanos(ns));
+    }
+
     /// Where the known motion ends: the beginning of the next cycle.
     pub fn end(&self) -> Stamp<Host> {
         let cycles = i64::try_from(self.knots.len().saturating_sub(1)).unwrap_or(i64::MAX);
@@ -105,6 +115,24 @@ mod tests {
         assert_eq!(tilt(2_000_000), None);
         assert_eq!(tilt(i64::MAX - 1_000), None);
         assert_eq!(shaft().end(), Stamp::from_nanos(2_001_000));
+    }
+
+    #[test]
+    fn what_is_forgotten_is_unknown_and_the_rest_as_it_was() {
+        let mut forgetful = shaft();
+        let begin = Stamp::from_nanos(1_000);
+        forgetful.forget_before(begin);
+        assert_eq!(forgetful.knots, shaft().knots);
+        forgetful.forget_before(Stamp::from_nanos(1_000 + 1_700_000));
+        assert_eq!(forgetful.tilt(Stamp::from_nanos(1_000 + 999_999)), None);
+        for ns in [1_000_000, 1_500_000, 1_999_999] {
+            let at = Stamp::from_nanos(1_000 + ns);
+            assert_eq!(forgetful.tilt(at), shaft().tilt(at), "{ns}");
+        }
+        forgetful.forget_before(Stamp::from_nanos(i64::MAX));
+        assert_eq!(forgetful.end(), shaft().end());
+        forgetful.push(0);
+        assert_eq!(forgetful.knots.len(), 2);
     }
 
     #[test]

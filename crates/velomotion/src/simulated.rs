@@ -5,6 +5,7 @@ use std::net::{Ipv4Addr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
 use firmware_sim::vlp16::DISTANCE_UNIT_MM;
@@ -31,7 +32,16 @@ pub struct Destinations {
 pub struct Simulated {
     port: PathBuf,
     stop: Arc<AtomicBool>,
+    requests: Sender<Request>,
     thread: JoinHandle<Result<Truth, SimulatorError>>,
+}
+
+/// What whoever has the devices may want of them.
+enum Request {
+    /// What truly happened so far.
+    Truth(Sender<Truth>),
+    /// What happened before that is of no interest.
+    Forget(Stamp<Host>),
 }
 
 /// Why the devices stopped.
@@ -62,17 +72,43 @@ impl Simulated {
         let port = pty.path().to_owned();
         let stop = Arc::new(AtomicBool::new(false));
         let stopping = Arc::clone(&stop);
+        let (requests, inbox) = channel();
         let thread = std::thread::Builder::new()
             .name("software scanner".to_owned())
-            .spawn(move || run(Rig::new(config), pty, &socket, to, &stopping))
+            .spawn(move || run(Rig::new(config), pty, (&socket, to), &stopping, &inbox))
             .map_err(|error| cannot("a thread", &error))?;
-        Ok(Self { port, stop, thread })
+        Ok(Self {
+            port,
+            stop,
+            requests,
+            thread,
+        })
     }
 
     /// The serial port of the software drive.
     #[must_use]
     pub fn port(&self) -> &Path {
         &self.port
+    }
+
+    /// What truly happened so far; `None` where the devices have failed.
+    #[must_use]
+    pub fn truth(&self) -> Option<Truth> {
+        let (answer, truth) = channel();
+        self.requests.send(Request::Truth(answer)).ok()?;
+        truth.recv().ok()
+    }
+
+    /// Lets the devices forget what happened before `host`: they may run for days.
+    pub fn forget_before(&self, host: Stamp<Host>) {
+        // Devices that have failed have nothing to forget.
+        let _ = self.requests.send(Request::Forget(host));
+    }
+
+    /// Whether the devices have failed.
+    #[must_use]
+    pub fn failed(&self) -> bool {
+        self.thread.is_finished()
     }
 
     /// Switches the devices off and gives what truly happened.
@@ -96,12 +132,19 @@ impl Simulated {
 fn run(
     mut rig: Rig,
     mut pty: Pty,
-    socket: &UdpSocket,
-    to: Destinations,
+    (socket, to): (&UdpSocket, Destinations),
     stop: &AtomicBool,
+    requests: &Receiver<Request>,
 ) -> Result<Truth, SimulatorError> {
     let mut buffer = [0; 512];
     while !stop.load(Ordering::Relaxed) {
+        while let Ok(request) = requests.try_recv() {
+            match request {
+                // Whoever went away needs no answer.
+                Request::Truth(answer) => drop(answer.send(rig.truth())),
+                Request::Forget(host) => rig.forget_before(host),
+            }
+        }
         let now = io::clock::now();
         let nap = rig
             .next_event()
