@@ -18,7 +18,7 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 10] = [
 ];
 
 /// A library, and the crates of the workspace that may use it directly.
-const CONFINED: [(&str, &[&str]); 15] = [
+const CONFINED: [(&str, &[&str]); 20] = [
     ("serialport", &["io"]),
     ("socket2", &["io"]),
     ("nix", &["io"]),
@@ -27,6 +27,11 @@ const CONFINED: [(&str, &[&str]); 15] = [
     ("miette", &["velomotion"]),
     ("indicatif", &["velomotion"]),
     ("signal-hook", &["velomotion"]),
+    ("axum", &["velomotion"]),
+    ("hyper", &["velomotion"]),
+    ("hyper-util", &["velomotion"]),
+    ("prometheus-client", &["velomotion"]),
+    ("sd-notify", &["velomotion"]),
     ("las", &["cloud"]),
     // velomotion reads back what they wrote.
     ("e57", &["cloud", "velomotion"]),

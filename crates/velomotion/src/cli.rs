@@ -1,5 +1,6 @@
 //! The command line. Other programs drive it: names and meanings are a contract.
 
+use std::net::SocketAddr;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -61,6 +62,8 @@ pub enum Command {
     Tradeoff(Tradeoff),
     /// Look at the tilt axis, home it, move it, stop it
     Tilt(Tilt),
+    /// Keep the scanner, show it in the browser and answer other programs, until told to end
+    Daemon(Daemon),
     /// Say what this machine has of a scanner, what is wrong and what to do
     Doctor,
     /// Run the software EPOS2 alone, for developing a client against it
@@ -333,6 +336,14 @@ pub struct Tradeoff {
     /// Overwrite files that exist
     #[arg(long)]
     pub force: bool,
+}
+
+/// `daemon`.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Daemon {
+    /// Address and port to listen on; port 0 takes any that is free [default: the configuration's, 127.0.0.1:8016]
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub listen: Option<SocketAddr>,
 }
 
 /// `tilt`.

@@ -12,6 +12,7 @@ use scanner::config::{AxisConfig, LidarConfig, MountConfig};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
+use crate::daemon::settings::Settings;
 use crate::failure::{Failure, Kind};
 
 /// The whole file.
@@ -26,6 +27,8 @@ pub struct Config {
     pub lidar: LidarConfig,
     /// The tilt axis.
     pub axis: Axis,
+    /// The daemon.
+    pub daemon: Settings,
 }
 
 /// The devices of a configuration.

@@ -1,10 +1,12 @@
 //! How a command fails: what to say, what to do next, and the exit code. Printed once, in `main`.
 
 use miette::Diagnostic;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// What kind of failure it is: decides the exit code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// The command line asks for something that cannot be (2).
     Usage,
@@ -35,13 +37,14 @@ impl Kind {
     }
 }
 
-/// A failed command.
-#[derive(Clone, Debug, Error, Diagnostic)]
+/// A failed command. As JSON: error, help, kind.
+#[derive(Clone, Debug, PartialEq, Error, Diagnostic, Serialize, Deserialize)]
 #[error("{message}")]
 pub struct Failure {
     /// Decides the exit code.
     pub kind: Kind,
     /// What happened, where, what was expected and what was there.
+    #[serde(rename = "error")]
     pub message: String,
     /// What to do next.
     #[help]

@@ -83,6 +83,16 @@ impl Hearing {
         self.shared.packets.load(Ordering::Relaxed)
     }
 
+    /// Whether it goes on: no socket has failed, and the thread lives.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.shared.requests().failed.is_none()
+            && self
+                .thread
+                .as_ref()
+                .is_some_and(|thread| !thread.is_finished())
+    }
+
     /// What was heard so far.
     ///
     /// # Errors
@@ -231,11 +241,7 @@ mod tests {
     #[test]
     fn a_log_gets_exactly_what_came_between_its_turns() {
         let (hearing, socket) = hearing();
-        let send = |n| {
-            (0..n).for_each(|_| {
-                socket.send(&[7; 100]).unwrap();
-            });
-        };
+        let send = |n| (0..n).for_each(|_| assert_eq!(socket.send(&[7; 100]).unwrap(), 100));
         send(3);
         // On loopback a datagram is in the receiver's queue when it is sent.
         let writer = LogWriter::new(Vec::new(), &LogConfig::default()).unwrap();

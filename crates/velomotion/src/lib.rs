@@ -8,6 +8,7 @@ pub mod cli;
 pub mod commands;
 pub mod config;
 pub mod control;
+pub mod daemon;
 pub mod devices;
 pub mod failure;
 pub mod hearing;
@@ -28,6 +29,7 @@ pub mod simulated;
 pub mod software_axis;
 pub mod software_drive;
 pub mod thumbnail;
+pub mod tilting;
 pub mod utc;
 
 pub use failure::{Failure, Kind};

@@ -4,7 +4,7 @@ use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use scanner::Choice;
 use scanner::steps::{ClockStep, SetClock};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Packets by what they were.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -238,7 +238,7 @@ pub struct Sync {
 }
 
 /// What a capture heard of the lidar, and what of it was lost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reception {
     /// Packets heard, position packets included.
     pub packets: u64,
@@ -266,7 +266,7 @@ impl Reception {
 }
 
 /// A cloud against the simulator's truth.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     /// Root mean square of the points' errors.
     pub rms_m: f64,

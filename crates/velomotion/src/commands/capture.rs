@@ -8,9 +8,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use io::udp::ListenConfig;
 use sim::Truth;
 
-use super::Said;
+use super::{Said, through_daemon};
 use crate::cli::{self, Common};
 use crate::control::Control;
+use crate::daemon::client::Client;
 use crate::failure::{Failure, Kind};
 use crate::hearing::Hearing;
 use crate::job::{self, Ended, Happening, Job};
@@ -37,6 +38,10 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
         progress.say(&line);
     }
 
+    if let Some(client) = Client::find(&setup.name, &setup.device) {
+        let what = (&setup, target);
+        return through_daemon::capture(&client, arguments, what, &interrupt, &mut progress);
+    }
     let older_log = Aside::put(&setup.log)?;
     let (truth, ended) = if devices::simulated(&setup.device) {
         simulate(&setup, &interrupt, &mut progress)?

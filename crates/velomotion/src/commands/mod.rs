@@ -2,12 +2,14 @@
 
 pub mod analyze;
 pub mod capture;
+pub mod daemon;
 pub mod doctor;
 pub mod firmware_sim;
 pub mod frames;
 pub mod info;
 pub mod replay;
 pub mod simulate;
+pub mod through_daemon;
 pub mod tilt;
 pub mod tradeoff;
 
@@ -39,6 +41,7 @@ pub fn run(cli: &Cli) -> Result<Said, Failure> {
         Command::Analyze(arguments) => analyze::run(arguments, &cli.common),
         Command::Tradeoff(arguments) => tradeoff::run(arguments, &cli.common),
         Command::Tilt(arguments) => tilt::run(arguments, &cli.common),
+        Command::Daemon(arguments) => daemon::run(arguments, &cli.common),
         Command::Doctor => doctor::run(&cli.common),
         Command::FirmwareSim(arguments) => firmware_sim::run(arguments, &cli.common),
     }

@@ -4,48 +4,20 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use drive::{Client, Command, DeviceError, Outcome, Status};
-use io::port::Port;
+use drive::{Client, Command};
 use serde::Serialize;
-use units::{DegPerS, DegPerS2, Degrees};
 
-use super::Said;
+use super::{Said, through_daemon};
 use crate::cli::{self, Common, TiltVerb};
 use crate::config::{self, Config, Device};
 use crate::control::{self, Asked};
+use crate::daemon::client;
 use crate::failure::{Failure, Kind};
 use crate::report::table;
 use crate::session::{Session, SessionError};
 use crate::simulated::{Destinations, Simulated};
+use crate::tilting::{self, Homing, Report};
 use crate::{devices, ports, signals, simulated};
-
-/// What the drive said about itself.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-struct Report {
-    device: String,
-    state: String,
-    statusword: u16,
-    mode: i8,
-    referenced: bool,
-    /// Absent while the axis does not know where it is.
-    angle_deg: Option<f64>,
-    position_qc: i32,
-    velocity_rpm: i32,
-    negative_limit: bool,
-    positive_limit: bool,
-    home_switch: bool,
-    faults: Vec<Fault>,
-    simulated: bool,
-}
-
-/// An entry of the error history.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-struct Fault {
-    code: String,
-    name: Option<&'static str>,
-    meaning: Option<&'static str>,
-    remedy: Option<&'static str>,
-}
 
 /// Runs the command.
 ///
@@ -55,7 +27,16 @@ pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<Said, Failure> {
     let config = config::load(common.config.as_deref())?;
     let (name, device) = devices::choose(&config, common.device.as_deref())?;
     // Refused before a device is touched.
-    let commands = commands(&arguments.verb, &config, &device)?;
+    let commands = tilting::commands(&arguments.verb, &config, &device)?;
+    if let Some(client) = client::Client::find(&name, &device) {
+        let interrupt = signals::interrupt_flag()?;
+        let report = through_daemon::tilt(&client, arguments.verb, &interrupt)?;
+        return Ok(say(
+            &arguments.verb,
+            &report,
+            "a software drive, the daemon's",
+        ));
+    }
     let interrupt = signals::interrupt_flag()?;
     if devices::simulated(&device) {
         let axis = devices::axis(&config.axis)?;
@@ -105,35 +86,6 @@ pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<Said, Failure> {
     )
 }
 
-/// What to ask of the drive, in order.
-fn commands(verb: &TiltVerb, config: &Config, device: &Device) -> Result<Vec<Command>, Failure> {
-    Ok(match verb {
-        TiltVerb::Status => vec![],
-        TiltVerb::Faults { clear: false } => vec![],
-        TiltVerb::Faults { clear: true } => vec![Command::ClearFaults],
-        TiltVerb::Stop => vec![Command::Stop],
-        TiltVerb::Home => vec![Command::Connect, Command::Home, Command::Brake],
-        TiltVerb::Goto { to, speed, accel } => {
-            let axis = devices::axis(&config.axis)?;
-            let accel = accel.unwrap_or(device.accel_deg_s2);
-            let plan = axis
-                .plan(
-                    Degrees(config.axis.homing.to_deg),
-                    Degrees(*to),
-                    DegPerS(*speed),
-                    DegPerS2(accel),
-                )
-                .map_err(|error| Failure::new(Kind::Usage, error.to_string()).help(error.help()))?;
-            let to = drive::Move {
-                to: plan.to,
-                speed: plan.speed,
-                acceleration: plan.acceleration,
-            };
-            vec![Command::Connect, Command::Goto(to), Command::Brake]
-        }
-    })
-}
-
 fn with_port(
     arguments: &cli::Tilt,
     config: &Config,
@@ -147,71 +99,38 @@ fn with_port(
     let client = Client::with_link(devices::axis(&config.axis)?, opened.link);
     let control = control::Control::listen(place, &interrupt);
     let mut session = Session::new(client, opened.port, interrupt);
-    let done = ask(&mut session, commands, simulated);
+    // A software drive was born a moment ago.
+    let homing = match simulated {
+        true => Homing::First,
+        false => Homing::AsAsked,
+    };
+    let done = tilting::ask(&mut session, commands, homing, &mut |event| {
+        tracing::debug!(?event);
+    });
     if let Some(control) = control {
         control.ended(!matches!(
             done,
             Err(SessionError::NotStopped(_) | SessionError::Port(_))
         ));
     }
-    let status = done.map_err(|error| session_failure(&error))?;
-    let report = report(name, &status, simulated);
-    let text = match arguments.verb {
-        TiltVerb::Faults { .. } => faults_table(&report),
-        _ => status_table(&report),
+    let status = done.map_err(|error| tilting::failure(&error))?;
+    Ok(say(
+        &arguments.verb,
+        &Report::new(name, &status, simulated),
+        "a software drive, switched on a moment ago",
+    ))
+}
+
+/// The report as the verb shows it.
+fn say(verb: &TiltVerb, report: &Report, simulated: &str) -> Said {
+    let text = match verb {
+        TiltVerb::Faults { .. } => faults_table(report),
+        _ => status_table(report, simulated),
     };
-    Ok(Said::report(&report, text))
+    Said::report(report, text)
 }
 
-/// Runs the commands and asks how the axis then stands. A software drive is homed first where a move is asked: it was born a moment ago.
-fn ask(
-    session: &mut Session<Box<dyn Port>>,
-    commands: &[Command],
-    simulated: bool,
-) -> Result<Status, SessionError> {
-    for command in commands {
-        if simulated && matches!(command, Command::Goto(_)) {
-            session.run(Command::Home, &mut |_| {})?;
-        }
-        session.run(*command, &mut |event| tracing::debug!(?event))?;
-    }
-    match session.run(Command::Status, &mut |_| {})? {
-        Outcome::Status(status) => Ok(status),
-        _ => Err(SessionError::Interrupted),
-    }
-}
-
-fn report(device: &str, status: &Status, simulated: bool) -> Report {
-    Report {
-        device: device.to_owned(),
-        state: status
-            .state
-            .map_or("unknown".to_owned(), |state| state.to_string()),
-        statusword: status.statusword,
-        mode: status.mode,
-        referenced: status.referenced,
-        angle_deg: status.angle.map(|angle| angle.0),
-        position_qc: status.position.0,
-        velocity_rpm: status.velocity_rpm,
-        negative_limit: status.inputs & 1 != 0,
-        positive_limit: status.inputs & 2 != 0,
-        home_switch: status.inputs & 4 != 0,
-        faults: status.history.iter().map(|error| fault(*error)).collect(),
-        simulated,
-    }
-}
-
-fn fault(error: DeviceError) -> Fault {
-    let meaning = error.meaning();
-    Fault {
-        code: format!("{:04X}", error.0),
-        name: meaning.map(|m| m.name),
-        meaning: meaning.map(|m| m.meaning),
-        remedy: meaning.map(|m| m.remedy),
-    }
-}
-
-fn status_table(report: &Report) -> String {
+fn status_table(report: &Report, simulated: &str) -> String {
     let yes = |on: bool| if on { "pressed" } else { "free" };
     let angle = match report.angle_deg {
         Some(angle) => format!("{angle:.4} deg"),
@@ -236,17 +155,11 @@ fn status_table(report: &Report) -> String {
         ),
     ];
     rows.extend(report.faults.iter().take(1).map(|fault| {
-        let name = fault.name.unwrap_or("unknown error");
+        let name = fault.name.as_deref().unwrap_or("unknown error");
         ("last fault", format!("{} {name} (tilt faults)", fault.code))
     }));
     if report.simulated {
-        rows.insert(
-            0,
-            (
-                "SIMULATED",
-                "a software drive, switched on a moment ago".to_owned(),
-            ),
-        );
+        rows.insert(0, ("SIMULATED", simulated.to_owned()));
     }
     table(rows)
 }
@@ -257,9 +170,12 @@ fn faults_table(report: &Report) -> String {
     }
     let mut text = String::new();
     for fault in &report.faults {
-        let name = fault.name.unwrap_or("unknown to the public guides");
+        let name = fault
+            .name
+            .as_deref()
+            .unwrap_or("unknown to the public guides");
         text.push_str(&format!("{}  {name}\n", fault.code));
-        for line in [fault.meaning, fault.remedy].into_iter().flatten() {
+        for line in [&fault.meaning, &fault.remedy].into_iter().flatten() {
             text.push_str(&format!("      {line}\n"));
         }
     }
@@ -281,15 +197,4 @@ fn stopped_elsewhere(device: &str) -> Said {
         &report,
         "the program that has the drive has stopped the axis".to_owned(),
     )
-}
-
-fn session_failure(error: &SessionError) -> Failure {
-    let kind = match error {
-        SessionError::Interrupted => Kind::Interrupted,
-        _ => Kind::DeviceFault,
-    };
-    let help = error.help().unwrap_or_else(|| {
-        "the axis stands, its power stage off, its brake set if it has one".to_owned()
-    });
-    Failure::new(kind, error.to_string()).help(help)
 }

@@ -1,0 +1,84 @@
+//! `velomotion daemon`: until it is told to end.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use sd_notify::NotifyState;
+
+use super::Said;
+use crate::cli::{self, Common};
+use crate::config;
+use crate::daemon::{Daemon, Options};
+use crate::failure::{Failure, Kind};
+use crate::progress::to_stderr;
+use crate::signals;
+
+/// How often signals are looked at.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Failure`] where it cannot start, or its devices' thread is gone.
+pub fn run(arguments: &cli::Daemon, common: &Common) -> Result<Said, Failure> {
+    let interrupt = signals::interrupt_flag()?;
+    let daemon = Daemon::start(Options {
+        config: config::load(common.config.as_deref())?,
+        device: common.device.clone(),
+        listen: arguments.listen,
+        ..Options::default()
+    })?;
+    greet(&daemon, common);
+    // Without a service manager there is nobody to tell.
+    let _ = sd_notify::notify(&[NotifyState::Ready]);
+    while !interrupt.load(Ordering::Acquire) && !daemon.is_broken() {
+        std::thread::sleep(LOOK);
+    }
+    let broken = daemon.is_broken();
+    let _ = sd_notify::notify(&[NotifyState::Stopping]);
+    end(daemon, &interrupt)?;
+    if broken {
+        return Err(
+            Failure::new(Kind::DeviceFault, "the thread that has the devices is gone")
+                .help("see whether the axis stands; run with -vv and report what it says"),
+        );
+    }
+    Ok(Said::nothing())
+}
+
+/// Ends it. Whoever asks once more does not wait for clouds.
+fn end(daemon: Daemon, interrupt: &Arc<AtomicBool>) -> Result<(), Failure> {
+    interrupt.store(false, Ordering::Release);
+    daemon.stop(|| interrupt.load(Ordering::Acquire))
+}
+
+fn greet(daemon: &Daemon, common: &Common) {
+    let shared = daemon.shared();
+    let address = daemon.address();
+    let folder = shared.scans.folder().display();
+    if common.json {
+        let object = serde_json::json!({
+            "address": address.to_string(),
+            "scans": folder.to_string(),
+            "simulated": shared.simulated(),
+        });
+        // The address is what whoever started this waits for.
+        let mut out = std::io::stdout().lock();
+        let _ = std::io::Write::write_all(&mut out, format!("{object}\n").as_bytes());
+        let _ = std::io::Write::flush(&mut out);
+        return;
+    }
+    if common.quiet {
+        return;
+    }
+    if shared.simulated() {
+        to_stderr("SIMULATED: software devices in a made-up hall, no scan of anything real");
+    }
+    let who = match (address.ip().is_loopback(), &shared.settings().token) {
+        (true, None) => "only from this machine",
+        (true, Some(_)) => "only from this machine, with the token",
+        (false, _) => "with the token",
+    };
+    to_stderr(&format!("http://{address}/ ({who}); scans in {folder}"));
+}

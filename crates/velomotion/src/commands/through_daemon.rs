@@ -1,0 +1,186 @@
+//! Captures and moves through a daemon that has the device: what is said and written is the same as without one.
+
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use io::files::NewFile;
+use serde::Deserialize;
+use units::{Degrees, Span, Stamp};
+
+use super::Said;
+use crate::cli::{self, TiltVerb};
+use crate::daemon::client::Client;
+use crate::daemon::http::tilt::Goto;
+use crate::daemon::scans::{ScanState, ScanView, WholeView};
+use crate::failure::{Failure, Kind};
+use crate::job;
+use crate::output::{self, Aside, Target, file_failure, overwrite};
+use crate::progress::Progress;
+use crate::report;
+use crate::setup::{Asked, Setup};
+use crate::tilting::Report;
+
+/// How often the daemon is asked how far it is.
+const LOOK: Duration = Duration::from_millis(50);
+/// How often a wish to stop is looked at meanwhile.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// What of the status a bar shows.
+#[derive(Deserialize)]
+struct Status {
+    activity: Activity,
+    drive: Drive,
+}
+
+#[derive(Deserialize)]
+struct Activity {
+    step: usize,
+    packets: u64,
+}
+
+#[derive(Deserialize)]
+struct Drive {
+    angle_deg: Option<f64>,
+}
+
+/// Has a capture made, fetches its log, and makes the cloud of it.
+///
+/// # Errors
+/// As without a daemon.
+pub fn capture(
+    client: &Client,
+    arguments: &cli::Capture,
+    (setup, target): (&Setup, Target),
+    interrupt: &Arc<AtomicBool>,
+    progress: &mut Progress,
+) -> Result<Said, Failure> {
+    let begun: ScanView = client.post("/api/v1/captures", &Asked::from(arguments))?;
+    let older_log = Aside::put(&setup.log)?;
+    let scan = wait(client, &begun.id, setup, interrupt, progress)?;
+    if scan.scan.log_bytes.is_none() {
+        return Err(scan.scan.why.unwrap_or_else(|| {
+            Failure::new(Kind::Incomplete, "the daemon made no log").help("see its messages")
+        }));
+    }
+    fetch(client, &begun.id, &setup.log)?;
+    interrupt.store(false, Ordering::Relaxed);
+    progress.say("making the cloud");
+    let stdout = target.is_stdout();
+    let made = job::cloud(setup, None, interrupt, target).map(|made| report::Scan {
+        truth: truth(&scan),
+        ..made
+    });
+    if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
+        older_log.replaced();
+    }
+    let outcome = job::Outcome {
+        failure: scan.recording,
+        lost_records: scan.lost_records,
+        reception: scan.reception,
+    };
+    let (scan, failure) = job::conclude(made, outcome, (&setup.cloud, &setup.log))?;
+    Ok(Said::scan(&scan, failure, stdout))
+}
+
+/// What the daemon's simulator knows of the cloud.
+fn truth(scan: &WholeView) -> Option<report::Truth> {
+    let truth = scan.report.as_ref()?.get("truth")?;
+    serde_json::from_value(truth.clone()).ok()
+}
+
+/// Waits until nothing is to be expected of the scan any more. A wish to stop goes to the daemon, once.
+fn wait(
+    client: &Client,
+    id: &str,
+    setup: &Setup,
+    interrupt: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<WholeView, Failure> {
+    let (mut said, mut stopped, mut step) = (0, false, 0);
+    let begin = Instant::now();
+    loop {
+        if interrupt.load(Ordering::Relaxed) && !stopped {
+            stopped = true;
+            let _: serde_json::Value = client.post("/api/v1/captures/stop", &())?;
+        }
+        let scan: WholeView = client.get(&format!("/api/v1/scans/{id}"))?;
+        for message in scan.messages.iter().skip(said) {
+            progress.say(message);
+        }
+        said = scan.messages.len();
+        if scan.scan.state.is_final() {
+            progress.end_move();
+            return Ok(scan);
+        }
+        if scan.scan.state == ScanState::Recording {
+            let status: Status = client.get("/api/v1/status")?;
+            if status.activity.step != step {
+                step = status.activity.step;
+                let plan = step.checked_sub(1).and_then(|step| setup.steps.get(step));
+                if let Some(step) = plan {
+                    progress.begin_move(&step.plan);
+                }
+            }
+            if let Some(angle) = status.drive.angle_deg {
+                let since = i64::try_from(begin.elapsed().as_nanos()).unwrap_or(i64::MAX);
+                let now = Stamp::from_nanos(0).saturating_add(Span::from_nanos(since));
+                progress.moved(now, Degrees(angle), status.activity.packets);
+            }
+        } else {
+            progress.end_move();
+        }
+        std::thread::sleep(LOOK);
+    }
+}
+
+/// Copies the daemon's log to where the user wants it.
+fn fetch(client: &Client, id: &str, log: &Path) -> Result<(), Failure> {
+    let mut file = NewFile::create(log, overwrite(false)).map_err(|e| file_failure(&e))?;
+    client.download(&format!("/api/v1/scans/{id}/log"), &mut file)?;
+    file.flush()
+        .map_err(|error| output::sink_failure(log, &cloud::SinkError::Other(error.into())))?;
+    file.commit().map_err(|error| file_failure(&error))
+}
+
+/// Has the axis moved, or looked at. A wish to stop goes to the daemon.
+///
+/// # Errors
+/// As without a daemon.
+pub fn tilt(client: &Client, verb: TiltVerb, interrupt: &AtomicBool) -> Result<Report, Failure> {
+    let asking = client.clone();
+    let asked = std::thread::spawn(move || ask(&asking, verb));
+    let mut stopped = false;
+    while !asked.is_finished() {
+        if interrupt.load(Ordering::Relaxed) && !stopped {
+            stopped = true;
+            let _: Report = client.post("/api/v1/tilt/stop", &())?;
+        }
+        std::thread::sleep(PAUSE);
+    }
+    asked.join().unwrap_or_else(|_| {
+        Err(
+            Failure::new(Kind::Incomplete, "the thread that asks the daemon panicked")
+                .help("this is a defect of the program; run with -vv and report what it says"),
+        )
+    })
+}
+
+fn ask(client: &Client, verb: TiltVerb) -> Result<Report, Failure> {
+    match verb {
+        TiltVerb::Status | TiltVerb::Faults { clear: false } => client.get("/api/v1/tilt"),
+        TiltVerb::Faults { clear: true } => client.post("/api/v1/tilt/clear", &()),
+        TiltVerb::Home => client.post("/api/v1/tilt/home", &()),
+        TiltVerb::Stop => client.post("/api/v1/tilt/stop", &()),
+        TiltVerb::Goto { to, speed, accel } => {
+            let wanted = Goto {
+                to_deg: to,
+                speed_deg_s: speed,
+                accel_deg_s2: accel,
+            };
+            client.post("/api/v1/tilt/goto", &wanted)
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Beginning and stopping captures, and what one would be.
+
+use std::sync::Arc;
+
+use axum::body::Bytes;
+use axum::extract::rejection::QueryRejection;
+use axum::extract::{Query, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::de::DeserializeOwned;
+
+use super::Api;
+use super::refusal::Refusal;
+use crate::daemon::hub::Event;
+use crate::daemon::keeper::Order;
+use crate::daemon::shared::Shared;
+use crate::daemon::view::Doing;
+use crate::daemon::{plan as plans, scans};
+use crate::setup::Asked;
+
+/// The body of a request, which is to be JSON.
+///
+/// # Errors
+/// [`Refusal`] where it is not JSON, or not what is asked for.
+pub fn body<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> Result<T, Refusal> {
+    let content = headers
+        .get(header::CONTENT_TYPE)
+        .and_then(|c| c.to_str().ok());
+    let kind = content.map(|content| content.split(';').next().unwrap_or_default().trim());
+    if !kind.is_some_and(|kind| kind.eq_ignore_ascii_case("application/json")) {
+        return Err(Refusal::new(
+            StatusCode::UNSUPPORTED_MEDIA_TYPE,
+            "usage",
+            "expected a body in JSON",
+            "send Content-Type: application/json",
+        ));
+    }
+    serde_json::from_slice(body).map_err(|error| Refusal::usage(format!("the body: {error}")))
+}
+
+/// `POST /captures`.
+pub async fn begin(
+    State(api): State<Arc<Api>>,
+    headers: HeaderMap,
+    bytes: Bytes,
+) -> Result<Response, Refusal> {
+    let asked: Asked = body(&headers, &bytes)?;
+    let shared = Arc::clone(&api.shared);
+    // Files are made, which may take a disk its time.
+    let begun = tokio::task::spawn_blocking(move || start(&shared, &asked)).await;
+    let id = begun.map_err(|_| panicked())??;
+    let view = api
+        .shared
+        .scans
+        .view(&id)
+        .ok_or_else(|| Refusal::no_scan(&id))?;
+    let mut response = super::json(StatusCode::CREATED, &view);
+    if let Ok(location) = format!("/api/v1/scans/{id}").parse() {
+        response.headers_mut().insert(header::LOCATION, location);
+    }
+    Ok(response)
+}
+
+/// A defect that is not the client's.
+fn panicked() -> Refusal {
+    Refusal::new(
+        StatusCode::INTERNAL_SERVER_ERROR,
+        "incomplete",
+        "a defect of the program",
+        "run the daemon with -vv and report what it says",
+    )
+}
+
+/// Begins a capture; the scan's id.
+fn start(shared: &Shared, asked: &Asked) -> Result<String, Refusal> {
+    // Refused before anything is made.
+    let dry = plans::setup(shared, asked, "cloud".into(), "log".into())?;
+    plans::fits(shared, &plans::plan(shared, asked, &dry))?;
+    shared.take(Doing::Capturing, None)?;
+    let begun = ordered(shared, asked);
+    if begun.is_err() {
+        shared.set_idle();
+    }
+    begun
+}
+
+/// The same with the axis taken.
+fn ordered(shared: &Shared, asked: &Asked) -> Result<String, Refusal> {
+    let record = shared.scans.begin(asked, shared.simulated())?;
+    let id = record.id;
+    shared.note(|activity| activity.scan = Some(id.clone()));
+    let (cloud, log) = (shared.cloud(&id), shared.log(&id));
+    let setup = Box::new(plans::setup(shared, asked, cloud, log)?);
+    shared.order(Order::Capture {
+        setup,
+        id: id.clone(),
+    })?;
+    if let Some(scan) = shared.scans.view(&id) {
+        shared.hub.tell(Event::Scan {
+            scan: Box::new(scan),
+            deleted: false,
+        });
+    }
+    Ok(id)
+}
+
+/// `POST /captures/stop`.
+pub async fn stop(State(api): State<Arc<Api>>) -> Response {
+    let scan = api.shared.activity().scan;
+    let stopped = scan.is_some() && api.shared.interrupt(None);
+    idle(&api.shared).await;
+    let body = serde_json::json!({ "stopped": stopped, "scan": scan });
+    super::json(StatusCode::OK, &body)
+}
+
+/// Waits until the axis stands. What moves it has its own limits of time.
+pub async fn idle(shared: &Shared) {
+    let mut activity = shared.follow();
+    // The sender lives as long as `shared`.
+    let _ = activity
+        .wait_for(|activity| activity.doing == Doing::Idle)
+        .await;
+}
+
+/// `GET /plan`.
+pub async fn plan(
+    State(api): State<Arc<Api>>,
+    query: Result<Query<Asked>, QueryRejection>,
+) -> Result<Response, Refusal> {
+    let Query(asked) = query?;
+    let shared = &api.shared;
+    if let Some(name) = &asked.name {
+        scans::check_name(name)?;
+    }
+    let setup = plans::setup(shared, &asked, "cloud".into(), "log".into())?;
+    Ok(super::json(StatusCode::OK, &plans::plan(shared, &asked, &setup)).into_response())
+}

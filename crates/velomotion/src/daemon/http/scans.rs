@@ -1,0 +1,52 @@
+//! The scans that are kept.
+
+use std::sync::Arc;
+
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::Serialize;
+
+use super::Api;
+use super::refusal::Refusal;
+use crate::daemon::hub::Event;
+use crate::daemon::scans::ScanView;
+use crate::failure::{Failure, Kind};
+
+/// `GET /scans`.
+pub async fn list(State(api): State<Arc<Api>>) -> Response {
+    #[derive(Serialize)]
+    struct List {
+        scans: Vec<ScanView>,
+    }
+    let scans = api.shared.scans.list();
+    super::json(StatusCode::OK, &List { scans })
+}
+
+/// `GET /scans/ID`.
+pub async fn one(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<Response, Refusal> {
+    let scan = api.shared.scans.whole(&id);
+    let scan = scan.ok_or_else(|| Refusal::no_scan(&id))?;
+    Ok(super::json(StatusCode::OK, &scan))
+}
+
+/// `DELETE /scans/ID`.
+pub async fn delete(
+    State(api): State<Arc<Api>>,
+    Path(id): Path<String>,
+) -> Result<StatusCode, Refusal> {
+    let deleted = api.shared.scans.delete(&id).map_err(|failure| {
+        // Not the request is wrong, but its time.
+        let kind = match failure.kind {
+            Kind::Usage => Kind::Incomplete,
+            kind => kind,
+        };
+        Failure { kind, ..failure }
+    })?;
+    let scan = deleted.ok_or_else(|| Refusal::no_scan(&id))?;
+    api.shared.hub.tell(Event::Scan {
+        scan: Box::new(scan),
+        deleted: true,
+    });
+    Ok(StatusCode::NO_CONTENT)
+}

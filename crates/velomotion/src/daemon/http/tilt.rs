@@ -1,0 +1,106 @@
+//! The axis by hand.
+
+use std::sync::Arc;
+
+use axum::body::Bytes;
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::Response;
+use serde::{Deserialize, Serialize};
+use tokio::sync::oneshot;
+
+use super::Api;
+use super::captures::{body, idle};
+use super::refusal::Refusal;
+use crate::cli::TiltVerb;
+use crate::daemon::keeper::{Order, tilt_order};
+use crate::daemon::shared::Shared;
+use crate::daemon::view::Doing;
+use crate::failure::{Failure, Kind};
+use crate::tilting::Report;
+
+/// A move by hand, as the command's `tilt goto`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Goto {
+    /// Where to.
+    pub to_deg: f64,
+    /// How fast.
+    #[serde(default = "slow")]
+    pub speed_deg_s: f64,
+    /// Acceleration; the device's own where it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accel_deg_s2: Option<f64>,
+}
+
+/// As the command does.
+fn slow() -> f64 {
+    10.0
+}
+
+/// Has the keeper do it, and waits for it. It goes on where the client does not wait.
+async fn does(shared: &Shared, verb: TiltVerb) -> Result<Report, Refusal> {
+    let (doing, commands) = tilt_order(&verb, shared)?;
+    shared.take(doing, None)?;
+    let (answer, done) = oneshot::channel();
+    if let Err(refused) = shared.order(Order::Tilt { commands, answer }) {
+        shared.set_idle();
+        return Err(refused.into());
+    }
+    match done.await {
+        Ok(answer) => Ok(answer?),
+        Err(_) => Err(Failure::new(Kind::Interrupted, "the daemon is ending")
+            .help("the axis is stopped; start the daemon again")
+            .into()),
+    }
+}
+
+fn said(report: &Report) -> Response {
+    super::json(StatusCode::OK, report)
+}
+
+/// `GET /tilt`. While the axis is busy, what is known of it.
+pub async fn status(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
+    let shared = &api.shared;
+    if shared.activity().doing != Doing::Idle
+        && let Some(mut report) = shared.report()
+    {
+        report.angle_deg = shared.drive().angle_deg;
+        return Ok(said(&report));
+    }
+    Ok(said(&does(shared, TiltVerb::Status).await?))
+}
+
+/// `POST /tilt/home`.
+pub async fn home(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
+    Ok(said(&does(&api.shared, TiltVerb::Home).await?))
+}
+
+/// `POST /tilt/goto`.
+pub async fn goto(
+    State(api): State<Arc<Api>>,
+    headers: HeaderMap,
+    bytes: Bytes,
+) -> Result<Response, Refusal> {
+    let wanted: Goto = body(&headers, &bytes)?;
+    let verb = TiltVerb::Goto {
+        to: wanted.to_deg,
+        speed: wanted.speed_deg_s,
+        accel: wanted.accel_deg_s2,
+    };
+    Ok(said(&does(&api.shared, verb).await?))
+}
+
+/// `POST /tilt/stop`: whatever moves is stopped, and the brake set.
+pub async fn stop(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
+    let shared = &api.shared;
+    shared.interrupt(None);
+    idle(shared).await;
+    Ok(said(&does(shared, TiltVerb::Stop).await?))
+}
+
+/// `POST /tilt/clear`.
+pub async fn clear(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
+    let verb = TiltVerb::Faults { clear: true };
+    Ok(said(&does(&api.shared, verb).await?))
+}

@@ -1,0 +1,399 @@
+//! The thread that has the devices: opens them, opens them again when they come back, and does one order after the other.
+//!
+//! It alone touches the drive. A panic in an order has the axis stopped as the session unwinds, and the thread goes on.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+use std::time::{Duration, Instant};
+
+use drive::Command;
+use io::udp::ListenConfig;
+use protocol::record::DriveLink;
+use tokio::sync::oneshot;
+use units::Span;
+
+use super::hub::Level;
+use super::line::Line;
+use super::maker::Making;
+use super::orders::{panic_failure, port_lost};
+use super::shared::{Counters, Shared};
+use super::view::{DeviceState, Doing};
+use crate::config::DeviceKind;
+use crate::devices;
+use crate::failure::{Failure, Kind};
+use crate::hearing::Hearing;
+use crate::ports;
+use crate::recording::Ear;
+use crate::session::SessionError;
+use crate::setup::Setup;
+use crate::simulated::{self, Simulated};
+use crate::tilting::{self, Report};
+
+/// How often the drive is asked how it is while nothing is done.
+const LOOK: Duration = Duration::from_secs(2);
+/// Between two tries to reach a device: at first, and at most.
+const AGAIN: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(5));
+/// What software devices remember of what truly happened before a capture.
+const MEMORY: Span = Span::from_secs(60);
+
+/// The answer of an order that moves the axis by hand.
+pub type Answer = oneshot::Sender<Result<Report, Failure>>;
+
+/// What the keeper is told to do. Whoever sends one has taken the axis ([`Shared::take`]), but for the last two.
+pub enum Order {
+    /// Make a scan.
+    Capture {
+        /// Decided.
+        setup: Box<Setup>,
+        /// Its id.
+        id: String,
+    },
+    /// Run commands.
+    Tilt {
+        /// These.
+        commands: Vec<Command>,
+        /// Who wants to know.
+        answer: Answer,
+    },
+    /// The machine has slept: what was open may be stale.
+    Reopen,
+    /// Look whether the daemon ends.
+    Wake,
+}
+
+/// The keeper.
+pub struct Keeper {
+    pub(super) shared: Arc<Shared>,
+    pub(super) axis: drive::AxisConfig,
+    orders: Receiver<Order>,
+    pub(super) maker: Sender<Making>,
+    pub(super) devices: Option<Simulated>,
+    lidar_again: Backoff,
+}
+
+/// When the next try is due.
+struct Backoff {
+    wait: Duration,
+    due: Instant,
+}
+
+impl Backoff {
+    fn new() -> Self {
+        Self {
+            wait: AGAIN.0,
+            due: Instant::now(),
+        }
+    }
+
+    fn failed(&mut self) {
+        self.due = Instant::now() + self.wait;
+        self.wait = (self.wait * 2).min(AGAIN.1);
+    }
+
+    fn left(&self) -> Duration {
+        self.due.saturating_duration_since(Instant::now())
+    }
+}
+
+/// Why the keeper lets go of a port.
+pub(super) enum Lost {
+    /// The daemon ends.
+    Ending,
+    /// The device went away.
+    Port(Failure),
+    /// It may be another by now.
+    Stale,
+}
+
+impl Keeper {
+    /// Of the devices of `shared`; what is recorded goes to `maker`.
+    ///
+    /// # Errors
+    /// Where the configuration describes no axis.
+    pub fn new(
+        shared: &Arc<Shared>,
+        orders: Receiver<Order>,
+        maker: Sender<Making>,
+    ) -> Result<Self, Failure> {
+        Ok(Self {
+            axis: devices::axis(&shared.config.axis)?,
+            shared: Arc::clone(shared),
+            orders,
+            maker,
+            devices: None,
+            lidar_again: Backoff::new(),
+        })
+    }
+
+    /// Until the daemon ends.
+    pub fn run(mut self) {
+        let mut again = Backoff::new();
+        while !self.shared.is_ending() {
+            self.shared.beat();
+            self.listen();
+            match self.open() {
+                Ok(opened) => {
+                    again = Backoff::new();
+                    match self.serve(opened) {
+                        Lost::Ending => break,
+                        Lost::Stale => {}
+                        Lost::Port(failure) => self.absent(failure),
+                    }
+                }
+                Err(failure) => self.absent(failure),
+            }
+            again.failed();
+            self.refuse_for(again.left());
+        }
+        self.shared.set_hearing(None);
+        if let Some(devices) = self.devices.take() {
+            // Nobody is left to compare with the truth.
+            drop(devices.stop());
+        }
+    }
+
+    fn absent(&self, failure: Failure) {
+        // Whoever comes back may have been without power.
+        self.shared.set_report(None);
+        self.shared.set_drive(|drive| {
+            *drive = super::view::DriveView {
+                state: DeviceState::Absent,
+                problem: Some(failure),
+                port: drive.port.take(),
+                ..super::view::DriveView::default()
+            };
+        });
+    }
+
+    /// Answers orders that came before it was known that the drive is gone.
+    fn refuse_for(&mut self, wait: Duration) {
+        let until = Instant::now() + wait;
+        loop {
+            let left = until.saturating_duration_since(Instant::now());
+            match self.orders.recv_timeout(left) {
+                Ok(order) => self.refuse(order),
+                Err(_) => return,
+            }
+            if self.shared.is_ending() {
+                return;
+            }
+        }
+    }
+
+    fn refuse(&self, order: Order) {
+        let drive = self.shared.drive();
+        let failure = drive.problem.unwrap_or_else(|| {
+            Failure::new(Kind::NoDevice, "the drive is not connected").help("see the status")
+        });
+        match order {
+            Order::Capture { id, .. } => self.failed(&id, failure),
+            Order::Tilt { answer, .. } => {
+                self.shared.set_idle();
+                drop(answer.send(Err(failure)));
+            }
+            Order::Reopen | Order::Wake => {}
+        }
+    }
+
+    /// Makes sure that the lidar is listened to, and that software devices run.
+    fn listen(&mut self) {
+        if self
+            .shared
+            .hearing()
+            .is_some_and(|hearing| hearing.is_sound())
+            && !self.devices.as_ref().is_some_and(Simulated::failed)
+        {
+            return;
+        }
+        if !self.lidar_again.left().is_zero() {
+            return;
+        }
+        match self.start_listening() {
+            Ok(()) => self.lidar_again = Backoff::new(),
+            Err(failure) => {
+                self.lidar_again.failed();
+                self.shared.set_hearing(None);
+                self.shared.set_lidar(|lidar| {
+                    lidar.state = DeviceState::Fault;
+                    lidar.problem = Some(failure);
+                });
+            }
+        }
+    }
+
+    fn start_listening(&mut self) -> Result<(), Failure> {
+        let simulated = self.shared.simulated();
+        // The old sockets first: the new ones may be the same.
+        self.shared.set_hearing(None);
+        let config = match simulated {
+            true => ListenConfig {
+                address: self.shared.device.lidar,
+                data_port: 0,
+                position_port: Some(0),
+                ..ListenConfig::default()
+            },
+            false => self.shared.listen_config(),
+        };
+        let ear = Ear::bind(&config)?;
+        if simulated {
+            let scan = scanner::ScanConfig {
+                mount: self.shared.config.mount,
+                ..scanner::ScanConfig::default()
+            };
+            let rig = simulated::rig(&self.axis, &scan, io::clock::now());
+            if let Some(old) = self.devices.replace(Simulated::start(rig, ear.ports())?) {
+                drop(old.stop());
+            }
+        }
+        let shared = Arc::clone(&self.shared);
+        let hearing = Hearing::start(
+            ear,
+            Box::new(move |record| {
+                shared
+                    .monitor
+                    .lock()
+                    .unwrap_or_else(std::sync::PoisonError::into_inner)
+                    .observe(record);
+                shared.feed.record(record);
+            }),
+        )?;
+        self.shared.set_hearing(Some(Arc::new(hearing)));
+        Ok(())
+    }
+
+    fn open(&self) -> Result<Line, Failure> {
+        let place = match &self.devices {
+            Some(devices) => devices.port().to_owned(),
+            None if self.shared.device.kind == DeviceKind::Sim => {
+                return Err(
+                    Failure::new(Kind::NoDevice, "the software devices do not run")
+                        .help("see what is said of the lidar"),
+                );
+            }
+            None => ports::place(&self.shared.name, &self.shared.device)?,
+        };
+        let opened = ports::open(&self.shared.device, &place)?;
+        self.shared.set_drive(|drive| {
+            drive.port = Some(place.display().to_string());
+            drive.link = Some(match opened.link {
+                DriveLink::Usb => "usb",
+                DriveLink::Rs232 => "rs232",
+                DriveLink::Can => "can",
+            });
+        });
+        if let Some(warning) = &opened.warning {
+            self.shared.hub.say(Level::Warning, warning.clone(), None);
+        }
+        Counters::count(&self.shared.counters.connects);
+        Ok(Line {
+            opened,
+            // Whoever had it before may have left questions.
+            failed: true,
+        })
+    }
+
+    /// Does orders with an open port until it is lost.
+    fn serve(&mut self, mut line: Line) -> Lost {
+        let mut look = Instant::now();
+        let mut greeted = Backoff::new();
+        let mut known = false;
+        loop {
+            self.shared.beat();
+            self.listen();
+            if self.shared.is_ending() {
+                return Lost::Ending;
+            }
+            // An order that is on its way connects by itself.
+            if !known && greeted.left().is_zero() && self.shared.claim(Doing::Connecting) {
+                let done = self.ask(&mut line, &[Command::Connect]);
+                self.shared.set_idle();
+                match done {
+                    Ok(_) => known = true,
+                    Err(SessionError::Port(error)) => return Lost::Port(ports::failure(&error)),
+                    Err(error) => {
+                        greeted.failed();
+                        self.fault(tilting::failure(&error));
+                    }
+                }
+                look = Instant::now() + LOOK;
+            }
+            if look.saturating_duration_since(Instant::now()).is_zero() {
+                if known && let Err(SessionError::Port(error)) = self.ask(&mut line, &[]) {
+                    return Lost::Port(ports::failure(&error));
+                }
+                look = Instant::now() + LOOK;
+                if let Some(devices) = &self.devices {
+                    devices.forget_before(io::clock::now().saturating_add(-MEMORY));
+                }
+            }
+            let next = match known {
+                true => look.saturating_duration_since(Instant::now()),
+                false => greeted.left(),
+            };
+            match self.orders.recv_timeout(next) {
+                Ok(Order::Reopen) => return Lost::Stale,
+                Ok(Order::Wake) | Err(RecvTimeoutError::Timeout) => {}
+                Ok(order) => {
+                    if let Some(lost) = self.obey(&mut line, order) {
+                        return lost;
+                    }
+                    known = true;
+                    look = Instant::now() + LOOK;
+                }
+                Err(RecvTimeoutError::Disconnected) => return Lost::Ending,
+            }
+        }
+    }
+
+    /// Does one order, whatever happens in it.
+    fn obey(&mut self, line: &mut Line, order: Order) -> Option<Lost> {
+        if self.shared.is_ending() {
+            self.refuse(order);
+            return Some(Lost::Ending);
+        }
+        match order {
+            Order::Capture { setup, id } => self.capture(line, *setup, &id),
+            Order::Tilt { commands, answer } => {
+                let done = catch_unwind(AssertUnwindSafe(|| self.ask(line, &commands)));
+                let (answered, lost) = match done {
+                    Ok(Ok(report)) => (Ok(report), None),
+                    Ok(Err(error)) => {
+                        let failure = tilting::failure(&error);
+                        let reason = self.shared.stop_reason();
+                        let lost = port_lost(&error);
+                        (Err(reason.unwrap_or(failure)), lost)
+                    }
+                    Err(_) => {
+                        self.fault(panic_failure());
+                        (Err(panic_failure()), Some(Lost::Stale))
+                    }
+                };
+                // First this: whoever gets the answer may send the next order.
+                self.shared.set_idle();
+                // Whoever asked may be gone.
+                let _ = answer.send(answered);
+                lost
+            }
+            Order::Reopen | Order::Wake => None,
+        }
+    }
+}
+
+/// What a move by hand is for the client, and what it is called meanwhile.
+///
+/// # Errors
+/// [`Kind::Usage`] for a move that the axis cannot make.
+pub fn tilt_order(
+    verb: &crate::cli::TiltVerb,
+    shared: &Shared,
+) -> Result<(Doing, Vec<Command>), Failure> {
+    use crate::cli::TiltVerb;
+    let commands = tilting::commands(verb, &shared.config, &shared.device)?;
+    let doing = match verb {
+        TiltVerb::Home => Doing::Homing,
+        TiltVerb::Goto { .. } => Doing::Moving,
+        TiltVerb::Status | TiltVerb::Stop | TiltVerb::Faults { .. } => Doing::Stopping,
+    };
+    Ok((doing, commands))
+}

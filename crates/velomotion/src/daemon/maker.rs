@@ -1,0 +1,135 @@
+//! The thread that makes clouds of logs: after each capture, and at the start of those that were never made.
+
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::Receiver;
+
+use cloud::Fields;
+use scanner::{Accuracy, TiltSource};
+use sim::Truth;
+
+use super::scans::{CLOUD, LOG, ScanState, THUMBNAIL};
+use super::shared::{Counters, Shared};
+use crate::cli::TimeOf;
+use crate::commands::replay::{self, Request};
+use crate::failure::{Failure, Kind};
+use crate::job;
+use crate::output::Target;
+use crate::recordings::Source;
+use crate::report::Scan;
+
+/// A log that waits for its cloud.
+pub struct Making {
+    /// The scan.
+    pub id: String,
+    /// How accurate the cloud is to be.
+    pub accuracy: Accuracy,
+    /// What truly happened, where a simulator knows.
+    pub truth: Option<Truth>,
+}
+
+/// Those that were never made.
+#[must_use]
+pub fn left_over(shared: &Shared) -> Vec<Making> {
+    let ids = shared.scans.unfinished().into_iter();
+    let making = ids.map(|id| {
+        clean(&shared.scans.place(&id));
+        let asked = shared.scans.record(&id).and_then(|record| record.asked);
+        Making {
+            accuracy: asked
+                .and_then(|asked| asked.accuracy().ok())
+                .unwrap_or(Accuracy::Best),
+            id,
+            truth: None,
+        }
+    });
+    making.collect()
+}
+
+/// Removes what was half written.
+fn clean(place: &Path) {
+    let known = [LOG, CLOUD, THUMBNAIL, "scan.json"];
+    let Ok(entries) = fs::read_dir(place) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        if !known.iter().any(|known| name == *known) {
+            // What cannot be removed only takes room.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Makes clouds until nobody sends logs any more.
+pub fn run(shared: &Arc<Shared>, logs: &Receiver<Making>) {
+    while let Ok(making) = logs.recv() {
+        if shared.abandon.load(Ordering::Acquire) {
+            // Its state says that the cloud is to be made: the next start does it.
+            continue;
+        }
+        make(shared, &making);
+        shared.retain();
+    }
+}
+
+fn make(shared: &Shared, making: &Making) {
+    let id = making.id.as_str();
+    let made = catch_unwind(AssertUnwindSafe(|| cloud(shared, making)));
+    let made = made.unwrap_or_else(|_| {
+        Err(Failure::new(
+            Kind::Incomplete,
+            "a defect of the program ended the making of the cloud",
+        )
+        .help("run velomotion replay on the log with -vv and report what it says"))
+    });
+    if shared.abandon.load(Ordering::Acquire) {
+        return;
+    }
+    let Some(record) = shared.scans.record(id) else {
+        return;
+    };
+    let (cloud, log) = (shared.cloud(id), shared.log(id));
+    let concluded = job::conclude(made, record.outcome(), (&cloud, &log));
+    let counters = &shared.counters;
+    Counters::count(match &concluded {
+        Ok((_, None)) => &counters.whole,
+        Ok((_, Some(_))) => &counters.partial,
+        Err(_) => &counters.failed,
+    });
+    shared.change_scan(id, |record| match concluded {
+        Ok((scan, why)) => {
+            record.state = match &why {
+                None => ScanState::Whole,
+                Some(_) => ScanState::Partial,
+            };
+            record.why = why;
+            record.points = Some(scan.points);
+            record.duration_s = Some(scan.contents.duration_s);
+            record.report = serde_json::to_value(&scan).ok();
+        }
+        Err(why) => {
+            record.state = ScanState::Failed;
+            record.why = Some(why);
+        }
+    });
+}
+
+fn cloud(shared: &Shared, making: &Making) -> Result<Scan, Failure> {
+    let target = Target::open(&shared.cloud(&making.id), Fields::FILE, true)?;
+    let source = Source::open(&shared.log(&making.id), None)?;
+    let request = Request {
+        recording: &source,
+        tilt: TiltSource::Log,
+        options: lidar::Options::default(),
+        time: TimeOf::Host,
+        accuracy: making.accuracy,
+        pace: None,
+        truth: making.truth.as_ref(),
+        interrupt: &shared.abandon,
+    };
+    replay::make(&request, target)
+}

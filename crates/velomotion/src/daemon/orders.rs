@@ -1,0 +1,258 @@
+//! What the keeper does with an open port: commands by hand, captures, and what is told of them.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use drive::{Client, Command, Event, Status};
+
+use super::hub::Level;
+use super::keeper::{Keeper, Lost};
+use super::line::Line;
+use super::maker::Making;
+use super::motions::Motions;
+use super::points::Watching;
+use super::scans::ScanState;
+use super::shared::Counters;
+use super::view::DeviceState;
+use crate::failure::{Failure, Kind};
+use crate::job::{self, Happening, Job};
+use crate::ports;
+use crate::session::{Session, SessionError};
+use crate::setup::Setup;
+use crate::simulated::Simulated;
+use crate::tilting::{self, Homing, Report};
+
+impl Keeper {
+    /// Runs commands and asks how the axis then stands.
+    pub(super) fn ask(
+        &self,
+        line: &mut Line,
+        commands: &[Command],
+    ) -> Result<Report, SessionError> {
+        let shared = &self.shared;
+        line.hush()?;
+        let opened = &mut line.opened;
+        let client = Client::with_link(self.axis.clone(), opened.link);
+        // What moves nothing is not stopped by what was meant for the order behind it.
+        let interrupt = match commands {
+            [] | [Command::Connect] => Arc::default(),
+            _ => Arc::clone(&shared.interrupt),
+        };
+        let mut session = Session::new(client, &mut *opened.port, interrupt);
+        let homed = shared.report().is_some_and(|report| report.referenced);
+        let homing = match shared.simulated() && !homed {
+            true => Homing::First,
+            false => Homing::AsAsked,
+        };
+        let mut motions = Motions::new(shared);
+        let done = tilting::ask(&mut session, commands, homing, &mut |event| match event {
+            Event::Sample(sample) => {
+                motions.moved(sample.answer, self.axis.gearing.angle(sample.position), 0)
+            }
+            Event::Progress(drive::Progress::Moving(plan)) => motions.begin(plan, 0, 0),
+            event => tracing::debug!(?event),
+        });
+        motions.end();
+        drop(session);
+        match done {
+            Ok(status) => Ok(self.said(&status)),
+            Err(error) => {
+                line.failed = true;
+                if let SessionError::Drive(_) | SessionError::NotStopped(_) = &error {
+                    self.fault(tilting::failure(&error));
+                }
+                Err(error)
+            }
+        }
+    }
+
+    /// The drive has said how it is.
+    pub(super) fn said(&self, status: &Status) -> Report {
+        let shared = &self.shared;
+        let report = Report::new(&shared.name, status, shared.simulated());
+        let gearing = self.axis.gearing;
+        let fault = status.state == Some(protocol::epos2::cia402::State::Fault);
+        let problem = fault.then(|| {
+            let newest = report.faults.first();
+            let text = |pick: fn(&tilting::Fault) -> &Option<String>| {
+                newest.and_then(|fault| pick(fault).clone())
+            };
+            let name = text(|fault| &fault.name).unwrap_or_else(|| "unknown error".to_owned());
+            let code = newest.map_or("", |fault| fault.code.as_str());
+            let remedy = text(|fault| &fault.remedy).unwrap_or_default();
+            Failure::new(
+                Kind::DeviceFault,
+                format!("the drive is in fault: {code} {name}"),
+            )
+            .help(format!("{remedy}\nthen clear it (tilt faults --clear) or home the axis").trim())
+        });
+        shared.set_drive(|drive| {
+            drive.state = match fault {
+                true => DeviceState::Fault,
+                false => DeviceState::Connected,
+            };
+            drive.problem = problem;
+            drive.cia402 = Some(report.state.clone());
+            drive.referenced = report.referenced;
+            drive.angle_deg = report.angle_deg;
+            drive.speed_deg_s = gearing.degrees_per_qc()
+                * f64::from(gearing.qc_per_motor_turn())
+                * f64::from(report.velocity_rpm)
+                / 60.0;
+            drive.faults = report.faults.clone();
+        });
+        shared.set_report(Some(report.clone()));
+        report
+    }
+
+    pub(super) fn fault(&self, failure: Failure) {
+        self.shared.set_drive(|drive| {
+            drive.state = DeviceState::Fault;
+            drive.problem = Some(failure);
+        });
+    }
+
+    /// Makes a scan.
+    pub(super) fn capture(&mut self, line: &mut Line, setup: Setup, id: &str) -> Option<Lost> {
+        let shared = Arc::clone(&self.shared);
+        Counters::count(&shared.counters.captures);
+        let Some(hearing) = shared.hearing() else {
+            let problem = shared.lidar().problem;
+            let failure = problem.unwrap_or_else(|| {
+                Failure::new(Kind::NoDevice, "the lidar is not listened to").help("see the status")
+            });
+            self.failed(id, failure);
+            return None;
+        };
+        if let Err(error) = line.hush() {
+            let failure = ports::failure(&error);
+            self.failed(id, failure.clone());
+            return Some(Lost::Port(failure));
+        }
+        let opened = &mut line.opened;
+        let watching = Watching::start(id, &setup.scan, &shared.feed, &shared.hub);
+        let steps = setup.steps.len();
+        let mut motions = Motions::new(&shared);
+        shared.note(|activity| activity.steps = steps);
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            let job = Job {
+                setup: &setup,
+                interrupt: &shared.interrupt,
+                hearing: &hearing,
+                port: &mut *opened.port,
+                link: opened.link,
+                rs232_baud: opened.rs232_baud,
+                onlooker: &|record| shared.feed.record(record),
+            };
+            job::record(job, &mut |happening| match happening {
+                Happening::Begins => shared.tell_status(),
+                Happening::Move { number, step } => motions.begin(&step.plan, number + 1, steps),
+                Happening::Moved { at, angle, packets } => motions.moved(at, angle, packets),
+                Happening::Progress(step) => {
+                    shared.beat();
+                    tracing::info!(?step);
+                }
+                Happening::Over => motions.end(),
+                Happening::Warning(text) => {
+                    shared.scans.say(id, &format!("warning: {text}"));
+                    shared.hub.say(Level::Warning, text, None);
+                }
+            })
+        }));
+        drop(watching);
+        let truth = self.devices.as_ref().and_then(Simulated::truth);
+        let ended = match ended {
+            Ok(Ok(ended)) => ended,
+            Ok(Err(failure)) => {
+                let failure = shared.stop_reason().unwrap_or(failure);
+                self.failed(id, failure);
+                return None;
+            }
+            Err(_) => {
+                // The session has stopped the axis as it unwound; the log is whole up to then.
+                let outcome = job::Outcome {
+                    failure: Some(panic_failure()),
+                    ..job::Outcome::default()
+                };
+                self.make(id, setup, truth, outcome);
+                self.fault(panic_failure());
+                return Some(Lost::Stale);
+            }
+        };
+        let lost = ended.port_failed();
+        line.failed = true;
+        let mut outcome = ended.outcome();
+        if let Some(failure) = &mut outcome.failure
+            && failure.kind == Kind::Interrupted
+            && let Some(reason) = shared.stop_reason()
+        {
+            *failure = reason;
+        }
+        let lost = match outcome.failure.clone().filter(|_| lost) {
+            Some(failure) => Some(Lost::Port(failure)),
+            // How the axis stands after it.
+            None => match self.ask(line, &[]) {
+                Err(SessionError::Port(error)) => Some(Lost::Port(ports::failure(&error))),
+                _ => None,
+            },
+        };
+        self.make(id, setup, truth, outcome);
+        lost
+    }
+
+    /// Hands a log to whoever makes its cloud.
+    pub(super) fn make(
+        &self,
+        id: &str,
+        setup: Setup,
+        truth: Option<sim::Truth>,
+        outcome: job::Outcome,
+    ) {
+        // First this: whoever sees that the scan is over may begin the next.
+        self.shared.set_idle();
+        self.shared.change_scan(id, |record| {
+            record.state = ScanState::Making;
+            record.recording = outcome.failure;
+            record.lost_records = outcome.lost_records;
+            record.reception = outcome.reception;
+        });
+        let making = Making {
+            id: id.to_owned(),
+            accuracy: setup.accuracy,
+            truth,
+        };
+        if self.maker.send(making).is_err() {
+            tracing::warn!("the cloud of {id} is made at the next start");
+        }
+    }
+
+    /// Nothing came of a scan.
+    pub(super) fn failed(&self, id: &str, failure: Failure) {
+        self.shared.set_idle();
+        Counters::count(&self.shared.counters.failed);
+        self.shared
+            .hub
+            .say(Level::Error, failure.message.clone(), failure.help.clone());
+        self.shared.change_scan(id, |record| {
+            record.state = ScanState::Failed;
+            record.why = Some(failure);
+        });
+    }
+}
+
+/// What becomes of the port after such an end.
+pub(super) fn port_lost(error: &SessionError) -> Option<Lost> {
+    match error {
+        SessionError::Port(error) => Some(Lost::Port(ports::failure(error))),
+        _ => None,
+    }
+}
+
+/// A defect that ended a motion.
+pub(super) fn panic_failure() -> Failure {
+    Failure::new(
+        Kind::DeviceFault,
+        "a defect of the program ended the motion; the axis was told to stop",
+    )
+    .help("see whether the axis stands; run with -vv and report what it says")
+}

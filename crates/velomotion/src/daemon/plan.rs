@@ -1,0 +1,93 @@
+//! What a capture would be, before anything moves: time, resolution, bytes.
+
+use std::path::PathBuf;
+
+use super::pulse::disk_full;
+use super::shared::Shared;
+use super::view::PlanView;
+use crate::failure::Failure;
+use crate::setup::{Asked, Setup};
+
+/// Bytes a second of the log where the lidar has not been heard: VLP-16 in dual return, 1508 packets of 1206 bytes with their heads, position
+/// packets, and the drive.
+const LOG_BYTES_S: f64 = 2.2e6;
+/// Bytes of a packet and its frames in a log.
+const PACKET_BYTES: f64 = 1_320.0;
+/// Bytes a second of the drive's share of a log: up to 1000 polls of two frames.
+const DRIVE_BYTES_S: f64 = 2e5;
+/// Rows of a PLY, and channels of a packet.
+const ROW_BYTES: f64 = 29.0;
+const CHANNELS: f64 = 384.0;
+/// Packets a second in dual return.
+const PACKETS_S: f64 = 1_508.0;
+/// Homing and the rest before the first sweep, seconds.
+const BEFORE_S: f64 = 15.0;
+/// Turns a minute of a lidar that was not heard.
+const RPM: f64 = 600.0;
+
+/// The capture that is asked for, decided, with files named so.
+///
+/// # Errors
+/// As [`Setup::of`].
+pub fn setup(
+    shared: &Shared,
+    asked: &Asked,
+    cloud: PathBuf,
+    log: PathBuf,
+) -> Result<Setup, Failure> {
+    let device = (shared.name.as_str(), &shared.device);
+    Setup::of(asked, &shared.config, device, cloud, log)
+}
+
+/// What a capture would be.
+#[must_use]
+pub fn plan(shared: &Shared, asked: &Asked, setup: &Setup) -> PlanView {
+    let lidar = shared.lidar();
+    let rpm = lidar.rpm.unwrap_or(RPM);
+    let sweeps = || setup.steps.iter().filter(|step| step.sweep);
+    let seconds = |step: &crate::motion::Step| step.plan.duration.as_secs_f64();
+    let moves_s: f64 = setup.steps.iter().map(seconds).sum();
+    let sweeps_s: f64 = sweeps().map(seconds).sum();
+    let first = sweeps().next().map(|step| step.plan);
+    let packets_s = match lidar.packets_per_s {
+        heard if heard > 0.0 => heard,
+        _ => PACKETS_S,
+    };
+    let log_s = match lidar.packets_per_s {
+        heard if heard > 0.0 => heard * PACKET_BYTES + DRIVE_BYTES_S,
+        _ => LOG_BYTES_S,
+    };
+    let bytes = (moves_s + BEFORE_S) * log_s + sweeps_s * packets_s * CHANNELS * ROW_BYTES;
+    PlanView {
+        asked: asked.clone(),
+        motor_rpm: first.map_or(0, |plan| plan.speed.0),
+        cruise_deg_s: first.map_or(0.0, |plan| plan.cruise.0),
+        sweep_s: first.map_or(0.0, |plan| plan.duration.as_secs_f64()),
+        moves_s,
+        step_deg: first.map(|plan| plan.cruise.0 * 60.0 / rpm),
+        frames: first.map(|plan| plan.duration.as_secs_f64() * rpm / 60.0),
+        bytes: bytes as u64,
+        headline: setup.headline(),
+    }
+}
+
+/// Refuses a capture for which there is no room.
+///
+/// # Errors
+/// [`disk_full`], saying how much it would need.
+pub fn fits(shared: &Shared, plan: &PlanView) -> Result<(), Failure> {
+    let reserve = shared.settings().reserve_bytes;
+    let Ok(free) = (shared.world.free_bytes)(shared.scans.folder()) else {
+        return Ok(());
+    };
+    if free.saturating_sub(reserve) >= plan.bytes {
+        return Ok(());
+    }
+    let failure = disk_full(free, reserve);
+    let message = format!(
+        "{}, and this scan may need {} MB",
+        failure.message,
+        plan.bytes / 1_000_000
+    );
+    Err(Failure { message, ..failure })
+}

@@ -1,0 +1,138 @@
+//! `capture` and `tilt` while a daemon has the device: as without one.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Output, Stdio};
+
+use serde_json::Value;
+
+use crate::rig::{Process, place, ready, request, run, said, velomotion};
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|error| panic!("{error}: {}", said(output)))
+}
+
+/// Runs it again where a drive was silent while the machine kept it waiting.
+fn patiently(folder: &std::path::Path, line: &str, again: &str) -> Output {
+    let mut output = run(folder, line);
+    for _ in 0..3 {
+        if output.status.code() != Some(5) || !said(&output).contains("silence") {
+            break;
+        }
+        output = run(folder, again);
+    }
+    output
+}
+
+#[test]
+fn a_capture_through_the_daemon_is_as_one_without() {
+    let folder = place();
+    let line = "capture --speed 56.25 -o own.ply --json";
+    let own = patiently(folder.path(), line, &format!("{line} --force"));
+    assert!(own.status.success(), "{}", said(&own));
+    let daemon = Process::start(folder.path());
+    ready(daemon.address);
+    let line = "capture --speed 56.25 -o through.ply --json";
+    let through = patiently(folder.path(), line, &format!("{line} --force"));
+    assert!(through.status.success(), "{}", said(&through));
+    let scans = request(daemon.address, "GET", "/api/v1/scans", "", "").json();
+    assert!(
+        !scans["scans"].as_array().unwrap().is_empty(),
+        "it did not go through the daemon"
+    );
+
+    // The same keys, the same sentences, the same files.
+    let keys =
+        |value: &Value| -> Vec<String> { value.as_object().unwrap().keys().cloned().collect() };
+    let (own_json, through_json) = (json(&own), json(&through));
+    assert_eq!(keys(&own_json), keys(&through_json));
+    for part in ["reception", "truth", "sync", "packets"] {
+        assert_eq!(keys(&own_json[part]), keys(&through_json[part]), "{part}");
+    }
+    assert_eq!(through_json["output"], "through.ply");
+    assert_eq!(through_json["log"], "through.pcapng");
+    let lines = |output: &Output| {
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        text.lines()
+            .filter(|line| !line.starts_with("warning"))
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(lines(&own), lines(&through));
+    let again = run(folder.path(), "replay through.pcapng -o again.ply");
+    assert!(again.status.success());
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert!(read("again.ply") == read("through.ply"));
+    // The daemon's own cloud is the same, too.
+    let id = scans["scans"][0]["id"].as_str().unwrap();
+    let kept = folder
+        .path()
+        .join("velomotion/scans")
+        .join(id)
+        .join("cloud.ply");
+    assert!(std::fs::read(kept).unwrap() == read("through.ply"));
+
+    // What is refused is refused in the same words.
+    for (line, code, word) in [
+        ("capture --speed 100", 2, "98"),
+        ("capture --speed 10 -o through.ply", 2, "--force"),
+        ("tilt goto 10", 2, "10"),
+    ] {
+        let output = run(folder.path(), line);
+        assert_eq!(
+            output.status.code(),
+            Some(code),
+            "{line}: {}",
+            said(&output)
+        );
+        assert!(said(&output).contains(word), "{line}: {}", said(&output));
+    }
+
+    // The axis stays where it was put: it is the daemon's.
+    let home = run(folder.path(), "tilt home --json");
+    assert!(home.status.success(), "{}", said(&home));
+    let there = run(folder.path(), "tilt goto -7 --speed 50 --json");
+    assert!(there.status.success(), "{}", said(&there));
+    let status = json(&run(folder.path(), "tilt status --json"));
+    assert!(
+        (status["angle_deg"].as_f64().unwrap() + 7.0).abs() < 0.01,
+        "{status}"
+    );
+    let text = run(folder.path(), "tilt status");
+    assert!(String::from_utf8_lossy(&text.stdout).contains("SIMULATED"));
+    assert!(run(folder.path(), "tilt stop").status.success());
+    assert!(run(folder.path(), "tilt faults").status.success());
+}
+
+#[test]
+fn ctrl_c_stops_the_daemons_axis_and_the_log_is_the_users() {
+    let folder = place();
+    let daemon = Process::start(folder.path());
+    ready(daemon.address);
+    let mut capture = velomotion(folder.path(), "capture --speed 5 -o scan.ply")
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // It may take a moment until the capture reaches the daemon.
+    crate::rig::wait("the capture", || {
+        let status = request(daemon.address, "GET", "/api/v1/status", "", "").json();
+        (status["activity"]["doing"] == "capturing").then_some(())
+    });
+    assert!(crate::rig::sweeps(daemon.address));
+    let id = capture.id().to_string();
+    let sent = std::process::Command::new("kill")
+        .args(["-INT", &id])
+        .status();
+    assert!(sent.unwrap().success());
+    let mut text = String::new();
+    for line in BufReader::new(capture.stderr.take().unwrap()).lines() {
+        text.push_str(&line.unwrap());
+    }
+    assert_eq!(capture.wait().unwrap().code(), Some(130), "{text}");
+    assert!(text.contains("stopped by the user"), "{text}");
+    for name in ["scan.ply", "scan.pcapng"] {
+        assert!(folder.path().join(name).is_file(), "{name}: {text}");
+    }
+    let status = request(daemon.address, "GET", "/api/v1/status", "", "").json();
+    assert_eq!(status["activity"]["doing"], "idle");
+}

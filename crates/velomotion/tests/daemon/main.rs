@@ -1,0 +1,11 @@
+//! The daemon against the simulator, on loopback: as its page, other programs and the commands meet it.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
+
+mod api;
+mod commands;
+mod devices;
+mod events;
+mod guard;
+mod limits;
+mod rig;
+mod scans;

@@ -1,0 +1,218 @@
+//! Scans as they are kept: listed, downloaded, deleted, found again.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
+
+use serde_json::json;
+use units::Span;
+use velomotion::daemon::{Daemon, Options};
+
+use crate::rig::{Process, Rig, finished, place, request, run, sweep, wait};
+
+#[test]
+fn a_scan_is_listed_downloaded_as_replay_makes_it_and_deleted() {
+    let rig = Rig::new();
+    rig.ready();
+    let scan = rig.whole_scan(&json!({"speed_deg_s": 56.25, "name": "hall"}));
+    let id = scan["id"].as_str().unwrap();
+    assert!(id.starts_with("hall-simulated-"), "{id}");
+    assert_eq!(scan["simulated"], true);
+    assert_eq!(scan["report"]["points"], scan["points"]);
+    assert!(
+        scan["report"]["truth"]["rms_m"].as_f64().unwrap() < 0.05,
+        "{scan}"
+    );
+    let list = rig.get("/api/v1/scans").json();
+    assert_eq!(list["scans"][0]["id"], id);
+    assert_eq!(
+        rig.status()["disk"]["scans"].as_u64(),
+        Some(list["scans"].as_array().unwrap().len() as u64)
+    );
+
+    let log = rig.get(&format!("/api/v1/scans/{id}/log"));
+    assert_eq!(log.body, std::fs::read(rig.log(id)).unwrap());
+    let folder = rig.folder.path();
+    for (query, option, extension) in [
+        ("", "", "ply"),
+        (
+            "?format=ply&uncertainty=true&echo=true",
+            "--uncertainty --echo",
+            "ply",
+        ),
+        ("?format=pcd", "", "pcd"),
+        ("?format=las", "", "las"),
+        ("?format=laz&uncertainty=true", "--uncertainty", "laz"),
+        ("?format=CSV", "", "csv"),
+    ] {
+        let cloud = rig.get(&format!("/api/v1/scans/{id}/cloud{query}"));
+        assert_eq!(cloud.status, 200, "{query}: {}", cloud.text());
+        assert!(
+            cloud.head.contains(&format!("{id}.{extension}\"")),
+            "{}",
+            cloud.head
+        );
+        let file = folder.join(format!("again.{extension}"));
+        let line = format!(
+            "replay {} -o {} --force {option}",
+            rig.log(id).display(),
+            file.display()
+        );
+        assert!(run(folder, &line).status.success(), "{line}");
+        assert!(
+            cloud.body == std::fs::read(&file).unwrap(),
+            "{query}: not what replay makes"
+        );
+    }
+    let wrong = rig.get(&format!("/api/v1/scans/{id}/cloud?format=xyz"));
+    assert!(wrong.refused(400, "format").text().contains(".laz"));
+    rig.get(&format!("/api/v1/scans/{id}/cloud?formt=ply"))
+        .refused(400, "misspelt");
+    rig.get(&format!("/api/v1/scans/{id}/thumbnail"))
+        .refused(404, "no picture");
+
+    let path = format!("/api/v1/scans/{id}");
+    assert_eq!(request(rig.address, "DELETE", &path, "", "").status, 204);
+    request(rig.address, "DELETE", &path, "", "").refused(404, "deleted");
+    rig.get(&path).refused(404, "deleted");
+    assert!(!rig.log(id).exists());
+}
+
+#[test]
+fn a_scan_that_is_stopped_is_partial_and_kept() {
+    let mut rig = Rig::new();
+    let id = sweep(rig.address);
+    let path = format!("/api/v1/scans/{id}");
+    request(rig.address, "DELETE", &path, "", "").refused(409, "while it is made");
+    rig.get(&format!("{path}/cloud"))
+        .refused(409, "while it is made");
+    let stopped = rig.post("/api/v1/captures/stop", &json!({})).json();
+    assert_eq!(
+        (&stopped["stopped"], &stopped["scan"]),
+        (&json!(true), &json!(id))
+    );
+    let scan = rig.finished(&id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    assert_eq!(scan["why"]["kind"], "interrupted");
+    assert!(scan["points"].as_u64().unwrap() > 0, "{scan}");
+    assert_eq!(
+        rig.post("/api/v1/captures/stop", &json!({})).json()["stopped"],
+        false
+    );
+
+    // Another sweep is interrupted by the daemon's end: it is there when the next one starts.
+    let second = sweep(rig.address);
+    let config = rig.daemon().shared().config.clone();
+    rig.daemon.take().unwrap().stop(|| false).unwrap();
+    let folder = rig.folder.path().to_owned();
+    let again = Daemon::start(Options {
+        config,
+        listen: Some("127.0.0.1:0".parse().unwrap()),
+        runtime: Some(folder),
+        ..Options::default()
+    })
+    .unwrap();
+    let second = again.shared().scans.whole(&second).unwrap();
+    assert!(second.scan.points.unwrap() > 0, "{second:?}");
+    let why = second.scan.why.unwrap();
+    assert!(why.message.contains("the daemon was stopped"), "{why:?}");
+    again.stop(|| false).unwrap();
+}
+
+#[test]
+fn a_scan_in_which_the_daemon_is_killed_is_found_at_the_next_start() {
+    let folder = place();
+    let daemon = Process::start(folder.path());
+    let id = sweep(daemon.address);
+    let log = folder
+        .path()
+        .join("velomotion/scans")
+        .join(&id)
+        .join("log.pcapng");
+    // The last half second of a log may be lost: enough of the sweep is there.
+    wait("a log", || {
+        (std::fs::metadata(&log).ok()?.len() > 4_000_000).then_some(())
+    });
+    daemon.signal("-KILL");
+    drop(daemon);
+    let again = Process::start(folder.path());
+    let scan = finished(again.address, &id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    assert!(
+        scan["why"]["error"]
+            .as_str()
+            .unwrap()
+            .contains("in the middle of this scan")
+    );
+    assert!(scan["points"].as_u64().unwrap() > 0);
+    assert_eq!(scan["asked"]["speed_deg_s"], 5.0);
+    // A second daemon finds the device taken.
+    let second = run(folder.path(), "daemon --listen 127.0.0.1:0");
+    assert_eq!(
+        second.status.code(),
+        Some(4),
+        "{}",
+        crate::rig::said(&second)
+    );
+    again.signal("-TERM");
+    let mut again = again;
+    assert_eq!(again.child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn a_disk_that_is_nearly_full_ends_a_scan_and_begins_none() {
+    let free = Arc::new(AtomicU64::new(u64::MAX));
+    let told = Arc::clone(&free);
+    let rig = Rig::with("", |options| {
+        options.world.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
+    });
+    let id = sweep(rig.address);
+    free.store(999, Ordering::Relaxed);
+    let scan = rig.finished(&id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    assert!(
+        scan["why"]["error"]
+            .as_str()
+            .unwrap()
+            .contains("disk is nearly full"),
+        "{scan}"
+    );
+    assert!(scan["points"].as_u64().unwrap() > 0);
+    let refused = rig.post("/api/v1/captures", &json!({"speed_deg_s": 56.25}));
+    assert!(
+        refused.refused(409, "full").text().contains("may need"),
+        "{}",
+        refused.text()
+    );
+    assert_eq!(rig.status()["activity"]["doing"], "idle");
+}
+
+#[test]
+fn a_machine_that_has_slept_connects_anew_and_the_scan_is_partial() {
+    let slept = Arc::new(AtomicI64::new(0));
+    let told = Arc::clone(&slept);
+    let rig = Rig::with("", |options| {
+        options.world.suspended = Arc::new(move || Span::from_nanos(told.load(Ordering::Relaxed)));
+    });
+    rig.ready();
+    let connects = || {
+        rig.daemon()
+            .shared()
+            .counters
+            .connects
+            .load(Ordering::Relaxed)
+    };
+    let id = sweep(rig.address);
+    let before = connects();
+    slept.store(3_600_000_000_000, Ordering::Relaxed);
+    let scan = rig.finished(&id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    assert!(
+        scan["why"]["error"]
+            .as_str()
+            .unwrap()
+            .contains("suspended for 3600 s"),
+        "{scan}"
+    );
+    wait("the drive anew", || (connects() > before).then_some(()));
+    rig.ready();
+}
