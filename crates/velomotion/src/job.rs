@@ -90,6 +90,8 @@ pub struct Ended {
 pub struct Outcome {
     /// What went wrong.
     pub failure: Option<Failure>,
+    /// Records that were lost on the way to the log.
+    pub lost_records: u64,
     /// What was heard.
     pub reception: Option<Reception>,
 }
@@ -266,6 +268,7 @@ impl Ended {
     /// What there is to say of it. What went wrong first is what the user must hear first.
     #[must_use]
     pub fn outcome(self) -> Outcome {
+        let lost_records = self.lost_records();
         let reception = self.recorded.as_ref().ok().map(reception);
         let failure = match (self.motion, self.recorded) {
             // The log's failure is why the session was interrupted.
@@ -275,7 +278,11 @@ impl Ended {
             (Err(error), recorded) => Some(motion_failure(&error, recorded.err())),
             (Ok(()), Ok(recorded)) => loss(&recorded),
         };
-        Outcome { failure, reception }
+        Outcome {
+            failure,
+            lost_records,
+            reception,
+        }
     }
 }
 

@@ -69,10 +69,11 @@ pub fn capture(
     interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
     let stdout = target.is_stdout();
-    let made = job::cloud(setup, None, interrupt, target).map(|made| report::Scan {
-        truth: truth(&scan),
-        ..made
-    });
+    let made =
+        job::cloud(setup, None, scan.lost_records, interrupt, target).map(|made| report::Scan {
+            truth: truth(&scan),
+            ..made
+        });
     if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
         older_log.replaced();
     }

@@ -29,6 +29,8 @@ pub struct Making {
     pub accuracy: Accuracy,
     /// What truly happened, where a simulator knows.
     pub truth: Option<Truth>,
+    /// Records that were lost on the way to the log.
+    pub lost_records: u64,
 }
 
 /// Those that were never made.
@@ -37,13 +39,16 @@ pub fn left_over(shared: &Shared) -> Vec<Making> {
     let ids = shared.scans.unfinished().into_iter();
     let making = ids.map(|id| {
         clean(&shared.scans.place(&id));
-        let asked = shared.scans.record(&id).and_then(|record| record.asked);
+        let record = shared.scans.record(&id);
+        let lost_records = record.as_ref().map_or(0, |record| record.lost_records);
+        let asked = record.and_then(|record| record.asked);
         Making {
             accuracy: asked
                 .and_then(|asked| asked.accuracy().ok())
                 .unwrap_or(Accuracy::Best),
             id,
             truth: None,
+            lost_records,
         }
     });
     making.collect()
@@ -129,6 +134,7 @@ fn cloud(shared: &Shared, making: &Making) -> Result<Scan, Failure> {
         accuracy: making.accuracy,
         pace: None,
         truth: making.truth.as_ref(),
+        lost_records: making.lost_records,
         interrupt: &shared.abandon,
     };
     replay::make(&request, target)

@@ -208,18 +208,20 @@ impl Keeper {
         truth: Option<sim::Truth>,
         outcome: job::Outcome,
     ) {
+        let lost_records = outcome.lost_records;
         // First this: whoever sees that the scan is over may begin the next.
         self.shared.set_idle();
         self.shared.change_scan(id, |record| {
             record.state = ScanState::Making;
             record.recording = outcome.failure;
-            record.lost_records = outcome.lost_records;
+            record.lost_records = lost_records;
             record.reception = outcome.reception;
         });
         let making = Making {
             id: id.to_owned(),
             accuracy: setup.accuracy,
             truth,
+            lost_records,
         };
         if self.maker.send(making).is_err() {
             tracing::warn!("the cloud of {id} is made at the next start");

@@ -1,7 +1,7 @@
 //! A scan's files. A cloud in another form is made of the log into a file without a name, and sent from there: never all of it in memory.
 
 use std::fs::File;
-use std::io::{BufWriter, Read, Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,6 +26,7 @@ use crate::cli::TimeOf;
 use crate::commands::replay::{self, Request};
 use crate::daemon::scans::{CLOUD, LOG, THUMBNAIL};
 use crate::failure::{Failure, Kind};
+use crate::output::Buffered;
 use crate::recordings::Source;
 
 /// Bytes that are read at once.
@@ -145,10 +146,11 @@ fn make(
         accuracy,
         pace: None,
         truth: None,
+        lost_records: 0,
         interrupt,
     };
     let mut file = io::files::scratch_in(folder).map_err(cannot)?;
-    let out = BufWriter::with_capacity(PIECE, file.try_clone().map_err(cannot)?);
+    let out = Buffered::new(file.try_clone().map_err(cannot)?);
     let mut sink = format.writer(out, fields);
     let output = PathBuf::from(format!("cloud.{}", format.extension()));
     replay::scan(&request, &mut *sink, &output)?;
