@@ -609,6 +609,7 @@ fn what_accuracy_costs_is_measured_and_shown() {
         "beam-sampling",
         "precision",
         "bvh-quality",
+        "k-function",
         "scan-speed",
     ] {
         assert!(names.contains(&name), "{names:?}");

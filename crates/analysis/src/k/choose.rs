@@ -80,7 +80,7 @@ pub fn choose(points: usize, turning: Option<&Turning>, wish: &Sampling) -> Meth
     best.0
 }
 
-/// Estimates by the method that [`choose`] takes. Where a sample's or a grid's bound turns out above the tolerance, every pair is counted after all.
+/// Estimates by the method that [`choose()`] takes. Where a sample's or a grid's bound turns out above the tolerance, every pair is counted after all.
 ///
 /// # Errors
 /// Those of the methods.

@@ -1,7 +1,7 @@
 //! Every pair, leaf by leaf.
 //!
 //! Blocks of leaves that lie within one bin of each other are counted by multiplication, leaves likewise; what is left is
-//! [`super::leaf_pair`]'s. Threads take blocks from a common list; sums of whole numbers do not know who made them. Left out: trees.
+//! `leaf_pair`'s. Threads take blocks from a common list; sums of whole numbers do not know who made them. Left out: trees.
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -27,7 +27,7 @@ pub fn exact(points: &[DVec3], edges: &Edges, threads: NonZeroUsize) -> Result<C
 /// The same with some registers.
 ///
 /// # Errors
-/// As [`exact`].
+/// As [`exact()`].
 pub fn exact_by(
     registers: Registers,
     points: &[DVec3],

@@ -1,7 +1,7 @@
 //! Pairs by the cells that their points are in: a proof, and no pair looked at.
 //!
 //! The pairs of two cells are between two angles. Those that are within one bin are counted by multiplication; of the others it is known between which edges they are.
-//! So the share up to every edge is between two numbers, for any points. The estimate lies between them. Left out: narrowing it down, which [`super::sampled`] does.
+//! So the share up to every edge is between two numbers, for any points. The estimate lies between them. Left out: narrowing it down, which [`super::sampled()`] does.
 
 use fearless_simd::{Simd, dispatch};
 use glam::DVec3;

@@ -1,8 +1,8 @@
 //! Ripley's K function of directions: how many pairs are how far apart.
 //!
-//! [`exact`] counts every pair, in whole numbers, and says on which side of an edge a pair lies by real numbers, not rounded ones ([`Edges`]).
-//! [`turned`] does the same for scans of turned frames, from one of them. [`sampled`] and [`gridded`] are faster and say how far they may be off:
-//! by a confidence interval, and by a proof. [`choose`] takes the cheapest that is good enough.
+//! [`exact()`] counts every pair, in whole numbers, and says on which side of an edge a pair lies by real numbers, not rounded ones ([`Edges`]).
+//! [`turned()`] does the same for scans of turned frames, from one of them. [`sampled()`] and [`gridded()`] are faster and say how far they may be off:
+//! by a confidence interval, and by a proof. [`choose()`] takes the cheapest that is good enough.
 //! Left out: where the directions come from, pictures, files.
 
 mod cells;

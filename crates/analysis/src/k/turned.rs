@@ -2,7 +2,7 @@
 //!
 //! Points `i` of frame `k` and `j` of frame `k + d` are as far apart as `i` of frame 0 and `j` of frame `d`, but for roundings. So
 //! each pair of frame 0 and any frame stands for as many pairs as there are frames so far apart. Where it is so near to an edge that
-//! roundings could tell them apart, all of them are counted by themselves: the counts are those of the very points, the same as [`super::exact`]'s.
+//! roundings could tell them apart, all of them are counted by themselves: the counts are those of the very points, the same as [`super::exact()`]'s.
 //! Left out: finding out how a scan was turned.
 
 use std::num::NonZeroUsize;
@@ -77,10 +77,10 @@ impl Turning {
     }
 }
 
-/// Counts every pair of a scan of turned frames, bit for bit as [`super::exact`] does.
+/// Counts every pair of a scan of turned frames, bit for bit as [`super::exact()`] does.
 ///
 /// # Errors
-/// [`KError::NotTurned`] and [`KError::Frames`] where the points are not such a scan; as [`super::exact`].
+/// [`KError::NotTurned`] and [`KError::Frames`] where the points are not such a scan; as [`super::exact()`].
 pub fn turned(
     points: &[DVec3],
     turning: &Turning,
@@ -93,7 +93,7 @@ pub fn turned(
 /// The same with some registers.
 ///
 /// # Errors
-/// As [`turned`].
+/// As [`turned()`].
 pub fn turned_by(
     registers: Registers,
     points: &[DVec3],

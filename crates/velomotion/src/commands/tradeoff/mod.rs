@@ -20,7 +20,9 @@ mod workload;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use analysis::tradeoff::{Bench, Effort, Findings, Report, Study, html, json, markdown, svg, text};
+use analysis::tradeoff::{
+    Bench, Effort, Findings, KFunction, Report, Study, html, json, markdown, svg, text,
+};
 use io::files::{FileError, NewFile};
 
 use super::Said;
@@ -40,6 +42,7 @@ fn studies() -> Vec<&'static dyn Study> {
         &beam_sampling::BeamSampling,
         &precision::Precision,
         &bvh_quality::BvhQuality,
+        &KFunction,
         &scan_speed::ScanSpeed,
     ]
 }

@@ -1,0 +1,211 @@
+//! The ways to the K function: what each costs in time, how far its bound says it may be off, and how far it is.
+//!
+//! Left out: scans of any size; what a million points cost is the benchmark `k`'s.
+
+use std::f64::consts::PI;
+use std::hint::black_box;
+use std::num::NonZeroUsize;
+
+use glam::DVec3;
+
+use super::{
+    Bench, Column, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+};
+use crate::k::{
+    Edges, Estimate, KError, Registers, Sampling, Turning, exact_by, gridded, sampled, turned,
+};
+
+/// The study.
+pub struct KFunction;
+
+/// Bins, as in the paper.
+const BINS: usize = 151;
+const ONE: NonZeroUsize = NonZeroUsize::MIN;
+
+/// A scan of turned frames.
+struct Scan {
+    points: Vec<DVec3>,
+    turning: Turning,
+    edges: Edges,
+}
+
+type Way = (
+    &'static str,
+    &'static str,
+    &'static str,
+    fn(&Scan) -> Result<Estimate, KError>,
+);
+
+/// Name, label, group and how.
+const WAYS: [Way; 10] = [
+    ("every pair", "every pair", "exact", |s| {
+        every(s, Registers::Best)
+    }),
+    ("every pair, AVX2", "AVX2", "exact", |s| {
+        every(s, Registers::Avx2)
+    }),
+    ("every pair, SSE 4.2", "SSE 4.2", "exact", |s| {
+        every(s, Registers::Sse4)
+    }),
+    ("by the turning of frames", "turned", "exact", |s| {
+        turned(&s.points, &s.turning, &s.edges, ONE).map(Estimate::from)
+    }),
+    ("sampled, 1e-2", "1e-2", "sampled", |s| sample(s, 1e-2)),
+    ("sampled, 1e-3", "1e-3", "sampled", |s| sample(s, 1e-3)),
+    ("sampled, 1e-4", "1e-4", "sampled", |s| sample(s, 1e-4)),
+    ("gridded, 6 cells a side", "6", "gridded", |s| {
+        gridded(&s.points, &s.edges, 6)
+    }),
+    ("gridded, 16 cells a side", "16", "gridded", |s| {
+        gridded(&s.points, &s.edges, 16)
+    }),
+    ("gridded, 40 cells a side", "40", "gridded", |s| {
+        gridded(&s.points, &s.edges, 40)
+    }),
+];
+
+fn every(scan: &Scan, registers: Registers) -> Result<Estimate, KError> {
+    exact_by(registers, &scan.points, &scan.edges, ONE).map(Estimate::from)
+}
+
+fn sample(scan: &Scan, tolerance: f64) -> Result<Estimate, KError> {
+    let wish = Sampling {
+        tolerance,
+        ..Sampling::default()
+    };
+    sampled(&scan.points, &scan.edges, &wish)
+}
+
+impl Study for KFunction {
+    fn name(&self) -> &'static str {
+        "k-function"
+    }
+
+    fn title(&self) -> &'static str {
+        "Ways to the K function"
+    }
+
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+        let wrong = |error: KError| StudyError::Workload(Box::new(error));
+        let scan = scan(bench.size(2, 8)).map_err(wrong)?;
+        let truth = every(&scan, Registers::Best).map_err(wrong)?;
+        let mut errors = Vec::new();
+        for (.., way) in WAYS {
+            let of = way(&scan).map_err(wrong)?;
+            let off = of
+                .shares
+                .iter()
+                .zip(&truth.shares)
+                .map(|(a, b)| (a - b).abs());
+            errors.push((off.fold(0.0, f64::max), of.bound.largest()));
+        }
+        let plan = bench.plan(2, 7);
+        let points = scan.points.len();
+        (bench.say)(&format!("{points} points, {} rounds", plan.rounds));
+        let mut work: Vec<Work<'_, KError>> = Vec::new();
+        for (.., way) in WAYS {
+            let scan = &scan;
+            work.push(Box::new(move || way(scan).map(|of| drop(black_box(of)))));
+        }
+        let times = in_rounds(bench.clock, plan, &mut work).map_err(wrong)?;
+        let rows = WAYS.into_iter().zip(times).zip(errors);
+        let rows = rows.map(|(((name, label, group, _), time), (error, bound))| Row {
+            name: name.to_owned(),
+            label: label.to_owned(),
+            group,
+            values: vec![
+                Value::Timed(time.times(1e3)),
+                Value::Computed(error),
+                Value::Computed(bound),
+            ],
+        });
+        let column = |key, heading| Column {
+            key,
+            heading,
+            scale: Scale::Log,
+        };
+        let trade = |loss| Trade {
+            cost: 0,
+            loss,
+            joined: true,
+            apart: false,
+        };
+        Ok(Findings {
+            name: self.name(),
+            title: self.title(),
+            about: vec![
+                format!("An RMBL of {points} points: a VLP-16 at 901 azimuths, turned on step by step from 0 to 180 degrees; 151 bins of equal angle; one thread."),
+                "The error is the largest of D, the share of all pairs, against every pair; the bound is what the method says of itself: proven for grids, a confidence interval with a risk of 1 in 1000 for samples.".to_owned(),
+            ],
+            choice: "way",
+            columns: vec![
+                column("time_ms", "ms"),
+                column("error", "error of D"),
+                column("bound", "its bound"),
+            ],
+            rows: rows.collect(),
+            trades: vec![trade(1), trade(2)],
+        })
+    }
+}
+
+/// An RMBL of so many frames (Eq. 1-6 of the paper with d = 0), still within a frame.
+fn scan(frames: usize) -> Result<Scan, KError> {
+    let step_rad = PI / frames as f64;
+    let mut points = Vec::with_capacity(frames * 901 * 16);
+    for frame in 0..frames {
+        let (sin_g, cos_g) = (frame as f64 * step_rad).sin_cos();
+        for firing in 0..901 * 16_u32 {
+            let (azimuth, laser) = (f64::from(firing / 16) * 0.4, f64::from(firing % 16));
+            let (sin_a, cos_a) = azimuth.to_radians().sin_cos();
+            let (sin_w, cos_w) = (laser * 2.0 - 15.0).to_radians().sin_cos();
+            let (x, z) = (cos_w * sin_a, sin_w);
+            let (x, z) = (x * cos_g + z * sin_g, z * cos_g - x * sin_g);
+            points.push(DVec3::new(x, cos_w * cos_a, z));
+        }
+    }
+    Ok(Scan {
+        points,
+        turning: Turning {
+            axis: DVec3::Y,
+            step_rad,
+            frames,
+        },
+        edges: Edges::equal(BINS)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use units::{Host, Stamp};
+
+    use super::super::Effort;
+    use super::*;
+
+    #[test]
+    fn bounds_hold_and_more_time_buys_less_error() {
+        let mut ns = 0;
+        let mut clock = || {
+            ns += 1_000_000_000;
+            Stamp::<Host>::from_nanos(ns)
+        };
+        let mut bench = Bench {
+            clock: &mut clock,
+            effort: Effort::Quick,
+            say: &mut |_| (),
+        };
+        let found = KFunction.measure(&mut bench).unwrap();
+        assert_eq!(found.rows.len(), WAYS.len());
+        for row in &found.rows {
+            let [error, bound] = [1, 2].map(|column| row.values[column].middle());
+            assert!(error <= bound, "{}: {error} {bound}", row.name);
+            assert_eq!(bound == 0.0, row.group == "exact", "{}", row.name);
+        }
+        let bound = |name: &str| {
+            let row = found.rows.iter().find(|row| row.name == name);
+            row.unwrap().values[2].middle()
+        };
+        assert!(bound("sampled, 1e-4") <= 1e-4);
+        assert!(bound("gridded, 40 cells a side") < bound("gridded, 6 cells a side"));
+    }
+}
