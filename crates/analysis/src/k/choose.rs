@@ -17,13 +17,13 @@ pub const EXACT_BELOW: usize = 65_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// [`exact`].
+    /// [`exact()`].
     Exact,
-    /// [`turned`]: exact, too.
+    /// [`turned()`]: exact, too.
     Turned,
-    /// [`sampled`].
+    /// [`sampled()`].
     Sampled,
-    /// [`gridded`].
+    /// [`gridded()`].
     Gridded,
 }
 
