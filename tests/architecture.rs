@@ -18,7 +18,7 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 10] = [
 ];
 
 /// A library, and the crates of the workspace that may use it directly.
-const CONFINED: [(&str, &[&str]); 20] = [
+const CONFINED: [(&str, &[&str]); 21] = [
     ("serialport", &["io"]),
     ("socket2", &["io"]),
     ("nix", &["io"]),
@@ -29,7 +29,7 @@ const CONFINED: [(&str, &[&str]); 20] = [
     ("signal-hook", &["velomotion"]),
     ("axum", &["velomotion"]),
     ("hyper", &["velomotion"]),
-    ("hyper-util", &["velomotion"]),
+    ("hyper-util", &["velomotion", "velomotion-tests"]),
     ("prometheus-client", &["velomotion"]),
     ("sd-notify", &["velomotion"]),
     ("las", &["cloud"]),
@@ -37,6 +37,7 @@ const CONFINED: [(&str, &[&str]); 20] = [
     ("e57", &["cloud", "velomotion"]),
     ("mcap", &["cloud", "velomotion"]),
     ("rayon", &["sim", "analysis"]),
+    ("fantoccini", &["velomotion-tests"]),
     ("gltf", &["sim"]),
     ("ply-rs-bw", &["sim"]),
     ("tobj", &["sim"]),

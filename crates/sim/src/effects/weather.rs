@@ -4,7 +4,8 @@
 //! droplets larger than the wave; in rain it is 1.076 h^0.67 dB/km at h mm/h (Carbonneau and Wisely 1998). Drops send back s / 18.8 per steradian (O'Connor,
 //! Illingworth and Hogan 2004, at 905 nm), which over the 0.9 m that a pulse of 6 ns lights at once is a faint surface of reflectivity
 //! pi * 0.9 m * s / 18.8; how many drops are in it varies exponentially. At most one such return a pulse, at a distance drawn as light comes back from it (1 / R^2), if it is
-//! noticed: above what a target of 10 % at 50 m sends. Left out: multiple scattering, gusts, and drops on the window.
+//! noticed: above what a target of 10 % at 50 m sends. A surface is lost below that, too, once the air has taken 95 % of its light; how faint ones are
+//! lost in clear air is the sensor's business (reflectance). Left out: multiple scattering, gusts, and drops on the window.
 
 use std::sync::Arc;
 
@@ -80,12 +81,15 @@ impl Weather {
 
     /// A surface behind so much weather, if it is noticed.
     fn dimmed(&self, echo: &Echo) -> Option<Return> {
-        let light = light::of_reflectivity(echo.reflectivity) * self.left(echo.range_m);
+        let clear = light::of_reflectivity(echo.reflectivity);
+        let light = clear * self.left(echo.range_m);
         let echo = Echo {
             reflectivity: light::to_reflectivity(light),
             ..*echo
         };
-        noticed(echo, light)
+        // A surface that clear air shows is not lost to a trace of rain, however faint it is.
+        let least = LEAST.min(VISIBLE * clear / (echo.range_m * echo.range_m));
+        noticed(echo, light, least)
     }
 
     /// Drops between here and there, if they are noticed.
@@ -107,13 +111,13 @@ impl Weather {
             normal: glam::DVec3::ZERO,
             specular: 0.0,
         };
-        noticed(echo, light)
+        noticed(echo, light, LEAST)
     }
 }
 
-fn noticed(echo: Echo, light: f64) -> Option<Return> {
+fn noticed(echo: Echo, light: f64, least: f64) -> Option<Return> {
     let strength = light / (echo.range_m * echo.range_m);
-    (strength >= LEAST).then_some(Return { echo, strength })
+    (strength >= least).then_some(Return { echo, strength })
 }
 
 impl Settings for WeatherSettings {

@@ -1,6 +1,7 @@
 //! The thread that makes clouds of logs: after each capture, and at the start of those that were never made.
 
 use std::fs;
+use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Arc;
@@ -8,18 +9,21 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc::Receiver;
 
 use cloud::Fields;
+use io::files::{NewFile, Overwrite};
 use scanner::{Accuracy, TiltSource};
 use sim::Truth;
 
+use super::hub::Level;
 use super::scans::{CLOUD, LOG, ScanState, THUMBNAIL};
 use super::shared::{Counters, Shared};
 use crate::cli::TimeOf;
 use crate::commands::replay::{self, Request};
 use crate::failure::{Failure, Kind};
 use crate::job;
-use crate::output::Target;
+use crate::output::{Target, file_failure};
 use crate::recordings::Source;
 use crate::report::Scan;
+use crate::thumbnail;
 
 /// A log that waits for its cloud.
 pub struct Making {
@@ -98,6 +102,14 @@ fn make(shared: &Shared, making: &Making) {
         return;
     };
     let (cloud, log) = (shared.cloud(id), shared.log(id));
+    if made.is_ok()
+        && let Err(failure) = picture(&cloud, &shared.scans.place(id).join(THUMBNAIL))
+    {
+        // The cloud is what counts.
+        shared
+            .hub
+            .say(Level::Warning, failure.message, failure.help);
+    }
     let concluded = job::conclude(made, record.outcome(), (&cloud, &log));
     let counters = &shared.counters;
     Counters::count(match &concluded {
@@ -121,6 +133,22 @@ fn make(shared: &Shared, making: &Making) {
             record.why = Some(why);
         }
     });
+}
+
+/// Draws the cloud for lists.
+fn picture(cloud: &Path, to: &Path) -> Result<(), Failure> {
+    let cannot = |error: &dyn std::fmt::Display| {
+        Failure::new(
+            Kind::Incomplete,
+            format!("{}: no picture: {error}", to.display()),
+        )
+        .help("the scan is complete without it; see whether the disk is full")
+    };
+    let mut cloud = fs::File::open(cloud).map_err(|error| cannot(&error))?;
+    let png = thumbnail::of_ply(&mut cloud).map_err(|error| cannot(&error))?;
+    let mut file = NewFile::create(to, Overwrite::Replace).map_err(|error| file_failure(&error))?;
+    file.write_all(&png).map_err(|error| cannot(&error))?;
+    file.commit().map_err(|error| file_failure(&error))
 }
 
 fn cloud(shared: &Shared, making: &Making) -> Result<Scan, Failure> {

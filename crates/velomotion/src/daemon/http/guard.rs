@@ -14,6 +14,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
 use super::Api;
+use super::page;
 use super::refusal::Refusal;
 use crate::daemon::limits::{BODY_BYTES, SIGNED_IN, TARGET_BYTES, Waits};
 use crate::daemon::settings::equal;
@@ -172,7 +173,7 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<(), (Refusal, bool)
     let Some(token) = token else {
         return Ok(());
     };
-    if path == "/login" {
+    if page::is_open(path) {
         return Ok(());
     }
     let bearer = text(headers, header::AUTHORIZATION)

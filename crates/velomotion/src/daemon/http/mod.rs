@@ -184,6 +184,29 @@ mod tests {
     }
 
     #[test]
+    fn the_description_has_every_format() {
+        let described: serde_json::Value = serde_json::from_str(page::OPENAPI).unwrap();
+        let parameters = &described["paths"]["/api/v1/scans/{id}/cloud"]["get"]["parameters"];
+        let format = parameters
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|p| p["name"] == "format");
+        let listed = format.unwrap()["schema"]["enum"].as_array().unwrap();
+        let ours: Vec<&str> = cloud::formats::Format::ALL
+            .iter()
+            .map(|f| f.extension())
+            .collect();
+        assert_eq!(
+            listed
+                .iter()
+                .map(|name| name.as_str().unwrap())
+                .collect::<Vec<_>>(),
+            ours
+        );
+    }
+
+    #[test]
     fn every_reference_of_the_description_is_there() {
         let described: serde_json::Value = serde_json::from_str(page::OPENAPI).unwrap();
         let mut references = Vec::new();

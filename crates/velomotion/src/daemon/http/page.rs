@@ -18,16 +18,48 @@ pub const OPENAPI: &str = include_str!("openapi.json");
 /// Path, content type, content.
 type Asset = (&'static str, &'static str, &'static [u8]);
 
-/// What the page is made of. Everything is in the binary: there may be no network.
-const ASSETS: [Asset; 1] = [(
-    "/",
-    "text/html; charset=utf-8",
-    include_bytes!("../../../web/index.html"),
-)];
+const HTML: &str = "text/html; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+
+/// What the page is made of (`web/build` makes it). Everything is in the binary: there may be no network.
+const ASSETS: [Asset; 6] = [
+    ("/", HTML, include_bytes!("../../../web/dist/index.html")),
+    (
+        "/page.js",
+        SCRIPT,
+        include_bytes!("../../../web/dist/page.js"),
+    ),
+    (
+        "/worker.js",
+        SCRIPT,
+        include_bytes!("../../../web/dist/worker.js"),
+    ),
+    (
+        "/page.css",
+        "text/css; charset=utf-8",
+        include_bytes!("../../../web/dist/page.css"),
+    ),
+    (
+        "/icon.svg",
+        "image/svg+xml",
+        include_bytes!("../../../web/dist/icon.svg"),
+    ),
+    (
+        "/LICENSES.txt",
+        "text/plain; charset=utf-8",
+        include_bytes!("../../../web/dist/LICENSES.txt"),
+    ),
+];
 
 /// What a page may load: nothing that does not come from here.
-const POLICY: &str = "default-src 'self'; img-src 'self' data: blob:; worker-src 'self' blob:; connect-src 'self'; \
-                      frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; worker-src 'self'; \
+                      base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+
+/// Whether a path is answered without the token: signing in, and how it looks.
+#[must_use]
+pub fn is_open(path: &str) -> bool {
+    matches!(path, "/login" | "/page.css" | "/icon.svg")
+}
 
 /// `GET /api/v1/openapi.json`.
 pub async fn openapi() -> Response {
@@ -71,8 +103,8 @@ fn html(status: StatusCode, content: &'static str, bytes: &'static [u8]) -> Resp
 
 /// Where a person signs in.
 pub fn sign_in(status: StatusCode) -> Response {
-    let page = include_bytes!("../../../web/sign-in.html");
-    html(status, "text/html; charset=utf-8", page)
+    let page = include_bytes!("../../../web/dist/sign-in.html");
+    html(status, HTML, page)
 }
 
 #[derive(Deserialize)]

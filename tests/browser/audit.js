@@ -1,0 +1,62 @@
+// What a careful eye would complain about: names, sizes of targets, contrast, sideways scrolling. Runs in the page; gives a list of sentences.
+const complaints = [];
+const seen = (element) => {
+  const box = element.getBoundingClientRect();
+  return element.checkVisibility({ visibilityProperty: true }) && box.width > 1 && box.height > 1;
+};
+const called = (element) => `${element.tagName.toLowerCase()}#${element.id || element.className} "${(element.textContent || "").trim().slice(0, 30)}"`;
+const name = (element) => {
+  const by = (element.getAttribute("aria-labelledby") || "").split(/\s+/).filter(Boolean);
+  return element.getAttribute("aria-label") || by.map((id) => document.getElementById(id)?.textContent || "").join(" ").trim()
+    || [...(element.labels || [])].map((label) => label.textContent.trim()).join(" ")
+    || (element.matches("button, summary, a, h1, h2, h3") ? element.textContent.trim() : "") || element.getAttribute("alt") || "";
+};
+for (const element of document.querySelectorAll("button, input, select, summary, canvas[tabindex], section, dialog[open]")) {
+  if (seen(element) && element.type !== "hidden" && name(element) === "") complaints.push(`no name: ${called(element)}`);
+}
+for (const image of document.querySelectorAll("img")) if (!image.hasAttribute("alt")) complaints.push(`no alt: ${image.src}`);
+for (const element of document.querySelectorAll("svg")) {
+  if (element.getAttribute("aria-hidden") !== "true" && element.closest("[aria-hidden=true]") === null) complaints.push("a drawing that is read out");
+}
+if (document.documentElement.scrollWidth > innerWidth) complaints.push(`scrolls sideways: ${document.documentElement.scrollWidth} of ${innerWidth} px`);
+
+if (innerWidth < 900) {
+  for (const element of document.querySelectorAll("button, select, summary, input, label.check")) {
+    if (!seen(element)) continue;
+    const target = element.matches("input[type=checkbox]") ? element.closest("label") : element;
+    const { width, height } = target.getBoundingClientRect();
+    if (width < 44 || height < 44) complaints.push(`a target of ${width.toFixed(0)} by ${height.toFixed(0)} px: ${called(element)}`);
+  }
+}
+
+const rgb = (text) => {
+  const srgb = /^color\(srgb ([\d.]+) ([\d.]+) ([\d.]+)(?: \/ ([\d.]+))?\)$/.exec(text);
+  if (srgb) return [...srgb.slice(1, 4).map((part) => 255 * part), Number(srgb[4] ?? 1)];
+  const parts = text.match(/[\d.]+/g)?.map(Number) ?? [0, 0, 0];
+  return [parts[0], parts[1], parts[2], parts[3] ?? 1];
+};
+const over = (top, below) => [0, 1, 2].map((c) => top[c] * top[3] + below[c] * (1 - top[3])).concat(1);
+const ground = (element) => {
+  const layers = [];
+  for (let at = element; at !== null; at = at.parentElement) {
+    const colour = rgb(getComputedStyle(at).backgroundColor);
+    if (colour[3] > 0) layers.push(colour);
+    if (colour[3] === 1) break;
+  }
+  return layers.reduceRight((below, top) => over(top, below), [255, 255, 255, 1]);
+};
+const luminance = (colour) => {
+  const [r, g, b] = colour.slice(0, 3).map((part) => (part / 255 <= 0.04045 ? part / 255 / 12.92 : ((part / 255 + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+while (texts.nextNode()) {
+  const element = texts.currentNode.parentElement;
+  if (texts.currentNode.data.trim() === "" || !seen(element) || element.closest("[disabled], option, .unseen, .skip, script, noscript, [data-state=recording]")) continue;
+  const below = ground(element);
+  const ink = over(rgb(getComputedStyle(element).color), below);
+  const [a, b] = [luminance(ink), luminance(below)].sort((x, y) => y - x);
+  const ratio = (a + 0.05) / (b + 0.05);
+  if (ratio < 4.5) complaints.push(`contrast ${ratio.toFixed(2)}: ${called(element)}`);
+}
+return complaints;

@@ -1,0 +1,319 @@
+//! Debian's Chromium through its WebDriver: one `chromedriver`, a window a look, and what tests do in one.
+
+use std::collections::BTreeSet;
+use std::future::Future;
+use std::io::{BufRead, BufReader, Cursor};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use fantoccini::{Client, ClientBuilder, Locator};
+use hyper_util::client::legacy::connect::HttpConnector;
+use serde_json::{Value, json};
+
+/// Nothing here takes longer, however busy the machine: what does is broken.
+const PATIENCE: Duration = Duration::from_secs(90);
+const LOOK_AGAIN: Duration = Duration::from_millis(40);
+
+/// A screen: its size, and whether it likes dark pages.
+#[derive(Clone, Copy, Debug)]
+pub struct Screen {
+    /// As in the names of pictures.
+    pub name: &'static str,
+    width: u32,
+    height: u32,
+    ratio: u32,
+    dark: bool,
+}
+
+/// A laptop's screen.
+pub const DESKTOP: Screen = Screen {
+    name: "desktop",
+    width: 1280,
+    height: 800,
+    ratio: 1,
+    dark: true,
+};
+/// A phone held beside the tripod.
+pub const PHONE: Screen = Screen {
+    name: "phone",
+    width: 390,
+    height: 844,
+    ratio: 1,
+    dark: true,
+};
+/// The narrowest that is to work.
+pub const NARROW: Screen = Screen {
+    name: "narrow",
+    width: 360,
+    height: 640,
+    ratio: 1,
+    dark: true,
+};
+
+impl Screen {
+    /// The same in the sun.
+    pub const fn light(self) -> Self {
+        Self {
+            dark: false,
+            ..self
+        }
+    }
+}
+
+/// A `chromedriver` that ends when dropped.
+pub struct Driver {
+    process: Child,
+    url: String,
+}
+
+impl Driver {
+    /// `None`, said aloud, where there is none; with `VELOMOTION_BROWSER=required`, as in CI, that is a failure.
+    pub fn start() -> Option<Self> {
+        let started = Command::new("chromedriver")
+            .arg("--port=0")
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn();
+        let mut process = match started {
+            Ok(process) => process,
+            Err(error) => {
+                let required =
+                    std::env::var_os("VELOMOTION_BROWSER").is_some_and(|v| v == "required");
+                assert!(
+                    !required,
+                    "chromedriver: {error}; apt-get install chromium chromium-driver"
+                );
+                eprintln!(
+                    "skipped: chromedriver: {error}; apt-get install chromium chromium-driver"
+                );
+                return None;
+            }
+        };
+        let mut said = BufReader::new(process.stdout.take().unwrap()).lines();
+        let port = said.find_map(|line| {
+            let line = line.unwrap();
+            let (_, port) = line.split_once("started successfully on port ")?;
+            Some(port.trim_end_matches('.').to_owned())
+        });
+        // Whoever writes into a pipe that nobody reads stands still.
+        std::thread::spawn(move || said.for_each(drop));
+        Some(Self {
+            process,
+            url: format!("http://127.0.0.1:{}", port.unwrap()),
+        })
+    }
+
+    /// Runs a test in a window of its own, which is closed whatever becomes of it.
+    pub fn test<F: Future<Output = ()>>(&self, screen: Screen, act: impl FnOnce(Page) -> F) {
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .unwrap();
+        runtime.block_on(async {
+            let page = self.open(screen).await;
+            let client = page.client.clone();
+            // The future is dropped by a panic; the process of the browser ends with its driver.
+            act(page).await;
+            client.close().await.unwrap();
+        });
+    }
+
+    async fn open(&self, screen: Screen) -> Page {
+        let arguments = [
+            "--headless=new".to_owned(),
+            "--no-sandbox".to_owned(),
+            "--disable-dev-shm-usage".to_owned(),
+            "--hide-scrollbars".to_owned(),
+            "--use-angle=swiftshader".to_owned(),
+            "--enable-unsafe-swiftshader".to_owned(),
+            "--disable-background-networking".to_owned(),
+            "--force-prefers-reduced-motion".to_owned(),
+            format!("--window-size={},{}", screen.width, screen.height),
+            format!(
+                "--blink-settings=preferredColorScheme={}",
+                if screen.dark { 0 } else { 1 }
+            ),
+        ];
+        let phone = screen.width < 600;
+        let mut options = json!({ "args": arguments });
+        options["mobileEmulation"] = json!({ "deviceMetrics": {
+                "width": screen.width, "height": screen.height, "pixelRatio": screen.ratio, "touch": phone, "mobile": phone,
+        }});
+        let capabilities = json!({
+            "browserName": "chrome",
+            "goog:chromeOptions": options,
+            "goog:loggingPrefs": { "browser": "ALL" },
+        });
+        let mut builder = ClientBuilder::new(HttpConnector::new());
+        builder.capabilities(capabilities.as_object().unwrap().clone());
+        let client = builder.connect(&self.url).await.unwrap();
+        Page { client, screen }
+    }
+}
+
+impl Drop for Driver {
+    fn drop(&mut self) {
+        // It ends its browsers.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// A window.
+pub struct Page {
+    client: Client,
+    screen: Screen,
+}
+
+impl Page {
+    /// Goes there.
+    pub async fn goto(&self, url: &str) {
+        self.client.goto(url).await.unwrap();
+    }
+
+    /// What a function body gives in the page.
+    pub async fn run(&self, script: &str) -> Value {
+        self.client.execute(script, vec![]).await.unwrap()
+    }
+
+    /// An answer of the daemon's API, asked by the page itself.
+    pub async fn api(&self, path: &str) -> Value {
+        let script = "const done = arguments[1];
+            fetch('/api/v1/' + arguments[0]).then((answer) => answer.json()).then(done, (error) => done(String(error)));";
+        self.client
+            .execute_async(script, vec![json!(path)])
+            .await
+            .unwrap()
+    }
+
+    /// The text of the first element that fits; empty where none does.
+    pub async fn text(&self, css: &str) -> String {
+        let script = "const at = document.querySelector(arguments[0]); return at && at.checkVisibility() ? at.innerText : '';";
+        let text = self.client.execute(script, vec![json!(css)]).await.unwrap();
+        text.as_str().unwrap_or_default().to_owned()
+    }
+
+    /// Waits until that text fits; gives it.
+    pub async fn until(&self, css: &str, what: &str, fits: impl Fn(&str) -> bool) -> String {
+        let begin = Instant::now();
+        loop {
+            let text = self.text(css).await;
+            if fits(&text) {
+                return text;
+            }
+            if begin.elapsed() > PATIENCE {
+                let place = self.picture("failed").await;
+                eprintln!(
+                    "what happened: {}",
+                    self.run("return document.querySelector('#said')?.innerText")
+                        .await
+                );
+                panic!("{css} is {text:?}, not {what}; {}", place.display());
+            }
+            tokio::time::sleep(LOOK_AGAIN).await;
+        }
+    }
+
+    /// Waits until the text contains `part`.
+    pub async fn until_has(&self, css: &str, part: &str) -> String {
+        self.until(css, part, |text| text.contains(part)).await
+    }
+
+    /// Waits until there is no such element in sight, or an empty one.
+    pub async fn until_gone(&self, css: &str) {
+        self.until(css, "gone", str::is_empty).await;
+    }
+
+    /// Waits until an expression is true in the page.
+    pub async fn until_true(&self, expression: &str) {
+        let begin = Instant::now();
+        while self.run(&format!("return Boolean({expression})")).await != true {
+            assert!(begin.elapsed() < PATIENCE, "never true: {expression}");
+            tokio::time::sleep(LOOK_AGAIN).await;
+        }
+    }
+
+    /// Waits until the cloud in view is whole.
+    pub async fn until_loaded(&self) {
+        self.until_true("document.querySelector('#view-progress').hidden && document.querySelector('#view-note').textContent === ''")
+            .await;
+    }
+
+    /// How many colours the picture of an element has: one in which nothing is drawn has few.
+    pub async fn colours_of(&self, css: &str) -> usize {
+        let element = self.client.find(Locator::Css(css)).await.unwrap();
+        let picture = element.screenshot().await.unwrap();
+        let mut reader = png::Decoder::new(Cursor::new(picture)).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut bytes).unwrap();
+        let pixels = bytes.chunks(info.color_type.samples());
+        pixels.collect::<BTreeSet<_>>().len()
+    }
+
+    /// Presses it, as a mouse or a finger does: it must be in reach.
+    pub async fn click(&self, css: &str) {
+        // The driver scrolls no farther than to the edge, where the buttons may be.
+        self.run(&format!(
+            "document.querySelector({css:?}).scrollIntoView({{ block: 'center' }})"
+        ))
+        .await;
+        let element = self.client.find(Locator::Css(css)).await.unwrap();
+        element.click().await.unwrap();
+    }
+
+    /// Types into a field that may hold something.
+    pub async fn fill(&self, css: &str, text: &str) {
+        let element = self.client.find(Locator::Css(css)).await.unwrap();
+        element.clear().await.unwrap();
+        element.send_keys(text).await.unwrap();
+    }
+
+    /// Presses keys, wherever the focus is.
+    pub async fn keys(&self, keys: &str) {
+        let element = self.client.active_element().await.unwrap();
+        element.send_keys(keys).await.unwrap();
+    }
+
+    /// Sets a list to a value.
+    pub async fn choose(&self, css: &str, value: &str) {
+        let element = self.client.find(Locator::Css(css)).await.unwrap();
+        element.select_by_value(value).await.unwrap();
+    }
+
+    /// As if the cookies had run out.
+    pub async fn forget_cookies(&self) {
+        self.client.delete_all_cookies().await.unwrap();
+    }
+
+    /// Fails where `audit.js` has something to complain of.
+    pub async fn audit(&self, what: &str) {
+        let complaints = self.run(include_str!("audit.js")).await;
+        assert_eq!(complaints, json!([]), "{what} on {:?}", self.screen);
+    }
+
+    /// A processor that draws in place of a graphics card may be late for the driver's own patience.
+    async fn screenshot(&self) -> Vec<u8> {
+        let begin = Instant::now();
+        loop {
+            match self.client.screenshot().await {
+                Ok(picture) => return picture,
+                Err(error) => assert!(begin.elapsed() < PATIENCE, "{error}"),
+            }
+        }
+    }
+
+    /// A picture of the window, in the folder `VELOMOTION_SCREENSHOTS` or a temporary one.
+    pub async fn picture(&self, name: &str) -> PathBuf {
+        let folder = std::env::var_os("VELOMOTION_SCREENSHOTS").map_or_else(
+            || std::env::temp_dir().join("velomotion-screenshots"),
+            PathBuf::from,
+        );
+        std::fs::create_dir_all(&folder).unwrap();
+        let theme = if self.screen.dark { "dark" } else { "light" };
+        let path = folder.join(format!("{}-{theme}-{name}.png", self.screen.name));
+        std::fs::write(&path, self.screenshot().await).unwrap();
+        path
+    }
+}

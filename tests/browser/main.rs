@@ -1,0 +1,372 @@
+//! The daemon's page in Debian's Chromium, against the real daemon and software devices: scans made and counted, faults read, the connection lost.
+//!
+//! Needs `chromedriver` and `chromium`; says so and does nothing where they are missing, fails with `VELOMOTION_BROWSER=required`.
+//! `VELOMOTION_SCREENSHOTS=FOLDER` keeps the pictures; those of docs/src/page are made so.
+
+mod bench;
+mod browser;
+
+use std::net::SocketAddr;
+use std::path::Path;
+
+use serde_json::Value;
+use tokio::task::spawn_blocking;
+use velomotion::config::Config;
+use velomotion::daemon::settings::Settings;
+use velomotion::daemon::{Daemon, Options};
+
+use bench::Bench;
+use browser::{DESKTOP, Driver, NARROW, PHONE, Page};
+
+/// A daemon with its own folder; the port is 0 for one that is free.
+fn daemon(config: Config, device: Option<&str>, folder: &Path, port: u16) -> Daemon {
+    let settings = Settings {
+        scans: Some(folder.join("scans")),
+        // The machine's disk is not what is tested here.
+        reserve_bytes: 0,
+        ..config.daemon.clone()
+    };
+    Daemon::start(Options {
+        config: Config {
+            daemon: settings,
+            ..config
+        },
+        device: device.map(str::to_owned),
+        listen: Some(SocketAddr::from(([127, 0, 0, 1], port))),
+        runtime: Some(folder.to_owned()),
+        ..Options::default()
+    })
+    .unwrap()
+}
+
+fn simulator(folder: &Path) -> Daemon {
+    daemon(Config::default(), Some("sim"), folder, 0)
+}
+
+fn url(daemon: &Daemon) -> String {
+    format!("http://{}/", daemon.address())
+}
+
+/// The page is open and both devices are ready.
+async fn ready(page: &Page, url: &str) {
+    page.goto(url).await;
+    page.until_has("#chip-link", "Connected").await;
+    page.until_has("#chip-drive", "Drive ready").await;
+    page.until_has("#chip-lidar", "Lidar ready").await;
+}
+
+/// Starts a scan of this name through the form.
+async fn start(page: &Page, name: &str, speed: &str, to: &str) {
+    page.fill("#speed", speed).await;
+    page.fill("#to", to).await;
+    page.run("document.querySelector('#sweep details').open = true")
+        .await;
+    page.fill("#name", name).await;
+    page.run("document.querySelector('#sweep details').open = false")
+        .await;
+    page.click("#start").await;
+}
+
+/// The scan of this name, by the API.
+async fn scan(page: &Page, name: &str) -> Value {
+    let scans = page.api("scans").await;
+    let scans = scans.as_array().or(scans["scans"].as_array()).unwrap();
+    let id = scans.iter().find(|scan| scan["name"] == name).unwrap()["id"].clone();
+    page.api(&format!("scans/{}", id.as_str().unwrap())).await
+}
+
+/// The number before " points", as the page writes it.
+fn points(text: &str) -> u64 {
+    let digits: String = text.chars().filter(char::is_ascii_digit).collect();
+    digits.parse().unwrap_or(0)
+}
+
+/// Remembers every number of points that was shown while the cloud was live.
+const WATCH: &str = "
+    window.live = [];
+    new MutationObserver(() => {
+      if (document.querySelector('#view-title').textContent.startsWith('Live')) window.live.push(document.querySelector('#view-points').textContent);
+    }).observe(document.querySelector('#view-points'), { childList: true, characterData: true, subtree: true });";
+
+#[test]
+fn a_scan_is_started_seen_and_counted() {
+    let Some(driver) = Driver::start() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    driver.test(DESKTOP, async |page| {
+        ready(&page, &url).await;
+        page.until_has("#simulated", "SIMULATED").await;
+        page.until_has("#view-empty", "No scan in view").await;
+        page.fill("#to", "-30").await;
+        let plan = page.until_has("#plan", "vertical resolution").await;
+        assert!(
+            plan.contains("5.63\u{b0}") && plan.contains("1125 rpm"),
+            "{plan}"
+        );
+
+        page.run(WATCH).await;
+        start(&page, "hall", "56.25", "-30").await;
+        page.until_has("#view-title", "Live: hall").await;
+        page.until_has(".scan .badge[data-state]", "whole").await;
+        // The cloud takes the place of the live one.
+        page.until("#view-title", "hall", |text| text == "hall")
+            .await;
+        page.until_loaded().await;
+        let said = points(&page.text("#view-points").await);
+
+        let made = scan(&page, "hall").await;
+        assert_eq!(made["state"], "whole", "{made}");
+        assert_eq!(Some(said), made["report"]["points"].as_u64());
+        assert!((100_000..200_000).contains(&said), "{said}");
+        let live = page.run("return window.live").await;
+        let most = live
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|text| points(text.as_str().unwrap()))
+            .max();
+        assert!(most.unwrap_or(0) > said / 2, "{most:?} of {said} live");
+        let residual = page
+            .until_has("#last-facts", "Clock, packets above it")
+            .await;
+        assert!(
+            residual.contains("Angle by") && residual.contains("\u{b5}s"),
+            "{residual}"
+        );
+        page.until_true("document.querySelector('.scan img.thumb')?.naturalWidth === 324")
+            .await;
+        page.run(TO_THE_TOP).await;
+        page.picture("idle").await;
+        let colours = page.colours_of("#canvas").await;
+        assert!(colours > 200, "{colours} colours: nothing is drawn");
+        page.audit("a scan in view").await;
+    });
+    for screen in [DESKTOP.light(), PHONE, PHONE.light(), NARROW] {
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            page.until_has("#view-points", " points").await;
+            page.until_loaded().await;
+            page.picture("idle").await;
+            page.audit("a scan in view").await;
+            for field in ["intensity", "ring", "time", "sd"] {
+                page.choose("#field", field).await;
+                page.until_loaded().await;
+                let ends = page.text(".legend-ends").await;
+                assert!(ends.chars().any(|c| c.is_ascii_digit()), "{field}: {ends}");
+            }
+        });
+    }
+    daemon.stop(|| true).unwrap();
+}
+
+#[test]
+fn a_sweep_is_watched_and_stopped_by_key_and_by_finger() {
+    let Some(driver) = Driver::start() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    for (screen, name) in [
+        (DESKTOP, "by-key"),
+        (PHONE, "by-finger"),
+        (PHONE.light(), "by-finger-in-the-sun"),
+    ] {
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            // Slow enough that nothing here can come after its end.
+            start(&page, name, "1", "-45").await;
+            page.until_has("#doing", "Sweeping").await;
+            page.until("#view-points", "a growing cloud", |text| {
+                points(text) > 20_000
+            })
+            .await;
+            // Where the processor draws, a picture takes seconds, and each lets the cloud grow by 300,000 points.
+            if std::env::var_os("VELOMOTION_SCREENSHOTS").is_some() {
+                page.run(TO_THE_TOP).await;
+                page.picture("live").await;
+            }
+            match name {
+                "by-key" => page.keys(ESCAPE).await,
+                _ => page.click("#stop").await,
+            }
+            page.until_has(".scan .badge[data-state]", "partial").await;
+            let stopped = scan(&page, name).await;
+            assert_eq!(stopped["why"]["kind"], "interrupted", "{stopped}");
+            let swept = stopped["report"]["sweeps"][0]["to_deg"].as_f64().unwrap();
+            assert!((-44.0..-1.0).contains(&swept), "{stopped}");
+            let tilt = page.api("tilt").await;
+            assert_eq!(tilt["velocity_rpm"], 0, "{tilt}");
+        });
+    }
+    daemon.stop(|| true).unwrap();
+}
+
+const TO_THE_TOP: &str = "scrollTo(0, 0); document.querySelector('.panels').scrollTo(0, 0); document.activeElement.blur();";
+
+/// As WebDriver has it.
+const ESCAPE: &str = "\u{e00c}";
+
+#[test]
+fn a_fault_is_read_with_what_to_do_and_cleared() {
+    let Some(driver) = Driver::start() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let bench = Bench::start();
+    let daemon = daemon(bench.config.clone(), None, folder.path(), 0);
+    let url = url(&daemon);
+    driver.test(DESKTOP, async |page| {
+        ready(&page, &url).await;
+        assert_eq!(page.text("#simulated").await, "");
+        start(&page, "held", "10", "-45").await;
+        page.until("#view-points", "a growing cloud", |text| {
+            points(text) > 60_000
+        })
+        .await;
+        bench.hold(true);
+        let fault = page
+            .until_has(".problem[data-device=drive]", "What to do")
+            .await;
+        assert!(
+            fault.contains("Following Error") && fault.contains("moves freely"),
+            "{fault}"
+        );
+        page.until_has(".scan .badge[data-state]", "partial").await;
+        page.until("#view-title", "held", |text| text == "held")
+            .await;
+        page.until_loaded().await;
+        page.run(TO_THE_TOP).await;
+        page.picture("fault").await;
+        page.audit("a fault").await;
+        assert_eq!(page.text("#chip-drive").await, "Drive fault");
+        let start_is_off = page
+            .run("return document.querySelector('#start').disabled")
+            .await;
+        assert_eq!(start_is_off, true);
+    });
+    driver.test(PHONE.light(), async |page| {
+        page.goto(&url).await;
+        page.until_has(".problem[data-device=drive]", "What to do")
+            .await;
+        page.until_has("#view-points", " points").await;
+        page.until_loaded().await;
+        page.run(TO_THE_TOP).await;
+        page.picture("fault").await;
+        page.audit("a fault").await;
+        bench.hold(false);
+        page.click("#clear").await;
+        page.until_gone(".problem").await;
+        page.until_has("#chip-drive", "Drive ready").await;
+        // The cable.
+        drop(bench);
+        let gone = page
+            .until_has(".problem[data-device=drive]", "What to do")
+            .await;
+        assert!(gone.contains("Drive absent"), "{gone}");
+        page.until_has("#chip-lidar", "Lidar absent").await;
+    });
+    daemon.stop(|| true).unwrap();
+}
+
+#[test]
+fn a_lost_connection_is_said_and_comes_back() {
+    let Some(driver) = Driver::start() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let first = simulator(folder.path());
+    let (url, port) = (url(&first), first.address().port());
+    driver.test(PHONE, async |page| {
+        ready(&page, &url).await;
+        // It waits for its threads.
+        spawn_blocking(move || first.stop(|| true).unwrap())
+            .await
+            .unwrap();
+        page.until_has("#lost", "Connection to the daemon lost")
+            .await;
+        assert_eq!(page.text("#chip-link").await, "Offline");
+        page.picture("lost").await;
+        page.audit("no connection").await;
+        let place = folder.path().to_owned();
+        let second = spawn_blocking(move || daemon(Config::default(), Some("sim"), &place, port));
+        let second = second.await.unwrap();
+        page.until_gone("#lost").await;
+        page.until_has("#chip-drive", "Drive ready").await;
+        spawn_blocking(move || second.stop(|| true).unwrap())
+            .await
+            .unwrap();
+    });
+}
+
+#[test]
+fn a_token_is_asked_for_once() {
+    let Some(driver) = Driver::start() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let config = Config {
+        daemon: toml::from_str("token = 'a-token-of-this-test'").unwrap(),
+        ..Config::default()
+    };
+    let daemon = daemon(config, Some("sim"), folder.path(), 0);
+    let url = url(&daemon);
+    driver.test(PHONE.light(), async |page| {
+        page.goto(&url).await;
+        page.until_has("h1", "velomotion").await;
+        assert_eq!(page.text("#stop").await, "");
+        page.audit("signing in").await;
+        page.picture("sign-in").await;
+        page.fill("[name=token]", "not-the-token-of-this-test")
+            .await;
+        page.click("button").await;
+        page.until_has("p", "was not right").await;
+        page.fill("[name=token]", "a-token-of-this-test").await;
+        page.click("button").await;
+        page.until_has("#chip-link", "Connected").await;
+        // The cookie is gone: the page itself asks then.
+        page.run("return fetch('/api/v1/status').then((answer) => answer.status)")
+            .await;
+        page.forget_cookies().await;
+        page.goto(&url).await;
+        page.until_has("button", "Sign in").await;
+    });
+    daemon.stop(|| true).unwrap();
+}
+
+#[test]
+fn a_scan_is_deleted_only_when_that_is_meant() {
+    let Some(driver) = Driver::start() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    driver.test(PHONE, async |page| {
+        ready(&page, &url).await;
+        start(&page, "short", "56.25", "-5").await;
+        page.until_has(".scan .badge[data-state]", "whole").await;
+        page.click(".scan [data-role=delete]").await;
+        page.until_has("#delete-what", "short").await;
+        page.audit("a question").await;
+        page.click("#delete [value=keep]").await;
+        page.until_gone("#delete").await;
+        page.until_has(".scan", "short").await;
+        page.click(".scan [data-role=delete]").await;
+        page.click("#delete .danger").await;
+        page.until_gone(".scan").await;
+        page.until_has("#view-empty", "No scan in view").await;
+        let left = page.api("scans").await;
+        assert!(
+            left.as_array()
+                .or(left["scans"].as_array())
+                .unwrap()
+                .is_empty(),
+            "{left}"
+        );
+    });
+    daemon.stop(|| true).unwrap();
+}
