@@ -155,6 +155,24 @@ pub fn two_files(log: &Path, cloud: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Refuses to write over what is read.
+///
+/// # Errors
+/// [`Kind::Usage`].
+pub fn not_over(input: &Path, output: &Path) -> Result<(), Failure> {
+    if same_file(input, output) {
+        return Err(Failure::new(
+            Kind::Usage,
+            format!(
+                "{} would be written over what it is made of",
+                output.display()
+            ),
+        )
+        .help("give it another name"));
+    }
+    Ok(())
+}
+
 /// Whether two names are one file, there or not.
 fn same_file(a: &Path, b: &Path) -> bool {
     let place = |path: &Path| {

@@ -1,5 +1,5 @@
 //! pcapng blocks as bytes (draft-ietf-opsawg-pcapng), little-endian, appended to a buffer. Only the three block types
-//! that a log has.
+//! that a log has. And the older pcap (draft-ietf-opsawg-pcap), with microseconds, which everything reads.
 
 use byteorder::{ByteOrder, LittleEndian};
 use protocol::record::Direction;
@@ -82,6 +82,30 @@ pub(super) fn packet(
         option(out, EPB_FLAGS, &flags.to_le_bytes());
         option(out, OPT_END, &[]);
     });
+}
+
+/// The head of a plain pcap file of Ethernet packets.
+pub(super) fn pcap_header(out: &mut Vec<u8>) {
+    put_u32(out, 0xA1B2_C3D4);
+    put_u16(out, 2); // version 2.4
+    put_u16(out, 4);
+    put_u32(out, 0);
+    put_u32(out, 0);
+    put_u32(out, 0xFFFF); // longest packet
+    put_u32(out, LINKTYPE_ETHERNET.into());
+}
+
+/// A packet of a plain pcap file.
+pub(super) fn pcap_record(out: &mut Vec<u8>, time_ns: u64, parts: [&[u8]; 2]) {
+    let length = parts.iter().map(|part| part.len()).sum::<usize>() as u32;
+    // Seconds are 32 bits there: until 2106.
+    put_u32(out, (time_ns / 1_000_000_000) as u32);
+    put_u32(out, (time_ns % 1_000_000_000 / 1_000) as u32);
+    put_u32(out, length);
+    put_u32(out, length);
+    for part in parts {
+        out.extend_from_slice(part);
+    }
 }
 
 /// Type, length, body, length.

@@ -105,6 +105,7 @@ pub struct LogCounts {
 #[derive(Debug)]
 pub struct LogWriter<W> {
     out: W,
+    form: Form,
     buffer: Vec<u8>,
     drives: Vec<DriveLink>,
     counts: LogCounts,
@@ -112,7 +113,27 @@ pub struct LogWriter<W> {
     failed: Option<io::Error>,
 }
 
+/// How records are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    /// pcapng with everything in it.
+    Log,
+    /// Plain pcap, the lidar's datagrams alone: what programs of libpcap read, which take one type of link a file.
+    Pcap,
+}
+
 impl LogWriter<File> {
+    /// Makes a plain pcap file, for programs that read nothing else. It holds the lidar's datagrams; frames of the drive are left out.
+    ///
+    /// # Errors
+    /// [`LogError::Exists`], [`LogError::Create`], [`LogError::Write`].
+    pub fn create_pcap(path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Self, LogError> {
+        let mut writer = Self::empty(new_file(path.as_ref(), overwrite)?, Form::Pcap);
+        block::pcap_header(&mut writer.buffer);
+        writer.flush()?;
+        Ok(writer)
+    }
+
     /// Makes a log file and writes its head.
     ///
     /// # Errors
@@ -125,23 +146,26 @@ impl LogWriter<File> {
         let path = path.as_ref();
         // Before an older log is emptied for it.
         check_metadata(config)?;
-        let mut options = OpenOptions::new();
-        options.write(true);
-        match overwrite {
-            Overwrite::Refuse => options.create_new(true),
-            Overwrite::Replace => options.create(true).truncate(true),
-        };
-        let file = options.open(path).map_err(|source| match source.kind() {
-            io::ErrorKind::AlreadyExists => LogError::Exists {
-                path: path.to_owned(),
-            },
-            _ => LogError::Create {
-                path: path.to_owned(),
-                source,
-            },
-        })?;
-        Self::new(file, config)
+        Self::new(new_file(path, overwrite)?, config)
     }
+}
+
+fn new_file(path: &Path, overwrite: Overwrite) -> Result<File, LogError> {
+    let mut options = OpenOptions::new();
+    options.write(true);
+    match overwrite {
+        Overwrite::Refuse => options.create_new(true),
+        Overwrite::Replace => options.create(true).truncate(true),
+    };
+    options.open(path).map_err(|source| match source.kind() {
+        io::ErrorKind::AlreadyExists => LogError::Exists {
+            path: path.to_owned(),
+        },
+        _ => LogError::Create {
+            path: path.to_owned(),
+            source,
+        },
+    })
 }
 
 impl<W: Write> LogWriter<W> {
@@ -151,13 +175,7 @@ impl<W: Write> LogWriter<W> {
     /// [`LogError::Metadata`], [`LogError::Write`].
     pub fn new(out: W, config: &LogConfig) -> Result<Self, LogError> {
         check_metadata(config)?;
-        let mut writer = Self {
-            out,
-            buffer: Vec::with_capacity(BUFFER_LEN + 4096),
-            drives: Vec::new(),
-            counts: LogCounts::default(),
-            failed: None,
-        };
+        let mut writer = Self::empty(out, Form::Log);
         block::section_header(&mut writer.buffer, &config.metadata);
         block::interface(
             &mut writer.buffer,
@@ -170,6 +188,17 @@ impl<W: Write> LogWriter<W> {
         }
         writer.flush()?;
         Ok(writer)
+    }
+
+    fn empty(out: W, form: Form) -> Self {
+        Self {
+            out,
+            form,
+            buffer: Vec::with_capacity(BUFFER_LEN + 4096),
+            drives: Vec::new(),
+            counts: LogCounts::default(),
+            failed: None,
+        }
     }
 
     /// Appends a record.
@@ -194,9 +223,15 @@ impl<W: Write> LogWriter<W> {
                         got: payload.len(),
                     })?;
                 let parts = [&headers[..], payload];
-                block::packet(&mut self.buffer, 0, time_ns, Direction::FromDevice, parts);
+                match self.form {
+                    Form::Log => {
+                        block::packet(&mut self.buffer, 0, time_ns, Direction::FromDevice, parts);
+                    }
+                    Form::Pcap => block::pcap_record(&mut self.buffer, time_ns, parts),
+                }
                 self.counts.lidar += 1;
             }
+            Wire::Drive { .. } if self.form == Form::Pcap => {}
             Wire::Drive {
                 link,
                 direction,

@@ -236,6 +236,22 @@ mod tests {
         assert!(wall == 1.0 && fog_share == 0.0);
     }
 
+    /// A wall that an ideal sensor sees, though a real one might not, is not lost to a trace of rain; nor more and more suddenly than the air thickens.
+    #[test]
+    fn a_faint_surface_goes_with_the_air_and_not_at_once() {
+        let share = |rain_mm_h| {
+            let settings = WeatherSettings {
+                visibility_m: None,
+                rain_mm_h: Some(rain_mm_h),
+            };
+            seen(settings, 99.0, 30).0
+        };
+        assert_eq!(share(0.001), 1.0);
+        assert!(share(5.0) > 0.99);
+        // 1.076 * 500^0.67 dB/km: 13.7 dB there and back.
+        assert_eq!(share(500.0), 0.0);
+    }
+
     /// What is left of a target's light, there and back, against the law in its own words: 5 % one way at the visibility (Koschmieder's 3 / V), and
     /// decibels in a kilometre of rain; of both the sum.
     #[test]

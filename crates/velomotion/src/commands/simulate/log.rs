@@ -29,6 +29,9 @@ const NODE: u8 = 1;
 /// Points handed on at a time.
 const BATCH: usize = 16_384;
 
+/// Why a simulation was cut short, and after how long in the scene.
+pub(super) type Cut = (Failure, Span);
+
 /// Writes the log, and the truth where it is wanted.
 pub(super) struct Log<'a> {
     writer: LogWriter<File>,
@@ -40,6 +43,7 @@ pub(super) struct Log<'a> {
     interrupt: &'a AtomicBool,
     progress: Progress,
     began: Stamp<Host>,
+    last: Stamp<Host>,
     failure: Option<Failure>,
 }
 
@@ -63,6 +67,7 @@ impl<'a> Log<'a> {
             interrupt,
             progress,
             began: simulation.start,
+            last: simulation.start,
             failure: None,
         }
     }
@@ -107,8 +112,8 @@ impl<'a> Log<'a> {
         }
     }
 
-    /// Completes the files; what was cut short comes beside the name of the truth.
-    pub fn finish(mut self, path: &Path) -> Result<(Option<PathBuf>, Option<Failure>), Failure> {
+    /// Completes the files. Beside the name of the truth comes why it was cut short, if it was, and after how long in the scene.
+    pub fn finish(mut self, path: &Path) -> Result<(Option<PathBuf>, Option<Cut>), Failure> {
         self.progress.end_run();
         let _ = self.flush();
         self.writer
@@ -122,7 +127,8 @@ impl<'a> Log<'a> {
             }
             None => None,
         };
-        Ok((name, self.failure))
+        let after = self.last - self.began;
+        Ok((name, self.failure.map(|failure| (failure, after))))
     }
 }
 
@@ -131,6 +137,7 @@ impl Out for Log<'_> {
         match *event {
             Event::Datagram { at, port, payload } => {
                 self.progress.ran((at - self.began).as_secs_f64());
+                self.last = at;
                 if self.interrupt.load(Ordering::Relaxed) {
                     return self.fail(
                         Failure::new(Kind::Interrupted, "stopped by the user while simulating")

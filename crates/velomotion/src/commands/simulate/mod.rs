@@ -116,7 +116,9 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> 
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from(stem(&name)).with_extension("pcapng"));
+    output::not_over(&arguments.scene, &log)?;
     if let Some(truth) = &arguments.truth {
+        output::not_over(&arguments.scene, truth)?;
         output::two_files(&log, truth)?;
         output::one_for_stdout(Some(truth), common.json)?;
     }
@@ -180,12 +182,22 @@ pub fn read(name: &str, text: &str, seed: Option<u64>, clock: Stopwatch) -> Resu
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     let mut meshes = |file: &str| {
         let path = folder.join(file);
+        // A pipe that nobody writes to would never end.
+        if path.metadata().is_ok_and(|there| !there.is_file()) {
+            return Err(format!("{} is no file", path.display()));
+        }
         std::fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))
     };
     Scene::parse_with(text, seed, clock, &mut meshes).map_err(|error| {
         Failure::new(Kind::BadInput, format!("scene {name}, {error}"))
             .help("correct the scene file there; docs: Scenes")
     })
+}
+
+/// Whether a log is to be a plain pcap, which holds the lidar's datagrams alone.
+fn is_pcap(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default();
+    extension.eq_ignore_ascii_case("pcap")
 }
 
 fn stem(name: &str) -> &str {
@@ -218,8 +230,12 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
         metadata: toml::to_string(&config).map_err(|error| cannot_write(path, &error))?,
         drive: gearing.map(|_| DriveLink::Usb),
     };
-    let writer = LogWriter::create(path, &head, output::overwrite(force))
-        .map_err(|error| log_failure(path, &error))?;
+    let overwrite = output::overwrite(force);
+    let writer = match is_pcap(path) {
+        true => LogWriter::create_pcap(path, overwrite),
+        false => LogWriter::create(path, &head, overwrite),
+    };
+    let writer = writer.map_err(|error| log_failure(path, &error))?;
     if let Some(truth) = &mut truth {
         let placed = TiltTrack {
             mount: Some(Metres(config.mount.d_m)),
@@ -258,7 +274,7 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
         }
     };
     let summary = summary.map_err(|error| cannot_simulate(&name, &error))?;
-    let (truth, failure) = out.finish(path)?;
+    let (truth, cut) = out.finish(path)?;
     let took = began.elapsed();
     let explanation = explain.then(|| {
         let lines = scene.effects.lines.iter();
@@ -276,7 +292,17 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
         explanation,
         ..Report::new(name, &summary, took)
     };
-    Ok((report, failure))
+    let Some((failure, after)) = cut else {
+        return Ok((report, None));
+    };
+    // What was not simulated was not simulated fast.
+    let duration_s = after.as_secs_f64();
+    let report = Report {
+        duration_s,
+        times_real_time: duration_s / report.took_s.max(f64::MIN_POSITIVE),
+        ..report
+    };
+    Ok((report, Some(failure)))
 }
 
 impl Report {
