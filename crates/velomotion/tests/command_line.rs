@@ -721,6 +721,16 @@ fn simulate_makes_a_log_that_replay_reads_and_says_what_is_wrong_where() {
     let rows = truth.lines().filter(|line| !line.starts_with('#')).count() - 1;
     assert_eq!(said["returned"].as_u64(), Some(rows as u64));
     place.fails("simulate stand.toml", 2, &["exists"]);
+    let over = "simulate stand.toml -o stand.toml --force";
+    place.fails(over, 2, &["stand.toml", "made of"]);
+    // The lidar alone, for programs that read one type of link a file.
+    let output = place.run("simulate rig -o rig.pcap --json");
+    let (made, told) = (json(&output), json(&place.run("info rig.pcap --json")));
+    assert_eq!(told["packets"]["data"], made["packets"]);
+    assert_eq!(
+        (&told["packets"]["other"], &told["returns"]),
+        (&0.into(), &made["returns"])
+    );
     let asks = format!("{scene}[effects.tilt_limits]\nfrom_deg = -45.0\nto_deg = 45.0\n");
     std::fs::write(place.path("asks.toml"), asks).unwrap();
     let output = place.run("simulate asks.toml --explain --json");

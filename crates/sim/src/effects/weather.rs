@@ -247,7 +247,9 @@ mod tests {
             seen(settings, 99.0, 30).0
         };
         assert_eq!(share(0.001), 1.0);
-        assert!(share(5.0) > 0.99);
+        // Drops that outshine it now and then.
+        let some = share(5.0);
+        assert!(some > 0.5, "{some}");
         // 1.076 * 500^0.67 dB/km: 13.7 dB there and back.
         assert_eq!(share(500.0), 0.0);
     }
