@@ -4,6 +4,7 @@
 
 pub mod density;
 pub mod device;
+pub mod figures;
 pub mod k;
 pub mod tradeoff;
 pub mod truth;

@@ -122,7 +122,14 @@ impl Counts {
     #[must_use]
     pub fn histogram(&self, classes: usize) -> Vec<Class> {
         let most = self.0.iter().copied().max().unwrap_or(0);
-        let width = (most + 1).div_ceil(classes.max(1) as u64).max(1);
+        self.histogram_by((most + 1).div_ceil(classes.max(1) as u64))
+    }
+
+    /// A histogram of classes of this width (at least 1) from 0 to the fullest bin.
+    #[must_use]
+    pub fn histogram_by(&self, width: u64) -> Vec<Class> {
+        let most = self.0.iter().copied().max().unwrap_or(0);
+        let width = width.max(1);
         let number = most / width + 1;
         let mut histogram: Vec<Class> = (0..number)
             .map(|class| Class {

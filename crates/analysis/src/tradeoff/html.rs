@@ -3,7 +3,7 @@
 use super::svg::escaped;
 use super::{Findings, Report, number, svg};
 
-const STYLE: &str = "\
+pub(crate) const STYLE: &str = "\
 :root{color-scheme:light dark;--ink:#1f2328;--soft:#57606a;--page:#f3f4f6;--card:#fff;--line:#d8dee4;--mark:#0b62b8;--tint:#eef5fc}\
 @media (prefers-color-scheme:dark){:root{--ink:#e6e8eb;--soft:#a0a8b2;--page:#101216;--card:#181b20;--line:#333941;--mark:#6cb4ff;--tint:#1b2733}}\
 *{box-sizing:border-box}\

@@ -46,7 +46,7 @@ impl Box2 {
 }
 
 /// Width of a text of 11 pixels, about.
-pub(super) fn width(text: &str) -> f64 {
+pub(crate) fn width(text: &str) -> f64 {
     6.1 * text.chars().count() as f64
 }
 

@@ -7,7 +7,7 @@ const COLOURS: usize = 6;
 pub(super) const HALF: f64 = 4.5;
 
 /// The class of a group's colour.
-pub(super) fn colour(group: usize) -> String {
+pub(crate) fn colour(group: usize) -> String {
     format!("tv-s{}", group % COLOURS)
 }
 

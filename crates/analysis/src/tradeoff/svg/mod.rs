@@ -4,10 +4,10 @@
 //! Plain SVG with a style sheet that the reader's colour scheme chooses from; no script, no font, nothing from outside. Left out:
 //! any kind of plot that no study needs.
 
-mod labels;
-mod marks;
+pub(crate) mod labels;
+pub(crate) mod marks;
 mod panel;
-mod scale;
+pub(crate) mod scale;
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ const TITLE: f64 = 30.0;
 const LEGEND_LINE: f64 = 18.0;
 const MARGIN: f64 = 14.0;
 
-const STYLE: &str = "\
+pub(crate) const STYLE: &str = "\
 .tv{font:12px system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif}\
 .tv-page{fill:#ffffff}.tv-ink{fill:#1f2328}.tv-soft{fill:#57606a}.tv-small{font-size:11px}.tv-title{font-size:14px;font-weight:600}\
 .tv-grid{stroke:#e1e5ea;stroke-width:1}.tv-frame{stroke:#8b949e;stroke-width:1;fill:none}\
@@ -163,4 +163,4 @@ impl Entry {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

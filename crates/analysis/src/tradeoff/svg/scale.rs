@@ -4,7 +4,7 @@ use super::super::{Scale, number};
 
 /// An axis: values from `low` to `high` on pixels from `from` to `to`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axis {
+pub(crate) struct Axis {
     scale: Scale,
     low: f64,
     high: f64,
@@ -16,7 +16,7 @@ pub(super) struct Axis {
 
 /// A line of the grid.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
+pub(crate) struct Tick {
     pub at: f64,
     /// Empty for a line without a number.
     pub label: String,
@@ -29,7 +29,7 @@ const MOST_LABELS: i32 = 7;
 
 impl Axis {
     /// An axis that shows `values` from pixel `from` to pixel `to`, with some air at its ends.
-    pub(super) fn new(scale: Scale, values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
+    pub(crate) fn new(scale: Scale, values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
         let mut low = f64::INFINITY;
         let mut high = f64::NEG_INFINITY;
         let mut has_nought = false;
@@ -72,7 +72,7 @@ impl Axis {
     }
 
     /// Where a value stands; `None` where it has no place.
-    pub(super) fn place(&self, value: f64) -> Option<f64> {
+    pub(crate) fn place(&self, value: f64) -> Option<f64> {
         let part = match self.scale {
             _ if !value.is_finite() => return None,
             Scale::Log if value <= 0.0 => return self.nought,
@@ -83,7 +83,7 @@ impl Axis {
     }
 
     /// The grid's lines and numbers.
-    pub(super) fn ticks(&self) -> Vec<Tick> {
+    pub(crate) fn ticks(&self) -> Vec<Tick> {
         let mut ticks = match self.scale {
             Scale::Log => self.powers(),
             Scale::Linear => self.steps(),

@@ -4,7 +4,7 @@ use super::super::study::example;
 use super::*;
 
 /// Names of elements in their order, after a check that tags match, attributes are quoted and nothing is unescaped.
-fn elements(xml: &str) -> Vec<String> {
+pub(crate) fn elements(xml: &str) -> Vec<String> {
     let (mut open, mut names) = (Vec::new(), Vec::new());
     let mut rest = xml;
     while let Some(at) = rest.find('<') {

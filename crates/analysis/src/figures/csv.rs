@@ -1,0 +1,74 @@
+//! Every curve as a table that any program reads (RFC 4180): a line a value, its scan in the first column.
+//!
+//! Numbers have all their digits. Left out: other separators, and decimal commas.
+
+use std::fmt::Write;
+
+use super::Scans;
+use super::curves::middles_deg;
+use super::histogram::class_width;
+
+/// K on a sphere of 10 m at the upper edges of bins, its difference from points at random, the same over the sphere's area, and the derivative at the bins' middles.
+#[must_use]
+pub fn k(scans: &Scans) -> String {
+    let mut csv =
+        "pattern,theta_deg,k_m2,k_minus_csr_m2,d,theta_middle_deg,derivative_m2_rad\n".to_owned();
+    for scan in &scans.scans {
+        let (name, k) = (field(&scan.name), &scan.k);
+        let sums = k
+            .theta_rad
+            .iter()
+            .zip(&k.k_m2)
+            .zip(&k.k_minus_csr_m2)
+            .zip(&k.d);
+        let slopes = middles_deg(&k.theta_rad).zip(&k.derivative_m2_rad);
+        for ((((theta, k), difference), d), (middle, slope)) in sums.zip(slopes) {
+            let theta = theta.to_degrees();
+            let _ = writeln!(csv, "{name},{theta},{k},{difference},{d},{middle},{slope}");
+        }
+    }
+    csv
+}
+
+/// Points in each bin, and where its middle is.
+#[must_use]
+pub fn density(scans: &Scans) -> String {
+    let mut csv = "pattern,bin,x,y,z,count\n".to_owned();
+    for scan in &scans.scans {
+        let name = field(&scan.name);
+        for (bin, (face, count)) in scans
+            .bins
+            .bins()
+            .iter()
+            .zip(scan.counts.by_bin())
+            .enumerate()
+        {
+            let [x, y, z] = face.centre.to_array();
+            let _ = writeln!(csv, "{name},{bin},{x},{y},{z},{count}");
+        }
+    }
+    csv
+}
+
+/// Bins by their points, in the classes of the figure.
+#[must_use]
+pub fn histogram(scans: &Scans) -> String {
+    let mut csv = "pattern,from,to,bins\n".to_owned();
+    let width = class_width(scans);
+    for scan in &scans.scans {
+        let name = field(&scan.name);
+        for class in scan.counts.histogram_by(width) {
+            let _ = writeln!(csv, "{name},{},{},{}", class.from, class.to, class.bins);
+        }
+    }
+    csv
+}
+
+/// A text as a field: in quotes where it must be.
+fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

@@ -1,0 +1,105 @@
+//! The K function beside that of points at random, and its first derivative: a curve a scan.
+//!
+//! Left out: K itself, in which no difference shows.
+
+use std::f64::consts::PI;
+
+use super::frame::{At, MARGIN, TITLE, WIDTH, document, legend, stroke, text};
+use super::{SPHERE_M, Scans};
+use crate::tradeoff::Scale;
+use crate::tradeoff::svg::scale::Axis;
+
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = WIDTH - MARGIN - 6.0;
+const TOP: f64 = 24.0;
+const BOTTOM: f64 = 276.0;
+const PLOT: f64 = 318.0;
+
+/// A curve: angles in degrees and values.
+type Curve = Vec<(f64, f64)>;
+
+/// The figure: two plots over the angle, one under the other.
+#[must_use]
+pub fn curves(scans: &Scans) -> String {
+    let area = 4.0 * PI * SPHERE_M * SPHERE_M;
+    let mut about = "K - K_csr over the area of the sphere, and its first derivative, over the angle from 0 to 180 degrees. Above 0 points cluster, below they keep apart.".to_owned();
+    let (mut differences, mut slopes): (Vec<Curve>, Vec<Curve>) = (Vec::new(), Vec::new());
+    for scan in &scans.scans {
+        let theta = scan.k.theta_rad.iter().map(|theta| theta.to_degrees());
+        let points = theta.zip(scan.k.d.iter().copied());
+        differences.push(std::iter::once((0.0, 0.0)).chain(points).collect());
+        let slope = scan.k.derivative_m2_rad.iter().map(|slope| slope / area);
+        slopes.push(middles_deg(&scan.k.theta_rad).zip(slope).collect());
+        about += &format!(
+            " {}: from {:.5} to {:.5}.",
+            scan.name, scan.k.d_min, scan.k.d_max
+        );
+    }
+    let mut body = plot("K - K_csr, share of the sphere's area", &differences, TITLE);
+    body += &plot("first derivative of it, a radian", &slopes, TITLE + PLOT);
+    let names: Vec<&str> = scans.scans.iter().map(|scan| scan.name.as_str()).collect();
+    let (names, end) = legend(&names, TITLE + 2.0 * PLOT + 4.0);
+    document(
+        "Ripley's K function against complete spatial randomness",
+        &about,
+        end + 4.0,
+        &(body + &names),
+    )
+}
+
+/// The middles of bins by their upper edges, degrees.
+pub(super) fn middles_deg(upper_rad: &[f64]) -> impl Iterator<Item = f64> {
+    let before = std::iter::once(&0.0).chain(upper_rad);
+    let both = upper_rad.iter().zip(before);
+    both.map(|(to, from)| f64::midpoint(*to, *from).to_degrees())
+}
+
+fn plot(title: &str, curves: &[Curve], top: f64) -> String {
+    let values = curves.iter().flatten().map(|(_, value)| *value);
+    let y = Axis::new(Scale::Linear, values.chain([0.0]), BOTTOM, TOP);
+    let x = |degrees: f64| LEFT + (RIGHT - LEFT) * degrees / 180.0;
+    let mut svg = format!("<g transform=\"translate(0 {top})\">\n");
+    svg += &text(MARGIN, 14.0, At::Start, "tv-ink", title);
+    for degrees in (0..=180).step_by(30).map(f64::from) {
+        let at = x(degrees);
+        svg += &format!("<path class=\"tv-grid\" d=\"M{at:.1} {TOP}V{BOTTOM}\"/>\n");
+        svg += &text(
+            at,
+            BOTTOM + 15.0,
+            At::Middle,
+            "tv-soft tv-small",
+            &format!("{degrees}\u{b0}"),
+        );
+    }
+    for tick in y.ticks() {
+        svg += &format!(
+            "<path class=\"tv-grid\" d=\"M{LEFT} {:.1}H{RIGHT}\"/>\n",
+            tick.at
+        );
+        svg += &text(
+            LEFT - 6.0,
+            tick.at + 4.0,
+            At::End,
+            "tv-soft tv-small",
+            &tick.label,
+        );
+    }
+    if let Some(zero) = y.place(0.0) {
+        svg += &format!("<path class=\"tv-zero\" d=\"M{LEFT} {zero:.1}H{RIGHT}\"/>\n");
+    }
+    svg += &format!(
+        "<rect class=\"tv-frame\" x=\"{LEFT}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\"/>\n",
+        RIGHT - LEFT,
+        BOTTOM - TOP
+    );
+    for (number, curve) in curves.iter().enumerate() {
+        let places = curve.iter().filter_map(|(degrees, value)| {
+            Some(format!("{:.1} {:.1}", x(*degrees), y.place(*value)?))
+        });
+        let places: Vec<String> = places.collect();
+        if !places.is_empty() {
+            svg += &format!("<path {} d=\"M{}\"/>\n", stroke(number), places.join("L"));
+        }
+    }
+    svg + "</g>\n"
+}

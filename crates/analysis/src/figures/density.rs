@@ -1,0 +1,235 @@
+//! Points a bin, on the sphere seen from three sides.
+//!
+//! Spheres are drawn as from far away: the hemisphere towards the reader, each bin in the colour of its number of points. Left out: turning them.
+
+use glam::DVec3;
+
+use super::colour::Shades;
+use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, text};
+use super::{Scan, Scans};
+use crate::density::Face;
+
+/// The finest level whose bins are drawn: finer ones are drawn together, as there are more of them than dots.
+const FINEST: usize = 5;
+const RADIUS: f64 = 104.0;
+/// Units of a path in a pixel.
+const FINE: f64 = 10.0;
+const ROW: f64 = 2.0 * RADIUS + 62.0;
+
+/// A side that a sphere is seen from.
+struct Side {
+    caption: &'static str,
+    /// Towards the reader.
+    to: DVec3,
+    right: DVec3,
+    right_name: &'static str,
+    up: DVec3,
+    up_name: &'static str,
+}
+
+const SIDES: [Side; 3] = [
+    Side {
+        caption: "from +x",
+        to: DVec3::X,
+        right: DVec3::Y,
+        right_name: "y",
+        up: DVec3::Z,
+        up_name: "z",
+    },
+    Side {
+        caption: "from -y, along the tilt axis",
+        to: DVec3::NEG_Y,
+        right: DVec3::X,
+        right_name: "x",
+        up: DVec3::Z,
+        up_name: "z",
+    },
+    Side {
+        caption: "from +z, above",
+        to: DVec3::Z,
+        right: DVec3::X,
+        right_name: "x",
+        up: DVec3::Y,
+        up_name: "y",
+    },
+];
+
+/// The figure: a row a scan, a column a side.
+#[must_use]
+pub fn density(scans: &Scans) -> String {
+    let levels = scans.bins.levels();
+    let drawn = levels.len().saturating_sub(1).min(FINEST);
+    let faces = levels.get(drawn).map_or(&[][..], Vec::as_slice);
+    let within = 1_usize << (2 * (levels.len().saturating_sub(1) - drawn));
+    let together = |scan: &Scan| -> Vec<u64> {
+        let parts = scan.counts.by_bin().chunks(within);
+        parts.map(|part| part.iter().sum()).collect()
+    };
+    let all: Vec<Vec<u64>> = scans.scans.iter().map(together).collect();
+    let shades = Shades::new(all.iter().flatten().copied());
+    let mut body = String::new();
+    let mut top = TITLE;
+    for (scan, counts) in scans.scans.iter().zip(&all) {
+        body += &row(scan, faces, counts, &shades, top);
+        top += ROW;
+    }
+    body += &scale(&shades, top);
+    let bins = faces.len();
+    let title = format!("Points a bin on the sphere ({bins} bins)");
+    let about = about(scans, &shades);
+    document(&title, &about, top + 58.0, &body)
+}
+
+fn about(scans: &Scans, shades: &Shades) -> String {
+    let mut about = format!(
+        "Hemispheres seen from +x, from -y and from +z, a row a scan; bins from {} to {} points, darker is more.",
+        shades.low, shades.high
+    );
+    for scan in &scans.scans {
+        let s = scan.counts.statistics();
+        about += &format!(
+            " {}: mean {:.2}, standard deviation {:.2}, {} to {} points a bin, {} bins empty.",
+            scan.name, s.mean, s.sd, s.min, s.max, s.empty
+        );
+    }
+    about
+}
+
+fn row(scan: &Scan, faces: &[Face], counts: &[u64], shades: &Shades, top: f64) -> String {
+    let s = scan.counts.statistics();
+    let more = format!(
+        "{} points; a bin {:.2} on average, sd {:.2}, from {} to {}; {} empty",
+        scan.points, s.mean, s.sd, s.min, s.max, s.empty
+    );
+    let mut svg = heading(&scan.name, &more, top + 14.0);
+    let column = (WIDTH - 2.0 * MARGIN) / 3.0;
+    for (number, side) in SIDES.iter().enumerate() {
+        let x = MARGIN + column * (number as f64 + 0.5);
+        let y = top + 30.0 + RADIUS;
+        svg += &sphere(side, faces, counts, shades, (x, y));
+        let below = y + RADIUS + 18.0;
+        svg += &text(x, below, At::Middle, "tv-soft tv-small", side.caption);
+        let names = [
+            (x + RADIUS + 5.0, y + 4.0, side.right_name),
+            (x - 3.0, y - RADIUS - 3.0, side.up_name),
+        ];
+        for (x, y, name) in names {
+            svg += &text(x, y, At::Start, "tv-soft tv-small", name);
+        }
+    }
+    svg
+}
+
+/// One hemisphere: a path a colour. Triangles have an edge of their own colour, so that no seam shows.
+fn sphere(
+    side: &Side,
+    faces: &[Face],
+    counts: &[u64],
+    shades: &Shades,
+    (x, y): (f64, f64),
+) -> String {
+    let mut paths = vec![String::new(); Shades::STEPS];
+    let mut empty = String::new();
+    for (face, &count) in faces.iter().zip(counts) {
+        if face.centre.dot(side.to) <= 0.0 {
+            continue;
+        }
+        let path = match count {
+            0 => Some(&mut empty),
+            _ => paths.get_mut(shades.step(count)),
+        };
+        if let Some(path) = path {
+            triangle(path, side, face);
+        }
+    }
+    let mut svg = format!(
+        "<g transform=\"translate({x:.1} {y:.1}) scale({})\">\n<circle class=\"tv-paper\" r=\"{:.0}\" stroke-width=\"{FINE}\"/>\n",
+        1.0 / FINE,
+        RADIUS * FINE
+    );
+    if !empty.is_empty() {
+        svg += &format!("<path class=\"tv-empty\" d=\"{empty}\"/>\n");
+    }
+    for (step, path) in paths
+        .iter()
+        .enumerate()
+        .filter(|(_, path)| !path.is_empty())
+    {
+        let colour = Shades::of_step(step);
+        svg += &format!(
+            "<path fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\"4\" stroke-linejoin=\"round\" d=\"{path}\"/>\n"
+        );
+    }
+    svg + "</g>\n"
+}
+
+fn triangle(path: &mut String, side: &Side, face: &Face) {
+    let place = |corner: DVec3| {
+        let size = RADIUS * FINE;
+        let (right, up) = (corner.dot(side.right), corner.dot(side.up));
+        ((size * right).round() as i32, (-size * up).round() as i32)
+    };
+    let [(ax, ay), (bx, by), (cx, cy)] = face.corners.map(place);
+    // A sign parts numbers as a space does.
+    *path += &format!(
+        "M{ax} {ay}l{} {} {} {}z",
+        bx - ax,
+        by - ay,
+        cx - bx,
+        cy - by
+    );
+}
+
+/// The scale of colours.
+fn scale(shades: &Shades, top: f64) -> String {
+    let (left, wide, high) = (MARGIN + 90.0, 430.0, 12.0);
+    let y = top + 12.0;
+    let mut svg = text(
+        MARGIN,
+        y + 10.0,
+        At::Start,
+        "tv-ink tv-small",
+        "points a bin",
+    );
+    if shades.high == shades.low {
+        let colour = Shades::of_step(shades.step(shades.low));
+        svg += &format!(
+            "<rect fill=\"{colour}\" x=\"{left}\" y=\"{y}\" width=\"{wide}\" height=\"{high}\"/>\n"
+        );
+    } else {
+        let each = wide / Shades::STEPS as f64;
+        for step in 0..Shades::STEPS {
+            svg += &format!(
+                "<rect fill=\"{}\" x=\"{:.2}\" y=\"{y}\" width=\"{:.2}\" height=\"{high}\"/>\n",
+                Shades::of_step(step),
+                left + each * step as f64,
+                each + 0.3
+            );
+        }
+    }
+    for tick in shades.ticks() {
+        let x = left + wide * shades.share(tick as f64);
+        svg += &format!(
+            "<path class=\"tv-frame\" d=\"M{x:.1} {:.1}v4\"/>\n",
+            y + high
+        );
+        svg += &text(
+            x,
+            y + high + 16.0,
+            At::Middle,
+            "tv-soft tv-small",
+            &tick.to_string(),
+        );
+    }
+    let (x, bottom) = (left + wide + 34.0, y + high);
+    svg += &format!(
+        "<g transform=\"translate({x:.1} {bottom:.1}) scale(0.1)\"><path class=\"tv-empty\" d=\"M0 0h160l-80 -120zM160 0l80 -120h-160z\"/></g>\n"
+    );
+    svg + &text(
+        x + 30.0,
+        bottom - 2.0,
+        At::Start,
+        "tv-soft tv-small",
+        "without a point",
+    )
+}

@@ -1,0 +1,101 @@
+//! What all figures are framed by: the document, a heading for each scan, the curves' colours and dashes.
+//!
+//! Left out: what is drawn.
+
+use crate::tradeoff::svg::labels::width;
+use crate::tradeoff::svg::marks;
+use crate::tradeoff::svg::{STYLE, escaped};
+
+/// Width of a figure, pixels.
+pub(super) const WIDTH: f64 = 720.0;
+/// Free at the left and right.
+pub(super) const MARGIN: f64 = 14.0;
+/// Height of the figure's title.
+pub(super) const TITLE: f64 = 32.0;
+
+/// Beside the style of all figures: paper is white in the dark, too, as colours on it are dark for much.
+const MORE_STYLE: &str = "\
+.tv-paper{fill:#ffffff;stroke:#8b949e;stroke-width:1}.tv-empty{fill:#ffffff;stroke:#9aa1a9;stroke-width:4}\
+.tv-curve{stroke-width:1.9;stroke-linejoin:round;fill:none}.tv-zero{stroke:#57606a;stroke-width:1.2;fill:none}\
+.tv-fill{stroke:none;fill-opacity:.75}.tv-mean{stroke:#1f2328;stroke-width:2;fill:none}.tv-sd{stroke:#1f2328;stroke-width:1.5;stroke-dasharray:5 4;fill:none}\
+@media (prefers-color-scheme:dark){.tv-zero{stroke:#a9b1bb}.tv-mean,.tv-sd{stroke:#e6e8eb}}";
+
+/// A figure as a document: what it shows is told in words, too, for those who do not see it.
+pub(super) fn document(title: &str, about: &str, height: f64, body: &str) -> String {
+    let (title, about) = (escaped(title), escaped(about));
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tv\" viewBox=\"0 0 {WIDTH} {height:.0}\" width=\"{WIDTH}\" height=\"{height:.0}\" \
+         role=\"img\" aria-label=\"{title}. {about}\">\n<title>{title}</title>\n<desc>{about}</desc>\n<style>{STYLE}{MORE_STYLE}</style>\n\
+         <rect class=\"tv-page\" width=\"{WIDTH}\" height=\"{height:.0}\" rx=\"6\"/>\n\
+         <text class=\"tv-ink tv-title\" x=\"{MARGIN}\" y=\"21\">{title}</text>\n{body}</svg>\n"
+    )
+}
+
+/// Where a text stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum At {
+    Start,
+    Middle,
+    End,
+}
+
+/// A small text.
+pub(super) fn text(x: f64, y: f64, at: At, class: &str, text: &str) -> String {
+    let anchor = match at {
+        At::Start => "start",
+        At::Middle => "middle",
+        At::End => "end",
+    };
+    format!(
+        "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{}</text>\n",
+        escaped(text)
+    )
+}
+
+/// The most of a name that stands in a figure, characters: the rest is in the tables.
+const NAME: usize = 48;
+
+/// A name that may be a path: its end where it is long.
+pub(super) fn short_name(name: &str) -> String {
+    let long = name.chars().count().saturating_sub(NAME - 1);
+    match long {
+        0 | 1 => name.to_owned(),
+        _ => format!("\u{2026}{}", name.chars().skip(long).collect::<String>()),
+    }
+}
+
+/// The line above a scan's drawings: its name, and what else is to be said of it.
+pub(super) fn heading(name: &str, more: &str, y: f64) -> String {
+    let name = short_name(name);
+    let beside = MARGIN + width(&name) * 1.12 + 16.0;
+    text(MARGIN, y, At::Start, "tv-ink", &name)
+        + &text(beside, y, At::Start, "tv-soft tv-small", more)
+}
+
+/// Dashes by which curves differ where their colours do not.
+const DASHES: [&str; 5] = ["none", "7 3", "2 3", "10 3 2 3", "14 4"];
+
+/// The classes and the dashes of a scan's curve.
+pub(super) fn stroke(number: usize) -> String {
+    let dash = DASHES.get(number % DASHES.len()).copied().unwrap_or("none");
+    let class = marks::colour(number);
+    format!("class=\"{class} tv-curve tv-none\" stroke-dasharray=\"{dash}\"")
+}
+
+/// The names of curves, in lines that fit, from `y` down; and where they end.
+pub(super) fn legend(names: &[&str], mut y: f64) -> (String, f64) {
+    let mut svg = String::new();
+    let mut x = MARGIN;
+    for (number, name) in names.iter().enumerate() {
+        let name = short_name(name);
+        let wide = 44.0 + width(&name) + 16.0;
+        if x > MARGIN && x + wide > WIDTH {
+            x = MARGIN;
+            y += 18.0;
+        }
+        svg += &format!("<path {} d=\"M{x:.1} {y:.1}h36\"/>\n", stroke(number));
+        svg += &text(x + 42.0, y + 4.0, At::Start, "tv-soft tv-small", &name);
+        x += wide;
+    }
+    (svg, y + 14.0)
+}

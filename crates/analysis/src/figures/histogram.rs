@@ -1,0 +1,147 @@
+//! How many bins have how many points, with the mean and what is a standard deviation off it.
+//!
+//! Left out: the text's histogram, whose classes are each scan's own.
+
+use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, text};
+use super::{Scan, Scans};
+use crate::tradeoff::Scale;
+use crate::tradeoff::svg::marks;
+use crate::tradeoff::svg::scale::Axis;
+
+/// Classes, about.
+const CLASSES: u64 = 60;
+const LEFT: f64 = 56.0;
+const RIGHT: f64 = WIDTH - MARGIN;
+const TOP: f64 = 24.0;
+const BOTTOM: f64 = 150.0;
+const ROW: f64 = 182.0;
+
+/// The width of the classes of all scans, in points a bin: so that the fullest bin is in about the sixtieth.
+#[must_use]
+pub fn class_width(scans: &Scans) -> u64 {
+    let fullest = scans.scans.iter().flat_map(|scan| scan.counts.by_bin());
+    (fullest.copied().max().unwrap_or(0) + 1).div_ceil(CLASSES)
+}
+
+/// The figure: a plot a scan, one under the other, all of the same scale.
+#[must_use]
+pub fn histogram(scans: &Scans) -> String {
+    let width = class_width(scans);
+    let classes = scans
+        .scans
+        .iter()
+        .map(|scan| scan.counts.histogram_by(width));
+    let most = classes.flatten().map(|class| class.bins).max().unwrap_or(1);
+    let fullest = scans.scans.iter().flat_map(|scan| scan.counts.by_bin());
+    let fullest = fullest.copied().max().unwrap_or(1);
+    let x = Axis::new(
+        Scale::Linear,
+        [0.0, fullest as f64].into_iter(),
+        LEFT,
+        RIGHT,
+    );
+    let y = Axis::new(Scale::Log, [1.0, most as f64].into_iter(), BOTTOM, TOP);
+    let mut body = String::new();
+    let mut about = format!(
+        "Classes of {width} points a bin; the number of bins in each, on a logarithmic scale."
+    );
+    let mut top = TITLE;
+    for (number, scan) in scans.scans.iter().enumerate() {
+        let s = scan.counts.statistics();
+        about += &format!(
+            " {}: mean {:.2}, standard deviation {:.2}.",
+            scan.name, s.mean, s.sd
+        );
+        body += &format!("<g transform=\"translate(0 {top:.0})\">\n");
+        body += &plot(scan, number, width, &x, &y);
+        body += "</g>\n";
+        top += ROW;
+    }
+    document(
+        "How many bins have how many points",
+        &about,
+        top + 8.0,
+        &body,
+    )
+}
+
+fn plot(scan: &Scan, number: usize, width: u64, x: &Axis, y: &Axis) -> String {
+    let s = scan.counts.statistics();
+    let more = format!(
+        "mean {:.2} (line), sd {:.2} (dashed), {} to {} points a bin",
+        s.mean, s.sd, s.min, s.max
+    );
+    let mut svg = heading(&scan.name, &more, 14.0);
+    svg += &grid(x, y);
+    let mut bars = String::new();
+    for class in scan
+        .counts
+        .histogram_by(width)
+        .iter()
+        .filter(|class| class.bins > 0)
+    {
+        let ends = (x.place(class.from as f64), x.place(class.to as f64 + 1.0));
+        if let ((Some(left), Some(right)), Some(top)) = (ends, y.place(class.bins as f64)) {
+            let right = right.min(RIGHT);
+            bars += &format!("M{left:.1} {BOTTOM}V{top:.1}H{right:.1}V{BOTTOM}z");
+        }
+    }
+    svg += &format!(
+        "<path class=\"{} tv-fill\" d=\"{bars}\"/>\n",
+        marks::colour(number)
+    );
+    let lines = [
+        (s.mean, "tv-mean"),
+        (s.mean - s.sd, "tv-sd"),
+        (s.mean + s.sd, "tv-sd"),
+    ];
+    for (value, class) in lines.into_iter().filter(|(value, _)| *value >= 0.0) {
+        if let Some(x) = x.place(value).filter(|x| *x <= RIGHT) {
+            svg += &format!("<path class=\"{class}\" d=\"M{x:.1} {TOP}V{BOTTOM}\"/>\n");
+        }
+    }
+    svg
+}
+
+fn grid(x: &Axis, y: &Axis) -> String {
+    let mut svg = String::new();
+    for tick in x.ticks() {
+        svg += &format!(
+            "<path class=\"tv-grid\" d=\"M{:.1} {TOP}V{BOTTOM}\"/>\n",
+            tick.at
+        );
+        svg += &text(
+            tick.at,
+            BOTTOM + 14.0,
+            At::Middle,
+            "tv-soft tv-small",
+            &tick.label,
+        );
+    }
+    for tick in y.ticks() {
+        svg += &format!(
+            "<path class=\"tv-grid\" d=\"M{LEFT} {:.1}H{RIGHT}\"/>\n",
+            tick.at
+        );
+        svg += &text(
+            LEFT - 6.0,
+            tick.at + 4.0,
+            At::End,
+            "tv-soft tv-small",
+            &tick.label,
+        );
+    }
+    svg += &format!(
+        "<rect class=\"tv-frame\" x=\"{LEFT}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\"/>\n",
+        RIGHT - LEFT,
+        BOTTOM - TOP
+    );
+    svg += &text(
+        RIGHT - 6.0,
+        TOP + 14.0,
+        At::End,
+        "tv-soft tv-small",
+        "points a bin across, bins up",
+    );
+    svg
+}

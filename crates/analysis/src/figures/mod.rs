@@ -1,0 +1,62 @@
+//! Scan patterns as figures, tables and one page, in the manner of the 2018 paper's Figures 2-7 and 11, for any list of patterns side by side.
+//!
+//! Data in, text out: [`density`] on the sphere from three sides, [`planes`] about the scanner, [`histogram`] and [`curves`] as SVG; [`csv`] of every curve;
+//! [`page`] with all of it. All patterns of a figure have one scale, on which darker is more, so that it reads in print without colour, too.
+//! Left out: where the numbers come from ([`crate::density`], [`crate::k`]), and files.
+
+mod colour;
+pub mod csv;
+mod curves;
+mod density;
+mod frame;
+mod histogram;
+mod page;
+mod planes;
+#[cfg(test)]
+mod tests;
+
+pub use curves::curves;
+pub use density::density;
+pub use histogram::{class_width, histogram};
+pub use page::{FILES, page};
+pub use planes::{CELL_M, Planes, planes};
+
+use crate::density::{Counts, Icosahedron};
+use crate::k::KCurve;
+
+/// Radius of the paper's hollow sphere, metres: what square metres of a K function are of.
+pub const SPHERE_M: f64 = 10.0;
+
+/// What is known of one scan.
+#[derive(Clone, Debug)]
+pub struct Scan {
+    /// What it is called.
+    pub name: String,
+    /// Points with a direction.
+    pub points: u64,
+    /// How long it takes, seconds, where that is known.
+    pub scan_s: Option<f64>,
+    /// Radius of the largest hole in view, degrees.
+    pub hole_deg: f64,
+    /// Points a bin of [`Scans::bins`].
+    pub counts: Counts,
+    /// K on a sphere of [`SPHERE_M`].
+    pub k: KCurve,
+    /// How its pairs were counted.
+    pub method: &'static str,
+    /// Where its rays meet the planes.
+    pub planes: Planes,
+}
+
+/// Scans side by side.
+#[derive(Clone, Debug)]
+pub struct Scans {
+    /// Program and version.
+    pub program: String,
+    /// What was asked for, as on the command line.
+    pub command: String,
+    /// The bins.
+    pub bins: Icosahedron,
+    /// The scans, in the order asked for.
+    pub scans: Vec<Scan>,
+}

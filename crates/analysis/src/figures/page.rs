@@ -1,0 +1,316 @@
+//! All figures as one page that needs nothing beside it: figures inside, with tables beside them, light and dark, on a phone and on paper.
+//!
+//! Left out: how it is written to a disk.
+
+use super::frame::short_name;
+use super::histogram::class_width;
+use super::{CELL_M, SPHERE_M, Scan, Scans, curves, density, histogram, planes};
+use crate::tradeoff::html::STYLE;
+use crate::tradeoff::number::short;
+use crate::tradeoff::svg::escaped;
+
+/// What stands beside the page in its folder, and is linked from it: names, and what they are.
+pub const FILES: [(&str, &str); 8] = [
+    ("density.svg", "density on the sphere"),
+    ("histogram.svg", "histogram of the density"),
+    ("planes.svg", "points on planes"),
+    ("k.svg", "K - K_csr and its derivative"),
+    ("density.csv", "points in each bin, with the bin's middle"),
+    ("histogram.csv", "bins by their points"),
+    ("k.csv", "K, K - K_csr and the derivative over the angle"),
+    ("analyze.json", "everything that --json says"),
+];
+
+/// For wide figures on narrow screens, and for print.
+const MORE_STYLE: &str = "\
+figure svg{max-width:45rem}figcaption{color:var(--soft);font-size:.92rem;margin-top:.5rem}\
+.wide{overflow-x:auto;-webkit-overflow-scrolling:touch}.wide svg{min-width:34rem}\
+table{margin:.8rem 0}caption{text-align:left;color:var(--soft);font-size:.92rem;padding:.2rem 0}\
+td:first-child{overflow-wrap:anywhere;min-width:7rem}summary{cursor:pointer;color:var(--mark)}\
+code{overflow-wrap:anywhere}\
+@media print{body{background:#fff}section{border:0;padding:0;break-inside:auto}figure,tr{break-inside:avoid}nav{display:none}.wide svg{min-width:0}}";
+
+/// Angles between those of the page's table of K, degrees.
+const EVERY_DEG: f64 = 15.0;
+
+/// The page.
+#[must_use]
+pub fn page(scans: &Scans) -> String {
+    let names: Vec<String> = scans
+        .scans
+        .iter()
+        .map(|scan| short_name(&scan.name))
+        .collect();
+    let title = escaped(&names.join(", "));
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>Scan patterns: {title}</title>\n<style>{STYLE}{MORE_STYLE}</style>\n</head>\n<body>\n\
+         <header>\n<h1>Scan patterns: {title}</h1>\n<p class=\"soft\">{}: <code>{}</code></p>\n<nav>\n",
+        escaped(&scans.program),
+        escaped(&scans.command)
+    );
+    let sections = sections(scans);
+    for (id, heading, _) in &sections {
+        page += &format!("<a href=\"#{id}\">{heading}</a>\n");
+    }
+    page += "</nav>\n</header>\n<main>\n";
+    for (id, heading, content) in &sections {
+        page += &format!("<section id=\"{id}\">\n<h2>{heading}</h2>\n{content}</section>\n");
+    }
+    page + "</main>\n<footer>After: Analysis of 3D Scan Measurement Distribution with Application to a Multi-Beam Lidar on a Rotating Platform (2018). \
+            Directions are seen from the origin, on the tilt axis y; x is right, z is up.</footer>\n</body>\n</html>\n"
+}
+
+type Section = (&'static str, &'static str, String);
+
+fn sections(scans: &Scans) -> Vec<Section> {
+    let bins = scans.bins.bins().len();
+    let cell = short(CELL_M);
+    vec![
+        ("summary", "At a glance", summary(scans)),
+        (
+            "density",
+            "Density on the sphere",
+            figure(
+                &density(scans),
+                "All scans have one scale of colours, by equal factors. Darker is more; bins without a point are white with grey edges.",
+            ) + &densities(scans),
+        ),
+        (
+            "histogram",
+            "Histogram of the density",
+            figure(
+                &histogram(scans),
+                &format!(
+                    "{bins} bins by their points, in classes of {}. The line is the mean, dashed lines are a standard deviation off it. \
+                     Bins are counted on a logarithmic scale, so that few of them show beside thousands.",
+                    class_width(scans)
+                ),
+            ),
+        ),
+        (
+            "planes",
+            "Points on planes",
+            figure(
+                &planes(scans),
+                &format!(
+                    "Where rays from 1.5 m above the ground meet it, and walls at 10 m parallel to YZ and XZ. Every point is counted; \
+                     points in the same square of {cell} m are drawn as one, in the colour of their number."
+                ),
+            ) + &plane_table(scans),
+        ),
+        (
+            "k",
+            "How evenly points lie",
+            figure(
+                &curves(scans),
+                "Ripley's K function less that of points at random (complete spatial randomness), over the area of the sphere: so much larger is the share of \
+                 all pairs within an angle. Above 0 points cluster, below they keep apart. The derivative says at which angles pairs are too many or too few.",
+            ) + &extremes(scans)
+                + &k_table(scans),
+        ),
+        ("files", "Figures and numbers as files", files()),
+    ]
+}
+
+fn figure(svg: &str, caption: &str) -> String {
+    format!(
+        "<figure>\n<div class=\"wide\">\n{svg}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
+        escaped(caption)
+    )
+}
+
+/// A table: a heading a column, the first of each row its name.
+fn table(caption: &str, headings: &[String], rows: &[Vec<String>]) -> String {
+    let mut html = format!(
+        "<div class=\"scroll\"><table>\n<caption>{}</caption>\n<thead><tr>",
+        escaped(caption)
+    );
+    for heading in headings {
+        html += &format!("<th scope=\"col\">{}</th>", escaped(heading));
+    }
+    html += "</tr></thead>\n<tbody>\n";
+    for row in rows {
+        html += "<tr>";
+        for cell in row {
+            html += &format!("<td>{}</td>", escaped(cell));
+        }
+        html += "</tr>\n";
+    }
+    html + "</tbody></table></div>\n"
+}
+
+fn headings(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+fn rows(scans: &Scans, row: impl Fn(&Scan) -> Vec<String>) -> Vec<Vec<String>> {
+    let all = scans.scans.iter();
+    all.map(|scan| {
+        std::iter::once(scan.name.clone())
+            .chain(row(scan))
+            .collect()
+    })
+    .collect()
+}
+
+fn summary(scans: &Scans) -> String {
+    let rows = rows(scans, |scan| {
+        vec![
+            scan.points.to_string(),
+            scan.scan_s.map_or("-".to_owned(), short),
+            format!("{:.3}", scan.hole_deg),
+            format!("{:.3}", relative_sd(scan)),
+            format!("{:.5}", scan.k.d_max.max(-scan.k.d_min)),
+        ]
+    });
+    let words = [
+        "scan",
+        "points",
+        "seconds",
+        "largest hole, deg",
+        "sd / mean",
+        "largest |K - K_csr|",
+    ];
+    table(
+        "Less is better in the last three columns.",
+        &headings(&words),
+        &rows,
+    )
+}
+
+fn relative_sd(scan: &Scan) -> f64 {
+    let s = scan.counts.statistics();
+    if s.mean > 0.0 { s.sd / s.mean } else { 0.0 }
+}
+
+fn densities(scans: &Scans) -> String {
+    let rows = rows(scans, |scan| {
+        let s = scan.counts.statistics();
+        vec![
+            format!("{:.2}", s.mean),
+            format!("{:.2}", s.sd),
+            s.min.to_string(),
+            s.max.to_string(),
+            s.empty.to_string(),
+            format!("{:.2}", s.mean_per_deg2),
+            format!("{:.2}", s.sd_per_deg2),
+        ]
+    });
+    let words = [
+        "scan",
+        "mean",
+        "sd",
+        "min",
+        "max",
+        "empty",
+        "mean a deg\u{b2}",
+        "sd a deg\u{b2}",
+    ];
+    let bins = scans.bins.bins().len();
+    table(
+        &format!("Points a bin, of {bins} bins"),
+        &headings(&words),
+        &rows,
+    )
+}
+
+fn plane_table(scans: &Scans) -> String {
+    let rows = rows(scans, |scan| {
+        let planes = &scan.planes;
+        vec![
+            scan.points.to_string(),
+            planes.met().to_string(),
+            planes.shown().to_string(),
+            planes.drawn().to_string(),
+        ]
+    });
+    let words = [
+        "scan",
+        "points",
+        "meet the planes",
+        "within the pictures",
+        "squares drawn",
+    ];
+    table("What the pictures show", &headings(&words), &rows)
+}
+
+fn extremes(scans: &Scans) -> String {
+    let at = |scan: &Scan, extreme: f64| {
+        let found = scan.k.d.iter().position(|d| (*d - extreme).abs() <= 0.0);
+        let theta = found.and_then(|bin| scan.k.theta_rad.get(bin));
+        theta.map_or("0".to_owned(), |theta| format!("{:.1}", theta.to_degrees()))
+    };
+    let rows = rows(scans, |scan| {
+        let k = &scan.k;
+        let bound = match k.d_error_bound {
+            0.0 => "0 (exact)".to_owned(),
+            bound => format!("{bound:.1e}"),
+        };
+        vec![
+            format!("{:+.5}", k.d_max),
+            at(scan, k.d_max),
+            format!("{:+.5}", k.d_min),
+            at(scan, k.d_min),
+            scan.method.to_owned(),
+            bound,
+        ]
+    });
+    let words = [
+        "scan",
+        "largest",
+        "at, deg",
+        "smallest",
+        "at, deg",
+        "counted by",
+        "off by at most",
+    ];
+    table(
+        "K - K_csr, share of the sphere's area",
+        &headings(&words),
+        &rows,
+    )
+}
+
+/// The curves at angles some degrees apart.
+fn k_table(scans: &Scans) -> String {
+    let mut words = vec!["angle up to, deg".to_owned()];
+    words.extend(scans.scans.iter().map(|scan| scan.name.clone()));
+    let thetas = scans
+        .scans
+        .first()
+        .map_or(&[][..], |scan| &scan.k.theta_rad);
+    let mut rows = Vec::new();
+    let mut next_deg = EVERY_DEG;
+    for (bin, theta_deg) in thetas.iter().map(|theta| theta.to_degrees()).enumerate() {
+        // Edges need not be at whole degrees: the first at or behind each angle, and the last.
+        if theta_deg < next_deg - 1e-9 && bin + 1 < thetas.len() {
+            continue;
+        }
+        while next_deg <= theta_deg + 1e-9 {
+            next_deg += EVERY_DEG;
+        }
+        let mut row = vec![format!("{theta_deg:.2}")];
+        let all = scans.scans.iter();
+        row.extend(all.map(|scan| {
+            scan.k
+                .d
+                .get(bin)
+                .map_or("-".to_owned(), |d| format!("{d:+.5}"))
+        }));
+        rows.push(row);
+    }
+    let table = table("K - K_csr, share of the sphere's area", &words, &rows);
+    format!("<details>\n<summary>The curves as numbers</summary>\n{table}</details>\n")
+}
+
+fn files() -> String {
+    let mut html = "<ul>\n".to_owned();
+    for (name, what) in FILES {
+        html += &format!("<li><a href=\"{name}\">{name}</a>: {what}</li>\n");
+    }
+    html + &format!(
+        "</ul>\n<p class=\"soft\">Square metres in k.csv are of a sphere of {SPHERE_M} m.</p>\n"
+    )
+}

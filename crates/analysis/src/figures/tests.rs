@@ -1,0 +1,287 @@
+//! Figures are well-formed and whole, and every number that is written is the one that was computed.
+
+use std::num::NonZeroUsize;
+
+use glam::DVec3;
+
+use super::*;
+use crate::density::Locator;
+use crate::k::{Edges, exact};
+use crate::tradeoff::svg::escaped;
+use crate::tradeoff::svg::tests::elements;
+
+/// A lidar's grid: rings at some elevations about z, turned about y to these tilts.
+fn grid(azimuths: u32, tilts_deg: &[f64]) -> Vec<DVec3> {
+    let mut points = Vec::new();
+    for tilt in tilts_deg {
+        let tilt = glam::DQuat::from_rotation_y(tilt.to_radians());
+        for ring in 0..8 {
+            let elevation = (-14.0 + 4.0 * f64::from(ring)).to_radians();
+            for step in 0..azimuths {
+                let azimuth =
+                    std::f64::consts::TAU * (f64::from(step) + 0.25) / f64::from(azimuths);
+                let flat = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0) * elevation.cos();
+                points.push(tilt * (flat + DVec3::Z * elevation.sin()));
+            }
+        }
+    }
+    points
+}
+
+fn scan(name: &str, directions: &[DVec3], level: u32) -> Scan {
+    let locator = Locator::new(&Icosahedron::new(level).unwrap());
+    let counts = exact(directions, &Edges::equal(37).unwrap(), NonZeroUsize::MIN).unwrap();
+    Scan {
+        name: name.to_owned(),
+        points: directions.len() as u64,
+        scan_s: Some(0.1),
+        hole_deg: 12.5,
+        counts: Counts::new(&locator, directions).unwrap(),
+        k: KCurve::of_counts(&counts, SPHERE_M),
+        method: "exact",
+        planes: Planes::new(directions),
+    }
+}
+
+fn scans(level: u32) -> Scans {
+    let tilts: Vec<f64> = (0..12).map(|k| 15.0 * f64::from(k)).collect();
+    Scans {
+        program: "velomotion 1.0".to_owned(),
+        command: "velomotion analyze a,b <c> & \"d\"".to_owned(),
+        bins: Icosahedron::new(level).unwrap(),
+        scans: vec![
+            scan("still", &grid(60, &[0.0]), level),
+            scan("turned,tilt=<stepped> & \"so\"", &grid(60, &tilts), level),
+        ],
+    }
+}
+
+fn all_figures(scans: &Scans) -> [String; 4] {
+    [
+        density(scans),
+        histogram(scans),
+        planes(scans),
+        curves(scans),
+    ]
+}
+
+#[test]
+fn figures_are_well_formed_and_tell_of_every_scan_in_words() {
+    for level in [0, 2, 6] {
+        let scans = scans(level);
+        for figure in all_figures(&scans) {
+            assert_eq!(elements(&figure)[..3], ["svg", "title", "desc"]);
+            assert!(
+                !figure.contains("NaN") && !figure.contains("inf"),
+                "{figure}"
+            );
+            let words = figure
+                .split("<desc>")
+                .nth(1)
+                .unwrap()
+                .split("</desc>")
+                .next()
+                .unwrap();
+            assert!(
+                words.contains("still: ")
+                    && words.contains("&lt;stepped&gt; &amp; &quot;so&quot;: "),
+                "{words}"
+            );
+            assert!(figure.contains(&format!(
+                    "aria-label=\"{}",
+                    figure
+                        .split("<title>")
+                        .nth(1)
+                        .unwrap()
+                        .split('<')
+                        .next()
+                        .unwrap()
+                )));
+        }
+    }
+}
+
+#[test]
+fn every_bin_is_drawn_on_its_sides() {
+    let scans = scans(2);
+    let figure = density(&scans);
+    // A triangle is a path that ends; two more are the sign of empty bins.
+    let expected: usize = scans
+        .bins
+        .bins()
+        .iter()
+        .map(|face| {
+            [DVec3::X, DVec3::NEG_Y, DVec3::Z]
+                .iter()
+                .filter(|to| face.centre.dot(**to) > 0.0)
+                .count()
+        })
+        .sum();
+    let paths = figure
+        .split(" d=\"")
+        .skip(1)
+        .map(|rest| rest.split('"').next().unwrap());
+    let triangles: usize = paths.map(|path| path.matches('z').count()).sum();
+    assert_eq!(triangles, 2 * expected + 2);
+}
+
+#[test]
+fn levels_beyond_what_is_drawn_go_together_and_keep_every_point() {
+    let (coarse, fine) = (scans(5), scans(6));
+    assert!(density(&fine).contains("(20480 bins)"));
+    // As many triangles, though the bins are four times as many.
+    let size = |scans: &Scans| density(scans).matches('l').count();
+    assert!(
+        size(&fine).abs_diff(size(&coarse)) < 60,
+        "{} {}",
+        size(&fine),
+        size(&coarse)
+    );
+}
+
+#[test]
+fn what_holds_nothing_is_drawn_too() {
+    let mut scans = scans(2);
+    let none = Scan {
+        hole_deg: 180.0,
+        scan_s: None,
+        ..scan("nothing", &[], 2)
+    };
+    scans.scans = vec![none, scan("one", &[DVec3::Z], 2)];
+    for figure in all_figures(&scans) {
+        elements(&figure);
+        assert!(
+            !figure.contains("NaN") && !figure.contains("inf"),
+            "{figure}"
+        );
+    }
+    page_is_whole(&page(&scans), &scans);
+    scans.scans.clear();
+    for figure in all_figures(&scans) {
+        elements(&figure);
+    }
+    assert_eq!(csv::k(&scans).lines().count(), 1);
+}
+
+/// The fields of a line, quotes undone.
+fn fields(line: &str) -> Vec<String> {
+    let (mut fields, mut quoted) = (vec![String::new()], false);
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            c => fields.last_mut().unwrap().push(c),
+        }
+    }
+    fields
+}
+
+/// All numbers of a table's columns from one on, and the names before them.
+fn read(csv: &str, from: usize) -> (Vec<String>, Vec<Vec<f64>>) {
+    let columns = csv.lines().next().unwrap().split(',').count();
+    let lines: Vec<Vec<String>> = csv.lines().skip(1).map(fields).collect();
+    assert!(lines.iter().all(|line| line.len() == columns));
+    let names = lines.iter().map(|line| line[0].clone()).collect();
+    let numbers = lines
+        .iter()
+        .map(|line| line[from..].iter().map(|x| x.parse().unwrap()).collect());
+    (names, numbers.collect())
+}
+
+#[test]
+fn tables_have_the_very_numbers() {
+    let scans = scans(3);
+    let (names, rows) = read(&csv::k(&scans), 1);
+    assert_eq!(rows.len(), 2 * 37);
+    // Quotes within are doubled, which the reader above undoes to none.
+    assert_eq!(
+        (names[0].as_str(), names[37].as_str()),
+        ("still", "turned,tilt=<stepped> & so")
+    );
+    for (scan, rows) in scans.scans.iter().zip(rows.chunks(37)) {
+        for (bin, row) in rows.iter().enumerate() {
+            let k = &scan.k;
+            assert_eq!(row[0], k.theta_rad[bin].to_degrees());
+            assert_eq!(row[1..4], [k.k_m2[bin], k.k_minus_csr_m2[bin], k.d[bin]]);
+            assert!((row[4] - (row[0] - 90.0 / 37.0)).abs() < 1e-9);
+            assert_eq!(row[5], k.derivative_m2_rad[bin]);
+        }
+    }
+    let (_, rows) = read(&csv::density(&scans), 1);
+    assert_eq!(rows.len(), 2 * 1_280);
+    for (place, row) in rows.iter().enumerate() {
+        let (scan, bin) = (&scans.scans[place / 1_280], place % 1_280);
+        assert_eq!(row[0], bin as f64);
+        assert_eq!(row[1..4], scans.bins.bins()[bin].centre.to_array());
+        assert_eq!(row[4], scan.counts.by_bin()[bin] as f64);
+    }
+    let (names, rows) = read(&csv::histogram(&scans), 1);
+    for scan in &scans.scans {
+        let plain = scan.name.replace('"', "");
+        let own = names.iter().zip(&rows).filter(|(name, _)| **name == plain);
+        let mut bins = 0.0;
+        for (_, row) in own {
+            let within = |count: &&u64| (row[0]..=row[1]).contains(&(**count as f64));
+            assert_eq!(
+                row[2],
+                scan.counts.by_bin().iter().filter(within).count() as f64
+            );
+            bins += row[2];
+        }
+        assert_eq!(bins, 1_280.0);
+    }
+}
+
+fn page_is_whole(page: &str, scans: &Scans) {
+    let alone = page.replace("http://www.w3.org/2000/svg", "");
+    for outside in [
+        "http:", "https:", "src=", "<script", "<link", "@import", "url(",
+    ] {
+        assert!(!alone.contains(outside), "{outside}");
+    }
+    for figure in all_figures(scans) {
+        assert!(page.contains(&figure));
+    }
+    for scan in &scans.scans {
+        assert!(
+            page.matches(&format!("<td>{}</td>", escaped(&scan.name)))
+                .count()
+                >= 4
+        );
+    }
+    for (name, _) in FILES {
+        assert!(page.contains(&format!("<a href=\"{name}\">")), "{name}");
+    }
+    // But for the few elements of HTML that have no end, it is XML.
+    let (head, body) = page.split_once("<body>").unwrap();
+    assert!(head.contains("width=device-width") && head.contains("<html lang=\"en\">"));
+    let body = format!("<body>{}", body.replace("</html>", ""));
+    let names = elements(&body);
+    assert_eq!(names.iter().filter(|name| *name == "figcaption").count(), 4);
+    assert_eq!(names.iter().filter(|name| *name == "caption").count(), 5);
+}
+
+#[test]
+fn the_page_stands_alone_with_every_figure_and_table() {
+    let scans = scans(3);
+    let page = page(&scans);
+    page_is_whole(&page, &scans);
+    assert!(page.contains("a,b &lt;c&gt; &amp; &quot;d&quot;"));
+    let s = scans.scans[1].counts.statistics();
+    assert!(page.contains(&format!(
+        "<td>{:.2}</td><td>{:.2}</td><td>{}</td>",
+        s.mean, s.sd, s.min
+    )));
+    // A row every 15 degrees, the first edge at or behind each.
+    let curves = page.split("The curves as numbers").nth(1).unwrap();
+    let rows = curves
+        .split("<tr><td>")
+        .skip(1)
+        .map(|row| row.split('<').next().unwrap());
+    let rows: Vec<&str> = rows.collect();
+    assert_eq!(
+        (rows.len(), rows[0], rows[11]),
+        (12, "19.46", "180.00"),
+        "{rows:?}"
+    );
+}
