@@ -316,6 +316,12 @@ pub struct Analyze {
         allow_hyphen_values = true
     )]
     pub sweep: Option<Sweep>,
+    /// Folder for a page to look at (index.html), its figures (SVG), every curve (CSV) and analyze.json
+    #[arg(long, value_name = "DIR", conflicts_with = "sweep")]
+    pub report: Option<PathBuf>,
+    /// Write into a folder that is not empty, over what has the same names
+    #[arg(long, requires = "report")]
+    pub force: bool,
 }
 
 /// `tradeoff`.

@@ -2,6 +2,7 @@
 
 mod beside;
 mod file;
+mod texts;
 
 use std::io as stdio;
 use std::path::{Path, PathBuf};
@@ -18,6 +19,7 @@ use self::file::Shared;
 use crate::failure::{Failure, Kind};
 
 pub(crate) use self::file::Buffered;
+pub use self::texts::{make_folder, write_text};
 
 /// A cloud's destination, checked and opened before anything is measured.
 pub struct Target {

@@ -860,6 +860,83 @@ fn a_pattern_its_clouds_and_its_log_are_analysed_alike() {
     );
 }
 
+/// A page, figures, tables and JSON of two scans side by side; nothing overwritten unasked.
+#[test]
+fn analyze_writes_a_report_that_stands_alone() {
+    let place = Place::new();
+    let line =
+        "analyze vlp16,step=2 rmbl:1200,step=2 --level 2 --bins 30 --report out/report --json";
+    let output = place.run(line);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    let report = json(&output);
+    let file = |name: &str| {
+        assert!(said.contains(name), "{name} in:\n{said}");
+        std::fs::read_to_string(place.path("out/report").join(name)).unwrap()
+    };
+    let written: serde_json::Value = serde_json::from_str(&file("analyze.json")).unwrap();
+    assert_eq!(written, report);
+    let page = file("index.html");
+    for name in ["density.svg", "histogram.svg", "planes.svg", "k.svg"] {
+        let figure = file(name);
+        assert!(
+            figure.starts_with("<svg") && page.contains(&figure),
+            "{name}"
+        );
+    }
+    // What is in the tables is what the JSON says.
+    let (k, density) = (file("k.csv"), file("density.csv"));
+    let d = k.lines().skip(1).map(|line| {
+        let fields = line.rsplit(',');
+        fields.skip(2).take(1).collect::<String>()
+    });
+    let d: Vec<f64> = d.map(|d| d.parse().unwrap()).collect();
+    let curves = report["patterns"].as_array().unwrap().iter();
+    let curves: Vec<f64> = curves
+        .flat_map(|pattern| pattern["k"]["k_minus_csr"].as_array().unwrap())
+        .map(|d| d.as_f64().unwrap())
+        .collect();
+    assert_eq!((d.len(), d), (60, curves));
+    let points = |name: &str| -> u64 {
+        let lines = density.lines().filter(|line| line.starts_with(name));
+        lines
+            .map(|line| line.rsplit(',').next().unwrap().parse::<u64>().unwrap())
+            .sum()
+    };
+    for (pattern, name) in report["patterns"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(["\"vlp16", "\"rmbl"])
+    {
+        assert_eq!(pattern["points"], points(name), "{name}");
+    }
+    assert_eq!(
+        file("histogram.csv").lines().next(),
+        Some("pattern,from,to,bins")
+    );
+
+    place.fails(
+        line,
+        2,
+        &["out/report exists already and is not empty", "--force"],
+    );
+    let again = place.run(&format!("{line} --force"));
+    assert!(again.status.success());
+    assert_eq!(file("index.html"), page);
+    place.fails(
+        "analyze vlp16 --report velomotion.toml",
+        2,
+        &["velomotion.toml exists already"],
+    );
+    place.fails(
+        "analyze rmbl:50 --sweep rpm=300..600 --report page",
+        2,
+        &["cannot be used with"],
+    );
+    place.fails("analyze vlp16 --force", 2, &["--report"]);
+}
+
 #[test]
 fn what_cannot_be_analysed_is_said() {
     let place = Place::new();

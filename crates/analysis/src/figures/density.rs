@@ -88,7 +88,7 @@ fn about(scans: &Scans, shades: &Shades) -> String {
     for scan in &scans.scans {
         let s = scan.counts.statistics();
         about += &format!(
-            " {}: mean {:.2}, standard deviation {:.2}, {} to {} points a bin, {} bins empty.",
+            " {}: mean {:.3}, standard deviation {:.2}, {} to {} points a bin, {} bins empty.",
             scan.name, s.mean, s.sd, s.min, s.max, s.empty
         );
     }
@@ -98,7 +98,7 @@ fn about(scans: &Scans, shades: &Shades) -> String {
 fn row(scan: &Scan, faces: &[Face], counts: &[u64], shades: &Shades, top: f64) -> String {
     let s = scan.counts.statistics();
     let more = format!(
-        "{} points; a bin {:.2} on average, sd {:.2}, from {} to {}; {} empty",
+        "{} points; a bin {:.3} on average, sd {:.2}, from {} to {}; {} empty",
         scan.points, s.mean, s.sd, s.min, s.max, s.empty
     );
     let mut svg = heading(&scan.name, &more, top + 14.0);

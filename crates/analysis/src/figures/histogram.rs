@@ -49,7 +49,7 @@ pub fn histogram(scans: &Scans) -> String {
     for (number, scan) in scans.scans.iter().enumerate() {
         let s = scan.counts.statistics();
         about += &format!(
-            " {}: mean {:.2}, standard deviation {:.2}.",
+            " {}: mean {:.3}, standard deviation {:.2}.",
             scan.name, s.mean, s.sd
         );
         body += &format!("<g transform=\"translate(0 {top:.0})\">\n");
@@ -68,7 +68,7 @@ pub fn histogram(scans: &Scans) -> String {
 fn plot(scan: &Scan, number: usize, width: u64, x: &Axis, y: &Axis) -> String {
     let s = scan.counts.statistics();
     let more = format!(
-        "mean {:.2} (line), sd {:.2} (dashed), {} to {} points a bin",
+        "mean {:.3} (line), sd {:.2} (dashed), {} to {} points a bin",
         s.mean, s.sd, s.min, s.max
     );
     let mut svg = heading(&scan.name, &more, 14.0);

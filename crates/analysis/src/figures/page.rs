@@ -26,8 +26,8 @@ const MORE_STYLE: &str = "\
 figure svg{max-width:45rem}figcaption{color:var(--soft);font-size:.92rem;margin-top:.5rem}\
 .wide{overflow-x:auto;-webkit-overflow-scrolling:touch}.wide svg{min-width:34rem}\
 table{margin:.8rem 0}caption{text-align:left;color:var(--soft);font-size:.92rem;padding:.2rem 0}\
-td:first-child{overflow-wrap:anywhere;min-width:7rem}summary{cursor:pointer;color:var(--mark)}\
-code{overflow-wrap:anywhere}\
+td:first-child{overflow-wrap:anywhere;min-width:9rem}summary{cursor:pointer;color:var(--mark)}\
+code{overflow-wrap:anywhere}@media (max-width:34rem){figcaption{padding:0 .7rem}}\
 @media print{body{background:#fff}section{border:0;padding:0;break-inside:auto}figure,tr{break-inside:avoid}nav{display:none}.wide svg{min-width:0}}";
 
 /// Angles between those of the page's table of K, degrees.
@@ -106,7 +106,8 @@ fn sections(scans: &Scans) -> Vec<Section> {
             figure(
                 &curves(scans),
                 "Ripley's K function less that of points at random (complete spatial randomness), over the area of the sphere: so much larger is the share of \
-                 all pairs within an angle. Above 0 points cluster, below they keep apart. The derivative says at which angles pairs are too many or too few.",
+                 all pairs within an angle. Above 0 points cluster, below they keep apart. The derivative says at which angles pairs are too many or too few. \
+                 Of curves that coincide the last is on top.",
             ) + &extremes(scans)
                 + &k_table(scans),
         ),
@@ -169,7 +170,7 @@ fn summary(scans: &Scans) -> String {
         "scan",
         "points",
         "seconds",
-        "largest hole, deg",
+        "largest hole in view, deg",
         "sd / mean",
         "largest |K - K_csr|",
     ];
@@ -189,7 +190,7 @@ fn densities(scans: &Scans) -> String {
     let rows = rows(scans, |scan| {
         let s = scan.counts.statistics();
         vec![
-            format!("{:.2}", s.mean),
+            format!("{:.3}", s.mean),
             format!("{:.2}", s.sd),
             s.min.to_string(),
             s.max.to_string(),

@@ -125,8 +125,8 @@ fn cell(right_m: f64, up_m: f64) -> Option<usize> {
 
 const NAMES: [(&str, &str, &str); 3] = [
     ("ground, 1.5 m below", "x", "y"),
-    ("wall at x = 10 m", "y", "z"),
-    ("wall at y = 10 m", "x", "z"),
+    ("at x = 10 m", "y", "z"),
+    ("at y = 10 m", "x", "z"),
 ];
 
 /// The figure: a row a scan, a column a plane.
@@ -168,12 +168,14 @@ fn panel(cells: &[u32], (name, right, up): (&str, &str, &str), left: f64, top: f
     svg += "</g>\n";
     let bottom = top + PANEL;
     let half = SIDE_M / 2.0;
-    let up_from = if up == "z" { -GROUND_M } else { -half };
-    let caption = format!(
-        "{name}; {right} {} to {half} m, {up} {up_from} to {} m",
-        -half,
-        up_from + SIDE_M
-    );
+    let caption = match up {
+        "z" => format!(
+            "{name}: {right} \u{b1}{half} m, {up} {} to {} m",
+            -GROUND_M,
+            SIDE_M - GROUND_M
+        ),
+        _ => format!("{name}: {right}, {up} \u{b1}{half} m"),
+    };
     svg += &text(
         left + PANEL / 2.0,
         bottom + 15.0,
@@ -223,7 +225,7 @@ fn scale(top: f64) -> String {
         let (from, to) = (1_u32 << class, (2_u32 << class) - 1);
         let name = match class {
             0 => "1".to_owned(),
-            class if class + 1 == CLASSES => format!("{from} and more"),
+            class if class + 1 == CLASSES => format!("{from}+"),
             _ => format!("{from} to {to}"),
         };
         let colour = shade(class);

@@ -269,7 +269,7 @@ fn the_page_stands_alone_with_every_figure_and_table() {
     assert!(page.contains("a,b &lt;c&gt; &amp; &quot;d&quot;"));
     let s = scans.scans[1].counts.statistics();
     assert!(page.contains(&format!(
-        "<td>{:.2}</td><td>{:.2}</td><td>{}</td>",
+        "<td>{:.3}</td><td>{:.2}</td><td>{}</td>",
         s.mean, s.sd, s.min
     )));
     // A row every 15 degrees, the first edge at or behind each.

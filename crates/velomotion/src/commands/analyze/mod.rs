@@ -1,7 +1,8 @@
 //! `velomotion analyze`: how densely and how evenly scans cover what is about them.
 //!
-//! Patterns come from `sim`, clouds and logs from their files (`input`); what is measured is `analysis`'s. Left out: how it is said (`report`).
+//! Patterns come from `sim`, clouds and logs from their files (`input`); what is measured is `analysis`'s. Left out: how it is said (`report`), and drawn (`folder`).
 
+mod folder;
 mod input;
 mod report;
 mod sweep;
@@ -13,6 +14,7 @@ use analysis::density::{
     Counts, DensityError, Icosahedron, Largest, Locator, TOLERANCE_RAD, bands, gaps, holes,
     largest_hole, largest_hole_within, quantile, rows,
 };
+use analysis::figures::SPHERE_M;
 use analysis::k::{self, Edges, KCurve, Sampling, Turning};
 use glam::DVec3;
 use sim::patterns::{AXIS, Pattern};
@@ -25,6 +27,7 @@ use crate::cli::{self, Common};
 use crate::failure::{Failure, Kind};
 use crate::progress::Progress;
 use crate::signals;
+use folder::Folder;
 use input::{Input, Named};
 
 /// Classes of the histogram.
@@ -49,15 +52,25 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
         .iter()
         .map(|argument| Named::new(argument))
         .collect::<Result<_, _>>()?;
+    let mut folder = Folder::new(arguments)?;
     let mut patterns = Vec::with_capacity(inputs.len());
     for (input, name) in inputs.iter().zip(&arguments.inputs) {
         go_on(&interrupt)?;
         if inputs.len() > 1 {
             progress.say(name);
         }
-        patterns.push(measure.one(&input.read(&interrupt)?, &interrupt)?);
+        let input = input.read(&interrupt)?;
+        let pattern = measure.one(&input, &interrupt)?;
+        if let Some(folder) = &mut folder {
+            folder.add(&input, &pattern);
+        }
+        patterns.push(pattern);
     }
     let report = Report { patterns };
+    if let Some(folder) = folder {
+        go_on(&interrupt)?;
+        folder.write(&report, &progress)?;
+    }
     Ok(Said::report(&report, report.text()))
 }
 
@@ -126,6 +139,7 @@ impl Measure {
                 statistics: counts.statistics(),
                 level: self.level,
                 histogram: counts.histogram(CLASSES),
+                counts,
             },
             hole: hole_report(&largest),
             hole_in_view: in_view.as_ref().map(hole_report),
@@ -166,7 +180,7 @@ impl Measure {
             Failure::new(Kind::BadInput, format!("{}: {error}", input.name))
                 .help("--tolerance 0 counts every pair, whatever the points")
         })?;
-        let curve = KCurve::of_estimate(&estimate, 1.0);
+        let curve = KCurve::of_estimate(&estimate, SPHERE_M);
         Ok(KReport {
             method: estimate.method,
             bins: curve.d.len(),
@@ -179,7 +193,8 @@ impl Measure {
             max_abs: curve.d_max.max(-curve.d_min),
             max: curve.d_max,
             min: curve.d_min,
-            k_minus_csr: curve.d,
+            k_minus_csr: curve.d.clone(),
+            curve,
         })
     }
 

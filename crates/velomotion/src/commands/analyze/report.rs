@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use analysis::density::{Band, Class, Row, Statistics};
+use analysis::density::{Band, Class, Counts, Row, Statistics};
 use analysis::device::View;
+use analysis::k::KCurve;
 use serde::Serialize;
 
 /// All that was asked for.
@@ -54,6 +55,9 @@ pub struct Density {
     pub level: u32,
     /// Bins by their points.
     pub histogram: Vec<Class>,
+    /// Points in each, for figures.
+    #[serde(skip)]
+    pub counts: Counts,
 }
 
 /// The largest circle without a point.
@@ -89,6 +93,9 @@ pub struct KReport {
     pub max: f64,
     /// The smallest.
     pub min: f64,
+    /// All of it, for figures.
+    #[serde(skip)]
+    pub curve: KCurve,
 }
 
 /// How far it is to the nearest point, from the middles of bins; of patterns those in view.
@@ -234,7 +241,7 @@ impl PatternReport {
     }
 
     /// The largest hole that counts: in view, where the view is known.
-    fn worst(&self) -> &HoleReport {
+    pub(super) fn worst(&self) -> &HoleReport {
         self.hole_in_view.as_ref().unwrap_or(&self.hole)
     }
 

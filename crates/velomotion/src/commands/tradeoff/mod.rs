@@ -17,18 +17,16 @@ mod trajectory;
 mod trigonometry;
 mod workload;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use analysis::tradeoff::{
     Bench, Effort, Findings, KFunction, Report, Study, html, json, markdown, svg, text,
 };
-use io::files::{FileError, NewFile};
 
 use super::Said;
 use crate::cli::{self, Common};
 use crate::failure::{Failure, Kind};
-use crate::output::{check_free, file_failure, overwrite};
+use crate::output::{check_free, make_folder, write_text};
 use crate::progress::Progress;
 
 /// The studies, in the order of the page.
@@ -183,30 +181,8 @@ impl<'a> Folders<'a> {
             files.extend(figures(&folder.join(PAGE)));
         }
         for (path, content) in &files {
-            write(path, content, force)?;
+            write_text(path, content, force)?;
         }
         Ok(files.into_iter().map(|(path, _)| path).collect())
     }
-}
-
-fn make_folder(folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|source| {
-        file_failure(&FileError::Io {
-            path: folder.to_owned(),
-            action: "create",
-            source,
-        })
-    })
-}
-
-fn write(path: &Path, content: &str, force: bool) -> Result<(), Failure> {
-    let mut file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
-    file.write_all(content.as_bytes()).map_err(|source| {
-        file_failure(&FileError::Io {
-            path: path.to_owned(),
-            action: "write",
-            source,
-        })
-    })?;
-    file.commit().map_err(|error| file_failure(&error))
 }

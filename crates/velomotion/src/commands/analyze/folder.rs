@@ -1,0 +1,123 @@
+//! `analyze --report DIR`: the page, its figures, and every curve as a table.
+//!
+//! What is drawn is `analysis::figures`'. Pictures of dots (PNG) are left out: they would take a renderer of SVG, which is larger than the program's own code.
+
+use std::path::{Path, PathBuf};
+
+use analysis::density::Icosahedron;
+use analysis::figures::{self, Planes, Scan, Scans, csv};
+
+use super::input::Input;
+use super::report::{PatternReport, Report};
+use crate::cli;
+use crate::commands::json;
+use crate::failure::{Failure, Kind};
+use crate::output::{make_folder, write_text};
+use crate::progress::Progress;
+
+/// A folder that fills.
+pub struct Folder {
+    path: PathBuf,
+    force: bool,
+    scans: Scans,
+}
+
+impl Folder {
+    /// The folder asked for, if any; it is made now, so that nothing is measured in vain.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for one that holds something, unless `--force`; [`Kind::BadInput`] for one that cannot be made.
+    pub fn new(arguments: &cli::Analyze) -> Result<Option<Self>, Failure> {
+        let Some(path) = arguments.report.clone() else {
+            return Ok(None);
+        };
+        if !arguments.force && holds_something(&path) {
+            let what = format!("{} exists already and is not empty", path.display());
+            let help = "name another folder, or write into it with --force";
+            return Err(Failure::new(Kind::Usage, what).help(help));
+        }
+        make_folder(&path)?;
+        let bins = Icosahedron::new(arguments.level)
+            .map_err(|error| Failure::new(Kind::Usage, error.to_string()))?;
+        Ok(Some(Self {
+            path,
+            force: arguments.force,
+            scans: Scans {
+                program: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
+                command: command(arguments),
+                bins,
+                scans: Vec::new(),
+            },
+        }))
+    }
+
+    /// What is drawn of a scan: no more than is needed of it, whatever its size.
+    pub fn add(&mut self, input: &Input, pattern: &PatternReport) {
+        self.scans.scans.push(Scan {
+            name: pattern.name.clone(),
+            points: pattern.points,
+            scan_s: pattern.scan_s,
+            hole_deg: pattern.worst().radius_deg,
+            counts: pattern.density.counts.clone(),
+            k: pattern.k.curve.clone(),
+            method: pattern.k.method,
+            planes: Planes::new(&input.directions),
+        });
+    }
+
+    /// Writes all files and says which.
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] where the system refuses.
+    pub fn write(&self, report: &Report, progress: &Progress) -> Result<(), Failure> {
+        let scans = &self.scans;
+        let json = json(report);
+        let files = [
+            ("density.svg", figures::density(scans)),
+            ("histogram.svg", figures::histogram(scans)),
+            ("planes.svg", figures::planes(scans)),
+            ("k.svg", figures::curves(scans)),
+            ("density.csv", csv::density(scans)),
+            ("histogram.csv", csv::histogram(scans)),
+            ("k.csv", csv::k(scans)),
+            ("analyze.json", format!("{json:#}\n")),
+            ("index.html", figures::page(scans)),
+        ];
+        for (name, content) in &files {
+            let file = self.path.join(name);
+            write_text(&file, content, self.force)?;
+            progress.say(&format!("wrote {}", file.display()));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a name is taken by more than an empty folder.
+fn holds_something(path: &Path) -> bool {
+    match std::fs::read_dir(path) {
+        Ok(mut entries) => entries.next().is_some(),
+        Err(_) => path.exists(),
+    }
+}
+
+/// The command that measures the same again.
+fn command(arguments: &cli::Analyze) -> String {
+    let mut words = vec!["velomotion analyze".to_owned()];
+    let inputs = arguments.inputs.iter();
+    words.extend(
+        inputs.map(|input| match input.contains(char::is_whitespace) {
+            true => format!("'{input}'"),
+            false => input.clone(),
+        }),
+    );
+    let cli::Analyze {
+        level,
+        tolerance,
+        bins,
+        ..
+    } = arguments;
+    words.push(format!(
+        "--level {level} --bins {bins} --tolerance {tolerance}"
+    ));
+    words.join(" ")
+}

@@ -1,0 +1,39 @@
+//! Text files in a folder: pages, figures and tables. Left out: clouds.
+
+use std::io::Write;
+use std::path::Path;
+
+use io::files::{FileError, NewFile};
+
+use super::{file_failure, overwrite};
+use crate::failure::Failure;
+
+/// Makes a folder, and those above it, unless it is there.
+///
+/// # Errors
+/// [`crate::failure::Kind::BadInput`] where the system refuses.
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|source| {
+        file_failure(&FileError::Io {
+            path: folder.to_owned(),
+            action: "create",
+            source,
+        })
+    })
+}
+
+/// Writes a whole file, or none.
+///
+/// # Errors
+/// [`crate::failure::Kind::Usage`] for one that exists, unless `force`; [`crate::failure::Kind::BadInput`] where the system refuses.
+pub fn write_text(path: &Path, content: &str, force: bool) -> Result<(), Failure> {
+    let mut file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
+    file.write_all(content.as_bytes()).map_err(|source| {
+        file_failure(&FileError::Io {
+            path: path.to_owned(),
+            action: "write",
+            source,
+        })
+    })?;
+    file.commit().map_err(|error| file_failure(&error))
+}
