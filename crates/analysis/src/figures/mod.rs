@@ -1,7 +1,7 @@
 //! Scan patterns as figures, tables and one page, in the manner of the 2018 paper's Figures 2-7 and 11, for any list of patterns side by side.
 //!
-//! Data in, text out: [`density`] on the sphere from three sides, [`planes`] about the scanner, [`histogram`] and [`curves`] as SVG; [`csv`] of every curve;
-//! [`page`] with all of it. All patterns of a figure have one scale, on which darker is more, so that it reads in print without colour, too.
+//! Data in, text out: [`density()`] on the sphere from three sides, [`planes()`] about the scanner, [`histogram()`] and [`curves()`] as SVG; [`mod@csv`] of every curve;
+//! [`page()`] with all of it. All patterns of a figure have one scale, on which darker is more, so that it reads in print without colour, too.
 //! Left out: where the numbers come from ([`crate::density`], [`crate::k`]), and files.
 
 mod colour;
