@@ -305,6 +305,8 @@ pub fn sweep(address: SocketAddr) -> String {
 
 /// Waits until the axis sweeps; false where the capture ended before.
 pub fn sweeps(address: SocketAddr) -> bool {
+    // The highest angle since the sweep began: the first that is told may be an older one.
+    let mut highest = f64::NEG_INFINITY;
     wait("a sweep", || {
         let status = request(address, "GET", "/api/v1/status", "", "").json();
         if status["activity"]["doing"] != "capturing" {
@@ -312,6 +314,9 @@ pub fn sweeps(address: SocketAddr) -> bool {
         }
         let moving = status["activity"]["step"].as_u64()? > 0;
         let angle = status["drive"]["angle_deg"].as_f64()?;
-        (moving && angle < -1.0).then_some(true)
+        if moving {
+            highest = highest.max(angle);
+        }
+        (moving && angle < highest - 1.0).then_some(true)
     })
 }
