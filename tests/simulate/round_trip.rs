@@ -92,3 +92,43 @@ fn the_hall_as_a_real_scanner_would_see_it() {
         quantile(0.95)
     );
 }
+
+/// One request or answer in fifty is lost. The host gives it up after 20 ms and asks for a marker, so nothing after it is taken for something
+/// else; were it not to, every later answer could belong to either of two requests and the sweep would seem to end there.
+#[test]
+fn lost_answers_of_the_drive_cost_samples_and_nothing_else() {
+    for seed in [3, 5, 8] {
+        let lossy = format!(
+            "seed = {seed}\n{}\n[effects.loss]\ndrive_share = 0.02\n",
+            shipped("rig")
+        );
+        let scene = Simulated::new(&lossy, |_| {});
+        let (scan, cloud) = replayed(&scene.log(), TiltSource::Log);
+        let [sweep] = scan.sweeps[..] else {
+            panic!("{:?}", scan.sweeps)
+        };
+        assert!(sweep.from_deg.abs() < 1e-3 && (sweep.to_deg + 45.0).abs() < 1e-3);
+        assert!(cloud.len() > 230_000, "{}", cloud.len());
+        let (rms_m, worst_m) = rms_and_worst(&scene.errors(&cloud));
+        println!("seed {seed}: rms {rms_m} worst {worst_m}");
+        assert!(rms_m < 0.8e-3, "{rms_m}");
+        assert!(worst_m < 2.2e-3, "{worst_m}");
+    }
+}
+
+/// Such a cloud would look right and be wrong.
+#[test]
+fn a_mount_that_a_log_cannot_say_is_warned_of() {
+    for (mount, told) in [
+        ("d_m = 0.1", true),
+        ("position_m = [0, 0, 0.2]", true),
+        ("position_m = [0.01, 0, 0.2]", false),
+        ("rotation_deg = [0, 0, 1]", false),
+    ] {
+        let text = format!(
+            "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.1\n[mount]\n{mount}\n"
+        );
+        let scene = Simulated::new(&text, |_| {});
+        assert_eq!(scene.report.warnings.is_empty(), told, "{mount}");
+    }
+}

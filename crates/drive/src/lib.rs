@@ -30,6 +30,7 @@ pub use event::{
 };
 pub use link::LinkStats;
 pub use listener::{Listener, Observation};
+pub use pairing::MARKERS;
 pub use plan::Plan;
 pub use protocol::canopen::nmt::NmtState;
 pub use protocol::epos2::{CommError, DeviceError, cia402, objects};

@@ -19,7 +19,7 @@ use crate::codec::{Reply, Segment};
 
 /// Entries that no EPOS2 has, with the errors that say so: an index at the end of the manufacturer's range of CiA 301, and a
 /// subindex of an object that each device has.
-pub(crate) const MARKERS: [(Address, CommError); 2] = [
+pub const MARKERS: [(Address, CommError); 2] = [
     (Address::new(0x5FFF, 0), CommError::NO_OBJECT),
     (Address::new(0x1018, 0xFF), CommError::NO_SUB),
 ];

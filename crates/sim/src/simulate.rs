@@ -112,7 +112,8 @@ pub enum Event<'a> {
     },
 }
 
-/// What the host asks of the drive: where its shaft is, all the time, and before each way the six writes that command it.
+/// What the host asks of the drive: where its shaft is, all the time, before each way the six writes that command it, and
+/// after an answer that did not come a marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ask {
     /// Say where the shaft is.
@@ -129,6 +130,9 @@ pub enum Ask {
     Ready,
     /// Go there.
     Go,
+    /// Read an object that no drive has: the first of two, or the second. Its error comes after whatever was still under way, so
+    /// that from there on answers can be told apart again.
+    Marker(bool),
 }
 
 /// A return as it truly was.

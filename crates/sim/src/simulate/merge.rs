@@ -1,8 +1,8 @@
 //! Both devices' traffic in order of time, through the links and out.
 //!
 //! The host asks the drive at even intervals, but never before the last answer has come or has been given up. Before each way of the motion it
-//! writes what commands it, again and again until it is acknowledged; the axis goes its way on time whatever becomes of that. Left out: what a
-//! request looks like on its link.
+//! writes what commands it, again and again until it is acknowledged; the axis goes its way on time whatever becomes of that. After an answer that was
+//! given up it asks for markers until one is answered, as velomotion's client does. Left out: what a request looks like on its link.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::{BinaryHeap, VecDeque};
@@ -81,6 +81,8 @@ pub(super) struct Merge<'a, E, W> {
     legs: std::slice::Iter<'a, Leg>,
     /// What is to be written for the next one.
     commands: VecDeque<Ask>,
+    /// The marker that is due while an answer is missing.
+    marker: Option<bool>,
     pending: Pending,
     order: u64,
     summary: Summary,
@@ -107,6 +109,7 @@ impl<'a, E: Encoder, W: Wire> Merge<'a, E, W> {
             next_poll_ns: 0,
             legs: simulation.motion.legs().iter(),
             commands: VecDeque::new(),
+            marker: None,
             pending: Pending::new(),
             order: 0,
             summary: Summary::default(),
@@ -197,7 +200,10 @@ impl<'a, E: Encoder, W: Wire> Merge<'a, E, W> {
         let (number, asked_ns) = (self.summary.polls, self.next_poll_ns);
         self.summary.polls += 1;
         self.command(asked_ns, polls, gearing);
-        let ask = self.commands.front().copied().unwrap_or(Ask::Position);
+        let ask = match self.marker {
+            Some(which) => Ask::Marker(which),
+            None => self.commands.front().copied().unwrap_or(Ask::Position),
+        };
         push(
             &mut self.pending,
             &mut self.order,
@@ -238,11 +244,19 @@ impl<'a, E: Encoder, W: Wire> Merge<'a, E, W> {
                     );
                 });
         }
-        if answered_ns.is_some() {
-            self.commands.pop_front();
-        }
-        // The next even interval after that.
         let given_up_ns = asked_ns.saturating_add(PATIENCE_PERIODS.saturating_mul(polls.period_ns));
+        self.marker = match answered_ns {
+            // Of what comes later nobody can say to which request.
+            None => Some(!self.marker.unwrap_or(true)),
+            Some(answered_ns) if answered_ns > given_up_ns => Some(!self.marker.unwrap_or(true)),
+            Some(_) => {
+                if self.marker.is_none() {
+                    self.commands.pop_front();
+                }
+                None
+            }
+        };
+        // The next even interval after that.
         let free_ns = answered_ns.unwrap_or(given_up_ns).min(given_up_ns);
         let taken = (free_ns.saturating_sub(asked_ns) / polls.period_ns).max(0);
         self.next_poll_ns = asked_ns.saturating_add((taken + 1).saturating_mul(polls.period_ns));

@@ -17,6 +17,7 @@ struct Taken {
     commands: Vec<Ask>,
     points: Vec<TruePoint>,
     stop_after: Option<usize>,
+    markers: usize,
 }
 
 impl Out for Taken {
@@ -34,6 +35,7 @@ impl Out for Taken {
             } => {
                 match ask {
                     Ask::Position => self.answers.push((*at, *position_qc)),
+                    Ask::Marker(_) => self.markers += 1,
                     other => self.commands.push(*other),
                 }
                 at
@@ -470,6 +472,7 @@ fn whatever_a_link_does_events_come_in_order_and_moves_are_commanded() {
     let mut commands = taken.commands.clone();
     commands.dedup();
     assert_eq!(commands.len(), 6, "{commands:?}");
+    assert!(taken.markers > 0, "nothing was given up: the test is blind");
     // The truth does not care.
     assert_eq!(taken.points.len() as u64, summary.returns);
 }

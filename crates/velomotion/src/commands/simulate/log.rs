@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use cloud::{Fields, Point, Points};
+use drive::CommError;
 use drive::cia402::control;
 use io::log::LogWriter;
 use protocol::epos2::message::{ReadObject, WriteObject};
@@ -168,6 +169,7 @@ impl Out for Log<'_> {
             } => {
                 let answer = match ask {
                     Ask::Position => ReadObject::answer(Ok(position_qc as u32)),
+                    Ask::Marker(which) => ReadObject::answer(Err(marker(which).1)),
                     _ => WriteObject::answer(Ok(())),
                 };
                 self.frame(at, Direction::FromDevice, &answer)
@@ -230,14 +232,16 @@ fn request(ask: Ask, gearing: Gearing) -> Frame {
         write.to_frame()
     };
     let rpm = |deg: f64| (deg / gearing.deg_s_per_rpm()).round() as u32;
+    let read = |address: Address| {
+        let read = ReadObject {
+            node: NODE,
+            address,
+        };
+        read.to_frame()
+    };
     match ask {
-        Ask::Position => {
-            let read = ReadObject {
-                node: NODE,
-                address: objects::POSITION_ACTUAL.address,
-            };
-            read.to_frame()
-        }
+        Ask::Position => read(objects::POSITION_ACTUAL.address),
+        Ask::Marker(which) => read(marker(which).0),
         Ask::Target(qc) => write(objects::TARGET_POSITION.address, qc as u32),
         Ask::Speed(deg_s) => write(objects::PROFILE_VELOCITY.address, rpm(deg_s)),
         Ask::Acceleration(deg_s2) => write(objects::PROFILE_ACCELERATION.address, rpm(deg_s2)),
@@ -251,6 +255,12 @@ fn request(ask: Ask, gearing: Gearing) -> Frame {
             u32::from(control::ENABLE_OPERATION | NEW_SETPOINT | AT_ONCE),
         ),
     }
+}
+
+/// The first marker or the second, and its answer.
+const fn marker(second: bool) -> (Address, CommError) {
+    let [one, other] = drive::MARKERS;
+    if second { other } else { one }
 }
 
 /// Controlword in profile position mode (Firmware Specification, 8.3): a new setpoint, to be taken at once.

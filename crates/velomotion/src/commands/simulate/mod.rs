@@ -12,6 +12,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use cloud::{Fields, Metadata, TiltTrack};
+use glam::{DMat3, DVec2};
 use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
 use serde::Serialize;
@@ -62,6 +63,8 @@ pub struct Report {
     /// The cloud of the truth, where one was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<String>,
+    /// What a user of the log must know.
+    pub warnings: Vec<String>,
     /// What effects did and cost, where that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explanation: Option<Explanation>,
@@ -273,6 +276,7 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
             scene.simulation.run(asked, threads, &mut out)
         }
     };
+    let warnings = beyond_the_log(&scene).into_iter().collect();
     let summary = summary.map_err(|error| cannot_simulate(&name, &error))?;
     let (truth, cut) = out.finish(path)?;
     let took = began.elapsed();
@@ -289,6 +293,7 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
         threads: threads.get(),
         log: path.display().to_string(),
         truth: truth.map(|path| path.display().to_string()),
+        warnings,
         explanation,
         ..Report::new(name, &summary, took)
     };
@@ -328,6 +333,7 @@ impl Report {
             threads: 0,
             log: String::new(),
             truth: None,
+            warnings: Vec::new(),
             explanation: None,
         }
     }
@@ -383,8 +389,22 @@ impl Report {
         ));
         rows.push(("log", self.log.clone()));
         rows.extend(self.truth.iter().map(|truth| ("truth", truth.clone())));
+        let warnings = self.warnings.iter();
+        rows.extend(warnings.map(|warning| ("warning", warning.clone())));
         report::table(rows)
     }
+}
+
+/// What the scene has and a log cannot say: how the lidar is turned on the platform, and where it is but for its height.
+fn beyond_the_log(scene: &Scene) -> Option<String> {
+    let mount = &scene.simulation.mount;
+    let told = mount.turn == DMat3::IDENTITY && mount.at_m.truncate() == DVec2::ZERO;
+    (!told).then(|| {
+        format!(
+            "a log tells of the mount its height alone, {} m: a replay leaves the scene's position_m and rotation_deg out, the truth does not",
+            mount.at_m.z
+        )
+    })
 }
 
 fn share(part: u64, of: u64) -> f64 {
