@@ -1,7 +1,7 @@
 use super::*;
-use proptest::prelude::*;
 use protocol::vlp16::DATA_LEN;
 
+mod cuts;
 mod damage;
 mod dialects;
 
@@ -435,74 +435,6 @@ fn a_wrong_length_ends_the_reading_and_says_where() {
     );
 }
 
-/// Where records end in a file, so that a cut elsewhere is within one.
-fn cut_everywhere(file: &[u8], ends: &[usize]) {
-    let whole = read(file).0;
-    let header_end = ends[0];
-    for cut in 0..file.len() {
-        let got = Recording::new(&file[..cut], "cut");
-        if cut < header_end {
-            match got {
-                Err(RecordingError::Empty { .. }) => assert_eq!(cut, 0),
-                Err(RecordingError::Short { got, .. }) => assert_eq!(got, cut as u64),
-                // Fewer bytes than a magic number has.
-                other => panic!("cut at {cut}: {other:?}"),
-            }
-            continue;
-        }
-        let (records, end, counts) = read(&file[..cut]);
-        assert_eq!(records, whole[..records.len()], "cut at {cut}");
-        assert_eq!(counts.malformed, 0);
-        let start = *ends.iter().rfind(|&&end| end <= cut).unwrap();
-        if start == cut {
-            assert_eq!(end, End::Complete, "cut at {cut}");
-        } else {
-            let End::Truncated {
-                offset,
-                expected,
-                got,
-            } = end
-            else {
-                panic!("cut at {cut}: {end:?}");
-            };
-            assert_eq!((offset, got), (start as u64, (cut - start) as u64));
-            assert!(expected > got);
-        }
-    }
-}
-
-#[test]
-fn a_pcap_cut_at_any_byte_keeps_what_was_whole() {
-    let data = ethernet(&[], &ip(2368, b"firing"));
-    let records: Vec<(u32, u32, Option<u32>, &[u8])> =
-        (0..4).map(|s| (s, 0, None, data.as_slice())).collect();
-    for big in [false, true] {
-        let file = pcap(0xA1B2_3C4D, big, 1, &records);
-        let ends: Vec<usize> = (0..=4).map(|n| 24 + n * (16 + data.len())).collect();
-        cut_everywhere(&file, &ends);
-    }
-}
-
-#[test]
-fn a_pcapng_cut_at_any_byte_keeps_what_was_whole() {
-    let data = ethernet(&[], &ip(2368, b"firing"));
-    for big in [false, true] {
-        let mut file = Vec::new();
-        let mut ends = Vec::new();
-        for part in [
-            section(big),
-            interface(big, 1, &[(9, &[9])]),
-            packet(big, 0, 1, &data, None),
-            packet(big, 0, 2, &data, Some(1)),
-            packet(big, 0, 3, &data, Some(2)),
-        ] {
-            file.extend(part);
-            ends.push(file.len());
-        }
-        cut_everywhere(&file, &ends);
-    }
-}
-
 #[test]
 fn files_that_are_no_recordings_say_what_they_are() {
     let folder = tempfile::tempdir().unwrap();
@@ -630,120 +562,6 @@ fn a_long_recording_does_not_grow_in_memory() {
     assert_eq!(n, records);
     assert_eq!(recording.window.capacity(), before);
     assert!(before <= 1 << 20);
-}
-
-/// Small sound files of every format, to be damaged.
-fn sound_files() -> Vec<Vec<u8>> {
-    let data = ethernet(&[0x81, 0, 0, 5], &ip(2368, b"firing"));
-    let can = [0, 0, 6, 1, 2, 0, 0, 0, 0x40, 0x41];
-    let mut files = vec![
-        pcap(
-            0xA1B2_CD34,
-            false,
-            1,
-            &[(1, 2, None, &[0; 40]), (3, 4, None, &data)],
-        ),
-        pcap(
-            0xA1B2_C3D4,
-            false,
-            276,
-            &[(1, 2, None, &data), (3, 4, None, &data)],
-        ),
-        pcap(
-            0xA1B2_C3D4,
-            false,
-            113,
-            &[(1, 2, None, &data), (3, 4, None, &data)],
-        ),
-        pcap(0xA1B2_C3D4, false, 0, &[(1, 2, None, &data)]),
-    ];
-    for big in [false, true] {
-        files.push(pcap(
-            0xA1B2_C3D4,
-            big,
-            1,
-            &[(1, 2, None, &data), (3, 4, None, &data)],
-        ));
-        files.push(
-            [
-                section(big),
-                interface(big, 1, &[(2, b"lidar"), (9, &[9]), (14, &[0; 8])]),
-                interface(big, 227, &[(2, b"can")]),
-                interface(big, 147, &[(2, b"epos2-usb")]),
-                packet(big, 0, 1, &data, Some(1)),
-                packet(big, 1, 2, &can, Some(2)),
-                packet(big, 2, 3, &[0x90, 2, 0, 0], Some(2)),
-            ]
-            .concat(),
-        );
-    }
-    files
-}
-
-/// Reads whatever it is to its end, at once and as a pipe gives it.
-fn exhaust(bytes: &[u8]) -> u64 {
-    let pieces = exhaust_from(Pieces(bytes));
-    let whole = exhaust_from(bytes);
-    assert_eq!(whole, pieces);
-    whole.map_or(0, |(counts, _)| counts.records)
-}
-
-/// Gives a few bytes at a time.
-struct Pieces<'a>(&'a [u8]);
-
-impl Read for Pieces<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let n = buffer.len().min(self.0.len()).min(37);
-        self.0.read(&mut buffer[..n])
-    }
-}
-
-fn exhaust_from(reader: impl Read) -> Option<(Counts, End)> {
-    let mut recording = Recording::new(reader, "noise").ok()?.keep_foreign();
-    while recording.next_record().unwrap().is_some() {}
-    let counts = recording.counts();
-    let udp = counts.datagrams.values().sum::<u64>() + counts.more_datagrams;
-    let parts = udp + counts.to_drive + counts.from_drive + counts.other;
-    let fragments = counts.fragments + counts.joined;
-    assert_eq!(counts.records, parts + fragments + counts.malformed);
-    assert!(counts.snapped + counts.timeless + counts.damaged <= counts.malformed);
-    Some((counts.clone(), recording.end().cloned().unwrap()))
-}
-
-#[test]
-fn the_sound_files_are_sound() {
-    for (n, file) in sound_files().iter().enumerate() {
-        assert!(exhaust(file) > 0, "file {n}");
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
-
-    #[test]
-    fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
-        exhaust(&bytes);
-        for file in sound_files() {
-            // Behind a header that is believed.
-            exhaust(&[&file[..24.min(file.len())], &bytes].concat());
-        }
-    }
-
-    #[test]
-    fn no_damage_makes_it_panic(
-        n in any::<prop::sample::Index>(),
-        damage in prop::collection::vec((any::<prop::sample::Index>(), prop_oneof![Just(0_u8), Just(0xFF), any::<u8>()]), 1..12),
-        cut in any::<prop::sample::Index>(),
-    ) {
-        let files = sound_files();
-        let mut file = files[n.index(files.len())].clone();
-        for (at, value) in damage {
-            let at = at.index(file.len());
-            file[at] = value;
-        }
-        exhaust(&file);
-        exhaust(&file[..cut.index(file.len())]);
-    }
 }
 
 #[test]

@@ -1,5 +1,9 @@
 //! `velomotion replay`: a cloud from a log, or from anybody's lidar recording. `capture` ends with the same function.
 
+mod doubts;
+mod failures;
+mod tilt;
+
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,8 +14,7 @@ use lidar::{Options, Stats, UtcClock};
 use protocol::record::{DriveLink, Record};
 use scanner::trajectory::Method;
 use scanner::{
-    Accuracy, Alignment, AngleTable, OutOfReach, Placed, Placer, ScanConfig, ScanError, Survey,
-    TableTime, TiltSource,
+    Accuracy, Alignment, Placed, Placer, ScanConfig, ScanError, Survey, TableTime, TiltSource,
 };
 use sim::Truth;
 use units::{Degrees, Span};
@@ -30,6 +33,9 @@ use crate::report::{self, Scan, StepReport, Sync, ToleranceReport};
 use crate::sensing;
 use crate::signals;
 use crate::utc::{InUtc, UtcSurvey};
+use doubts::doubts;
+pub(super) use failures::scan_failure;
+use tilt::tilt_source;
 
 /// What to make a cloud of.
 pub struct Request<'a> {
@@ -393,54 +399,6 @@ fn stopped(path: &Path) -> Failure {
     .help(format!("replay {} makes it again", path.display()))
 }
 
-/// Above this a point 10 m away may be off by more than 17 mm.
-const DOUBTFUL_DEG: f64 = 0.1;
-/// A sweep that ends farther than this from where it was to end was cut short.
-const SHORT_DEG: f64 = 0.1;
-
-/// What is doubtful about the angles: polls too slow or too few, sweeps that are not as planned.
-fn doubts(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
-    let mut doubts = Vec::new();
-    if let Some(bound) = alignment
-        .angle_bound_deg()
-        .filter(|bound| *bound > DOUBTFUL_DEG)
-    {
-        doubts.push(format!(
-            "the drive's answers were slow or missing: angles may be off by {bound:.2} deg in places, {:.0} mm at 10 m",
-            bound.to_radians() * 10e3
-        ));
-    }
-    if alignment.implausible > 0 {
-        doubts.push(format!(
-            "{} shaft positions were far beside their neighbours and were left out: the drive's link corrupts data",
-            alignment.implausible
-        ));
-    }
-    for (number, fit) in alignment.trajectory.fits().iter().enumerate() {
-        let remarks = fit.remarks.iter();
-        doubts.extend(remarks.map(|remark| format!("sweep {}: {remark}", number + 1)));
-    }
-    let Some(plan) = config.sweep.filter(|_| !alignment.sweeps.is_empty()) else {
-        return doubts;
-    };
-    for (number, sweep) in alignment.sweeps.iter().enumerate() {
-        let back = plan.both_ways && number % 2 == 1;
-        let end = if back { plan.from_deg } else { plan.to_deg };
-        if (sweep.to.0 - end).abs() > SHORT_DEG {
-            doubts.push(format!(
-                "sweep {} was cut short at {:.3} deg of {end} deg",
-                number + 1,
-                sweep.to.0
-            ));
-        }
-    }
-    let made = alignment.sweeps.len();
-    if (made as u64) < u64::from(plan.sweeps) {
-        doubts.push(format!("{made} of {} sweeps were made", plan.sweeps));
-    }
-    doubts
-}
-
 fn sync(alignment: &Alignment) -> Sync {
     Sync {
         clock_method: "lower envelope",
@@ -472,106 +430,4 @@ fn metadata(config: &ScanConfig, request: &Request<'_>) -> Metadata {
         .to_owned(),
         comments,
     }
-}
-
-/// Reads `--tilt`.
-fn tilt_source(text: &str) -> Result<TiltSource, Failure> {
-    match text {
-        "log" => Ok(TiltSource::Log),
-        "none" => Ok(TiltSource::None),
-        path => angle_table(Path::new(path)).map(TiltSource::Table),
-    }
-}
-
-/// Reads a CSV of time_s,angle_deg; a first line without numbers is a heading.
-fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
-    let wrong = |what: String| {
-        Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
-            "give a CSV of two columns, time_s,angle_deg: times in increasing order, either Unix seconds\n\
-             or seconds since the recording's first packet",
-        )
-    };
-    let text =
-        std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
-    let mut rows = Vec::new();
-    let mut heading = false;
-    for (number, line) in text.lines().enumerate() {
-        let line = line.trim();
-        let blank = line.is_empty() || line.starts_with('#');
-        match parse_row(line) {
-            Some(row) => rows.push(row),
-            // A heading may stand before the first row.
-            None if blank => {}
-            None if rows.is_empty() && !heading => heading = true,
-            None => {
-                return Err(wrong(format!(
-                    "line {}: expected two finite numbers, got {line:?}",
-                    number + 1
-                )));
-            }
-        }
-    }
-    AngleTable::new(rows).map_err(|error| wrong(error.to_string()))
-}
-
-fn parse_row(line: &str) -> Option<(f64, f64)> {
-    let mut cells = line
-        .split([',', ';'])
-        .map(|cell| cell.trim().parse::<f64>());
-    match (cells.next(), cells.next()) {
-        (Some(Ok(time)), Some(Ok(angle))) if time.is_finite() && angle.is_finite() => {
-            Some((time, angle))
-        }
-        _ => None,
-    }
-}
-
-pub(super) fn scan_failure(path: &Path, error: &ScanError) -> Failure {
-    if let ScanError::OutOfReach(out) = error {
-        return out_of_reach(path, out);
-    }
-    let help = match error {
-        ScanError::NoLidarPackets => {
-            "give a recording of the lidar's UDP traffic (ports 2368 and 8308); info says what this file holds"
-        }
-        ScanError::NoTilt => {
-            "this is a plain lidar recording: add --tilt none for the sensor's own frame, or --tilt ANGLES.csv"
-        }
-        ScanError::NoSweep => {
-            "the recording ended before a sweep began: --tilt none gives its points in the sensor's own frame"
-        }
-        ScanError::TableElsewhere { .. }
-        | ScanError::TableShort { .. }
-        | ScanError::TableRange { .. }
-        | ScanError::TableOrder { .. } => {
-            "give times as Unix seconds like the recording's, or as seconds since its first packet"
-        }
-        ScanError::NoBound => "leave --tolerance out, or use the angles of the log",
-        ScanError::OutOfReach(_) => "ask for less",
-        ScanError::Gearing(_) => "correct encoder_lines and gear in the configuration",
-    };
-    Failure::new(Kind::BadInput, format!("{}: {error}", path.display())).help(help)
-}
-
-/// No cloud is as accurate as was asked for: what would be.
-fn out_of_reach(path: &Path, out: &OutOfReach) -> Failure {
-    let mut would = Vec::new();
-    if let Some(speed) = out.speed_that_would_do() {
-        would.push(format!("sweeps at {:.2} deg/s or slower", speed.0));
-    }
-    if out.delay_share > 0.5 {
-        would
-            .push("a link to the drive with shorter round trips (CAN, where it is not)".to_owned());
-    }
-    let coarser = out.tolerance_that_would_do();
-    let mm = format!("{:.6}", coarser.off.0 * 1e3);
-    would.push(format!(
-        "of this recording --tolerance {}mm@{}m",
-        mm.trim_end_matches('0').trim_end_matches('.'),
-        coarser.at.0
-    ));
-    Failure::new(Kind::Incomplete, format!("{}: {out}", path.display())).help(format!(
-        "no cloud was made; the recording is as it was. What would do: {}",
-        would.join("; ")
-    ))
 }

@@ -1,5 +1,7 @@
 //! Damage in the middle of pcapng files, and the memory that reading takes whatever a file claims.
 
+use proptest::prelude::*;
+
 use super::*;
 
 /// A file of `n` data packets in ten sections' worth of blocks; where each block starts.

@@ -1,0 +1,95 @@
+//! Sweeps while they happen: when they begin and end, as far as it is known by then.
+//!
+//! Left out: what a sweep was in the end, which [`MoveWatch::sweeps`] tells.
+
+use units::{Degrees, Gearing, Host, Span, Stamp};
+
+use super::{END_TOLERANCE_DEG, MoveWatch, REST_QC};
+use crate::config::SweepPlan;
+use crate::trajectory::AngleSample;
+
+/// Follows the samples of an axis while it sweeps: when sweeps begin and end, as far as it is known by then.
+#[derive(Clone, Debug)]
+pub(crate) struct SweepWatch {
+    rest_deg: f64,
+    spans: Vec<(Stamp<Host>, Stamp<Host>)>,
+    /// Moves that were looked at.
+    seen: usize,
+    last: Option<AngleSample>,
+    state: Watched,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Watched {
+    Nothing,
+    /// A sweep was commanded and the axis is still where it was.
+    Rest(Degrees),
+    /// Where the axis was last seen to have moved to, and when.
+    Motion(AngleSample),
+}
+
+/// An axis that stays in its place for so long has ended its sweep.
+const STILL: Span = Span::from_millis(50);
+
+impl SweepWatch {
+    /// A watch behind `gearing`.
+    pub(crate) fn new(gearing: Gearing) -> Self {
+        Self {
+            rest_deg: REST_QC * gearing.degrees_per_qc(),
+            spans: Vec::new(),
+            seen: 0,
+            last: None,
+            state: Watched::Nothing,
+        }
+    }
+
+    /// The sweeps so far; one that goes on has no end.
+    pub(crate) fn spans(&self) -> &[(Stamp<Host>, Stamp<Host>)] {
+        &self.spans
+    }
+
+    /// Takes a sample, in order of time. Without a plan every move is a sweep.
+    pub(crate) fn sample(
+        &mut self,
+        sample: &AngleSample,
+        moves: &MoveWatch,
+        plan: Option<&SweepPlan>,
+    ) {
+        let last = *self.last.get_or_insert(*sample);
+        if let Some((count, target)) = moves.newest().filter(|(count, _)| *count > self.seen) {
+            self.seen = count;
+            self.end(sample.host);
+            let back = plan.is_some_and(|plan| plan.both_ways) && self.spans.len() % 2 == 1;
+            let is_sweep = plan.is_none_or(|plan| {
+                (self.spans.len() as u64) < u64::from(plan.sweeps)
+                    && plan.is_sweep(last.angle, target, back, END_TOLERANCE_DEG)
+            });
+            if is_sweep {
+                self.state = Watched::Rest(last.angle);
+            }
+        }
+        let moved = |from: Degrees| (sample.angle.0 - from.0).abs() > self.rest_deg;
+        match self.state {
+            Watched::Rest(from) if moved(from) => {
+                self.spans.push((last.host, Stamp::from_nanos(i64::MAX)));
+                self.state = Watched::Motion(*sample);
+            }
+            Watched::Motion(_) if moves.newest().is_some_and(|(_, target)| !moved(target)) => {
+                self.end(sample.host);
+            }
+            Watched::Motion(seen) if moved(seen.angle) => self.state = Watched::Motion(*sample),
+            Watched::Motion(seen) if sample.host.saturating_since(seen.host) > STILL => {
+                self.end(sample.host);
+            }
+            _ => {}
+        }
+        self.last = Some(*sample);
+    }
+
+    fn end(&mut self, host: Stamp<Host>) {
+        if let (Watched::Motion(_), Some((_, end))) = (self.state, self.spans.last_mut()) {
+            *end = host;
+        }
+        self.state = Watched::Nothing;
+    }
+}

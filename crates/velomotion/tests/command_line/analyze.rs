@@ -1,0 +1,282 @@
+//! `velomotion analyze`.
+
+use super::*;
+
+/// The `density` that `analyze --json` gives of one input.
+fn density(place: &Place, line: &str) -> serde_json::Value {
+    let output = place.run(line);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let report = json(&output);
+    assert_eq!(report["patterns"].as_array().unwrap().len(), 1, "{report}");
+    report["patterns"][0]["density"].clone()
+}
+
+#[test]
+fn analyze_says_what_the_contract_says() {
+    let place = Place::new();
+    let output = place.run("analyze vlp16 rmbl:1200,step=2 --json");
+    let report = json(&output);
+    let patterns = report["patterns"].as_array().unwrap();
+    assert_eq!(patterns.len(), 2);
+    let (vlp16, rmbl) = (&patterns[0], &patterns[1]);
+    assert_eq!(
+        (
+            vlp16["name"].as_str(),
+            vlp16["points"].as_u64(),
+            vlp16["frames"].as_u64()
+        ),
+        (Some("vlp16"), Some(14_416), Some(1))
+    );
+    assert_eq!(
+        (rmbl["points"].as_u64(), rmbl["frames"].as_u64()),
+        (Some(3 * 16 * 181), Some(3))
+    );
+    let density = &vlp16["density"];
+    assert_eq!(density["bins"], 5_120);
+    assert_eq!(density["mean"].as_f64(), Some(14_416.0 / 5_120.0));
+    for key in [
+        "sd",
+        "min",
+        "max",
+        "mean_per_deg2",
+        "sd_per_deg2",
+        "histogram",
+    ] {
+        assert!(!density[key].is_null(), "{key}: {density}");
+    }
+    assert!(
+        (vlp16["hole"]["radius_deg"].as_f64().unwrap() - 75.0).abs() < 1e-4,
+        "{vlp16}"
+    );
+    assert!(
+        vlp16["device"].is_null() && rmbl["device"]["range_m"].is_array(),
+        "{report}"
+    );
+    let text = place.run("analyze vlp16 rmbl:1200,step=2,d=0.06");
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    assert!(
+        text.contains("14416") && text.contains("largest hole: 75.00 deg"),
+        "{text}"
+    );
+    assert!(
+        text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_pattern_its_clouds_and_its_log_are_analysed_alike() {
+    let place = Place::new();
+    let pattern = sim::patterns::Wish::parse("velomotion16:500,step=0.8")
+        .unwrap()
+        .build()
+        .unwrap();
+    let rows = pattern
+        .directions()
+        .into_iter()
+        .map(|d| format!("{},{},{}\n", 7.0 * d.x, 7.0 * d.y, 7.0 * d.z));
+    let text: String = std::iter::once("x_m,y_m,z_m\n".to_owned())
+        .chain(rows)
+        .collect();
+    std::fs::write(place.path("cloud.csv"), text).unwrap();
+    let [named, cloud] = ["velomotion16:500,step=0.8", "cloud.csv"]
+        .map(|input| density(&place, &format!("analyze {input} --json")));
+    assert_eq!(named["mean"], cloud["mean"]);
+    // Rounding may move what lies between two bins.
+    assert!(
+        (named["sd"].as_f64().unwrap() - cloud["sd"].as_f64().unwrap()).abs() < 0.01,
+        "{named} {cloud}"
+    );
+    // The sphere of the simulator: two turns of a level VLP-16, as a log.
+    let scene = "[sensor]\nideal = true\nrpm = 1200\n[motion]\nkind = \"fixed\"\nduration_s = 0.1\n[[objects]]\nsphere = { radius_m = 10 }\n";
+    std::fs::write(place.path("level.toml"), scene).unwrap();
+    assert!(
+        place
+            .run("simulate level.toml -o level.pcapng")
+            .status
+            .success()
+    );
+    let log = place.run("analyze level.pcapng --json");
+    let log = json(&log)["patterns"][0].clone();
+    let level = density(&place, "analyze vlp16,frames=2 --json");
+    assert_eq!(log["frames"], 2, "{log}");
+    let [found, expected] = [&log["density"], &level].map(|d| d["mean"].as_f64().unwrap());
+    assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+    assert!(
+        (log["hole"]["radius_deg"].as_f64().unwrap() - 75.0).abs() < 0.1,
+        "{log}"
+    );
+}
+
+/// A page, figures, tables and JSON of two scans side by side; nothing overwritten unasked.
+#[test]
+fn analyze_writes_a_report_that_stands_alone() {
+    let place = Place::new();
+    let line =
+        "analyze vlp16,step=2 rmbl:1200,step=2 --level 2 --bins 30 --report out/report --json";
+    let output = place.run(line);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    let report = json(&output);
+    let file = |name: &str| {
+        assert!(said.contains(name), "{name} in:\n{said}");
+        std::fs::read_to_string(place.path("out/report").join(name)).unwrap()
+    };
+    let written: serde_json::Value = serde_json::from_str(&file("analyze.json")).unwrap();
+    assert_eq!(written, report);
+    let page = file("index.html");
+    for name in ["density.svg", "histogram.svg", "planes.svg", "k.svg"] {
+        let figure = file(name);
+        assert!(
+            figure.starts_with("<svg") && page.contains(&figure),
+            "{name}"
+        );
+    }
+    // What is in the tables is what the JSON says.
+    let (k, density) = (file("k.csv"), file("density.csv"));
+    let d = k.lines().skip(1).map(|line| {
+        let fields = line.rsplit(',');
+        fields.skip(2).take(1).collect::<String>()
+    });
+    let d: Vec<f64> = d.map(|d| d.parse().unwrap()).collect();
+    let curves = report["patterns"].as_array().unwrap().iter();
+    let curves: Vec<f64> = curves
+        .flat_map(|pattern| pattern["k"]["k_minus_csr"].as_array().unwrap())
+        .map(|d| d.as_f64().unwrap())
+        .collect();
+    assert_eq!((d.len(), curves.len()), (60, 60));
+    // JSON is read back within the last digit.
+    for (table, json) in d.iter().zip(&curves) {
+        assert!((table - json).abs() < 1e-15, "{table} {json}");
+    }
+    let points = |name: &str| -> u64 {
+        let lines = density.lines().filter(|line| line.starts_with(name));
+        lines
+            .map(|line| line.rsplit(',').next().unwrap().parse::<u64>().unwrap())
+            .sum()
+    };
+    for (pattern, name) in report["patterns"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(["\"vlp16", "\"rmbl"])
+    {
+        assert_eq!(pattern["points"], points(name), "{name}");
+    }
+    assert_eq!(
+        file("histogram.csv").lines().next(),
+        Some("pattern,from,to,bins")
+    );
+
+    place.fails(
+        line,
+        2,
+        &["out/report exists already and is not empty", "--force"],
+    );
+    let again = place.run(&format!("{line} --force"));
+    assert!(again.status.success());
+    assert_eq!(file("index.html"), page);
+    place.fails(
+        "analyze vlp16 --report velomotion.toml",
+        2,
+        &["velomotion.toml exists already"],
+    );
+    let both = place.run("analyze rmbl:50 --sweep rpm=300..600 --report page");
+    assert_eq!(both.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&both.stderr);
+    assert!(said.contains("cannot be used with"), "{said}");
+    let alone = place.run("analyze vlp16 --force");
+    assert_eq!(alone.status.code(), Some(2));
+}
+
+#[test]
+fn what_cannot_be_analysed_is_said() {
+    let place = Place::new();
+    std::fs::write(place.path("none.csv"), "x,y,z\n").unwrap();
+    std::fs::write(place.path("nan.csv"), "x,y,z\n1,2,3\n4,nan,6\n").unwrap();
+    std::fs::write(place.path("spoilt.ply"), "ply\nwhat\n").unwrap();
+    for (line, code, words) in [
+        ("analyze", 2, "PATTERN|CLOUD|LOG"),
+        ("analyze rmbl", 2, "a speed above 0 deg/s"),
+        ("analyze vlp16:50", 2, "a sensor that stands still"),
+        ("analyze nosuch", 3, "there is no pattern and no file"),
+        ("analyze none.csv", 3, "no point that has a direction"),
+        ("analyze nan.csv", 3, "point 1 is at (4, NaN, 6)"),
+        (
+            "analyze spoilt.ply",
+            3,
+            "ply: byte 4: expected a line of a PLY header",
+        ),
+        ("analyze velomotion.toml", 3, "velomotion.toml"),
+        ("analyze vlp16 --tolerance 1", 2, "expected a share from 0"),
+        ("analyze vlp16 --bins 0", 2, "0 is not in 1..="),
+        ("analyze vlp16 --level 9", 2, "9 is not in 0..=8"),
+        (
+            "analyze vlp16 rmbl:50 --sweep rpm=300..600",
+            2,
+            "settings of one pattern, not of 2",
+        ),
+        (
+            "analyze velomotion16 --sweep speed",
+            2,
+            "expected KEY=FROM..TO",
+        ),
+        (
+            "analyze velomotion16 --sweep colour=1..2",
+            2,
+            "expected rpm, step, start",
+        ),
+        (
+            "analyze velomotion16 --sweep rpm=300..600",
+            2,
+            "a speed above 0 deg/s",
+        ),
+    ] {
+        let output = place.run(line);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{line}:\n{said}");
+        let flat = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(flat.contains(words), "{line}: no {words:?} in:\n{said}");
+    }
+}
+
+#[test]
+fn a_sweep_says_which_settings_nothing_beats() {
+    let place = Place::new();
+    let output = place.run("analyze velomotion16,step=2 --sweep speed=100..400/3,tilt=1..2 --json");
+    assert_eq!(output.status.code(), Some(2), "tilt is no number");
+    let output =
+        place.run("analyze velomotion16,step=2 --sweep speed=100..400/3,rpm=600..1200/2 --json");
+    let report = json(&output);
+    assert_eq!(report["keys"], serde_json::json!(["speed", "rpm"]));
+    let settings = report["settings"].as_array().unwrap();
+    assert_eq!(settings.len(), 6);
+    let number = |setting: &serde_json::Value, key: &str| setting[key].as_f64().unwrap();
+    for (best, of) in [
+        ("best_hole", "hole_deg"),
+        ("best_gap", "gap_deg"),
+        ("best_evenness", "unevenness"),
+    ] {
+        for setting in settings {
+            let beaten = settings.iter().any(|other| {
+                number(other, "scan_s") <= number(setting, "scan_s")
+                    && number(other, of) < number(setting, of) - 0.01
+            });
+            assert!(!(beaten && setting[best] == true), "{best}: {setting}");
+        }
+        assert!(
+            settings.iter().any(|setting| setting[best] == true),
+            "{best}"
+        );
+    }
+    let text = place.run("analyze velomotion16,step=2 --sweep speed=100..400/3,rpm=600..1200/2");
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    assert!(
+        text.contains("* no other setting") && text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
+}

@@ -1,0 +1,76 @@
+//! `replay --frames`.
+
+use super::*;
+
+#[test]
+fn names_are_not_broken_at_the_end_of_a_line() {
+    let place = Place::new();
+    let name = format!("{}.pcap", "a-b".repeat(30));
+    let said = place.run(&format!("info {name}")).stderr;
+    assert!(String::from_utf8_lossy(&said).contains(&name));
+}
+
+#[test]
+fn frames_go_to_files_only() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let line = format!("replay {} --tilt none --frames 180 -o -", path.display());
+    Place::new().fails(&line, 2, &["stdout takes one", "turn.ply"]);
+}
+
+#[test]
+fn frames_are_cut_at_an_azimuth() {
+    for wrong in ["400", "-361", "nan", "north"] {
+        let output = Place::new().run(&format!("replay scan.pcap --frames {wrong}"));
+        assert_eq!(output.status.code(), Some(2), "{wrong}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("--frames"));
+    }
+}
+
+#[test]
+fn frames_in_utc_are_the_cloud_in_utc() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let rows = |bytes: Vec<u8>| {
+        let mark = b"end_header\n";
+        let at = bytes.windows(mark.len()).position(|w| w == mark).unwrap();
+        bytes[at + mark.len()..].to_vec()
+    };
+    let place = Place::new();
+    let input = path.display();
+    for options in ["-o whole.ply", "--frames 180 -o turn.ply"] {
+        let line = format!("replay {input} --tilt none --time utc {options}");
+        assert!(place.run(&line).status.success());
+    }
+    let whole = rows(std::fs::read(place.path("whole.ply")).unwrap());
+    let turns = (0..).map_while(|i| std::fs::read(place.path(&format!("turn-{i:05}.ply"))).ok());
+    let turns: Vec<Vec<u8>> = turns.map(rows).collect();
+    assert!(turns.len() > 3, "{}", turns.len());
+    assert_eq!(turns.concat(), whole);
+    let organised =
+        format!("replay {input} --tilt none --time utc --frames 180 --organised -o o.pcd");
+    assert!(place.run(&organised).status.success());
+}
+
+#[test]
+fn turns_go_into_one_recording() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let place = Place::new();
+    let input = path.display();
+    let line = format!("replay {input} --tilt none --frames 180 -o turns.mcap --json");
+    let report = json(&place.run(&line));
+    let bytes = std::fs::read(place.path("turns.mcap")).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let stats = summary.stats.unwrap();
+    let count = |topic: &str| {
+        let channel = summary.channels.values().find(|c| c.topic == topic);
+        stats.channel_message_counts[&channel.unwrap().id]
+    };
+    assert_eq!(report["clouds"], count("/velomotion/points"));
+    assert!(report["clouds"].as_u64() > Some(3), "{report}");
+    assert_eq!(count("/diagnostics"), 1);
+}

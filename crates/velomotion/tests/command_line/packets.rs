@@ -1,0 +1,143 @@
+//! Recordings that were changed packet by packet.
+
+use super::*;
+
+/// The file header of a classic pcap and its records.
+fn records(pcap: &[u8]) -> (Vec<u8>, Vec<Vec<u8>>) {
+    let (head, mut rest) = pcap.split_at(24);
+    let mut records = Vec::new();
+    while rest.len() >= 16 {
+        let len = u32::from_le_bytes(rest[8..12].try_into().unwrap()) as usize;
+        let (record, after) = rest.split_at(16 + len);
+        records.push(record.to_vec());
+        rest = after;
+    }
+    (head.to_vec(), records)
+}
+
+/// Writes `recording` with its records changed.
+fn changed(place: &Place, recording: &Path, change: impl FnOnce(&mut Vec<Vec<u8>>)) -> PathBuf {
+    let (head, mut records) = records(&std::fs::read(recording).unwrap());
+    change(&mut records);
+    let path = place.path("changed.pcap");
+    std::fs::write(&path, [head, records.concat()].concat()).unwrap();
+    path
+}
+
+/// Where the UDP payload of an Ethernet record begins.
+const PAYLOAD: usize = 16 + 42;
+
+#[test]
+fn a_stray_datagram_in_front_is_not_taken_for_the_lidar() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let place = Place::new();
+    let input = changed(&place, &path, |records| {
+        let data = records.iter().find(|r| r.len() == PAYLOAD + 1206).unwrap();
+        let mut stray = data[..PAYLOAD + 40].to_vec();
+        stray[8] = 82;
+        stray[9] = 0;
+        stray[12] = 82;
+        stray[13] = 0;
+        // IP total length, UDP length, the last byte of the sender's address.
+        stray[16 + 16..16 + 18].copy_from_slice(&68_u16.to_be_bytes());
+        stray[16 + 38..16 + 40].copy_from_slice(&48_u16.to_be_bytes());
+        stray[16 + 29] ^= 1;
+        records.insert(0, stray);
+    });
+    let line = format!("replay {} --tilt none -o cloud.ply --json", input.display());
+    assert_eq!(json(&place.run(&line))["points"], 73_486);
+    let found = json(&place.run(&format!("info {} --json", input.display())));
+    assert_eq!(found["returns"], 73_486);
+    assert_eq!(found["packets"]["malformed"], 1);
+}
+
+#[test]
+fn position_packets_in_front_of_the_data_count() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let place = Place::new();
+    let is_position = |record: &Vec<u8>| record.len() == PAYLOAD + 512;
+    let input = changed(&place, &path, |records| {
+        let at = records.iter().position(is_position).unwrap();
+        let position = records.remove(at);
+        records.insert(0, position);
+    });
+    let found = json(&place.run(&format!("info {} --json", input.display())));
+    assert_eq!(found["packets"]["position"], 57);
+    assert_eq!(found["returns"], 73_486);
+    let input = changed(&place, &path, |records| records.retain(is_position));
+    let found = json(&place.run(&format!("info {} --json", input.display())));
+    assert_eq!(found["packets"]["position"], 57);
+}
+
+#[test]
+fn packets_out_of_order_cost_no_utc() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let place = Place::new();
+    let points = |input: &Path| {
+        let options = "--tilt none --time utc -o cloud.ply --force --json";
+        let line = format!("replay {} {options}", input.display());
+        json(&place.run(&line))["points"].as_u64().unwrap()
+    };
+    let all = points(&path);
+    let input = changed(&place, &path, |records| {
+        for at in [100, 150, 200, 250] {
+            records.swap(at, at + 1);
+        }
+    });
+    assert_eq!(points(&input), all);
+}
+
+#[test]
+fn dual_returns_say_which_they_are() {
+    let Some(path) = recording("vlp16-dual.pcap") else {
+        return;
+    };
+    let place = Place::new();
+    for (more, counts) in [
+        ("", [0, 0, 1_236, 57_413, 765]),
+        ("--equal-returns twice", [0, 0, 1_236, 114_826, 765]),
+    ] {
+        let options = format!("--tilt none --echo --force -o cloud.csv {more}");
+        assert!(
+            place
+                .run(&format!("replay {} {options}", path.display()))
+                .status
+                .success()
+        );
+        let text = std::fs::read_to_string(place.path("cloud.csv")).unwrap();
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        assert!(lines.next().unwrap().ends_with(",echo"));
+        let mut seen = [0; 5];
+        for line in lines {
+            let code: usize = line.rsplit(',').next().unwrap().parse().unwrap();
+            seen[code] += 1;
+        }
+        assert_eq!(seen, counts, "{more}");
+    }
+}
+
+#[test]
+fn rays_may_start_in_one_point() {
+    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
+        return;
+    };
+    let place = Place::new();
+    let line = format!(
+        "replay {} --tilt none --one-origin -o cloud.csv",
+        path.display()
+    );
+    assert!(place.run(&line).status.success());
+    let text = std::fs::read_to_string(place.path("cloud.csv")).unwrap();
+    let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let z: f64 = rows
+        .map(|row| row.split(',').nth(2).unwrap().parse::<f64>().unwrap())
+        .sum();
+    // The sum that independent decoders give.
+    assert!((z / 3_310.884 - 1.0).abs() < 1e-4, "{z}");
+}

@@ -1,0 +1,173 @@
+//! A client and a server that is written another way: every length, every value, and noise.
+
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// A server as CiA 301 describes it, for one object; it answers what it is asked and no more.
+struct Server {
+    data: Vec<u8>,
+    expedite: bool,
+    announce: bool,
+    at: usize,
+    toggle: bool,
+    announced: Option<u32>,
+}
+
+impl Server {
+    fn new(data: &[u8], expedite: bool, announce: bool) -> Self {
+        Self {
+            data: data.to_vec(),
+            expedite,
+            announce,
+            at: 0,
+            toggle: false,
+            announced: None,
+        }
+    }
+
+    fn answer(&mut self, request: Request) -> Answer {
+        match request {
+            Request::InitiateUpload { address } => {
+                (self.at, self.toggle) = (0, false);
+                let size = self.announce.then_some(self.data.len() as u32);
+                let transfer = Expedited::new(&self.data)
+                    .filter(|_| self.expedite)
+                    .map_or(Initiate::Segmented { size }, Initiate::Expedited);
+                Answer::InitiateUpload { address, transfer }
+            }
+            Request::UploadSegment { toggle } => {
+                assert_eq!(toggle, self.toggle);
+                let segment = Segment::cut(&self.data, self.at, toggle);
+                self.at += segment.bytes.len();
+                self.toggle = !toggle;
+                Answer::UploadSegment(segment)
+            }
+            Request::InitiateDownload { address, transfer } => {
+                self.toggle = false;
+                self.data.clear();
+                match transfer {
+                    Initiate::Expedited(data) => self.data.extend(data.as_slice()),
+                    Initiate::Segmented { size } => self.announced = size,
+                    Initiate::Unsized(_) => panic!("the client says sizes"),
+                }
+                Answer::InitiateDownload { address }
+            }
+            Request::DownloadSegment(segment) => {
+                assert_eq!(segment.toggle, self.toggle);
+                self.data.extend(segment.bytes.as_slice());
+                self.toggle = !self.toggle;
+                if segment.last {
+                    assert_eq!(self.announced, Some(self.data.len() as u32));
+                }
+                Answer::DownloadSegment {
+                    toggle: segment.toggle,
+                }
+            }
+            Request::Abort { .. } | Request::Unknown(_) => panic!("{request:?}"),
+        }
+    }
+
+    fn serve(&mut self, client: &mut Client) -> Outcome<ROOM> {
+        for _ in 0..20 {
+            for request in sent(client, at(0)) {
+                assert_eq!(hear(client, self.answer(request)), Handled::Taken);
+            }
+            if let Some(outcome) = client.poll_outcome() {
+                return outcome;
+            }
+        }
+        panic!("no end");
+    }
+}
+
+fn noise() -> impl Strategy<Value = Answer> {
+    let byte = prop_oneof![
+        prop::sample::select(
+            &[
+                0x00_u8, 0x10, 0x01, 0x20, 0x30, 0x41, 0x43, 0x4B, 0x60, 0x80
+            ][..]
+        ),
+        any::<u8>(),
+    ];
+    (byte, prop::bool::ANY, any::<[u8; 7]>()).prop_map(|(command, ours, rest)| {
+        let mut bytes = [0; 8];
+        bytes[0] = command;
+        bytes[1..].copy_from_slice(&rest);
+        if ours {
+            bytes[1..4].copy_from_slice(&[0x08, 0x10, 0x00]);
+        }
+        Answer::from_bytes(bytes)
+    })
+}
+
+proptest! {
+    #[test]
+    fn every_length_is_read_and_written(
+        data in prop::collection::vec(any::<u8>(), 0..=ROOM), expedite: bool, announce: bool,
+    ) {
+        let mut client = client();
+        client.read(NAME).unwrap();
+        let outcome = Server::new(&data, expedite, announce).serve(&mut client);
+        let value = outcome.result.unwrap();
+        prop_assert_eq!(value.bytes.as_slice(), &data);
+        client.write(NAME, &data).unwrap();
+        let mut server = Server::new(&[], expedite, announce);
+        prop_assert!(server.serve(&mut client).result.is_ok());
+        prop_assert_eq!(server.data, data);
+    }
+
+    #[test]
+    fn scalars_of_every_type_read_back(value in any::<i32>()) {
+        fn trip<T: Scalar + PartialEq + core::fmt::Debug>(value: T) {
+            let mut client = client();
+            client.write_scalar(NAME, value).unwrap();
+            let mut server = Server::new(&[], true, true);
+            server.serve(&mut client).result.unwrap();
+            assert_eq!(server.data.len(), usize::from(T::BYTES));
+            client.read(NAME).unwrap();
+            assert_eq!(server.serve(&mut client).result.unwrap().scalar::<T>(), Ok(value));
+        }
+        trip(value);
+        trip(value as i16);
+        trip(value as i8);
+        trip(value as u32);
+        trip(value as u16);
+        trip(value as u8);
+    }
+
+    #[test]
+    fn any_eight_bytes_are_a_message_both_ways(bytes in any::<[u8; 8]>()) {
+        let request = Request::from_bytes(bytes);
+        prop_assert_eq!(Request::from_bytes(request.to_bytes()), request);
+        let answer = Answer::from_bytes(bytes);
+        prop_assert_eq!(Answer::from_bytes(answer.to_bytes()), answer);
+        prop_assert_eq!(answer.to_bytes()[0] >> 5, bytes[0] >> 5);
+    }
+
+    /// Whatever comes, a transfer ends: with the answers or with the time.
+    #[test]
+    fn noise_ends_a_transfer_sooner_or_later(answers in prop::collection::vec(noise(), 0..40), write in 0..20_usize) {
+        let mut client = client();
+        match write {
+            0 => client.read(NAME).unwrap(),
+            n => client.write(NAME, &[0x55; ROOM][..n]).unwrap(),
+        }
+        for answer in answers {
+            sent(&mut client, at(0));
+            hear(&mut client, answer);
+        }
+        let mut outcome = client.poll_outcome();
+        if outcome.is_none() {
+            prop_assert!(client.is_busy());
+            sent(&mut client, at(0));
+            client.handle_timeout(at(50));
+            outcome = client.poll_outcome();
+        }
+        prop_assert_eq!(outcome.unwrap().address, NAME);
+        prop_assert!(!client.is_busy());
+        prop_assert!(client.read(STATUS).is_ok());
+    }
+}

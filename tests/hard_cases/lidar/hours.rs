@@ -1,0 +1,217 @@
+//! The lidar's clock: hours that turn, and UTC.
+
+use super::*;
+
+/// The stamp counts microseconds of the hour and drops to nearly nothing: with "it decreased, so add an hour" this one works,
+/// the next ones do not.
+#[test]
+fn the_hour_turns_between_two_packets() {
+    // Ten packets end exactly on the hour.
+    let head = steady(600.0, BEGIN_NS - 120 * BLOCK_NS);
+    let (packets, truth) = head.packets(20);
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    nothing_amiss(&stats);
+}
+
+/// The packet's stamp is of the old hour, most of its firings of the new one: their times exceed an hour and must not be
+/// wrapped firing by firing.
+#[test]
+fn the_hour_turns_inside_a_packet() {
+    for blocks_before in 1..12 {
+        let head = steady(600.0, BEGIN_NS - (60 + blocks_before) * BLOCK_NS - 300);
+        let (packets, truth) = head.packets(12);
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        nothing_amiss(&stats);
+    }
+}
+
+/// The packet that straddles the gap is stamped before the hour, its trailing blocks and the next packet lie after it; the
+/// length of the gap comes from the difference of the two stamps, which is negative.
+#[test]
+fn the_hour_turns_in_the_gap_of_a_limited_view() {
+    let view = |azimuth: f64| !(41.0..320.0).contains(&azimuth);
+    // 5 Hz from 320 deg: the first gap is 45 to 200 ms on.
+    for before_ms in [46, 60, 100, 199] {
+        let head = Head {
+            angle_deg: |s: f64| 320.0 + 1_800.0 * s,
+            sees: view,
+            begin_ns: BEGIN_NS - before_ms * 1_000_000,
+            dual: false,
+        };
+        let (packets, truth) = head.packets(100);
+        let (seen, stats) = decode(&packets);
+        let known = seen.len() - 24;
+        assert_true(&head, &seen[..known], &truth[..known], 15_000);
+        nothing_amiss(&stats);
+    }
+}
+
+/// The packets on both sides of the hour are missing: nothing shows the turn but the difference of stamps half a packet or
+/// many packets apart, which has to be counted as loss and not as a step of the clock.
+#[test]
+fn the_hour_turns_while_packets_are_lost() {
+    for lost in [1, 2, 7, 40, 700] {
+        let head = steady(600.0, BEGIN_NS - 127 * BLOCK_NS);
+        let (mut packets, mut truth) = head.packets(720);
+        packets.drain(8..8 + lost);
+        truth.drain(8 * 24..(8 + lost) * 24);
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        assert_eq!((stats.lost_packets, stats.clock_steps), (lost as u64, 0));
+    }
+}
+
+/// Devices have been seen to count on past the hour before they wrap: 3600.06 s, then 0.061 s.
+#[test]
+fn the_counter_runs_past_the_hour_before_it_wraps() {
+    let head = steady(600.0, BEGIN_NS - 120 * BLOCK_NS);
+    let (mut packets, truth) = head.packets(80);
+    for (packet, first) in packets.iter_mut().zip(truth.iter().step_by(24)) {
+        if (BEGIN_NS..BEGIN_NS + 60_000_000).contains(first) {
+            let us = HOUR_US + ((first - BEGIN_NS) / 1_000) as u32;
+            packet.bytes[1_200..1_204].copy_from_slice(&us.to_le_bytes());
+        }
+    }
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    nothing_amiss(&stats);
+}
+
+/// The host joins within a second of the hour and its clock is minutes off, on the other side of it.
+#[test]
+fn the_first_packet_is_just_beside_the_hour() {
+    for (device_ms, host_off_s) in [(-3, 20), (-3, -20), (3, -1_700), (3, 1_700), (-3, 1_700)] {
+        let head = steady(600.0, BEGIN_NS + device_ms * 1_000_000);
+        let (mut packets, truth) = head.packets(20);
+        for packet in &mut packets {
+            packet.host += Span::from_secs(host_off_s);
+        }
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        nothing_amiss(&stats);
+    }
+}
+
+/// A host whose clock says 2100: beyond 32 bits of seconds, and half a microsecond an ulp in f64 seconds.
+#[test]
+fn the_year_2100_is_exact() {
+    // 2100-01-01 00:00:00 UTC.
+    let midnight_ns = 4_102_444_800 * 1_000_000_000;
+    let head = steady(600.0, midnight_ns - 60 * BLOCK_NS);
+    let (packets, truth) = head.packets(20);
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    nothing_amiss(&stats);
+    let first = seen[0].ns;
+    assert!(
+        seen.iter()
+            .take(24)
+            .enumerate()
+            .all(|(i, seen)| seen.ns - first == i as i64 * SEQUENCE_PERIOD_NS)
+    );
+}
+
+/// The first sentence of a receiver sets minutes and seconds of a clock that ran free: device time jumps while the rotor does
+/// not. Nothing is lost, and the firings on both sides keep their own times.
+#[test]
+fn nmea_sets_the_device_clock() {
+    for step_s in [-1_500, -61, -1, 3, 59, 1_500] {
+        let head = steady(600.0, BEGIN_NS + 30 * 60 * 1_000_000_000);
+        let (mut packets, mut truth) = head.packets(40);
+        for (packet, times) in packets.iter_mut().zip(truth.chunks_mut(24)).skip(20) {
+            times.iter_mut().for_each(|t| *t += step_s * 1_000_000_000);
+            let us = (times[0] / 1_000).rem_euclid(i64::from(HOUR_US)) as u32;
+            packet.bytes[1_200..1_204].copy_from_slice(&us.to_le_bytes());
+        }
+        let (seen, stats) = decode(&packets);
+        assert_eq!(seen.len(), truth.len());
+        for (i, (seen, truth)) in seen.iter().zip(&truth).enumerate() {
+            assert!(
+                (seen.ns - truth).abs() <= WIRE_NS,
+                "{step_s} s, firing {i}: {seen:?}"
+            );
+            let rotor = truth
+                - if i < 20 * 24 {
+                    0
+                } else {
+                    step_s * 1_000_000_000
+                };
+            let off = apart_deg(seen.azimuth_deg, head.azimuth_deg(rotor));
+            assert!(off <= 2.0 * WIRE_DEG, "{step_s} s, firing {i}: {off} deg");
+        }
+        assert_eq!(
+            (stats.clock_steps, stats.lost_packets, stats.late),
+            (1, 0, 0),
+            "{step_s} s"
+        );
+    }
+}
+
+/// The host's clock is set by NTP in mid-scan, by seconds or by an hour and more; the sensor's is not.
+#[test]
+fn the_hosts_clock_is_set() {
+    for step_s in [-7_200, -40, 2, 1_800, 90_000] {
+        let head = steady(600.0, BEGIN_NS - 60 * BLOCK_NS);
+        let (mut packets, truth) = head.packets(40);
+        for packet in packets.iter_mut().skip(17) {
+            packet.host += Span::from_secs(step_s);
+        }
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        nothing_amiss(&stats);
+    }
+}
+
+/// A `$GPRMC` sentence of a whole second of 2024-02-29.
+fn rmc(second_of_day: i64) -> Vec<u8> {
+    let (h, m, s) = (
+        second_of_day / 3_600,
+        second_of_day / 60 % 60,
+        second_of_day % 60,
+    );
+    let body = format!("GPRMC,{h:02}{m:02}{s:02}.00,A,5004.9,N,01425.2,E,0.0,0.0,290224,,,A");
+    let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+    format!("${body}*{sum:02X}\r\n").into_bytes()
+}
+
+/// The receiver's sentence is a second late, so that around the hour it names the old one while the sensor counts the new; the
+/// host's clock is days off. UTC must not jump by an hour.
+#[test]
+fn utc_across_the_hour_with_a_late_sentence() {
+    // 2024-02-29 00:00:00 UTC, a leap day (`date -u -d`).
+    let midnight_ns = 1_709_164_800 * 1_000_000_000;
+    let hour = 14;
+    let begin_ns = midnight_ns + hour * HOUR_NS - 2_000_000_000;
+    let head = steady(600.0, begin_ns);
+    let (packets, truth) = head.packets(3_000);
+    let host_off = Span::from_secs(-100 * 3_600);
+    let mut clock = UtcClock::new();
+    let mut decoder = Decoder::new(Options::default());
+    let (mut utc, mut changes) = (Vec::new(), Vec::new());
+    for (i, packet) in packets.iter().enumerate() {
+        let host = packet.host + host_off;
+        let mut last = None;
+        decoder.packet(host, &packet.bytes, &mut |firing| {
+            utc.push(clock.utc(firing.start).map(Stamp::as_nanos));
+            last = Some(firing.start);
+        });
+        changes.extend(last.and_then(|at| clock.data(at)));
+        if i % 8 == 3 {
+            let now = truth[24 * i] + 800_000;
+            let us = (now / 1_000).rem_euclid(i64::from(HOUR_US)) as u32;
+            let second = (now - midnight_ns) / 1_000_000_000 - 1;
+            let bytes = position_packet(us, Pps::Locked, &rmc(second));
+            let position = PositionPacket::new(&bytes).unwrap();
+            changes.extend(clock.position(host, &position));
+        }
+    }
+    let states: Vec<UtcState> = changes.iter().map(|change| change.state).collect();
+    assert_eq!(states, [UtcState::Locked { hours: 100 }]);
+    for (utc, truth) in utc.iter().zip(&truth).skip(5 * 24) {
+        let off = utc.unwrap() - truth;
+        assert!(off.abs() <= WIRE_NS, "{off}");
+    }
+    assert_eq!(utc[0], None);
+}

@@ -1,0 +1,119 @@
+//! Packets that come late, twice, never, in heaps, or from others.
+
+use super::*;
+
+/// A switch that mirrors a port, or a recording of two interfaces, has every packet twice.
+#[test]
+fn every_packet_twice_is_every_packet_once() {
+    let head = steady(600.0, BEGIN_NS - 40 * BLOCK_NS);
+    let (packets, truth) = head.packets(20);
+    let twice = packets.iter().flat_map(|packet| [packet, packet]);
+    let (seen, stats) = decode(twice);
+    assert_true(&head, &seen, &truth, 0);
+    assert_eq!(
+        (stats.duplicates, stats.data, stats.lost_packets),
+        (20, 40, 0)
+    );
+}
+
+/// Neighbours change places on the way, also over the hour, where the later one has the smaller stamp.
+#[test]
+fn packets_out_of_order_are_put_back() {
+    let head = steady(600.0, BEGIN_NS - 121 * BLOCK_NS);
+    let (mut packets, truth) = head.packets(20);
+    for i in [3, 7, 9, 15] {
+        packets.swap(i, i + 1);
+    }
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    assert_eq!((stats.reordered, stats.lost_packets, stats.late), (4, 0, 0));
+}
+
+/// Too late to be put back: left out and said, so that device time never runs backwards.
+#[test]
+fn a_packet_that_comes_too_late_is_left_out() {
+    let head = steady(600.0, BEGIN_NS - 121 * BLOCK_NS);
+    let (mut packets, mut truth) = head.packets(20);
+    let late = packets.remove(6);
+    packets.insert(11, late);
+    truth.drain(6 * 24..7 * 24);
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    assert_eq!((stats.late, stats.reordered, stats.lost_packets), (1, 0, 1));
+}
+
+/// Other programs' datagrams, cut ones, an HDL-64E's, and position packets between the data change nothing but counts.
+#[test]
+fn foreign_packets_change_nothing() {
+    let head = steady(600.0, BEGIN_NS);
+    let (packets, truth) = head.packets(20);
+    let mut mixed = Vec::new();
+    for (i, packet) in packets.iter().enumerate() {
+        mixed.push(packet.clone());
+        let bytes = match i {
+            2 => b"NTP?".to_vec(),
+            3 => Vec::new(),
+            5 => packet.bytes[..1_205].to_vec(),
+            8 => {
+                let mut upper = packet.bytes.clone();
+                upper[1] = 0xDD;
+                upper
+            }
+            9 => {
+                let mut beyond = packet.bytes.clone();
+                beyond[2..4].copy_from_slice(&36_001u16.to_le_bytes());
+                beyond
+            }
+            12 => position_packet(17, Pps::Absent, b"").to_vec(),
+            _ => continue,
+        };
+        mixed.push(Packet {
+            host: packet.host,
+            bytes,
+        });
+    }
+    let (seen, stats) = decode(&mixed);
+    assert_true(&head, &seen, &truth, 0);
+    let counts = (
+        stats.data,
+        stats.other,
+        stats.malformed,
+        stats.position,
+        stats.lost_packets,
+    );
+    assert_eq!(counts, (20, 2, 3, 1, 0));
+}
+
+/// The host's stack hands over packets in batches of 15 ms and more: arrival says nothing of firing.
+#[test]
+fn packets_arrive_in_batches() {
+    let head = steady(600.0, BEGIN_NS - 60 * BLOCK_NS);
+    let (mut packets, truth) = head.packets(60);
+    for batch in packets.chunks_mut(12) {
+        let host = batch.last().unwrap().host;
+        batch.iter_mut().for_each(|packet| packet.host = host);
+    }
+    let (seen, stats) = decode(&packets);
+    assert_true(&head, &seen, &truth, 0);
+    nothing_amiss(&stats);
+    // The pass that reads times alone says the same to the nanosecond.
+    let mut timekeeper = Timekeeper::new(Options::default());
+    for (packet, firings) in packets.iter().zip(seen.chunks(24)) {
+        let timing = timekeeper.packet(packet.host, &packet.bytes).unwrap();
+        assert_eq!(timing.first_firing.as_nanos(), firings[0].ns);
+    }
+}
+
+/// Packets are missing and the rotor has turned on: what is behind the gap is neither moved nor joined to what was before.
+#[test]
+fn nothing_is_guessed_across_lost_packets() {
+    for lost in [1, 3, 75, 150] {
+        let head = steady(600.0, BEGIN_NS);
+        let (mut packets, mut truth) = head.packets(200);
+        packets.drain(20..20 + lost);
+        truth.drain(20 * 24..(20 + lost) * 24);
+        let (seen, stats) = decode(&packets);
+        assert_true(&head, &seen, &truth, 0);
+        assert_eq!(stats.lost_packets, lost as u64);
+    }
+}
