@@ -1,5 +1,7 @@
 //! LAS and LAZ, by the `las` crate.
 
+mod promises;
+
 use std::io::Cursor;
 
 use las::Reader;
@@ -7,8 +9,8 @@ use las::Reader;
 use super::{Positions, ReadError};
 use crate::formats::Format;
 
-/// Points read at a time: a header may promise more than there are.
-const BATCH: u64 = 1 << 16;
+/// Bytes read at a time: a header may promise more points than there are.
+const BATCH_BYTES: u64 = 1 << 22;
 
 pub(super) fn positions(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError> {
     let size = bytes.len();
@@ -18,14 +20,22 @@ pub(super) fn positions(format: Format, bytes: Vec<u8>) -> Result<Positions, Rea
         expected: expected.to_owned(),
         got,
     };
-    let mut reader = Reader::new(Cursor::new(bytes))
-        .map_err(|error| wrong(0, "a LAS or LAZ file", error.to_string()))?;
+    let no_las = |error: las::Error| wrong(0, "a LAS or LAZ file", error.to_string());
+    let raw = las::raw::Header::read_from(Cursor::new(bytes.as_slice())).map_err(no_las)?;
+    let promised = match raw.large_file {
+        Some(large) => large.number_of_point_records,
+        None => raw.number_of_point_records.into(),
+    };
+    promises::kept(&bytes, promised)
+        .map_err(|(offset, expected, got)| wrong(offset.min(size), expected, got))?;
+    let batch = (BATCH_BYTES / u64::from(raw.point_data_record_length).max(1)).max(1);
+    let mut reader = Reader::new(Cursor::new(bytes)).map_err(no_las)?;
     let count = reader.header().number_of_points();
     let mut positions = Positions::new();
     while (positions.len() as u64) < count {
         let left = count - positions.len() as u64;
         let batch = reader
-            .read_points(left.min(BATCH))
+            .read_points(left.min(batch))
             .map_err(|error| wrong(size, &format!("{count} points"), error.to_string()))?;
         if batch.is_empty() {
             let got = positions.len().to_string();

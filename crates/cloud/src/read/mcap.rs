@@ -2,6 +2,12 @@
 //!
 //! Left out: transforms between frames, and messages in other encodings than little-endian CDR.
 
+use std::collections::HashSet;
+
+use mcap::McapError;
+use mcap::records::{Record, op};
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+
 use super::{Number, Positions, ReadError};
 use crate::formats::Format;
 use crate::messages::Topic;
@@ -18,18 +24,78 @@ fn wrong(offset: usize, expected: &str, got: impl ToString) -> ReadError {
     }
 }
 
+/// A chunk or record may be so much larger than the whole file, and so large in any case: more is reserved for no file.
+const TIMES_LARGER: usize = 256;
+const ANY_CASE: usize = 64 << 20;
+
 pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
-    let bad = |error: mcap::McapError| wrong(0, "an MCAP file", error);
-    let mut positions = Positions::new();
-    for message in mcap::MessageStream::new(bytes).map_err(bad)? {
-        let message = message.map_err(bad)?;
-        let schema = message.channel.schema.as_ref();
-        let is_cloud = schema.is_some_and(|it| it.name == Topic::Points.message_type().name);
-        if is_cloud && message.channel.message_encoding == "cdr" {
-            cloud(&message.data, &mut positions)?;
+    let limit = bytes.len().saturating_mul(TIMES_LARGER).max(ANY_CASE);
+    let options = LinearReaderOptions::default()
+        .with_prevalidate_chunk_crcs(true)
+        .with_record_length_limit(limit);
+    let mut reader = LinearReader::new_with_options(options);
+    let mut clouds = Clouds::default();
+    let mut rest = bytes;
+    while let Some(event) = reader.next_event() {
+        let at = bytes.len() - rest.len();
+        let bad = |error: McapError| wrong(at, "an MCAP file", error);
+        match event.map_err(bad)? {
+            LinearReadEvent::ReadRequest(wanted) => {
+                let (now, later) = rest.split_at(wanted.min(rest.len()));
+                let room = reader.insert(now.len());
+                room.iter_mut().zip(now).for_each(|(to, from)| *to = *from);
+                reader.notify_read(now.len());
+                rest = later;
+            }
+            LinearReadEvent::Record { data, opcode } => {
+                clouds.record(opcode, data).map_err(|unread| match unread {
+                    Unread::File(error) => bad(error),
+                    Unread::Message(error) => error,
+                })?
+            }
         }
     }
-    Ok(positions)
+    Ok(clouds.positions)
+}
+
+/// What was read so far.
+#[derive(Default)]
+struct Clouds {
+    /// Schemas of point clouds.
+    schemas: HashSet<u16>,
+    /// Channels of point clouds.
+    channels: HashSet<u16>,
+    positions: Positions,
+}
+
+/// Why a record cannot be read.
+enum Unread {
+    File(McapError),
+    Message(ReadError),
+}
+
+impl Clouds {
+    fn record(&mut self, opcode: u8, data: &[u8]) -> Result<(), Unread> {
+        if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
+            return Ok(());
+        }
+        match mcap::parse_record(opcode, data).map_err(Unread::File)? {
+            Record::Schema { header, .. } if header.name == Topic::Points.message_type().name => {
+                self.schemas.insert(header.id);
+            }
+            Record::Channel(channel)
+                if self.schemas.contains(&channel.schema_id)
+                    && channel.message_encoding == "cdr" =>
+            {
+                self.channels.insert(channel.id);
+            }
+            Record::Message { header, data } if self.channels.contains(&header.channel_id) => {
+                cloud(&data, &mut self.positions).map_err(Unread::Message)?;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
 }
 
 /// A message, read from its beginning. Offsets of errors are within the message.

@@ -48,6 +48,24 @@ pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError>
     }
 }
 
+/// A little-endian number somewhere in bytes.
+trait Take: Sized {
+    /// The number at an offset; `None` where the bytes end before.
+    fn take(bytes: &[u8], at: usize) -> Option<Self>;
+}
+
+macro_rules! take {
+    ($($number:ty),*) => {$(
+        impl Take for $number {
+            fn take(bytes: &[u8], at: usize) -> Option<Self> {
+                Some(Self::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
+            }
+        }
+    )*};
+}
+
+take!(u16, u32, u64);
+
 /// A number type of PLY or PCD.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Number {

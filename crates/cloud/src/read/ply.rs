@@ -47,7 +47,10 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
                 }
             };
         }
-        for _ in 0..element.count {
+        // So many as nothing has no end.
+        let is_nothing = element.properties.is_empty() && header.data != Data::Text;
+        let count = if is_nothing { 0 } else { element.count };
+        for _ in 0..count {
             offset = match header.data {
                 Data::Text => text.line(offset)?.map(|(_, next)| next),
                 Data::Little | Data::Big => skip(bytes, element, offset, header.data == Data::Big),

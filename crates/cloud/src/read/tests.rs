@@ -53,6 +53,25 @@ fn every_prefix_of_a_file_is_an_error_or_its_first_points() {
     }
 }
 
+/// Whatever byte of a file is another, there is an error or there are points: nothing panics, and nothing is reserved that a header merely
+/// promises.
+#[test]
+fn any_byte_may_be_another() {
+    let points = cloud(5);
+    for format in Format::ALL {
+        let bytes = written(format, &points);
+        for at in 0..bytes.len() {
+            for change in [0x01, 0x80, 0xFF] {
+                let mut changed = bytes.clone();
+                changed[at] ^= change;
+                if let Err(error) = positions(format, changed) {
+                    assert!(error.offset <= bytes.len(), "{error}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn other_programs_ply() {
     let little = |rest: &[u8]| {
@@ -164,6 +183,17 @@ fn errors_say_where_and_what() {
             Format::Pcd,
             "VERSION 0.7\nFIELDS a b\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n",
             "columns x, y and z",
+        ),
+        // Nothing of nothing, without end.
+        (
+            Format::Ply,
+            "ply\nformat binary_little_endian 1.0\nelement nothing 999999999999999999\nend_header\n",
+            "expected an element vertex",
+        ),
+        (
+            Format::Pcd,
+            "FIELDS x y z a\nSIZE 8 8 8 8\nTYPE F F F F\nCOUNT 1 1 1 9999999999999999999\nPOINTS 9999999999999999999\nDATA binary\n",
+            "pcd: byte",
         ),
         (
             Format::Pcd,
