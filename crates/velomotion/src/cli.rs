@@ -13,9 +13,12 @@ use scanner::Tolerance;
 use crate::commands::analyze::Sweep;
 use crate::recordings::SensorName;
 
+/// Version, and the commit that the program was built from.
+pub const VERSION: &str = env!("VELOMOTION_VERSION");
+
 /// Dense point clouds from a multi-beam lidar on a tilting platform.
 #[derive(Debug, Parser)]
-#[command(version, about, max_term_width = 100)]
+#[command(version = VERSION, about, max_term_width = 100)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
