@@ -64,8 +64,10 @@ pub struct Motion {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum MotionError {
     /// A number that is not finite, or not above what it has to be.
-    #[error("sim: motion: expected {what}, got {got}")]
+    #[error("sim: motion: {key}: expected {what}, got {got}")]
     Number {
+        /// Which: as [`Sweeps`] and [`Motion::fixed`] call it.
+        key: &'static str,
         /// What it was to be.
         what: &'static str,
         /// What it is.
@@ -90,8 +92,8 @@ impl Motion {
     /// # Errors
     /// [`MotionError::Number`] for an angle that is not finite or a time that is not above 0.
     pub fn fixed(angle_deg: f64, duration_s: f64) -> Result<Self, MotionError> {
-        finite("an angle in degrees", angle_deg)?;
-        above_0("a duration above 0 s", duration_s)?;
+        finite("angle_deg", "an angle in degrees", angle_deg)?;
+        above_0("duration_s", "a duration above 0 s", duration_s)?;
         Ok(Self {
             start_deg: angle_deg,
             legs: Vec::new(),
@@ -105,14 +107,15 @@ impl Motion {
     /// # Errors
     /// [`MotionError`] for numbers that are not what [`Sweeps`] says.
     pub fn sweeps(wish: &Sweeps) -> Result<Self, MotionError> {
-        finite("an angle in degrees", wish.from_deg)?;
-        finite("an angle in degrees", wish.to_deg)?;
-        above_0("a speed above 0 deg/s", wish.speed_deg_s)?;
+        finite("from_deg", "an angle in degrees", wish.from_deg)?;
+        finite("to_deg", "an angle in degrees", wish.to_deg)?;
+        above_0("speed_deg_s", "a speed above 0 deg/s", wish.speed_deg_s)?;
         if let Some(accel) = wish.accel_deg_s2 {
-            above_0("an acceleration above 0 deg/s2", accel)?;
+            above_0("accel_deg_s2", "an acceleration above 0 deg/s2", accel)?;
         }
         if !(wish.rest_s >= 0.0 && wish.rest_s.is_finite()) {
             return Err(MotionError::Number {
+                key: "rest_s",
                 what: "a rest of 0 s or more",
                 got: wish.rest_s,
             });
@@ -235,17 +238,17 @@ impl Leg {
     }
 }
 
-fn finite(what: &'static str, got: f64) -> Result<(), MotionError> {
+fn finite(key: &'static str, what: &'static str, got: f64) -> Result<(), MotionError> {
     match got.is_finite() {
         true => Ok(()),
-        false => Err(MotionError::Number { what, got }),
+        false => Err(MotionError::Number { key, what, got }),
     }
 }
 
-fn above_0(what: &'static str, got: f64) -> Result<(), MotionError> {
+fn above_0(key: &'static str, what: &'static str, got: f64) -> Result<(), MotionError> {
     match got > 0.0 && got.is_finite() {
         true => Ok(()),
-        false => Err(MotionError::Number { what, got }),
+        false => Err(MotionError::Number { key, what, got }),
     }
 }
 
@@ -328,7 +331,10 @@ mod tests {
             ..sweeps()
         });
         let said = error.unwrap_err().to_string();
-        assert_eq!(said, "sim: motion: expected a speed above 0 deg/s, got 0");
+        assert_eq!(
+            said,
+            "sim: motion: speed_deg_s: expected a speed above 0 deg/s, got 0"
+        );
         assert!(Motion::fixed(f64::NAN, 1.0).is_err());
         assert!(Motion::fixed(0.0, 0.0).is_err());
         let many = Sweeps {

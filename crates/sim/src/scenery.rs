@@ -64,21 +64,18 @@ impl Scenery {
     /// Of sections that were read from this text.
     pub(crate) fn new(text: &str, sections: Sections) -> Result<Self, SceneryError> {
         let at = |span: std::ops::Range<usize>| At::of(text, span.start);
-        let materials = sections
-            .materials
-            .into_iter()
-            .map(|(name, table)| {
-                let at = at(name.span());
-                Material::new(name.into_inner(), table.get_ref(), &at)
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        let objects: Vec<_> = sections
-            .objects
-            .into_iter()
-            .map(|object| (at(object.span()), object.into_inner()))
-            .collect();
-        for (at, object) in &objects {
-            object.check(at, &materials)?;
+        let mut materials = Vec::new();
+        for (name, table) in sections.materials {
+            let begin = name.span().start;
+            let material = Material::new(name.into_inner(), table.get_ref(), &At::of(text, begin));
+            materials.push(material.map_err(|error| error.at_its_value(text, begin))?);
+        }
+        let mut objects = Vec::new();
+        for object in sections.objects {
+            let span = object.span();
+            let (begin, at, object) = (span.start, at(span), object.into_inner());
+            (object.check(&at, &materials)).map_err(|error| error.at_its_value(text, begin))?;
+            objects.push((at, object));
         }
         Ok(Self { materials, objects })
     }

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Wrong;
-use crate::motion::{Motion, Sweeps};
+use crate::motion::{Motion, MotionError, Sweeps};
 
 /// The section as it is written. Which keys belong to which kind is checked here and not by serde, which would lose the line.
 #[derive(Debug, Deserialize)]
@@ -72,7 +72,7 @@ impl Section {
             .angle_deg
             .as_ref()
             .map_or(0.0, |angle| *angle.get_ref());
-        Motion::fixed(angle_deg, duration_s).map_err(|error| Wrong::new(section, error.to_string()))
+        Motion::fixed(angle_deg, duration_s).map_err(|error| self.refused(&error, section))
     }
 
     fn sweeps(&self, section: Range<usize>) -> Result<Motion, Wrong> {
@@ -94,7 +94,31 @@ impl Section {
             both_ways,
             rest_s: self.rest_s.as_ref().map_or(REST_S, |rest| *rest.get_ref()),
         };
-        Motion::sweeps(&sweeps).map_err(|error| Wrong::new(section, error.to_string()))
+        if let Some(count) = self.count.as_ref().filter(|_| sweeps.count == 0) {
+            return Err(Wrong::new(
+                count.span(),
+                "count: expected a sweep at least, got 0",
+            ));
+        }
+        Motion::sweeps(&sweeps).map_err(|error| self.refused(&error, section))
+    }
+
+    /// A value that cannot be, where it stands.
+    fn refused(&self, error: &MotionError, section: Range<usize>) -> Wrong {
+        let at = match error {
+            MotionError::TooMany { .. } => span(&self.count),
+            MotionError::Number { key, .. } => match *key {
+                "angle_deg" => span(&self.angle_deg),
+                "duration_s" => span(&self.duration_s),
+                "from_deg" => span(&self.from_deg),
+                "to_deg" => span(&self.to_deg),
+                "speed_deg_s" => span(&self.speed_deg_s),
+                "accel_deg_s2" => span(&self.accel_deg_s2),
+                "rest_s" => span(&self.rest_s),
+                _ => None,
+            },
+        };
+        Wrong::new(at.unwrap_or(section), error.to_string())
     }
 }
 

@@ -24,6 +24,44 @@ fn the_least_scene_is_a_vlp16_that_stands_without_effects() {
 }
 
 #[test]
+fn a_motion_that_cannot_be_is_told_with_the_values_line() {
+    let text = |rest: &str| {
+        format!(
+            "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -45\n{rest}\n"
+        )
+    };
+    for (rest, at, what) in [
+        (
+            "speed_deg_s = 0",
+            6,
+            "speed_deg_s: expected a speed above 0",
+        ),
+        (
+            "speed_deg_s = 5\ncount = 0",
+            7,
+            "count: expected a sweep at least, got 0",
+        ),
+        ("speed_deg_s = 5\ncount = 10001", 7, "at most 10000 sweeps"),
+        (
+            "speed_deg_s = 5\naccel_deg_s2 = 9\nrest_s = -1",
+            8,
+            "rest_s: expected a rest of 0 s or more",
+        ),
+        (
+            "both_ways = true\naccel_deg_s2 = nan\nspeed_deg_s = 5",
+            7,
+            "accel_deg_s2: expected",
+        ),
+    ] {
+        let (line, said) = error(&text(rest));
+        assert_eq!(line, at, "{said}");
+        assert!(said.contains(what), "{said}");
+    }
+    let (line, said) = error("[motion]\nkind = \"fixed\"\nangle_deg = 0\nduration_s = 0\n");
+    assert_eq!(line, 4, "{said}");
+}
+
+#[test]
 fn shipped_scenes_are_sound() {
     for (name, text) in SHIPPED {
         let scene = Scene::parse(text, None, None);

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use thiserror::Error;
+use toml::de::DeTable;
 
 use super::meshes::MeshFileError;
 
@@ -48,7 +49,7 @@ pub enum SceneryError {
     /// A value that cannot be.
     #[error("sim: scene, {at}: {what}: expected {expected}, got {got}")]
     Value {
-        /// Where the table begins that has it.
+        /// Where it stands; where the table begins that has it, if it is of several.
         at: At,
         /// Which value.
         what: String,
@@ -93,12 +94,48 @@ impl SceneryError {
         }
     }
 
+    /// The same, said of the value itself instead of the table that begins (or whose name does) at a byte of the text.
+    pub(super) fn at_its_value(mut self, text: &str, begin: usize) -> Self {
+        if let Self::Value { at, what, .. } = &mut self
+            && let Ok(file) = DeTable::parse(text)
+            && let Some(value) = find(file.get_ref(), begin, what)
+        {
+            *at = At::of(text, value);
+        }
+        self
+    }
+
     pub(super) fn toml(text: &str, error: &toml::de::Error) -> Self {
         Self::Toml {
             at: At::of(text, error.span().map_or(0, |span| span.start)),
             message: error.message().trim().replace('\n', ", "),
         }
     }
+}
+
+/// Where the value begins that a dotted name leads to, as far as it does, from the material or object at `begin`; `None` where not even its
+/// first part is a key there.
+fn find(file: &DeTable<'_>, begin: usize, name: &str) -> Option<usize> {
+    let objects = file.get("objects").and_then(|all| all.get_ref().as_array());
+    let object = objects.and_then(|all| all.iter().find(|object| object.span().start == begin));
+    let materials = file
+        .get("materials")
+        .and_then(|all| all.get_ref().as_table());
+    let material = || {
+        let mut all = materials?.iter();
+        all.find(|(name, _)| name.span().start == begin)
+            .map(|(_, material)| material)
+    };
+    let mut value = object.or_else(material)?;
+    let mut found = None;
+    for part in name.split('.') {
+        let Some(next) = value.get_ref().get(part) else {
+            break;
+        };
+        value = next;
+        found = Some(value.span().start);
+    }
+    found
 }
 
 /// A check that fails with these words.

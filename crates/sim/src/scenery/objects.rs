@@ -206,7 +206,10 @@ impl ObjectTable {
         for name in self.materials() {
             if !materials.iter().any(|material| &material.name == name) {
                 let names: Vec<_> = materials.iter().map(|m| m.name.as_str()).collect();
-                let expected = format!("one of {}", names.join(", "));
+                let expected = match names.as_slice() {
+                    [] => "a name of [materials], where none is".to_owned(),
+                    names => format!("one of {}", names.join(", ")),
+                };
                 return Err(wrong(at, "material", expected, name));
             }
         }

@@ -209,6 +209,45 @@ fn values_that_cannot_be_are_told_with_their_line() {
 }
 
 #[test]
+fn values_that_cannot_be_are_told_with_their_own_line() {
+    let text = "[materials]\ngrey = { reflectivity = 50 }\n[materials.sky]\nabsorbing = true\nspecular = 2\n";
+    assert_eq!(
+        wrong(text),
+        "sim: scene, line 5, column 12: specular: expected 0 to 1, got 2.0"
+    );
+    let first = "[[objects]]\nsphere = { radius_m = 1 }\n\n";
+    for (second, place) in [
+        (
+            "name = \"ball\"\nsphere = { radius_m = 0 }\n",
+            "line 6, column 23",
+        ),
+        (
+            "[objects.cylinder]\nradius_m = 1\nheight_m = -1\n",
+            "line 7, column 12",
+        ),
+        (
+            "plane = {}\n\nvelocity_m_s = [0, nan, 0]\n",
+            "line 7, column 16",
+        ),
+        // Of several keys: the table that has them.
+        (
+            "name = \"wall\"\nbox = { size_m = [1, 1, 1], from_m = [0, 0, 0] }\n",
+            "line 6, column 7",
+        ),
+        // Of none.
+        ("name = \"nothing\"\n", "line 4, column 1"),
+    ] {
+        let said = wrong(&format!("{first}[[objects]]\n{second}"));
+        assert!(said.starts_with(&format!("sim: scene, {place}:")), "{said}");
+    }
+    let said = wrong("[[objects]]\nplane = {}\nmaterial = \"grey\"\n");
+    assert!(
+        said.contains("line 3, column 12: material: expected a name of [materials], where none is, got \"grey\""),
+        "{said}"
+    );
+}
+
+#[test]
 fn each_kind_of_geometry_stands_where_it_is_put() {
     let at = |shape: &str| {
         format!("[[objects]]\nposition_m = [5, 0, 0]\nrotation_deg = [0, 0, 90]\n{shape}\n")
