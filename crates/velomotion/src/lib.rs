@@ -13,6 +13,7 @@ pub mod devices;
 pub mod failure;
 pub mod hearing;
 pub mod job;
+pub mod journal;
 pub mod motion;
 pub mod names;
 pub mod output;

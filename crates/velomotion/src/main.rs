@@ -1,13 +1,13 @@
 //! The entry point: parses the command line, runs a command, prints what it says and how it failed.
 
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
-use tracing_subscriber::EnvFilter;
 use velomotion::cli::{Cli, Common};
 use velomotion::commands::{self, Said};
 use velomotion::failure::{Failure, Kind};
+use velomotion::journal;
 use velomotion::progress::to_stderr;
 
 fn main() -> ExitCode {
@@ -37,7 +37,7 @@ fn main() -> ExitCode {
         None => ExitCode::SUCCESS,
         Some(failure) => {
             let code = failure.kind.exit_code();
-            to_stderr(&format!("{:?}", miette::Report::new(failure)));
+            journal::failed(failure);
             ExitCode::from(code)
         }
     }
@@ -90,20 +90,10 @@ fn error_object(failure: &Failure) -> serde_json::Value {
 }
 
 fn start_log(common: &Common) {
-    let level = match (common.quiet, common.verbose) {
+    journal::start(match (common.quiet, common.verbose) {
         (true, _) => "error",
         (false, 0) => "warn",
         (false, 1) => "info",
         (false, _) => "debug",
-    };
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        // A closed stderr must not panic in mid-sweep.
-        .log_internal_errors(false)
-        .with_ansi(std::io::stderr().is_terminal())
-        .without_time()
-        .with_target(false)
-        .init();
+    });
 }

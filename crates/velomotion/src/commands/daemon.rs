@@ -31,12 +31,18 @@ pub fn run(arguments: &cli::Daemon, common: &Common) -> Result<Said, Failure> {
     })?;
     greet(&daemon, common);
     // Without a service manager there is nobody to tell.
-    let _ = sd_notify::notify(&[NotifyState::Ready]);
+    let _ = sd_notify::notify(&[
+        NotifyState::Ready,
+        NotifyState::Status(&format!("http://{}/", daemon.address())),
+    ]);
     while !interrupt.load(Ordering::Acquire) && !daemon.is_broken() {
         std::thread::sleep(LOOK);
     }
     let broken = daemon.is_broken();
-    let _ = sd_notify::notify(&[NotifyState::Stopping]);
+    let _ = sd_notify::notify(&[
+        NotifyState::Stopping,
+        NotifyState::Status("stops the axis and saves what there is"),
+    ]);
     end(daemon, &interrupt)?;
     if broken {
         return Err(

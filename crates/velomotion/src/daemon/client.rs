@@ -1,6 +1,6 @@
 //! How the commands talk to a daemon that has the device: HTTP over its Unix socket, a connection a request.
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -34,12 +34,21 @@ struct Answer {
 }
 
 impl Client {
-    /// The daemon that has the device, if one runs.
+    /// The daemon that has the device, if one runs. One that this user may not speak to is said.
     #[must_use]
     pub fn find(profile: &str, device: &Device) -> Option<Self> {
-        let sockets = sockets::candidates(profile, device).into_iter();
-        let mut running = sockets.filter(|socket| UnixStream::connect(socket).is_ok());
-        running.next().map(|socket| Self { socket })
+        for socket in sockets::candidates(profile, device) {
+            match UnixStream::connect(&socket) {
+                Ok(_) => return Some(Self { socket }),
+                Err(error) if error.kind() == ErrorKind::PermissionDenied => tracing::warn!(
+                    "a daemon may have the device, and not everybody may speak to it: {}; \
+                     join the group that owns its socket (adduser YOU velomotion), and log in again",
+                    socket.display()
+                ),
+                Err(_) => {}
+            }
+        }
+        None
     }
 
     /// Where it is.

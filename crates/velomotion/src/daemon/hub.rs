@@ -192,10 +192,15 @@ impl Hub {
     /// Says something.
     pub fn say(&self, level: Level, text: impl Into<String>, help: Option<String>) {
         let text = text.into();
+        // What to do is a line of its own.
+        let line = match &help {
+            Some(help) => format!("{text}\n{help}"),
+            None => text.clone(),
+        };
         match level {
-            Level::Info => tracing::info!("{text}"),
-            Level::Warning => tracing::warn!("{text}"),
-            Level::Error => tracing::error!("{text}"),
+            Level::Info => tracing::info!("{line}"),
+            Level::Warning => tracing::warn!("{line}"),
+            Level::Error => tracing::error!("{line}"),
         }
         self.tell(Event::Message { level, text, help });
     }

@@ -111,6 +111,13 @@ fn make(shared: &Shared, making: &Making) {
             .say(Level::Warning, failure.message, failure.help);
     }
     let concluded = job::conclude(made, record.outcome(), (&cloud, &log));
+    match &concluded {
+        Ok((scan, None)) => tracing::info!("scan {id}: whole, {} points", scan.points),
+        Ok((scan, Some(why))) => {
+            tracing::warn!("scan {id}: partial, {} points: {why}", scan.points);
+        }
+        Err(why) => tracing::error!("scan {id}: no cloud: {why}"),
+    }
     let counters = &shared.counters;
     Counters::count(match &concluded {
         Ok((_, None)) => &counters.whole,

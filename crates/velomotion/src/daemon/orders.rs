@@ -150,7 +150,7 @@ impl Keeper {
                 Happening::Moved { at, angle, packets } => motions.moved(at, angle, packets),
                 Happening::Progress(step) => {
                     shared.beat();
-                    tracing::info!(?step);
+                    tracing::debug!(?step);
                 }
                 Happening::Over => motions.end(),
                 Happening::Warning(text) => {

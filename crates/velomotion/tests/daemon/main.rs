@@ -9,3 +9,4 @@ mod guard;
 mod limits;
 mod rig;
 mod scans;
+mod service;

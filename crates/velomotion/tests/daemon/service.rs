@@ -1,0 +1,142 @@
+//! The daemon as a service: what it tells the service manager, and how it speaks to the journal.
+
+use std::fs::File;
+use std::os::unix::fs::MetadataExt;
+use std::os::unix::net::UnixDatagram;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use crate::rig::{place, velomotion, wait};
+
+/// What the service manager listens on, as sd_notify(3) has it.
+struct Manager(UnixDatagram);
+
+impl Manager {
+    fn new(socket: &Path) -> Self {
+        let socket = UnixDatagram::bind(socket).unwrap();
+        socket
+            .set_read_timeout(Some(Duration::from_secs(60)))
+            .unwrap();
+        Self(socket)
+    }
+
+    /// The next message's lines.
+    fn hear(&self) -> Vec<String> {
+        let mut bytes = [0; 4096];
+        let length = self.0.recv(&mut bytes).unwrap();
+        let text = String::from_utf8(bytes[..length].to_vec()).unwrap();
+        text.lines().map(str::to_owned).collect()
+    }
+}
+
+fn kill(signal: &str, id: u32) {
+    let sent = Command::new("kill")
+        .args([signal, &id.to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+}
+
+#[test]
+fn the_service_manager_hears_of_start_life_and_end() {
+    let folder = place();
+    let socket = folder.path().join("notify");
+    let manager = Manager::new(&socket);
+    let mut daemon = velomotion(folder.path(), "daemon --listen 127.0.0.1:0")
+        .env("NOTIFY_SOCKET", &socket)
+        .env("WATCHDOG_USEC", "300000")
+        .env_remove("WATCHDOG_PID")
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let is = |line: &'static str| move |said: &String| said == line;
+    // The pulse may be earlier than the word that all is ready.
+    let ready = loop {
+        let said = manager.hear();
+        if !said.iter().any(is("WATCHDOG=1")) {
+            break said;
+        }
+    };
+    assert!(ready.iter().any(is("READY=1")), "{ready:?}");
+    assert!(
+        ready
+            .iter()
+            .any(|line| line.starts_with("STATUS=http://127.0.0.1:")),
+        "{ready:?}"
+    );
+    for _ in 0..3 {
+        assert_eq!(manager.hear(), ["WATCHDOG=1"]);
+    }
+    kill("-TERM", daemon.id());
+    let last = loop {
+        let said = manager.hear();
+        if said != ["WATCHDOG=1"] {
+            break said;
+        }
+    };
+    assert!(last.iter().any(is("STOPPING=1")), "{last:?}");
+    assert!(daemon.wait().unwrap().success());
+}
+
+/// What `line` says on stderr, which is a file that it is told to be the journal or not.
+fn said_to(folder: &Path, line: &str, journal: bool) -> String {
+    let path = folder.join("stderr");
+    let file = File::create(&path).unwrap();
+    let about = file.metadata().unwrap();
+    let inode = if journal {
+        about.ino()
+    } else {
+        about.ino() + 1
+    };
+    let status = velomotion(folder, line)
+        .env("JOURNAL_STREAM", format!("{}:{inode}", about.dev()))
+        .stderr(file)
+        .status();
+    assert_eq!(status.unwrap().code(), Some(3));
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn a_failure_has_its_priority_in_the_journal_and_nowhere_else() {
+    let folder = place();
+    let line = "daemon --config missing.toml";
+    let journal = said_to(folder.path(), line, true);
+    let lines: Vec<&str> = journal.lines().collect();
+    assert_eq!(lines.len(), 2, "{journal}");
+    assert!(
+        lines[0].starts_with("<3>cannot read the configuration missing.toml"),
+        "{journal}"
+    );
+    assert!(lines[1].starts_with("<3>name a text file"), "{journal}");
+    let plain = said_to(folder.path(), line, false);
+    assert!(plain.contains("missing.toml"), "{plain}");
+    assert!(
+        !plain.contains("<3>") && !plain.contains('\u{1b}'),
+        "{plain}"
+    );
+}
+
+#[test]
+fn what_happens_is_in_the_journal_line_by_line() {
+    let folder = place();
+    let path = folder.path().join("stderr");
+    let file = File::create(&path).unwrap();
+    let about = file.metadata().unwrap();
+    let mut daemon = velomotion(folder.path(), "daemon --listen 127.0.0.1:0 -v")
+        .env("JOURNAL_STREAM", format!("{}:{}", about.dev(), about.ino()))
+        .stderr(file)
+        .spawn()
+        .unwrap();
+    let text = wait("the drive's line", || {
+        let text = std::fs::read_to_string(&path).unwrap();
+        text.contains("<6>drive: connected\n").then_some(text)
+    });
+    // Where it listens has no priority of its own: the journal takes it as information.
+    assert!(
+        text.lines().any(|line| line.starts_with("http://")),
+        "{text}"
+    );
+    assert!(!text.contains('\u{1b}'), "{text}");
+    kill("-TERM", daemon.id());
+    assert!(daemon.wait().unwrap().success());
+}
