@@ -102,10 +102,8 @@ fn a_scan_is_started_seen_and_counted() {
         page.until_has("#view-empty", "No scan in view").await;
         page.fill("#to", "-30").await;
         let plan = page.until_has("#plan", "vertical resolution").await;
-        assert!(
-            plan.contains("5.63\u{b0}") && plan.contains("1125 rpm"),
-            "{plan}"
-        );
+        // 5.625 degrees at 600 rpm; a little less or more once the lidar's own are known.
+        assert!(plan.contains("5.6") && plan.contains("1125 rpm"), "{plan}");
 
         page.run(WATCH).await;
         start(&page, "hall", "56.25", "-30").await;
