@@ -1,17 +1,23 @@
 //! Tells the program which commit it was built from.
 
-use std::path::Path;
+use std::env;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-env-changed=VELOMOTION_COMMIT");
+    let package = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+    let root = package.unwrap_or_default().join("../..");
     // The reflog grows with every commit and checkout. Where there is no repository there is nothing to watch.
-    let log = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.git/logs/HEAD");
+    let log = root.join(".git/logs/HEAD");
     if log.exists() {
         println!("cargo:rerun-if-changed={}", log.display());
     }
-    println!("cargo:rerun-if-changed=build.rs");
-    let commit = std::env::var("VELOMOTION_COMMIT").ok().or_else(head);
+    let told = env::var("VELOMOTION_COMMIT").ok();
+    let commit = told
+        .or_else(|| head(&root))
+        .filter(|commit| !commit.is_empty());
     let version = env!("CARGO_PKG_VERSION");
     match commit {
         Some(commit) => println!("cargo:rustc-env=VELOMOTION_VERSION={version} ({commit})"),
@@ -19,15 +25,17 @@ fn main() {
     }
 }
 
-/// The commit that is checked out, and its day; none where sources came without a repository.
-fn head() -> Option<String> {
+/// The commit that is checked out, and its day; none where sources came without a repository, be it inside of somebody else's.
+fn head(root: &Path) -> Option<String> {
+    if !root.join(".git").exists() {
+        return None;
+    }
     let output = Command::new("git")
         .args(["log", "-1", "--abbrev=12", "--format=%h %cs"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .current_dir(root)
         .output()
         .ok()
         .filter(|output| output.status.success())?;
     let said = String::from_utf8(output.stdout).ok()?;
-    let said = said.trim();
-    (!said.is_empty()).then(|| said.to_owned())
+    Some(said.trim().to_owned())
 }

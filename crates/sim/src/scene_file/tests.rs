@@ -148,7 +148,7 @@ fn errors_name_the_line_and_what_is_wrong() {
     assert!(line == 3 && what.contains("to_deg"), "{line} {what}");
     let sweeps = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = 1\nspeed_deg_s = 0\n";
     let (line, what) = error(sweeps);
-    assert!(line == 2 && what.contains("speed above 0"), "{line} {what}");
+    assert!(line == 6 && what.contains("speed above 0"), "{line} {what}");
 }
 
 #[test]
