@@ -64,6 +64,28 @@ fn json(output: &Output) -> serde_json::Value {
 }
 
 #[test]
+fn the_version_says_which_commit_it_is() {
+    let place = Place::new();
+    let output = place.run("--version");
+    let said = String::from_utf8(output.stdout).unwrap();
+    let version = format!("velomotion {}", env!("CARGO_PKG_VERSION"));
+    let rest = said.trim_end().strip_prefix(&version).unwrap();
+    let commit = rest
+        .strip_prefix(" (")
+        .and_then(|rest| rest.strip_suffix(')'));
+    match commit.and_then(|commit| commit.split_once(' ')) {
+        Some((hash, day)) => assert!(
+            hash.len() >= 12
+                && hash.bytes().all(|digit| digit.is_ascii_hexdigit())
+                && day.len() == 10,
+            "{said}"
+        ),
+        // Sources without a repository.
+        None => assert_eq!(rest, ""),
+    }
+}
+
+#[test]
 fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
     let place = Place::new();
     let mut output = place.run("capture --speed 56.25 -o scan.ply --json");
