@@ -9,9 +9,11 @@ fn main() {
     println!("cargo:rerun-if-env-changed=VELOMOTION_COMMIT");
     let package = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
     let root = package.unwrap_or_default().join("../..");
-    // The reflog grows with every commit and checkout. Where there is no repository there is nothing to watch.
+    // The reflog grows with every commit and checkout. Where there is no repository there is nothing to watch, and a build for tests may
+    // name an older commit: to compile everything again after each is not worth it.
     let log = root.join(".git/logs/HEAD");
-    if log.exists() {
+    let released = env::var("PROFILE").is_ok_and(|profile| profile == "release");
+    if released && log.exists() {
         println!("cargo:rerun-if-changed={}", log.display());
     }
     let told = env::var("VELOMOTION_COMMIT").ok();
