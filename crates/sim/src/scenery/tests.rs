@@ -197,7 +197,7 @@ fn values_that_cannot_be_are_told_with_their_line() {
     ] {
         let said = wrong(&object(rest));
         // The table, or, where it is one value's fault, that.
-        let places = ["line 4, column 1: ", "line 5, column "];
+        let places = ["line 4, column 1: ", "line 5, column ", "line 6, column "];
         let names = |place: &&str| said.starts_with(&format!("sim: scene, {place}"));
         assert!(places.iter().any(|place| names(place)), "{said}");
         assert!(said.contains(says), "{said}");
