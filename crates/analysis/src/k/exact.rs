@@ -9,10 +9,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use fearless_simd::dispatch;
 use glam::DVec3;
 
-use super::lanes::{LANES, Lanes, Portable};
-use super::leaf_pair::{Judge, Tally, leaf_pair};
+use super::edges::{ON_EDGE, dot};
+use super::lanes::{LANES, Portable};
+use super::leaf_pair::{Judge, Rows, Tally, edges, leaf_pair, rows, thresholds};
+use super::notes::Noting;
+use super::others::{Bits, Others};
+use super::outline::Outline;
 use super::plain::check;
-use super::reach::reach;
 use super::tree::{BLOCK_LEAVES, Block, Tree};
 use super::{Counts, Edges, KError, Registers};
 
@@ -55,6 +58,15 @@ pub fn exact_by(
             );
             return one.done();
         }
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        if let (None, Some(avx2)) = (level.as_avx512(), level.as_avx2()) {
+            use fearless_simd::Simd as _;
+            avx2.vectorize(
+                #[inline(always)]
+                || one.all(super::lanes::Half(avx2), &next),
+            );
+            return one.done();
+        }
         dispatch!(level, simd => one.all(Portable(simd), &next));
         one.done()
     };
@@ -93,26 +105,36 @@ pub(super) fn on_threads<T: Send>(threads: NonZeroUsize, work: &(impl Fn() -> T 
 }
 
 /// Sides by the real numbers.
-pub(super) struct ByReals<'a> {
+struct ByReals<'a> {
     points: &'a [DVec3],
     edges: &'a Edges,
-    pub on_edges: u64,
-    pub wrong: Option<KError>,
+    /// To be judged together, as their points have to be fetched from far.
+    waiting: Vec<Waiting>,
+    /// What judged pairs are beyond each edge, less what had been said of them.
+    beyond: Vec<i64>,
+    on_edges: u64,
+    wrong: Option<KError>,
+}
+
+/// A pair, an edge, and whether it is counted as beyond that.
+struct Waiting {
+    edge: usize,
+    pair: (usize, usize),
+    said: bool,
 }
 
 impl<'a> ByReals<'a> {
-    pub(super) const fn new(points: &'a [DVec3], edges: &'a Edges) -> Self {
+    fn new(points: &'a [DVec3], edges: &'a Edges) -> Self {
         Self {
             points,
             edges,
+            waiting: Vec::new(),
+            beyond: vec![0; edges.bins()],
             on_edges: 0,
             wrong: None,
         }
     }
-}
 
-impl Judge for ByReals<'_> {
-    #[inline]
     fn is_beyond(&mut self, edge: usize, a: usize, b: usize) -> bool {
         let (Some(&a), Some(&b)) = (self.points.get(a), self.points.get(b)) else {
             return false;
@@ -125,6 +147,36 @@ impl Judge for ByReals<'_> {
                 false
             }
         }
+    }
+
+    /// Judges those that wait.
+    #[inline(never)]
+    fn settle(&mut self) {
+        let mut waiting = std::mem::take(&mut self.waiting);
+        for Waiting { edge, pair, said } in waiting.drain(..) {
+            let (Some(&a), Some(&b)) = (self.points.get(pair.0), self.points.get(pair.1)) else {
+                continue;
+            };
+            let above = dot(a, b) - self.edges.cosine(edge);
+            // Without a branch that has to be guessed: the next points are fetched before these have come.
+            let is_beyond = if above.abs() > ON_EDGE {
+                above < 0.0
+            } else {
+                self.is_beyond(edge, pair.0, pair.1)
+            };
+            if let Some(beyond) = self.beyond.get_mut(edge) {
+                *beyond += i64::from(is_beyond) - i64::from(said);
+            }
+        }
+        self.waiting = waiting;
+    }
+}
+
+impl Judge for ByReals<'_> {
+    #[inline(always)]
+    fn doubt(&mut self, edge: usize, a: usize, b: usize, said: bool) {
+        let pair = (a, b);
+        self.waiting.push(Waiting { edge, pair, said });
     }
 }
 
@@ -140,14 +192,15 @@ impl One<'_> {
     fn done(self) -> Result<(Vec<i64>, u64), KError> {
         match self.judge.wrong {
             Some(wrong) => Err(wrong),
-            None => Ok((self.tally.counts(), self.judge.on_edges)),
+            None => Ok((self.tally.counts(&self.judge.beyond), self.judge.on_edges)),
         }
     }
 
     /// Takes blocks until none is left, each with all that are not before it.
     #[inline(always)]
-    fn all<L: Lanes>(&mut self, on: L, next: &AtomicUsize) {
+    fn all<L: Noting>(&mut self, on: L, next: &AtomicUsize) {
         let tree = self.tree;
+        let thresholds = thresholds::<L>(self.edges);
         let mut waiting = Vec::new();
         loop {
             let first = next.fetch_add(1, Ordering::Relaxed);
@@ -168,7 +221,7 @@ impl One<'_> {
                 }
                 match (node.halves, tree.blocks.get(node.first_block)) {
                     (Some((left, right)), _) => waiting.extend([right, left]),
-                    (None, Some(other)) => self.blocks(on, block, other),
+                    (None, Some(other)) => self.blocks(on, (block, other), &thresholds),
                     (None, None) => {}
                 }
             }
@@ -207,36 +260,124 @@ impl One<'_> {
 
     /// All pairs of leaves of two blocks, or of one with itself.
     #[inline(always)]
-    fn blocks<L: Lanes>(&mut self, on: L, block: &Block, other: &Block) {
+    fn blocks<L: Noting>(&mut self, on: L, (block, other): (&Block, &Block), thresholds: &[f32]) {
         let tree = self.tree;
-        let (bins, cosines) = (self.edges.bins(), self.edges.cosines_f32());
         // So many rows at most are added to a lane.
-        self.tally.settle(BLOCK_LEAVES * BLOCK_LEAVES * LANES);
-        for leaf in block.first..block.end {
-            let Some(around) = tree.around_leaves.one(leaf) else {
+        self.tally.settle(BLOCK_LEAVES * BLOCK_LEAVES * LANES * 2);
+        // All reaches first: none waits for another then.
+        let mut found = [(0, Others::default()); BLOCK_LEAVES];
+        for (leaf, found) in (block.first..block.end).zip(&mut found) {
+            *found = self.reached(on, leaf, other);
+        }
+        for (leaf, (start, others)) in (block.first..block.end).zip(&found) {
+            let Some(a) = tree.leaves.get(leaf) else {
                 continue;
             };
-            let mut start = other.first.max(leaf);
-            while start < other.end {
-                let Some((middles, radii)) = tree.around_leaves.sixteen(start) else {
-                    break;
-                };
-                let of = reach(on.simd(), around, middles, radii, bins);
-                let others = (start..other.end).zip(&of.first).zip(&of.last);
-                for ((other, first), last) in others {
-                    let bins = (*first as usize, *last as usize);
-                    if other == leaf || !tree.is_full(other) || !tree.is_full(leaf) {
-                        self.one_by_one(leaf, other, bins);
-                        continue;
-                    }
-                    if let (Some(a), Some(b)) = (tree.leaves.get(leaf), tree.leaves.get(other)) {
-                        let places = (leaf * LANES, other * LANES);
-                        let (tally, judge) = (&mut self.tally, &mut self.judge);
-                        leaf_pair(on, (a, b), places, bins, cosines, tally, judge);
-                    }
-                }
-                start += LANES;
+            let rows = rows::<L>(a);
+            let leaves = (leaf, &rows, *start);
+            self.few::<L, 0>(on, leaves, others, thresholds);
+            self.few::<L, 1>(on, leaves, others, thresholds);
+            self.few::<L, 2>(on, leaves, others, thresholds);
+            self.few::<L, 3>(on, leaves, others, thresholds);
+            self.few::<L, 4>(on, leaves, others, thresholds);
+            self.many(on, leaves, others, thresholds);
+        }
+        self.judge.settle();
+    }
+
+    /// What full leaves of a block behind this one are how far off, and from which; pairs with those that are not full are counted.
+    #[inline(always)]
+    fn reached<L: Noting>(&mut self, on: L, leaf: usize, other: &Block) -> (usize, Others) {
+        let tree = self.tree;
+        let mut others = Others::default();
+        let Some(around) = tree.around_leaves.one(leaf) else {
+            return (other.end, others);
+        };
+        if !tree.is_full(leaf) {
+            self.not_full(on, leaf, &around, other.first.max(leaf)..other.end);
+            return (other.end, others);
+        }
+        let start = if other.first <= leaf {
+            self.not_full(on, leaf, &around, leaf..leaf + 1);
+            leaf + 1
+        } else {
+            other.first
+        };
+        // Only the very last leaf may lack points.
+        let end = other.end.min(tree.points.len() / LANES);
+        self.not_full(on, leaf, &around, end.max(start)..other.end);
+        for (of, start) in others.reach.iter_mut().zip((start..end).step_by(LANES)) {
+            let (bins, leaves) = (self.edges.bins(), &tree.around_leaves);
+            if let Some(reach) = leaves.span(on.simd(), &around, start, bins) {
+                *of = reach;
             }
+        }
+        others.sort(on.simd(), end.saturating_sub(start));
+        (start, others)
+    }
+
+    /// A leaf with others that it has so many edges to.
+    #[inline(always)]
+    fn few<L: Noting, const E: usize>(
+        &mut self,
+        on: L,
+        (leaf, rows, start): (usize, &Rows, usize),
+        others: &Others,
+        thresholds: &[f32],
+    ) {
+        for at in others.of::<E>() {
+            let (first, _) = others.bins(at);
+            self.tally.add(first, Some((LANES * LANES) as u64));
+            if E == 0 {
+                continue;
+            }
+            let of = thresholds.get(first..).and_then(<[f32]>::first_chunk);
+            if let (Some(b), Some(of)) = (self.tree.leaves.get(start + at), of) {
+                let places = (leaf * LANES, (start + at) * LANES, first);
+                let (tally, judge) = (&mut self.tally, &mut self.judge);
+                // From memory each time: a compiler that keeps 48 numbers in registers of sixteen lanes has to put them all away again.
+                let rows = std::hint::black_box(rows);
+                edges::<L, E>(on, rows, b, places, *of, tally, judge);
+            }
+        }
+    }
+
+    /// The same with more edges.
+    #[inline(always)]
+    fn many<L: Noting>(
+        &mut self,
+        on: L,
+        (leaf, rows, start): (usize, &Rows, usize),
+        others: &Others,
+        thresholds: &[f32],
+    ) {
+        for at in Bits(others.many) {
+            let bins = others.bins(at);
+            self.tally.add(bins.0, Some((LANES * LANES) as u64));
+            if let Some(b) = self.tree.leaves.get(start + at) {
+                let places = (leaf * LANES, (start + at) * LANES);
+                let (tally, judge) = (&mut self.tally, &mut self.judge);
+                leaf_pair(on, (rows, b), places, bins, thresholds, tally, judge);
+            }
+        }
+    }
+
+    /// A leaf with others of which one is not full, or with itself.
+    #[inline(always)]
+    fn not_full<L: Noting>(
+        &mut self,
+        on: L,
+        leaf: usize,
+        around: &Outline,
+        others: std::ops::Range<usize>,
+    ) {
+        for other in others {
+            let leaves = &self.tree.around_leaves;
+            let Some(of) = leaves.span(on.simd(), around, other, self.edges.bins()) else {
+                continue;
+            };
+            let ([first, ..], [last, ..]) = (of.first, of.last);
+            self.one_by_one(leaf, other, (first as usize, last as usize));
         }
     }
 

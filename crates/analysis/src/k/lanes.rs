@@ -1,14 +1,19 @@
 //! What sixteen lanes of registers must be able to do to count pairs, with the instructions of AVX-512 where there are such.
 //!
-//! Everything goes through `fearless_simd`: its tokens prove what the processor has. Left out: what is counted.
+//! Everything goes through `fearless_simd`: its tokens prove what the processor has. Left out: what is counted, and how signs are noted.
 
-use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
+use fearless_simd::{Simd, f32x16, prelude::*};
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-use fearless_simd::x86::Avx512;
+use fearless_simd::x86::{Avx2, Avx512};
 
 /// Points of a leaf, and lanes of a register.
 pub(super) const LANES: usize = 16;
+
+/// Numbers of sixteen lanes on a line of the cache of their own.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
+pub(super) struct Line<T>(pub [T; LANES]);
 
 /// Sixteen lanes.
 pub(super) trait Lanes: Copy {
@@ -19,12 +24,6 @@ pub(super) trait Lanes: Copy {
 
     /// Lane by lane, the one nearer to nought of these two, its sign lost or not.
     fn nearer_nought(self, a: f32x16<Self::S>, b: f32x16<Self::S>) -> f32x16<Self::S>;
-
-    /// Notes for every lane whether its number is negative. At most 32 notes before [`Lanes::notes`].
-    fn note_negative(self, notes: u32x16<Self::S>, of: f32x16<Self::S>) -> u32x16<Self::S>;
-
-    /// How many notes of every lane were of negative numbers.
-    fn notes(self, notes: u32x16<Self::S>) -> u32x16<Self::S>;
 }
 
 /// Any registers that there are: AVX2, SSE, NEON, or none.
@@ -43,19 +42,9 @@ impl<S: Simd> Lanes for Portable<S> {
     fn nearer_nought(self, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
         a.min(b.abs())
     }
-
-    #[inline(always)]
-    fn note_negative(self, notes: u32x16<S>, of: f32x16<S>) -> u32x16<S> {
-        notes + (of.bitcast::<u32x16<S>>() >> 31)
-    }
-
-    #[inline(always)]
-    fn notes(self, notes: u32x16<S>) -> u32x16<S> {
-        notes
-    }
 }
 
-/// AVX-512: a note is the sign shifted into a word of its lane, one instruction; so is the nearer of two.
+/// AVX-512: the nearer of two is one instruction.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 #[derive(Clone, Copy)]
 pub(super) struct Wide(pub Avx512);
@@ -73,15 +62,25 @@ impl Lanes for Wide {
     fn nearer_nought(self, a: f32x16<Avx512>, b: f32x16<Avx512>) -> f32x16<Avx512> {
         x86::nearer(self.0, a, b)
     }
+}
+
+/// AVX2.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[derive(Clone, Copy)]
+pub(super) struct Half(pub Avx2);
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+impl Lanes for Half {
+    type S = Avx2;
 
     #[inline(always)]
-    fn note_negative(self, notes: u32x16<Avx512>, of: f32x16<Avx512>) -> u32x16<Avx512> {
-        x86::shifted_in(self.0, notes, of)
+    fn simd(self) -> Avx2 {
+        self.0
     }
 
     #[inline(always)]
-    fn notes(self, notes: u32x16<Avx512>) -> u32x16<Avx512> {
-        x86::ones(self.0, notes)
+    fn nearer_nought(self, a: f32x16<Avx2>, b: f32x16<Avx2>) -> f32x16<Avx2> {
+        Portable(self.0).nearer_nought(a, b)
     }
 }
 
@@ -93,7 +92,7 @@ mod x86 {
     use std::arch::x86_64::*;
 
     use fearless_simd::x86::Avx512;
-    use fearless_simd::{f32x16, prelude::*, u32x16};
+    use fearless_simd::{f32x16, prelude::*};
 
     fearless_simd::kernel!(
         #[inline(always)]
@@ -104,24 +103,6 @@ mod x86 {
         ) -> f32x16<Avx512> {
             // 0b0010: the least by magnitude, with a sign cleared.
             _mm512_range_ps::<0b1010>(a.into(), b.into()).simd_into(token)
-        }
-    );
-
-    fearless_simd::kernel!(
-        #[inline(always)]
-        pub(super) fn shifted_in(
-            token: Avx512,
-            notes: u32x16<Avx512>,
-            of: f32x16<Avx512>,
-        ) -> u32x16<Avx512> {
-            _mm512_shldi_epi32::<1>(notes.into(), _mm512_castps_si512(of.into())).simd_into(token)
-        }
-    );
-
-    fearless_simd::kernel!(
-        #[inline(always)]
-        pub(super) fn ones(token: Avx512, notes: u32x16<Avx512>) -> u32x16<Avx512> {
-            _mm512_popcnt_epi32(notes.into()).simd_into(token)
         }
     );
 }

@@ -5,7 +5,9 @@
 
 use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
 
-use super::lanes::{LANES, Lanes};
+use super::Edges;
+use super::lanes::{LANES, Lanes, Line};
+use super::notes::Noting;
 use super::tree::Leaf;
 
 /// How far a dot product less a cosine in f32 may be off: 2^-21.
@@ -17,8 +19,8 @@ pub(super) const F32_BAND: f32 = 1.0 / (1_u32 << 21) as f32;
 
 /// Who says on which side of an edge a pair is.
 pub(super) trait Judge {
-    /// Whether the pair is beyond the edge above this bin: of these places among the points of one tree and the other.
-    fn is_beyond(&mut self, edge: usize, a: usize, b: usize) -> bool;
+    /// A pair that f32 cannot tell is beyond the edge above this bin or not, of these places among the points; whether it has been counted as beyond.
+    fn doubt(&mut self, edge: usize, a: usize, b: usize, said: bool);
 }
 
 /// What has been counted.
@@ -29,7 +31,7 @@ pub(super) struct Tally {
     /// Pairs beyond the edge above each bin.
     pub beyond: Vec<i64>,
     /// The same by lanes, not yet added up.
-    pub lanes: Vec<[u32; LANES]>,
+    pub lanes: Vec<Line<u32>>,
     /// The most that a lane can hold.
     held: u32,
 }
@@ -39,7 +41,7 @@ impl Tally {
         Self {
             from: vec![0; bins],
             beyond: vec![0; bins],
-            lanes: vec![[0; LANES]; bins],
+            lanes: vec![Line([0; LANES]); bins],
             held: 0,
         }
     }
@@ -63,15 +65,18 @@ impl Tally {
 
     fn add_up(&mut self) {
         for (lanes, beyond) in self.lanes.iter_mut().zip(&mut self.beyond) {
-            *beyond += lanes.iter().map(|&count| i64::from(count)).sum::<i64>();
-            *lanes = [0; LANES];
+            *beyond += lanes.0.iter().map(|&count| i64::from(count)).sum::<i64>();
+            lanes.0 = [0; LANES];
         }
         self.held = 0;
     }
 
-    /// Pairs by bin.
-    pub(super) fn counts(mut self) -> Vec<i64> {
+    /// Pairs by bin, with so many more beyond each edge.
+    pub(super) fn counts(mut self, more: &[i64]) -> Vec<i64> {
         self.add_up();
+        for (beyond, more) in self.beyond.iter_mut().zip(more) {
+            *beyond += more;
+        }
         let before = std::iter::once(&0).chain(&self.beyond);
         let all = self.from.iter().zip(&self.beyond).zip(before);
         all.map(|((&from, beyond), before)| from.cast_signed() - beyond + before)
@@ -79,24 +84,44 @@ impl Tally {
     }
 }
 
-/// Counts the pairs of two full leaves that can be in the bins from `first` to `last`.
+/// The points of a leaf that are rows, scaled as the notes want them.
+pub(super) type Rows = [[f32; 3]; LANES];
+
+/// A full leaf's points as rows.
 #[inline(always)]
-pub(super) fn leaf_pair<L: Lanes>(
+pub(super) fn rows<L: Noting>(leaf: &Leaf) -> Rows {
+    let [Line(x), Line(y), Line(z)] = leaf;
+    let mut rows = [[0.0; 3]; LANES];
+    for (((row, x), y), z) in rows.iter_mut().zip(x).zip(y).zip(z) {
+        *row = [x * L::SCALE, y * L::SCALE, z * L::SCALE];
+    }
+    rows
+}
+
+/// What the rows' dot products are compared with: the cosine of every inner edge, moved and scaled as the notes want it.
+pub(super) fn thresholds<L: Noting>(edges: &Edges) -> Vec<f32> {
+    let inner = 0..edges.bins().saturating_sub(1);
+    let moved = inner.map(|edge| edges.cosine(edge) - f64::from(L::MOVED));
+    moved
+        .map(|cosine| (cosine * f64::from(L::SCALE)) as f32)
+        .collect()
+}
+
+/// Counts the pairs of two full leaves beyond each of the edges from `first` to before `last`.
+#[inline(always)]
+pub(super) fn leaf_pair<L: Noting>(
     on: L,
-    (a, b): (&Leaf, &Leaf),
+    (a, b): (&Rows, &Leaf),
     (place_a, place_b): (usize, usize),
     (first, last): (usize, usize),
-    cosines: &[f32],
+    thresholds: &[f32],
     tally: &mut Tally,
     judge: &mut impl Judge,
 ) {
-    if let Some(from) = tally.from.get_mut(first) {
-        *from += (LANES * LANES) as u64;
-    }
     let mut edge = first;
     while edge < last {
         let places = (place_a, place_b, edge);
-        edge += match cosines.get(edge..last) {
+        edge += match thresholds.get(edge..last) {
             Some(&[a0]) => edges(on, a, b, places, [a0], tally, judge),
             Some(&[a0, a1]) => edges(on, a, b, places, [a0, a1], tally, judge),
             Some(&[a0, a1, a2]) => edges(on, a, b, places, [a0, a1, a2], tally, judge),
@@ -108,66 +133,83 @@ pub(super) fn leaf_pair<L: Lanes>(
 
 /// The same for a few edges from one; says how many.
 #[inline(always)]
-fn edges<L: Lanes, const E: usize>(
+pub(super) fn edges<L: Noting, const E: usize>(
     on: L,
-    a: &Leaf,
+    a: &Rows,
     b: &Leaf,
     (place_a, place_b, edge): (usize, usize, usize),
-    cosines: [f32; E],
+    thresholds: [f32; E],
     tally: &mut Tally,
     judge: &mut impl Judge,
 ) -> usize {
-    let simd = on.simd();
-    let lanes = b
-        .each_ref()
-        .map(|column| f32x16::load_array_ref(simd, column));
-    let [ax, ay, az] = a;
-    let mut notes = [u32x16::splat(simd, 0); E];
+    let lanes = loaded(on.simd(), b);
     // One an edge, so that none waits for another.
-    let mut nearest = [f32x16::splat(simd, 4.0); E];
-    for row in 0..LANES {
-        let above = row_above(on, [ax[row], ay[row], az[row]], lanes, cosines);
-        for ((notes, nearest), above) in notes.iter_mut().zip(&mut nearest).zip(&above) {
-            *notes = on.note_negative(*notes, *above);
-            *nearest = on.nearer_nought(*nearest, *above);
+    let mut notes = [on.no_notes(); E];
+    for [row, next] in a.as_chunks().0 {
+        let above = row_above(on, *row, lanes, thresholds);
+        let next_above = row_above(on, *next, lanes, thresholds);
+        for ((notes, above), next) in notes.iter_mut().zip(above).zip(next_above) {
+            on.note(notes, above, next);
         }
     }
     let tallied = tally.lanes.get_mut(edge..edge + E).unwrap_or_default();
-    for (notes, lanes) in notes.iter().zip(tallied) {
-        let sum = u32x16::load_array_ref(simd, lanes) + on.notes(*notes);
-        sum.store_array(lanes);
+    if !on.add_up(&notes, tallied) {
+        return E;
     }
-    let mut least = f32x16::splat(simd, 4.0);
-    for nearest in &nearest {
-        least = on.nearer_nought(least, *nearest);
-    }
-    if least.simd_le(F32_BAND).any_true() {
-        near(on, (a, b), (place_a, place_b, edge), cosines, tally, judge);
+    if L::NOTES_WHICH {
+        for (edge, notes) in (edge..).zip(notes) {
+            noted(on, notes, (place_a, place_b, edge), judge);
+        }
+    } else {
+        near(on, (a, b), (place_a, place_b, edge), thresholds, judge);
     }
     E
 }
 
-/// Dot products of one point with sixteen, less each cosine.
+/// Doubts those pairs that were noted as too near to an edge for f32; their numbers were not below nought.
+#[inline(always)]
+fn noted<L: Noting>(
+    on: L,
+    notes: L::Notes,
+    (place_a, place_b, edge): (usize, usize, usize),
+    judge: &mut impl Judge,
+) {
+    let (mut words, which) = on.which(notes);
+    while words != 0 {
+        let word = words.trailing_zeros() as usize;
+        words &= words - 1;
+        let mut rows = which.get(word).copied().unwrap_or_default();
+        while rows != 0 {
+            // Two bits a row from the top, of two rows in turn, four lanes each.
+            let row = rows.leading_zeros() as usize + word / 4 % 2;
+            let lane = word / 8 * 4 + word % 4;
+            rows &= !(0x8000_u16 >> rows.leading_zeros());
+            judge.doubt(edge, place_a + row, place_b + lane, false);
+        }
+    }
+}
+
+/// Dot products of one point with sixteen, less each threshold.
 #[inline(always)]
 fn row_above<L: Lanes, const E: usize>(
     on: L,
     [x, y, z]: [f32; 3],
     [bx, by, bz]: [f32x16<L::S>; 3],
-    cosines: [f32; E],
+    thresholds: [f32; E],
 ) -> [f32x16<L::S>; E] {
     let simd = on.simd();
     let x = f32x16::splat(simd, x);
     let y = f32x16::splat(simd, y);
     let z = f32x16::splat(simd, z);
-    if let [cosine] = cosines[..] {
-        let first = bx.mul_add(x, f32x16::splat(simd, -cosine));
+    if let [threshold] = thresholds[..] {
+        let first = bx.mul_add(x, f32x16::splat(simd, -threshold));
         let above = bz.mul_add(z, by.mul_add(y, first));
         return [above; E];
     }
     let mut above = [bz.mul_add(z, by.mul_add(y, bx * x)); E];
     // Not by `map`, which leaves the function that has the registers.
-    for (above, cosine) in above.iter_mut().zip(&cosines) {
-        *above -= f32x16::splat(simd, *cosine);
+    for (above, threshold) in above.iter_mut().zip(&thresholds) {
+        *above -= f32x16::splat(simd, *threshold);
     }
     above
 }
@@ -175,30 +217,26 @@ fn row_above<L: Lanes, const E: usize>(
 #[inline(always)]
 pub(super) fn loaded<S: Simd>(simd: S, [x, y, z]: &Leaf) -> [f32x16<S>; 3] {
     [
-        f32x16::load_array_ref(simd, x),
-        f32x16::load_array_ref(simd, y),
-        f32x16::load_array_ref(simd, z),
+        f32x16::load_array_ref(simd, &x.0),
+        f32x16::load_array_ref(simd, &y.0),
+        f32x16::load_array_ref(simd, &z.0),
     ]
 }
 
-/// Judges those pairs that are too near to an edge for f32, and puts right what their signs had said.
+/// Doubts those pairs that are too near to an edge for f32.
 #[inline(always)]
-fn near<L: Lanes, const E: usize>(
+fn near<L: Noting, const E: usize>(
     on: L,
-    (a, b): (&Leaf, &Leaf),
+    (a, b): (&Rows, &Leaf),
     (place_a, place_b, edge): (usize, usize, usize),
-    cosines: [f32; E],
-    tally: &mut Tally,
+    thresholds: [f32; E],
     judge: &mut impl Judge,
 ) {
-    let lanes = b
-        .each_ref()
-        .map(|column| f32x16::load_array_ref(on.simd(), column));
-    let [ax, ay, az] = a;
-    for row in 0..LANES {
-        let above = row_above(on, [ax[row], ay[row], az[row]], lanes, cosines);
+    let lanes = loaded(on.simd(), b);
+    for (row, at) in a.iter().enumerate() {
+        let above = row_above(on, *at, lanes, thresholds);
         for (edge, above) in (edge..).zip(&above) {
-            let mut undecided = above.abs().simd_le(F32_BAND).to_bitmask();
+            let mut undecided = on.undecided(*above);
             let negative = above
                 .bitcast::<u32x16<L::S>>()
                 .simd_ge(1 << 31)
@@ -206,11 +244,8 @@ fn near<L: Lanes, const E: usize>(
             while undecided != 0 {
                 let lane = undecided.trailing_zeros() as usize;
                 undecided &= undecided - 1;
-                let is_beyond = judge.is_beyond(edge, place_a + row, place_b + lane);
-                let said = i64::from(negative >> lane & 1 == 1);
-                if let Some(beyond) = tally.beyond.get_mut(edge) {
-                    *beyond += i64::from(is_beyond) - said;
-                }
+                let said = negative >> lane & 1 == 1;
+                judge.doubt(edge, place_a + row, place_b + lane, said);
             }
         }
     }

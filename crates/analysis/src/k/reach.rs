@@ -8,6 +8,7 @@ use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
 use super::lanes::LANES;
 
 /// The first and the last bin that the pairs of each of sixteen leaves with another can be in.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reach {
     pub first: [i32; LANES],
     pub last: [i32; LANES],
@@ -41,8 +42,17 @@ pub(super) fn reach<S: Simd>(
         f32x16::splat(simd, mz),
         y.mul_add(f32x16::splat(simd, my), x * mx),
     );
+    let (apart, root) = angle(simd, cosine);
+    // An error of 4e-7 in the cosine moves the angle by up to that over its sine, and by 1e-3 at 0 and pi.
+    let beyond = radius + COARSE + 2e-6 / (root + 1e-3);
+    bins_of(apart - beyond, apart + beyond, bins)
+}
+
+/// An arc cosine within [`COARSE`], and the square root of what the cosine's magnitude is below 1.
+#[inline(always)]
+fn angle<S: Simd>(simd: S, cosine: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let near = cosine.abs();
-    let root = (1.0 - near).max(0.0).sqrt();
+    let root = (1.0 - near).max(f32x16::splat(simd, 0.0)).sqrt();
     let series = near * -0.018_729_3 + 0.074_261;
     let series = near * series - 0.212_114_4;
     let series = near * series + 1.570_728_8;
@@ -50,17 +60,31 @@ pub(super) fn reach<S: Simd>(
     let apart = cosine
         .simd_lt(0.0)
         .select(std::f32::consts::PI - small, small);
-    // An error of 4e-7 in the cosine moves the angle by up to that over its sine, and by 1e-3 at 0 and pi.
-    let beyond = radius + COARSE + 2e-6 / (root + 1e-3);
+    (apart, root)
+}
+
+/// An arc cosine within [`COARSE`]; of what is beyond 1 or -1 that of those.
+#[inline(always)]
+pub(super) fn arc_cosine<S: Simd>(simd: S, cosine: f32x16<S>) -> f32x16<S> {
+    angle(simd, cosine.max(-1.0).min(1.0)).0
+}
+
+/// The bins of angles from these to those, which are moved apart by what the arc cosine may be off.
+#[inline(always)]
+pub(super) fn bins_between<S: Simd>(least: f32x16<S>, greatest: f32x16<S>, bins: usize) -> Reach {
+    bins_of(least - COARSE, greatest + COARSE, bins)
+}
+
+#[inline(always)]
+fn bins_of<S: Simd>(least: f32x16<S>, greatest: f32x16<S>, bins: usize) -> Reach {
     let per_bin = bins as f32 / std::f32::consts::PI;
     let last_bin = bins.saturating_sub(1) as f32;
-    let first = ((apart - beyond) * per_bin).max(0.0).min(last_bin);
-    let last = ((apart + beyond) * per_bin).max(0.0).min(last_bin);
+    let bin = |angle: f32x16<S>| i32x16::truncate_from((angle * per_bin).max(0.0).min(last_bin));
     let mut reach = Reach {
         first: [0; LANES],
         last: [0; LANES],
     };
-    i32x16::truncate_from(first).store_array(&mut reach.first);
-    i32x16::truncate_from(last).store_array(&mut reach.last);
+    bin(least).store_array(&mut reach.first);
+    bin(greatest).store_array(&mut reach.last);
     reach
 }

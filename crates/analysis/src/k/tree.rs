@@ -1,11 +1,12 @@
 //! Directions in leaves of sixteen neighbours, and how far a leaf or a block of leaves reaches.
 //!
-//! The points are halved by their widest axis until a leaf is left. What a leaf or block reaches is a circle about its middle,
+//! The points are halved along the sphere until a leaf is left. What a leaf or block reaches is a circle about its middle,
 //! rounded outward. Left out: what is counted with it.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
-use super::lanes::LANES;
+use super::lanes::{LANES, Line};
+use super::outline::{self, Outline, Outlines};
 use super::reach::Around;
 
 /// The most leaves of a block.
@@ -106,7 +107,7 @@ pub(super) struct Node {
 }
 
 /// Coordinates of sixteen points; those that are missing are nought.
-pub(super) type Leaf = [[f32; LANES]; 3];
+pub(super) type Leaf = [Line<f32>; 3];
 
 /// Directions in leaves.
 #[derive(Clone, Debug, Default)]
@@ -116,11 +117,9 @@ pub(super) struct Tree {
     /// Where each of them stood.
     pub order: Vec<u32>,
     pub leaves: Vec<Leaf>,
-    /// The circles of the leaves.
-    pub around_leaves: Circles,
+    pub around_leaves: Outlines,
     pub blocks: Vec<Block>,
-    /// The circles of the blocks.
-    pub around_blocks: Circles,
+    pub around_blocks: Outlines,
     /// The last is the root; none without points.
     pub nodes: Vec<Node>,
 }
@@ -130,6 +129,8 @@ pub(super) struct Tree {
 struct Sorted {
     at: [f32; 3],
     index: u32,
+    /// Where it is along what points are halved by.
+    key: f32,
 }
 
 impl Tree {
@@ -139,6 +140,7 @@ impl Tree {
             .map(|(p, index)| Sorted {
                 at: p.as_vec3().to_array(),
                 index,
+                key: 0.0,
             })
             .collect();
         let mut blocks = Vec::new();
@@ -152,24 +154,23 @@ impl Tree {
         let of = |index: &u32| points.get(*index as usize).copied();
         let points: Vec<DVec3> = order.iter().filter_map(of).collect();
         let leaves: Vec<Leaf> = points.chunks(LANES).map(leaf).collect();
-        let circles: Vec<Circle> = points
-            .chunks(LANES)
-            .map(|of| Circle::around(of.iter()))
-            .collect();
-        let block = |&(first, end): &(usize, usize)| {
+        let around_leaves: Vec<Outline> = points.chunks(LANES).map(outline::around).collect();
+        let of_block = |&(first, end): &(usize, usize)| {
             let from = first * LANES..(end * LANES).min(points.len());
-            Block {
-                first,
-                end,
-                circle: Circle::around(points.get(from).unwrap_or_default().iter()),
-            }
+            points.get(from).unwrap_or_default()
+        };
+        let around_blocks = blocks.iter().map(|block| outline::around(of_block(block)));
+        let around_blocks: Vec<Outline> = around_blocks.collect();
+        let block = |of: &(usize, usize)| Block {
+            first: of.0,
+            end: of.1,
+            circle: Circle::around(of_block(of).iter()),
         };
         let blocks: Vec<Block> = blocks.iter().map(block).collect();
-        let around_blocks: Vec<Circle> = blocks.iter().map(|block| block.circle).collect();
         let mut tree = Self {
-            around_leaves: Circles::new(&circles),
+            around_leaves: Outlines::new(&around_leaves),
             blocks,
-            around_blocks: Circles::new(&around_blocks),
+            around_blocks: Outlines::new(&around_blocks),
             points,
             order,
             leaves,
@@ -239,33 +240,36 @@ fn halve(points: &mut [Sorted], first_leaf: usize, blocks: &mut Vec<(usize, usiz
     }
     let left = leaves / 2;
     let middle = left * LANES;
-    let axis = widest(points);
-    let key = |s: &Sorted| s.at[axis];
-    points.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
+    let along = widest(points);
+    for s in points.iter_mut() {
+        s.key = Vec3::from(s.at).dot(along);
+    }
+    points.select_nth_unstable_by(middle, |a, b| a.key.total_cmp(&b.key));
     let (before, behind) = points.split_at_mut(middle);
     halve(before, first_leaf, blocks);
     halve(behind, first_leaf + left, blocks);
 }
 
-fn widest(points: &[Sorted]) -> usize {
-    let (mut low, mut high) = ([f32::MAX; 3], [f32::MIN; 3]);
-    for point in points {
-        for ((low, high), at) in low.iter_mut().zip(&mut high).zip(point.at) {
-            *low = low.min(at);
-            *high = high.max(at);
-        }
-    }
-    let [x, y, z] = [high[0] - low[0], high[1] - low[1], high[2] - low[2]];
-    match (x >= y && x >= z, y >= z) {
-        (true, _) => 0,
-        (_, true) => 1,
-        _ => 2,
-    }
+/// The one of two directions along the sphere in which points reach farther. They change little from place to place, so that leaves are nearly square.
+fn widest(points: &[Sorted]) -> Vec3 {
+    let sum: Vec3 = points.iter().map(|s| Vec3::from(s.at)).sum();
+    let (e, f) = sum
+        .try_normalize()
+        .unwrap_or(Vec3::X)
+        .any_orthonormal_pair();
+    let width = |along: Vec3| {
+        let places = points.iter().map(|s| Vec3::from(s.at).dot(along));
+        let (low, high) = places.fold((f32::MAX, f32::MIN), |(low, high), at| {
+            (low.min(at), high.max(at))
+        });
+        high - low
+    };
+    if width(e) >= width(f) { e } else { f }
 }
 
 fn leaf(points: &[DVec3]) -> Leaf {
-    let mut leaf = [[0.0; LANES]; 3];
-    let [x, y, z] = &mut leaf;
+    let mut leaf = [Line([0.0; LANES]); 3];
+    let [Line(x), Line(y), Line(z)] = &mut leaf;
     for (((p, x), y), z) in points.iter().zip(x).zip(y).zip(z) {
         (*x, *y, *z) = (p.x as f32, p.y as f32, p.z as f32);
     }

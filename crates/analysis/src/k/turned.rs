@@ -6,20 +6,23 @@
 //! Left out: finding out how a scan was turned.
 
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::{dispatch, f32x16, prelude::*, u32x16};
 use glam::{DQuat, DVec3};
 
 use super::exact::on_threads;
-use super::lanes::{LANES, Lanes, Portable};
+use super::lanes::{LANES, Lanes, Line, Portable};
 use super::leaf_pair::{F32_BAND, Tally, loaded};
+use super::others::{Bits, Others};
 use super::plain::check;
-use super::reach::{Around, reach};
+use super::reach::Reach;
+
 use super::tree::{BLOCK_LEAVES, Tree};
 use super::{Counts, Edges, KError, Registers};
 
-/// The most frames: sixteen rows of sixteen blocks can be added to a lane of 32 bits then.
+/// The most frames: all rows that are counted together can be added to a lane of 32 bits with a block's leaves then.
 pub const MOST_FRAMES: usize = 1 << 17;
 
 /// How far a point may be from where the first frame's, turned, would be: less than what single precision leaves room for.
@@ -154,8 +157,8 @@ pub fn turned_by(
     })
 }
 
-/// Rows that are counted together.
-const ROWS: usize = 16;
+/// Rows that are counted together: all leaves have to be fetched from far once for so many.
+const ROWS: usize = 64;
 
 /// What all threads read.
 struct Scan<'a> {
@@ -169,7 +172,7 @@ struct Scan<'a> {
     /// Of all points.
     tree: Tree,
     /// For how many pairs a point of each leaf stands, with one of the first frame, from either end.
-    weights: Vec<[u32; LANES]>,
+    weights: Vec<Line<u32>>,
     /// Their sums, of leaves and of blocks.
     leaf_weights: Vec<u64>,
     block_weights: Vec<u64>,
@@ -187,14 +190,14 @@ impl<'a> Scan<'a> {
             apart => 2 * (frames.saturating_sub(apart)) as u32,
         };
         let of_leaf = |leaf: &[u32]| {
-            let mut weights = [0; LANES];
-            for (to, index) in weights.iter_mut().zip(leaf) {
+            let mut weights = Line([0; LANES]);
+            for (to, index) in weights.0.iter_mut().zip(leaf) {
                 *to = weight(*index);
             }
             weights
         };
-        let weights: Vec<[u32; LANES]> = tree.order.chunks(LANES).map(of_leaf).collect();
-        let sum = |of: &[u32; LANES]| of.iter().map(|&w| u64::from(w)).sum();
+        let weights: Vec<Line<u32>> = tree.order.chunks(LANES).map(of_leaf).collect();
+        let sum = |of: &Line<u32>| of.0.iter().map(|&w| u64::from(w)).sum();
         let leaf_weights: Vec<u64> = weights.iter().map(sum).collect();
         let of_block = |first: usize, end: usize| {
             let of: &[u64] = leaf_weights.get(first..end).unwrap_or_default();
@@ -219,6 +222,36 @@ impl<'a> Scan<'a> {
     }
 }
 
+impl Scan<'_> {
+    /// A row with a leaf that edges go through: adds the weights beyond each; the dot products if any is too near to an edge.
+    #[inline(always)]
+    fn leaf<L: Lanes>(
+        &self,
+        on: L,
+        [x, y, z]: [f32; 3],
+        leaf: usize,
+        cosines: &[f32],
+        tallied: &mut [Line<u32>],
+    ) -> Option<[f32; LANES]> {
+        let simd = on.simd();
+        let weights = u32x16::load_array_ref(simd, &self.weights.get(leaf)?.0);
+        let [bx, by, bz] = loaded(simd, self.tree.leaves.get(leaf)?);
+        let dot = bz.mul_add(z, by.mul_add(y, bx * x));
+        let mut nearest = f32x16::splat(simd, 4.0);
+        for (cosine, lanes) in cosines.iter().zip(tallied) {
+            let above = dot - *cosine;
+            let beyond = above.simd_lt(0.0).select(weights, u32x16::splat(simd, 0));
+            (u32x16::load_array_ref(simd, &lanes.0) + beyond).store_array(&mut lanes.0);
+            nearest = on.nearer_nought(nearest, above);
+        }
+        nearest.simd_le(F32_BAND).any_true().then(|| {
+            let mut dots = [0.0; LANES];
+            dot.store_array(&mut dots);
+            dots
+        })
+    }
+}
+
 /// What one thread counts.
 struct One<'a> {
     scan: &'a Scan<'a>,
@@ -231,7 +264,7 @@ impl One<'_> {
     fn done(self) -> Result<(Vec<i64>, u64), KError> {
         match self.wrong {
             Some(wrong) => Err(wrong),
-            None => Ok((self.tally.counts(), self.on_edges)),
+            None => Ok((self.tally.counts(&[]), self.on_edges)),
         }
     }
 
@@ -239,7 +272,6 @@ impl One<'_> {
     #[inline(always)]
     fn all<L: Lanes>(&mut self, on: L, next: &AtomicUsize) {
         let scan = self.scan;
-        let bins = scan.edges.bins();
         loop {
             let start = next.fetch_add(ROWS, Ordering::Relaxed);
             let end = start.saturating_add(ROWS).min(scan.size);
@@ -247,29 +279,33 @@ impl One<'_> {
                 return;
             }
             for first_block in (0..scan.tree.blocks.len()).step_by(LANES) {
-                let Some((middles, radii)) = scan.tree.around_blocks.sixteen(first_block) else {
-                    break;
-                };
-                self.tally
-                    .settle(ROWS * LANES * BLOCK_LEAVES * 2 * scan.frames);
-                for row in start..end {
-                    let Some(point) = scan.points.get(row) else {
-                        continue;
-                    };
-                    let around = Around {
-                        middle: point.as_vec3().to_array(),
-                        radius: 0.0,
-                    };
-                    let of = reach(on.simd(), around, middles, radii, bins);
-                    let end = scan.tree.blocks.len();
-                    for ((block, first), last) in (first_block..end).zip(&of.first).zip(&of.last) {
-                        if first == last {
-                            let weight = scan.block_weights.get(block);
-                            self.tally.add(*first as usize, weight.copied());
-                        } else {
-                            self.block(on, (row, around), block);
-                        }
-                    }
+                self.rows(on, start..end, first_block);
+            }
+        }
+    }
+
+    /// Rows with sixteen blocks: a block with all rows before the next, so that it stays near.
+    #[inline(always)]
+    fn rows<L: Lanes>(&mut self, on: L, rows: Range<usize>, first_block: usize) {
+        let scan = self.scan;
+        let (blocks, bins) = (&scan.tree.around_blocks, scan.edges.bins());
+        let mut found = [([0.0; 3], Reach::default()); ROWS];
+        for (point, found) in scan.points.iter().skip(rows.start).zip(&mut found) {
+            let at = point.as_vec3().to_array();
+            if let Some(reach) = blocks.span_of_point(on.simd(), at, first_block, bins) {
+                *found = (at, reach);
+            }
+        }
+        for lane in 0..LANES.min(scan.tree.blocks.len() - first_block) {
+            let block = first_block + lane;
+            self.tally.settle(ROWS * BLOCK_LEAVES * 2 * scan.frames);
+            for (row, (at, reach)) in rows.clone().zip(&found) {
+                let first = reach.first[lane];
+                if first == reach.last[lane] {
+                    let weight = scan.block_weights.get(block);
+                    self.tally.add(first as usize, weight.copied());
+                } else {
+                    self.block(on, (row, *at), block);
                 }
             }
         }
@@ -277,62 +313,67 @@ impl One<'_> {
 
     /// A row with the leaves of a block.
     #[inline(always)]
-    fn block<L: Lanes>(&mut self, on: L, (row, around): (usize, Around), block: usize) {
+    fn block<L: Lanes>(&mut self, on: L, (row, at): (usize, [f32; 3]), block: usize) {
         let scan = self.scan;
         let Some(block) = scan.tree.blocks.get(block) else {
             return;
         };
-        for start in (block.first..block.end).step_by(LANES) {
-            let Some((middles, radii)) = scan.tree.around_leaves.sixteen(start) else {
-                return;
+        let (bins, leaves) = (scan.edges.bins(), &scan.tree.around_leaves);
+        let mut others = Others::default();
+        let starts = (block.first..block.end).step_by(LANES);
+        for (of, start) in others.reach.iter_mut().zip(starts) {
+            if let Some(reach) = leaves.span_of_point(on.simd(), at, start, bins) {
+                *of = reach;
+            }
+        }
+        others.sort(on.simd(), block.end - block.first);
+        for (leaf, index) in (block.first..block.end).zip(0..) {
+            let weight = scan.leaf_weights.get(leaf);
+            self.tally.add(others.bins(index).0, weight.copied());
+        }
+        let row = (row, at, block.first);
+        self.few::<L, 1>(on, row, &others);
+        self.few::<L, 2>(on, row, &others);
+        self.few::<L, 3>(on, row, &others);
+        for index in others.of::<4>().chain(Bits(others.many)) {
+            let (first, last) = others.bins(index);
+            let (cosines, lanes) = (scan.edges.cosines_f32(), &mut self.tally.lanes);
+            let (Some(cosines), Some(lanes)) =
+                (cosines.get(first..last), lanes.get_mut(first..last))
+            else {
+                continue;
             };
-            let of = reach(on.simd(), around, middles, radii, scan.edges.bins());
-            for ((leaf, first), last) in (start..block.end).zip(&of.first).zip(&of.last) {
-                let (first, last) = (*first as usize, *last as usize);
-                let weight = scan.leaf_weights.get(leaf);
-                self.tally.add(first, weight.copied());
-                if first < last {
-                    self.leaf(on, (row, around), leaf, (first, last));
-                }
+            let leaf = block.first + index;
+            if let Some(dots) = scan.leaf(on, at, leaf, cosines, lanes) {
+                self.near(row.0, leaf, first, last, dots);
             }
         }
     }
 
-    /// A row with a leaf that edges go through.
+    /// A row with leaves that so many edges go through.
     #[inline(always)]
-    fn leaf<L: Lanes>(
+    fn few<L: Lanes, const E: usize>(
         &mut self,
         on: L,
-        (row, around): (usize, Around),
-        leaf: usize,
-        (first, last): (usize, usize),
+        (row, at, start): (usize, [f32; 3], usize),
+        others: &Others,
     ) {
         let scan = self.scan;
-        let simd = on.simd();
-        let (Some(of), Some(weights)) = (scan.tree.leaves.get(leaf), scan.weights.get(leaf)) else {
-            return;
-        };
-        let weights = u32x16::load_array_ref(simd, weights);
-        let [bx, by, bz] = loaded(simd, of);
-        let [x, y, z] = around.middle;
-        let dot = bz.mul_add(z, by.mul_add(y, bx * x));
-        let cosines = scan
-            .edges
-            .cosines_f32()
-            .get(first..last)
-            .unwrap_or_default();
-        let tallied = self.tally.lanes.get_mut(first..last).unwrap_or_default();
-        let mut nearest = f32x16::splat(simd, 4.0);
-        for (cosine, lanes) in cosines.iter().zip(tallied) {
-            let above = dot - *cosine;
-            let beyond = above.simd_lt(0.0).select(weights, u32x16::splat(simd, 0));
-            (u32x16::load_array_ref(simd, lanes) + beyond).store_array(lanes);
-            nearest = on.nearer_nought(nearest, above);
-        }
-        if nearest.simd_le(F32_BAND).any_true() {
-            let mut dots = [0.0; LANES];
-            dot.store_array(&mut dots);
-            self.near(row, leaf, first, last, dots);
+        for index in others.of::<E>() {
+            let (first, _) = others.bins(index);
+            let (cosines, lanes) = (scan.edges.cosines_f32(), &mut self.tally.lanes);
+            let (Some(cosines), Some(lanes)) = (cosines.get(first..), lanes.get_mut(first..))
+            else {
+                continue;
+            };
+            let (Some(cosines), Some(lanes)) =
+                (cosines.first_chunk::<E>(), lanes.first_chunk_mut::<E>())
+            else {
+                continue;
+            };
+            if let Some(dots) = scan.leaf(on, at, start + index, cosines, lanes) {
+                self.near(row, start + index, first, first + E, dots);
+            }
         }
     }
 
@@ -354,7 +395,7 @@ impl One<'_> {
                 }
                 let weights = scan.weights.get(leaf);
                 let weight = weights
-                    .and_then(|of| of.get(lane))
+                    .and_then(|of| of.0.get(lane))
                     .map_or(0, |&w| i64::from(w));
                 let said = if above < 0.0 { weight } else { 0 };
                 let beyond = self.beyond(edge, row, *index as usize, weight);

@@ -13,7 +13,7 @@ use crate::k::{
 };
 
 /// What this processor has, and less.
-const REGISTERS: [Registers; 4] = [
+pub(super) const REGISTERS: [Registers; 4] = [
     Registers::Best,
     Registers::Avx2,
     Registers::Sse4,

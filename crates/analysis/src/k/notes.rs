@@ -1,0 +1,244 @@
+//! Notes of which numbers are below nought, and whether any is too near to it to tell: sixteen rows of sixteen lanes.
+//!
+//! Where there are instructions that pack two registers into one and keep what does not fit at the end of the range, one packing tells both. Everything is scaled so far down that
+//! the band where f32 cannot tell is the integers from 0 to 16,383 of a float's bits (it is moved by half its width, so that nothing in it is negative). All other floats, as integers, are packed to -32,768 or to
+//! 16,384 and more: the first two bits are 10 below nought, 01 above, 00 in the band. The scale is a power of two; numbers that become so small that they lose digits lose less
+//! than 2^-33 of the unit. Left out: who judges.
+
+use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
+
+use super::lanes::{LANES, Lanes, Line, Portable};
+use super::leaf_pair::F32_BAND;
+
+/// How notes are made in some registers.
+pub(super) trait Noting: Lanes {
+    /// Of up to sixteen rows.
+    type Notes: Copy;
+
+    /// Whether the notes tell which are too near.
+    const NOTES_WHICH: bool;
+
+    /// What rows and thresholds are multiplied by.
+    const SCALE: f32;
+
+    /// What thresholds are moved down by, before that.
+    const MOVED: f32;
+
+    fn no_notes(self) -> Self::Notes;
+
+    /// Notes two rows.
+    fn note(self, notes: &mut Self::Notes, row: f32x16<Self::S>, next: f32x16<Self::S>);
+
+    /// Adds to each edge's lanes how many were below nought; says whether any was too near.
+    fn add_up<const E: usize>(self, notes: &[Self::Notes; E], lanes: &mut [Line<u32>]) -> bool;
+
+    /// Which lanes of a row are too near to nought.
+    fn undecided(self, row: f32x16<Self::S>) -> u64;
+
+    /// The notes' words of sixteen bits, ones for what is too near: bits 15, 13 and so on for rows 0 and 1, 2 and 3 and so on; words by eights, four lanes
+    /// of the first row and the same four of the next. Before them, which words have any.
+    fn which(self, notes: Self::Notes) -> (u32, [u16; 2 * LANES]);
+}
+
+impl<S: Simd> Noting for Portable<S> {
+    type Notes = (u32x16<S>, f32x16<S>);
+
+    const NOTES_WHICH: bool = false;
+    const SCALE: f32 = 1.0;
+    const MOVED: f32 = 0.0;
+
+    #[inline(always)]
+    fn no_notes(self) -> Self::Notes {
+        (u32x16::splat(self.0, 0), f32x16::splat(self.0, 4.0))
+    }
+
+    #[inline(always)]
+    fn note(self, (negative, nearest): &mut Self::Notes, row: f32x16<S>, next: f32x16<S>) {
+        for row in [row, next] {
+            *negative += row.bitcast::<u32x16<S>>() >> 31;
+            *nearest = self.nearer_nought(*nearest, row);
+        }
+    }
+
+    #[inline(always)]
+    fn add_up<const E: usize>(self, notes: &[Self::Notes; E], lanes: &mut [Line<u32>]) -> bool {
+        let mut least = f32x16::splat(self.0, 4.0);
+        for ((negative, nearest), lanes) in notes.iter().zip(lanes) {
+            let sum = u32x16::load_array_ref(self.0, &lanes.0) + *negative;
+            sum.store_array(&mut lanes.0);
+            least = self.nearer_nought(least, *nearest);
+        }
+        least.simd_le(F32_BAND).any_true()
+    }
+
+    #[inline(always)]
+    fn undecided(self, row: f32x16<S>) -> u64 {
+        row.abs().simd_le(F32_BAND).to_bitmask()
+    }
+
+    #[inline(always)]
+    fn which(self, _: Self::Notes) -> (u32, [u16; 2 * LANES]) {
+        (0, [0; 2 * LANES])
+    }
+}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+mod x86 {
+    #[cfg(target_arch = "x86")]
+    use std::arch::x86::*;
+    #[cfg(target_arch = "x86_64")]
+    use std::arch::x86_64::*;
+
+    use fearless_simd::x86::{Avx2, Avx512};
+    use fearless_simd::{f32x8, f32x16, prelude::*, u16x16, u16x32, u32x16};
+
+    use super::super::lanes::{Half, LANES, Line, Wide};
+    use super::super::leaf_pair::F32_BAND;
+    use super::Noting;
+
+    /// 2^-115: 2^14 of the least float's steps, 2^-149 each, are 2^-20, which is twice the band.
+    const DOWN: f32 = f32::from_bits((127 - 115) << 23);
+    /// Floats from 0 to below this are in the band.
+    const BAND_END: f32 = f32::from_bits(1 << 14);
+
+    impl Noting for Wide {
+        /// Two bits a row in words of 16 bits.
+        type Notes = u32x16<Avx512>;
+
+        const NOTES_WHICH: bool = true;
+        const SCALE: f32 = DOWN;
+        const MOVED: f32 = F32_BAND;
+
+        #[inline(always)]
+        fn no_notes(self) -> Self::Notes {
+            u32x16::splat(self.0, 0)
+        }
+
+        #[inline(always)]
+        fn note(self, notes: &mut Self::Notes, row: f32x16<Avx512>, next: f32x16<Avx512>) {
+            *notes = shifted_in(self.0, *notes, row, next);
+        }
+
+        #[inline(always)]
+        fn add_up<const E: usize>(self, notes: &[Self::Notes; E], lanes: &mut [Line<u32>]) -> bool {
+            let mut decided = u32x16::splat(self.0, u32::MAX);
+            for (notes, lanes) in notes.iter().zip(lanes) {
+                let sum = u32x16::load_array_ref(self.0, &lanes.0) + ones(self.0, *notes);
+                sum.store_array(&mut lanes.0);
+                decided &= first_bits_differ(self.0, *notes);
+            }
+            !(decided | 0x5555_5555).simd_eq(u32::MAX).all_true()
+        }
+
+        #[inline(always)]
+        fn undecided(self, row: f32x16<Avx512>) -> u64 {
+            let bits = row.bitcast::<u32x16<Avx512>>();
+            bits.simd_lt(BAND_END.to_bits()).to_bitmask()
+        }
+
+        #[inline(always)]
+        fn which(self, notes: Self::Notes) -> (u32, [u16; 2 * LANES]) {
+            let near = !first_bits_differ(self.0, notes) & 0xaaaa_aaaa;
+            let words = near.bitcast::<u16x32<Avx512>>();
+            let mut which = [0; 2 * LANES];
+            words.store_array(&mut which);
+            (!words.simd_eq(0).to_bitmask() as u32, which)
+        }
+    }
+
+    impl Noting for Half {
+        /// How many rows were below nought, in two halves of 16 lanes, and the least of all as packed.
+        type Notes = (u16x16<Avx2>, u16x16<Avx2>);
+
+        const NOTES_WHICH: bool = false;
+        const SCALE: f32 = DOWN;
+        const MOVED: f32 = F32_BAND;
+
+        #[inline(always)]
+        fn no_notes(self) -> Self::Notes {
+            (u16x16::splat(self.0, 0), u16x16::splat(self.0, u16::MAX))
+        }
+
+        #[inline(always)]
+        fn note(self, (negative, least): &mut Self::Notes, row: f32x16<Avx2>, next: f32x16<Avx2>) {
+            let (row, row_end) = row.split();
+            let (next, next_end) = next.split();
+            for (row, next) in [(row, next), (row_end, next_end)] {
+                let packed = packed(self.0, row, next);
+                *negative += packed >> 15;
+                *least = packed.min(*least);
+            }
+        }
+
+        #[inline(always)]
+        fn add_up<const E: usize>(self, notes: &[Self::Notes; E], lanes: &mut [Line<u32>]) -> bool {
+            let mut least = u16x16::splat(self.0, u16::MAX);
+            for ((negative, nearest), lanes) in notes.iter().zip(lanes) {
+                let bits = negative.bitcast::<fearless_simd::u32x8<Avx2>>();
+                let sum = (bits & 0xffff) + (bits >> 16);
+                if let Some(lanes) = lanes.0.first_chunk_mut() {
+                    let sum = fearless_simd::u32x8::load_array_ref(self.0, lanes) + sum;
+                    sum.store_array(lanes);
+                }
+                least = least.min(*nearest);
+            }
+            (least >> 14).simd_eq(0).any_true()
+        }
+
+        #[inline(always)]
+        fn undecided(self, row: f32x16<Avx2>) -> u64 {
+            let bits = row.bitcast::<u32x16<Avx2>>();
+            bits.simd_lt(BAND_END.to_bits()).to_bitmask()
+        }
+
+        #[inline(always)]
+        fn which(self, _: Self::Notes) -> (u32, [u16; 2 * LANES]) {
+            (0, [0; 2 * LANES])
+        }
+    }
+
+    fearless_simd::kernel!(
+        #[inline(always)]
+        fn shifted_in(
+            token: Avx512,
+            notes: u32x16<Avx512>,
+            row: f32x16<Avx512>,
+            next: f32x16<Avx512>,
+        ) -> u32x16<Avx512> {
+            let packed = _mm512_packs_epi32(
+                _mm512_castps_si512(row.into()),
+                _mm512_castps_si512(next.into()),
+            );
+            _mm512_shldi_epi16::<2>(notes.into(), packed).simd_into(token)
+        }
+    );
+
+    fearless_simd::kernel!(
+        /// How many pairs of bits begin with a one.
+        #[inline(always)]
+        fn ones(token: Avx512, notes: u32x16<Avx512>) -> u32x16<Avx512> {
+            let first = _mm512_and_si512(notes.into(), _mm512_set1_epi32(0xaaaa_aaaa_u32 as i32));
+            _mm512_popcnt_epi32(first).simd_into(token)
+        }
+    );
+
+    fearless_simd::kernel!(
+        /// At each pair's first bit, whether its bits differ.
+        #[inline(always)]
+        fn first_bits_differ(token: Avx512, notes: u32x16<Avx512>) -> u32x16<Avx512> {
+            let notes: __m512i = notes.into();
+            _mm512_xor_si512(notes, _mm512_add_epi16(notes, notes)).simd_into(token)
+        }
+    );
+
+    fearless_simd::kernel!(
+        #[inline(always)]
+        fn packed(token: Avx2, row: f32x8<Avx2>, next: f32x8<Avx2>) -> u16x16<Avx2> {
+            _mm256_packs_epi32(
+                _mm256_castps_si256(row.into()),
+                _mm256_castps_si256(next.into()),
+            )
+            .simd_into(token)
+        }
+    );
+}
