@@ -139,6 +139,21 @@ pub fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Refuses `-` for a log: it is a file, read again to make the cloud.
+///
+/// # Errors
+/// [`Kind::Usage`] that says `with` what to name one.
+pub fn log_is_file(log: &Path, with: &str) -> Result<(), Failure> {
+    if log == Path::new("-") {
+        return Err(Failure::new(
+            Kind::Usage,
+            format!("a log is a file: expected its name with {with}, got -"),
+        )
+        .help(format!("name a file with {with}")));
+    }
+    Ok(())
+}
+
 /// Refuses to write a cloud over the log or recording that it is made of.
 ///
 /// # Errors

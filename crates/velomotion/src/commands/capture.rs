@@ -30,6 +30,7 @@ use crate::{devices, ports};
 pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
     let setup = Setup::new(arguments, common)?;
     output::one_for_stdout(Some(&setup.cloud), common.json)?;
+    output::log_is_file(&setup.log, "--log")?;
     let target = Target::open(&setup.cloud, arguments.output.fields(), setup.force)?;
     output::check_free(&setup.log, setup.force)?;
     let interrupt = signals::interrupt_flag()?;

@@ -221,6 +221,11 @@ fn speeds_and_angles_that_cannot_be_are_refused_before_anything_moves() {
         &["both a.ply"],
     );
     place.fails("capture --speed 10 -o - --json", 2, &["stdout"]);
+    place.fails(
+        "capture --speed 10 --log -",
+        2,
+        &["a log is a file", "--log"],
+    );
     place.fails("capture --speed 10 -o cloud.xyzzy", 2, &[".xyzzy", ".laz"]);
 }
 

@@ -119,15 +119,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> 
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from(stem(&name)).with_extension("pcapng"));
-    if log == Path::new("-") {
-        return Err(Failure::new(
-            Kind::Usage,
-            "a log is a file: expected its name with -o, got -",
-        )
-        .help(
-            "name a file with -o, .pcapng or .pcap; --truth - writes the truth's cloud to stdout",
-        ));
-    }
+    output::log_is_file(&log, "-o (.pcapng or .pcap)")?;
     output::not_over(&arguments.scene, &log)?;
     if let Some(truth) = &arguments.truth {
         output::not_over(&arguments.scene, truth)?;
