@@ -1,6 +1,7 @@
 //! CPU seconds of the ways to the K function: `cargo bench -p analysis --bench k [-- WHAT...]`.
 //!
-//! What is `exact:FRAMES`, `avx2:FRAMES`, `least:FRAMES`, `two:FRAMES` (two threads), `turned:FRAMES`, `sampled:FRAMES` or `gridded:FRAMES`: an RMBL of so many frames of 14,416 points.
+//! What is `exact:FRAMES`, `avx2:FRAMES`, `least:FRAMES`, `two:FRAMES` (two threads), `turned:FRAMES`, `sampled:FRAMES`, `gridded:FRAMES` or
+//! `harmonics:FRAMES` (to degree 64): an RMBL of so many frames of 14,416 points.
 //! Times are those for which the process had a core; where another has the other half of that core, they are up to twice as long.
 
 #![expect(
@@ -19,7 +20,7 @@ use glam::DVec3;
 #[path = "../../src/k/tests/patterns.rs"]
 mod patterns;
 
-const USUAL: [&str; 12] = [
+const USUAL: [&str; 14] = [
     "exact:1",
     "exact:30",
     "exact:72",
@@ -32,6 +33,8 @@ const USUAL: [&str; 12] = [
     "sampled:30",
     "sampled:72",
     "gridded:72",
+    "harmonics:30",
+    "harmonics:72",
 ];
 
 /// Seconds for which this process had a core, all threads, ended ones too.
@@ -68,6 +71,7 @@ fn run(what: &str, points: &[DVec3], frames: usize, edges: &Edges) -> Result<Fou
             return k::sampled(points, edges, &k::Sampling::default()).map(Found::Estimate);
         }
         "gridded" => return k::gridded(points, edges, 24).map(Found::Estimate),
+        "harmonics" => return k::harmonics(points, edges, 64).map(Found::Estimate),
         _ => {
             let step_rad = std::f64::consts::PI / frames as f64;
             let turning = k::Turning {

@@ -1,19 +1,27 @@
 //! Directions in cells of about the same size, sorted in one pass.
 //!
 //! A cell is a square on a face of the cube around the sphere, with sides that are about even in angle. Which cell a point is in need not be exact: what a cell reaches is
-//! measured from the points in it. Left out: what is done with them.
+//! measured from the points in it. For draws, cells are cut into sixteen parts, and their points laid out so that any 32 that follow one another are spread over the
+//! cell. Left out: what is done with them.
 
 use glam::DVec3;
 
 use super::lanes::LANES;
 use super::tree::{Circle, Circles};
 
+/// Pairs that are drawn together.
+pub(super) const ROW: usize = 32;
+
+/// Parts along each side of a cell that is laid out for draws.
+const PARTS: usize = 4;
+const PART_SIDE: u32 = PARTS as u32;
+
 /// Points by cell; empty cells are left out.
 #[derive(Debug, Default)]
 pub(super) struct Cells {
-    /// Where each point stood, by cell; within a cell in an order of chance.
-    pub order: Vec<u32>,
-    /// Coordinates in that order, [`LANES`] more of every cell than it has points: it starts again.
+    /// Points by cell, and by part within a cell.
+    items: Vec<Item>,
+    /// Coordinates, in two layouts of every cell, each with [`ROW`] more than it has points: it starts again. None for [`Cells::new`].
     pub columns: [Vec<f32>; 3],
     pub cells: Vec<Cell>,
     pub around: Circles,
@@ -24,10 +32,20 @@ pub(super) struct Cells {
 pub(super) struct Cell {
     /// Its first place in the order.
     pub first: usize,
-    /// Its first place in the columns.
-    pub column: usize,
     /// Its points.
     pub len: usize,
+    /// Its two layouts: the first place in the columns, and by how many places in the order one goes on from each point to the next, around.
+    pub layouts: [(usize, usize); 2],
+}
+
+impl Cell {
+    /// The place in the order of what is so far along a layout.
+    pub(super) fn place(&self, layout: usize, along: usize) -> usize {
+        let step = self.layouts.get(layout).map_or(1, |(_, step)| *step) as u64;
+        let len = self.len.max(1) as u64;
+        // Both factors are below 2^32.
+        self.first + (along as u64 % len * step % len) as usize
+    }
 }
 
 /// Numbers that look like chance (splitmix64).
@@ -55,100 +73,217 @@ pub(super) const fn scaled(bits: u64, below: usize) -> usize {
 }
 
 /// A point while it is sorted.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Item {
     at: [f32; 3],
     index: u32,
 }
 
+/// Steps of the two layouts, over the number of points: 32 pairs of both are a lattice of rank 1 over all pairs, one in every 32nd of either cell.
+const STEPS: [f64; 2] = [1.0 / 32.0, 7.0 / 32.0];
+
 impl Cells {
     /// With so many cells along each of the cube's edges.
-    pub(super) fn new(points: &[DVec3], side: usize, chance: &mut Chance) -> Self {
+    pub(super) fn new(points: &[DVec3], side: usize) -> Self {
+        Self::sorted(points, side, 1)
+    }
+
+    /// The same, laid out for draws.
+    pub(super) fn laid_out(points: &[DVec3], side: usize) -> Self {
+        Self::sorted(points, side, PARTS)
+    }
+
+    /// Where the point stood that is now at this place.
+    pub(super) fn index(&self, place: usize) -> Option<usize> {
+        self.items.get(place).map(|item| item.index as usize)
+    }
+
+    fn sorted(points: &[DVec3], side: usize, parts: usize) -> Self {
         let all = 6 * side * side;
-        let cells: Vec<u32> = points.iter().map(|p| cell(*p, side)).collect();
-        let mut next = vec![0_usize; all];
-        for &cell in &cells {
-            if let Some(count) = next.get_mut(cell as usize) {
+        let grid = Grid::new(side, parts);
+        let squares: Vec<u32> = points.iter().map(|p| grid.square(*p)).collect();
+        let mut next = vec![0_u32; all * parts * parts];
+        for &square in &squares {
+            if let Some(count) = next.get_mut(square as usize) {
                 *count += 1;
             }
         }
-        let lens = next.clone();
-        let mut sum = 0;
-        for start in &mut next {
-            sum += std::mem::replace(start, sum);
+        let mut lens = Vec::with_capacity(all);
+        let mut sum = 0_u32;
+        for cell in next.chunks_mut(parts * parts) {
+            let before = sum;
+            for start in cell {
+                sum += std::mem::replace(start, sum);
+            }
+            lens.push((sum - before) as usize);
         }
         let mut items = vec![Item::default(); points.len()];
-        for ((index, p), &cell) in (0_u32..).zip(points).zip(&cells) {
-            if let Some(next) = next.get_mut(cell as usize) {
-                if let Some(item) = items.get_mut(*next) {
+        for ((index, p), &square) in (0_u32..).zip(points).zip(&squares) {
+            if let Some(next) = next.get_mut(square as usize) {
+                if let Some(item) = items.get_mut(*next as usize) {
                     let at = p.as_vec3().to_array();
                     *item = Item { at, index };
                 }
                 *next += 1;
             }
         }
-        let room = points.len() + all.min(points.len()) * LANES;
-        let mut sorted = Self {
-            columns: std::array::from_fn(|_| Vec::with_capacity(room)),
-            ..Self::default()
-        };
-        let mut circles = Vec::new();
-        let mut rest = items.as_mut_slice();
+        let mut sorted = Self::default();
+        if parts > 1 {
+            let room = 2 * (points.len() + all.min(points.len()) * ROW);
+            sorted.columns = std::array::from_fn(|_| Vec::with_capacity(room));
+        }
+        let mut circles = Vec::with_capacity(all);
+        let mut rest = items.as_slice();
         let mut first = 0;
         for len in lens.into_iter().filter(|&len| len > 0) {
-            let (of, behind) = rest.split_at_mut(len.min(rest.len()));
+            let (of, behind) = rest.split_at(len.min(rest.len()));
             rest = behind;
-            circles.push(sorted.add(of, first, chance));
+            circles.push(around(of));
+            let layouts = match parts {
+                1 => [(0, 1); 2],
+                _ => STEPS.map(|step| sorted.lay_out(of, step)),
+            };
+            sorted.cells.push(Cell {
+                first,
+                len,
+                layouts,
+            });
             first += len;
         }
         sorted.around = Circles::new(&circles);
-        sorted.order = items.iter().map(|item| item.index).collect();
+        sorted.items = items;
         sorted
     }
 
-    /// Adds a cell, its points in an order of chance.
-    fn add(&mut self, of: &mut [Item], first: usize, chance: &mut Chance) -> Circle {
-        for at in (1..of.len()).rev() {
-            of.swap(at, scaled(chance.draw(), at + 1));
-        }
-        let column = self.columns.first().map_or(0, Vec::len);
-        self.cells.push(Cell {
-            first,
-            column,
-            len: of.len(),
-        });
-        for (axis, column) in self.columns.iter_mut().enumerate() {
-            let start = column.len();
-            column.extend(of.iter().map(|item| item.at[axis % 3]));
-            // From the start again, as often as it takes.
-            for lane in 0..LANES {
-                let again = column.get(start + lane).copied();
-                column.push(again.unwrap_or_default());
+    /// Adds one layout of a cell; where it begins, and its step.
+    fn lay_out(&mut self, of: &[Item], share: f64) -> (usize, usize) {
+        let step = coprime((of.len() as f64 * share) as usize, of.len());
+        let [x, y, z] = &mut self.columns;
+        let start = x.len();
+        let mut at = 0;
+        // From the start again, as often as it takes.
+        for _ in 0..of.len() + ROW {
+            let [px, py, pz] = of.get(at).map_or([0.0; 3], |item| item.at);
+            x.push(px);
+            y.push(py);
+            z.push(pz);
+            at += step;
+            if at >= of.len() {
+                at -= of.len();
             }
         }
-        let exact = |item: &Item| DVec3::from(item.at.map(f64::from));
-        let points: Vec<DVec3> = of.iter().map(exact).collect();
-        // Rounded to f32 they are 1e-7 off; a circle is rounded outward by more.
-        Circle::around(points.iter())
+        (start, step)
     }
 }
 
-/// The face by the greatest coordinate, then the square.
-#[inline]
-fn cell(p: DVec3, side: usize) -> u32 {
-    let p = p.as_vec3();
-    let a = p.abs();
-    let (face, w, u, v) = if a.x >= a.y && a.x >= a.z {
-        (0, p.x, p.y, p.z)
-    } else if a.y >= a.z {
-        (2, p.y, p.z, p.x)
-    } else {
-        (4, p.z, p.x, p.y)
+/// A number at or above this that has no divisor with `len` in common, below it; 0 for a cell of one point.
+fn coprime(from: usize, len: usize) -> usize {
+    let divisor = |mut a: usize, mut b: usize| {
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a
     };
-    let over = 1.0 / w.abs().max(f32::MIN_POSITIVE);
-    // About the arc tangent over pi/4, so that squares are about even.
-    let even = |t: f32| t * (1.273 - 0.273 * t.abs());
-    let place = |t: f32| (((even(t * over) + 1.0) * 0.5 * side as f32) as usize).min(side - 1);
-    let face = face + usize::from(w < 0.0);
-    ((face * side + place(u)) * side + place(v)) as u32
+    let found = (from.max(1)..len).find(|&step| divisor(step, len) == 1);
+    // The last is always one: neighbours have no divisor in common.
+    found.unwrap_or(len.saturating_sub(1))
+}
+
+/// The circle around some, in sixteen lanes. Its middle is what it is, however sums are rounded, as the radius is measured from it.
+fn around(of: &[Item]) -> Circle {
+    let mut sums = [[0.0_f32; LANES]; 3];
+    for items in of.chunks(LANES) {
+        for (lane, item) in items.iter().enumerate() {
+            for (sum, at) in sums.iter_mut().zip(item.at) {
+                if let Some(sum) = sum.get_mut(lane) {
+                    *sum += at;
+                }
+            }
+        }
+    }
+    let sum = DVec3::from(sums.map(|lanes| lanes.iter().copied().map(f64::from).sum()));
+    let Some(middle) = sum.try_normalize() else {
+        return Circle {
+            middle: DVec3::X,
+            radius: std::f64::consts::PI,
+        };
+    };
+    let [x, y, z] = middle.as_vec3().to_array();
+    let mut farthest = [0.0_f32; LANES];
+    for items in of.chunks(LANES) {
+        for (farthest, item) in farthest.iter_mut().zip(items) {
+            let [px, py, pz] = item.at;
+            let (dx, dy, dz) = (px - x, py - y, pz - z);
+            let squared = dx * dx + dy * dy + dz * dz;
+            *farthest = if squared > *farthest {
+                squared
+            } else {
+                *farthest
+            };
+        }
+    }
+    let chord = farthest
+        .iter()
+        .copied()
+        .map(f64::from)
+        .fold(0.0, f64::max)
+        .sqrt();
+    // Coordinates of the points and of the middle are rounded to f32, 6e-8 each, and lengths are 1 within 1e-6: less than 1e-5 together near pi, where a
+    // chord says least of an angle: there the circle is the whole sphere.
+    let chord = chord * (1.0 + 1e-6) + 1e-6;
+    let radius = if chord > 1.99 {
+        std::f64::consts::PI
+    } else {
+        2.0 * (chord / 2.0).asin() + 2e-5
+    };
+    Circle { middle, radius }
+}
+
+/// The order of the parts of a cell, so that those that follow one another are neighbours (Hilbert 1891).
+const ALONG: [u8; PARTS * PARTS] = [0, 1, 14, 15, 3, 2, 13, 12, 4, 7, 8, 11, 5, 6, 9, 10];
+
+/// Squares on the faces of a cube.
+struct Grid {
+    side: usize,
+    parts: usize,
+    /// Squares along an edge, half of them.
+    half: f32,
+}
+
+impl Grid {
+    const fn new(side: usize, parts: usize) -> Self {
+        let half = (side * parts) as f32 * 0.5;
+        Self { side, parts, half }
+    }
+
+    /// The face by the greatest coordinate, then the square: the cell, and the part of it.
+    #[inline]
+    fn square(&self, p: DVec3) -> u32 {
+        let p = p.as_vec3();
+        let a = p.abs();
+        let is_x = a.x >= a.y && a.x >= a.z;
+        let is_y = a.y >= a.z;
+        let pick = |x: f32, y: f32, z: f32| if is_x { x } else { if is_y { y } else { z } };
+        let (w, u, v) = (
+            pick(p.x, p.y, p.z),
+            pick(p.y, p.z, p.x),
+            pick(p.z, p.x, p.y),
+        );
+        let face = if is_x { 0 } else { if is_y { 2 } else { 4 } };
+        let over = 1.0 / w.abs().max(f32::MIN_POSITIVE);
+        // About the arc tangent over pi/4, so that squares are about even.
+        let even = |t: f32| t * (1.273 - 0.273 * t.abs());
+        let most = (self.side * self.parts - 1) as u32;
+        let place = |t: f32| (((even(t * over) + 1.0) * self.half) as u32).min(most);
+        let face = face + u32::from(w < 0.0);
+        let (side, parts) = (self.side as u32, self.parts as u32);
+        let (u, v) = (place(u), place(v));
+        if parts == 1 {
+            return (face * side + u) * side + v;
+        }
+        let part = (u % PART_SIDE) * PART_SIDE + v % PART_SIDE;
+        let cell = (face * side + u / PART_SIDE) * side + v / PART_SIDE;
+        let along = ALONG.get(part as usize).copied().unwrap_or(0);
+        cell * ALONG.len() as u32 + u32::from(along)
+    }
 }

@@ -38,8 +38,8 @@ fn cost_s(method: Method, points: f64, frames: Option<usize>, wish: &Sampling) -
         Method::Turned => frames.map(|frames| 0.01 + points * points / frames as f64 / 2e9),
         // Sorting, and pairs of cells: their number goes with the fourth power of the side, which goes with the third root of the tolerance.
         Method::Sampled => {
-            let cells = 0.12 * (1e-4 / tolerance).powf(4.0 / 3.0);
-            (tolerance >= 1e-6 && wish.risk > 0.0).then_some(points * 4e-8 + cells)
+            let cells = 0.05 * (1e-4 / tolerance).powf(4.0 / 3.0);
+            (tolerance >= 1e-6 && wish.risk > 0.0).then_some(points * 9e-8 + cells)
         }
         // 1.2 over the side is the bound.
         Method::Gridded => {

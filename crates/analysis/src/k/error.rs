@@ -49,6 +49,15 @@ pub enum KError {
         /// What was asked for.
         got: f64,
     },
+    /// Harmonics of no degree, or of more than are summed.
+    #[error(
+        "analysis: k: expected harmonics of degree 1 to {}, got {got}",
+        super::MOST_DEGREE
+    )]
+    Degree {
+        /// Degree asked for.
+        got: usize,
+    },
     /// A point is not where the first frame's, turned, would be.
     #[error(
         "analysis: k: point {index} of frame {frame}: expected that of frame 0, turned, within {}, got {off} from it",

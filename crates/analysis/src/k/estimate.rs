@@ -16,6 +16,8 @@ pub enum Bound {
         /// Of the share up to the bin's upper edge.
         shares: Vec<f64>,
     },
+    /// None: how far it is off has been measured for some scans, and is not known of others.
+    Unknown,
     /// Holds for all bins at once with a probability over the method's own draws, whatever the points: one number a bin.
     Confidence {
         /// Of the share up to the bin's upper edge.
@@ -26,11 +28,12 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// The largest over all bins.
+    /// The largest over all bins; infinite where none is known.
     #[must_use]
     pub fn largest(&self) -> f64 {
         match self {
             Self::Exact => 0.0,
+            Self::Unknown => f64::INFINITY,
             Self::Proven { shares } | Self::Confidence { shares, .. } => {
                 shares.iter().copied().fold(0.0, f64::max)
             }
@@ -42,6 +45,7 @@ impl Bound {
     pub fn of(&self, bin: usize) -> f64 {
         match self {
             Self::Exact => 0.0,
+            Self::Unknown => f64::INFINITY,
             Self::Proven { shares } | Self::Confidence { shares, .. } => {
                 shares.get(bin).copied().unwrap_or(0.0)
             }
@@ -62,6 +66,9 @@ pub struct Estimate {
     pub bound: Bound,
     /// Directions.
     pub points: usize,
+    /// Pairs that lie on an inner edge within rounding ([`super::ON_EDGE`]): counted, or of samples estimated; none where the method cannot tell. Where they are a share of
+    /// all that matters, other bins say more.
+    pub on_edges: Option<u64>,
 }
 
 impl Estimate {
@@ -74,6 +81,7 @@ impl Estimate {
             edges: edges.clone(),
             bound: Bound::Exact,
             points,
+            on_edges: Some(0),
         }
     }
 }
@@ -90,6 +98,7 @@ impl From<Counts> for Estimate {
             shares: shares.into_iter().map(|sum| sum as f64 / all).collect(),
             bound: Bound::Exact,
             points: counts.points,
+            on_edges: Some(counts.on_edges),
             edges: counts.edges,
         }
     }

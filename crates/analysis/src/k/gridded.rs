@@ -6,7 +6,7 @@
 use fearless_simd::{Simd, dispatch};
 use glam::DVec3;
 
-use super::cells::{Cells, Chance};
+use super::cells::Cells;
 use super::counts::pairs;
 use super::lanes::LANES;
 use super::plain::check;
@@ -22,7 +22,7 @@ pub fn gridded(points: &[DVec3], edges: &Edges, side: usize) -> Result<Estimate,
     if points.len() < 2 {
         return Ok(Estimate::without_pairs("gridded", edges, points.len()));
     }
-    let cells = Cells::new(points, side.clamp(1, 512), &mut Chance::new(0));
+    let cells = Cells::new(points, side.clamp(1, 512));
     let mut between = Between::new(edges.bins());
     let level = Registers::Best.level();
     dispatch!(level, simd => all(simd, &cells, edges.bins(), &mut between));
@@ -42,6 +42,7 @@ pub fn gridded(points: &[DVec3], edges: &Edges, side: usize) -> Result<Estimate,
         shares,
         bound: Bound::Proven { shares: bounds },
         points: points.len(),
+        on_edges: None,
     })
 }
 

@@ -2,7 +2,7 @@
 //!
 //! [`exact()`] counts every pair, in whole numbers, and says on which side of an edge a pair lies by real numbers, not rounded ones ([`Edges`]).
 //! [`turned()`] does the same for scans of turned frames, from one of them. [`sampled()`] and [`gridded()`] are faster and say how far they may be off:
-//! by a confidence interval, and by a proof. [`choose()`] takes the cheapest that is good enough.
+//! by a confidence interval, and by a proof. [`choose()`] takes the cheapest that is good enough. [`harmonics()`] is faster still, and does not know how far it is off.
 //! Left out: where the directions come from, pictures, files.
 
 mod cells;
@@ -15,6 +15,7 @@ mod error;
 mod estimate;
 mod exact;
 mod gridded;
+mod harmonics;
 mod lanes;
 mod leaf_pair;
 mod notes;
@@ -37,6 +38,7 @@ pub use error::{KError, UNIT_WITHIN};
 pub use estimate::{Bound, Estimate};
 pub use exact::{exact, exact_by};
 pub use gridded::gridded;
+pub use harmonics::{MOST_DEGREE, harmonics};
 pub use plain::plain;
 pub use registers::Registers;
 pub use sampled::{Sampling, sampled};

@@ -1,14 +1,14 @@
 //! Pairs drawn by chance from every pair of cells, with a confidence interval that holds for any points.
 //!
-//! The pairs of two cells are between two angles; where an edge lies between those, pairs are drawn. A draw is two rows of sixteen: sixteen points of one cell from a
-//! place of chance on, against sixteen of the other. Every pair of the two cells is as likely in every lane, so a row's share beyond an edge is right in the mean, and rows are
+//! The pairs of two cells are between two angles; where an edge lies between those, pairs are drawn. A draw is two rows of 32: 32 points of one cell from a
+//! place of chance on, against 32 of the other, in layouts that spread any 32 over their cell. Every pair of the two cells is as likely at every place of a row, so a row's share beyond an edge is right in the mean, and rows are
 //! independent of each other. Bernstein's inequality bounds the sum. The variance in it is bounded by squares of the differences between the two rows of a draw.
 //! Nothing is assumed of the points. Left out: the pseudo-randomness of the draws, which is taken for chance.
 
 use fearless_simd::{dispatch, f32x16, prelude::*};
 use glam::DVec3;
 
-use super::cells::{Cell, Cells, Chance, scaled};
+use super::cells::{Cell, Cells, Chance, ROW, scaled};
 use super::counts::pairs;
 use super::lanes::{LANES, Lanes, Portable};
 use super::leaf_pair::F32_BAND;
@@ -38,8 +38,14 @@ impl Default for Sampling {
     }
 }
 
+/// Cells along an edge for a tolerance of 1e-4.
+const SIDE: f64 = 10.0;
+
+/// Draws of a pair of cells of mean weight.
+const DRAWS: f64 = 3.0;
+
 /// Rounds before a tolerance is given up.
-const MOST_ROUNDS: u32 = 6;
+const MOST_ROUNDS: i32 = 6;
 
 /// Estimates by draws, more of them until the tolerance is met, or six rounds are over.
 ///
@@ -56,16 +62,16 @@ pub fn sampled(points: &[DVec3], edges: &Edges, wish: &Sampling) -> Result<Estim
     if points.len() < 2 {
         return Ok(Estimate::without_pairs("sampled", edges, points.len()));
     }
-    // 17 cells along an edge reach 1e-4 at once; the variance falls with the sixth power of the side.
-    let side = (17.0 * (1e-4 / wish.tolerance).cbrt())
+    // SIDE cells along an edge reach 1e-4 at once; the deviation falls with its third power.
+    let side = (SIDE * (1e-4 / wish.tolerance).cbrt())
         .round()
         .clamp(4.0, 64.0);
-    let cells = Cells::new(points, side as usize, &mut chance);
-    let mut draws = 1.0;
+    let cells = Cells::laid_out(points, side as usize);
+    let mut draws = DRAWS;
     let mut round = 1;
     loop {
         // Rounds share the risk, so that looking at a bound before going on costs nothing that is not counted.
-        let risk = wish.risk / f64::from(1_u32 << round);
+        let risk = wish.risk * 0.9 * 0.1_f64.powi(round - 1);
         let estimate = drawn(points, &cells, edges, draws, risk, &mut chance)?;
         let bound = estimate.bound.largest();
         if bound <= wish.tolerance || round == MOST_ROUNDS {
@@ -80,7 +86,8 @@ pub fn sampled(points: &[DVec3], edges: &Edges, wish: &Sampling) -> Result<Estim
                 ..estimate
             });
         }
-        let more = (bound / wish.tolerance).powi(2) * 1.1;
+        // The next has a tenth of the risk, which makes its bound wider.
+        let more = (bound / wish.tolerance).powi(2) * 1.3;
         draws = (draws * more).min(1e4);
         round += 1;
     }
@@ -104,9 +111,10 @@ fn drawn(
         draws: draws * (of_cells * (of_cells + 1.0) / 2.0).max(1.0),
         all: pairs(points.len()).max(1) as f64,
         from: vec![0.0; edges.bins()],
-        beyond: vec![0.0; edges.bins()],
-        variance: vec![0.0; edges.bins()],
+        beyond: vec![0.0; edges.bins() + LANES],
+        variance: vec![0.0; edges.bins() + LANES],
         heaviest: 0.0,
+        on_edges: 0.0,
         wrong: None,
     };
     let level = Registers::Best.level();
@@ -123,11 +131,14 @@ fn drawn(
     one.done(risk)
 }
 
-/// Where a row starts in both cells: in the columns; the cell's first place in the order; and how far behind that.
-type Row = [(usize, usize, usize); 2];
+/// Where a row starts in both cells: in the columns; the cell; which layout of it; and how far along.
+type Row<'a> = [(usize, &'a Cell, usize, usize); 2];
 
-/// Cells of a tile: two of them are within the second-level cache, a million points in 1734 cells.
-const TILE: usize = 64;
+/// Registers of a row.
+const REGISTERS: usize = ROW / LANES;
+
+/// Cells of a tile: two of them are within half of the second-level cache, a million points in 600 cells.
+const TILE: usize = 16;
 
 struct One<'a> {
     points: &'a [DVec3],
@@ -140,15 +151,17 @@ struct One<'a> {
     all: f64,
     /// Shares by the first bin that cells can reach.
     from: Vec<f64>,
-    /// Estimated shares beyond the edge above each bin, and the estimated variances of those.
+    /// Estimated shares beyond the edge above each bin, and the estimated variances of those; with room for sixteen more, which stay 0.
     beyond: Vec<f64>,
     variance: Vec<f64>,
     /// The greatest weight of a row.
     heaviest: f64,
+    /// The estimated share of pairs that lie on an inner edge.
+    on_edges: f64,
     wrong: Option<KError>,
 }
 
-impl One<'_> {
+impl<'a> One<'a> {
     /// All pairs of cells, tile by tile: the points of two tiles stay at hand.
     #[inline(always)]
     fn all_cells<L: Lanes>(&mut self, on: L) {
@@ -182,7 +195,13 @@ impl One<'_> {
     }
 
     #[inline(always)]
-    fn two_cells<L: Lanes>(&mut self, on: L, a: &Cell, b: &Cell, (first, last): (usize, usize)) {
+    fn two_cells<L: Lanes>(
+        &mut self,
+        on: L,
+        a: &'a Cell,
+        b: &'a Cell,
+        (first, last): (usize, usize),
+    ) {
         let is_same = a.first == b.first;
         let count = if is_same {
             pairs(a.len) as f64
@@ -201,24 +220,27 @@ impl One<'_> {
         self.heaviest = self.heaviest.max(weight);
         for _ in 0..draws as u64 {
             let rows = [self.row(a, b, is_same), self.row(a, b, is_same)];
-            self.draw(on, rows, (first, last), weight);
+            self.draw(on, &rows, (first, last), weight);
         }
     }
 
     /// Where a row starts, in the columns and in the order, of both cells.
     #[inline(always)]
-    fn row(&mut self, a: &Cell, b: &Cell, is_same: bool) -> Row {
+    fn row<'c>(&mut self, a: &'c Cell, b: &'c Cell, is_same: bool) -> Row<'c> {
         let bits = self.chance.draw();
         let from_a = scaled(bits, a.len);
-        let from_b = if is_same {
-            // Any other point of the cell, so that no point is paired with itself.
-            (from_a + 1 + scaled(bits >> 32, a.len.saturating_sub(1))) % a.len.max(1)
+        let (layout, from_b) = if is_same {
+            // Any other point of the cell in the same layout, so that no point is paired with itself.
+            let other = from_a + 1 + scaled(bits >> 32, a.len.saturating_sub(1));
+            (0, other % a.len.max(1))
         } else {
-            scaled(bits >> 32, b.len)
+            (1, scaled(bits >> 32, b.len))
         };
+        let [(column_a, _), _] = a.layouts;
+        let column_b = b.layouts.get(layout).map_or(0, |(column, _)| *column);
         [
-            (a.column + from_a, a.first, from_a),
-            (b.column + from_b, b.first, from_b),
+            (column_a + from_a, a, 0, from_a),
+            (column_b + from_b, b, layout, from_b),
         ]
     }
 
@@ -227,49 +249,63 @@ impl One<'_> {
     fn draw<L: Lanes>(
         &mut self,
         on: L,
-        rows: [Row; 2],
+        rows: &[Row<'_>; 2],
         (first, last): (usize, usize),
         weight: f64,
     ) {
-        let [row, other] = &rows;
+        let simd = on.simd();
+        let [row, other] = rows;
         let (Some(dots), Some(others)) = (self.dots(on, row), self.dots(on, other)) else {
             return;
         };
-        let cosines = self
-            .edges
-            .cosines_f32()
-            .get(first..last)
-            .unwrap_or_default();
-        let beyond = self.beyond.get_mut(first..last).unwrap_or_default();
-        let variance = self.variance.get_mut(first..last).unwrap_or_default();
-        let share = weight / LANES as f64;
+        let edges = self.edges;
+        let cosines = edges.cosines_f32().get(first..last).unwrap_or_default();
+        let share = weight / ROW as f64;
         let squared = share * share;
-        let mut near = f32x16::splat(on.simd(), 4.0);
+        let mut near = f32x16::splat(simd, 4.0);
         let mut near_other = near;
-        for ((cosine, beyond), variance) in cosines.iter().zip(beyond).zip(variance) {
-            let (above, above_other) = (dots - *cosine, others - *cosine);
-            near = on.nearer_nought(near, above);
-            near_other = on.nearer_nought(near_other, above_other);
-            let count = above.simd_lt(0.0).to_bitmask().count_ones().cast_signed();
-            let count_other = above_other
-                .simd_lt(0.0)
-                .to_bitmask()
-                .count_ones()
-                .cast_signed();
-            let difference = count - count_other;
-            *beyond += share * f64::from(count + count_other);
-            *variance += squared * f64::from(difference * difference);
+        let mut at = first;
+        for cosines in cosines.chunks(LANES) {
+            let (mut counts, mut differences) = ([0_i32; LANES], [0_i32; LANES]);
+            for ((cosine, count), difference) in
+                cosines.iter().zip(&mut counts).zip(&mut differences)
+            {
+                let (mut one, mut two) = (0, 0);
+                for (dots, others) in dots.iter().zip(&others) {
+                    let (above, above_other) = (*dots - *cosine, *others - *cosine);
+                    near = on.nearer_nought(near, above);
+                    near_other = on.nearer_nought(near_other, above_other);
+                    one += above.simd_lt(0.0).to_bitmask().count_ones();
+                    two += above_other.simd_lt(0.0).to_bitmask().count_ones();
+                }
+                let (one, two) = (one.cast_signed(), two.cast_signed());
+                (*count, *difference) = (one + two, one - two);
+            }
+            // Sixteen edges at once; those behind the last have no counts.
+            if let Some(beyond) = sixteen(&mut self.beyond, at) {
+                for (beyond, count) in beyond.iter_mut().zip(counts) {
+                    *beyond += share * f64::from(count);
+                }
+            }
+            if let Some(variance) = sixteen(&mut self.variance, at) {
+                for (variance, difference) in variance.iter_mut().zip(differences) {
+                    *variance += squared * f64::from(difference * difference);
+                }
+            }
+            at += LANES;
         }
         if on
             .nearer_nought(near, near_other)
             .simd_le(F32_BAND)
             .any_true()
         {
-            let mut stored = [[0.0; LANES]; 2];
-            let [to, to_other] = &mut stored;
-            dots.store_array(to);
-            others.store_array(to_other);
-            self.near(&rows, stored, (first, last), share);
+            let mut stored = [[[0.0; LANES]; REGISTERS]; 2];
+            for (stored, dots) in stored.iter_mut().zip([&dots, &others]) {
+                for (stored, dots) in stored.iter_mut().zip(dots) {
+                    dots.store_array(stored);
+                }
+            }
+            self.near(rows, &stored, (first, last), share);
         }
     }
 
@@ -277,8 +313,8 @@ impl One<'_> {
     #[inline(never)]
     fn near(
         &mut self,
-        rows: &[Row; 2],
-        dots: [[f32; LANES]; 2],
+        rows: &[Row<'_>; 2],
+        dots: &[[[f32; LANES]; REGISTERS]; 2],
         (first, last): (usize, usize),
         share: f64,
     ) {
@@ -287,43 +323,75 @@ impl One<'_> {
                 return;
             };
             let is_near = |dot: &f32| (dot - cosine).abs() <= F32_BAND;
-            if !dots.iter().flatten().any(is_near) {
+            if !dots.iter().flatten().flatten().any(is_near) {
                 continue;
             }
-            let [said, said_other] =
-                dots.map(|dots| dots.iter().filter(|dot| **dot - cosine < 0.0).count() as f64);
-            let [row, other] = rows
-                .each_ref()
-                .map(|row| exactly(self.points, self.cells, self.edges, row, edge));
-            match (row, other) {
-                (Ok(count), Ok(count_other)) => {
-                    let more = count + count_other - said - said_other;
-                    let squares = (count - count_other).powi(2) - (said - said_other).powi(2);
-                    if let Some(beyond) = self.beyond.get_mut(edge) {
-                        *beyond += share * more;
-                    }
-                    if let Some(variance) = self.variance.get_mut(edge) {
-                        *variance += share * share * squares;
+            // What f32 said of both rows, and what is so.
+            let (mut said, mut so) = ([0.0; 2], [0.0; 2]);
+            for (number, (row, dots)) in rows.iter().zip(dots).enumerate() {
+                for (lane, dot) in dots.iter().flatten().enumerate() {
+                    let is_beyond = dot - cosine < 0.0;
+                    let is_so = match is_near(dot) {
+                        true => self.is_beyond(row, lane, edge, share),
+                        false => is_beyond,
+                    };
+                    for (sums, is) in [(&mut said, is_beyond), (&mut so, is_so)] {
+                        if let Some(sum) = sums.get_mut(number) {
+                            *sum += f64::from(u8::from(is));
+                        }
                     }
                 }
-                (Err(wrong), _) | (_, Err(wrong)) => self.wrong = Some(wrong),
+            }
+            let ([said, said_other], [so, so_other]) = (said, so);
+            let squares = (so - so_other).powi(2) - (said - said_other).powi(2);
+            if let Some(beyond) = self.beyond.get_mut(edge) {
+                *beyond += share * (so + so_other - said - said_other);
+            }
+            if let Some(variance) = self.variance.get_mut(edge) {
+                *variance += share * share * squares;
+            }
+        }
+    }
+
+    /// Whether a pair of a row, which stands for a share of all, is beyond an edge, by the real numbers.
+    fn is_beyond(&mut self, row: &Row<'_>, lane: usize, edge: usize, share: f64) -> bool {
+        let [a, b] = row.map(|(_, cell, layout, along)| {
+            let index = self.cells.index(cell.place(layout, along + lane));
+            index.and_then(|index| self.points.get(index))
+        });
+        let (Some(a), Some(b)) = (a, b) else {
+            return true;
+        };
+        if self.edges.is_on(edge, *a, *b) {
+            self.on_edges += share;
+        }
+        match self.edges.reaches(edge, *a, *b) {
+            Ok(reaches) => !reaches,
+            Err(wrong) => {
+                self.wrong = Some(wrong);
+                true
             }
         }
     }
 
     /// Dot products of the pairs of a row.
     #[inline(always)]
-    fn dots<L: Lanes>(&self, on: L, row: &Row) -> Option<f32x16<L::S>> {
+    fn dots<L: Lanes>(&self, on: L, row: &Row<'_>) -> Option<[f32x16<L::S>; REGISTERS]> {
         let [x, y, z] = &self.cells.columns;
         let [(a, ..), (b, ..)] = *row;
         let simd = on.simd();
-        let ax = f32x16::load_array_ref(simd, x.get(a..)?.first_chunk()?);
-        let ay = f32x16::load_array_ref(simd, y.get(a..)?.first_chunk()?);
-        let az = f32x16::load_array_ref(simd, z.get(a..)?.first_chunk()?);
-        let bx = f32x16::load_array_ref(simd, x.get(b..)?.first_chunk()?);
-        let by = f32x16::load_array_ref(simd, y.get(b..)?.first_chunk()?);
-        let bz = f32x16::load_array_ref(simd, z.get(b..)?.first_chunk()?);
-        Some(az.mul_add(bz, ay.mul_add(by, ax * bx)))
+        let mut dots = [f32x16::splat(simd, 0.0); REGISTERS];
+        for (number, dots) in dots.iter_mut().enumerate() {
+            let (a, b) = (a + number * LANES, b + number * LANES);
+            let ax = f32x16::load_array_ref(simd, x.get(a..)?.first_chunk()?);
+            let ay = f32x16::load_array_ref(simd, y.get(a..)?.first_chunk()?);
+            let az = f32x16::load_array_ref(simd, z.get(a..)?.first_chunk()?);
+            let bx = f32x16::load_array_ref(simd, x.get(b..)?.first_chunk()?);
+            let by = f32x16::load_array_ref(simd, y.get(b..)?.first_chunk()?);
+            let bz = f32x16::load_array_ref(simd, z.get(b..)?.first_chunk()?);
+            *dots = az.mul_add(bz, ay.mul_add(by, ax * bx));
+        }
+        Some(dots)
     }
 
     fn done(self, risk: f64) -> Result<Estimate, KError> {
@@ -362,8 +430,15 @@ impl One<'_> {
                 risk,
             },
             points: self.points.len(),
+            on_edges: Some((self.on_edges * self.all).round() as u64),
         })
     }
+}
+
+/// Sixteen from one.
+#[inline(always)]
+fn sixteen(of: &mut [f64], from: usize) -> Option<&mut [f64; LANES]> {
+    of.get_mut(from..)?.first_chunk_mut()
 }
 
 /// How far a sum of independent numbers, each between 0 and `most`, is off its mean at most, but for `3 exp(-log)`.
@@ -375,34 +450,4 @@ fn bernstein(squares: f64, most: f64, log: f64) -> f64 {
     let deviation = root + (root * root + squares).sqrt();
     let third = most * log / 3.0;
     third + (third * third + 2.0 * log * deviation * deviation).sqrt()
-}
-
-/// How many pairs of a row are beyond an edge, by the real numbers.
-#[cold]
-fn exactly(
-    points: &[DVec3],
-    cells: &Cells,
-    edges: &Edges,
-    row: &Row,
-    edge: usize,
-) -> Result<f64, KError> {
-    let len = |first: usize| {
-        let at = cells.cells.partition_point(|cell| cell.first < first);
-        cells.cells.get(at).map_or(1, |cell| cell.len)
-    };
-    let [a, b] = row.map(|(_, first, from)| (first, from, len(first)));
-    let at = |(first, from, len): (usize, usize, usize), lane: usize| {
-        let index = cells.order.get(first + (from + lane) % len);
-        index.and_then(|index| points.get(*index as usize)).copied()
-    };
-    let mut beyond = 0.0;
-    for lane in 0..LANES {
-        let (Some(a), Some(b)) = (at(a, lane), at(b, lane)) else {
-            continue;
-        };
-        if !edges.reaches(edge, a, b)? {
-            beyond += 1.0;
-        }
-    }
-    Ok(beyond)
 }

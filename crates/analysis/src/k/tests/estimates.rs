@@ -8,7 +8,7 @@ use super::hard_cases::{ONE, counted};
 use super::patterns::{rmbl, scattered, vlp16};
 use crate::k::{
     Bound, Edges, Estimate, KCurve, KError, Method, Sampling, Turning, choose, estimate, exact,
-    gridded, sampled,
+    gridded, harmonics, sampled,
 };
 
 /// How often a share is farther off than its bound, and by how much it is off at most.
@@ -121,6 +121,82 @@ fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
     assert!((of.d_min - truth.d_min).abs() <= of.d_error_bound);
 }
 
+/// No bound is claimed of harmonics: how far off they are of scans is what was measured, and their own `Estimate` says that it is not known.
+#[test]
+fn harmonics_are_near_where_points_lie_smoothly() {
+    let points = rmbl(8);
+    let turning = Turning {
+        axis: DVec3::Y,
+        step_rad: PI / 8.0,
+        frames: 8,
+    };
+    let edges = Edges::equal(151).unwrap();
+    let truth = estimate(&points, Some(&turning), &edges, &wish(0.0, 1e-3), ONE).unwrap();
+    let mut last = 1.0;
+    for (degree, within) in [(4, 2e-3), (16, 2e-4), (64, 1e-4)] {
+        let of = harmonics(&points, &edges, degree).unwrap();
+        assert_eq!((of.method, &of.bound), ("harmonics", &Bound::Unknown));
+        assert_eq!(
+            (of.bound.largest(), of.bound.of(3)),
+            (f64::INFINITY, f64::INFINITY)
+        );
+        let (_, off) = against(&of, &truth);
+        assert!(off < within && off <= last, "degree {degree}: {off}");
+        last = off;
+    }
+}
+
+/// A level VLP-16 of 0.4 degrees: pairs lie on the edges of 150 and of 180 bins, none on those of 151.
+#[test]
+fn samples_see_that_bins_are_ill_posed() {
+    let points = vlp16(901);
+    for (bins, on_edges) in [(150, 63_175.0), (180, 216_600.0), (151, 0.0)] {
+        let edges = Edges::equal(bins).unwrap();
+        let of = sampled(&points, &edges, &wish(1e-3, 1e-3)).unwrap();
+        let found = of.on_edges.unwrap() as f64;
+        assert!(
+            (found - on_edges).abs() <= 0.1 * on_edges,
+            "{bins} bins: {found}"
+        );
+        let counted = Estimate::from(counted(&points, bins));
+        assert_eq!(counted.on_edges, Some(on_edges as u64), "{bins} bins");
+    }
+}
+
+#[test]
+fn harmonics_of_hard_cases() {
+    let edges = Edges::equal(12).unwrap();
+    // Two points at the poles of the harmonics, alike, opposite, and anywhere: a series of a step, which is near 1/2 at the step and right away from it.
+    for (a, b, at) in [
+        (DVec3::Z, DVec3::Z, 0),
+        (DVec3::Z, DVec3::NEG_Z, 11),
+        (DVec3::X, DVec3::Y, 5),
+        (DVec3::NEG_Z, DVec3::new(0.6, 0.0, -0.8), 2),
+    ] {
+        let of = harmonics(&[a, b], &edges, 256).unwrap();
+        for (bin, share) in of.shares.iter().enumerate() {
+            let step = f64::from(u8::from(bin >= at));
+            let near = (bin + 1).abs_diff(at) <= 1 || bin.abs_diff(at) <= 1;
+            assert!(near || (share - step).abs() < 0.1, "{a} {b}: {bin} {share}");
+        }
+    }
+    // All in one place, with a clamp on what a series overshoots.
+    let of = harmonics(&[DVec3::NEG_Y; 70], &edges, 64).unwrap();
+    assert!(
+        of.shares.iter().skip(2).all(|share| *share > 0.97),
+        "{:?}",
+        of.shares
+    );
+    for degree in [0, 513] {
+        let wrong = harmonics(&[DVec3::X; 2], &edges, degree);
+        assert_eq!(wrong, Err(KError::Degree { got: degree }));
+    }
+    assert!(matches!(
+        harmonics(&[DVec3::X, DVec3::X * 1.1], &edges, 4),
+        Err(KError::NotUnit { index: 1, .. })
+    ));
+}
+
 #[test]
 fn the_cheapest_that_is_good_enough_is_taken() {
     let turning = Turning {
@@ -156,6 +232,7 @@ fn estimates_of_no_and_one_and_two_points() {
         for of in [
             sampled(points, &edges, &Sampling::default()),
             gridded(points, &edges, 9),
+            harmonics(points, &edges, 9),
         ] {
             assert_eq!(of.unwrap().shares.len(), 151);
         }
