@@ -56,6 +56,7 @@ fn analyze_says_what_the_contract_says() {
         vlp16["device"].is_null() && rmbl["device"]["range_m"].is_array(),
         "{report}"
     );
+    k_is_what_the_contract_says(&vlp16["k"]);
     let text = place.run("analyze vlp16 rmbl:1200,step=2,d=0.06");
     let text = String::from_utf8_lossy(&text.stdout).into_owned();
     assert!(
@@ -65,6 +66,59 @@ fn analyze_says_what_the_contract_says() {
     assert!(
         text.lines().all(|line| line.chars().count() <= 80),
         "{text}"
+    );
+}
+
+/// Of a level VLP-16, whose largest and smallest D are known.
+fn k_is_what_the_contract_says(k: &serde_json::Value) {
+    let number = |key: &str| k[key].as_f64().unwrap();
+    assert_eq!(
+        (k["method"].as_str(), k["bins"].as_u64()),
+        (Some("exact"), Some(151))
+    );
+    assert_eq!((number("radius_m"), number("error_bound")), (1.0, 0.0));
+    let list = |key: &str| -> Vec<f64> {
+        let list = k[key].as_array().unwrap();
+        list.iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    let (difference, d) = (list("k_minus_csr"), list("d"));
+    assert_eq!((difference.len(), d.len()), (151, 151));
+    let area = 4.0 * std::f64::consts::PI;
+    for (difference, d) in difference.iter().zip(&d) {
+        assert!((difference - area * d).abs() < 1e-14, "{difference} {d}");
+    }
+    assert!((number("d_max") - 0.094_86).abs() < 1e-5 && (number("d_min") + 0.094_93).abs() < 1e-5);
+    assert!((number("max_abs") - area * 0.094_93).abs() < area * 1e-5);
+}
+
+/// A grid of 0.4 degrees has pairs on the edges of 150 bins, and none on those of 151: the first is warned of, in JSON and beside it.
+#[test]
+fn bins_whose_edges_pairs_lie_on_are_warned_of() {
+    let place = Place::new();
+    for (bins, pairs) in [(150, 63_175), (180, 216_600), (151, 0)] {
+        let output = place.run(&format!("analyze vlp16 --level 2 --bins {bins} --json"));
+        let report = json(&output);
+        let pattern = &report["patterns"][0];
+        assert_eq!(pattern["k"]["on_edges"], pairs, "{bins} bins");
+        let warnings = pattern["warnings"].as_array().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(warnings.len(), usize::from(pairs > 0), "{warnings:?}");
+        if let Some(warning) = warnings.first() {
+            let warning = warning.as_str().unwrap();
+            assert!(warning.contains(&format!("{pairs} pairs")) && warning.contains("--bins 151"));
+            assert!(said.contains(warning), "{said}");
+        } else {
+            assert!(!said.contains("warning"), "{said}");
+        }
+    }
+    let harmonics = json(&place.run("analyze vlp16 --level 2 --harmonics 64 --json"));
+    let k = &harmonics["patterns"][0]["k"];
+    assert_eq!(k["method"], "harmonics");
+    assert!(k["error_bound"].is_null() && k["on_edges"].is_null(), "{k}");
+    // 4.5e-4 off, whatever the degree.
+    assert!(
+        (k["d_max"].as_f64().unwrap() - 0.094_86).abs() < 1e-3,
+        "{k}"
     );
 }
 
@@ -145,7 +199,7 @@ fn analyze_writes_a_report_that_stands_alone() {
     let d: Vec<f64> = d.map(|d| d.parse().unwrap()).collect();
     let curves = report["patterns"].as_array().unwrap().iter();
     let curves: Vec<f64> = curves
-        .flat_map(|pattern| pattern["k"]["k_minus_csr"].as_array().unwrap())
+        .flat_map(|pattern| pattern["k"]["d"].as_array().unwrap())
         .map(|d| d.as_f64().unwrap())
         .collect();
     assert_eq!((d.len(), curves.len()), (60, 60));

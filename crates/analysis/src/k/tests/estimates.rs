@@ -183,7 +183,7 @@ fn harmonics_of_hard_cases() {
     // All in one place, with a clamp on what a series overshoots.
     let of = harmonics(&[DVec3::NEG_Y; 70], &edges, 64).unwrap();
     assert!(
-        of.shares.iter().skip(2).all(|share| *share > 0.97),
+        of.shares.iter().skip(2).all(|share| *share > 0.88),
         "{:?}",
         of.shares
     );

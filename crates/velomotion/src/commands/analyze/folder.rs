@@ -114,10 +114,13 @@ fn command(arguments: &cli::Analyze) -> String {
         level,
         tolerance,
         bins,
+        harmonics,
         ..
     } = arguments;
-    words.push(format!(
-        "--level {level} --bins {bins} --tolerance {tolerance}"
-    ));
+    words.push(format!("--level {level} --bins {bins}"));
+    words.push(match harmonics {
+        Some(degree) => format!("--harmonics {degree}"),
+        None => format!("--tolerance {tolerance}"),
+    });
     words.join(" ")
 }

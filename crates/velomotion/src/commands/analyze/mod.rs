@@ -7,6 +7,7 @@ mod input;
 mod report;
 mod sweep;
 
+use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,7 +16,7 @@ use analysis::density::{
     largest_hole, largest_hole_within, quantile, rows,
 };
 use analysis::figures::SPHERE_M;
-use analysis::k::{self, Edges, KCurve, Sampling, Turning};
+use analysis::k::{self, Edges, Estimate, KCurve, Sampling, Turning};
 use glam::DVec3;
 use sim::patterns::{AXIS, Pattern};
 
@@ -32,6 +33,10 @@ use input::{Input, Named};
 
 /// Classes of the histogram.
 const CLASSES: usize = 10;
+/// The sphere that the JSON's K - K_csr is of.
+const RADIUS_M: f64 = 1.0;
+/// A share of pairs on edges that nobody need know of: a few in a cloud are chance.
+const LEAST_ON_EDGES: f64 = 1e-8;
 /// Holes that are counted one by one.
 const MOST_HOLES: usize = 10_000;
 
@@ -61,6 +66,9 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
         }
         let input = input.read(&interrupt)?;
         let pattern = measure.one(&input, &interrupt)?;
+        for warning in &pattern.warnings {
+            progress.say(&format!("warning: {}: {warning}", pattern.name));
+        }
         if let Some(folder) = &mut folder {
             folder.add(&input, &pattern);
         }
@@ -82,6 +90,8 @@ struct Measure {
     edges: Edges,
     /// How far that may be off.
     tolerance: f64,
+    /// The degree of harmonics, if it is to be found by those.
+    degree: Option<usize>,
     /// Middles of the bins.
     places: Vec<DVec3>,
 }
@@ -100,6 +110,7 @@ impl Measure {
             locator: Locator::new(&icosahedron),
             edges,
             tolerance: arguments.tolerance,
+            degree: arguments.harmonics.map(usize::from),
             places: icosahedron.bins().iter().map(|bin| bin.centre).collect(),
         })
     }
@@ -129,6 +140,7 @@ impl Measure {
             .pattern
             .as_ref()
             .is_some_and(|p| p.settings().d_m == 0.0);
+        let (k, warnings) = self.k(input)?;
         Ok(PatternReport {
             name: input.name.clone(),
             points: directions.len() as u64,
@@ -152,12 +164,13 @@ impl Measure {
                 bands: bands(directions, AXIS, band_rad).map_err(wrong)?,
                 bands_at_any_speed: on_axis,
             },
-            k: self.k(input)?,
+            k,
+            warnings,
             device: input.pattern.as_ref().and_then(input::device),
         })
     }
 
-    fn k(&self, input: &Input) -> Result<KReport, Failure> {
+    fn k(&self, input: &Input) -> Result<(KReport, Vec<String>), Failure> {
         let turns = input.pattern.as_ref().and_then(Pattern::turns);
         let turning = turns.filter(|turns| turns.frames > 1).map(|turns| Turning {
             axis: turns.axis,
@@ -169,33 +182,44 @@ impl Measure {
             ..Sampling::default()
         };
         let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        let estimate = k::estimate(
-            &input.directions,
-            turning.as_ref(),
-            &self.edges,
-            &wish,
-            threads,
-        )
-        .map_err(|error| {
+        let estimate = match self.degree {
+            Some(degree) => k::harmonics(&input.directions, &self.edges, degree),
+            None => k::estimate(
+                &input.directions,
+                turning.as_ref(),
+                &self.edges,
+                &wish,
+                threads,
+            ),
+        };
+        let estimate = estimate.map_err(|error| {
             Failure::new(Kind::BadInput, format!("{}: {error}", input.name))
                 .help("--tolerance 0 counts every pair, whatever the points")
         })?;
         let curve = KCurve::of_estimate(&estimate, SPHERE_M);
-        Ok(KReport {
+        let area = 4.0 * PI * RADIUS_M * RADIUS_M;
+        let bound = Some(curve.d_error_bound).filter(|bound| bound.is_finite());
+        let warnings = on_edges(&estimate).into_iter().collect();
+        let report = KReport {
             method: estimate.method,
             bins: curve.d.len(),
-            error_bound: curve.d_error_bound,
+            radius_m: RADIUS_M,
+            error_bound: bound.map(|bound| area * bound),
             theta_deg: curve
                 .theta_rad
                 .iter()
                 .map(|theta| theta.to_degrees())
                 .collect(),
-            max_abs: curve.d_max.max(-curve.d_min),
-            max: curve.d_max,
-            min: curve.d_min,
-            k_minus_csr: curve.d.clone(),
+            k_minus_csr: curve.d.iter().map(|d| area * d).collect(),
+            max_abs: area * curve.d_max.max(-curve.d_min),
+            d_error_bound: bound,
+            d: curve.d.clone(),
+            d_max: curve.d_max,
+            d_min: curve.d_min,
+            on_edges: estimate.on_edges,
             curve,
-        })
+        };
+        Ok((report, warnings))
     }
 
     fn gaps(&self, input: &Input) -> Result<Gaps, DensityError> {
@@ -211,6 +235,23 @@ impl Measure {
             of_99_percent_deg: of(0.99),
         })
     }
+}
+
+/// What to say where pairs lie on edges of bins, so that the last bit of their points decides.
+fn on_edges(estimate: &Estimate) -> Option<String> {
+    let (pairs, bins) = (estimate.on_edges?, estimate.edges.bins());
+    let n = estimate.points as f64;
+    if (pairs as f64) <= LEAST_ON_EDGES * n * (n - 1.0) / 2.0 {
+        return None;
+    }
+    let about = match estimate.bound.largest() {
+        0.0 => "",
+        _ => "about ",
+    };
+    Some(format!(
+        "K function: {about}{pairs} pairs lie on the edges of {bins} bins within rounding. They are counted to the smaller angle as far as their last digits say so, \
+         and others would count them differently; --bins 151 has no such pair with azimuths of a grid of 0.4 degrees"
+    ))
 }
 
 /// How deep a direction is in what a pattern can see; where none is known, in the whole sphere.

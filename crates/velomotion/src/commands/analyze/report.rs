@@ -40,6 +40,8 @@ pub struct PatternReport {
     pub blind: Blind,
     /// How evenly points lie, by the angles between them.
     pub k: KReport,
+    /// What may mislead.
+    pub warnings: Vec<String>,
     /// What the mount makes of the sensor; only where it is tilted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub device: Option<DeviceReport>,
@@ -73,26 +75,34 @@ pub struct HoleReport {
     pub from_axis_deg: f64,
 }
 
-/// Ripley's K function beside that of points at random, K - K_csr, over the area of the sphere: so much larger is the share of all pairs that are
-/// within an angle. Above 0 points cluster, below they keep apart.
+/// Ripley's K function beside that of points at random: above 0 points cluster, below they keep apart. `k_minus_csr` is K - K_csr on a sphere of `radius_m`, square metres; `d` is
+/// the same over the area of the sphere, whatever its radius: so much larger is the share of all pairs that are within an angle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KReport {
-    /// How pairs were counted: exact, turned (exact, too), sampled or gridded.
+    /// How pairs were counted: exact, turned (exact, too), sampled, gridded or harmonics.
     pub method: &'static str,
     /// Bins.
     pub bins: usize,
-    /// How far any of the numbers may be off: 0 for exact counts.
-    pub error_bound: f64,
+    /// The radius of the sphere that square metres are of: 1.
+    pub radius_m: f64,
+    /// How far any of `k_minus_csr` may be off, square metres: 0 for exact counts; null where it is not known.
+    pub error_bound: Option<f64>,
     /// The upper end of each bin, degrees.
     pub theta_deg: Vec<f64>,
-    /// (K - K_csr) / (4 pi R2) there.
+    /// K - K_csr there, square metres.
     pub k_minus_csr: Vec<f64>,
-    /// The largest, whatever its sign.
+    /// The largest of them, whatever its sign.
     pub max_abs: f64,
-    /// The largest.
-    pub max: f64,
+    /// How far any of `d` may be off; null where it is not known.
+    pub d_error_bound: Option<f64>,
+    /// D = (K - K_csr) / (4 pi R2), a share.
+    pub d: Vec<f64>,
+    /// The largest D.
+    pub d_max: f64,
     /// The smallest.
-    pub min: f64,
+    pub d_min: f64,
+    /// Pairs that lie on an edge between two bins within rounding: counted, of samples estimated; null where the method cannot tell. They count to the smaller angle.
+    pub on_edges: Option<u64>,
     /// All of it, for figures.
     #[serde(skip)]
     pub curve: KCurve,
@@ -282,13 +292,14 @@ impl PatternReport {
 
 impl KReport {
     fn line(&self) -> String {
-        let how = match self.error_bound {
-            0.0 => "every pair counted".to_owned(),
-            bound => format!("{}, within {bound:.1e}", self.method),
+        let how = match self.d_error_bound {
+            Some(0.0) => "every pair counted".to_owned(),
+            Some(bound) => format!("{}, within {bound:.1e}", self.method),
+            None => format!("{}, error unknown", self.method),
         };
         format!(
             "K - K_csr from {:.5} to {:+.5} of the sphere's area ({how})",
-            self.min, self.max
+            self.d_min, self.d_max
         )
     }
 }
