@@ -42,8 +42,8 @@ def by_treecorr(points, slop):
         min_sep=0.0, max_sep=np.pi, nbins=BINS, bin_type="Linear", metric="Arc", sep_units="rad", bin_slop=slop, num_threads=1
     )
     pairs.process(catalogue)
-    # Every pair is counted from both ends.
-    return np.asarray(pairs.npairs) / 2
+    # Of one catalogue every pair is counted once.
+    return np.asarray(pairs.npairs)
 
 
 def by_corrfunc(points):
