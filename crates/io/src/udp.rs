@@ -11,7 +11,7 @@ mod socket;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
 
-pub use listener::{ListenConfig, ListenCounts, Listener, listen};
+pub use listener::{GATHER, ListenConfig, ListenCounts, Listener, listen};
 pub use socket::{LidarSocket, Received};
 
 /// Why a socket could not be had or read.

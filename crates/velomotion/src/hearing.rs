@@ -10,14 +10,16 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use io::log::RecorderHandle;
-use io::udp::{ListenCounts, Listener, UdpError};
+use io::udp::{GATHER, ListenCounts, Listener, UdpError};
 use protocol::record::{Record, Wire};
 
 use crate::failure::{Failure, Kind};
 use crate::recording::{DATA_PORT, Ear, POSITION_PORT};
 use crate::simulated::Destinations;
 
-/// A thread that has not come round after this long will not: it looks up every 25 ms.
+/// How long packets gather while nobody records them: their times are the kernel's, and rates are looked at every second.
+const UNRECORDED: Duration = Duration::from_millis(50);
+/// A thread that has not come round after this long will not: it looks up every 50 ms, and when it is asked.
 const TURN_LIMIT: Duration = Duration::from_secs(10);
 
 /// Whoever else looks at every record of the lidar. It is on the way of the packets: it may not wait.
@@ -118,7 +120,7 @@ impl Hearing {
             }
             requests.waiting.push(Request { log, answer });
         }
-        self.shared.turn.store(true, Ordering::Release);
+        self.come_round();
         counts.recv_timeout(TURN_LIMIT).unwrap_or_else(|_| {
             Err(
                 Failure::new(Kind::Incomplete, "the lidar's thread does not answer")
@@ -128,10 +130,19 @@ impl Hearing {
     }
 }
 
+impl Hearing {
+    fn come_round(&self) {
+        self.shared.turn.store(true, Ordering::Release);
+        if let Some(thread) = &self.thread {
+            thread.thread().unpark();
+        }
+    }
+}
+
 impl Drop for Hearing {
     fn drop(&mut self) {
         self.shared.stop.store(true, Ordering::Release);
-        self.shared.turn.store(true, Ordering::Release);
+        self.come_round();
         if let Some(thread) = self.thread.take() {
             // A panic of that thread has been told to whoever asked for its counts.
             let _ = thread.join();
@@ -143,6 +154,10 @@ fn listen(ear: Ear, mut onlooker: Onlooker, shared: &Shared) {
     let (mut listener, ports) = ear.into_parts();
     let mut log = None;
     while !shared.stop.load(Ordering::Acquire) {
+        listener.gather(match log {
+            Some(_) => GATHER,
+            None => UNRECORDED,
+        });
         let heard = turn(&mut listener, ports, log.as_ref(), &mut onlooker, shared);
         // Before the requests are looked at: one that comes later sets it again.
         shared.turn.store(false, Ordering::Release);

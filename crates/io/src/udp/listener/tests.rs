@@ -347,3 +347,40 @@ fn a_multicast_group_is_joined_on_the_interface_of_an_address() {
         "{error}"
     );
 }
+
+#[test]
+fn datagrams_gather_longer_where_few_come() {
+    let mut listener = Listener::bind(&local(1 << 20)).unwrap();
+    let longest = Duration::from_millis(50);
+    listener.gather(longest);
+    (0..10).for_each(|_| listener.adapt(3));
+    assert_eq!(listener.gather.1, longest);
+    listener.adapt(GATHERED);
+    assert_eq!(listener.gather.1, longest);
+    listener.adapt(GATHERED + 1);
+    assert_eq!(listener.gather.1, longest / 2);
+    (0..10).for_each(|_| listener.adapt(1_000));
+    assert_eq!(listener.gather.1, GATHER);
+    (0..10).for_each(|_| listener.adapt(3));
+    // Back to where every packet counts.
+    listener.gather(GATHER);
+    listener.adapt(3);
+    assert_eq!(listener.gather.1, GATHER);
+}
+
+#[test]
+fn who_is_in_a_hurry_is_not_kept_waiting() {
+    let mut listener = Listener::bind(&local(1 << 20)).unwrap();
+    listener.gather(Duration::from_secs(600));
+    (0..20).for_each(|_| listener.adapt(0));
+    assert_eq!(listener.gather.1, Duration::from_secs(600));
+    let to = listener.sockets()[0].address();
+    let stop = Arc::new(AtomicBool::new(false));
+    let stopping = Arc::clone(&stop);
+    let listening = thread::spawn(move || listener.run(&stopping, |_| {}));
+    let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    sender.send_to(&[1; 1206], to).unwrap();
+    stop.store(true, Ordering::Release);
+    listening.thread().unpark();
+    assert_eq!(listening.join().unwrap().unwrap().data, 1);
+}
