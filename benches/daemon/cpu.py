@@ -142,7 +142,7 @@ def main():
         while (scan := call(address, f"/api/v1/scans/{begun['id']}"))["state"] in ("recording", "making"):
             time.sleep(0.5)
         status = call(address, "/api/v1/status")
-        print(f"{scan['state']}: {scan['points']} points, {scan['lost_records']} records lost, {status['clients']['dropped']} clients dropped")
+        print(f"{scan['state']} ({(scan['why'] or {}).get('error')}): {scan['points']} points, {scan['lost_records']} records lost, {status['clients']['dropped']} clients dropped")
         memory = [line for line in pathlib.Path(f"/proc/{daemon.pid}/status").read_text().splitlines() if line.startswith(("VmHWM", "VmRSS"))]
         print("memory:", "; ".join(" ".join(line.split()) for line in memory))
         stop.set()

@@ -28,6 +28,7 @@ use crate::recordings::Source;
 use crate::report::{Reception, Scan};
 use crate::session::{Session, SessionError};
 use crate::setup::Setup;
+use crate::wholeness::{self, Watch};
 
 /// A lidar that turns sends 754 packets a second; one that sends none in this time will not send any during the sweep.
 const LIDAR_WAIT: Duration = Duration::from_secs(2);
@@ -83,6 +84,8 @@ pub enum Happening<'a> {
 pub struct Ended {
     motion: Result<(), SessionError>,
     recorded: Result<Recorded, Failure>,
+    /// Why the capture itself had the axis stopped.
+    stopped: Option<Failure>,
 }
 
 /// What there is to say of a recording whatever becomes of its cloud.
@@ -134,8 +137,9 @@ pub fn record(job: Job<'_>, told: &mut dyn FnMut(Happening<'_>)) -> Result<Ended
     let mut session = Session::new(client, port, Arc::clone(interrupt));
     let gearing = setup.axis.gearing;
     let mut number = 0;
+    let mut watch = Watch::new(recording.packets());
     let motion = motion::run(&mut session, &setup.steps, &mut |what| {
-        if recording.failed() {
+        if recording.failed() || watch.silent(recording.packets()) {
             // A sweep that is not recorded is not worth making.
             interrupt.store(true, Ordering::Relaxed);
         }
@@ -166,7 +170,10 @@ pub fn record(job: Job<'_>, told: &mut dyn FnMut(Happening<'_>)) -> Result<Ended
             lidar.without_kernel_time
         )));
     }
-    Ok(Ended { motion, recorded })
+    Ok(Ended {
+        stopped: watch.failure(),
+        ..Ended::new(motion, recorded)
+    })
 }
 
 /// Waits for the first packet: a sweep without a lidar is a sweep for nothing.
@@ -244,6 +251,19 @@ pub fn cloud(
 }
 
 impl Ended {
+    /// Of its two halves.
+    #[must_use]
+    pub const fn new(
+        motion: Result<(), SessionError>,
+        recorded: Result<Recorded, Failure>,
+    ) -> Self {
+        Self {
+            motion,
+            recorded,
+            stopped: None,
+        }
+    }
+
     /// Whether the axis stands.
     #[must_use]
     pub fn stands(&self) -> bool {
@@ -275,6 +295,7 @@ impl Ended {
             (Err(SessionError::Interrupted), Err(failure)) | (Ok(()), Err(failure)) => {
                 Some(failure)
             }
+            (Err(SessionError::Interrupted), Ok(_)) if self.stopped.is_some() => self.stopped,
             (Err(error), recorded) => Some(motion_failure(&error, recorded.err())),
             (Ok(()), Ok(recorded)) => loss(&recorded),
         };
@@ -286,7 +307,7 @@ impl Ended {
     }
 }
 
-/// Says how it ended: a scan, and what is not whole of it.
+/// Says how it ended: a scan, and what is not whole of it, be it that packets never came.
 ///
 /// # Errors
 /// Where there is no cloud.
@@ -307,7 +328,8 @@ pub fn conclude(
             log.display()
         ),
     };
-    let failure = outcome.failure.map(|failure| {
+    let missing = || wholeness::missing(made.as_ref().ok()?);
+    let failure = outcome.failure.clone().or_else(missing).map(|failure| {
         let help = failure
             .help
             .clone()

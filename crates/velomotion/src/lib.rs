@@ -32,5 +32,6 @@ pub mod software_drive;
 pub mod thumbnail;
 pub mod tilting;
 pub mod utc;
+pub mod wholeness;
 
 pub use failure::{Failure, Kind};

@@ -297,6 +297,9 @@ pub struct Scan {
     pub log: String,
     /// Records that a capture lost: packets that the kernel dropped, records that the disk was too slow for.
     pub lost_records: u64,
+    /// How long before the end of the last sweep the last lidar packet came, seconds; 0 where that is not known or it came later.
+    #[serde(skip)]
+    pub unheard_s: f64,
     /// What a capture heard.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reception: Option<Reception>,

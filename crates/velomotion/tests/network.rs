@@ -1,16 +1,19 @@
 //! The lidar's network as a user can set it: group, sender and ports of a live capture, fragments of a recorded one.
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
 
-use std::io::{BufRead, BufReader};
+#[path = "software_drive/mod.rs"]
+mod software_drive;
+
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use sim::{Rig, RigConfig};
+use software_drive::Drive;
 use units::{Span, Stamp};
 
 const GROUP: Ipv4Addr = Ipv4Addr::new(239, 255, 76, 70);
@@ -36,32 +39,6 @@ fn said(output: &Output) -> String {
 fn json(output: &Output) -> serde_json::Value {
     assert!(output.status.success(), "{}", said(output));
     serde_json::from_slice(&output.stdout).unwrap()
-}
-
-/// A software drive in a process of its own, until dropped.
-struct Drive(Child);
-
-impl Drive {
-    fn start(link: &Path) -> Self {
-        let mut drive = Command::new(env!("CARGO_BIN_EXE_velomotion"))
-            .args(["firmware-sim", "--usb", "--link"])
-            .arg(link)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut port = String::new();
-        let mut out = BufReader::new(drive.stdout.take().unwrap());
-        out.read_line(&mut port).unwrap();
-        Self(drive)
-    }
-}
-
-impl Drop for Drive {
-    fn drop(&mut self) {
-        drop(self.0.stdin.take());
-        let _ = self.0.wait();
-    }
 }
 
 /// A software lidar and another sender of the same packets, until dropped.
@@ -133,7 +110,7 @@ fn group_sender_and_ports_are_the_configurations_and_the_log_replays() {
     let place = folder.path();
     let group = has_multicast().then_some(GROUP);
     let (data, position) = (free_port(), free_port());
-    let _drive = Drive::start(&place.join("epos"));
+    let _drive = Drive::plug(&place.join("epos"));
     let configure = |source: Ipv4Addr| {
         let group = group.map_or(String::new(), |group| format!("lidar_group = '{group}'\n"));
         let config = format!(

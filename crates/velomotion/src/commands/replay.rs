@@ -11,13 +11,15 @@ use analysis::truth::Comparison;
 use cloud::{Metadata, Sink, SinkError, TiltTrack};
 use io::recording::{Gap, Pacer, Turn};
 use lidar::{Options, Stats, UtcClock};
-use protocol::record::{DriveLink, Record};
+use protocol::record::{DriveLink, Record, Wire};
+use protocol::vlp16::DATA_LEN;
+use scanner::steps::SetClock;
 use scanner::trajectory::Method;
 use scanner::{
     Accuracy, Alignment, Placed, Placer, ScanConfig, ScanError, Survey, TableTime, TiltSource,
 };
 use sim::Truth;
-use units::{Degrees, Span};
+use units::{Degrees, Host, Span, Stamp};
 
 use super::Said;
 use super::frames::{FramePlan, FrameWriter, Written};
@@ -151,6 +153,8 @@ struct Surveyed {
     drive: Option<(DriveLink, u64)>,
     pass: Pass,
     alignment: Alignment,
+    /// When the last data packet came.
+    heard: Option<Stamp<Host>>,
     /// UTC by the lidar's receiver, where it was asked for.
     utc: Option<UtcClock>,
 }
@@ -162,8 +166,14 @@ fn survey(request: &Request<'_>) -> Result<Surveyed, Failure> {
     let cannot_scan = |error: ScanError| scan_failure(source.path(), &error);
     let mut survey = Survey::new(&config, request.options.clone()).map_err(cannot_scan)?;
     let mut utc = (request.time == TimeOf::Utc).then(|| UtcSurvey::new(request.options.clone()));
+    let mut heard = None;
     let pass = source.read(|record| {
         survey.observe(record);
+        if let Wire::Lidar { payload, .. } = record.wire
+            && payload.len() == DATA_LEN
+        {
+            heard = Some(record.host);
+        }
         if let Some(utc) = &mut utc {
             utc.observe(record);
         }
@@ -178,6 +188,7 @@ fn survey(request: &Request<'_>) -> Result<Surveyed, Failure> {
         drive,
         pass,
         alignment,
+        heard,
         utc: utc.map(UtcSurvey::solve),
     })
 }
@@ -363,9 +374,26 @@ fn report(
         output: output.display().to_string(),
         log: path.display().to_string(),
         lost_records: request.lost_records,
+        unheard_s: unheard_s(surveyed),
         reception: None,
         truth: None,
     })
+}
+
+/// How long the lidar was silent at the end of the last sweep, seconds.
+fn unheard_s(surveyed: &Surveyed) -> f64 {
+    let alignment = &surveyed.alignment;
+    // Sweeps are by the host's clock as it was before it was set.
+    let host_was_set = alignment
+        .steps
+        .iter()
+        .any(|step| step.clock == SetClock::Host);
+    match (surveyed.heard, alignment.sweeps.last()) {
+        (Some(heard), Some(sweep)) if !host_was_set => {
+            sweep.end.saturating_since(heard).as_secs_f64().max(0.0)
+        }
+        _ => 0.0,
+    }
 }
 
 /// A recording that is silent for longer is not waited for.

@@ -61,7 +61,7 @@ pub fn capture(
     let older_log = Aside::put(&setup.log)?;
     let scan = wait(client, &begun.id, setup, interrupt, progress)?;
     if scan.scan.log_bytes.is_none() {
-        return Err(scan.scan.why.unwrap_or_else(|| {
+        return Err(scan.scan.head.why.unwrap_or_else(|| {
             Failure::new(Kind::Incomplete, "the daemon made no log").help("see its messages")
         }));
     }

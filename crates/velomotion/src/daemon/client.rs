@@ -51,6 +51,12 @@ impl Client {
         None
     }
 
+    /// The daemon that answers at a socket.
+    #[must_use]
+    pub const fn at(socket: PathBuf) -> Self {
+        Self { socket }
+    }
+
     /// Where it is.
     #[must_use]
     pub fn socket(&self) -> &Path {
@@ -76,6 +82,18 @@ impl Client {
     ) -> Result<T, Failure> {
         let body = serde_json::to_vec(body).map_err(|error| self.gone(&error.to_string()))?;
         self.json(self.request("POST", path, Some(&body))?)
+    }
+
+    /// `DELETE`.
+    ///
+    /// # Errors
+    /// As [`Client::get`].
+    pub fn delete(&self, path: &str) -> Result<(), Failure> {
+        let answer = self.request("DELETE", path, None)?;
+        match answer.status {
+            200..300 => Ok(()),
+            _ => Err(self.refused(answer)),
+        }
     }
 
     /// `GET` into a file or anything else; how many bytes.

@@ -33,6 +33,9 @@ pub const TOKEN_BYTES: usize = 16;
 /// Records that may wait for the live view.
 pub const LIVE_RECORDS: usize = 8_192;
 
+/// Sentences that are kept of a scan.
+pub const MESSAGES: usize = 100;
+
 /// What lasts too long. Tests take shorter ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Waits {

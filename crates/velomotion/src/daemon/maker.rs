@@ -45,7 +45,7 @@ pub fn left_over(shared: &Shared) -> Vec<Making> {
         clean(&shared.scans.place(&id));
         let record = shared.scans.record(&id);
         let lost_records = record.as_ref().map_or(0, |record| record.lost_records);
-        let asked = record.and_then(|record| record.asked);
+        let asked = record.and_then(|record| record.head.asked);
         Making {
             accuracy: asked
                 .and_then(|asked| asked.accuracy().ok())

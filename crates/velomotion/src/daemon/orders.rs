@@ -79,12 +79,11 @@ impl Keeper {
             };
             let name = text(|fault| &fault.name).unwrap_or_else(|| "unknown error".to_owned());
             let code = newest.map_or("", |fault| fault.code.as_str());
-            let remedy = text(|fault| &fault.remedy).unwrap_or_default();
             Failure::new(
                 Kind::DeviceFault,
                 format!("the drive is in fault: {code} {name}"),
             )
-            .help(format!("{remedy}\nthen clear it (tilt faults --clear) or home the axis").trim())
+            .help(fault_help(text(|fault| &fault.remedy).as_deref()))
         });
         shared.set_drive(|drive| {
             drive.state = match fault {
@@ -242,6 +241,12 @@ impl Keeper {
     }
 }
 
+/// What to do about a fault: its remedy, most of which end with clearing it, and how that is done.
+fn fault_help(remedy: Option<&str>) -> String {
+    let how = "tilt faults --clear clears it, and so does homing the axis";
+    remedy.map_or(how.to_owned(), |remedy| format!("{remedy}\n{how}"))
+}
+
 /// What becomes of the port after such an end.
 pub(super) fn port_lost(error: &SessionError) -> Option<Lost> {
     match error {
@@ -257,4 +262,25 @@ pub(super) fn panic_failure() -> Failure {
         "a defect of the program ended the motion; the axis was told to stop",
     )
     .help("see whether the axis stands; run with -vv and report what it says")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::epos2::DeviceError;
+
+    #[test]
+    fn help_on_a_fault_says_once_that_it_is_to_be_cleared() {
+        for error in [
+            DeviceError::FOLLOWING,
+            DeviceError::POSITION_SENSOR,
+            DeviceError::INTERNAL_SOFTWARE,
+        ] {
+            let remedy = error.meaning().map(|meaning| meaning.remedy);
+            let help = fault_help(remedy);
+            assert!(help.matches("then clear").count() <= 1, "{help}");
+            assert!(help.contains("--clear"), "{help}");
+        }
+        assert!(fault_help(None).starts_with("tilt faults --clear"));
+    }
 }

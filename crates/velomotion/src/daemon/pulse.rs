@@ -46,6 +46,7 @@ pub fn run(shared: &Arc<Shared>, end: &Receiver<()>) {
     while end.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
         pulse.lidar();
         pulse.disk();
+        shared.scans.settle();
         pulse.sleep();
         pulse.keeper();
         shared.tell_status();

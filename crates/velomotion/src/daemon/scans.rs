@@ -2,21 +2,24 @@
 //!
 //! Left out: how scans are made.
 
-use std::collections::BTreeMap;
+mod found;
+mod record;
+
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use io::files::{NewFile, Overwrite};
-use serde::{Deserialize, Serialize};
 
-use super::limits::NAME_BYTES;
+pub use record::{ScanHead, ScanRecord, ScanState, ScanView, WholeView, check_name};
+
+use super::limits::MESSAGES;
 use crate::failure::{Failure, Kind};
-use crate::job::Outcome;
 use crate::output::file_failure;
-use crate::report::Reception;
 use crate::setup::Asked;
+use found::found;
 
 /// The log in a scan's folder.
 pub const LOG: &str = "log.pcapng";
@@ -26,134 +29,15 @@ pub const CLOUD: &str = "cloud.ply";
 pub const THUMBNAIL: &str = "thumbnail.png";
 const RECORD: &str = "scan.json";
 
-/// How far a scan is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ScanState {
-    /// The devices are being recorded.
-    Recording,
-    /// The log is complete, the cloud is being made.
-    Making,
-    /// All that was asked for is there.
-    Whole,
-    /// Less than what was asked for.
-    Partial,
-    /// There is no cloud.
-    Failed,
-}
-
-impl ScanState {
-    /// Whether nothing is to be expected any more.
-    #[must_use]
-    pub const fn is_final(self) -> bool {
-        matches!(self, Self::Whole | Self::Partial | Self::Failed)
-    }
-}
-
-/// What is kept of a scan beside its files: `scan.json`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ScanRecord {
-    /// The name of its folder.
-    pub id: String,
-    /// What the user called it.
-    pub name: Option<String>,
-    /// How far it is.
-    pub state: ScanState,
-    /// Why it is not whole.
-    pub why: Option<Failure>,
-    /// When it was begun, Unix seconds.
-    pub started_s: f64,
-    /// Whether the devices were software.
-    pub simulated: bool,
-    /// What was asked for; absent where nobody knows any more.
-    pub asked: Option<Asked>,
-    /// Points of the cloud.
-    pub points: Option<u64>,
-    /// Length of the recording, seconds.
-    pub duration_s: Option<f64>,
-    /// What was said on the way.
-    #[serde(default)]
-    pub messages: Vec<String>,
-    /// What went wrong with the recording itself.
-    #[serde(default)]
-    pub recording: Option<Failure>,
-    /// Records that were lost.
-    #[serde(default)]
-    pub lost_records: u64,
-    /// What was heard.
-    #[serde(default)]
-    pub reception: Option<Reception>,
-    /// What `capture --json` prints.
-    #[serde(default)]
-    pub report: Option<serde_json::Value>,
-}
-
-impl ScanRecord {
-    /// What there is to say of its recording.
-    #[must_use]
-    pub fn outcome(&self) -> Outcome {
-        Outcome {
-            failure: self.recording.clone(),
-            lost_records: self.lost_records,
-            reception: self.reception,
-        }
-    }
-}
-
-/// A scan as a list shows it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ScanView {
-    /// Which.
-    pub id: String,
-    /// What the user called it.
-    pub name: Option<String>,
-    /// How far it is.
-    pub state: ScanState,
-    /// Why it is not whole.
-    pub why: Option<Failure>,
-    /// When it was begun, Unix seconds.
-    pub started_s: f64,
-    /// Whether the devices were software.
-    pub simulated: bool,
-    /// What was asked for.
-    pub asked: Option<Asked>,
-    /// Points of the cloud.
-    pub points: Option<u64>,
-    /// Length of the recording, seconds.
-    pub duration_s: Option<f64>,
-    /// All its files.
-    pub bytes: u64,
-    /// Its log.
-    pub log_bytes: Option<u64>,
-    /// Its cloud.
-    pub cloud_bytes: Option<u64>,
-    /// Whether there is a picture.
-    pub thumbnail: bool,
-}
-
-/// One with everything.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WholeView {
-    /// As in the list.
-    #[serde(flatten)]
-    pub scan: ScanView,
-    /// What was said on the way.
-    pub messages: Vec<String>,
-    /// What went wrong with the recording itself.
-    pub recording: Option<Failure>,
-    /// Records that were lost.
-    pub lost_records: u64,
-    /// What was heard.
-    pub reception: Option<Reception>,
-    /// What `capture --json` prints.
-    pub report: Option<serde_json::Value>,
-}
-
 /// The scans of a folder.
 #[derive(Debug)]
 pub struct Scans {
     folder: PathBuf,
     scans: Mutex<BTreeMap<String, ScanRecord>>,
+    /// Those whose last change the disk did not take.
+    unwritten: Mutex<BTreeSet<String>>,
+    /// Bytes of those that do not change any more: the status is asked for every second.
+    sizes: Mutex<BTreeMap<String, u64>>,
 }
 
 fn cannot(path: &Path, what: &str, error: &std::io::Error) -> Failure {
@@ -205,6 +89,8 @@ impl Scans {
         Ok(Self {
             folder: folder.to_owned(),
             scans: Mutex::new(scans),
+            unwritten: Mutex::default(),
+            sizes: Mutex::default(),
         })
     }
 
@@ -235,7 +121,7 @@ impl Scans {
         let now = std::time::SystemTime::now();
         let (id, place) = self.new_place(asked.name.as_deref(), now, simulated)?;
         let started = now.duration_since(std::time::UNIX_EPOCH);
-        let record = ScanRecord {
+        let record = ScanRecord::new(ScanHead {
             id: id.clone(),
             name: asked.name.clone(),
             state: ScanState::Recording,
@@ -245,12 +131,7 @@ impl Scans {
             asked: Some(asked.clone()),
             points: None,
             duration_s: None,
-            messages: Vec::new(),
-            recording: None,
-            lost_records: 0,
-            reception: None,
-            report: None,
-        };
+        });
         if let Err(failure) = store(&place, &record) {
             // What was made a moment ago; whatever stays of it is found at the next start.
             let _ = fs::remove_dir_all(&place);
@@ -258,6 +139,13 @@ impl Scans {
         }
         self.scans().insert(id, record.clone());
         Ok(record)
+    }
+
+    /// Takes back a scan that was begun a moment ago, and of which nothing came.
+    pub fn forget(&self, id: &str) {
+        self.scans().remove(id);
+        // What stays of it is a failed scan at the next start.
+        let _ = fs::remove_dir_all(self.place(id));
     }
 
     fn new_place(
@@ -295,7 +183,7 @@ impl Scans {
     /// Changes a scan, in the list and on the disk. `None` where there is no such scan.
     ///
     /// # Errors
-    /// Where it cannot be written; the list has it then.
+    /// Where it cannot be written; the list has it then, and [`Scans::settle`] writes it once there is room.
     pub fn change(
         &self,
         id: &str,
@@ -309,13 +197,41 @@ impl Scans {
             change(record);
             record.clone()
         };
-        store(&self.place(id), &record)?;
+        let stored = store(&self.place(id), &record);
+        self.sizes().remove(id);
+        if let Err(failure) = stored {
+            self.unwritten().insert(id.to_owned());
+            return Err(failure);
+        }
         Ok(Some(self.view_of(&record)))
     }
 
-    /// Adds a sentence to what was said of a scan. It reaches the disk with the next change.
+    /// Writes what the disk did not take when it was told.
+    pub fn settle(&self) {
+        let waiting = std::mem::take(&mut *self.unwritten());
+        for id in waiting {
+            let record = self.record(&id);
+            if record.is_some_and(|record| store(&self.place(&id), &record).is_err()) {
+                self.unwritten().insert(id);
+            }
+        }
+    }
+
+    fn sizes(&self) -> MutexGuard<'_, BTreeMap<String, u64>> {
+        self.sizes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn unwritten(&self) -> MutexGuard<'_, BTreeSet<String>> {
+        self.unwritten
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds a sentence to what was said of a scan, unless much was said already. It reaches the disk with the next change.
     pub fn say(&self, id: &str, message: &str) {
-        if let Some(record) = self.scans().get_mut(id) {
+        if let Some(record) = self.scans().get_mut(id)
+            && record.messages.len() < MESSAGES
+        {
             record.messages.push(message.to_owned());
         }
     }
@@ -371,15 +287,7 @@ impl Scans {
         let place = self.place(&record.id);
         let size = |name: &str| fs::metadata(place.join(name)).ok().map(|there| there.len());
         ScanView {
-            id: record.id.clone(),
-            name: record.name.clone(),
-            state: record.state,
-            why: record.why.clone(),
-            started_s: record.started_s,
-            simulated: record.simulated,
-            asked: record.asked.clone(),
-            points: record.points,
-            duration_s: record.duration_s,
+            head: record.head.clone(),
             bytes: bytes_in(&place),
             log_bytes: size(LOG),
             cloud_bytes: size(CLOUD),
@@ -405,6 +313,7 @@ impl Scans {
         let (place, gone) = (self.place(id), self.folder.join(format!(".{id}.deleted")));
         fs::rename(&place, &gone).map_err(|error| cannot(&place, "delete", &error))?;
         self.scans().remove(id);
+        self.sizes().remove(id);
         fs::remove_dir_all(&gone).map_err(|error| cannot(&gone, "delete", &error))?;
         Ok(Some(view))
     }
@@ -412,9 +321,22 @@ impl Scans {
     /// Scans and their bytes.
     #[must_use]
     pub fn size(&self) -> (u64, u64) {
-        let ids: Vec<String> = self.scans().keys().cloned().collect();
-        let bytes = ids.iter().map(|id| bytes_in(&self.place(id))).sum();
-        (ids.len() as u64, bytes)
+        let heads = self.scans();
+        let scans: Vec<(String, bool)> = heads
+            .values()
+            .map(|record| (record.id.clone(), record.state.is_final()))
+            .collect();
+        drop(heads);
+        let mut known = self.sizes();
+        let kept = scans.iter().map(|(id, is_final)| match known.get(id) {
+            Some(&bytes) if *is_final => bytes,
+            _ => {
+                let bytes = bytes_in(&self.place(id));
+                known.insert(id.clone(), bytes);
+                bytes
+            }
+        });
+        (scans.len() as u64, kept.sum())
     }
 
     /// Deletes the oldest scans until there are no more than `scans` of no more than `bytes`; which. The newest stays.
@@ -434,83 +356,6 @@ impl Scans {
         }
         gone
     }
-}
-
-/// Refuses a name that cannot be part of an id.
-///
-/// # Errors
-/// [`Kind::Usage`].
-pub fn check_name(name: &str) -> Result<(), Failure> {
-    let allowed = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';
-    if !name.is_empty() && name.len() <= NAME_BYTES && name.bytes().all(allowed) {
-        return Ok(());
-    }
-    Err(Failure::new(
-        Kind::Usage,
-        format!("name: expected 1 to {NAME_BYTES} letters, digits, - or _"),
-    )
-    .help("choose another name, or leave it out: scans are named after their time"))
-}
-
-/// What a folder says about its scan. One that says nothing, but has a log, is a scan all the same.
-fn found(place: &Path, name: &str) -> Option<ScanRecord> {
-    // What was being deleted when the power went.
-    if name.starts_with('.') {
-        if name.ends_with(".deleted") {
-            let _ = fs::remove_dir_all(place);
-        }
-        return None;
-    }
-    let told = fs::read(place.join(RECORD)).ok();
-    let record = told.and_then(|text| serde_json::from_slice::<ScanRecord>(&text).ok());
-    let has_log = place.join(LOG).is_file();
-    let Some(mut record) = record else {
-        return has_log.then(|| ScanRecord {
-            id: name.to_owned(),
-            name: None,
-            state: ScanState::Making,
-            why: None,
-            started_s: modified_s(&place.join(LOG)),
-            simulated: name.contains("simulated"),
-            asked: None,
-            points: None,
-            duration_s: None,
-            messages: Vec::new(),
-            recording: Some(interrupted()),
-            lost_records: 0,
-            reception: None,
-            report: None,
-        });
-    };
-    // Folders may be renamed by hand.
-    record.id = name.to_owned();
-    match record.state {
-        ScanState::Recording => {
-            record.recording = Some(interrupted());
-            record.state = ScanState::Making;
-        }
-        ScanState::Making | ScanState::Whole | ScanState::Partial | ScanState::Failed => {}
-    }
-    if record.state == ScanState::Making && !has_log {
-        record.state = ScanState::Failed;
-        record.why = Some(interrupted());
-    }
-    Some(record)
-}
-
-/// What is said of a scan that nobody ended.
-fn interrupted() -> Failure {
-    Failure::new(
-        Kind::Incomplete,
-        "the daemon or the machine was stopped in the middle of this scan",
-    )
-    .help("what the log held by then is here; scan again for the rest")
-}
-
-fn modified_s(path: &Path) -> f64 {
-    let modified = fs::metadata(path).and_then(|there| there.modified()).ok();
-    let since = modified.and_then(|at| at.duration_since(std::time::UNIX_EPOCH).ok());
-    since.map_or(0.0, |since| since.as_secs_f64())
 }
 
 fn store(place: &Path, record: &ScanRecord) -> Result<(), Failure> {
@@ -548,7 +393,7 @@ mod tests {
     }
 
     fn finished(scans: &Scans, name: Option<&str>) -> String {
-        let id = scans.begin(&asked(name), true).unwrap().id;
+        let id = scans.begin(&asked(name), true).unwrap().head.id;
         fs::write(scans.place(&id).join(CLOUD), [0; 100]).unwrap();
         let done = scans.change(&id, |record| record.state = ScanState::Whole);
         assert_eq!(done.unwrap().unwrap().cloud_bytes, Some(100));
@@ -574,9 +419,9 @@ mod tests {
     fn what_nobody_ended_waits_for_its_cloud() {
         let folder = tempfile::tempdir().unwrap();
         let scans = Scans::open(folder.path()).unwrap();
-        let with_log = scans.begin(&asked(Some("a")), false).unwrap().id;
+        let with_log = scans.begin(&asked(Some("a")), false).unwrap().head.id;
         fs::write(scans.place(&with_log).join(LOG), b"log").unwrap();
-        let without = scans.begin(&asked(Some("b")), false).unwrap().id;
+        let without = scans.begin(&asked(Some("b")), false).unwrap().head.id;
         // Nobody can delete what is being made.
         assert!(scans.delete(&without).is_err());
         // A folder with nothing but a log, and one that is no scan.

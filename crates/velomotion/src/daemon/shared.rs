@@ -33,6 +33,8 @@ pub struct World {
     pub free_bytes: Arc<FreeBytes>,
     /// How long the machine has slept since it was started.
     pub suspended: Arc<dyn Fn() -> Span + Send + Sync>,
+    /// What happens whenever the keeper shows that it is alive, on its own thread, with what it is doing: nothing.
+    pub beat: Arc<dyn Fn(Doing) + Send + Sync>,
 }
 
 impl Default for World {
@@ -40,6 +42,7 @@ impl Default for World {
         Self {
             free_bytes: Arc::new(io::files::free_bytes),
             suspended: Arc::new(io::clock::suspended),
+            beat: Arc::new(|_| {}),
         }
     }
 }
@@ -372,6 +375,8 @@ impl Shared {
     /// The keeper is alive. Where the daemon ends, whatever it moves is to stop.
     pub fn beat(&self) {
         *locked(&self.alive) = Instant::now();
+        let doing = self.activity.borrow().doing;
+        (self.world.beat)(doing);
         if self.is_ending() {
             self.interrupt.store(true, Ordering::Release);
         }

@@ -1,39 +1,9 @@
 //! Devices that go and come back.
 
-use std::io::{BufRead, BufReader};
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
-
 use serde_json::json;
 
 use crate::rig::{Rig, wait};
-
-/// A software drive in a process of its own, unplugged when it is dropped.
-struct Drive(Child);
-
-impl Drive {
-    fn plug(link: &Path) -> Self {
-        let _ = std::fs::remove_file(link);
-        let mut drive = Command::new(env!("CARGO_BIN_EXE_velomotion"))
-            .args(["firmware-sim", "--usb", "--link"])
-            .arg(link)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut port = String::new();
-        let mut out = BufReader::new(drive.stdout.take().unwrap());
-        out.read_line(&mut port).unwrap();
-        Self(drive)
-    }
-}
-
-impl Drop for Drive {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
+use crate::software_drive::Drive;
 
 fn drive(rig: &Rig, wanted: &str) -> serde_json::Value {
     wait(wanted, || {

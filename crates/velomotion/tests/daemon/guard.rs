@@ -83,7 +83,8 @@ fn a_browser_signs_in_once() {
     let form = "content-type: application/x-www-form-urlencoded\r\n";
     let login = |body: &str| request(rig.address, "POST", "/login", form, body);
     assert_eq!(login("token=wrong").status, 401);
-    assert_eq!(login("").status, 401);
+    assert_eq!(login("").status, 400);
+    assert_eq!(login(&format!("token={TOKEN}&more=1")).status, 400);
     let answer = login(&format!("token={TOKEN}"));
     assert_eq!(answer.status, 303, "{}", answer.head);
     let cookie = answer

@@ -2,10 +2,14 @@
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
+use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
 
+use serde_json::json;
 use velomotion::daemon::limits::{
-    BODY_BYTES, CONNECTIONS, HEAD_BYTES, HEADERS, SUBSCRIBERS, TARGET_BYTES, Waits,
+    self, BODY_BYTES, CONNECTIONS, DOWNLOADS, HEAD_BYTES, HEADERS, MAKING, SUBSCRIBERS,
+    TARGET_BYTES, Waits,
 };
 
 use crate::events::connect;
@@ -15,6 +19,9 @@ use crate::rig::{Rig, raw, request, wait};
 fn the_book_states_the_limits() {
     let page = include_str!("../../../../docs/src/daemon.md");
     let kib = |bytes: usize| format!("{} KiB", bytes >> 10);
+    let seconds = |wait: Duration| format!("{} s", wait.as_secs());
+    let thousands = |n: usize| format!("{},{:03}", n / 1_000, n % 1_000);
+    let waits = Waits::default();
     for (what, limit) in [
         ("body of a request", kib(BODY_BYTES)),
         ("path and query", kib(TARGET_BYTES)),
@@ -22,37 +29,167 @@ fn the_book_states_the_limits() {
             "all headers",
             format!("{}, {HEADERS} of them", kib(HEAD_BYTES)),
         ),
+        ("time for a request's headers", seconds(waits.headers)),
+        ("time for its body", seconds(waits.body)),
         ("connections", format!("{CONNECTIONS}, more wait")),
         ("WebSocket clients", SUBSCRIBERS.to_string()),
+        ("messages queued for a client", limits::QUEUE.to_string()),
+        ("a message of a client", kib(limits::CLIENT_MESSAGE_BYTES)),
         (
-            "a message of a client",
-            kib(velomotion::daemon::limits::CLIENT_MESSAGE_BYTES),
-        ),
-        (
-            "messages queued for a client",
-            velomotion::daemon::limits::QUEUE.to_string(),
-        ),
-        (
-            "downloads",
-            format!("{} at once", velomotion::daemon::limits::DOWNLOADS),
+            "silence of a WebSocket client (it must answer pings)",
+            seconds(waits.silence),
         ),
         (
             "clouds being made for downloads",
-            format!("{} at once", velomotion::daemon::limits::MAKING),
+            format!("{MAKING} at once"),
+        ),
+        ("downloads", format!("{DOWNLOADS} at once")),
+        (
+            "silence of a client that downloads",
+            seconds(waits.download),
         ),
         (
             "browsers signed in",
+            format!("{}, the oldest is forgotten", limits::SIGNED_IN),
+        ),
+        ("points of a live frame", thousands(limits::FRAME_POINTS)),
+        (
+            "records that wait for the live view",
             format!(
-                "{}, the oldest is forgotten",
-                velomotion::daemon::limits::SIGNED_IN
+                "{}, more are left out of it",
+                thousands(limits::LIVE_RECORDS)
             ),
         ),
+        (
+            "sentences kept of a scan",
+            format!("{}, the first ones", limits::MESSAGES),
+        ),
+        ("name of a scan", format!("{} bytes", limits::NAME_BYTES)),
     ] {
         let row = format!("| {what} | {limit} |");
         assert!(page.contains(&row), "no {row}");
     }
-    assert_eq!(Waits::default().headers, Duration::from_secs(10));
-    assert_eq!(Waits::default().silence, Duration::from_secs(60));
+}
+
+/// A daemon that has a whole scan `made` with a cloud of so many bytes, and a `log` that somebody else makes.
+fn with_a_scan(bytes: u64, waits: Waits, log: impl FnOnce(&Path)) -> Rig {
+    Rig::with("", |options| {
+        options.waits = waits;
+        let scans = options.config.daemon.scans.clone().unwrap();
+        let place = scans.join("made");
+        std::fs::create_dir_all(&place).unwrap();
+        let record = json!({
+            "id": "made", "name": null, "state": "whole", "why": null, "started_s": 0.0, "simulated": true,
+            "asked": null, "points": 0, "duration_s": 0.0,
+        });
+        std::fs::write(place.join("scan.json"), record.to_string()).unwrap();
+        let cloud = std::fs::File::create(place.join("cloud.ply")).unwrap();
+        cloud.set_len(bytes).unwrap();
+        log(&place.join("log.pcapng"));
+    })
+}
+
+/// A client that asks for something and reads no more than the head.
+fn ask(rig: &Rig, path: &str) -> (TcpStream, String) {
+    let mut stream = TcpStream::connect(rig.address).unwrap();
+    let request = format!("GET {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n");
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut status = [0; 12];
+    stream.read_exact(&mut status).unwrap();
+    (stream, String::from_utf8_lossy(&status[9..]).into_owned())
+}
+
+const CLOUD: &str = "/api/v1/scans/made/cloud";
+/// More than all buffers on the way hold.
+const LARGE: u64 = 64 << 20;
+
+#[test]
+fn there_are_no_more_downloads_at_once_than_allowed() {
+    let rig = with_a_scan(LARGE, Waits::default(), |_| {});
+    let mut all: Vec<_> = (0..DOWNLOADS).map(|_| ask(&rig, CLOUD)).collect();
+    assert!(all.iter().all(|(_, status)| status == "200"));
+    let refused = rig.get(CLOUD);
+    assert_eq!(refused.refused(429, "one more").json()["kind"], "limit");
+    // Everything else goes on.
+    assert_eq!(rig.get("/api/v1/scans").status, 200);
+    drop(all.pop());
+    wait("a free place", || {
+        (ask(&rig, CLOUD).1 == "200").then_some(())
+    });
+}
+
+#[test]
+fn a_download_that_nobody_reads_ends() {
+    let waits = Waits {
+        download: Duration::from_secs(1),
+        ..Waits::default()
+    };
+    let rig = with_a_scan(LARGE, waits, |_| {});
+    let mut all: Vec<_> = (0..DOWNLOADS).map(|_| ask(&rig, CLOUD).0).collect();
+    // A place is free again, and whose it was finds less than was announced.
+    wait("a free place", || {
+        (ask(&rig, CLOUD).1 == "200").then_some(())
+    });
+    let ended_early = all.iter_mut().any(|stalled| {
+        let mut read = Vec::new();
+        let _ = stalled.read_to_end(&mut read);
+        (read.len() as u64) < LARGE
+    });
+    assert!(ended_early, "whose place was it?");
+    // Who reads slowly, but reads, gets all of it.
+    let (mut slow, _) = ask(&rig, CLOUD);
+    let (mut taken, mut piece) = (0_u64, vec![0; 4 << 20]);
+    for _ in 0..8 {
+        std::thread::sleep(Duration::from_millis(50));
+        slow.read_exact(&mut piece).unwrap();
+        taken += piece.len() as u64;
+    }
+    taken += std::io::copy(&mut slow, &mut std::io::sink()).unwrap();
+    assert!(taken > LARGE, "{taken}");
+}
+
+#[test]
+fn there_are_no_more_clouds_being_made_at_once_than_allowed() {
+    // A log that never comes: a pipe that nobody writes to.
+    let pipe = |log: &Path| {
+        let made = Command::new("mkfifo").arg(log).status().unwrap();
+        assert!(made.success());
+    };
+    let rig = with_a_scan(1, Waits::default(), pipe);
+    let path = format!("{CLOUD}?format=pcd");
+    let address = rig.address;
+    let waiting: Vec<_> = (0..MAKING)
+        .map(|_| {
+            let path = path.clone();
+            std::thread::spawn(move || request(address, "GET", &path, "", ""))
+        })
+        .collect();
+    let refused = wait("a third that is refused", || {
+        let mut stream = TcpStream::connect(rig.address).unwrap();
+        let request =
+            format!("GET {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n");
+        stream.write_all(request.as_bytes()).unwrap();
+        stream
+            .set_read_timeout(Some(Duration::from_millis(200)))
+            .unwrap();
+        let mut answer = String::new();
+        // One that came before the others is made, and never answered; it goes away again.
+        stream.read_to_string(&mut answer).ok().map(|_| answer)
+    });
+    assert!(refused.starts_with("HTTP/1.1 429"), "{refused}");
+    assert!(refused.contains("clouds being made"), "{refused}");
+    // What has been made already is not made again.
+    assert_eq!(rig.get(CLOUD).status, 200);
+    let log = rig.folder.path().join("scans/made/log.pcapng");
+    wait("an end of all of them", || {
+        // Whoever has it open, or opens it now, finds its end. Opened both ways a pipe does not wait.
+        drop(std::fs::File::options().read(true).write(true).open(&log));
+        waiting.iter().all(|one| one.is_finished()).then_some(())
+    });
+    for one in waiting {
+        let answer = one.join().unwrap();
+        assert!([409, 429].contains(&answer.status), "{}", answer.text());
+    }
 }
 
 #[test]

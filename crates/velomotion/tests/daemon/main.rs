@@ -3,6 +3,7 @@
 
 mod api;
 mod commands;
+mod defects;
 mod devices;
 mod events;
 mod guard;
@@ -10,3 +11,5 @@ mod limits;
 mod rig;
 mod scans;
 mod service;
+#[path = "../software_drive/mod.rs"]
+mod software_drive;

@@ -114,7 +114,7 @@ fn a_scan_that_is_stopped_is_partial_and_kept() {
     .unwrap();
     let second = again.shared().scans.whole(&second).unwrap();
     assert!(second.scan.points > Some(0), "{second:?}");
-    let why = second.scan.why.unwrap();
+    let why = second.scan.head.why.unwrap();
     assert!(why.message.contains("the daemon was stopped"), "{why:?}");
     again.stop(|| false).unwrap();
 }

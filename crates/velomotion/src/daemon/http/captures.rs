@@ -13,7 +13,7 @@ use super::Api;
 use super::refusal::Refusal;
 use crate::daemon::hub::Event;
 use crate::daemon::keeper::Order;
-use crate::daemon::shared::Shared;
+use crate::daemon::shared::{Refused, Shared};
 use crate::daemon::view::Doing;
 use crate::daemon::{plan as plans, scans};
 use crate::setup::Asked;
@@ -87,14 +87,22 @@ fn start(shared: &Shared, asked: &Asked) -> Result<String, Refusal> {
 /// The same with the axis taken.
 fn ordered(shared: &Shared, asked: &Asked) -> Result<String, Refusal> {
     let record = shared.scans.begin(asked, shared.simulated())?;
-    let id = record.id;
+    let id = record.id.clone();
     shared.note(|activity| activity.scan = Some(id.clone()));
     let (cloud, log) = (shared.cloud(&id), shared.log(&id));
-    let setup = Box::new(plans::setup(shared, asked, cloud, log)?);
-    shared.order(Order::Capture {
-        setup,
-        id: id.clone(),
-    })?;
+    let sent = plans::setup(shared, asked, cloud, log)
+        .map_err(Refused::Failure)
+        .and_then(|setup| {
+            shared.order(Order::Capture {
+                setup: Box::new(setup),
+                id: id.clone(),
+            })
+        });
+    if let Err(refused) = sent {
+        // Who is refused has begun no scan.
+        shared.scans.forget(&id);
+        return Err(refused.into());
+    }
     if let Some(scan) = shared.scans.view(&id) {
         shared.hub.tell(Event::Scan {
             scan: Box::new(scan),

@@ -71,7 +71,7 @@ pub async fn cloud(
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
     let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
-    let accuracy = record.asked.and_then(|asked| asked.accuracy().ok());
+    let accuracy = record.head.asked.and_then(|asked| asked.accuracy().ok());
     let mut fields = Fields::FILE;
     if wanted.uncertainty {
         fields |= Fields::SD;

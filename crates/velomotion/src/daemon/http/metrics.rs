@@ -98,8 +98,7 @@ impl Collector for Figures {
             ),
         ];
         for (name, help, value) in gauges {
-            let gauge = ConstGauge::new(value);
-            gauge.encode(encoder.encode_descriptor(name, help, None, gauge.metric_type())?)?;
+            put(&mut encoder, name, help, &ConstGauge::new(value))?;
         }
         let counters = &self.0.counters;
         let of = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
@@ -157,14 +156,17 @@ impl Collector for Figures {
             ),
         ];
         for (name, help, value) in counts {
-            let counter = ConstCounter::new(value);
-            counter.encode(encoder.encode_descriptor(
-                name,
-                help,
-                None,
-                counter.metric_type(),
-            )?)?;
+            put(&mut encoder, name, help, &ConstCounter::new(value))?;
         }
         Ok(())
     }
+}
+
+fn put(
+    encoder: &mut DescriptorEncoder<'_>,
+    name: &str,
+    help: &str,
+    figure: &impl EncodeMetric,
+) -> fmt::Result {
+    figure.encode(encoder.encode_descriptor(name, help, None, figure.metric_type())?)
 }

@@ -127,7 +127,10 @@ pub async fn login(
     let given = match form {
         true => {
             let body = String::from_utf8_lossy(&bytes).into_owned();
-            body.strip_prefix("token=").unwrap_or_default().to_owned()
+            let token = body.strip_prefix("token=").filter(|t| !t.contains('&'));
+            token
+                .ok_or_else(|| Refusal::usage("the form: expected token, and nothing else"))?
+                .to_owned()
         }
         false => captures::body::<Login>(&headers, &bytes)?.token,
     };
