@@ -17,3 +17,7 @@ book:
 # A scan with software devices.
 scan *ARGS:
     cargo run --release -- capture --speed 56.25 {{ARGS}}
+
+# 200 captures in which something goes wrong, by seeds; --first SEED --captures N for others, --bless for the table of docs/src/chaos.md.
+chaos *ARGS:
+    cargo test -p velomotion-tests --test chaos --locked -- --captures 200 {{ARGS}}

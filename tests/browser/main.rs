@@ -3,7 +3,6 @@
 //! Needs `chromedriver` and `chromium`; says so and does nothing where they are missing, fails with `VELOMOTION_BROWSER=required`.
 //! `VELOMOTION_SCREENSHOTS=FOLDER` keeps the pictures; those of docs/src/page are made so.
 
-mod bench;
 mod browser;
 
 use std::net::SocketAddr;
@@ -15,8 +14,8 @@ use velomotion::config::Config;
 use velomotion::daemon::settings::Settings;
 use velomotion::daemon::{Daemon, Options};
 
-use bench::Bench;
 use browser::{DESKTOP, Driver, NARROW, PHONE, Page};
+use velomotion_tests::bench::Bench;
 
 /// A daemon with its own folder; the port is 0 for one that is free.
 fn daemon(config: Config, device: Option<&str>, folder: &Path, port: u16) -> Daemon {
@@ -215,7 +214,7 @@ fn a_fault_is_read_with_what_to_do_and_cleared() {
     };
     let folder = tempfile::tempdir().unwrap();
     let bench = Bench::start();
-    let daemon = daemon(bench.config.clone(), None, folder.path(), 0);
+    let daemon = daemon(bench.config(), None, folder.path(), 0);
     let url = url(&daemon);
     driver.test(DESKTOP, async |page| {
         ready(&page, &url).await;

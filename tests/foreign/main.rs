@@ -5,6 +5,7 @@
 
 mod clouds;
 mod ray_casting;
+mod requests;
 mod scenes;
 
 use std::path::Path;

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use analysis::truth::TruthReport;
 use cloud::{Fields, Points};
-use drive::{Client, Observation};
+use drive::{AxisConfig, Client, Observation};
 use firmware_sim::epos2::Servo;
 use io::can::Slcan;
 use io::files::Overwrite;
@@ -37,6 +37,7 @@ use velomotion::{Failure, devices, simulated};
 
 use crate::inject::{Fault, FaultInjector};
 use crate::port::{Arrived, Links, VirtualPort};
+use crate::random::Random;
 
 /// What to capture, and over what.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +56,10 @@ pub struct Setting {
     pub host_set: Option<(Span, Span)>,
     /// The same of the lidar's clock.
     pub lidar_set: Option<(Span, Span)>,
+    /// What the network loses of the lidar's packets.
+    pub packets_lost: Option<PacketLoss>,
+    /// How long after the end the next client connects, over a line that is whole again.
+    pub rejoined_after: Option<Span>,
     /// How long after the begin the user presses Ctrl-C.
     pub interrupt_after: Option<Span>,
     /// How the motor follows its demand; `None`: exactly.
@@ -63,6 +68,53 @@ pub struct Setting {
     pub ripple: Option<GearRipple>,
     /// Least time between two polls; `None`: as the axis has it.
     pub poll_period: Option<Span>,
+}
+
+/// Packets that a network loses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PacketLoss {
+    /// How long after the begin.
+    pub after: Span,
+    /// For how long.
+    pub span: Span,
+    /// How many of a thousand.
+    pub per_mille: u64,
+}
+
+impl PacketLoss {
+    /// Loses what is to be lost; how many data packets that were, and how many of them between two that came.
+    fn lose(&self, packets: &mut Vec<Arrived>, start: Stamp<Host>, seed: u64) -> (u64, u64) {
+        let (from, until) = (start + self.after, start + self.after + self.span);
+        let mut random = Random(seed);
+        let (mut lost, mut missed, mut in_a_row, mut begun) = (0, 0, 0, false);
+        packets.retain(|packet| {
+            let goes = (from..until).contains(&packet.host) && random.below(1_000) < self.per_mille;
+            match (packet.datagram.port == sim::DATA_PORT, goes) {
+                (true, true) => {
+                    lost += 1;
+                    in_a_row += u64::from(begun);
+                }
+                (true, false) => {
+                    missed += in_a_row;
+                    (in_a_row, begun) = (0, true);
+                }
+                (false, _) => {}
+            }
+            !goes
+        });
+        (lost, missed)
+    }
+}
+
+/// What the drive did after whoever moved it had gone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rejoined {
+    /// How long it went on moving.
+    pub went_on: Span,
+    /// Whether it stood before the next client came.
+    pub by_itself: bool,
+    /// How long after the next client came it stood, its power stage off.
+    pub safe_after: Span,
 }
 
 impl Default for Setting {
@@ -83,6 +135,8 @@ impl Default for Setting {
             fault: None,
             host_set: None,
             lidar_set: None,
+            packets_lost: None,
+            rejoined_after: None,
             interrupt_after: None,
             servo: None,
             ripple: None,
@@ -117,6 +171,8 @@ pub struct Captured {
     folder: TempDir,
     records: usize,
     data_packets: u64,
+    lost_packets: (u64, u64),
+    rejoined: Option<Rejoined>,
     truth: sim::Truth,
 }
 
@@ -210,7 +266,7 @@ impl Captured {
                 });
             }
         });
-        let client = Client::with_link(axis, link);
+        let client = Client::with_link(axis.clone(), link);
         let interrupt = Arc::new(AtomicBool::new(false));
         if let Some(after) = setting.interrupt_after {
             port.interrupt_at(setting.start + after, Arc::clone(&interrupt));
@@ -221,8 +277,16 @@ impl Captured {
         // The lidar goes on for a moment, as in a capture.
         let mut tail = port.clone();
         io::port::Port::read(&mut tail, &mut [0; 1], Span::from_millis(20)).unwrap();
+        let ended_at = tail.now() + Span::from_millis(20);
 
+        let rejoined = setting
+            .rejoined_after
+            .map(|after| rejoin(&port, (axis, link), setting.links.attached, after));
         let (mut packets, truth) = port.end();
+        packets.retain(|packet| packet.host <= ended_at);
+        let lost_packets = setting.packets_lost.map_or((0, 0), |loss| {
+            loss.lose(&mut packets, setting.start, setting.links.seed)
+        });
         if let Some((after, by)) = setting.lidar_set {
             set_lidar(&mut packets, setting.start + after, by);
         }
@@ -247,6 +311,8 @@ impl Captured {
             folder,
             records,
             data_packets,
+            lost_packets,
+            rejoined,
             truth,
         };
         (captured, ended)
@@ -268,6 +334,24 @@ impl Captured {
     #[must_use]
     pub fn data_packets(&self) -> u64 {
         self.data_packets
+    }
+
+    /// Data packets that the network lost.
+    #[must_use]
+    pub fn lost_packets(&self) -> u64 {
+        self.lost_packets.0
+    }
+
+    /// Of those: between two that came.
+    #[must_use]
+    pub fn missed_packets(&self) -> u64 {
+        self.lost_packets.1
+    }
+
+    /// What the drive did until the next client had it.
+    #[must_use]
+    pub fn rejoined(&self) -> Option<Rejoined> {
+        self.rejoined
     }
 
     /// Whether the last statusword in the log says that the power stage is off, so that the brake holds.
@@ -332,6 +416,24 @@ impl Captured {
                 vec![Mark::Within(vec![0x2B, 0x40, 0x60, 0x00, low, high, 0, 0])]
             }
         }
+    }
+
+    /// When the last sweep ended, as far as the drive was told of one and made it.
+    #[must_use]
+    pub fn last_sweep_end(&self) -> Option<Stamp<Host>> {
+        let source = Source::open(&self.log(), None).ok()?;
+        let mut survey =
+            scanner::Survey::new(&source.config().ok()?, lidar::Options::default()).ok()?;
+        source
+            .read(|record| {
+                survey.observe(record);
+                Ok(())
+            })
+            .ok()?;
+        let alignment = survey
+            .solve(&source.config().ok()?, &TiltSource::Log)
+            .ok()?;
+        alignment.sweeps.last().map(|sweep| sweep.end)
     }
 
     /// From when to when the (first) sweep went.
@@ -430,6 +532,61 @@ impl Captured {
         };
         replay::make(&request, Target::open(&path, Fields::FILE, false).unwrap()).unwrap();
         path
+    }
+}
+
+/// How often a program that was started anew tries to connect before somebody else must look at it.
+const TRIES: u32 = 5;
+/// A serial line that is silent for so long has nothing more to say.
+const QUIET: Span = Span::from_millis(100);
+
+/// Lets the drive alone for a while, then connects to it as a program does that was started anew.
+fn rejoin(
+    port: &VirtualPort,
+    (axis, link): (AxisConfig, DriveLink),
+    attached: Attached,
+    after: Span,
+) -> Rejoined {
+    let mut quiet = port.clone();
+    let gone = quiet.now();
+    let mut went_on = Span::ZERO;
+    while quiet.now() - gone < after {
+        let _ = quiet.read(&mut [0; 512], Span::from_millis(1));
+        if quiet.moves() {
+            went_on = quiet.now() - gone;
+        }
+    }
+    let by_itself = !quiet.moves();
+    let came = quiet.now();
+    let mut safe_after = None;
+    for _ in 0..TRIES {
+        // Answers on a serial line do not say what they answer: what is late is let pass.
+        while link != DriveLink::Can && quiet.read(&mut [0; 512], QUIET).unwrap().is_some() {}
+        let line: Box<dyn Port> = match attached {
+            Attached::Slcan => Box::new(BusLine(
+                Slcan::open(port.clone(), Bitrate::Kbit1000).unwrap(),
+            )),
+            Attached::Usb | Attached::Rs232 | Attached::Can => Box::new(port.clone()),
+        };
+        let client = Client::with_link(axis.clone(), link);
+        let mut session = Session::new(client, line, Arc::default());
+        let connected = session.run(drive::Command::Connect, &mut |_| {
+            if !port.moves() && !port.is_powered() {
+                safe_after.get_or_insert(port.now() - came);
+            }
+        });
+        if connected.is_ok() {
+            break;
+        }
+    }
+    assert!(
+        !port.moves() && !port.is_powered(),
+        "connected, and not safe"
+    );
+    Rejoined {
+        went_on,
+        by_itself,
+        safe_after: safe_after.unwrap_or(port.now() - came),
     }
 }
 

@@ -2,6 +2,9 @@
 //!
 //! What takes the program real seconds takes a test milliseconds, and comes out the same every time.
 
+pub mod bench;
 pub mod capture;
+pub mod drive;
 pub mod inject;
 pub mod port;
+pub mod random;

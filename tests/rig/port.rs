@@ -116,6 +116,18 @@ impl VirtualPort {
         act(self.0.borrow_mut().rig.drive_mut());
     }
 
+    /// Whether the axis moves.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        crate::drive::moves(self.0.borrow_mut().rig.drive_mut())
+    }
+
+    /// Whether the power stage is on.
+    #[must_use]
+    pub fn is_powered(&self) -> bool {
+        crate::drive::is_powered(self.0.borrow_mut().rig.drive_mut())
+    }
+
     /// The world's end: its packets in order of arrival and what truly happened.
     #[must_use]
     pub fn end(&self) -> (Vec<Arrived>, sim::Truth) {

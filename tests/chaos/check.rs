@@ -1,0 +1,192 @@
+//! What must hold of the scans whatever has happened: the list, the folder and the files agree, and what is not whole says so.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use cloud::{Fields, Points};
+use io::recording::Recording;
+use scanner::{Accuracy, TiltSource};
+use velomotion::commands::replay::{self, Request};
+use velomotion::daemon::client::Client;
+use velomotion::daemon::scans::{CLOUD, LOG, ScanState, ScanView};
+use velomotion::recordings::Source;
+
+/// What must become of a capture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// All of it.
+    Whole,
+    /// Not all of it, and that said.
+    Less,
+    /// Either.
+    Any,
+}
+
+/// Every scan that the daemon lists.
+pub fn list(client: &Client) -> Result<Vec<ScanView>, String> {
+    let mut answer: BTreeMap<String, Vec<ScanView>> = client
+        .get("/api/v1/scans")
+        .map_err(|failure| failure.to_string())?;
+    answer
+        .remove("scans")
+        .ok_or("no scans in the list of scans".to_owned())
+}
+
+/// The scan of that name, of which there is one.
+pub fn named<'a>(scans: &'a [ScanView], name: &str) -> Result<&'a ScanView, String> {
+    let mut of_that_name = scans
+        .iter()
+        .filter(|scan| scan.name.as_deref() == Some(name));
+    match (of_that_name.next(), of_that_name.next()) {
+        (Some(scan), None) => Ok(scan),
+        (None, _) => Err(format!("{name} was begun, and there is no such scan: lost")),
+        (Some(_), Some(_)) => Err(format!("{name} was begun once, and is there twice")),
+    }
+}
+
+/// The list against the folder.
+pub fn agree(scans: &[ScanView], folder: &Path) -> Result<(), String> {
+    let listed: BTreeSet<String> = scans.iter().map(|scan| scan.id.clone()).collect();
+    let entries = fs::read_dir(folder).map_err(|error| error.to_string())?;
+    let there: BTreeSet<String> = entries
+        .flatten()
+        .filter(|entry| entry.path().is_dir())
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .collect();
+    match listed == there {
+        true => Ok(()),
+        false => Err(format!("listed are {listed:?}, and on the disk {there:?}")),
+    }
+}
+
+/// Whether the disk has what the list says, which comes first: where it was full, it is written when there is room again.
+pub fn written(scan: &ScanView, folder: &Path) -> bool {
+    let told = fs::read(folder.join(&scan.id).join("scan.json")).ok();
+    let told: Option<serde_json::Value> = told.and_then(|text| serde_json::from_slice(&text).ok());
+    let state = serde_json::to_value(scan.state).unwrap_or_default();
+    told.is_some_and(|told| told["state"] == state)
+}
+
+/// A scan with its files.
+pub fn sound(scan: &ScanView, folder: &Path, wanted: Wanted) -> Result<(), String> {
+    let place = folder.join(&scan.id);
+    let said = format!("{:?}, {:?}", scan.state, scan.why);
+    let wrong = |what: String| Err(format!("{}: {what} ({said})", scan.id));
+    match (scan.state, wanted) {
+        (ScanState::Recording | ScanState::Making, _) => return wrong("never ended".to_owned()),
+        (ScanState::Whole, Wanted::Less) => return wrong("whole, and it cannot be".to_owned()),
+        (ScanState::Partial | ScanState::Failed, Wanted::Whole) => {
+            return wrong("not whole, and nothing was wrong".to_owned());
+        }
+        _ => {}
+    }
+    match (&scan.why, scan.state) {
+        (Some(_), ScanState::Whole) => return wrong("whole, with a reason why not".to_owned()),
+        (None, ScanState::Partial | ScanState::Failed) => {
+            return wrong("not whole, and no word why".to_owned());
+        }
+        (Some(why), _) if why.message.is_empty() || why.help.is_none() => {
+            return wrong("no word of what to do".to_owned());
+        }
+        _ => {}
+    }
+    let told =
+        fs::read(place.join("scan.json")).map_err(|error| format!("{}: {error}", scan.id))?;
+    let told: serde_json::Value =
+        serde_json::from_slice(&told).map_err(|error| format!("{}: {error}", scan.id))?;
+    if told["state"] != serde_json::to_value(scan.state).unwrap_or_default() {
+        return wrong(format!("on the disk it is {}", told["state"]));
+    }
+    let size = |name: &str| fs::metadata(place.join(name)).ok().map(|there| there.len());
+    if (scan.log_bytes, scan.cloud_bytes) != (size(LOG), size(CLOUD)) {
+        return wrong("its files are not as listed".to_owned());
+    }
+    let cloud = place.join(CLOUD);
+    match (scan.state, scan.points) {
+        (ScanState::Failed, None) => {
+            if cloud.exists() {
+                return wrong("it has a cloud all the same".to_owned());
+            }
+        }
+        (_, Some(points)) => {
+            let there = vertices(&cloud)?;
+            if there != points {
+                return wrong(format!("{points} points are listed, {there} in the file"));
+            }
+        }
+        (_, None) => return wrong("nobody knows how many points it has".to_owned()),
+    }
+    let log = place.join(LOG);
+    if log.exists() {
+        readable(&log).or_else(wrong)?;
+    } else if scan.state != ScanState::Failed {
+        return wrong("a cloud without a log".to_owned());
+    }
+    Ok(())
+}
+
+/// A scan that failed though its log holds a sweep has lost something.
+pub fn worth_nothing(scan: &ScanView, folder: &Path) -> Result<(), String> {
+    let log = folder.join(&scan.id).join(LOG);
+    let points = points_of(&log);
+    match (scan.state, points) {
+        (ScanState::Failed, Some(points)) if points > 0 => Err(format!(
+            "{}: failed, and its log has {points} points ({:?})",
+            scan.id, scan.why
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn points_of(log: &Path) -> Option<u64> {
+    let mut points = Points::new(Fields::FILE);
+    let request = Request {
+        recording: &Source::open(log, None).ok()?,
+        tilt: TiltSource::Log,
+        options: lidar::Options::default(),
+        time: velomotion::cli::TimeOf::Host,
+        accuracy: Accuracy::Best,
+        pace: None,
+        truth: None,
+        lost_records: 0,
+        interrupt: &AtomicBool::new(false),
+    };
+    let scan = replay::scan(&request, &mut points, Path::new("memory"));
+    scan.ok().map(|scan| scan.points)
+}
+
+/// A log is read to its end, or to where it was cut off.
+fn readable(log: &Path) -> Result<(), String> {
+    // A log that was cut off in its very head has nothing to read.
+    let Ok(mut recording) = Recording::open(log) else {
+        return match fs::metadata(log) {
+            Ok(there) if there.len() < 4_096 => Ok(()),
+            _ => Err("its log cannot be opened".to_owned()),
+        };
+    };
+    loop {
+        match recording.next_record() {
+            Ok(Some(_)) => {}
+            Ok(None) => return Ok(()),
+            Err(error) => return Err(format!("its log cannot be read: {error}")),
+        }
+    }
+}
+
+/// Rows that a PLY's head announces, where the file is as long as that.
+fn vertices(ply: &Path) -> Result<u64, String> {
+    let name = ply.display();
+    let file = File::open(ply).map_err(|error| format!("{name}: {error}"))?;
+    for line in BufReader::new(file).lines().map_while(Result::ok) {
+        if let Some(count) = line.strip_prefix("element vertex ") {
+            return count.trim().parse().map_err(|_| format!("{name}: {line}"));
+        }
+        if line == "end_header" {
+            break;
+        }
+    }
+    Err(format!("{name}: no number of points"))
+}

@@ -1,0 +1,69 @@
+//! A small disk of its own, which can be filled to the last bytes: a tmpfs, where this user may mount one.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Room for the longest scan of a plan, and what the daemon keeps free.
+const BYTES: u64 = 256 << 20;
+
+/// A tmpfs, until dropped.
+pub struct Disk {
+    place: PathBuf,
+}
+
+impl Disk {
+    /// Mounts one there; why not, where that cannot be.
+    pub fn mount(place: &Path) -> Result<Self, String> {
+        std::fs::create_dir_all(place).map_err(|error| error.to_string())?;
+        let mounted = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", &format!("size={BYTES}"), "tmpfs"])
+            .arg(place)
+            .output()
+            .map_err(|error| error.to_string())?;
+        match mounted.status.success() {
+            true => Ok(Self {
+                place: place.to_owned(),
+            }),
+            false => Err(String::from_utf8_lossy(&mounted.stderr).trim().to_owned()),
+        }
+    }
+
+    fn filler(&self) -> PathBuf {
+        self.place.join("filler")
+    }
+
+    /// Fills it but for so many bytes.
+    pub fn fill(&self, but: u64) -> Result<(), String> {
+        let text = |error: std::io::Error| error.to_string();
+        let free = io::files::free_bytes(&self.place).map_err(text)?;
+        let mut file = File::create(self.filler()).map_err(text)?;
+        let piece = vec![0; 1 << 20];
+        let mut left = free.saturating_sub(but);
+        while left > 0 {
+            let now = left.min(piece.len() as u64);
+            // Whoever else writes at the same time may be quicker.
+            if file
+                .write_all(&piece[..usize::try_from(now).unwrap()])
+                .is_err()
+            {
+                break;
+            }
+            left -= now;
+        }
+        Ok(())
+    }
+
+    /// Gives the room back.
+    pub fn empty(&self) -> Result<(), String> {
+        std::fs::remove_file(self.filler()).map_err(|error| error.to_string())
+    }
+}
+
+impl Drop for Disk {
+    fn drop(&mut self) {
+        // Lazily: a daemon that is being killed may still have a file there.
+        let _ = Command::new("umount").arg("-l").arg(&self.place).status();
+    }
+}

@@ -1,0 +1,242 @@
+//! Two hundred captures in which something goes wrong, each by a seed, and what must hold whatever it was:
+//! every scan is whole, or partial and marked so; none is lost silently; the motor is never left moving without a master.
+//!
+//! `cargo test -p velomotion-tests --test chaos -- [--captures N] [--first SEED] [--bless]`. Without arguments the first twenty seeds, which
+//! have every kind of fault; `--bless` writes the table of docs/src/chaos.md.
+
+mod check;
+mod disk;
+mod plan;
+mod process;
+mod real;
+mod table;
+mod virtual_time;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use velomotion::daemon::scans::Scans;
+
+use check::Wanted;
+use disk::Disk;
+use plan::{Either, Plan};
+use process::{Process, wait};
+use real::{Came, Made, World};
+use table::Table;
+
+/// Captures of a run without arguments.
+const FEW: u64 = 20;
+/// Captures in virtual time that one daemon makes the clouds of.
+const BATCH: usize = 5;
+/// Threads that make captures in virtual time, and worlds in real time: these mostly wait.
+const THREADS: (usize, usize) = (2, 3);
+
+/// What this run is to do.
+struct Arguments {
+    first: u64,
+    captures: u64,
+    bless: bool,
+}
+
+/// What the run has come to.
+#[derive(Default)]
+struct Results {
+    table: Mutex<Table>,
+    failed: Mutex<Vec<(u64, String)>>,
+}
+
+impl Results {
+    fn put(&self, plan: &Plan, made: Result<Made, String>) {
+        match made {
+            Ok(made) => self.table.lock().unwrap().count(plan.row(), made),
+            Err(why) => {
+                eprintln!("seed {}: {why}\n  {plan:?}", plan.seed);
+                self.failed.lock().unwrap().push((plan.seed, why));
+            }
+        }
+    }
+}
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    if let [argument, path] = words.as_slice()
+        && argument == process::ARGUMENT
+    {
+        std::process::exit(process::be(path));
+    }
+    let arguments = arguments(&words);
+    let plans: Vec<Plan> = (arguments.first..arguments.first + arguments.captures)
+        .map(Plan::new)
+        .collect();
+    let (begin, results) = (Instant::now(), Results::default());
+    in_virtual_time(&plans, &results);
+    let real = begin.elapsed();
+    in_real_time(&plans, &results);
+    let table = results.table.into_inner().unwrap();
+    println!("{table}");
+    println!(
+        "{} captures from seed {} in {:.0} s, {:.0} s of them in virtual time",
+        plans.len(),
+        arguments.first,
+        begin.elapsed().as_secs_f64(),
+        real.as_secs_f64(),
+    );
+    let failed = results.failed.into_inner().unwrap();
+    for (seed, why) in &failed {
+        let first = why.lines().next().unwrap_or_default();
+        println!("FAILED: seed {seed}: {first}\n  again: just chaos --first {seed} --captures 1");
+    }
+    if arguments.bless {
+        table.bless();
+    }
+    if !failed.is_empty() {
+        std::process::exit(1);
+    }
+}
+
+fn arguments(words: &[String]) -> Arguments {
+    let mut arguments = Arguments {
+        first: 0,
+        captures: FEW,
+        bless: false,
+    };
+    let mut words = words.iter();
+    while let Some(word) = words.next() {
+        let mut number = || words.next().and_then(|text| text.parse().ok());
+        match word.as_str() {
+            "--first" => arguments.first = number().unwrap_or_else(usage),
+            "--captures" => arguments.captures = number().unwrap_or_else(usage),
+            "--bless" => arguments.bless = true,
+            // What cargo test hands to every test.
+            _ => {}
+        }
+    }
+    arguments
+}
+
+fn usage() -> u64 {
+    eprintln!("--first SEED, --captures N: whole numbers");
+    std::process::exit(2);
+}
+
+fn in_virtual_time(plans: &[Plan], results: &Results) {
+    let ours: Vec<&Plan> = plans
+        .iter()
+        .filter(|plan| matches!(plan.fault, Either::Virtual(_)))
+        .collect();
+    let batches: Vec<&[&Plan]> = ours.chunks(BATCH).collect();
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..THREADS.0 {
+            scope.spawn(|| {
+                while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if let Err(why) = one_batch(batch, results) {
+                        results.put(batch[0], Err(why));
+                    }
+                }
+            });
+        }
+    });
+}
+
+/// Captures in virtual time, and a daemon that finds them when it starts.
+fn one_batch(batch: &[&Plan], results: &Results) -> Result<(), String> {
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let place = folder.path().join("scans");
+    let scans = Scans::open(&place).map_err(|failure| failure.to_string())?;
+    let mut wanted: Vec<(&Plan, Wanted)> = Vec::new();
+    for &plan in batch {
+        let Either::Virtual(what) = plan.fault else {
+            continue;
+        };
+        let made = catch_unwind(AssertUnwindSafe(|| virtual_time::make(plan, what, &scans)));
+        match made.unwrap_or_else(|_| Err("panicked".to_owned())) {
+            Ok(want) => wanted.push((plan, want)),
+            Err(why) => results.put(plan, Err(why)),
+        }
+    }
+    drop(scans);
+    let text = real::nowhere(&place.display().to_string());
+    std::fs::write(folder.path().join("velomotion.toml"), text).map_err(|e| e.to_string())?;
+    let daemon = Process::start(folder.path())?;
+    let all = wait("the clouds", || {
+        let all = check::list(&daemon.client).ok()?;
+        all.iter()
+            .all(|scan| scan.state.is_final() && check::written(scan, &place))
+            .then_some(all)
+    })?;
+    check::agree(&all, &place)?;
+    for (plan, want) in wanted {
+        let checked = check::named(&all, &plan.name()).and_then(|scan| {
+            check::sound(scan, &place, want)?;
+            check::worth_nothing(scan, &place)?;
+            Ok(Made {
+                came: Came::Scan(scan.state),
+                safe_after: None,
+            })
+        });
+        results.put(plan, checked);
+    }
+    Ok(())
+}
+
+fn in_real_time(plans: &[Plan], results: &Results) {
+    let ours: Vec<&Plan> = plans
+        .iter()
+        .filter(|plan| matches!(plan.fault, Either::Real(_)))
+        .collect();
+    if ours.is_empty() {
+        return;
+    }
+    let small = can_mount();
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..THREADS.1.min(ours.len()) {
+            scope.spawn(|| {
+                let mut world = None;
+                while let Some(plan) = ours.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let Either::Real(what) = plan.fault else {
+                        continue;
+                    };
+                    let made = in_world(&mut world, plan, what, small);
+                    if made.is_err() {
+                        // Whatever is wrong with it is not to be wrong with the next.
+                        world = None;
+                    }
+                    results.put(plan, made);
+                }
+            });
+        }
+    });
+}
+
+fn in_world(
+    world: &mut Option<World>,
+    plan: &Plan,
+    what: plan::Real,
+    small: bool,
+) -> Result<Made, String> {
+    let world = match world {
+        Some(world) => world,
+        None => world.insert(World::start(small)?),
+    };
+    world.capture(plan, what)
+}
+
+/// Whether this user may have a small disk. Where not that is said, and where one is required it fails.
+fn can_mount() -> bool {
+    let Ok(folder) = tempfile::tempdir() else {
+        return false;
+    };
+    match Disk::mount(folder.path()) {
+        Ok(_) => true,
+        Err(why) => {
+            println!("SKIPPED: a full disk: no tmpfs can be mounted ({why}); run it as root");
+            let required = std::env::var("VELOMOTION_TMPFS").is_ok_and(|wish| wish == "required");
+            assert!(!required, "VELOMOTION_TMPFS=required");
+            false
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! What a seed stands for: which fault, when, in which capture.
+
+use sim::Attached;
+use units::{DegPerS, DegPerS2, Degrees, Span};
+use velomotion::motion::Wish;
+use velomotion_tests::capture::PacketLoss;
+use velomotion_tests::inject::Fault;
+use velomotion_tests::random::Random;
+
+/// What goes wrong in virtual time.
+#[derive(Clone, Copy, Debug)]
+pub enum Virtual {
+    /// Nothing.
+    Nothing,
+    /// The way to the drive, or the drive.
+    Link(Fault),
+    /// The cable, or the program, is gone; another client comes so much later.
+    Gone(Span),
+    /// The network loses packets of the lidar: some, or all from then on.
+    Lost(PacketLoss),
+    /// The host's clock is set so far forward.
+    HostClock(Span),
+    /// The lidar's clock is.
+    LidarClock(Span),
+    /// The program is killed: so many of a thousand bytes of the log are on the disk.
+    Killed(u64),
+    /// The user presses Ctrl-C.
+    Interrupted,
+}
+
+/// What goes wrong in real time, with processes and sockets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Real {
+    /// Nothing.
+    Nothing,
+    /// The drive's cable is pulled, and put in again.
+    UsbGone,
+    /// The lidar says nothing more, for a while.
+    LidarGone,
+    /// The network loses every so many-th packet.
+    PacketsLost,
+    /// The daemon is killed, and started again.
+    Killed,
+    /// The daemon is told to end, and started again.
+    Ended,
+    /// The disk is full to the last bytes.
+    DiskFull,
+}
+
+/// One capture.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// What it follows from.
+    pub seed: u64,
+    /// The moves.
+    pub wish: Wish,
+    /// What goes wrong.
+    pub fault: Either,
+    /// How long after the begin.
+    pub after: Span,
+    /// How long until what is mended is mended.
+    pub mended_after: Span,
+    /// How the drive is attached, in virtual time.
+    pub attached: Attached,
+}
+
+/// In which time a capture is made.
+#[derive(Clone, Copy, Debug)]
+pub enum Either {
+    /// In virtual time.
+    Virtual(Virtual),
+    /// With real processes.
+    Real(Real),
+}
+
+/// Every row of the table, in its order.
+pub const ROWS: [&str; 15] = [
+    "nothing",
+    "the link to the drive, or the drive",
+    "USB gone, or the program killed, as the drive sees it",
+    "lidar packets lost",
+    "lidar gone",
+    "the host's clock set",
+    "the lidar's clock set",
+    "killed: a log that ends anywhere",
+    "Ctrl-C",
+    "USB gone (real)",
+    "lidar gone (real)",
+    "lidar packets lost (real)",
+    "kill -9 and restarted (real)",
+    "SIGTERM and restarted (real)",
+    "disk full (real)",
+];
+
+impl Plan {
+    /// The plan of a seed. Twenty seeds in a row have every kind of fault.
+    pub fn new(seed: u64) -> Self {
+        let mut random = Random(seed);
+        let attached = [
+            Attached::Usb,
+            Attached::Rs232,
+            Attached::Slcan,
+            Attached::Can,
+        ];
+        let attached = attached[usize::try_from(seed / 20 + seed % 20).unwrap() % 4];
+        // The homing, the ramps and all of the sweep.
+        let after = Span::from_millis(random.between(100, 5_500));
+        let fault = match seed % 20 {
+            0 => Either::Virtual(Virtual::Nothing),
+            1..=4 => Either::Virtual(Virtual::Link(link_fault(&mut random))),
+            5 => Either::Virtual(Virtual::Gone(Span::from_millis(random.between(0, 4_000)))),
+            6 => Either::Virtual(Virtual::Lost(loss(after, &mut random, false))),
+            7 => Either::Virtual(Virtual::Lost(loss(after, &mut random, true))),
+            8 => Either::Virtual(Virtual::HostClock(step(&mut random))),
+            9 => Either::Virtual(Virtual::LidarClock(step(&mut random))),
+            10 | 11 => Either::Virtual(Virtual::Killed(random.below(1_001))),
+            12 => Either::Virtual(Virtual::Interrupted),
+            13 => Either::Real(Real::UsbGone),
+            14 => Either::Real(Real::LidarGone),
+            15 => Either::Real(Real::PacketsLost),
+            16 | 17 => Either::Real(Real::Killed),
+            18 => Either::Real(Real::Ended),
+            _ => Either::Real(match seed / 20 % 4 {
+                0 => Real::DiskFull,
+                1 => Real::Nothing,
+                2 => Real::DiskFull,
+                _ => Real::Killed,
+            }),
+        };
+        let wish = Wish {
+            from: Degrees(0.0),
+            to: Degrees(-(random.between(10, 46) as f64)),
+            speed: DegPerS(random.between(20, 91) as f64),
+            acceleration: DegPerS2(random.between(500, 5_000) as f64),
+            sweeps: 1 + u32::try_from(random.below(2)).unwrap(),
+            both_ways: random.below(2) == 0,
+        };
+        Self {
+            seed,
+            wish,
+            fault,
+            after,
+            mended_after: Span::from_millis(random.between(50, 2_500)),
+            attached,
+        }
+    }
+
+    /// Its row of the table.
+    pub fn row(&self) -> usize {
+        match self.fault {
+            Either::Virtual(what) => match what {
+                Virtual::Nothing => 0,
+                Virtual::Link(_) => 1,
+                Virtual::Gone(_) => 2,
+                Virtual::Lost(loss) if loss.per_mille < 1_000 => 3,
+                Virtual::Lost(_) => 4,
+                Virtual::HostClock(_) => 5,
+                Virtual::LidarClock(_) => 6,
+                Virtual::Killed(_) => 7,
+                Virtual::Interrupted => 8,
+            },
+            Either::Real(what) => match what {
+                Real::Nothing => 0,
+                Real::UsbGone => 9,
+                Real::LidarGone => 10,
+                Real::PacketsLost => 11,
+                Real::Killed => 12,
+                Real::Ended => 13,
+                Real::DiskFull => 14,
+            },
+        }
+    }
+
+    /// What the scan is called.
+    pub fn name(&self) -> String {
+        format!("seed-{}", self.seed)
+    }
+}
+
+fn link_fault(random: &mut Random) -> Fault {
+    use protocol::epos2::DeviceError;
+    let span = Span::from_millis(random.between(1, 400));
+    let late = Span::from_millis(random.between(5, 300));
+    let device = random.one(&[
+        DeviceError::OVERCURRENT,
+        DeviceError::UNDERVOLTAGE,
+        DeviceError::POSITION_SENSOR,
+        DeviceError::FOLLOWING,
+        DeviceError::NEGATIVE_LIMIT,
+    ]);
+    random.one(&[
+        Fault::AnswersLost(span),
+        Fault::RequestsLost(span),
+        Fault::AnswersLate(span, late),
+        Fault::AnswersFlipped(span),
+        Fault::RequestsFlipped(span),
+        Fault::AnswersCut(span),
+        Fault::AnswersDoubled(span),
+        Fault::AnswersStale(span),
+        Fault::AnswersInBytes(span),
+        Fault::Noise(span),
+        Fault::NoiseWithFrameStarts(span),
+        Fault::WriteBlocked,
+        Fault::PowerCycle,
+        Fault::Device(device),
+        Fault::Blocked,
+    ])
+}
+
+fn loss(after: Span, random: &mut Random, all: bool) -> PacketLoss {
+    match all {
+        true => PacketLoss {
+            after,
+            span: Span::from_secs(1_000),
+            per_mille: 1_000,
+        },
+        false => PacketLoss {
+            after,
+            span: Span::from_millis(random.between(20, 2_000)),
+            per_mille: 1 + random.below(600),
+        },
+    }
+}
+
+/// Forwards or back, by milliseconds or by an hour.
+fn step(random: &mut Random) -> Span {
+    let far = random.one(&[50, 900, 30_000, 3_600_000]);
+    let ms = random.between(far / 2, far);
+    Span::from_millis(if random.below(2) == 0 { ms } else { -ms })
+}

@@ -1,0 +1,132 @@
+//! A daemon as a process of its own, which can be killed: this program, started anew.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use velomotion::cli::{self, Cli, Common};
+use velomotion::commands;
+use velomotion::daemon::client::Client;
+
+/// What makes this program a daemon.
+pub const ARGUMENT: &str = "--be-a-daemon";
+/// Whatever is waited for comes sooner, or never.
+const LIMIT: Duration = Duration::from_secs(60);
+
+/// A daemon that runs.
+pub struct Process {
+    child: Child,
+    /// How it is talked to.
+    pub client: Client,
+}
+
+/// Is the daemon of a configuration, as the command is.
+pub fn be(path: &str) -> i32 {
+    let cli = Cli {
+        command: cli::Command::Daemon(cli::Daemon {
+            listen: Some(([127, 0, 0, 1], 0).into()),
+        }),
+        common: Common {
+            device: None,
+            config: Some(path.into()),
+            json: true,
+            quiet: false,
+            verbose: 1,
+        },
+    };
+    match commands::run(&cli) {
+        Ok(_) => 0,
+        Err(failure) => {
+            eprintln!("{failure}");
+            i32::from(failure.kind.exit_code())
+        }
+    }
+}
+
+impl Process {
+    /// Starts one with the configuration in `folder`, and waits until it answers.
+    pub fn start(folder: &Path) -> Result<Self, String> {
+        let text = |error: std::io::Error| error.to_string();
+        let path = folder.join("velomotion.toml");
+        for left in sockets(folder)? {
+            std::fs::remove_file(left).map_err(text)?;
+        }
+        let errors = File::options()
+            .append(true)
+            .create(true)
+            .open(folder.join("daemon.log"))
+            .map_err(text)?;
+        let mut child = Command::new(std::env::current_exe().map_err(text)?)
+            .arg(ARGUMENT)
+            .arg(&path)
+            .env("XDG_RUNTIME_DIR", folder)
+            .env_remove("RUNTIME_DIRECTORY")
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(errors)
+            .spawn()
+            .map_err(text)?;
+        let mut line = String::new();
+        if let Some(out) = child.stdout.take() {
+            BufReader::new(out).read_line(&mut line).map_err(text)?;
+        }
+        if line.is_empty() {
+            let ended = child.wait().map_err(text)?;
+            return Err(format!("the daemon does not start: {ended}"));
+        }
+        Ok(Self {
+            child,
+            client: Client::at(sockets(folder)?.pop().ok_or("the daemon has no socket")?),
+        })
+    }
+
+    /// Kills it: nothing is ended, nothing said.
+    pub fn kill(&mut self) -> Result<(), String> {
+        self.child.kill().map_err(|error| error.to_string())?;
+        self.child.wait().map(drop).map_err(|e| e.to_string())
+    }
+
+    /// Tells it to end, which it does with success.
+    pub fn end(&mut self) -> Result<(), String> {
+        let id = self.child.id().to_string();
+        let sent = Command::new("kill").args(["-TERM", &id]).status();
+        sent.map_err(|error| error.to_string())?;
+        let ended = wait("the daemon's end", || self.child.try_wait().ok().flatten())?;
+        match ended.success() {
+            true => Ok(()),
+            false => Err(format!("told to end, it ended with {ended}")),
+        }
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The sockets of daemons in a folder: of the one that runs, once what a killed one left was cleared away.
+fn sockets(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let there = std::fs::read_dir(folder).map_err(|error| error.to_string())?;
+    let paths = there.flatten().map(|entry| entry.path());
+    Ok(paths
+        .filter(|path| path.to_string_lossy().ends_with(".daemon.sock"))
+        .collect())
+}
+
+/// Asks again and again until there is an answer.
+pub fn wait<T>(what: &str, mut wanted: impl FnMut() -> Option<T>) -> Result<T, String> {
+    let begin = Instant::now();
+    loop {
+        if let Some(found) = wanted() {
+            return Ok(found);
+        }
+        if begin.elapsed() > LIMIT {
+            return Err(format!("in vain for {} s: {what}", LIMIT.as_secs()));
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}

@@ -1,0 +1,174 @@
+//! Captures in virtual time, filed as a daemon files what it records: a folder with a log, whose cloud is still to be made.
+
+use std::fs::File;
+
+use drive::DriveError;
+use io::recording::Recording;
+use units::{Host, Span, Stamp};
+use velomotion::daemon::scans::{LOG, ScanState, Scans};
+use velomotion::job::Ended;
+use velomotion::recording::Recorded;
+use velomotion::session::SessionError;
+use velomotion::setup::Asked;
+use velomotion_tests::capture::{Captured, Rejoined, Setting};
+use velomotion_tests::inject::Fault;
+use velomotion_tests::port::Links;
+
+use crate::check::Wanted;
+use crate::plan::{Plan, Virtual};
+
+/// A drive that listens for heartbeats stands so long after the last one at most: 1016 is 100 ms, and then comes the ramp.
+const ALONE: Span = Span::from_millis(1_500);
+/// A client that connects has the axis at rest, its power off, within this time.
+const SAFE: Span = Span::from_secs(2);
+
+/// Makes the capture of a plan and files it in `scans`; what must become of it.
+pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String> {
+    let (captured, ended) = Captured::run(setting(plan, what));
+    rests(plan, &captured, &ended)?;
+    let asked = Asked {
+        speed_deg_s: plan.wish.speed.0,
+        name: Some(plan.name()),
+        ..Asked::default()
+    };
+    let id = scans
+        .begin(&asked, true)
+        .map_err(|f| f.to_string())?
+        .head
+        .id;
+    let log = scans.place(&id).join(LOG);
+    std::fs::copy(captured.log(), &log).map_err(|error| error.to_string())?;
+    let mut wanted = match ended.is_ok() {
+        true => of_packets(&captured),
+        false => Wanted::Less,
+    };
+    if let Virtual::Killed(per_mille) = what {
+        let length = std::fs::metadata(&log).map_err(|error| error.to_string())?;
+        let cut = length.len() * per_mille / 1_000;
+        let file = File::options().write(true).open(&log);
+        file.and_then(|file| file.set_len(cut))
+            .map_err(|error| error.to_string())?;
+        // Its record says that it is being recorded: nobody has ended it.
+        wanted = Wanted::Less;
+    } else {
+        done(scans, &id, ended)?;
+    }
+    Ok(wanted)
+}
+
+/// What must become of a capture by its packets. Those that are lost before the first that is heard, or after the sweep, nobody misses.
+fn of_packets(captured: &Captured) -> Wanted {
+    if captured.missed_packets() > 0 {
+        return Wanted::Less;
+    }
+    if captured.lost_packets() == 0 {
+        return Wanted::Whole;
+    }
+    match (last_packet(captured), captured.last_sweep_end()) {
+        (Some(heard), Some(end)) if heard >= end => Wanted::Whole,
+        (Some(heard), Some(end)) if end - heard < Span::from_millis(60) => Wanted::Any,
+        _ => Wanted::Less,
+    }
+}
+
+fn last_packet(captured: &Captured) -> Option<Stamp<Host>> {
+    let mut recording = Recording::open(captured.log()).ok()?;
+    let mut last = None;
+    while let Ok(Some(record)) = recording.next_record() {
+        if let protocol::record::Wire::Lidar { payload, .. } = record.wire
+            && payload.len() == protocol::vlp16::DATA_LEN
+        {
+            last = Some(record.host);
+        }
+    }
+    last
+}
+
+/// The recording is over: its cloud waits to be made.
+fn done(scans: &Scans, id: &str, ended: Result<(), SessionError>) -> Result<(), String> {
+    let recorded = Recorded {
+        lidar: io::udp::ListenCounts::default(),
+        log: io::log::RecorderCounts::default(),
+    };
+    let outcome = Ended::new(ended, Ok(recorded)).outcome();
+    scans
+        .change(id, |record| {
+            record.state = ScanState::Making;
+            record.recording = outcome.failure;
+        })
+        .map(drop)
+        .map_err(|failure| failure.to_string())
+}
+
+fn setting(plan: &Plan, what: Virtual) -> Setting {
+    let mut setting = Setting {
+        wish: plan.wish,
+        links: Links::usual(plan.attached, plan.seed),
+        ..Setting::default()
+    };
+    match what {
+        Virtual::Nothing => {}
+        Virtual::Link(fault) => {
+            setting.fault = Some((fault, plan.after));
+            setting.rejoined_after = Some(Span::from_millis(200));
+        }
+        Virtual::Gone(after) => {
+            setting.fault = Some((Fault::Unplugged, plan.after));
+            setting.rejoined_after = Some(after);
+        }
+        Virtual::Lost(loss) => setting.packets_lost = Some(loss),
+        Virtual::HostClock(by) => setting.host_set = Some((plan.after, by)),
+        Virtual::LidarClock(by) => setting.lidar_set = Some((plan.after, by)),
+        Virtual::Killed(_) => {}
+        Virtual::Interrupted => setting.interrupt_after = Some(plan.after),
+    }
+    setting
+}
+
+/// The axis stands, or it is said that it may not, and whoever comes next brings it to rest.
+fn rests(plan: &Plan, captured: &Captured, ended: &Result<(), SessionError>) -> Result<(), String> {
+    let Some(Rejoined {
+        went_on,
+        by_itself,
+        safe_after,
+    }) = captured.rejoined()
+    else {
+        return match captured.brake_is_set() {
+            true => Ok(()),
+            false => Err(format!("the axis is left with its power on: {ended:?}")),
+        };
+    };
+    let said = matches!(
+        ended,
+        Err(SessionError::Port(_)
+            | SessionError::NotStopped(_)
+            | SessionError::Drive(DriveError::NotStopped { .. }))
+    );
+    if went_on > Span::ZERO && !said {
+        return Err(format!(
+            "the axis went on for {went_on:?}, and no word of it: {ended:?}"
+        ));
+    }
+    let heartbeat = matches!(plan.attached, sim::Attached::Slcan | sim::Attached::Can);
+    if heartbeat && went_on > ALONE {
+        return Err(format!(
+            "without a heartbeat the axis went on for {went_on:?}"
+        ));
+    }
+    // Over USB and RS232 a profile move goes on to its own end and no farther.
+    let longest = plan.wish.to.0.abs() / plan.wish.speed.0 + 1.0;
+    if went_on.as_secs_f64() > longest.max(HOMING_S) {
+        return Err(format!(
+            "the axis went on for {went_on:?}; its move takes {longest} s"
+        ));
+    }
+    if safe_after > SAFE {
+        return Err(format!(
+            "the next client had the axis at rest after {safe_after:?} (it stood by itself: {by_itself})"
+        ));
+    }
+    Ok(())
+}
+
+/// Longest way to the switch and back.
+const HOMING_S: f64 = 20.0;

@@ -1,0 +1,112 @@
+//! Bad requests, and good ones in any order: PyPI schemathesis makes them from the daemon's own description.
+
+use std::path::Path;
+use std::process::Command;
+
+use velomotion::daemon::{Daemon, Options};
+use velomotion_tests::bench::Bench;
+
+/// What is always right to ask, and moves the axis or stops it.
+const COMMANDS: &str = "home$|stop$|clear$";
+
+/// A daemon on a software scanner, in folders of its own.
+fn daemon(bench: &Bench, folder: &Path) -> Daemon {
+    let mut config = bench.config();
+    config.daemon.scans = Some(folder.join("scans"));
+    config.daemon.reserve_bytes = 1_000;
+    let daemon = Daemon::start(Options {
+        config,
+        listen: Some(([127, 0, 0, 1], 0).into()),
+        runtime: Some(folder.to_owned()),
+        ..Options::default()
+    });
+    let daemon = daemon.unwrap();
+    let connected = || {
+        let status = daemon.shared().status();
+        let well = velomotion::daemon::view::DeviceState::Connected;
+        status.drive.state == well && status.lidar.state == well
+    };
+    while !connected() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    daemon
+}
+
+/// Every check of schemathesis on answers to requests that follow from a seed; false, said aloud, where it is not there.
+fn fuzz(daemon: &Daemon, folder: &Path, more: &[&str]) -> bool {
+    let python = std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into());
+    let there = Command::new(&python)
+        .args(["-c", "import schemathesis"])
+        .output();
+    if !matches!(&there, Ok(output) if output.status.success()) {
+        return crate::missing::<()>(&format!("{python:?} cannot import schemathesis")).is_some();
+    }
+    let configuration = concat!(env!("CARGO_MANIFEST_DIR"), "/foreign/schemathesis.toml");
+    let description = format!("http://{}/api/v1/openapi.json", daemon.address());
+    let output = Command::new(python)
+        .args([
+            "-m",
+            "schemathesis.cli",
+            "--config-file",
+            configuration,
+            "run",
+        ])
+        .arg(description)
+        .args([
+            "--checks",
+            "all",
+            "--phases",
+            "coverage,fuzzing",
+            "--seed",
+            "1",
+        ])
+        // What an axis can do depends on its configuration, and whether it can now on what it does: a good request may be refused.
+        .args(["--exclude-checks", "positive_data_acceptance"])
+        .args([
+            "--request-timeout",
+            "60",
+            "--continue-on-failure",
+            "--warnings",
+            "off",
+        ])
+        .args(more)
+        // It remembers what it tried.
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("cases"), "nothing was tried: {said}");
+    true
+}
+
+#[test]
+fn bad_requests_are_refused_as_described_and_nothing_moves() {
+    let (bench, folder) = (Bench::start(), tempfile::tempdir().unwrap());
+    let daemon = daemon(&bench, folder.path());
+    let bad = [
+        "--mode",
+        "negative",
+        "-n",
+        "15",
+        "--exclude-path-regex",
+        COMMANDS,
+    ];
+    if fuzz(&daemon, folder.path(), &bad) {
+        assert!(!bench.has_moved(), "a bad request moved the axis");
+        assert!(daemon.shared().scans.list().is_empty());
+    }
+    daemon.stop(|| true).unwrap();
+}
+
+#[test]
+fn any_requests_in_any_order_are_answered_as_described_and_the_axis_ends_at_rest() {
+    let (bench, folder) = (Bench::start(), tempfile::tempdir().unwrap());
+    let daemon = daemon(&bench, folder.path());
+    fuzz(&daemon, folder.path(), &["-n", "4"]);
+    daemon.stop(|| true).unwrap();
+    assert!(
+        bench.is_safe(),
+        "the daemon has ended, and the axis is not at rest"
+    );
+}

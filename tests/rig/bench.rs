@@ -1,0 +1,242 @@
+//! A software scanner in real time that a daemon takes for hardware: a drive on a pseudo-terminal, a lidar on loopback, and a hand on both.
+//!
+//! It lives in the test's process, so that killing a daemon does not end it, its cable can be pulled while its motor runs on, and the drive can
+//! be looked at without a word on its line.
+
+use std::net::{Ipv4Addr, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use io::port::{Port, Pty};
+use sim::{Rig, RigConfig};
+use tempfile::TempDir;
+use units::Span;
+use velomotion::config::{Axis, Config, Device, DeviceKind, Devices};
+use velomotion::recording::DATA_PORT;
+use velomotion::{devices, simulated};
+
+use crate::drive::{is_powered, moves};
+
+/// What truly happened so long ago is forgotten: a bench may run for hours.
+const MEMORY: Span = Span::from_secs(1);
+
+/// No more time than this passes between two looks at the drive's line: on a machine that is too busy the devices' time runs slower, and they
+/// answer all the same.
+const SLICE: Span = Span::from_millis(20);
+
+/// What is done to the devices, and how the axis is.
+#[derive(Default)]
+struct Hand {
+    stop: AtomicBool,
+    held: AtomicBool,
+    unplugged: AtomicBool,
+    silent: AtomicBool,
+    lose: AtomicU64,
+    moves: AtomicBool,
+    moved: AtomicBool,
+    powered: AtomicBool,
+}
+
+/// Devices that run until dropped.
+pub struct Bench {
+    folder: TempDir,
+    ports: (u16, u16),
+    hand: Arc<Hand>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Bench {
+    /// Switches them on.
+    ///
+    /// # Panics
+    /// Where this machine gives no pseudo-terminal, socket or folder.
+    #[must_use]
+    pub fn start() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let ports = (free_port(), free_port());
+        let rig = RigConfig {
+            drive: simulated::node(&devices::axis(&axis()).unwrap()),
+            ..RigConfig::new(io::clock::now())
+        };
+        let hand = Arc::new(Hand::default());
+        let (theirs, link) = (Arc::clone(&hand), folder.path().join("epos"));
+        // It is there when this returns.
+        let cable = plug(&link);
+        let thread = std::thread::spawn(move || run(Rig::new(rig), (cable, &link), ports, &theirs));
+        Self {
+            folder,
+            ports,
+            hand,
+            thread: Some(thread),
+        }
+    }
+
+    /// The drive's port, as long as it is plugged in.
+    #[must_use]
+    pub fn link(&self) -> PathBuf {
+        self.folder.path().join("epos")
+    }
+
+    /// UDP ports that data and position packets are sent to.
+    #[must_use]
+    pub fn ports(&self) -> (u16, u16) {
+        self.ports
+    }
+
+    /// A configuration that names them.
+    #[must_use]
+    pub fn config(&self) -> Config {
+        let device = Device {
+            kind: DeviceKind::Usb,
+            port: Some(self.link()),
+            data_port: Some(self.ports.0),
+            position_port: Some(self.ports.1),
+            ..Device::simulator()
+        };
+        Config {
+            device: Devices {
+                default: Some("bench".to_owned()),
+                profiles: [("bench".to_owned(), device)].into(),
+            },
+            axis: axis(),
+            ..Config::default()
+        }
+    }
+
+    /// A hand that holds the axis, or lets it go.
+    pub fn hold(&self, held: bool) {
+        self.hand.held.store(held, Ordering::Release);
+    }
+
+    /// Pulls the drive's cable, or puts it in again.
+    pub fn unplug(&self, gone: bool) {
+        self.hand.unplugged.store(gone, Ordering::Release);
+    }
+
+    /// The lidar says nothing, or goes on.
+    pub fn silence(&self, silent: bool) {
+        self.hand.silent.store(silent, Ordering::Release);
+    }
+
+    /// The network loses every so many-th packet; 0: none.
+    pub fn lose(&self, every: u64) {
+        self.hand.lose.store(every, Ordering::Release);
+    }
+
+    /// Whether the axis stands and its power stage is off.
+    #[must_use]
+    pub fn is_safe(&self) -> bool {
+        let on = |flag: &AtomicBool| flag.load(Ordering::Acquire);
+        !on(&self.hand.moves) && !on(&self.hand.powered)
+    }
+
+    /// Whether the axis has ever moved.
+    #[must_use]
+    pub fn has_moved(&self) -> bool {
+        self.hand.moved.load(Ordering::Acquire)
+    }
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        self.hand.stop.store(true, Ordering::Release);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The axis, with the brake of the checkout's own configuration.
+fn axis() -> Axis {
+    Axis {
+        brake_output: Some(1),
+        ..Axis::default()
+    }
+}
+
+/// A UDP port that nobody else has.
+///
+/// # Panics
+/// Where this machine gives no socket.
+#[must_use]
+pub fn free_port() -> u16 {
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    socket.local_addr().unwrap().port()
+}
+
+/// A pseudo-terminal behind the link.
+fn plug(link: &Path) -> Pty {
+    let pty = Pty::open().unwrap();
+    let _ = std::fs::remove_file(link);
+    std::os::unix::fs::symlink(pty.path(), link).unwrap();
+    pty
+}
+
+fn run(mut rig: Rig, (cable, link): (Pty, &Path), ports: (u16, u16), hand: &Hand) {
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    let (mut cable, mut holding) = (Some(cable), false);
+    let (mut buffer, mut sent) = ([0; 512], 0);
+    while !hand.stop.load(Ordering::Acquire) {
+        match (hand.unplugged.load(Ordering::Acquire), cable.is_some()) {
+            (true, true) => {
+                cable = None;
+                let _ = std::fs::remove_file(link);
+            }
+            (false, false) => cable = Some(plug(link)),
+            _ => {}
+        }
+        let nap = rig.next_event().saturating_since(io::clock::now());
+        let nap = nap.clamp(Span::ZERO, Span::from_millis(1));
+        let read = match &mut cable {
+            Some(pty) => pty.read(&mut buffer, nap).unwrap(),
+            None => {
+                std::thread::sleep(Duration::from_millis(1));
+                None
+            }
+        };
+        rig.advance(io::clock::now().min(rig.now() + SLICE));
+        if hand.held.load(Ordering::Acquire) != holding {
+            holding = !holding;
+            match holding {
+                true => rig.drive_mut().block(),
+                false => rig.drive_mut().unblock(),
+            }
+        }
+        rig.drive_input(&buffer[..read.map_or(0, |(count, _)| count)]);
+        while let Some(answer) = rig.drive_output() {
+            if let Some(pty) = &mut cable {
+                // A client that has gone reads nothing.
+                let _ = pty.write_frame(&answer.bytes);
+            }
+        }
+        look(&mut rig, hand);
+        while let Some(datagram) = rig.poll_datagram() {
+            sent += 1;
+            if !is_lost(sent, hand) {
+                let port = match datagram.port {
+                    DATA_PORT => ports.0,
+                    _ => ports.1,
+                };
+                // Nobody listens before the daemon does.
+                let _ = socket.send_to(&datagram.payload, (Ipv4Addr::LOCALHOST, port));
+            }
+        }
+        rig.forget_before(rig.now() - MEMORY);
+    }
+}
+
+fn look(rig: &mut Rig, hand: &Hand) {
+    let node = rig.drive_mut();
+    let now = moves(node);
+    hand.moves.store(now, Ordering::Release);
+    hand.moved.fetch_or(now, Ordering::AcqRel);
+    hand.powered.store(is_powered(node), Ordering::Release);
+}
+
+fn is_lost(number: u64, hand: &Hand) -> bool {
+    let every = hand.lose.load(Ordering::Acquire);
+    hand.silent.load(Ordering::Acquire) || (every > 0 && number.is_multiple_of(every))
+}

@@ -1,0 +1,20 @@
+//! What a software drive is asked without a word on its line.
+
+use firmware_sim::epos2::Node;
+use protocol::epos2::cia402::State;
+
+/// Whether its shaft moves in this control cycle.
+#[must_use]
+pub fn moves(node: &Node) -> bool {
+    let segment = node.segment();
+    segment.start != segment.end
+}
+
+/// Whether its power stage is on.
+#[must_use]
+pub fn is_powered(node: &Node) -> bool {
+    matches!(
+        node.state(),
+        State::OperationEnabled | State::QuickStopActive | State::FaultReactionEnabled
+    )
+}
