@@ -18,7 +18,7 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 10] = [
 ];
 
 /// A library, and the crates of the workspace that may use it directly.
-const CONFINED: [(&str, &[&str]); 21] = [
+const CONFINED: [(&str, &[&str]); 23] = [
     ("serialport", &["io"]),
     ("socket2", &["io"]),
     ("nix", &["io"]),
@@ -32,6 +32,9 @@ const CONFINED: [(&str, &[&str]); 21] = [
     ("hyper-util", &["velomotion", "velomotion-tests"]),
     ("prometheus-client", &["velomotion"]),
     ("sd-notify", &["velomotion"]),
+    // Both behind its feature `ros2`.
+    ("xxhash-rust", &["velomotion"]),
+    ("zenoh", &["velomotion"]),
     ("las", &["cloud"]),
     // velomotion reads back what they wrote.
     ("e57", &["cloud", "velomotion"]),
@@ -46,12 +49,13 @@ const CONFINED: [(&str, &[&str]); 21] = [
 /// What `sim` must never see, not even in its tests: it states the geometry its own way (invariant 3).
 const STRANGERS_TO_SIM: [&str; 4] = ["lidar", "drive", "scanner", "cloud"];
 
-/// Direct dependencies of every member, by name, along these kinds of edges.
-fn direct_dependencies(edges: &str) -> BTreeMap<String, BTreeSet<String>> {
+/// Direct dependencies of every member, by name, along these kinds of edges, with more arguments for cargo.
+fn direct_dependencies(edges: &str, more: &[&str]) -> BTreeMap<String, BTreeSet<String>> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let output = Command::new(cargo)
         .args(["tree", "--workspace", "--offline", "--edges", edges])
         .args(["--depth", "1", "--prefix", "depth", "--format", " {p}"])
+        .args(more)
         .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
         .output()
         .expect("cargo runs");
@@ -82,7 +86,7 @@ fn direct_dependencies(edges: &str) -> BTreeMap<String, BTreeSet<String>> {
 
 #[test]
 fn crates_depend_only_on_what_the_table_allows() {
-    let tree = direct_dependencies("normal,build");
+    let tree = direct_dependencies("normal,build", &[]);
     let members: BTreeSet<&str> = tree.keys().map(String::as_str).collect();
     for (name, allowed) in MAY_DEPEND_ON {
         let dependencies = &tree[name];
@@ -104,7 +108,7 @@ fn crates_depend_only_on_what_the_table_allows() {
 
 #[test]
 fn the_simulator_and_the_scanner_stay_strangers_even_in_tests() {
-    let tree = direct_dependencies("normal,build,dev");
+    let tree = direct_dependencies("normal,build,dev", &[]);
     for stranger in STRANGERS_TO_SIM {
         assert!(!tree["sim"].contains(stranger), "sim sees {stranger}");
     }
@@ -117,7 +121,7 @@ fn the_simulator_and_the_scanner_stay_strangers_even_in_tests() {
 
 #[test]
 fn libraries_stay_in_the_crates_they_are_for() {
-    let tree = direct_dependencies("normal,build");
+    let tree = direct_dependencies("normal,build", &["--all-features"]);
     for (library, allowed) in CONFINED {
         for (member, dependencies) in &tree {
             assert!(
@@ -125,6 +129,15 @@ fn libraries_stay_in_the_crates_they_are_for() {
                 "{member} uses {library}, which belongs to {allowed:?}"
             );
         }
+    }
+}
+
+/// ROS 2's transport is 200 crates: whoever does not ask for it does not build them.
+#[test]
+fn the_default_build_is_without_zenoh() {
+    let tree = direct_dependencies("normal,build", &[]);
+    for library in ["zenoh", "xxhash-rust"] {
+        assert!(!tree["velomotion"].contains(library), "{library}");
     }
 }
 

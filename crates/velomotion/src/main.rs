@@ -92,8 +92,9 @@ fn error_object(failure: &Failure) -> serde_json::Value {
 fn start_log(common: &Common) {
     journal::start(match (common.quiet, common.verbose) {
         (true, _) => "error",
-        (false, 0) => "warn",
-        (false, 1) => "info",
-        (false, _) => "debug",
+        // What zenoh says of a router that is not there, the daemon says better.
+        (false, 0) => "warn,zenoh=error",
+        (false, 1) => "info,zenoh=error",
+        (false, _) => "debug,zenoh=info",
     });
 }

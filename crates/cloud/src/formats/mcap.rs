@@ -13,26 +13,25 @@
 
 mod bag;
 mod channels;
-mod cutter;
 
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
 use mcap::{Compression, WriteOptions};
-use units::{Degrees, Host, Metres, Span, Stamp};
+use units::{Degrees, Host, Span, Stamp};
 
 use self::channels::Channels;
-use self::cutter::Cutter;
 use super::fallible::{Fault, Output};
 use super::stage::Stage;
 use crate::messages::cdr::Cdr;
+use crate::messages::cutter::Cutter;
 use crate::messages::{
-    CloudMessage, CloudMessageError, Rotation, Time, Topic, Transform, diagnostic_array, frames,
-    joint_state, tf_message,
+    CloudMessage, CloudMessageError, Frames, Time, Topic, diagnostic_array, frames, joint_state,
+    tf_message,
 };
 use crate::{Check, Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
 
-pub use self::cutter::{MOST_POINTS, MOST_SPAN};
+pub use crate::messages::{MOST_POINTS, MOST_SPAN};
 
 const FORMAT: &str = "mcap";
 /// Transforms come no closer: on the steepest ramp, 500 deg/s^2, a straight line over this time is off by one step of the encoder.
@@ -190,18 +189,8 @@ impl<W: Write + Seek> McapWriter<W> {
 
     fn write_mount(&mut self, at: Stamp<Host>) -> Result<(), SinkError> {
         let stamp = self.time(at)?;
-        let fixed = |parent, child, Metres(z), rotation| Transform {
-            parent,
-            child,
-            translation_m: [0.0, 0.0, z],
-            rotation,
-        };
-        let axes = fixed(frames::ROOT, self.frame(), Metres(0.0), Rotation::to_ros());
-        let lidar = self
-            .track
-            .mount
-            .map(|d| fixed(frames::PLATFORM, frames::LIDAR, d, Rotation::NONE));
-        let transforms: Vec<Transform> = [axes].into_iter().chain(lidar).collect();
+        let frames = Frames::default();
+        let transforms = frames.fixed(self.track.mount);
         tf_message(&mut self.cdr, stamp, &transforms);
         self.write(Topic::StaticTransforms, at)
     }
@@ -218,12 +207,8 @@ impl<W: Write + Seek> McapWriter<W> {
             return Ok(());
         }
         self.transformed = Some(at);
-        let tilted = Transform {
-            parent: frames::BASE,
-            child: frames::PLATFORM,
-            translation_m: [0.0; 3],
-            rotation: Rotation::tilt(tilt),
-        };
+        let frames = Frames::default();
+        let tilted = frames.tilted(tilt);
         tf_message(&mut self.cdr, stamp, &[tilted]);
         self.write(Topic::Transforms, at)
     }

@@ -137,7 +137,7 @@ impl Format {
 
 /// Refuses a batch with a coordinate that is no number or beyond `limit_m`, in a format that cannot hold it, where `before` points came
 /// before the batch.
-fn check_places(
+pub(crate) fn check_places(
     format: &'static str,
     limit_m: f64,
     before: u64,

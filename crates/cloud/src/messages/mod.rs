@@ -5,20 +5,26 @@
 //! [`frames::ROOT`] is the same place with ROS's axes (REP 103: x forward, y left). Left out: reading messages, any transport.
 
 pub mod cdr;
+mod clouds;
+pub(crate) mod cutter;
 mod definitions;
 mod diagnostics;
 mod joint_state;
 mod point_cloud2;
 mod transforms;
+mod trigger;
 
 use units::{Host, Stamp};
 
 use self::cdr::Cdr;
 
+pub use clouds::{Cloud, Clouds};
+pub use cutter::{MOST_POINTS, MOST_SPAN};
 pub use diagnostics::diagnostic_array;
 pub use joint_state::joint_state;
 pub use point_cloud2::{CloudMessage, CloudMessageError, Message, fields_of};
-pub use transforms::{Rotation, Transform, tf_message};
+pub use transforms::{Frames, Rotation, Transform, tf_message};
+pub use trigger::{TRIGGER, trigger_response};
 
 /// The names of coordinate frames.
 pub mod frames {
@@ -38,8 +44,10 @@ pub const TILT_JOINT: &str = "tilt";
 /// What may be said, each on a topic of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Topic {
-    /// Clouds.
+    /// Clouds, one a sweep.
     Points,
+    /// Clouds while they are measured, some thousand points each.
+    LivePoints,
     /// The tilt joint, sample by sample.
     JointStates,
     /// The platform against its base.
@@ -57,12 +65,15 @@ pub struct MessageType {
     pub name: &'static str,
     /// Its definition with all that it is made of, in the form `ros2msg`.
     pub definition: &'static str,
+    /// Its type hash (REP 2016), which subscribers of `rmw_zenoh` know it by: `RIHS01_` and a SHA-256.
+    pub hash: &'static str,
 }
 
 impl Topic {
     /// Every topic.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Points,
+        Self::LivePoints,
         Self::JointStates,
         Self::Transforms,
         Self::StaticTransforms,
@@ -74,6 +85,7 @@ impl Topic {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Points => "/velomotion/points",
+            Self::LivePoints => "/velomotion/live_points",
             Self::JointStates => "/joint_states",
             Self::Transforms => "/tf",
             Self::StaticTransforms => "/tf_static",
@@ -84,18 +96,33 @@ impl Topic {
     /// The type of its messages.
     #[must_use]
     pub const fn message_type(self) -> MessageType {
-        let (name, definition) = match self {
-            Self::Points => ("sensor_msgs/msg/PointCloud2", definitions::POINT_CLOUD2),
-            Self::JointStates => ("sensor_msgs/msg/JointState", definitions::JOINT_STATE),
-            Self::Transforms | Self::StaticTransforms => {
-                ("tf2_msgs/msg/TFMessage", definitions::TF_MESSAGE)
-            }
+        let (name, definition, hash) = match self {
+            Self::Points | Self::LivePoints => (
+                "sensor_msgs/msg/PointCloud2",
+                definitions::POINT_CLOUD2,
+                "RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5",
+            ),
+            Self::JointStates => (
+                "sensor_msgs/msg/JointState",
+                definitions::JOINT_STATE,
+                "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e",
+            ),
+            Self::Transforms | Self::StaticTransforms => (
+                "tf2_msgs/msg/TFMessage",
+                definitions::TF_MESSAGE,
+                "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
+            ),
             Self::Diagnostics => (
                 "diagnostic_msgs/msg/DiagnosticArray",
                 definitions::DIAGNOSTIC_ARRAY,
+                "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
             ),
         };
-        MessageType { name, definition }
+        MessageType {
+            name,
+            definition,
+            hash,
+        }
     }
 
     /// Whether the last message is kept for subscribers that come later (durability "transient local").
@@ -150,6 +177,8 @@ fn header(cdr: &mut Cdr, stamp: Time, frame: &str) {
 }
 
 #[cfg(test)]
+mod hashes;
+#[cfg(test)]
 pub(crate) mod testing;
 
 #[cfg(test)]
@@ -176,7 +205,9 @@ mod tests {
     #[test]
     fn definitions_are_whole() {
         for topic in Topic::ALL {
-            let MessageType { name, definition } = topic.message_type();
+            let MessageType {
+                name, definition, ..
+            } = topic.message_type();
             let mut defined = vec![name.replace("/msg/", "/")];
             defined.extend(
                 definition

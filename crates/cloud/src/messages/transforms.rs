@@ -1,9 +1,9 @@
 //! `tf2_msgs/TFMessage`: where frames are in each other.
 
-use units::Degrees;
+use units::{Degrees, Metres};
 
 use super::cdr::Cdr;
-use super::{Time, header};
+use super::{Time, frames, header};
 
 /// A rotation as a unit quaternion x, y, z, w.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,19 +39,86 @@ impl Rotation {
 
 /// Where a frame is in another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Transform {
+pub struct Transform<'a> {
     /// The frame in which the other one is.
-    pub parent: &'static str,
+    pub parent: &'a str,
     /// The frame that is there.
-    pub child: &'static str,
+    pub child: &'a str,
     /// Its origin, metres.
     pub translation_m: [f64; 3],
     /// Its turn.
     pub rotation: Rotation,
 }
 
+/// The names of a scanner's frames: those of [`frames`], behind a prefix where there are several scanners.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frames {
+    root: String,
+    base: String,
+    platform: String,
+    lidar: String,
+}
+
+impl Default for Frames {
+    fn default() -> Self {
+        Self::with_prefix("")
+    }
+}
+
+impl Frames {
+    /// The names behind `prefix`, such as `left/`.
+    #[must_use]
+    pub fn with_prefix(prefix: &str) -> Self {
+        let name = |name| format!("{prefix}{name}");
+        Self {
+            root: name(frames::ROOT),
+            base: name(frames::BASE),
+            platform: name(frames::PLATFORM),
+            lidar: name(frames::LIDAR),
+        }
+    }
+
+    /// What clouds are in: [`frames::BASE`] of a tilting platform, else [`frames::LIDAR`].
+    #[must_use]
+    pub fn of_clouds(&self, tilts: bool) -> &str {
+        match tilts {
+            true => &self.base,
+            false => &self.lidar,
+        }
+    }
+
+    /// What always holds: ROS's axes, and of a tilting platform the lidar `mount` above the axis.
+    #[must_use]
+    pub fn fixed(&self, mount: Option<Metres>) -> Vec<Transform<'_>> {
+        let axes = Transform {
+            parent: &self.root,
+            child: self.of_clouds(mount.is_some()),
+            translation_m: [0.0; 3],
+            rotation: Rotation::to_ros(),
+        };
+        let lidar = mount.map(|Metres(above)| Transform {
+            parent: &self.platform,
+            child: &self.lidar,
+            translation_m: [0.0, 0.0, above],
+            rotation: Rotation::NONE,
+        });
+        [axes].into_iter().chain(lidar).collect()
+    }
+
+    /// The platform, tilted.
+    #[must_use]
+    pub fn tilted(&self, tilt: Degrees) -> Transform<'_> {
+        Transform {
+            parent: &self.base,
+            child: &self.platform,
+            translation_m: [0.0; 3],
+            rotation: Rotation::tilt(tilt),
+        }
+    }
+}
+
 /// Transforms that hold at `stamp`.
-pub fn tf_message(cdr: &mut Cdr, stamp: Time, transforms: &[Transform]) {
+pub fn tf_message(cdr: &mut Cdr, stamp: Time, transforms: &[Transform<'_>]) {
     cdr.clear();
     cdr.length(transforms.len());
     for transform in transforms {
@@ -68,12 +135,10 @@ pub fn tf_message(cdr: &mut Cdr, stamp: Time, transforms: &[Transform]) {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DQuat, DVec3};
-    use units::Metres;
-
     use super::super::testing::Reader;
     use super::*;
     use crate::mount::{Mount, Tilt};
+    use glam::{DQuat, DVec3};
 
     fn turned(rotation: Rotation, v: [f64; 3]) -> [f64; 3] {
         let quaternion = DQuat::from_array(rotation.quaternion);
@@ -105,6 +170,29 @@ mod tests {
             turned(Rotation::to_ros(), [-1.0, 0.0, 0.0]),
             [0.0, 1.0, 0.0]
         ));
+    }
+
+    #[test]
+    fn a_prefix_is_before_every_name() {
+        let frames = Frames::with_prefix("left/");
+        let mut names = vec![frames.of_clouds(true), frames.of_clouds(false)];
+        let fixed = frames.fixed(Some(Metres(0.06)));
+        assert_eq!(fixed[1].translation_m, [0.0, 0.0, 0.06]);
+        names.extend(fixed.iter().flat_map(|t| [t.parent, t.child]));
+        let tilted = frames.tilted(Degrees(-45.0));
+        names.extend([tilted.parent, tilted.child]);
+        let all = [
+            "tilt_base",
+            "lidar",
+            "base_link",
+            "tilt_base",
+            "tilt_platform",
+            "lidar",
+            "tilt_base",
+            "tilt_platform",
+        ];
+        assert_eq!(names, all.map(|name| format!("left/{name}")));
+        assert_eq!(Frames::default().fixed(None)[0].child, "lidar");
     }
 
     #[test]

@@ -2,6 +2,8 @@
 //!
 //! Telling never waits. Left out: how it reaches anybody (`http::events`).
 
+pub mod inside;
+
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
@@ -9,11 +11,13 @@ use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
 use serde::Serialize;
 use tokio::sync::{Notify, mpsc};
+use units::{Host, Stamp};
 
 use super::limits::{QUEUE, SUBSCRIBERS};
 use super::points::Frame;
 use super::scans::ScanView;
 use super::view::Status;
+use inside::Teller;
 
 /// Something that happens. As JSON with a `type`, but for points.
 #[derive(Clone, Debug, Serialize)]
@@ -34,6 +38,9 @@ pub enum Event {
         left_s: Option<f64>,
         /// Lidar packets of the capture so far.
         packets: u64,
+        /// When it was there.
+        #[serde(skip)]
+        at: Stamp<Host>,
     },
     /// A scan began, changed, or is gone.
     Scan {
@@ -116,6 +123,7 @@ impl Told {
 #[derive(Debug, Default)]
 pub struct Hub {
     subscribers: Mutex<Vec<Subscriber>>,
+    inside: Mutex<Vec<Teller>>,
     dropped: AtomicU64,
     next: AtomicU64,
 }
@@ -144,6 +152,10 @@ impl Hub {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
+    fn inside(&self) -> MutexGuard<'_, Vec<Teller>> {
+        self.inside.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Tells from now on, points too if they are wanted; `None` where there are too many already.
     #[must_use]
     pub fn subscribe(self: &Arc<Self>, points: bool) -> Option<Subscription> {
@@ -170,13 +182,15 @@ impl Hub {
 
     /// Tells everybody. Whose queue is full is left behind.
     pub fn tell(&self, event: Event) {
-        let mut subscribers = self.subscribers();
-        if subscribers.is_empty() {
+        if self.is_empty() {
             return;
         }
         let points = matches!(event, Event::Points(_));
         let told = Arc::new(Told::from(event));
-        subscribers.retain(|subscriber| {
+        for teller in self.inside().iter().filter(|t| t.wants(&told.event)) {
+            teller.tell(&told);
+        }
+        self.subscribers().retain(|subscriber| {
             if points && !subscriber.points {
                 return true;
             }
@@ -209,18 +223,19 @@ impl Hub {
     #[must_use]
     pub fn wants_points(&self) -> bool {
         self.subscribers().iter().any(|s| s.points)
+            || self.inside().iter().any(Teller::wants_points)
     }
 
-    /// Subscribers now.
+    /// Clients that are told now; threads of the daemon are none.
     #[must_use]
     pub fn len(&self) -> usize {
         self.subscribers().len()
     }
 
-    /// Whether there is none.
+    /// Whether nobody is told.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.subscribers().is_empty()
+        self.subscribers().is_empty() && self.inside().is_empty()
     }
 
     /// How many were left behind.

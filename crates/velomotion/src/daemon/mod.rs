@@ -17,6 +17,7 @@ pub mod orders;
 pub mod plan;
 pub mod points;
 pub mod pulse;
+pub mod ros2;
 pub mod scans;
 pub mod settings;
 pub mod shared;
@@ -64,6 +65,7 @@ pub struct Daemon {
     maker: JoinHandle<()>,
     pulse: JoinHandle<()>,
     pulse_end: Sender<()>,
+    ros2: Option<ros2::Ros2>,
     /// Keeps other daemons out of the scans folder.
     _lock: std::fs::File,
 }
@@ -72,7 +74,7 @@ impl Daemon {
     /// Starts everything. Devices that are not there are waited for.
     ///
     /// # Errors
-    /// [`Kind::Usage`] where it may not listen there, [`Kind::BadInput`] for a wrong configuration or a folder that cannot be written,
+    /// [`Kind::Usage`] where it may not listen there or this build lacks what is configured, [`Kind::BadInput`] for a wrong configuration or a folder that cannot be written,
     /// [`Kind::NoDevice`] where another daemon has the device, or no device is configured and none is found.
     pub fn start(options: Options) -> Result<Self, Failure> {
         let Options {
@@ -85,6 +87,7 @@ impl Daemon {
         } = options;
         let listen = listen.unwrap_or(config.daemon.listen);
         config.daemon.check(listen)?;
+        ros2::check(config.daemon.ros2.as_ref())?;
         let (name, device) = devices::choose(&config, device.as_deref())?;
         let runtime = runtime.unwrap_or_else(sockets::folder);
         let socket = runtime.join(sockets::name(&name, &device)?);
@@ -95,6 +98,7 @@ impl Daemon {
         let scans = Scans::open(&folder)?;
         let (orders, inbox) = channel();
         let shared = Arc::new(Shared::new(config, (name, device), scans, world, orders));
+        let ros2 = ros2::start(&shared)?;
         let (logs, wanted) = channel();
         for left in maker::left_over(&shared) {
             // The other end is right here.
@@ -115,6 +119,7 @@ impl Daemon {
             maker,
             pulse,
             pulse_end,
+            ros2,
             _lock: lock,
         })
     }
@@ -161,10 +166,11 @@ impl Daemon {
             std::thread::sleep(std::time::Duration::from_millis(20));
         }
         let made = self.maker.join();
+        let sent = self.ros2.is_none_or(ros2::Ros2::stop);
         drop(self.pulse_end);
         let looked = self.pulse.join();
         self.server.stop();
-        if kept.is_err() || made.is_err() || looked.is_err() {
+        if kept.is_err() || made.is_err() || looked.is_err() || !sent {
             return Err(
                 Failure::new(Kind::DeviceFault, "a thread of the daemon had panicked")
                     .help("see whether the axis stands; run with -vv and report what it says"),

@@ -59,10 +59,10 @@ impl<'a> Motions<'a> {
         }
         self.told = Some((Instant::now(), at, angle));
         self.shared.beat();
-        self.tell(angle, speed, packets);
+        self.tell(at, angle, speed, packets);
     }
 
-    fn tell(&self, angle: Degrees, speed_deg_s: f64, packets: u64) {
+    fn tell(&self, at: Stamp<Host>, angle: Degrees, speed_deg_s: f64, packets: u64) {
         let left_s = self.until.map(|until| {
             until
                 .saturating_duration_since(Instant::now())
@@ -81,14 +81,15 @@ impl<'a> Motions<'a> {
             speed_deg_s,
             left_s,
             packets,
+            at,
         });
     }
 
     /// The axis stands.
     pub fn end(&mut self) {
         self.until = None;
-        if let Some((_, _, angle)) = self.told.take() {
-            self.tell(angle, 0.0, self.shared.activity().packets);
+        if let Some((_, at, angle)) = self.told.take() {
+            self.tell(at, angle, 0.0, self.shared.activity().packets);
         }
     }
 }

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use serde::Deserialize;
 
 use super::limits::TOKEN_BYTES;
+use super::ros2::settings::Ros2;
 use crate::failure::{Failure, Kind};
 
 /// Port that is used unless another is named.
@@ -31,6 +32,8 @@ pub struct Settings {
     pub keep_bytes: u64,
     /// Bytes of the disk that are left free.
     pub reserve_bytes: u64,
+    /// `[daemon.ros2]`; without it nothing is sent to ROS 2.
+    pub ros2: Option<Ros2>,
 }
 
 impl Default for Settings {
@@ -42,6 +45,7 @@ impl Default for Settings {
             keep_scans: 100,
             keep_bytes: 50_000_000_000,
             reserve_bytes: 1_000_000_000,
+            ros2: None,
         }
     }
 }

@@ -96,6 +96,8 @@ pub struct Shared {
     pub scans: Scans,
     /// Counters.
     pub counters: Counters,
+    /// What was sent to ROS 2.
+    pub ros2: super::ros2::counts::Counts,
     /// The machine.
     pub world: World,
     /// Where records go while a scan is watched.
@@ -147,6 +149,7 @@ impl Shared {
             hub: Arc::default(),
             scans,
             counters: Counters::default(),
+            ros2: super::ros2::counts::Counts::default(),
             world,
             feed: Feed::default(),
             monitor: Mutex::default(),

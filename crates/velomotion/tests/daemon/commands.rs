@@ -136,3 +136,22 @@ fn ctrl_c_stops_the_daemons_axis_and_the_log_is_the_users() {
     let status = request(daemon.address, "GET", "/api/v1/status", "", "").json();
     assert_eq!(status["activity"]["doing"], "idle");
 }
+
+#[cfg(not(feature = "ros2"))]
+#[test]
+fn a_configuration_with_ros_2_needs_a_build_with_it() {
+    let folder = place();
+    let file = folder.path().join("velomotion.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, format!("{text}[daemon.ros2]\ndomain = 3\n")).unwrap();
+    let output = run(folder.path(), "daemon --listen 127.0.0.1:0");
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(
+        said(&output).contains("--features ros2"),
+        "{}",
+        said(&output)
+    );
+    // Whatever else the configuration is for works.
+    let status = run(folder.path(), "tilt status --json");
+    assert!(!said(&status).contains("ros2"), "{}", said(&status));
+}

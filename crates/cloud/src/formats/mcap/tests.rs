@@ -2,6 +2,7 @@ use std::io::Cursor;
 
 use mcap::MessageStream;
 use proptest::prelude::*;
+use units::Metres;
 
 use super::*;
 use crate::formats::testing::{self, NOW_NS, Shared, SmallDisk, cloud_from, metadata};

@@ -72,7 +72,10 @@ fn panicked() -> Refusal {
 }
 
 /// Begins a capture; the scan's id.
-fn start(shared: &Shared, asked: &Asked) -> Result<String, Refusal> {
+///
+/// # Errors
+/// [`Refusal`] where it cannot be, or not now.
+pub fn start(shared: &Shared, asked: &Asked) -> Result<String, Refusal> {
     // Refused before anything is made.
     let dry = plans::setup(shared, asked, "cloud".into(), "log".into())?;
     plans::fits(shared, &plans::plan(shared, asked, &dry))?;
@@ -114,11 +117,17 @@ fn ordered(shared: &Shared, asked: &Asked) -> Result<String, Refusal> {
 
 /// `POST /captures/stop`.
 pub async fn stop(State(api): State<Arc<Api>>) -> Response {
-    let scan = api.shared.activity().scan;
-    let stopped = scan.is_some() && api.shared.interrupt(None);
-    idle(&api.shared).await;
+    let (stopped, scan) = end(&api.shared).await;
     let body = serde_json::json!({ "stopped": stopped, "scan": scan });
     super::json(StatusCode::OK, &body)
+}
+
+/// Stops a capture and waits until the axis stands: whether there was one, and the scan.
+pub async fn end(shared: &Shared) -> (bool, Option<String>) {
+    let scan = shared.activity().scan;
+    let stopped = scan.is_some() && shared.interrupt(None);
+    idle(shared).await;
+    (stopped, scan)
 }
 
 /// Waits until the axis stands. What moves it has its own limits of time.

@@ -15,6 +15,7 @@ use prometheus_client::registry::Registry;
 
 use super::Api;
 use super::refusal::Refusal;
+use crate::daemon::ros2::counts::Counts;
 use crate::daemon::shared::Shared;
 use crate::daemon::view::{DeviceState, Doing};
 
@@ -155,7 +156,14 @@ impl Collector for Figures {
                 of(&counters.refused),
             ),
         ];
-        for (name, help, value) in counts {
+        let ros2 = self.0.settings().ros2.as_ref().map(|_| &self.0.ros2);
+        if let Some(ros2) = ros2 {
+            let gauge = ConstGauge::new(f64::from(u8::from(ros2.is_connected())));
+            let help = "Whether a zenoh router is connected";
+            put(&mut encoder, "ros2_connected", help, &gauge)?;
+        }
+        let ros2 = ros2.map(Counts::counters).into_iter().flatten();
+        for (name, help, value) in counts.into_iter().chain(ros2) {
             put(&mut encoder, name, help, &ConstCounter::new(value))?;
         }
         Ok(())

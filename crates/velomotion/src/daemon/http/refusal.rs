@@ -1,5 +1,7 @@
 //! Whatever is refused or goes wrong, in one form: error, help, kind.
 
+use std::fmt;
+
 use axum::extract::rejection::QueryRejection;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
@@ -78,6 +80,16 @@ impl Refusal {
             format!("too many {what} at once"),
             "try again when others have ended",
         )
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.error)?;
+        match &self.help {
+            Some(help) => write!(f, " ({help})"),
+            None => Ok(()),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use units::{Host, Span, Stamp};
 
-use crate::messages::CloudMessage;
+use super::CloudMessage;
 
 /// Points of a message at most: 23 MB, four seconds of a VLP-16.
 pub const MOST_POINTS: u32 = 1 << 20;
@@ -13,7 +13,7 @@ pub const MOST_SPAN: Span = Span::from_secs(8);
 
 /// Cuts points in the order of their times into clouds.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Cutter {
+pub(crate) struct Cutter {
     by_turns: bool,
     /// When sweeps end, in the order of time.
     sweep_ends: Vec<Stamp<Host>>,
@@ -23,7 +23,7 @@ pub(super) struct Cutter {
 
 impl Cutter {
     /// One that leaves it to others to say when a turn ends, and cuts only what is too long.
-    pub(super) fn by_turns() -> Self {
+    pub(crate) fn by_turns() -> Self {
         Self {
             by_turns: true,
             ..Self::default()
@@ -31,19 +31,19 @@ impl Cutter {
     }
 
     /// Whether others say when a cloud ends.
-    pub(super) const fn is_by_turns(&self) -> bool {
+    pub(crate) const fn is_by_turns(&self) -> bool {
         self.by_turns
     }
 
     /// Cuts where these sweeps end, unless turns are told.
-    pub(super) fn sweep(&mut self, sweeps: &[(Stamp<Host>, Stamp<Host>)]) {
+    pub(crate) fn sweep(&mut self, sweeps: &[(Stamp<Host>, Stamp<Host>)]) {
         if !self.by_turns {
             self.sweep_ends = sweeps.iter().map(|sweep| sweep.1).collect();
         }
     }
 
     /// The end of those of `rows` that still belong to `cloud`.
-    pub(super) fn end(
+    pub(crate) fn end(
         &self,
         cloud: &CloudMessage,
         times: &[Stamp<Host>],
@@ -68,7 +68,7 @@ impl Cutter {
     }
 
     /// Goes on to the sweep in which `time` is, or which comes after it; whether it was in an earlier one.
-    pub(super) fn go_on_to(&mut self, time: Stamp<Host>) -> bool {
+    pub(crate) fn go_on_to(&mut self, time: Stamp<Host>) -> bool {
         let before = self.passed;
         while self
             .sweep_ends

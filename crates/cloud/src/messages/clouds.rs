@@ -1,0 +1,191 @@
+//! A scan as `sensor_msgs/PointCloud2`, one a sweep, handed over one after the other: what a network sends of a cloud that is being made.
+//!
+//! Cut as [`formats::mcap`](crate::formats::mcap) cuts them. One message is held at a time, and the points wait while it is taken. Left out: what
+//! else is said of a scan.
+
+use super::cutter::Cutter;
+use super::{CloudMessage, CloudMessageError, Frames};
+use crate::{Fields, Points, Sink, SinkError, Summary, TiltTrack};
+
+const FORMAT: &str = "ros2";
+
+/// A whole message.
+#[derive(Clone, Copy, Debug)]
+pub struct Cloud<'a> {
+    /// Its bytes, encapsulation header included.
+    pub bytes: &'a [u8],
+    /// Its points.
+    pub points: u32,
+}
+
+/// Gives each cloud to `take`.
+pub struct Clouds<F> {
+    take: F,
+    frames: Frames,
+    tilts: bool,
+    cutter: Cutter,
+    cloud: CloudMessage,
+    summary: Summary,
+}
+
+impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Clouds<F> {
+    /// Clouds with x, y, z, intensity, ring and time, in frames of these names.
+    pub fn new(frames: Frames, take: F) -> Self {
+        Self {
+            take,
+            frames,
+            tilts: false,
+            cutter: Cutter::default(),
+            cloud: CloudMessage::new(Fields::NONE),
+            summary: Summary::default(),
+        }
+    }
+
+    fn end_cloud(&mut self) -> Result<(), SinkError> {
+        let points = self.cloud.points();
+        if points == 0 {
+            return Ok(());
+        }
+        let message = self.cloud.message();
+        let bytes = message.bytes();
+        let taken = (self.take)(Cloud { bytes, points });
+        drop(message);
+        self.cloud.clear();
+        taken
+    }
+
+    fn encoding(&self, error: CloudMessageError) -> SinkError {
+        match error {
+            CloudMessageError::Columns(missing) => missing.into(),
+            CloudMessageError::Time(late) => SinkError::Encode {
+                format: FORMAT,
+                points: self.summary.points,
+                source: late.into(),
+            },
+        }
+    }
+}
+
+impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Sink for Clouds<F> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        let most = f64::from(f32::MAX);
+        crate::formats::check_places(FORMAT, most, self.summary.points, batch)?;
+        let mut rows = 0..batch.len();
+        while let Some(time) = batch.time().get(rows.start).copied() {
+            let end = self.cutter.end(&self.cloud, batch.time(), &rows);
+            if end == rows.start && self.cloud.points() > 0 {
+                self.end_cloud()?;
+                continue;
+            }
+            if end == rows.start && self.cutter.go_on_to(time) {
+                continue;
+            }
+            // A point always fits into an empty message.
+            let end = end.max(rows.start + 1);
+            let frame = self.frames.of_clouds(self.tilts);
+            let pushed = self.cloud.push(batch, rows.start..end, frame);
+            pushed.map_err(|error| self.encoding(error))?;
+            rows.start = end;
+        }
+        self.summary.add(batch.summary());
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.cloud.fields()
+    }
+
+    fn wants_tilt(&self) -> bool {
+        true
+    }
+
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        self.tilts = track.mount.is_some();
+        self.cutter.sweep(&track.sweeps);
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        self.end_cloud()?;
+        Ok(self.summary)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use mcap::MessageStream;
+    use units::{Degrees, Metres, Stamp};
+
+    use super::*;
+    use crate::formats::mcap::McapWriter;
+    use crate::formats::testing::{self, NOW_NS, metadata};
+
+    /// Two sweeps, and points before, in, between and behind them.
+    fn track() -> TiltTrack {
+        let at = |ms: i64| Stamp::from_nanos(NOW_NS + ms * 1_000_000);
+        TiltTrack {
+            mount: Some(Metres(0.06)),
+            samples: vec![(at(0), Degrees(0.0)), (at(9), Degrees(-9.0))],
+            sweeps: vec![(at(1), at(3)), (at(4), at(6))],
+        }
+    }
+
+    fn fed(sink: &mut dyn Sink, batch: usize) {
+        let cloud = testing::cloud_from(2000, NOW_NS);
+        sink.begin(&metadata()).unwrap();
+        sink.tilt(&track()).unwrap();
+        let mut part = Points::new(cloud.fields());
+        for (number, point) in cloud.iter().enumerate() {
+            part.push(point);
+            if (number + 1) % batch == 0 {
+                sink.points(&part).unwrap();
+                part = Points::new(cloud.fields());
+            }
+        }
+        sink.points(&part).unwrap();
+        assert_eq!(sink.finish().unwrap().points, 2000);
+    }
+
+    /// The same messages, bit for bit, as a recording has, whatever the batches.
+    #[test]
+    fn clouds_are_those_of_a_recording() {
+        let mut writer = McapWriter::new(Cursor::new(Vec::new()));
+        fed(&mut writer, 100);
+        let bytes = writer.into_inner().unwrap().into_inner();
+        let recorded: Vec<Vec<u8>> = MessageStream::new(&bytes)
+            .unwrap()
+            .map(Result::unwrap)
+            .filter(|message| message.channel.topic == "/velomotion/points")
+            .map(|message| message.data.to_vec())
+            .collect();
+        assert!(recorded.len() > 1, "{} clouds", recorded.len());
+        for batch in [1, 7, 5000] {
+            let mut sent = Vec::new();
+            let mut points = 0;
+            let mut sink = Clouds::new(Frames::default(), |cloud| {
+                sent.push(cloud.bytes.to_vec());
+                points += cloud.points;
+                Ok(())
+            });
+            fed(&mut sink, batch);
+            drop(sink);
+            assert_eq!(sent, recorded, "{batch}");
+            assert_eq!(points, 2000);
+        }
+    }
+
+    #[test]
+    fn what_is_not_taken_ends_it() {
+        let mut sink = Clouds::new(Frames::default(), |_| {
+            Err(SinkError::Order {
+                format: FORMAT,
+                expected: "a reader",
+                got: "none",
+            })
+        });
+        sink.points(&testing::cloud_from(10, NOW_NS)).unwrap();
+        assert!(sink.finish().is_err());
+    }
+}

@@ -1,0 +1,33 @@
+//! `std_srvs/srv/Trigger`: a request without content, and an answer that says whether it was done.
+
+use super::cdr::Cdr;
+
+/// The service's full name, its definition (request, three dashes, response), and its type hash, which is that of the service: request, response
+/// and event.
+pub const TRIGGER: super::MessageType = super::MessageType {
+    name: "std_srvs/srv/Trigger",
+    definition: "---\nbool success\nstring message\n",
+    hash: "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f",
+};
+
+/// The answer.
+pub fn trigger_response(cdr: &mut Cdr, success: bool, message: &str) {
+    cdr.clear();
+    cdr.u8(success.into());
+    cdr.string(message);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::Reader;
+    use super::*;
+
+    #[test]
+    fn an_answer_is_read_back() {
+        let mut cdr = Cdr::new();
+        trigger_response(&mut cdr, true, "scan-1");
+        let mut reader = Reader::new(cdr.bytes());
+        assert_eq!((reader.u8(), reader.string()), (1, "scan-1".to_owned()));
+        assert!(reader.is_done());
+    }
+}

@@ -1,0 +1,238 @@
+"""A peer of the daemon on zenoh: a router, or a client of one, that does what ROS 2 nodes with rmw_zenoh do, and decodes what it hears with rosbags.
+
+usage: peer.py router|client tcp/HOST:PORT FOLDER
+
+Reads commands, a JSON object a line, and writes what happens, likewise. Clouds of whole sweeps are written to FOLDER as they came.
+"""
+
+import json
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import zenoh
+import zenoh.ext
+from rosbags.typesys import Stores, get_typestore
+from zenoh_ros2_sdk import discovery
+from zenoh_ros2_sdk.attachment import Attachment
+from zenoh_ros2_sdk.qos import QosProfile
+
+mode, endpoint, folder = sys.argv[1], sys.argv[2], Path(sys.argv[3])
+store = get_typestore(Stores.ROS2_JAZZY)
+mouth = threading.Lock()
+KINDS = {2: "u1", 4: "<u2", 7: "<f4", 8: "<f8"}
+
+
+def say(**what):
+    with mouth:
+        print(json.dumps(what), flush=True)
+
+
+def ros_name(dds):
+    """sensor_msgs::msg::dds_::PointCloud2_ as ROS writes it."""
+    package, kind, marker, name = dds.split("::")
+    assert marker == "dds_" and name.endswith("_"), dds
+    return f"{package}/{kind}/{name[:-1]}"
+
+
+def attachment_of(sample):
+    """As rmw_zenoh reads it; it drops what has none."""
+    data = sample.attachment.to_bytes()
+    assert len(data) == 33 and data[16] == 16, data
+    number, sent = np.frombuffer(data[:16], "<i8")
+    theirs = Attachment.from_bytes(data)
+    assert (theirs.sequence_id, theirs.timestamp_ns, theirs.gid) == (number, sent, data[17:])
+    return {"number": int(number), "sent_ns": int(sent), "gid": data[17:].hex()}
+
+
+def nanoseconds(stamp):
+    return stamp.sec * 10**9 + stamp.nanosec
+
+
+def cloud(message):
+    kind = np.dtype(
+        {
+            "names": [field.name for field in message.fields],
+            "formats": [KINDS[field.datatype] for field in message.fields],
+            "offsets": [field.offset for field in message.fields],
+            "itemsize": message.point_step,
+        }
+    )
+    assert message.height == 1 and not message.is_bigendian and message.is_dense
+    assert message.row_step == message.width * message.point_step == len(message.data)
+    rows = np.frombuffer(bytes(message.data), kind)
+    distance = np.sqrt(sum(rows[axis].astype("f8") ** 2 for axis in "xyz"))
+    return {
+        "stamp_ns": nanoseconds(message.header.stamp),
+        "frame": message.header.frame_id,
+        "points": message.width,
+        "fields": list(kind.names),
+        "last_s": float(rows["time"].max()),
+        "first_s": float(rows["time"].min()),
+        "farthest_m": float(distance.max()),
+        "rings": int(rows["ring"].max()) + 1,
+    }
+
+
+def transform(message):
+    at = message.transform
+    return {
+        "stamp_ns": nanoseconds(message.header.stamp),
+        "parent": message.header.frame_id,
+        "child": message.child_frame_id,
+        "translation": [at.translation.x, at.translation.y, at.translation.z],
+        "rotation": [at.rotation.x, at.rotation.y, at.rotation.z, at.rotation.w],
+    }
+
+
+def said(name, message):
+    if name == "sensor_msgs/msg/PointCloud2":
+        return cloud(message)
+    if name == "sensor_msgs/msg/JointState":
+        return {
+            "stamp_ns": nanoseconds(message.header.stamp),
+            "name": list(message.name),
+            "position": [float(value) for value in message.position],
+            "others": len(message.velocity) + len(message.effort),
+        }
+    if name == "tf2_msgs/msg/TFMessage":
+        return {"transforms": [transform(each) for each in message.transforms]}
+    if name == "diagnostic_msgs/msg/DiagnosticArray":
+        return {
+            "stamp_ns": nanoseconds(message.header.stamp),
+            "status": {
+                status.name: {
+                    "level": int(status.level),
+                    "message": status.message,
+                    "hardware": status.hardware_id,
+                    "values": {value.key: value.value for value in status.values},
+                }
+                for status in message.status
+            },
+        }
+    raise ValueError(name)
+
+
+def heard(who):
+    def callback(sample):
+        try:
+            key = str(sample.key_expr)
+            domain, *topic, dds, digest = key.split("/")
+            name = ros_name(dds)
+            # What a node with these types subscribes to; another hash is another topic.
+            assert digest == store.hash_rihs01(name), f"{key}: {store.hash_rihs01(name)}"
+            attachment = attachment_of(sample)
+            payload = sample.payload.to_bytes()
+            message = store.deserialize_cdr(payload, name)
+            assert bytes(store.serialize_cdr(message, name)) == payload, key
+            topic = "/" + "/".join(topic)
+            if topic.endswith("/velomotion/points"):
+                (folder / f"{who}-{attachment['number']}.cdr").write_bytes(payload)
+            say(
+                heard=topic,
+                who=who,
+                domain=domain,
+                type=name,
+                hash=digest,
+                said=said(name, message),
+                **attachment,
+            )
+        except Exception as error:  # a callback's own errors go nowhere
+            say(error=f"{type(error).__name__}: {error}", key=str(sample.key_expr))
+
+    return callback
+
+
+def call(session, key, with_attachment):
+    """As a client of rmw_zenoh calls: std_srvs/srv/Trigger's request is one byte that means nothing."""
+    gid = bytes(range(16))
+    sent = time.time_ns()
+    data = np.array([7, sent], "<i8").tobytes() + bytes([16]) + gid
+    replies = session.get(
+        key,
+        payload=b"\x00\x01\x00\x00\x00",
+        attachment=data if with_attachment else None,
+        target=zenoh.QueryTarget.ALL_COMPLETE,
+        consolidation=zenoh.ConsolidationMode.NONE,
+        timeout=60.0,
+    )
+    for reply in replies:
+        if reply.ok is None:
+            say(refused=reply.err.payload.to_string(), key=key)
+            continue
+        answered = attachment_of(reply.ok)
+        payload = reply.ok.payload.to_bytes()
+        assert payload[:4] == b"\x00\x01\x00\x00"
+        length = int.from_bytes(payload[8:12], "little")
+        text = payload[12 : 12 + length]
+        assert text[-1:] == b"\0" and len(payload) == 12 + length
+        say(
+            answered=key,
+            success=bool(payload[4]),
+            message=text[:-1].decode(),
+            own=answered["number"] == 7 and answered["gid"] == gid.hex(),
+            later=answered["sent_ns"] >= sent,
+        )
+    say(called=key)
+
+
+def graph(domain):
+    """What zenoh_ros2_sdk, another implementation of rmw_zenoh's format, reads in the tokens."""
+    host, port = endpoint.removeprefix("tcp/").split(":")
+    where = {"domain_id": domain, "router_ip": host, "router_port": int(port), "timeout": 5.0}
+    topics = {}
+    for name, types in discovery.get_topic_names_and_types(**where):
+        for info in discovery.get_topic_info(name, verbose=True, **where).publishers:
+            quality = QosProfile.decode(info.qos)
+            topics[name] = {
+                "types": list(types),
+                "node": f"{info.node_namespace.rstrip('/')}/{info.node_name.lstrip('/')}",
+                "reliability": quality.reliability.name,
+                "durability": quality.durability.name,
+                "depth": quality.history_depth,
+            }
+    services = {
+        name: list(types) for name, types in discovery.get_service_names_and_types(**where)
+    }
+    say(topics=topics, services=services)
+
+
+config = zenoh.Config()
+config.insert_json5("mode", json.dumps(mode))
+config.insert_json5("scouting/multicast/enabled", "false")
+where = "listen" if mode == "router" else "connect"
+config.insert_json5(f"{where}/endpoints", json.dumps([endpoint]))
+config.insert_json5("timestamping/enabled", "true")
+with zenoh.open(config) as session:
+    kept = []
+    tokens = session.liveliness().declare_subscriber(
+        "@ros2_lv/**",
+        lambda sample: say(
+            token=str(sample.key_expr), there=sample.kind == zenoh.SampleKind.PUT
+        ),
+        history=True,
+    )
+    say(ready=str(session.zid()))
+    for line in sys.stdin:
+        command = json.loads(line)
+        if command["do"] == "subscribe":
+            kept.append(session.declare_subscriber(command["key"], heard(command["who"])))
+        elif command["do"] == "subscribe_latched":
+            # What rmw_zenoh makes of a transient local, reliable subscription.
+            kept.append(
+                zenoh.ext.declare_advanced_subscriber(
+                    session,
+                    command["key"],
+                    heard(command["who"]),
+                    history=zenoh.ext.HistoryConfig(detect_late_publishers=True, max_samples=1),
+                    recovery=zenoh.ext.RecoveryConfig(heartbeat=True),
+                    subscriber_detection=True,
+                )
+            )
+        elif command["do"] == "call":
+            call(session, command["key"], command["attachment"])
+        elif command["do"] == "graph":
+            graph(command["domain"])
+        say(done=command["do"])

@@ -1,0 +1,176 @@
+//! `peer.py`, started and followed.
+
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpListener;
+use std::path::Path;
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::{Arc, Mutex};
+
+use cloud::messages::Topic;
+use serde_json::{Value, json};
+
+use crate::rig::{Rig, wait};
+
+/// What `peer.py` imports beside what Python has.
+const NEEDS: &str = "zenoh, rosbags, numpy, zenoh_ros2_sdk";
+
+/// A peer that runs.
+pub struct Peer {
+    child: Child,
+    mouth: ChildStdin,
+    said: Arc<Mutex<Vec<Value>>>,
+    /// Where it puts clouds.
+    pub folder: tempfile::TempDir,
+}
+
+/// A python3 that has what is needed; `None`, said aloud, where there is none.
+pub fn python() -> Option<std::ffi::OsString> {
+    let python = std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into());
+    let import = Command::new(&python)
+        .args(["-c", &format!("import {NEEDS}")])
+        .output();
+    if matches!(&import, Ok(output) if output.status.success()) {
+        return Some(python);
+    }
+    let required = std::env::var_os("VELOMOTION_FOREIGN").is_some_and(|v| v == "required");
+    assert!(!required, "required here: {python:?} cannot import {NEEDS}");
+    eprintln!("skipped: {python:?} cannot import {NEEDS}");
+    None
+}
+
+/// An address of this machine where nobody listens.
+pub fn endpoint() -> String {
+    let free = TcpListener::bind("127.0.0.1:0").unwrap();
+    format!("tcp/{}", free.local_addr().unwrap())
+}
+
+impl Peer {
+    /// A `router`, or a `client` of one, at this endpoint.
+    pub fn start(python: &std::ffi::OsStr, mode: &str, endpoint: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2/peer.py");
+        let mut child = Command::new(python)
+            .arg(script)
+            .args([mode, endpoint])
+            .arg(folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mouth = child.stdin.take().unwrap();
+        let said = Arc::new(Mutex::new(Vec::new()));
+        let (lines, hearing) = (child.stdout.take().unwrap(), Arc::clone(&said));
+        std::thread::spawn(move || {
+            for line in BufReader::new(lines).lines().map_while(Result::ok) {
+                let value = serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line}"));
+                hearing.lock().unwrap().push(value);
+            }
+        });
+        let peer = Self {
+            child,
+            mouth,
+            said,
+            folder,
+        };
+        peer.until("the peer", |value| value.get("ready").map(|_| ()));
+        peer
+    }
+
+    /// All it has said that `pick` wants. Its errors are ours.
+    pub fn all<T>(&self, pick: impl Fn(&Value) -> Option<T>) -> Vec<T> {
+        let said = self.said.lock().unwrap();
+        for value in said.iter() {
+            assert!(value.get("error").is_none(), "{value}");
+        }
+        said.iter().filter_map(pick).collect()
+    }
+
+    /// Waits for something that it says, or has said.
+    pub fn until<T>(&self, what: &str, pick: impl Fn(&Value) -> Option<T>) -> T {
+        wait(what, || self.all(&pick).into_iter().next())
+    }
+
+    /// Has it do something, and waits until it is done; what it said meanwhile.
+    pub fn ask(&mut self, command: &Value) -> Vec<Value> {
+        let before = self.all(|value| Some(value.clone())).len();
+        writeln!(self.mouth, "{command}").unwrap();
+        self.mouth.flush().unwrap();
+        wait("an answer of the peer", || {
+            let said = self.all(|value| Some(value.clone()));
+            let news = &said[before..];
+            let done = news.iter().any(|value| value["done"] == command["do"]);
+            done.then(|| news.to_vec())
+        })
+    }
+
+    /// Subscribes to a topic with exactly the key that a node of ROS 2 has for it.
+    pub fn subscribe(&mut self, who: &str, topic: Topic, name: &str) {
+        let how = match topic.is_latched() {
+            true => "subscribe_latched",
+            false => "subscribe",
+        };
+        let kind = topic.message_type();
+        let (path, last) = kind.name.rsplit_once('/').unwrap();
+        let dds = format!("{}::dds_::{last}_", path.replace('/', "::"));
+        let key = format!("{name}/{dds}/{}", kind.hash);
+        self.ask(&json!({ "do": how, "who": who, "key": key }));
+    }
+
+    /// What `who` has heard of a topic.
+    pub fn heard(&self, who: &str, topic: &str) -> Vec<Value> {
+        self.all(|value| (value["heard"] == topic && value["who"] == who).then(|| value.clone()))
+    }
+
+    /// Tokens that are there now.
+    pub fn tokens(&self) -> Vec<String> {
+        let mut tokens: Vec<String> = Vec::new();
+        for (token, there) in self.all(|value| {
+            let token = value.get("token")?.as_str()?.to_owned();
+            Some((token, value["there"] == true))
+        }) {
+            tokens.retain(|known| *known != token);
+            if there {
+                tokens.push(token);
+            }
+        }
+        tokens
+    }
+
+    pub fn signal(&self, name: &str) {
+        let id = self.child.id().to_string();
+        let sent = Command::new("kill").args([name, &id]).status().unwrap();
+        assert!(sent.success());
+    }
+}
+
+impl Drop for Peer {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A figure of `/metrics`.
+pub fn figure(rig: &Rig, name: &str) -> u64 {
+    let text = rig.get("/metrics").text();
+    let line = text.lines().find_map(|line| {
+        let (known, value) = line.strip_prefix("velomotion_")?.split_once(' ')?;
+        (known.trim_end_matches("_total") == name).then(|| value.parse::<f64>().unwrap())
+    });
+    line.unwrap_or_else(|| panic!("no {name} in {text}")) as u64
+}
+
+/// Waits until the daemon says that a router is there, or not.
+pub fn connected(rig: &Rig, there: bool) {
+    wait("the router's coming or going", || {
+        (figure(rig, "ros2_connected") == u64::from(there)).then_some(())
+    });
+}
+
+/// A daemon with this router, and more under `[daemon.ros2]`.
+pub fn daemon(router: &str, more: &str) -> Rig {
+    Rig::with(
+        &format!("[daemon.ros2]\nrouter = '{router}'\n{more}"),
+        |_| {},
+    )
+}
