@@ -128,6 +128,7 @@ fn one(shared: &Shared, log: &Captured, records: &[OwnedRecord]) -> String {
                 speed_deg_s: 56.25,
                 left_s: None,
                 packets: number as u64,
+                at: record.host,
             });
             shared.scans.say(&id, "warning: something is said");
         }
