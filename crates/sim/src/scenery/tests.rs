@@ -199,7 +199,7 @@ fn values_that_cannot_be_are_told_with_their_line() {
         // The table, or, where it is one value's fault, that.
         let places = ["line 4, column 1: ", "line 5, column ", "line 6, column "];
         let names = |place: &&str| said.starts_with(&format!("sim: scene, {place}"));
-        assert!(places.iter().any(|place| names(place)), "{said}");
+        assert!(places.iter().any(names), "{said}");
         assert!(said.contains(says), "{said}");
     }
     let said = wrong("[materials]\nsky = { specular = 0.5 }\n");
