@@ -132,7 +132,7 @@ fn libraries_stay_in_the_crates_they_are_for() {
     }
 }
 
-/// ROS 2's transport is 200 crates: whoever does not ask for it does not build them.
+/// ROS 2's transport is 137 crates more: whoever does not ask for it does not build them.
 #[test]
 fn the_default_build_is_without_zenoh() {
     let tree = direct_dependencies("normal,build", &[]);
