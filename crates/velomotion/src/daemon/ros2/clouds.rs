@@ -60,7 +60,10 @@ fn send(
     stop: &Stop,
     id: &str,
 ) -> Result<(), Failure> {
-    let asked = shared.scans.record(id).and_then(|record| record.asked);
+    let asked = shared
+        .scans
+        .record(id)
+        .and_then(|record| record.asked.clone());
     let source = Source::open(&shared.log(id), None)?;
     let request = Request {
         recording: &source,
