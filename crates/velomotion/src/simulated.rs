@@ -55,6 +55,9 @@ enum SimulatorError {
 
 /// Longest nap: the drive's control cycle.
 const CYCLE: Span = Span::from_millis(1);
+/// Where the machine is too busy for the devices, their time runs slower: else they would catch up for ever longer, answer nothing meanwhile,
+/// and not see that they are to stop.
+const LONGEST_STEP: Span = Span::from_millis(500);
 
 impl Simulated {
     /// Starts the devices. They live until [`Simulated::stop`].
@@ -151,7 +154,7 @@ fn run(
             .saturating_since(now)
             .clamp(Span::ZERO, CYCLE);
         let read = pty.read(&mut buffer, nap)?.map_or(0, |(count, _)| count);
-        rig.advance(io::clock::now());
+        rig.advance(io::clock::now().min(rig.now() + LONGEST_STEP));
         rig.drive_input(buffer.get(..read).unwrap_or_default());
         while let Some(sent) = rig.drive_output() {
             pty.write_frame(&sent.bytes)?;

@@ -336,7 +336,12 @@ impl Scans {
                 bytes
             }
         });
-        (scans.len() as u64, kept.sum())
+        let bytes = kept.sum();
+        if known.len() > scans.len() {
+            // Of some that were deleted meanwhile.
+            known.retain(|id, _| scans.iter().any(|(own, _)| own == id));
+        }
+        (scans.len() as u64, bytes)
     }
 
     /// Deletes the oldest scans until there are no more than `scans` of no more than `bytes`; which. The newest stays.
