@@ -16,7 +16,7 @@ fn json(output: &Output) -> Value {
 fn patiently(folder: &std::path::Path, line: &str, again: &str) -> Output {
     let mut output = run(folder, line);
     for _ in 0..3 {
-        if output.status.code() != Some(5) || !said(&output).contains("silence") {
+        if output.status.code() != Some(5) || !crate::rig::kept_waiting(&said(&output)) {
             break;
         }
         output = run(folder, again);
