@@ -75,6 +75,8 @@ fn the_service_manager_hears_of_start_life_and_end() {
         }
     };
     assert!(last.iter().any(is("STOPPING=1")), "{last:?}");
+    // It goes on saying that it lives until it has ended, and waits for one who hears it.
+    std::thread::spawn(move || while manager.0.recv(&mut [0; 4096]).is_ok() {});
     assert!(daemon.wait().unwrap().success());
 }
 
