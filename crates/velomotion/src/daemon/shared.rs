@@ -116,11 +116,16 @@ pub struct Shared {
     lidar: Mutex<LidarView>,
     hearing: Mutex<Option<Arc<Hearing>>>,
     report: Mutex<Option<tilting::Report>>,
+    /// When it was said, if nothing has happened since.
+    reported: Mutex<Option<Instant>>,
     stop_reason: Mutex<Option<Failure>>,
     orders: Mutex<Sender<Order>>,
     /// When the keeper was last seen alive.
     alive: Mutex<Instant>,
 }
+
+/// So long what the drive has said is not asked for again.
+const FRESH: Duration = Duration::from_millis(500);
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
@@ -162,6 +167,7 @@ impl Shared {
             lidar: Mutex::default(),
             hearing: Mutex::default(),
             report: Mutex::default(),
+            reported: Mutex::default(),
             stop_reason: Mutex::default(),
             orders: Mutex::new(orders),
             alive: Mutex::new(Instant::now()),
@@ -237,6 +243,7 @@ impl Shared {
         match busy {
             Some(doing) => Err(Refused::Busy(doing)),
             None => {
+                *locked(&self.reported) = None;
                 *locked(&self.stop_reason) = None;
                 Ok(())
             }
@@ -338,6 +345,7 @@ impl Shared {
         if before == after {
             return;
         }
+        *locked(&self.reported) = None;
         match (after.0, after.1) {
             (_, Some(problem)) => {
                 let text = format!("{which}: {}", problem.message);
@@ -360,7 +368,16 @@ impl Shared {
 
     /// The drive has said something about itself, or nothing is known any more.
     pub fn set_report(&self, report: Option<tilting::Report>) {
+        *locked(&self.reported) = report.is_some().then(Instant::now);
         *locked(&self.report) = report;
+    }
+
+    /// The same, if it was said a moment ago and nothing has happened since.
+    #[must_use]
+    pub fn fresh_report(&self) -> Option<tilting::Report> {
+        let is_fresh = |at: &Instant| at.elapsed() < FRESH;
+        let fresh = locked(&self.reported).is_some_and(|at| is_fresh(&at));
+        self.report().filter(|_| fresh)
     }
 
     /// Who listens to the lidar.

@@ -31,6 +31,9 @@ pub struct Activity {
     pub doing: Doing,
     /// The scan's id.
     pub scan: Option<String>,
+    /// Whether the drive is only asked something.
+    #[serde(skip)]
+    pub only_asks: bool,
     /// Which move, from 1; 0 before the first.
     pub step: usize,
     /// Of how many.

@@ -7,6 +7,7 @@ mod defects;
 mod devices;
 mod events;
 mod guard;
+mod hasty;
 mod limits;
 mod rig;
 mod scans;

@@ -1,6 +1,7 @@
 //! Beginning and stopping captures, and what one would be.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::body::Bytes;
 use axum::extract::rejection::QueryRejection;
@@ -35,6 +36,11 @@ pub fn body<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> Result<T,
             "send Content-Type: application/json",
         ));
     }
+    // The derived readers take a list for an object, its fields in order: nobody has described that.
+    let begin = body.iter().find(|byte| !byte.is_ascii_whitespace());
+    if begin != Some(&b'{') {
+        return Err(Refusal::usage("the body: expected a JSON object"));
+    }
     serde_json::from_slice(body).map_err(|error| Refusal::usage(format!("the body: {error}")))
 }
 
@@ -46,6 +52,7 @@ pub async fn begin(
 ) -> Result<Response, Refusal> {
     let asked: Asked = body(&headers, &bytes)?;
     let shared = Arc::clone(&api.shared);
+    answered(&shared).await;
     // Files are made, which may take a disk its time.
     let begun = tokio::task::spawn_blocking(move || start(&shared, &asked)).await;
     let id = begun.map_err(|_| panicked())??;
@@ -124,10 +131,36 @@ pub async fn stop(State(api): State<Arc<Api>>) -> Response {
 
 /// Stops a capture and waits until the axis stands: whether there was one, and the scan.
 pub async fn end(shared: &Shared) -> (bool, Option<String>) {
-    let scan = shared.activity().scan;
-    let stopped = scan.is_some() && shared.interrupt(None);
-    idle(shared).await;
-    (stopped, scan)
+    let mut activity = shared.follow();
+    // It may have been begun this moment: then its scan has no name yet.
+    let is_capture = activity.borrow().doing == Doing::Capturing;
+    let stopped = is_capture && shared.interrupt(None);
+    let mut scan: Option<String> = None;
+    loop {
+        {
+            let now = activity.borrow_and_update();
+            let another = now.scan.is_some() && scan.is_some() && now.scan != scan;
+            if now.doing == Doing::Idle || another {
+                break;
+            }
+            scan = scan.or_else(|| now.scan.clone());
+        }
+        // The sender lives as long as `shared`.
+        if activity.changed().await.is_err() {
+            break;
+        }
+    }
+    (stopped, scan.filter(|_| is_capture))
+}
+
+/// How long a question to the drive is waited for.
+const ANSWERED: Duration = Duration::from_secs(5);
+
+/// Waits until nobody asks the drive something: a question must not have a move refused.
+pub async fn answered(shared: &Shared) {
+    let mut activity = shared.follow();
+    let asks = activity.wait_for(|activity| !activity.only_asks);
+    let _ = tokio::time::timeout(ANSWERED, asks).await;
 }
 
 /// Waits until the axis stands. What moves it has its own limits of time.

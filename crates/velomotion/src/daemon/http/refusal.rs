@@ -38,6 +38,12 @@ impl Refusal {
         }
     }
 
+    /// Whether the axis is busy: it may be free a moment later.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.kind == "busy"
+    }
+
     /// What was asked for cannot be.
     #[must_use]
     pub fn usage(error: impl Into<String>) -> Self {

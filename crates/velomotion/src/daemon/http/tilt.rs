@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use tokio::sync::oneshot;
 
 use super::Api;
-use super::captures::{body, idle};
+use super::captures::{answered, body, idle};
 use super::refusal::Refusal;
 use crate::cli::TiltVerb;
 use crate::daemon::keeper::{Order, tilt_order};
@@ -41,7 +41,12 @@ fn slow() -> f64 {
 /// Has the keeper do it, and waits for it. It goes on where the client does not wait.
 async fn does(shared: &Shared, verb: TiltVerb) -> Result<Report, Refusal> {
     let (doing, commands) = tilt_order(&verb, shared)?;
+    let only_asks = matches!(verb, TiltVerb::Status);
+    if !only_asks {
+        answered(shared).await;
+    }
     shared.take(doing, None)?;
+    shared.note(|activity| activity.only_asks = only_asks);
     let (answer, done) = oneshot::channel();
     if let Err(refused) = shared.order(Order::Tilt { commands, answer }) {
         shared.set_idle();
@@ -55,16 +60,24 @@ async fn does(shared: &Shared, verb: TiltVerb) -> Result<Report, Refusal> {
     }
 }
 
+/// How often a stop is tried while others begin moves.
+const STOPS: usize = 16;
+
 fn said(report: &Report) -> Response {
     super::json(StatusCode::OK, report)
 }
 
-/// `GET /tilt`. While the axis is busy, what is known of it.
+/// `GET /tilt`. While the axis is busy, and for a moment after it was asked, what is known of it: however many look, moves are not refused
+/// for it.
 pub async fn status(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
     let shared = &api.shared;
-    if shared.activity().doing != Doing::Idle
-        && let Some(mut report) = shared.report()
-    {
+    let busy = shared.activity().doing != Doing::Idle;
+    let known = if busy {
+        shared.report()
+    } else {
+        shared.fresh_report()
+    };
+    if let Some(mut report) = known {
         report.angle_deg = shared.drive().angle_deg;
         return Ok(said(&report));
     }
@@ -94,8 +107,15 @@ pub async fn goto(
 /// `POST /tilt/stop`: whatever moves is stopped, and the brake set.
 pub async fn stop(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
     let shared = &api.shared;
-    shared.interrupt(None);
-    idle(shared).await;
+    for _ in 0..STOPS {
+        shared.interrupt(None);
+        idle(shared).await;
+        // Somebody else may have been quicker: he is stopped, too.
+        match does(shared, TiltVerb::Stop).await {
+            Err(refused) if refused.is_busy() => {}
+            done => return Ok(said(&done?)),
+        }
+    }
     Ok(said(&does(shared, TiltVerb::Stop).await?))
 }
 
