@@ -170,14 +170,14 @@ impl UtcClock {
         }
     }
 
-    /// UTC at an instant of device time; `None` where the clock was not locked.
+    /// UTC at an instant of device time; `None` where the clock was not locked, and beyond the year 2262, which no stamp can say.
     #[must_use]
     pub fn utc(&self, at: Stamp<Lidar>) -> Option<Stamp<Utc>> {
         let lock = self.locks.iter().rev().find(|lock| {
             let before_end = lock.until.is_none_or(|until| at < until);
             lock.from <= at && before_end
         })?;
-        let ns = at.saturating_add(lock.offset).as_nanos();
+        let ns = at.as_nanos().checked_add(lock.offset.as_nanos())?;
         Some(Stamp::from_nanos(ns))
     }
 
@@ -537,6 +537,22 @@ mod tests {
         clock.data(stamp(t + 2 * S));
         clock.data(stamp(back));
         assert_eq!(clock.utc(stamp(t + S + 1)), None);
+    }
+
+    #[test]
+    fn beyond_the_last_stamp_there_is_no_utc() {
+        let mut clock = UtcClock::new();
+        let last = 7_514_095_636_854_775_808_i64;
+        for (us, ns, pps, second) in [(0_u32, 0, 0, 0), (1_219_500_000, last, 2, 77_621)] {
+            let mut bytes = packet(0, pps, 'A', 1_709_200_000 + second);
+            bytes[198..202].copy_from_slice(&us.to_le_bytes());
+            clock.position(stamp(ns / 2), &PositionPacket::new(&bytes).unwrap());
+        }
+        // A nanosecond more than a stamp can say.
+        assert_eq!(clock.utc(stamp(last)), None);
+        let before = stamp(last - 1);
+        let apart = clock.utc(before).unwrap().as_nanos() - before.as_nanos();
+        assert_eq!(apart % HOUR_NS, 0);
     }
 
     proptest! {
