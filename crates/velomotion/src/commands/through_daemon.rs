@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use io::files::NewFile;
@@ -146,22 +147,42 @@ fn fetch(client: &Client, id: &str, log: &Path) -> Result<(), Failure> {
     file.commit().map_err(|error| file_failure(&error))
 }
 
-/// Has the axis moved, or looked at. A wish to stop goes to the daemon.
+/// Has the axis moved, or looked at. A wish to stop goes to the daemon; where that is what is asked already, it ends the waiting.
 ///
 /// # Errors
 /// As without a daemon.
 pub fn tilt(client: &Client, verb: TiltVerb, interrupt: &AtomicBool) -> Result<Report, Failure> {
     let asking = client.clone();
     let asked = std::thread::spawn(move || ask(&asking, verb));
-    let mut stopped = false;
+    let moves = matches!(verb, TiltVerb::Home | TiltVerb::Goto { .. });
+    let mut stop: Option<JoinHandle<Result<Report, Failure>>> = None;
     while !asked.is_finished() {
-        if interrupt.load(Ordering::Relaxed) && !stopped {
-            stopped = true;
-            let _: Report = client.post("/api/v1/tilt/stop", &())?;
+        if interrupt.swap(false, Ordering::Relaxed) {
+            if !moves || stop.is_some() {
+                return Err(Failure::new(
+                    Kind::Interrupted,
+                    format!(
+                        "the daemon at {} has not answered",
+                        client.socket().display()
+                    ),
+                )
+                .help("tilt status says how the axis is; switch the motor's supply off if it moves and must not"));
+            }
+            let stopping = client.clone();
+            stop = Some(std::thread::spawn(move || {
+                stopping.post("/api/v1/tilt/stop", &())
+            }));
+        }
+        if let Some(stopped) = stop.take_if(|stop| stop.is_finished()) {
+            joined(stopped)?;
         }
         std::thread::sleep(PAUSE);
     }
-    asked.join().unwrap_or_else(|_| {
+    joined(asked)
+}
+
+fn joined(asking: JoinHandle<Result<Report, Failure>>) -> Result<Report, Failure> {
+    asking.join().unwrap_or_else(|_| {
         Err(
             Failure::new(Kind::Incomplete, "the thread that asks the daemon panicked")
                 .help("this is a defect of the program; run with -vv and report what it says"),

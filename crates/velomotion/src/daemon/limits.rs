@@ -10,8 +10,12 @@ pub const TARGET_BYTES: usize = 2 << 10;
 pub const HEAD_BYTES: usize = 16 << 10;
 /// Headers of a request.
 pub const HEADERS: usize = 64;
-/// Connections; more wait until one ends.
+/// Connections over TCP; one more takes the place of the oldest that has not shown the token, or is closed.
 pub const CONNECTIONS: usize = 64;
+/// Of those from one other host that have not shown the token; one more takes the place of the oldest of them.
+pub const SHARE: usize = CONNECTIONS / 4;
+/// Connections over the Unix socket; one more takes the place of the oldest.
+pub const LOCAL_CONNECTIONS: usize = 32;
 /// WebSocket clients.
 pub const SUBSCRIBERS: usize = 32;
 /// Messages that may wait for a client.
@@ -47,7 +51,9 @@ pub struct Waits {
     pub ping: Duration,
     /// Silence of a WebSocket client.
     pub silence: Duration,
-    /// For a client that takes nothing of its download.
+    /// For a client that takes nothing of what it is sent and has shown no right to more than the page that signs in.
+    pub write: Duration,
+    /// For any other client that takes nothing of its download, or of whatever it is sent.
     pub download: Duration,
 }
 
@@ -58,6 +64,7 @@ impl Default for Waits {
             body: Duration::from_secs(10),
             ping: Duration::from_secs(20),
             silence: Duration::from_secs(60),
+            write: Duration::from_secs(5),
             download: Duration::from_secs(60),
         }
     }

@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use serde_json::json;
 use velomotion::daemon::limits::{
-    self, BODY_BYTES, CONNECTIONS, DOWNLOADS, HEAD_BYTES, HEADERS, MAKING, SUBSCRIBERS,
-    TARGET_BYTES, Waits,
+    self, BODY_BYTES, CONNECTIONS, DOWNLOADS, HEAD_BYTES, HEADERS, LOCAL_CONNECTIONS, MAKING,
+    SHARE, SUBSCRIBERS, TARGET_BYTES, Waits,
 };
 
 use crate::events::connect;
@@ -31,7 +31,24 @@ fn the_book_states_the_limits() {
         ),
         ("time for a request's headers", seconds(waits.headers)),
         ("time for its body", seconds(waits.body)),
-        ("connections", format!("{CONNECTIONS}, more wait")),
+        (
+            "connections over TCP",
+            format!(
+                "{CONNECTIONS}; one more takes the place of the oldest without the token, or is closed"
+            ),
+        ),
+        (
+            "of those from one other host, without the token",
+            format!("{SHARE}; one more takes the place of the oldest"),
+        ),
+        (
+            "connections over the Unix socket",
+            format!("{LOCAL_CONNECTIONS}; one more takes the place of the oldest"),
+        ),
+        (
+            "silence of a client that is sent the page that signs in",
+            seconds(waits.write),
+        ),
         ("WebSocket clients", SUBSCRIBERS.to_string()),
         ("messages queued for a client", limits::QUEUE.to_string()),
         ("a message of a client", kib(limits::CLIENT_MESSAGE_BYTES)),
@@ -45,7 +62,7 @@ fn the_book_states_the_limits() {
         ),
         ("downloads", format!("{DOWNLOADS} at once")),
         (
-            "silence of a client that downloads",
+            "silence of a client that downloads, or is sent anything else",
             seconds(waits.download),
         ),
         (
@@ -235,41 +252,6 @@ fn who_is_too_slow_is_not_waited_for() {
     }
     let half = b"POST /api/v1/captures HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\ncontent-type: application/json\r\ncontent-length: 100\r\n\r\n{";
     raw(rig.address, half).refused(408, "half a body");
-}
-
-#[test]
-fn more_connections_wait_until_one_ends() {
-    let rig = Rig::with("", |options| {
-        options.waits.headers = Duration::from_secs(600);
-    });
-    let mut idle: Vec<TcpStream> = (0..CONNECTIONS)
-        .map(|_| {
-            // Answered once, and kept open.
-            let mut stream = TcpStream::connect(rig.address).unwrap();
-            stream
-                .write_all(b"GET / HTTP/1.1\r\nhost: localhost\r\n\r\n")
-                .unwrap();
-            let mut first = [0; 12];
-            stream.read_exact(&mut first).unwrap();
-            assert_eq!(&first, b"HTTP/1.1 200");
-            stream
-        })
-        .collect();
-    let mut late = TcpStream::connect(rig.address).unwrap();
-    late.write_all(b"GET / HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n")
-        .unwrap();
-    late.set_read_timeout(Some(Duration::from_millis(200)))
-        .unwrap();
-    let mut answer = [0; 12];
-    assert!(
-        late.read_exact(&mut answer).is_err(),
-        "answered beside {CONNECTIONS} others"
-    );
-    drop(idle.pop());
-    late.set_read_timeout(Some(Duration::from_secs(30)))
-        .unwrap();
-    late.read_exact(&mut answer).unwrap();
-    assert_eq!(&answer, b"HTTP/1.1 200");
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod api;
 mod commands;
 mod defects;
 mod devices;
+mod door;
 mod events;
 mod guard;
 mod hasty;

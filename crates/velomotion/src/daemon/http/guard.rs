@@ -14,6 +14,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
 use super::Api;
+use super::guests::{Guest, Standing};
 use super::page;
 use super::refusal::Refusal;
 use crate::daemon::limits::{BODY_BYTES, SIGNED_IN, TARGET_BYTES, Waits};
@@ -119,7 +120,12 @@ pub async fn guard(
     next: Next,
 ) -> Response {
     match check(&api, peer, &request) {
-        Ok(()) => next.run(request).await,
+        Ok(standing) => {
+            if let Some(guest) = request.extensions().get::<Arc<Guest>>() {
+                guest.rise(standing);
+            }
+            next.run(request).await
+        }
         // A person is shown where to sign in.
         Err(refusal) if wants_page(&request) && refusal.1 => {
             super::page::sign_in(StatusCode::UNAUTHORIZED).into_response()
@@ -137,10 +143,10 @@ fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
     headers.get(name)?.to_str().ok()
 }
 
-/// The refusal, and whether signing in would help.
-fn check(api: &Api, peer: Peer, request: &Request) -> Result<(), (Refusal, bool)> {
+/// What the request shows of who asks; or the refusal, and whether signing in would help.
+fn check(api: &Api, peer: Peer, request: &Request) -> Result<Standing, (Refusal, bool)> {
     let Peer::Tcp(own) = peer else {
-        return Ok(());
+        return Ok(Standing::Admitted);
     };
     let (headers, path) = (request.headers(), request.uri().path());
     let token = api.shared.settings().token.as_ref();
@@ -170,18 +176,18 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<(), (Refusal, bool)
             ));
         }
     }
-    let Some(token) = token else {
-        return Ok(());
-    };
     if page::is_open(path) {
-        return Ok(());
+        return Ok(Standing::Stranger);
     }
+    let Some(token) = token else {
+        return Ok(Standing::Admitted);
+    };
     let bearer = text(headers, header::AUTHORIZATION)
         .and_then(|value| value.split_once(' '))
         .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
         .is_some_and(|(_, given)| token.is(given.trim().as_bytes()));
     if bearer || cookie(headers).is_some_and(|secret| api.sessions.has(secret)) {
-        return Ok(());
+        return Ok(Standing::Trusted);
     }
     Err((
         Refusal::new(

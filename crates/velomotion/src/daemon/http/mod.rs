@@ -4,6 +4,7 @@ pub mod captures;
 pub mod download;
 pub mod events;
 pub mod guard;
+pub mod guests;
 pub mod metrics;
 pub mod page;
 pub mod refusal;

@@ -1,6 +1,7 @@
 //! The sockets: TCP and Unix, each connection with its limits, and a runtime of their own.
 
-use std::net::{SocketAddr, TcpListener as StdTcpListener};
+use std::convert::Infallible;
+use std::net::{IpAddr, SocketAddr, TcpListener as StdTcpListener};
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener as StdUnixListener, UnixStream};
 use std::path::{Path, PathBuf};
@@ -8,18 +9,24 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
+use axum::http::Request;
 use axum::serve::Listener;
+use hyper::body::Incoming;
 use hyper::server::conn::http1;
+use hyper::service::{Service, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, UnixListener};
 use tokio::runtime::{Builder, Runtime};
-use tokio::sync::{Semaphore, watch};
+use tokio::sync::{Semaphore, mpsc, watch};
 
 use super::guard::Peer;
+use super::guests::{Guests, Paced, Place};
 use super::{Api, router};
-use crate::daemon::limits::{CONNECTIONS, HEAD_BYTES, HEADERS, SUBSCRIBERS, Waits};
+use crate::daemon::limits::{
+    CONNECTIONS, HEAD_BYTES, HEADERS, LOCAL_CONNECTIONS, SUBSCRIBERS, Waits,
+};
 use crate::daemon::shared::Shared;
 use crate::failure::{Failure, Kind};
 
@@ -48,7 +55,8 @@ pub struct Server {
     runtime: Runtime,
     address: SocketAddr,
     closing: watch::Sender<bool>,
-    connections: Arc<Semaphore>,
+    /// Ends once no connection is left.
+    staying: mpsc::Receiver<Infallible>,
     sockets: Arc<Semaphore>,
     _socket: Socket,
 }
@@ -113,30 +121,33 @@ impl Bound {
             .map_err(cannot)?;
         let (closing, close) = watch::channel(false);
         let api = Arc::new(Api::new(shared, waits, close.clone()));
-        let connections = Arc::new(Semaphore::new(CONNECTIONS));
+        let (stay, staying) = mpsc::channel(1);
         let inside = runtime.enter();
         let tcp = TcpListener::from_std(self.tcp).map_err(cannot)?;
         let unix = UnixListener::from_std(self.unix).map_err(cannot)?;
         drop(inside);
-        let door = Door {
-            connections: Arc::clone(&connections),
-            closing: close,
+        let door = |most| Door {
+            guests: Guests::new(most),
+            stay: stay.clone(),
+            closing: close.clone(),
             waits,
         };
-        let open = router(&api, Peer::Tcp(self.address.ip()));
-        let local = router(&api, Peer::Local);
-        let theirs = door.clone();
+        let (open, open_door) = (
+            router(&api, Peer::Tcp(self.address.ip())),
+            door(CONNECTIONS),
+        );
+        let (local, local_door) = (router(&api, Peer::Local), door(LOCAL_CONNECTIONS));
         runtime.spawn(async move {
-            theirs.keep(open, tcp).await;
+            open_door.keep(open, tcp, remote).await;
         });
         runtime.spawn(async move {
-            door.keep(local, unix).await;
+            local_door.keep(local, unix, |_| None).await;
         });
         Ok(Server {
             runtime,
             address: self.address,
             closing,
-            connections,
+            staying,
             sockets: Arc::clone(&api.sockets),
             _socket: self.socket,
         })
@@ -151,15 +162,14 @@ impl Server {
     }
 
     /// Takes no more requests, sends what is on its way for a moment, and ends.
-    pub fn stop(self) {
+    pub fn stop(mut self) {
         self.closing.send_replace(true);
-        let all = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
+        let all = u32::try_from(SUBSCRIBERS).unwrap_or(u32::MAX);
         self.runtime.block_on(async {
-            // Every connection has a permit, and every WebSocket another.
+            // Every connection has a sender, and every WebSocket a permit.
             let ended = async {
-                let connections = self.connections.acquire_many(all(CONNECTIONS)).await;
-                let sockets = self.sockets.acquire_many(all(SUBSCRIBERS)).await;
-                drop((connections, sockets));
+                let _ = self.staying.recv().await;
+                drop(self.sockets.acquire_many(all).await);
             };
             let _ = tokio::time::timeout(LAST, ended).await;
         });
@@ -167,34 +177,44 @@ impl Server {
     }
 }
 
+/// The host that a connection comes from, if it is another.
+fn remote(address: &SocketAddr) -> Option<IpAddr> {
+    let ip = address.ip().to_canonical();
+    (!ip.is_loopback()).then_some(ip)
+}
+
 /// Lets connections in.
-#[derive(Clone)]
 struct Door {
-    connections: Arc<Semaphore>,
+    guests: Arc<Guests>,
+    stay: mpsc::Sender<Infallible>,
     closing: watch::Receiver<bool>,
     waits: Waits,
 }
 
 impl Door {
-    async fn keep<L: Listener>(mut self, router: Router, mut listener: L) {
+    async fn keep<L: Listener>(
+        mut self,
+        router: Router,
+        mut listener: L,
+        host: fn(&L::Addr) -> Option<IpAddr>,
+    ) {
         loop {
-            let entered = async {
-                let (stream, _) = listener.accept().await;
-                // One too many waits here, and those behind it in the kernel.
-                let permit = Arc::clone(&self.connections).acquire_owned().await;
-                Some((stream, permit.ok()?))
+            let (stream, address) = tokio::select! {
+                accepted = listener.accept() => accepted,
+                _ = self.closing.wait_for(|closing| *closing) => return,
             };
-            let entered = tokio::select! {
-                entered = entered => entered,
-                _ = self.closing.wait_for(|closing| *closing) => None,
-            };
-            let Some((stream, permit)) = entered else {
-                return;
+            let Some(place) = self.guests.enter(host(&address)) else {
+                // Dropped, which closes it.
+                continue;
             };
             let (waits, router, closing) = (self.waits, router.clone(), self.closing.clone());
+            let stay = self.stay.clone();
             tokio::spawn(async move {
-                talk(stream, router, waits, closing).await;
-                drop(permit);
+                tokio::select! {
+                    () = talk(stream, &place, router, waits, closing) => {}
+                    () = place.needed() => {}
+                }
+                drop(stay);
             });
         }
     }
@@ -202,16 +222,25 @@ impl Door {
 
 async fn talk<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
     stream: S,
+    place: &Place,
     router: Router,
     waits: Waits,
     mut closing: watch::Receiver<bool>,
 ) {
+    let guest = Arc::clone(&place.guest);
+    let stream = Paced::new(stream, Arc::clone(&guest), waits);
+    let router = TowerToHyperService::new(router);
+    // Whoever checks a request tells what it shows.
+    let answer = service_fn(move |mut request: Request<Incoming>| {
+        request.extensions_mut().insert(Arc::clone(&guest));
+        router.call(request)
+    });
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(waits.headers)
         .max_buf_size(HEAD_BYTES)
         .max_headers(HEADERS)
-        .serve_connection(TokioIo::new(stream), TowerToHyperService::new(router))
+        .serve_connection(TokioIo::new(stream), answer)
         .with_upgrades();
     let mut connection = std::pin::pin!(connection);
     let close = async {
