@@ -17,6 +17,7 @@ pub mod orders;
 pub mod plan;
 pub mod points;
 pub mod pulse;
+pub mod room;
 pub mod ros2;
 pub mod scans;
 pub mod settings;

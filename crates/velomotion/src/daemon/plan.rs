@@ -13,6 +13,8 @@ use crate::setup::{Asked, Setup};
 const LOG_BYTES_S: f64 = 2.2e6;
 /// Bytes of a packet and its frames in a log.
 const PACKET_BYTES: f64 = 1_320.0;
+/// Bytes of a data packet alone.
+const PAYLOAD_BYTES: f64 = 1_206.0;
 /// Bytes a second of the drive's share of a log: up to 1000 polls of two frames.
 const DRIVE_BYTES_S: f64 = 2e5;
 /// Rows of a PLY, and channels of a packet.
@@ -69,6 +71,32 @@ pub fn plan(shared: &Shared, asked: &Asked, setup: &Setup) -> PlanView {
         bytes: bytes as u64,
         headline: setup.headline(),
     }
+}
+
+/// Most points of a log of so many bytes: all of it packets, and every channel of each a return.
+#[must_use]
+pub fn most_points(log_bytes: u64) -> u64 {
+    (log_bytes as f64 / PAYLOAD_BYTES * CHANNELS) as u64
+}
+
+/// Bytes that the scans that are being recorded or made may need beyond what they have.
+#[must_use]
+pub fn still_needed(shared: &Shared) -> u64 {
+    let under_way = shared.scans.under_way();
+    let needed = under_way.iter().map(|scan| {
+        let asked = scan.head.asked.as_ref();
+        let planned = asked.and_then(|asked| {
+            let setup = setup(shared, asked, "cloud".into(), "log".into()).ok()?;
+            Some(plan(shared, asked, &setup).bytes)
+        });
+        // Of a log that was found nobody knows what it was to be: its cloud is to come.
+        let cloud = || most_points(scan.log_bytes.unwrap_or(0)) as f64 * ROW_BYTES;
+        match planned {
+            Some(whole) => whole.saturating_sub(scan.bytes),
+            None => cloud() as u64,
+        }
+    });
+    needed.fold(0, u64::saturating_add)
 }
 
 /// Refuses a capture for which there is no room.

@@ -275,6 +275,17 @@ impl Scans {
         records.iter().map(|record| self.view_of(record)).collect()
     }
 
+    /// Those that are being recorded or made.
+    #[must_use]
+    pub fn under_way(&self) -> Vec<ScanView> {
+        let records: Vec<ScanRecord> = {
+            let scans = self.scans();
+            let open = scans.values().filter(|record| !record.state.is_final());
+            open.cloned().collect()
+        };
+        records.iter().map(|record| self.view_of(record)).collect()
+    }
+
     /// Those whose log waits for a cloud.
     #[must_use]
     pub fn unfinished(&self) -> Vec<String> {

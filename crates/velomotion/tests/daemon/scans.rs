@@ -3,9 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 
+use cloud::formats::Format;
 use serde_json::json;
 use units::Span;
-use velomotion::daemon::{Daemon, Options};
+use velomotion::daemon::{Daemon, Options, room};
 
 use crate::rig::{Process, Rig, finished, place, request, run, sweep, wait};
 
@@ -216,4 +217,70 @@ fn a_machine_that_has_slept_connects_anew_and_the_scan_is_partial() {
     );
     wait("the drive anew", || (connects() > before).then_some(()));
     rig.ready();
+}
+
+#[test]
+fn a_download_takes_no_room_that_a_scan_was_promised() {
+    // Free bytes for so many looks, and for all after those.
+    let (free, looks) = (
+        Arc::new(AtomicU64::new(u64::MAX)),
+        Arc::new(AtomicU64::new(u64::MAX)),
+    );
+    let (told, left) = (Arc::clone(&free), Arc::clone(&looks));
+    let rig = Rig::with("", |options| {
+        options.world.free_bytes = Arc::new(move |_| {
+            let lasts = |left: u64| left.checked_sub(1);
+            match left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, lasts) {
+                Ok(_) => Ok(told.load(Ordering::Relaxed)),
+                Err(_) => Ok(0),
+            }
+        });
+    });
+    rig.ready();
+    let scan = rig.whole_scan(&json!({"speed_deg_s": 56.25}));
+    let (id, points) = (
+        scan["id"].as_str().unwrap(),
+        scan["points"].as_u64().unwrap(),
+    );
+    let path = |format: Format| {
+        format!("/api/v1/scans/{id}/cloud?format={format}&uncertainty=true&echo=true")
+    };
+    for format in Format::ALL {
+        let most = room::most_bytes(format, points);
+        // The reserve of these tests, and not a byte less.
+        free.store(1_000 + most - 1, Ordering::Relaxed);
+        let refused = rig.get(&path(format));
+        assert_eq!(refused.refused(507, "full").json()["kind"], "incomplete");
+        free.store(1_000 + most, Ordering::Relaxed);
+        let made = rig.get(&path(format));
+        assert_eq!(made.status, 200, "{format}: {}", made.text());
+        assert!(
+            made.body.len() as u64 <= most,
+            "{format}: {}",
+            made.body.len()
+        );
+    }
+    // What is there needs no room.
+    free.store(0, Ordering::Relaxed);
+    assert_eq!(rig.get(&format!("/api/v1/scans/{id}/cloud")).status, 200);
+    // Room that is gone once the making has begun.
+    free.store(u64::MAX, Ordering::Relaxed);
+    looks.store(1, Ordering::Relaxed);
+    rig.get(&path(Format::Pcd)).refused(507, "filled up");
+    looks.store(u64::MAX, Ordering::Relaxed);
+    // While a scan runs that may need more than is left.
+    let running = sweep(rig.address);
+    free.store(
+        1_000 + room::most_bytes(Format::Pcd, points),
+        Ordering::Relaxed,
+    );
+    let refused = rig.get(&path(Format::Pcd));
+    let said = refused.refused(507, "promised").text();
+    assert!(said.contains("may still need"), "{said}");
+    let status = rig.status();
+    assert_eq!(status["activity"]["scan"], running.as_str(), "{status}");
+    free.store(u64::MAX, Ordering::Relaxed);
+    assert_eq!(rig.get(&path(Format::Pcd)).status, 200);
+    rig.post("/api/v1/captures/stop", &json!({}));
+    rig.finished(&running);
 }

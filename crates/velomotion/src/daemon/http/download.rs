@@ -24,6 +24,8 @@ use super::Api;
 use super::refusal::Refusal;
 use crate::cli::TimeOf;
 use crate::commands::replay::{self, Request};
+use crate::daemon::plan;
+use crate::daemon::room::{self, Room, Roomy};
 use crate::daemon::scans::{CLOUD, LOG, THUMBNAIL};
 use crate::failure::{Failure, Kind};
 use crate::output::Buffered;
@@ -71,6 +73,7 @@ pub async fn cloud(
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
     let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
+    let (points, shared) = (record.points, Arc::clone(&api.shared));
     let accuracy = record.head.asked.and_then(|asked| asked.accuracy().ok());
     let mut fields = Fields::FILE;
     if wanted.uncertainty {
@@ -82,12 +85,14 @@ pub async fn cloud(
     let log = api.shared.log(&id);
     let gone = Gone::default();
     let interrupt = Arc::clone(&gone.0);
-    let scratch = api.shared.scans.folder().to_owned();
     let made = tokio::task::spawn_blocking(move || {
         let _making = making;
+        let log_bytes = || std::fs::metadata(&log).map_or(0, |there| there.len());
+        let points = points.unwrap_or_else(|| plan::most_points(log_bytes()));
+        let room = Room::take(&shared, room::most_bytes(format, points));
         make(
             &log,
-            &scratch,
+            (shared.scans.folder(), &room.map_err(Refusal::no_room)?),
             format,
             fields,
             accuracy.unwrap_or(Accuracy::Best),
@@ -124,12 +129,12 @@ impl Drop for Gone {
 /// Makes a cloud as `velomotion replay` does, into a file without a name.
 fn make(
     log: &FilePath,
-    folder: &FilePath,
+    (folder, room): (&FilePath, &Arc<Room>),
     format: Format,
     fields: Fields,
     accuracy: Accuracy,
     interrupt: &AtomicBool,
-) -> Result<File, Failure> {
+) -> Result<File, Refusal> {
     let cannot = |error: std::io::Error| {
         Failure::new(
             Kind::Incomplete,
@@ -150,12 +155,18 @@ fn make(
         interrupt,
     };
     let mut file = io::files::scratch_in(folder).map_err(cannot)?;
-    let out = Buffered::new(file.try_clone().map_err(cannot)?);
+    let out = Roomy::new(file.try_clone().map_err(cannot)?, Arc::clone(room));
+    let out = Buffered::new(out);
     let mut sink = format.writer(out, fields);
     let output = PathBuf::from(format!("cloud.{}", format.extension()));
-    replay::scan(&request, &mut *sink, &output)?;
-    sink.finish()
-        .map_err(|error| crate::output::sink_failure(&output, &error))?;
+    let made = replay::scan(&request, &mut *sink, &output).and_then(|_| {
+        sink.finish()
+            .map_err(|error| crate::output::sink_failure(&output, &error))
+    });
+    made.map_err(|failure| match room.refused() {
+        Some(full) => Refusal::no_room(full.clone()),
+        None => failure.into(),
+    })?;
     drop(sink);
     file.seek(SeekFrom::Start(0)).map_err(cannot)?;
     Ok(file)

@@ -77,6 +77,15 @@ impl Refusal {
         )
     }
 
+    /// Too little room on the disk.
+    #[must_use]
+    pub fn no_room(failure: Failure) -> Self {
+        Self {
+            status: StatusCode::INSUFFICIENT_STORAGE,
+            ..failure.into()
+        }
+    }
+
     /// Too many at once.
     #[must_use]
     pub fn too_many(what: &str) -> Self {
