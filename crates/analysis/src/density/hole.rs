@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec3;
 
 use super::cells::{Cell, MOST_CUTS};
-use super::nearby::Nearby;
+use super::nearby::{Nearby, SAME};
 use super::{DensityError, check};
 
 /// A circle with no point in it.
@@ -71,10 +71,8 @@ pub(super) const EVERYWHERE: fn(DVec3) -> f64 = |_| f64::INFINITY;
 
 /// More points than this that can matter to a cell, and the cell is cut.
 const FEW: usize = 10;
-/// More than this, and they are not even looked at.
+/// More than this, and they are not looked at one by one.
 const MANY: usize = 1_000;
-/// Points closer than this, through the sphere, are one.
-const SAME: f64 = 1e-9;
 
 /// A search for holes.
 pub(super) struct Search<'a> {
@@ -214,8 +212,21 @@ impl<'a> Search<'a> {
             if grow(&points, next) {
                 return Done::Holes(Vec::new());
             }
+        } else if self.all_grow(next, chord(reach) + SAME) {
+            return Done::Holes(Vec::new());
         }
         self.cut(next)
+    }
+
+    /// [`grow`] where there are too many points to look at: away from the nearest. So it is about a pole of a circle full of points, where cells would have
+    /// to be cut very fine before few of its points matter.
+    fn all_grow(&self, within: &Open, distance: f64) -> bool {
+        let nearest = self.nearby.nearest_point(within.middle);
+        let way = nearest.map(|p| -p.reject_from_normalized(within.middle));
+        way.and_then(DVec3::try_normalize).is_some_and(|way| {
+            let behind = -within.ball - 1e-12;
+            self.nearby.all_behind(within.middle, distance, way, behind)
+        })
     }
 
     /// The same where holes at the edge of the region count as they are, though they could grow out of it.

@@ -12,6 +12,8 @@ mod gaps;
 mod hole;
 mod icosahedron;
 mod locator;
+#[cfg(test)]
+mod many;
 mod nearby;
 
 use glam::DVec3;

@@ -25,6 +25,13 @@ struct Ball {
 
 /// Points a cell, about.
 const IN_A_CELL: usize = 6;
+/// Points closer than this, through the sphere, are one.
+pub(super) const SAME: f64 = 1e-9;
+
+/// The cube that a point is in, of a lattice with a point in the middle of each: two in the same are closer than [`SAME`].
+fn place(point: DVec3) -> [i64; 3] {
+    (point * (2.0 / SAME)).round().to_array().map(|c| c as i64)
+}
 
 impl Nearby {
     pub fn new(directions: &[DVec3]) -> Self {
@@ -63,8 +70,58 @@ impl Nearby {
             starts,
             levels: Vec::new(),
         };
+        nearby.leave_out_the_same();
         nearby.levels = nearby.balls(depth);
         nearby
+    }
+
+    /// Of points that are as good as equal, one is kept: how far off the nearest is does not change by more than [`SAME`]. Only cells with many are looked
+    /// through, as those with few cost nothing.
+    fn leave_out_the_same(&mut self) {
+        let mut kept = Vec::with_capacity(self.points.len());
+        let mut starts = Vec::with_capacity(self.starts.len());
+        for cell in 0..self.starts.len().saturating_sub(1) {
+            starts.push(kept.len() as u32);
+            let own = self.range(cell, cell + 1);
+            if own.len() <= 4 * IN_A_CELL {
+                kept.extend_from_slice(own);
+                continue;
+            }
+            let mut by_place: Vec<([i64; 3], DVec3)> =
+                own.iter().map(|point| (place(*point), *point)).collect();
+            by_place.sort_by_key(|(place, _)| *place);
+            by_place.dedup_by_key(|(place, _)| *place);
+            kept.extend(by_place.iter().map(|(_, point)| *point));
+        }
+        starts.push(kept.len() as u32);
+        self.points = kept;
+        self.starts = starts;
+    }
+
+    /// Whether all points within a distance of a direction lie behind the plane `way . p = at`. Cells that do, or are farther off, are not looked into.
+    pub fn all_behind(&self, of: DVec3, distance: f64, way: DVec3, at: f64) -> bool {
+        let mut open: Vec<(usize, usize)> = (0..6).map(|cell| (0, cell)).collect();
+        while let Some((level, cell)) = open.pop() {
+            let Some(ball) = self.levels.get(level).and_then(|balls| balls.get(cell)) else {
+                continue;
+            };
+            let is_off = ball.middle.distance(of) - ball.radius > distance + 1e-15;
+            let is_behind = way.dot(ball.middle) + ball.radius < at - 1e-15;
+            if ball.radius < 0.0 || is_off || is_behind {
+                continue;
+            }
+            if level + 1 < self.levels.len() {
+                open.extend((4 * cell..4 * cell + 4).map(|cell| (level + 1, cell)));
+                continue;
+            }
+            let mut near = self.range(cell, cell + 1).iter();
+            let near_and_before =
+                |p: &DVec3| p.distance_squared(of) <= distance * distance && way.dot(*p) >= at;
+            if near.any(near_and_before) {
+                return false;
+            }
+        }
+        true
     }
 
     fn balls(&self, depth: u8) -> Vec<Vec<Ball>> {
@@ -109,6 +166,20 @@ impl Nearby {
             nearest
         });
         nearest
+    }
+
+    /// The nearest point.
+    pub fn nearest_point(&self, to: DVec3) -> Option<DVec3> {
+        let mut nearest = (f64::INFINITY, None);
+        self.visit(to, &mut |distance, points| {
+            if distance < nearest.0 {
+                let off = |p: &DVec3| p.distance_squared(to);
+                let of_cell = points.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+                nearest = (distance, of_cell.copied());
+            }
+            nearest.0
+        });
+        nearest.1
     }
 
     /// The points within a distance; `None` where they are more than `most`.
