@@ -21,14 +21,14 @@ pub const FILES: [(&str, &str); 8] = [
     ("analyze.json", "everything that --json says"),
 ];
 
-/// For wide figures on narrow screens, and for print.
+/// For narrow screens, where figures shrink to the card and tables scroll in a frame of their own; and for print.
 const MORE_STYLE: &str = "\
-figure svg{max-width:45rem}figcaption{color:var(--soft);font-size:.92rem;margin-top:.5rem}\
-.wide{overflow-x:auto;-webkit-overflow-scrolling:touch}.wide svg{min-width:34rem}\
+figure svg{max-width:45rem}section{min-width:0}figcaption{color:var(--soft);font-size:.92rem;margin-top:.5rem}\
+.scroll{border:1px solid var(--line);border-radius:6px;padding:0 .4rem;scrollbar-width:thin}\
 table{margin:.8rem 0}caption{text-align:left;color:var(--soft);font-size:.92rem;padding:.2rem 0}\
 td:first-child{overflow-wrap:anywhere;min-width:9rem}summary{cursor:pointer;color:var(--mark)}\
 code{overflow-wrap:anywhere}@media (max-width:34rem){figcaption{padding:0 .7rem}}\
-@media print{body{background:#fff}section{border:0;padding:0;break-inside:auto}figure,tr{break-inside:avoid}nav{display:none}.wide svg{min-width:0}}";
+@media print{body{background:#fff}section{border:0;padding:0;break-inside:auto}figure,tr{break-inside:avoid}nav{display:none}.scroll{border:0;overflow:visible}}";
 
 /// Angles between those of the page's table of K, degrees.
 const EVERY_DEG: f64 = 15.0;
@@ -117,7 +117,7 @@ fn sections(scans: &Scans) -> Vec<Section> {
 
 fn figure(svg: &str, caption: &str) -> String {
     format!(
-        "<figure>\n<div class=\"wide\">\n{svg}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
+        "<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n",
         escaped(caption)
     )
 }
@@ -125,7 +125,7 @@ fn figure(svg: &str, caption: &str) -> String {
 /// A table: a heading a column, the first of each row its name.
 fn table(caption: &str, headings: &[String], rows: &[Vec<String>]) -> String {
     let mut html = format!(
-        "<div class=\"scroll\"><table>\n<caption>{}</caption>\n<thead><tr>",
+        "<div class=\"scroll\" tabindex=\"0\"><table>\n<caption>{}</caption>\n<thead><tr>",
         escaped(caption)
     );
     for heading in headings {

@@ -1,4 +1,4 @@
-//! Text: a row a point. A header row may name the columns; x, y and z are found by name, else they are the first three.
+//! Text: a row a point. A header row may name the columns; x, y and z are found by name, in capitals or not, else they are the first three.
 
 use super::{Positions, ReadError, Text};
 use crate::formats::Format;
@@ -25,7 +25,10 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
         }
         let place = |names: [&str; 2]| {
             let mut fields = line.split(separates).filter(|field| !field.is_empty());
-            fields.position(|field| names.contains(&field.trim().trim_matches('"')))
+            fields.position(|field| {
+                let field = field.trim().trim_matches('"');
+                names.iter().any(|name| name.eq_ignore_ascii_case(field))
+            })
         };
         let [Some(x), Some(y), Some(z)] = NAMES.map(place) else {
             return Err(text.wrong(offset, "columns x_m, y_m and z_m", super::shown(line)));

@@ -251,6 +251,10 @@ fn analyze_writes_a_report_that_stands_alone() {
 fn what_cannot_be_analysed_is_said() {
     let place = Place::new();
     std::fs::write(place.path("none.csv"), "x,y,z\n").unwrap();
+    std::fs::write(place.path("empty.csv"), "").unwrap();
+    std::fs::write(place.path("origin.csv"), "X,Y,Z\n0,0,0\n").unwrap();
+    let zero = "ply\nformat ascii 1.0\nelement vertex 0\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
+    std::fs::write(place.path("zero.ply"), zero).unwrap();
     std::fs::write(place.path("nan.csv"), "x,y,z\n1,2,3\n4,nan,6\n").unwrap();
     std::fs::write(place.path("spoilt.ply"), "ply\nwhat\n").unwrap();
     for (line, code, words) in [
@@ -258,7 +262,10 @@ fn what_cannot_be_analysed_is_said() {
         ("analyze rmbl", 2, "a speed above 0 deg/s"),
         ("analyze vlp16:50", 2, "a sensor that stands still"),
         ("analyze nosuch", 3, "there is no pattern and no file"),
-        ("analyze none.csv", 3, "no point that has a direction"),
+        ("analyze none.csv", 3, "none.csv: the file has no points"),
+        ("analyze empty.csv", 3, "empty.csv: the file has no points"),
+        ("analyze zero.ply", 3, "zero.ply: the file has no points"),
+        ("analyze origin.csv", 3, "no point that has a direction"),
         ("analyze nan.csv", 3, "point 1 is at (4, NaN, 6)"),
         (
             "analyze spoilt.ply",
@@ -333,4 +340,40 @@ fn a_sweep_says_which_settings_nothing_beats() {
         text.contains("* no other setting") && text.lines().all(|line| line.chars().count() <= 80),
         "{text}"
     );
+}
+
+/// In the middle of 5e11 pairs.
+#[test]
+fn ctrl_c_ends_an_analysis_with_130_and_no_half_report() {
+    for signal in ["-INT", "-TERM"] {
+        let place = Place::new();
+        let mut analysis = Command::new(env!("CARGO_BIN_EXE_velomotion"))
+            .args(
+                "analyze rmbl:1200,step=2 velomotion16:5,step=0.1 --tolerance 0 --report page"
+                    .split(' '),
+            )
+            .current_dir(place.0.path())
+            .stdout(std::process::Stdio::null())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        // It names each of several before it begins.
+        let mut said = std::io::BufReader::new(analysis.stderr.take().unwrap());
+        let mut line = String::new();
+        while !line.contains("velomotion16:5") {
+            line.clear();
+            let read = std::io::BufRead::read_line(&mut said, &mut line).unwrap();
+            assert!(read > 0, "it ended");
+        }
+        let kill = Command::new("kill")
+            .args([signal, &analysis.id().to_string()])
+            .status();
+        assert!(kill.unwrap().success());
+        let mut rest = String::new();
+        std::io::Read::read_to_string(&mut said, &mut rest).unwrap();
+        assert_eq!(analysis.wait().unwrap().code(), Some(130), "{rest}");
+        assert!(rest.contains("stopped by the user"), "{rest}");
+        let written = std::fs::read_dir(place.path("page")).unwrap().count();
+        assert_eq!(written, 0, "half a report");
+    }
 }

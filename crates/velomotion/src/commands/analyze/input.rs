@@ -183,6 +183,11 @@ fn directions(
         };
         directions.push(direction);
     }
+    if directions.is_empty() && without == 0 {
+        let what = format!("{}: the file has no points", path.display());
+        let help = "see whether it is the right file, and whole";
+        return Err(Failure::new(Kind::BadInput, what).help(help));
+    }
     if directions.is_empty() {
         let what = format!("{}: no point that has a direction", path.display());
         let help =

@@ -9,7 +9,10 @@ mod sweep;
 
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
 
 use analysis::density::{
     Counts, DensityError, Icosahedron, Largest, Locator, TOLERANCE_RAD, bands, gaps, holes,
@@ -37,6 +40,8 @@ const CLASSES: usize = 10;
 const RADIUS_M: f64 = 1.0;
 /// A share of pairs on edges that nobody need know of: a few in a cloud are chance.
 const LEAST_ON_EDGES: f64 = 1e-8;
+/// How often it is looked whether the user wants no more of it.
+const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// Holes that are counted one by one.
 const MOST_HOLES: usize = 10_000;
 
@@ -46,11 +51,47 @@ const MOST_HOLES: usize = 10_000;
 /// [`Kind::Usage`] for patterns that cannot be, [`Kind::BadInput`] for files that cannot be read.
 pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
     let interrupt = signals::interrupt_flag()?;
+    let (arguments, common, flag) = (arguments.clone(), common.clone(), Arc::clone(&interrupt));
+    let (done, all) = mpsc::channel();
+    // What is measured can take minutes, and nothing is left of it that would have to be put in order: so it is simply not waited for after Ctrl-C.
+    let work = move || done.send(measured(&arguments, &common, &flag));
+    std::thread::Builder::new().spawn(work).map_err(|error| {
+        Failure::new(Kind::Incomplete, format!("cannot start a thread: {error}"))
+            .help("end other programs, or raise the limit of threads")
+    })?;
+    let (said, folder) = loop {
+        match all.recv_timeout(LOOK_AGAIN) {
+            Ok(found) => break found?,
+            Err(RecvTimeoutError::Timeout) => go_on(&interrupt)?,
+            Err(RecvTimeoutError::Disconnected) => {
+                let what = "the analysis ended without a result";
+                return Err(Failure::new(Kind::Incomplete, what)
+                    .help("report it with the input: it is an error of this program"));
+            }
+        }
+    };
+    go_on(&interrupt)?;
+    // Files are written here, where nobody goes away in the middle.
+    if let Some((folder, report, progress)) = folder {
+        folder.write(&report, &progress)?;
+    }
+    Ok(said)
+}
+
+/// What is said, and the folder that is still to be written.
+type Measured = (Said, Option<(Folder, Report, Progress)>);
+
+/// Measures all that was asked for.
+fn measured(
+    arguments: &cli::Analyze,
+    common: &Common,
+    interrupt: &AtomicBool,
+) -> Result<Measured, Failure> {
     let progress = Progress::new(common);
     let measure = Measure::new(arguments)?;
     if let Some(sweep) = &arguments.sweep {
-        let report = sweep.run(&arguments.inputs, &measure, progress, &interrupt)?;
-        return Ok(Said::report(&report, report.text()));
+        let report = sweep.run(&arguments.inputs, &measure, progress, interrupt)?;
+        return Ok((Said::report(&report, report.text()), None));
     }
     let inputs: Vec<Named<'_>> = arguments
         .inputs
@@ -60,12 +101,12 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
     let mut folder = Folder::new(arguments)?;
     let mut patterns = Vec::with_capacity(inputs.len());
     for (input, name) in inputs.iter().zip(&arguments.inputs) {
-        go_on(&interrupt)?;
+        go_on(interrupt)?;
         if inputs.len() > 1 {
             progress.say(name);
         }
-        let input = input.read(&interrupt)?;
-        let pattern = measure.one(&input, &interrupt)?;
+        let input = input.read(interrupt)?;
+        let pattern = measure.one(&input, interrupt)?;
         for warning in &pattern.warnings {
             progress.say(&format!("warning: {}: {warning}", pattern.name));
         }
@@ -75,11 +116,8 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
         patterns.push(pattern);
     }
     let report = Report { patterns };
-    if let Some(folder) = folder {
-        go_on(&interrupt)?;
-        folder.write(&report, &progress)?;
-    }
-    Ok(Said::report(&report, report.text()))
+    let said = Said::report(&report, report.text());
+    Ok((said, folder.map(|folder| (folder, report, progress))))
 }
 
 /// What is the same for all inputs.

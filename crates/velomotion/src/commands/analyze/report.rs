@@ -187,8 +187,8 @@ impl Report {
                 text,
                 "{name:column$} {:>9} {scan:>6} {:>7} {:>8} {:>6} {:>7} {:>7} {:>6}",
                 pattern.points,
-                number(s.mean, 7),
-                number(s.sd, 8),
+                thousandths(s.mean, 7),
+                thousandths(s.sd, 8),
                 s.min,
                 s.max,
                 number(s.mean_per_deg2, 7),
@@ -213,8 +213,13 @@ impl PatternReport {
         }
         if self.without_direction > 0 {
             lines.push(format!(
-                "{} points in the origin left out",
-                self.without_direction
+                "{} {} in the origin left out",
+                self.without_direction,
+                if self.without_direction == 1 {
+                    "point"
+                } else {
+                    "points"
+                }
             ));
         }
         lines.push(self.hole.line("largest hole"));
@@ -262,8 +267,9 @@ impl PatternReport {
             1 => "1 row".to_owned(),
             rows => format!("{rows} rows"),
         };
+        let spots = if blind.holes == 1 { "spot" } else { "spots" };
         format!(
-            "{more}{} blind spots (holes of {} deg and more), in {rows} about the tilt axis",
+            "{more}{} blind {spots} (holes of {} deg and more), in {rows} about the tilt axis",
             blind.holes,
             number(blind.least_radius_deg, 6),
         )
@@ -281,8 +287,12 @@ impl PatternReport {
             ""
         };
         Some(format!(
-            "{} bands about the tilt axis, {BAND_DEG} deg and wider, hold no point{why}: {} deg together, the widest from {} to {} deg",
-            bands.len(),
+            "{} about the tilt axis, {BAND_DEG} deg and wider, {} no point{why}: {} deg together, the widest from {} to {} deg",
+            match bands.len() {
+                1 => "1 band".to_owned(),
+                bands => format!("{bands} bands"),
+            },
+            if bands.len() == 1 { "holds" } else { "hold" },
             number(sum, 6),
             number(widest.from_deg, 6),
             number(widest.to_deg, 6)
@@ -376,6 +386,13 @@ pub(super) fn number(x: f64, places: usize) -> String {
     format!("{x:.decimals$}")
 }
 
+/// A number with three decimals, as far as there is room: means are of whole points, and half a hundredth is not to be rounded by its last bit.
+fn thousandths(x: f64, places: usize) -> String {
+    let whole = format!("{:.0}", x.trunc()).len();
+    let decimals = places.saturating_sub(whole + 1).min(3);
+    format!("{x:.decimals$}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -392,6 +409,20 @@ mod tests {
             (75.0, 6, "75.00"),
         ] {
             assert_eq!(number(x, places), expected);
+        }
+    }
+
+    #[test]
+    fn means_are_not_rounded_where_the_table_has_room() {
+        for (x, places, expected) in [
+            (1_037_952.0 / 5_120.0, 7, "202.725"),
+            (133.948_6, 8, "133.949"),
+            (84.468_75, 7, "84.469"),
+            (12_345.678_9, 7, "12345.7"),
+            (1_234_567.8, 7, "1234568"),
+            (0.000_4, 7, "0.000"),
+        ] {
+            assert_eq!(thousandths(x, places), expected);
         }
     }
 
