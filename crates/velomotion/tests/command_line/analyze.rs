@@ -250,6 +250,10 @@ fn analyze_writes_a_report_that_stands_alone() {
 #[test]
 fn what_cannot_be_analysed_is_said() {
     let place = Place::new();
+    std::fs::write(place.path("one.csv"), "x,y,z\n1,2,3\n").unwrap();
+    let one = json(&place.run("analyze one.csv --json"));
+    let warned = &one["patterns"][0]["warnings"][0];
+    assert!(warned.as_str().unwrap().contains("no pairs"), "{warned}");
     std::fs::write(place.path("none.csv"), "x,y,z\n").unwrap();
     std::fs::write(place.path("empty.csv"), "").unwrap();
     std::fs::write(place.path("origin.csv"), "X,Y,Z\n0,0,0\n").unwrap();

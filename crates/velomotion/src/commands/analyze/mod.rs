@@ -54,7 +54,8 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
     let (arguments, common, flag) = (arguments.clone(), common.clone(), Arc::clone(&interrupt));
     let (done, all) = mpsc::channel();
     // What is measured can take minutes, and nothing is left of it that would have to be put in order: so it is simply not waited for after Ctrl-C.
-    let work = move || done.send(measured(&arguments, &common, &flag));
+    // Who is not waited for any more sends to nobody.
+    let work = move || drop(done.send(measured(&arguments, &common, &flag)));
     std::thread::Builder::new().spawn(work).map_err(|error| {
         Failure::new(Kind::Incomplete, format!("cannot start a thread: {error}"))
             .help("end other programs, or raise the limit of threads")
@@ -237,7 +238,10 @@ impl Measure {
         let curve = KCurve::of_estimate(&estimate, SPHERE_M);
         let area = 4.0 * PI * RADIUS_M * RADIUS_M;
         let bound = Some(curve.d_error_bound).filter(|bound| bound.is_finite());
-        let warnings = on_edges(&estimate).into_iter().collect();
+        let mut warnings: Vec<String> = on_edges(&estimate).into_iter().collect();
+        if estimate.points < 2 {
+            warnings.push("one point has no pairs: its K says nothing, and is 0 here".to_owned());
+        }
         let report = KReport {
             method: estimate.method,
             bins: curve.d.len(),
