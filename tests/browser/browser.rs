@@ -265,8 +265,15 @@ impl Page {
 
     /// Types into a field that may hold something.
     pub async fn fill(&self, css: &str, text: &str) {
-        let element = self.client.find(Locator::Css(css)).await.unwrap();
-        element.clear().await.unwrap();
+        let begin = Instant::now();
+        // A page that is just being replaced takes its fields with it.
+        let element = loop {
+            let element = self.client.find(Locator::Css(css)).await.unwrap();
+            match element.clear().await {
+                Ok(()) => break element,
+                Err(error) => assert!(begin.elapsed() < PATIENCE, "{css}: {error}"),
+            }
+        };
         element.send_keys(text).await.unwrap();
     }
 
