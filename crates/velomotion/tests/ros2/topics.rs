@@ -149,7 +149,8 @@ fn check_clouds(clouds: &[Value], frames: &[Value]) {
         let fields = json!(["x", "y", "z", "intensity", "ring", "time"]);
         assert_eq!((&said["fields"], &said["rings"]), (&fields, &json!(16)));
         let far = said["farthest_m"].as_f64().unwrap();
-        assert!((5.0..120.0).contains(&far), "{said}");
+        // A frame of a few milliseconds may see the nearest wall alone.
+        assert!((1.0..120.0).contains(&far), "{said}");
         assert_eq!(said["first_s"], 0.0, "{said}");
     }
     // The sweep of 45 degrees at 56.25 deg/s.
