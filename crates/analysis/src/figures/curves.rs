@@ -4,7 +4,7 @@
 
 use std::f64::consts::PI;
 
-use super::frame::{At, MARGIN, TITLE, WIDTH, document, legend, stroke, text};
+use super::frame::{At, MARGIN, TITLE, WIDTH, document, legend, levels, stroke, text};
 use super::{SPHERE_M, Scans};
 use crate::tradeoff::Scale;
 use crate::tradeoff::svg::scale::Axis;
@@ -71,19 +71,7 @@ fn plot(title: &str, curves: &[Curve], top: f64) -> String {
             &format!("{degrees}\u{b0}"),
         );
     }
-    for tick in y.ticks() {
-        svg += &format!(
-            "<path class=\"tv-grid\" d=\"M{LEFT} {:.1}H{RIGHT}\"/>\n",
-            tick.at
-        );
-        svg += &text(
-            LEFT - 6.0,
-            tick.at + 4.0,
-            At::End,
-            "tv-soft tv-small",
-            &tick.label,
-        );
-    }
+    svg += &levels(&y, LEFT, RIGHT);
     if let Some(zero) = y.place(0.0) {
         svg += &format!("<path class=\"tv-zero\" d=\"M{LEFT} {zero:.1}H{RIGHT}\"/>\n");
     }

@@ -4,6 +4,7 @@
 
 use crate::tradeoff::svg::labels::width;
 use crate::tradeoff::svg::marks;
+use crate::tradeoff::svg::scale::Axis;
 use crate::tradeoff::svg::{STYLE, escaped};
 
 /// Width of a figure, pixels.
@@ -98,4 +99,23 @@ pub(super) fn legend(names: &[&str], mut y: f64) -> (String, f64) {
         x += wide;
     }
     (svg, y + 14.0)
+}
+
+/// Lines across for the ticks of an upright axis, with their labels on the left.
+pub(super) fn levels(axis: &Axis, left: f64, right: f64) -> String {
+    let mut svg = String::new();
+    for tick in axis.ticks() {
+        svg += &format!(
+            "<path class=\"tv-grid\" d=\"M{left} {:.1}H{right}\"/>\n",
+            tick.at
+        );
+        svg += &text(
+            left - 6.0,
+            tick.at + 4.0,
+            At::End,
+            "tv-soft tv-small",
+            &tick.label,
+        );
+    }
+    svg
 }

@@ -2,7 +2,7 @@
 //!
 //! Left out: the text's histogram, whose classes are each scan's own.
 
-use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, text};
+use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, levels, text};
 use super::{Scan, Scans};
 use crate::tradeoff::Scale;
 use crate::tradeoff::svg::marks;
@@ -118,19 +118,7 @@ fn grid(x: &Axis, y: &Axis) -> String {
             &tick.label,
         );
     }
-    for tick in y.ticks() {
-        svg += &format!(
-            "<path class=\"tv-grid\" d=\"M{LEFT} {:.1}H{RIGHT}\"/>\n",
-            tick.at
-        );
-        svg += &text(
-            LEFT - 6.0,
-            tick.at + 4.0,
-            At::End,
-            "tv-soft tv-small",
-            &tick.label,
-        );
-    }
+    svg += &levels(y, LEFT, RIGHT);
     svg += &format!(
         "<rect class=\"tv-frame\" x=\"{LEFT}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\"/>\n",
         RIGHT - LEFT,
