@@ -129,7 +129,7 @@ impl NewFile {
         &self.path
     }
 
-    /// Makes the bytes durable and gives the file its name.
+    /// Makes the bytes durable and gives the file its name, durably too.
     ///
     /// # Errors
     /// [`FileError::Exists`] if another program made the file meanwhile and it may not be replaced; [`FileError::Io`].
@@ -147,7 +147,10 @@ impl NewFile {
             }
             // `link` fails where the name is taken, which `rename` would not; Drop then removes the other name.
             Overwrite::Refuse => match fs::hard_link(&temporary, &self.path) {
-                Ok(()) => return Ok(()),
+                Ok(()) => {
+                    keep_name(&self.path);
+                    return Ok(());
+                }
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
                     return Err(FileError::Exists {
                         path: self.path.clone(),
@@ -165,6 +168,7 @@ impl NewFile {
             },
         }
         self.temporary = None;
+        keep_name(&self.path);
         Ok(())
     }
 
@@ -206,6 +210,33 @@ impl Read for NewFile {
 impl Seek for NewFile {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
+    }
+}
+
+/// Waits until a disk has all bytes of a file, which then survive a power cut. Devices and pipes have no such thing, and that is fine.
+///
+/// # Errors
+/// What the disk says.
+pub fn make_durable(file: &File) -> io::Result<()> {
+    match file.sync_data() {
+        Err(error)
+            if matches!(
+                error.kind(),
+                io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported
+            ) =>
+        {
+            Ok(())
+        }
+        synced => synced,
+    }
+}
+
+/// Has the disk remember the name of a file or folder that was just made: it may else be gone after a power cut, however safe the bytes are.
+/// File systems that cannot are left alone.
+pub fn keep_name(path: &Path) {
+    if let Ok(folder) = File::open(folder_of(path)) {
+        // Some network file systems refuse; the file is as safe there as it can be.
+        let _ = folder.sync_all();
     }
 }
 

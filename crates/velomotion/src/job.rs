@@ -76,6 +76,8 @@ pub enum Happening<'a> {
     Progress(&'a Progress),
     /// The axis has made its last move.
     Over,
+    /// The disk is waited for, every few milliseconds.
+    Saving,
     /// Something to be said.
     Warning(&'a str),
 }
@@ -114,7 +116,9 @@ pub fn record(job: Job<'_>, told: &mut dyn FnMut(Happening<'_>)) -> Result<Ended
     let recording = Recording::start(job.hearing, &setup.log, &scan, job.link)?;
     if let Err(failure) = await_lidar(&recording, setup, interrupt) {
         // Nothing has moved and nothing is recorded.
-        let unwanted = recording.finish().map_or(0, |heard| heard.lidar.unwanted);
+        let unwanted = recording
+            .finish(&mut || {})
+            .map_or(0, |heard| heard.lidar.unwanted);
         let _ = std::fs::remove_file(&setup.log);
         return Err(match unwanted {
             0 => failure,
@@ -161,7 +165,7 @@ pub fn record(job: Job<'_>, told: &mut dyn FnMut(Happening<'_>)) -> Result<Ended
     });
     told(Happening::Over);
     drop(session);
-    let recorded = recording.finish();
+    let recorded = recording.finish(&mut || told(Happening::Saving));
     if let Ok(Recorded { lidar, .. }) = &recorded
         && lidar.without_kernel_time > 0
     {

@@ -107,7 +107,7 @@ impl Recording {
         };
         let writer =
             LogWriter::create(path, &head, Overwrite::Refuse).map_err(|e| log_failure(&e))?;
-        let log = Recorder::start(writer).map_err(|e| log_failure(&e))?;
+        let log = Recorder::to_disk(writer).map_err(|e| log_failure(&e))?;
         let packets_before = hearing.packets();
         let before = hearing.record_to(Some(log.handle()))?;
         Ok(Self {
@@ -136,13 +136,16 @@ impl Recording {
         self.log.failed()
     }
 
-    /// Takes what has come until now and closes the log.
+    /// Takes what has come until now and closes the log; `waiting` is called every few milliseconds until the disk has it.
     ///
     /// # Errors
     /// [`Kind::Incomplete`] where the log could not be written to its end or the lidar's socket failed; what was written stays.
-    pub fn finish(self) -> Result<Recorded, Failure> {
+    pub fn finish(self, waiting: &mut dyn FnMut()) -> Result<Recorded, Failure> {
         let heard = self.hearing.record_to(None);
-        let log = self.log.finish().map_err(|e| log_failure(&e))?;
+        let log = self
+            .log
+            .finish_while(waiting)
+            .map_err(|e| log_failure(&e))?;
         Ok(Recorded {
             lidar: since(heard?, self.before),
             log,

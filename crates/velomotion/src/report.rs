@@ -300,6 +300,9 @@ pub struct Scan {
     /// How long before the end of the last sweep the last lidar packet came, seconds; 0 where that is not known or it came later.
     #[serde(skip)]
     pub unheard_s: f64,
+    /// What of the sweeps that the log was to have is missing; in the warnings too.
+    #[serde(skip)]
+    pub short: Vec<String>,
     /// What a capture heard.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reception: Option<Reception>,

@@ -58,11 +58,15 @@ impl Watch {
     }
 }
 
-/// What a scan lacks that nobody has complained of: packets that never came.
+/// What a scan lacks that nobody has complained of: packets that never came, an end of the log that never reached the disk.
 #[must_use]
 pub fn missing(scan: &Scan) -> Option<Failure> {
     let lost = scan.contents.lost_packets;
     let mut said = Vec::new();
+    if let Some(truncated) = &scan.contents.truncated {
+        said.push(format!("the log is not whole ({truncated})"));
+    }
+    said.extend(scan.short.iter().cloned());
     if lost > 0 {
         let of = lost.saturating_add(scan.contents.packets.data);
         said.push(format!("{lost} of {of} lidar packets are missing"));
@@ -75,7 +79,7 @@ pub fn missing(scan: &Scan) -> Option<Failure> {
     }
     (!said.is_empty()).then(|| {
         Failure::new(Kind::Incomplete, said.join(", and "))
-            .help("see whether the lidar's cable and the network's switches are sound, and scan again if the holes matter")
+            .help("see whether the lidar's cable and the network's switches are sound, and scan again if what is missing matters")
     })
 }
 

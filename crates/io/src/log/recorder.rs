@@ -3,10 +3,12 @@
 //! Records of the two devices reach the thread in nearly the order of their host times; they are held for 0.2 to 0.4 s
 //! and written in that order, so that at most the last half second is lost when the process is killed. A sender never
 //! waits for the disk: when the queue is full the record is dropped and counted, for the motor must not wait.
+//! A log on a disk is durable once it is finished: what is made of it is told as whole, also after a power cut.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use std::io::Write;
+use std::fs::File;
+use std::io::{self, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
@@ -18,11 +20,14 @@ use units::{Host, Stamp};
 
 use super::owned::OwnedRecord;
 use super::writer::{LogCounts, LogError, LogWriter};
+use crate::files;
 
 /// How long a record is held at least, for an earlier one to overtake it; also how often the file is flushed.
 const HOLD: Duration = Duration::from_millis(200);
 /// Records that may wait for the disk: 40 s of a VLP-16 in dual return and a drive polled at 300 Hz, some 80 MB.
 const QUEUE_LEN: usize = 65_536;
+/// How often it is looked whether everything is saved.
+const SAVING: Duration = Duration::from_millis(2);
 
 enum Message {
     Record(OwnedRecord),
@@ -79,18 +84,33 @@ impl RecorderHandle {
 }
 
 impl Recorder {
-    /// Starts the thread on a log whose head is written.
+    /// Starts the thread on a file whose head is written; [`Recorder::finish`] returns when the disk has it all.
+    ///
+    /// # Errors
+    /// [`LogError::Thread`] where the system gives no thread.
+    pub fn to_disk(writer: LogWriter<File>) -> Result<Self, LogError> {
+        Self::with_end(writer, files::make_durable)
+    }
+
+    /// Starts the thread on a log whose head is written, in anything that takes bytes.
     ///
     /// # Errors
     /// [`LogError::Thread`] where the system gives no thread.
     pub fn start<W: Write + Send + 'static>(writer: LogWriter<W>) -> Result<Self, LogError> {
+        Self::with_end(writer, |_| Ok(()))
+    }
+
+    fn with_end<W: Write + Send + 'static>(
+        writer: LogWriter<W>,
+        end: impl FnOnce(&W) -> io::Result<()> + Send + 'static,
+    ) -> Result<Self, LogError> {
         let (queue, inbox) = sync_channel(QUEUE_LEN);
         let shared = Arc::new(Shared::default());
         let theirs = Arc::clone(&shared);
         let thread = thread::Builder::new()
             .name("log".to_owned())
             .spawn(move || {
-                let done = Order::new(writer).run(&inbox);
+                let done = Order::new(writer).run(&inbox, end);
                 theirs.failed.store(done.is_err(), Ordering::Release);
                 done
             })
@@ -118,8 +138,21 @@ impl Recorder {
     /// # Errors
     /// [`LogError::Write`] if a write failed, now or earlier; [`LogError::Thread`] if the thread died.
     pub fn finish(self) -> Result<RecorderCounts, LogError> {
-        // A thread that has ended on an error no longer listens; its result says so.
-        let _ = self.handle.queue.send(Message::Finish);
+        self.finish_while(|| {})
+    }
+
+    /// The same, with `waiting` called every few milliseconds until the disk has everything.
+    ///
+    /// # Errors
+    /// As [`Recorder::finish`].
+    pub fn finish_while(self, mut waiting: impl FnMut()) -> Result<RecorderCounts, LogError> {
+        let mut told = false;
+        while !self.thread.is_finished() {
+            // A full queue takes it later. A thread that has ended on an error no longer listens; its result says so.
+            told = told || self.handle.queue.try_send(Message::Finish).is_ok();
+            waiting();
+            thread::sleep(SAVING);
+        }
         match self.thread.join() {
             Ok(done) => done.map(|counts| RecorderCounts {
                 dropped: self.handle.shared.dropped.load(Ordering::Relaxed),
@@ -179,7 +212,11 @@ impl<W: Write> Order<W> {
         }
     }
 
-    fn run(mut self, inbox: &Receiver<Message>) -> Result<RecorderCounts, LogError> {
+    fn run(
+        mut self,
+        inbox: &Receiver<Message>,
+        end: impl FnOnce(&W) -> io::Result<()>,
+    ) -> Result<RecorderCounts, LogError> {
         let mut turn_ends = Instant::now() + HOLD;
         loop {
             let wait = turn_ends.saturating_duration_since(Instant::now());
@@ -194,7 +231,11 @@ impl<W: Write> Order<W> {
             }
         }
         self.write_held(None)?;
-        let (log, _) = self.writer.finish()?;
+        let (log, out) = self.writer.finish()?;
+        end(&out).map_err(|source| LogError::Write {
+            offset: log.bytes,
+            source,
+        })?;
         Ok(RecorderCounts { log, ..self.counts })
     }
 

@@ -8,7 +8,7 @@ use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Stamp};
 
 use super::{block, datagram};
-use crate::files::Overwrite;
+use crate::files::{Overwrite, keep_name};
 use crate::recording::{RS232_NAME, USB_NAME};
 
 /// Bytes gathered before a write.
@@ -146,7 +146,9 @@ impl LogWriter<File> {
         let path = path.as_ref();
         // Before an older log is emptied for it.
         check_metadata(config)?;
-        Self::new(new_file(path, overwrite)?, config)
+        let writer = Self::new(new_file(path, overwrite)?, config)?;
+        keep_name(path);
+        Ok(writer)
     }
 }
 

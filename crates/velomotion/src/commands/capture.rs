@@ -126,7 +126,7 @@ fn record(
 /// What a person at the terminal sees of it.
 fn show(happening: Happening<'_>, progress: &mut Progress) {
     match happening {
-        Happening::Begins => {}
+        Happening::Begins | Happening::Saving => {}
         Happening::Move { step, .. } => progress.begin_move(&step.plan),
         Happening::Moved { at, angle, packets } => progress.moved(at, angle, packets),
         Happening::Progress(step) => tracing::info!(?step),

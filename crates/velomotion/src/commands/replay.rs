@@ -35,7 +35,7 @@ use crate::report::{self, Scan, StepReport, Sync, ToleranceReport};
 use crate::sensing;
 use crate::signals;
 use crate::utc::{InUtc, UtcSurvey};
-use doubts::doubts;
+use doubts::{doubts, short};
 pub(super) use failures::scan_failure;
 use tilt::tilt_source;
 
@@ -357,9 +357,11 @@ fn report(
         &surveyed.pass,
         &alignment.steps,
     );
+    let short = short(&surveyed.config, alignment);
+    let doubts = doubts(alignment).into_iter();
     contents
         .warnings
-        .extend(doubts(&surveyed.config, alignment));
+        .extend(doubts.chain(short.iter().cloned()));
     Ok(Scan {
         contents,
         points: placed.points,
@@ -375,6 +377,7 @@ fn report(
         log: path.display().to_string(),
         lost_records: request.lost_records,
         unheard_s: unheard_s(surveyed),
+        short,
         reception: None,
         truth: None,
     })

@@ -152,6 +152,7 @@ impl Keeper {
                     tracing::debug!(?step);
                 }
                 Happening::Over => motions.end(),
+                Happening::Saving => shared.beat(),
                 Happening::Warning(text) => {
                     shared.scans.say(id, &format!("warning: {text}"));
                     shared.hub.say(Level::Warning, text, None);

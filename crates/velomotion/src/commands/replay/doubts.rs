@@ -1,4 +1,4 @@
-//! What is doubtful about a cloud whose angles were found all the same.
+//! What is doubtful about a cloud whose angles were found all the same, and what it lacks.
 
 use scanner::{Alignment, ScanConfig};
 
@@ -8,7 +8,7 @@ const DOUBTFUL_DEG: f64 = 0.1;
 const SHORT_DEG: f64 = 0.1;
 
 /// What is doubtful about the angles: polls too slow or too few, sweeps that are not as planned.
-pub(super) fn doubts(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
+pub(super) fn doubts(alignment: &Alignment) -> Vec<String> {
     let mut doubts = Vec::new();
     if let Some(bound) = alignment
         .angle_bound_deg()
@@ -29,14 +29,21 @@ pub(super) fn doubts(config: &ScanConfig, alignment: &Alignment) -> Vec<String> 
         let remarks = fit.remarks.iter();
         doubts.extend(remarks.map(|remark| format!("sweep {}: {remark}", number + 1)));
     }
+    doubts
+}
+
+/// What is missing of the sweeps that the log was to have. A log that says nothing of a plan lacks nothing, nor one without any sweep, of
+/// which there is no cloud.
+pub(super) fn short(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
     let Some(plan) = config.sweep.filter(|_| !alignment.sweeps.is_empty()) else {
-        return doubts;
+        return Vec::new();
     };
+    let mut short = Vec::new();
     for (number, sweep) in alignment.sweeps.iter().enumerate() {
         let back = plan.both_ways && number % 2 == 1;
         let end = if back { plan.from_deg } else { plan.to_deg };
         if (sweep.to.0 - end).abs() > SHORT_DEG {
-            doubts.push(format!(
+            short.push(format!(
                 "sweep {} was cut short at {:.3} deg of {end} deg",
                 number + 1,
                 sweep.to.0
@@ -45,7 +52,7 @@ pub(super) fn doubts(config: &ScanConfig, alignment: &Alignment) -> Vec<String> 
     }
     let made = alignment.sweeps.len();
     if (made as u64) < u64::from(plan.sweeps) {
-        doubts.push(format!("{made} of {} sweeps were made", plan.sweeps));
+        short.push(format!("{made} of {} sweeps were made", plan.sweeps));
     }
-    doubts
+    short
 }
