@@ -24,10 +24,8 @@ use self::channels::Channels;
 use super::fallible::{Fault, Output};
 use super::stage::Stage;
 use crate::messages::cdr::Cdr;
-use crate::messages::cutter::Cutter;
 use crate::messages::{
-    CloudMessage, CloudMessageError, Frames, Time, Topic, diagnostic_array, frames, joint_state,
-    tf_message,
+    Cloud, Cutting, Frames, Time, Topic, diagnostic_array, joint_state, tf_message,
 };
 use crate::{Check, Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
 
@@ -43,8 +41,13 @@ const CHUNK_BYTES: u64 = 1 << 20;
 ///
 /// A file whose output failed cannot be completed; what a killed program leaves has its whole chunks, which `mcap recover` makes a file of.
 pub struct McapWriter<W: Write + Seek> {
-    cutter: Cutter,
     stage: Stage,
+    clouds: Cutting,
+    log: Log<W>,
+}
+
+/// Messages on their way into the file, in the order of time.
+struct Log<W: Write + Seek> {
     fault: Fault,
     state: State<W>,
     hardware: String,
@@ -52,11 +55,11 @@ pub struct McapWriter<W: Write + Seek> {
     /// Samples of the track that are written.
     samples: usize,
     transformed: Option<Stamp<Host>>,
-    cloud: CloudMessage,
     cdr: Cdr,
     /// The time up to which messages are written.
     now: Option<Stamp<Host>>,
-    summary: Summary,
+    /// Points of the batches so far.
+    points: u64,
 }
 
 enum State<W: Write + Seek> {
@@ -77,54 +80,50 @@ impl<W: Write + Seek> McapWriter<W> {
     pub fn new(output: W) -> Self {
         let (output, fault) = Output::new(output);
         Self {
-            cutter: Cutter::default(),
             stage: Stage::default(),
-            fault,
-            state: State::Idle(output),
-            hardware: String::new(),
-            track: TiltTrack::default(),
-            samples: 0,
-            transformed: None,
-            cloud: CloudMessage::new(Fields::FILE),
-            cdr: Cdr::new(),
-            now: None,
-            summary: Summary::default(),
+            clouds: Cutting::new(FORMAT, Fields::FILE, Frames::default()),
+            log: Log {
+                fault,
+                state: State::Idle(output),
+                hardware: String::new(),
+                track: TiltTrack::default(),
+                samples: 0,
+                transformed: None,
+                cdr: Cdr::new(),
+                now: None,
+                points: 0,
+            },
         }
     }
 
     /// The same with other columns beside x, y, z, intensity, ring and time; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.cloud = CloudMessage::new(fields);
+        self.clouds = self.clouds.with_fields(fields);
         self
     }
 
     /// The same with a cloud a turn of the lidar, as [`Sink::turn`] tells; only before [`Sink::begin`].
     #[must_use]
     pub fn by_turns(mut self) -> Self {
-        self.cutter = Cutter::by_turns();
+        self.clouds = self.clouds.by_turns();
         self
     }
 
     /// Gives the output back; `None` where writing failed or was not finished.
     pub fn into_inner(self) -> Option<W> {
-        match self.state {
+        match self.log.state {
             State::Idle(output) | State::Done { output, .. } => Some(output.into_inner()),
             State::Open { .. } | State::Lost => None,
         }
     }
+}
 
-    fn frame(&self) -> &'static str {
-        match self.track.mount {
-            Some(_) => frames::BASE,
-            None => frames::LIDAR,
-        }
-    }
-
+impl<W: Write + Seek> Log<W> {
     fn encoding(&self, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> SinkError {
         SinkError::Encode {
             format: FORMAT,
-            points: self.summary.points,
+            points: self.points,
             source: source.into(),
         }
     }
@@ -134,7 +133,7 @@ impl<W: Write + Seek> McapWriter<W> {
         match self.fault.get() {
             Some(source) => Err(SinkError::Write {
                 format: FORMAT,
-                points: self.summary.points,
+                points: self.points,
                 source,
             }),
             None => result.map_err(|error| self.encoding(error)),
@@ -213,81 +212,16 @@ impl<W: Write + Seek> McapWriter<W> {
         self.write(Topic::Transforms, at)
     }
 
-    /// Writes the cloud that there is.
-    fn end_cloud(&mut self) -> Result<(), SinkError> {
-        if self.cloud.points() == 0 {
-            return Ok(());
-        }
-        let (first, last) = self.cloud.times();
+    fn write_cloud(&mut self, cloud: Cloud<'_>) -> Result<(), SinkError> {
+        let (first, last) = cloud.times;
         if self.now.is_none() {
             self.go_on_to(first)?;
         }
         self.go_on_to(last)?;
-        let mut cloud = std::mem::replace(&mut self.cloud, CloudMessage::new(Fields::NONE));
-        let at = self.now.unwrap_or(last);
-        let written = self.write_bytes(Topic::Points, at, cloud.message().bytes());
-        cloud.clear();
-        self.cloud = cloud;
-        written
-    }
-
-    fn push(&mut self, batch: &Points) -> Result<(), SinkError> {
-        let mut rows = 0..batch.len();
-        while let Some(time) = batch.time().get(rows.start).copied() {
-            let end = self.cutter.end(&self.cloud, batch.time(), &rows);
-            if end == rows.start && self.cloud.points() > 0 {
-                self.end_cloud()?;
-                continue;
-            }
-            if end == rows.start && self.cutter.go_on_to(time) {
-                continue;
-            }
-            // A point always fits into an empty message.
-            let end = end.max(rows.start + 1);
-            let frame = self.frame();
-            let pushed = self.cloud.push(batch, rows.start..end, frame);
-            pushed.map_err(|error| match error {
-                CloudMessageError::Columns(missing) => missing.into(),
-                CloudMessageError::Time(_) => self.encoding(error),
-            })?;
-            rows.start = end;
-        }
-        Ok(())
-    }
-}
-
-/// What the file says of itself, uncompressed.
-fn record(metadata: &Metadata) -> mcap::records::Metadata {
-    let about = metadata.lines().join("\n");
-    let simulated = metadata.simulated.to_string();
-    mcap::records::Metadata {
-        name: "velomotion".to_owned(),
-        metadata: BTreeMap::from([
-            ("about".to_owned(), about),
-            ("simulated".to_owned(), simulated),
-        ]),
-    }
-}
-
-impl<W: Write + Seek> Sink for McapWriter<W> {
-    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
-        self.stage.points(FORMAT)?;
-        batch.fields().require(self.cloud.fields())?;
-        super::check_places(FORMAT, f64::from(f32::MAX), self.summary.points, batch)?;
-        if let Err(error) = self.push(batch) {
-            self.stage.cut();
-            return Err(error);
-        }
-        self.summary.add(batch.summary());
-        Ok(())
-    }
-
-    fn fields(&self) -> Fields {
-        self.cloud.fields()
+        self.write_bytes(Topic::Points, self.now.unwrap_or(last), cloud.bytes)
     }
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
-        self.stage.begin(FORMAT)?;
         self.hardware.clone_from(&metadata.source);
         let State::Idle(output) = std::mem::replace(&mut self.state, State::Lost) else {
             return Ok(());
@@ -306,32 +240,10 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
             writer: Box::new(self.outcome(writer)?),
             channels: Channels::default(),
         };
-        self.stage.opened();
         Ok(())
     }
 
-    fn wants_tilt(&self) -> bool {
-        true
-    }
-
-    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
-        self.stage.points(FORMAT)?;
-        self.track = track.clone();
-        self.cutter.sweep(&track.sweeps);
-        Ok(())
-    }
-
-    fn turn(&mut self) -> Result<(), SinkError> {
-        self.stage.points(FORMAT)?;
-        match self.cutter.is_by_turns() {
-            true => self.end_cloud(),
-            false => Ok(()),
-        }
-    }
-
-    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
-        self.stage.points(FORMAT)?;
-        self.end_cloud()?;
+    fn write_checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
         let last = self.track.samples.last().map(|sample| sample.0);
         let Some(end) = last.max(self.now) else {
             // Nothing was said, so there is no time to say it at.
@@ -343,8 +255,91 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
         self.write(Topic::Diagnostics, end)
     }
 
+    fn finish(&mut self) -> Result<(), SinkError> {
+        let State::Open {
+            mut writer,
+            channels,
+        } = std::mem::replace(&mut self.state, State::Lost)
+        else {
+            return Ok(());
+        };
+        let finished = writer.finish();
+        self.outcome(finished)?;
+        let mut output = writer.into_inner();
+        let flushed = output.flush().map_err(mcap::McapError::from);
+        self.outcome(flushed)?;
+        self.state = State::Done { output, channels };
+        Ok(())
+    }
+}
+
+/// What the file says of itself, uncompressed.
+fn record(metadata: &Metadata) -> mcap::records::Metadata {
+    let about = metadata.lines().join("\n");
+    let simulated = metadata.simulated.to_string();
+    mcap::records::Metadata {
+        name: "velomotion".to_owned(),
+        metadata: BTreeMap::from([
+            ("about".to_owned(), about),
+            ("simulated".to_owned(), simulated),
+        ]),
+    }
+}
+
+impl<W: Write + Seek> McapWriter<W> {
+    fn end_cloud(&mut self) -> Result<(), SinkError> {
+        self.clouds.end(|cloud| self.log.write_cloud(cloud))
+    }
+}
+
+impl<W: Write + Seek> Sink for McapWriter<W> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        self.clouds.check(batch)?;
+        let mut take = |cloud: Cloud<'_>| self.log.write_cloud(cloud);
+        if let Err(error) = self.clouds.points(batch, &mut take) {
+            self.stage.cut();
+            return Err(error);
+        }
+        self.log.points = self.clouds.summary().points;
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.clouds.fields()
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.stage.begin(FORMAT)?;
+        self.log.begin(metadata)?;
+        self.stage.opened();
+        Ok(())
+    }
+
+    fn wants_tilt(&self) -> bool {
+        true
+    }
+
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        self.log.track = track.clone();
+        self.clouds.tilt(track);
+        Ok(())
+    }
+
+    fn turn(&mut self) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        self.clouds.turn(|cloud| self.log.write_cloud(cloud))
+    }
+
+    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
+        self.stage.points(FORMAT)?;
+        self.end_cloud()?;
+        self.log.write_checks(checks)
+    }
+
     fn companion(&self, file_name: &str) -> Option<Companion> {
-        let State::Done { channels, .. } = &self.state else {
+        let State::Done { channels, .. } = &self.log.state else {
             return None;
         };
         Some(bag::companion(file_name, channels))
@@ -355,23 +350,12 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
         self.stage.finish(FORMAT)?;
         if whole {
             self.end_cloud()?;
-            if let Some((last, _)) = self.track.samples.last().copied() {
-                self.go_on_to(last)?;
+            if let Some((last, _)) = self.log.track.samples.last().copied() {
+                self.log.go_on_to(last)?;
             }
         }
-        if let State::Open {
-            mut writer,
-            channels,
-        } = std::mem::replace(&mut self.state, State::Lost)
-        {
-            let finished = writer.finish();
-            self.outcome(finished)?;
-            let mut output = writer.into_inner();
-            let flushed = output.flush().map_err(mcap::McapError::from);
-            self.outcome(flushed)?;
-            self.state = State::Done { output, channels };
-        }
-        Ok(self.summary)
+        self.log.finish()?;
+        Ok(self.clouds.summary())
     }
 }
 

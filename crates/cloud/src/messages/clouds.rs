@@ -1,7 +1,9 @@
-//! A scan as `sensor_msgs/PointCloud2`, one a sweep, handed over one after the other: what a network sends of a cloud that is being made.
+//! A scan as `sensor_msgs/PointCloud2`, one a sweep, handed over one after the other: what a network sends of a cloud that is being made, and a
+//! recording keeps of it.
 //!
-//! Cut as [`formats::mcap`](crate::formats::mcap) cuts them. One message is held at a time, and the points wait while it is taken. Left out: what
-//! else is said of a scan.
+//! One message is held at a time, and the points wait while it is taken. Left out: where messages go, and what else is said of a scan.
+
+use units::{Host, Stamp};
 
 use super::cutter::Cutter;
 use super::{CloudMessage, CloudMessageError, Frames};
@@ -16,11 +18,13 @@ pub struct Cloud<'a> {
     pub bytes: &'a [u8],
     /// Its points.
     pub points: u32,
+    /// The time of its first point, and of its last.
+    pub times: (Stamp<Host>, Stamp<Host>),
 }
 
-/// Gives each cloud to `take`.
-pub struct Clouds<F> {
-    take: F,
+/// Cuts batches into messages, for a format that is named in its errors.
+pub(crate) struct Cutting {
+    format: &'static str,
     frames: Frames,
     tilts: bool,
     cutter: Cutter,
@@ -28,53 +32,76 @@ pub struct Clouds<F> {
     summary: Summary,
 }
 
-impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Clouds<F> {
-    /// Clouds with x, y, z, intensity, ring and time, in frames of these names.
-    pub fn new(frames: Frames, take: F) -> Self {
+impl Cutting {
+    /// Into clouds a sweep with these columns beside x, y, z, intensity, ring and time, in frames of these names.
+    pub(crate) fn new(format: &'static str, fields: Fields, frames: Frames) -> Self {
         Self {
-            take,
+            format,
             frames,
             tilts: false,
             cutter: Cutter::default(),
-            cloud: CloudMessage::new(Fields::NONE),
+            cloud: CloudMessage::new(fields),
             summary: Summary::default(),
         }
     }
 
-    fn end_cloud(&mut self) -> Result<(), SinkError> {
-        let points = self.cloud.points();
-        if points == 0 {
-            return Ok(());
-        }
-        let message = self.cloud.message();
-        let bytes = message.bytes();
-        let taken = (self.take)(Cloud { bytes, points });
-        drop(message);
-        self.cloud.clear();
-        taken
+    /// The same with other columns; only before the first batch.
+    pub(crate) fn with_fields(self, fields: Fields) -> Self {
+        let cloud = CloudMessage::new(fields);
+        Self { cloud, ..self }
     }
 
-    fn encoding(&self, error: CloudMessageError) -> SinkError {
-        match error {
-            CloudMessageError::Columns(missing) => missing.into(),
-            CloudMessageError::Time(late) => SinkError::Encode {
-                format: FORMAT,
-                points: self.summary.points,
-                source: late.into(),
-            },
+    /// The same with a cloud a turn of the lidar; only before the first batch.
+    pub(crate) fn by_turns(self) -> Self {
+        let cutter = Cutter::by_turns();
+        Self { cutter, ..self }
+    }
+
+    /// The columns that batches must have.
+    pub(crate) fn fields(&self) -> Fields {
+        self.cloud.fields()
+    }
+
+    /// Of all batches so far.
+    pub(crate) const fn summary(&self) -> Summary {
+        self.summary
+    }
+
+    /// How the platform tilted: which frame clouds are in, and where they end.
+    pub(crate) fn tilt(&mut self, track: &TiltTrack) {
+        self.tilts = track.mount.is_some();
+        self.cutter.sweep(&track.sweeps);
+    }
+
+    /// A turn of the lidar ends.
+    pub(crate) fn turn(
+        &mut self,
+        take: impl FnOnce(Cloud<'_>) -> Result<(), SinkError>,
+    ) -> Result<(), SinkError> {
+        match self.cutter.is_by_turns() {
+            true => self.end(take),
+            false => Ok(()),
         }
     }
-}
 
-impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Sink for Clouds<F> {
-    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+    /// Refuses a batch that no message can hold.
+    pub(crate) fn check(&self, batch: &Points) -> Result<(), SinkError> {
+        batch.fields().require(self.fields())?;
         let most = f64::from(f32::MAX);
-        crate::formats::check_places(FORMAT, most, self.summary.points, batch)?;
+        crate::formats::check_places(self.format, most, self.summary.points, batch)
+    }
+
+    /// Adds a batch; what is whole by then is taken.
+    pub(crate) fn points(
+        &mut self,
+        batch: &Points,
+        take: &mut impl FnMut(Cloud<'_>) -> Result<(), SinkError>,
+    ) -> Result<(), SinkError> {
         let mut rows = 0..batch.len();
         while let Some(time) = batch.time().get(rows.start).copied() {
             let end = self.cutter.end(&self.cloud, batch.time(), &rows);
             if end == rows.start && self.cloud.points() > 0 {
-                self.end_cloud()?;
+                self.end(&mut *take)?;
                 continue;
             }
             if end == rows.start && self.cutter.go_on_to(time) {
@@ -91,8 +118,60 @@ impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Sink for Clouds<F> {
         Ok(())
     }
 
+    /// Has the cloud taken that there is, if there is one.
+    pub(crate) fn end(
+        &mut self,
+        take: impl FnOnce(Cloud<'_>) -> Result<(), SinkError>,
+    ) -> Result<(), SinkError> {
+        let (points, times) = (self.cloud.points(), self.cloud.times());
+        if points == 0 {
+            return Ok(());
+        }
+        let message = self.cloud.message();
+        let taken = take(Cloud {
+            bytes: message.bytes(),
+            points,
+            times,
+        });
+        drop(message);
+        self.cloud.clear();
+        taken
+    }
+
+    fn encoding(&self, error: CloudMessageError) -> SinkError {
+        match error {
+            CloudMessageError::Columns(missing) => missing.into(),
+            late @ CloudMessageError::Time(_) => SinkError::Encode {
+                format: self.format,
+                points: self.summary.points,
+                source: late.into(),
+            },
+        }
+    }
+}
+
+/// Gives each cloud to `take`.
+pub struct Clouds<F> {
+    take: F,
+    cutting: Cutting,
+}
+
+impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Clouds<F> {
+    /// Clouds with x, y, z, intensity, ring and time, in frames of these names.
+    pub fn new(frames: Frames, take: F) -> Self {
+        let cutting = Cutting::new(FORMAT, Fields::NONE, frames);
+        Self { take, cutting }
+    }
+}
+
+impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Sink for Clouds<F> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.cutting.check(batch)?;
+        self.cutting.points(batch, &mut self.take)
+    }
+
     fn fields(&self) -> Fields {
-        self.cloud.fields()
+        self.cutting.fields()
     }
 
     fn wants_tilt(&self) -> bool {
@@ -100,14 +179,13 @@ impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Sink for Clouds<F> {
     }
 
     fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
-        self.tilts = track.mount.is_some();
-        self.cutter.sweep(&track.sweeps);
+        self.cutting.tilt(track);
         Ok(())
     }
 
     fn finish(&mut self) -> Result<Summary, SinkError> {
-        self.end_cloud()?;
-        Ok(self.summary)
+        self.cutting.end(&mut self.take)?;
+        Ok(self.cutting.summary())
     }
 }
 
@@ -116,7 +194,7 @@ mod tests {
     use std::io::Cursor;
 
     use mcap::MessageStream;
-    use units::{Degrees, Metres, Stamp};
+    use units::{Degrees, Metres};
 
     use super::*;
     use crate::formats::mcap::McapWriter;

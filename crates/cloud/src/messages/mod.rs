@@ -18,6 +18,7 @@ use units::{Host, Stamp};
 
 use self::cdr::Cdr;
 
+pub(crate) use clouds::Cutting;
 pub use clouds::{Cloud, Clouds};
 pub use cutter::{MOST_POINTS, MOST_SPAN};
 pub use diagnostics::diagnostic_array;
