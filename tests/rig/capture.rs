@@ -1,5 +1,9 @@
 //! A whole capture in virtual time: the log file that the program would have written, and what it makes of it.
 
+mod log;
+mod rejoin;
+mod setting;
+
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -8,25 +12,21 @@ use std::sync::atomic::AtomicBool;
 
 use analysis::truth::TruthReport;
 use cloud::{Fields, Points};
-use drive::{AxisConfig, Client, Observation};
-use firmware_sim::epos2::Servo;
+use drive::{Client, Observation};
 use io::can::Slcan;
-use io::files::Overwrite;
-use io::log::{LogConfig, LogWriter};
 use io::port::{Port, Recorder};
 use protocol::canopen::slcan::Bitrate;
 use protocol::epos2::DeviceError;
 use protocol::epos2::message::WriteObject;
 use protocol::epos2::rs232;
 use protocol::record::{DriveLink, Record, Wire};
-use scanner::{ScanConfig, TiltSource};
-use sim::effects::GearRipple;
+use scanner::TiltSource;
 use sim::{Attached, Rig};
 use tempfile::TempDir;
-use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
+use units::{Degrees, Host, Span, Stamp};
 use velomotion::commands::replay::{self, Request};
 use velomotion::config::{Axis, Config};
-use velomotion::motion::{self, Wish};
+use velomotion::motion;
 use velomotion::output::Target;
 use velomotion::ports::BusLine;
 use velomotion::recordings::Source;
@@ -36,125 +36,12 @@ use velomotion::setup::scan_config;
 use velomotion::{Failure, devices, simulated};
 
 use crate::inject::{Fault, FaultInjector};
-use crate::port::{Arrived, Links, VirtualPort};
-use crate::random::Random;
+use crate::port::VirtualPort;
+use log::{Owned, set_lidar, write_log};
+use rejoin::rejoin;
 
-/// What to capture, and over what.
-#[derive(Clone, Copy, Debug)]
-pub struct Setting {
-    /// The moves.
-    pub wish: Wish,
-    /// The links' delays.
-    pub links: Links,
-    /// When it begins.
-    pub start: Stamp<Host>,
-    /// The lidar's clock then, microseconds past the hour.
-    pub lidar_clock_us: u32,
-    /// What goes wrong, and how long after the begin.
-    pub fault: Option<(Fault, Span)>,
-    /// How long after the begin the host's clock is set, and how far forward.
-    pub host_set: Option<(Span, Span)>,
-    /// The same of the lidar's clock.
-    pub lidar_set: Option<(Span, Span)>,
-    /// What the network loses of the lidar's packets.
-    pub packets_lost: Option<PacketLoss>,
-    /// How long after the end the next client connects, over a line that is whole again.
-    pub rejoined_after: Option<Span>,
-    /// How long after the begin the user presses Ctrl-C.
-    pub interrupt_after: Option<Span>,
-    /// How the motor follows its demand; `None`: exactly.
-    pub servo: Option<Servo>,
-    /// What the gear adds; `None`: nothing.
-    pub ripple: Option<GearRipple>,
-    /// Least time between two polls; `None`: as the axis has it.
-    pub poll_period: Option<Span>,
-}
-
-/// Packets that a network loses.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PacketLoss {
-    /// How long after the begin.
-    pub after: Span,
-    /// For how long.
-    pub span: Span,
-    /// How many of a thousand.
-    pub per_mille: u64,
-}
-
-impl PacketLoss {
-    /// Loses what is to be lost; how many data packets that were, and how many of them between two that came.
-    fn lose(&self, packets: &mut Vec<Arrived>, start: Stamp<Host>, seed: u64) -> (u64, u64) {
-        let (from, until) = (start + self.after, start + self.after + self.span);
-        let mut random = Random(seed);
-        let (mut lost, mut missed, mut in_a_row, mut begun) = (0, 0, 0, false);
-        packets.retain(|packet| {
-            let goes = (from..until).contains(&packet.host) && random.below(1_000) < self.per_mille;
-            match (packet.datagram.port == sim::DATA_PORT, goes) {
-                (true, true) => {
-                    lost += 1;
-                    in_a_row += u64::from(begun);
-                }
-                (true, false) => {
-                    missed += in_a_row;
-                    (in_a_row, begun) = (0, true);
-                }
-                (false, _) => {}
-            }
-            !goes
-        });
-        (lost, missed)
-    }
-}
-
-/// What the drive did after whoever moved it had gone.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rejoined {
-    /// How long it went on moving.
-    pub went_on: Span,
-    /// Whether it stood before the next client came.
-    pub by_itself: bool,
-    /// How long after the next client came it stood, its power stage off.
-    pub safe_after: Span,
-}
-
-impl Default for Setting {
-    /// The card's command: 45 degrees at 56.25 deg/s over USB, 2026-11-21 02:05:33 UTC.
-    fn default() -> Self {
-        Self {
-            wish: Wish {
-                from: Degrees(0.0),
-                to: Degrees(-45.0),
-                speed: DegPerS(56.25),
-                acceleration: DegPerS2(5_000.0),
-                sweeps: 1,
-                both_ways: false,
-            },
-            links: Links::usual(Attached::Usb, 1),
-            start: Stamp::from_nanos(1_795_226_733_000_000_000),
-            lidar_clock_us: 1_234_567_890,
-            fault: None,
-            host_set: None,
-            lidar_set: None,
-            packets_lost: None,
-            rejoined_after: None,
-            interrupt_after: None,
-            servo: None,
-            ripple: None,
-            poll_period: None,
-        }
-    }
-}
-
-impl Setting {
-    /// The card's command over another way to the drive.
-    #[must_use]
-    pub fn over(attached: Attached) -> Self {
-        Self {
-            links: Links::usual(attached, 1),
-            ..Self::default()
-        }
-    }
-}
+pub use rejoin::Rejoined;
+pub use setting::{PacketLoss, Setting};
 
 /// How the log calls a way to the drive.
 fn link(attached: Attached) -> DriveLink {
@@ -191,15 +78,6 @@ impl Mark {
             Self::Within(bytes) => frame.windows(bytes.len()).any(|part| part == bytes),
         }
     }
-}
-
-/// A record that owns its bytes.
-#[derive(Clone, Debug)]
-struct Owned {
-    host: Stamp<Host>,
-    link: DriveLink,
-    direction: protocol::record::Direction,
-    frame: Vec<u8>,
 }
 
 impl Captured {
@@ -533,117 +411,4 @@ impl Captured {
         replay::make(&request, Target::open(&path, Fields::FILE, false).unwrap()).unwrap();
         path
     }
-}
-
-/// How often a program that was started anew tries to connect before somebody else must look at it.
-const TRIES: u32 = 5;
-/// A serial line that is silent for so long has nothing more to say.
-const QUIET: Span = Span::from_millis(100);
-
-/// Lets the drive alone for a while, then connects to it as a program does that was started anew.
-fn rejoin(
-    port: &VirtualPort,
-    (axis, link): (AxisConfig, DriveLink),
-    attached: Attached,
-    after: Span,
-) -> Rejoined {
-    let mut quiet = port.clone();
-    let gone = quiet.now();
-    let mut went_on = Span::ZERO;
-    while quiet.now() - gone < after {
-        let _ = quiet.read(&mut [0; 512], Span::from_millis(1));
-        if quiet.moves() {
-            went_on = quiet.now() - gone;
-        }
-    }
-    let by_itself = !quiet.moves();
-    let came = quiet.now();
-    let mut safe_after = None;
-    for _ in 0..TRIES {
-        // Answers on a serial line do not say what they answer: what is late is let pass.
-        while link != DriveLink::Can && quiet.read(&mut [0; 512], QUIET).unwrap().is_some() {}
-        let line: Box<dyn Port> = match attached {
-            Attached::Slcan => Box::new(BusLine(
-                Slcan::open(port.clone(), Bitrate::Kbit1000).unwrap(),
-            )),
-            Attached::Usb | Attached::Rs232 | Attached::Can => Box::new(port.clone()),
-        };
-        let client = Client::with_link(axis.clone(), link);
-        let mut session = Session::new(client, line, Arc::default());
-        let connected = session.run(drive::Command::Connect, &mut |_| {
-            if !port.moves() && !port.is_powered() {
-                safe_after.get_or_insert(port.now() - came);
-            }
-        });
-        if connected.is_ok() {
-            break;
-        }
-    }
-    assert!(
-        !port.moves() && !port.is_powered(),
-        "connected, and not safe"
-    );
-    Rejoined {
-        went_on,
-        by_itself,
-        safe_after: safe_after.unwrap_or(port.now() - came),
-    }
-}
-
-/// Stamps the packets from `from` on as by a clock that was set forward by `by`.
-fn set_lidar(packets: &mut [Arrived], from: Stamp<Host>, by: Span) {
-    let data = packets
-        .iter_mut()
-        .filter(|p| p.host >= from && p.datagram.port == sim::DATA_PORT);
-    for packet in data {
-        let stamp: &mut [u8] = &mut packet.datagram.payload[1_200..1_204];
-        let us = i64::from(u32::from_le_bytes(stamp.try_into().unwrap()));
-        let set = (us + by.as_nanos() / 1_000).rem_euclid(3_600_000_000) as u32;
-        stamp.copy_from_slice(&set.to_le_bytes());
-    }
-}
-
-/// Writes both devices' records in the order in which they came; their number. From an instant on they may be stamped by a clock
-/// that was set.
-fn write_log(
-    path: &Path,
-    config: &ScanConfig,
-    link: DriveLink,
-    drive: &[Owned],
-    packets: &[Arrived],
-    set: Option<(Stamp<Host>, Span)>,
-) -> usize {
-    let drive = drive.iter().map(|owned| Record {
-        host: owned.host,
-        wire: Wire::Drive {
-            link: owned.link,
-            direction: owned.direction,
-            frame: &owned.frame,
-        },
-    });
-    let lidar = packets.iter().map(|arrived| Record {
-        host: arrived.host,
-        wire: Wire::Lidar {
-            source: [192, 168, 1, 201],
-            port: arrived.datagram.port,
-            payload: &arrived.datagram.payload,
-        },
-    });
-    let mut records: Vec<Record<'_>> = drive.chain(lidar).collect();
-    records.sort_by_key(|record| record.host);
-    if let Some((from, by)) = set {
-        for record in records.iter_mut().filter(|record| record.host >= from) {
-            record.host += by;
-        }
-    }
-    let head = LogConfig {
-        metadata: toml::to_string(config).unwrap(),
-        drive: Some(link),
-    };
-    let mut writer = LogWriter::create(path, &head, Overwrite::Refuse).unwrap();
-    for record in &records {
-        writer.write(record).unwrap();
-    }
-    writer.finish().unwrap();
-    records.len()
 }

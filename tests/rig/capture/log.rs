@@ -1,0 +1,78 @@
+//! The log that the program would have written of what both devices said.
+
+use std::path::Path;
+
+use io::files::Overwrite;
+use io::log::{LogConfig, LogWriter};
+use protocol::record::{Direction, DriveLink, Record, Wire};
+use scanner::ScanConfig;
+use units::{Host, Span, Stamp};
+
+use crate::port::Arrived;
+
+/// A record that owns its bytes.
+#[derive(Clone, Debug)]
+pub(super) struct Owned {
+    pub(super) host: Stamp<Host>,
+    pub(super) link: DriveLink,
+    pub(super) direction: Direction,
+    pub(super) frame: Vec<u8>,
+}
+
+/// Stamps the packets from `from` on as by a clock that was set forward by `by`.
+pub(super) fn set_lidar(packets: &mut [Arrived], from: Stamp<Host>, by: Span) {
+    let data = packets
+        .iter_mut()
+        .filter(|p| p.host >= from && p.datagram.port == sim::DATA_PORT);
+    for packet in data {
+        let stamp: &mut [u8] = &mut packet.datagram.payload[1_200..1_204];
+        let us = i64::from(u32::from_le_bytes(stamp.try_into().unwrap()));
+        let set = (us + by.as_nanos() / 1_000).rem_euclid(3_600_000_000) as u32;
+        stamp.copy_from_slice(&set.to_le_bytes());
+    }
+}
+
+/// Writes both devices' records in the order in which they came; their number. From an instant on they may be stamped by a clock
+/// that was set.
+pub(super) fn write_log(
+    path: &Path,
+    config: &ScanConfig,
+    link: DriveLink,
+    drive: &[Owned],
+    packets: &[Arrived],
+    set: Option<(Stamp<Host>, Span)>,
+) -> usize {
+    let drive = drive.iter().map(|owned| Record {
+        host: owned.host,
+        wire: Wire::Drive {
+            link: owned.link,
+            direction: owned.direction,
+            frame: &owned.frame,
+        },
+    });
+    let lidar = packets.iter().map(|arrived| Record {
+        host: arrived.host,
+        wire: Wire::Lidar {
+            source: [192, 168, 1, 201],
+            port: arrived.datagram.port,
+            payload: &arrived.datagram.payload,
+        },
+    });
+    let mut records: Vec<Record<'_>> = drive.chain(lidar).collect();
+    records.sort_by_key(|record| record.host);
+    if let Some((from, by)) = set {
+        for record in records.iter_mut().filter(|record| record.host >= from) {
+            record.host += by;
+        }
+    }
+    let head = LogConfig {
+        metadata: toml::to_string(config).unwrap(),
+        drive: Some(link),
+    };
+    let mut writer = LogWriter::create(path, &head, Overwrite::Refuse).unwrap();
+    for record in &records {
+        writer.write(record).unwrap();
+    }
+    writer.finish().unwrap();
+    records.len()
+}

@@ -1,0 +1,81 @@
+//! Another client comes after the one that moved the axis has gone.
+
+use std::sync::Arc;
+
+use drive::{AxisConfig, Client};
+use io::can::Slcan;
+use io::port::Port;
+use protocol::canopen::slcan::Bitrate;
+use protocol::record::DriveLink;
+use sim::Attached;
+use units::Span;
+use velomotion::ports::BusLine;
+use velomotion::session::Session;
+
+use crate::port::VirtualPort;
+
+/// What the drive did after whoever moved it had gone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rejoined {
+    /// How long it went on moving.
+    pub went_on: Span,
+    /// Whether it stood before the next client came.
+    pub by_itself: bool,
+    /// How long after the next client came it stood, its power stage off.
+    pub safe_after: Span,
+}
+
+/// How often a program that was started anew tries to connect before somebody else must look at it.
+const TRIES: u32 = 5;
+/// A serial line that is silent for so long has nothing more to say.
+const QUIET: Span = Span::from_millis(100);
+
+/// Lets the drive alone for a while, then connects to it as a program does that was started anew.
+pub(super) fn rejoin(
+    port: &VirtualPort,
+    (axis, link): (AxisConfig, DriveLink),
+    attached: Attached,
+    after: Span,
+) -> Rejoined {
+    let mut quiet = port.clone();
+    let gone = quiet.now();
+    let mut went_on = Span::ZERO;
+    while quiet.now() - gone < after {
+        let _ = quiet.read(&mut [0; 512], Span::from_millis(1));
+        if quiet.moves() {
+            went_on = quiet.now() - gone;
+        }
+    }
+    let by_itself = !quiet.moves();
+    let came = quiet.now();
+    let mut safe_after = None;
+    for _ in 0..TRIES {
+        // Answers on a serial line do not say what they answer: what is late is let pass.
+        while link != DriveLink::Can && quiet.read(&mut [0; 512], QUIET).unwrap().is_some() {}
+        let line: Box<dyn Port> = match attached {
+            Attached::Slcan => Box::new(BusLine(
+                Slcan::open(port.clone(), Bitrate::Kbit1000).unwrap(),
+            )),
+            Attached::Usb | Attached::Rs232 | Attached::Can => Box::new(port.clone()),
+        };
+        let client = Client::with_link(axis.clone(), link);
+        let mut session = Session::new(client, line, Arc::default());
+        let connected = session.run(drive::Command::Connect, &mut |_| {
+            if !port.moves() && !port.is_powered() {
+                safe_after.get_or_insert(port.now() - came);
+            }
+        });
+        if connected.is_ok() {
+            break;
+        }
+    }
+    assert!(
+        !port.moves() && !port.is_powered(),
+        "connected, and not safe"
+    );
+    Rejoined {
+        went_on,
+        by_itself,
+        safe_after: safe_after.unwrap_or(port.now() - came),
+    }
+}
