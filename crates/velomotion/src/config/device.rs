@@ -1,0 +1,193 @@
+//! `[device]`: which devices there are and how each is attached.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::net::Ipv4Addr;
+use std::path::PathBuf;
+
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use super::positive;
+
+/// The devices of a configuration.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Devices {
+    /// What is used without `--device`.
+    pub default: Option<String>,
+    /// Profiles by name.
+    pub profiles: BTreeMap<String, Device>,
+}
+
+/// One `[device.NAME]`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Device {
+    /// How the drive is attached.
+    pub kind: DeviceKind,
+    /// Path of the drive's serial port, or the SLCAN adapter's.
+    pub port: Option<PathBuf>,
+    /// Name of the CAN interface of a drive of kind `can`.
+    pub interface: Option<String>,
+    /// Speed of the serial port, where it is not the factory's.
+    pub baud: Option<u32>,
+    /// Local address on which the lidar's packets arrive.
+    #[serde(default = "any_address")]
+    pub lidar: Ipv4Addr,
+    /// Multicast group that the lidar sends to; none where it sends to this machine alone or to all.
+    pub lidar_group: Option<Ipv4Addr>,
+    /// The lidar's own address, where others send to the same ports; none: whoever sends.
+    pub lidar_source: Option<Ipv4Addr>,
+    /// UDP port of the lidar's data packets, where it is not the factory's.
+    pub data_port: Option<u16>,
+    /// UDP port of its position packets, where it is not the factory's.
+    pub position_port: Option<u16>,
+    /// Acceleration used without `--accel`, degrees per second squared.
+    #[serde(default = "gentle")]
+    pub accel_deg_s2: f64,
+}
+
+/// How the drive is attached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DeviceKind {
+    /// Software EPOS2 and software VLP-16.
+    Sim,
+    /// EPOS2 on USB.
+    Usb,
+    /// EPOS2 on RS232.
+    Rs232,
+    /// EPOS2 on CAN, behind an SLCAN adapter on a serial port.
+    Slcan,
+    /// EPOS2 on CAN, on an interface of the kernel.
+    Can,
+}
+
+impl Device {
+    /// The built-in simulator: a head so light that it takes 45 degrees at 56.25 deg/s in 0.81 s.
+    #[must_use]
+    pub fn simulator() -> Self {
+        Self {
+            kind: DeviceKind::Sim,
+            port: None,
+            interface: None,
+            baud: None,
+            lidar: Ipv4Addr::LOCALHOST,
+            lidar_group: None,
+            lidar_source: None,
+            data_port: None,
+            position_port: None,
+            accel_deg_s2: 5000.0,
+        }
+    }
+
+    /// An EPOS2 found on USB.
+    #[must_use]
+    pub fn usb(port: PathBuf) -> Self {
+        Self {
+            kind: DeviceKind::Usb,
+            port: Some(port),
+            lidar: any_address(),
+            accel_deg_s2: gentle(),
+            ..Self::simulator()
+        }
+    }
+}
+
+fn any_address() -> Ipv4Addr {
+    Ipv4Addr::UNSPECIFIED
+}
+
+/// The drive's factory setting behind 120:1, 10,000 rpm/s.
+fn gentle() -> f64 {
+    500.0
+}
+
+impl<'de> Deserialize<'de> for Devices {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NameOrProfiles;
+        impl<'de> Visitor<'de> for NameOrProfiles {
+            type Value = Devices;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a device's name, or [device.NAME] tables")
+            }
+            fn visit_str<E>(self, name: &str) -> Result<Devices, E> {
+                Ok(Devices {
+                    default: Some(name.to_owned()),
+                    profiles: BTreeMap::new(),
+                })
+            }
+            fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Devices, M::Error> {
+                let mut devices = Devices::default();
+                while let Some(key) = map.next_key::<String>()? {
+                    if key == "default" {
+                        devices.default = Some(map.next_value()?);
+                    } else {
+                        devices.profiles.insert(key, map.next_value()?);
+                    }
+                }
+                Ok(devices)
+            }
+        }
+        deserializer.deserialize_any(NameOrProfiles)
+    }
+}
+
+impl Device {
+    /// Refuses keys that do not go together and values that no device has.
+    pub(super) fn check(&self, name: &str) -> Result<(), String> {
+        let accel = format!("device.{name}.accel_deg_s2");
+        positive(&accel, self.accel_deg_s2, 1e9)?;
+        let has_none = matches!(self.kind, DeviceKind::Sim | DeviceKind::Can);
+        if let Some(baud) = self.baud.filter(|_| has_none) {
+            return Err(format!(
+                "device.{name}.baud: expected on a serial port only, got {baud} on a device without one"
+            ));
+        }
+        self.check_lidar()
+            .map_err(|what| format!("device.{name}.{what}"))
+    }
+
+    /// The key and what is wrong with it.
+    fn check_lidar(&self) -> Result<(), String> {
+        let ports = [
+            ("data_port", self.data_port),
+            ("position_port", self.position_port),
+        ];
+        let addresses = [
+            ("lidar_group", self.lidar_group),
+            ("lidar_source", self.lidar_source),
+        ];
+        if self.kind == DeviceKind::Sim {
+            let port = ports.iter().find(|(_, port)| port.is_some());
+            let address = addresses.iter().find(|(_, address)| address.is_some());
+            let key = port.map(|(key, _)| key).or(address.map(|(key, _)| key));
+            return key.map_or(Ok(()), |key| {
+                Err(format!(
+                    "{key}: expected with a real lidar only, got it on software devices"
+                ))
+            });
+        }
+        if let Some((key, _)) = ports.iter().find(|(_, port)| *port == Some(0)) {
+            return Err(format!("{key}: expected a port from 1 to 65535, got 0"));
+        }
+        if let Some(group) = self.lidar_group.filter(|group| !group.is_multicast()) {
+            return Err(format!(
+                "lidar_group: expected a multicast address, 224.0.0.0 to 239.255.255.255, got {group}"
+            ));
+        }
+        if self.lidar.is_multicast() {
+            return Err(format!(
+                "lidar: expected an address of this machine, got the multicast address {}, which belongs into lidar_group",
+                self.lidar
+            ));
+        }
+        let nobody = |ip: &Ipv4Addr| ip.is_unspecified() || ip.is_multicast() || ip.is_broadcast();
+        if let Some(source) = self.lidar_source.filter(nobody) {
+            return Err(format!(
+                "lidar_source: expected the lidar's own address, got {source}, which no device has"
+            ));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,120 @@
+use super::*;
+
+#[test]
+fn the_checkouts_own_file_says_sim_and_nothing_but_defaults() {
+    let text = include_str!("../../../../velomotion.toml");
+    let config: Config = toml::from_str(text).unwrap();
+    assert_eq!(config.device.default.as_deref(), Some("sim"));
+    let braked = Axis {
+        brake_output: Some(1),
+        ..Axis::default()
+    };
+    assert_eq!(config.axis, braked);
+    assert_eq!(config.mount, MountConfig::default());
+    assert_eq!(config.lidar, LidarConfig::default());
+}
+
+#[test]
+fn numbers_that_no_scanner_has_are_refused() {
+    for (text, key) in [
+        ("[mount]\nd_m = nan", "mount.d_m"),
+        ("[axis]\nmin_deg = -inf", "axis.min_deg"),
+        ("[lidar]\nrange_sd_m = -0.01", "lidar.range_sd_m"),
+        ("[axis]\nmax_speed_deg_s = -20.0", "axis.max_speed_deg_s"),
+        ("[axis]\nmax_accel_deg_s2 = 0.0", "axis.max_accel_deg_s2"),
+        ("[axis]\nquick_stop_deg_s2 = nan", "axis.quick_stop_deg_s2"),
+        (
+            "[axis.homing]\nspeed_deg_s = -5.0",
+            "axis.homing.speed_deg_s",
+        ),
+        (
+            "[axis]\nmax_speed_deg_s = 5.0",
+            "axis.homing.speed_deg_s: expected a number above 0 up to 5,",
+        ),
+    ] {
+        let config: Config = toml::from_str(text).unwrap();
+        let said = config.check().unwrap_err();
+        assert!(said.starts_with(key), "{text}: {said}");
+    }
+    for (keys, key) in [
+        ("kind = 'usb'\naccel_deg_s2 = -5.0", "device.a.accel_deg_s2"),
+        ("kind = 'can'\nbaud = 9600", "device.a.baud"),
+        ("kind = 'usb'\ndata_port = 0", "device.a.data_port"),
+        ("kind = 'usb'\nposition_port = 0", "device.a.position_port"),
+        (
+            "kind = 'usb'\nlidar_group = '192.168.1.201'",
+            "device.a.lidar_group: expected a multicast address",
+        ),
+        (
+            "kind = 'usb'\nlidar = '239.1.2.3'",
+            "device.a.lidar: expected an address of this machine",
+        ),
+        (
+            "kind = 'usb'\nlidar_source = '255.255.255.255'",
+            "device.a.lidar_source",
+        ),
+        (
+            "kind = 'sim'\ndata_port = 2369",
+            "device.a.data_port: expected with a real lidar only",
+        ),
+        (
+            "kind = 'sim'\nlidar_source = '127.0.0.1'",
+            "device.a.lidar_source: expected with a real lidar only",
+        ),
+    ] {
+        let config: Config = toml::from_str(&format!("[device.a]\n{keys}")).unwrap();
+        assert!(config.check().unwrap_err().starts_with(key), "{keys}");
+    }
+    assert_eq!(Config::default().check(), Ok(()));
+}
+
+#[test]
+fn a_brake_and_a_switch_that_are_not_named_are_not_there() {
+    let axis = |text: &str| toml::from_str::<Config>(text).unwrap().axis;
+    assert_eq!(axis("").brake_output, None);
+    assert_eq!(axis("[axis]\nnode = 2").brake_output, None);
+    let of = |text| axis(text).limit_switches;
+    assert_eq!(of("[axis]\nnode = 2"), LimitSwitches::default());
+    let one = LimitSwitches {
+        negative: Some(3),
+        positive: None,
+        normally_closed: true,
+    };
+    assert_eq!(
+        of("[axis.limit_switches]\nnegative = 3\nnormally_closed = true"),
+        one
+    );
+}
+
+#[test]
+fn device_is_a_name_or_tables() {
+    let config: Config = toml::from_str(
+        "[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\nport = '/dev/ttyUSB3'",
+    )
+    .unwrap();
+    assert_eq!(config.device.default.as_deref(), Some("bench"));
+    let bench = &config.device.profiles["bench"];
+    assert_eq!(bench.kind, DeviceKind::Usb);
+    assert_eq!(bench.accel_deg_s2, 500.0);
+}
+
+#[test]
+fn a_misspelt_key_is_an_error_with_its_line() {
+    for text in [
+        "\n[axis]\nmin_degg = -45",
+        "\n[device.a]\nkind = 'usb'\nprot = '/dev/x'",
+    ] {
+        let error = toml::from_str::<Config>(text).unwrap_err().to_string();
+        assert!(error.contains("line "), "{error}");
+        assert!(error.contains("unknown field"), "{error}");
+    }
+    // Nor does a value that is none pass.
+    for (key, what) in [
+        ("data_port = 70000", "70000"),
+        ("lidar_group = '239.1.2'", "IPv4"),
+    ] {
+        let text = format!("[device.a]\nkind = 'usb'\n{key}");
+        let error = toml::from_str::<Config>(&text).unwrap_err().to_string();
+        assert!(error.contains("line 3") && error.contains(what), "{error}");
+    }
+}
