@@ -1,7 +1,5 @@
 //! From a device profile to an open drive port and a lidar address.
 
-use std::path::PathBuf;
-
 use drive::config::{Brake, Homing, LimitSwitches, Limits, Timing};
 use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
 
@@ -11,10 +9,11 @@ use crate::failure::{Failure, Kind};
 /// Acceleration while homing, of an axis that may take so much.
 const HOMING_ACCELERATION: RpmPerS = RpmPerS(5_000);
 
-/// The device to use and its name: `--device`, else the configuration's, else whatever is plugged in.
+/// The device to use and its name: `--device`, else the configuration's, else `auto`, whatever is plugged in when its port is wanted
+/// ([`ports::place`](crate::ports::place)).
 ///
 /// # Errors
-/// [`Kind::Usage`] for a name that is not there, [`Kind::NoDevice`] where `auto` finds nothing.
+/// [`Kind::Usage`] for a name that is not there.
 pub fn choose(config: &Config, asked: Option<&str>) -> Result<(String, Device), Failure> {
     let name = asked
         .or(config.device.default.as_deref())
@@ -25,7 +24,7 @@ pub fn choose(config: &Config, asked: Option<&str>) -> Result<(String, Device), 
     }
     match name.as_str() {
         "sim" => Ok((name, Device::simulator())),
-        "auto" => Ok((name, Device::usb(find()?))),
+        "auto" => Ok((name, Device::found())),
         _ => {
             let mut known: Vec<&str> = config.device.profiles.keys().map(String::as_str).collect();
             known.extend(["sim", "auto"]);
@@ -38,38 +37,6 @@ pub fn choose(config: &Config, asked: Option<&str>) -> Result<(String, Device), 
             )))
         }
     }
-}
-
-/// The EPOS2's serial port on USB.
-fn find() -> Result<PathBuf, Failure> {
-    let found = io::discover::discover();
-    if let Some(port) = found.epos2.iter().find_map(|unit| unit.port.clone()) {
-        return Ok(port);
-    }
-    let ports: Vec<String> = found
-        .serial_ports
-        .iter()
-        .map(|port| port.path.display().to_string())
-        .collect();
-    let ports = if ports.is_empty() {
-        "none".to_owned()
-    } else {
-        ports.join(", ")
-    };
-    let help = if found.epos2.is_empty() {
-        "plug the EPOS2 in and switch it on, or name its port in a [device.NAME] of the configuration,\n\
-         or use --device sim for software devices"
-    } else {
-        "an EPOS2 is plugged in, but Linux's ftdi_sio does not know its USB id and makes no port of it. As root:\n\
-         modprobe ftdi_sio && echo 0403 a8b0 > /sys/bus/usb-serial/drivers/ftdi_sio/new_id"
-    };
-    Err(Failure::new(
-        Kind::NoDevice,
-        format!(
-            "no tilt drive: looked for an EPOS2 (USB 0403:A8B0) with a serial port and found none (serial ports: {ports})"
-        ),
-    )
-    .help(help))
 }
 
 /// The axis as its client knows it.

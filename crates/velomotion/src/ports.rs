@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use io::can::{CanError, CanPort, Slcan, SocketCan};
+use io::discover::Findings;
 use io::port::{LatencyTimer, Port, PortError, SerialPort};
 use protocol::canopen::CanFrame;
 use protocol::canopen::slcan::Bitrate;
@@ -31,12 +32,30 @@ pub struct Opened {
     pub warning: Option<String>,
 }
 
-/// What the drive of a profile is reached by: a serial port's path, or the name of a CAN interface.
+/// Who looks for a drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Looks {
+    /// Somebody who gives up where there is none.
+    Once,
+    /// Somebody who goes on looking.
+    On,
+}
+
+/// What the drive of a profile is reached by: a serial port's path, or the name of a CAN interface. One that is looked for is among what is
+/// `plugged` in.
 ///
 /// # Errors
-/// [`Kind::BadInput`] where the profile names none.
-pub fn place(name: &str, device: &Device) -> Result<PathBuf, Failure> {
-    let (found, key, example) = match device.kind {
+/// [`Kind::BadInput`] where the profile names none, [`Kind::NoDevice`] where none is found.
+pub fn place(
+    name: &str,
+    device: &Device,
+    looks: Looks,
+    plugged: &dyn Fn() -> Findings,
+) -> Result<PathBuf, Failure> {
+    if device.is_looked_for() {
+        return found(&plugged(), looks);
+    }
+    let (named, key, example) = match device.kind {
         DeviceKind::Can => (
             device.interface.as_ref().map(PathBuf::from),
             "interface",
@@ -44,7 +63,7 @@ pub fn place(name: &str, device: &Device) -> Result<PathBuf, Failure> {
         ),
         _ => (device.port.clone(), "port", "/dev/ttyUSB0"),
     };
-    found.ok_or_else(|| {
+    named.ok_or_else(|| {
         Failure::new(
             Kind::BadInput,
             format!(
@@ -56,6 +75,46 @@ pub fn place(name: &str, device: &Device) -> Result<PathBuf, Failure> {
             "add {key} = \"{example}\" (or what it is) to [device.{name}] of the configuration"
         ))
     })
+}
+
+/// The EPOS2's serial port on USB.
+fn found(plugged: &Findings, looks: Looks) -> Result<PathBuf, Failure> {
+    if let Some(port) = plugged.epos2.iter().find_map(|unit| unit.port.clone()) {
+        return Ok(port);
+    }
+    let ports: Vec<String> = plugged
+        .serial_ports
+        .iter()
+        .map(|port| port.path.display().to_string())
+        .collect();
+    let ports = match ports.as_slice() {
+        [] => "none".to_owned(),
+        ports => ports.join(", "),
+    };
+    let what = "an EPOS2 (USB 0403:A8B0) with a serial port";
+    let message = match looks {
+        Looks::Once => {
+            format!("no tilt drive: looked for {what} and found none (serial ports: {ports})")
+        }
+        Looks::On => {
+            format!("no drive found yet: looking for {what} (serial ports: {ports})")
+        }
+    };
+    let help = match (plugged.epos2.is_empty(), looks) {
+        (true, Looks::Once) => {
+            "plug the EPOS2 in and switch it on, or name its port in a [device.NAME] of the configuration,\n\
+             or use --device sim for software devices"
+        }
+        (true, Looks::On) => {
+            "plug the EPOS2 in and switch it on: it is connected as soon as it is there\n\
+             velomotion doctor lists what is there; a drive that is not on USB needs a [device.NAME] of the configuration"
+        }
+        (false, _) => {
+            "an EPOS2 is plugged in, but Linux's ftdi_sio does not know its USB id and makes no port of it. As root:\n\
+             modprobe ftdi_sio && echo 0403 a8b0 > /sys/bus/usb-serial/drivers/ftdi_sio/new_id"
+        }
+    };
+    Err(Failure::new(Kind::NoDevice, message).help(help))
 }
 
 /// Opens the port of a device at `place`. The software scanner's is a USB drive on a pseudo-terminal.

@@ -126,8 +126,7 @@ impl Setup {
     /// Checks what the command line asks for against the axis, and plans the moves.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for what this axis cannot do or names that clash, [`Kind::BadInput`] for a wrong configuration,
-    /// [`Kind::NoDevice`] where none is plugged in.
+    /// [`Kind::Usage`] for what this axis cannot do or names that clash, [`Kind::BadInput`] for a wrong configuration.
     pub fn new(arguments: &cli::Capture, common: &Common) -> Result<Self, Failure> {
         let start = SystemTime::now();
         let config = config::load(common.config.as_deref())?;

@@ -16,6 +16,7 @@ use crate::failure::{Failure, Kind};
 use crate::hearing::Hearing;
 use crate::job::{self, Ended, Happening, Job};
 use crate::output::{self, Aside, Target};
+use crate::ports::Looks;
 use crate::progress::Progress;
 use crate::recording::{Ear, listen_config};
 use crate::setup::Setup;
@@ -47,8 +48,13 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
     let (truth, ended) = if devices::simulated(&setup.device) {
         simulate(&setup, &interrupt, &mut progress)?
     } else {
+        let place = ports::place(
+            &setup.name,
+            &setup.device,
+            Looks::Once,
+            &io::discover::discover,
+        )?;
         let ear = Ear::bind(&listen_config(&setup.device))?;
-        let place = ports::place(&setup.name, &setup.device)?;
         (
             None,
             record(&setup, ear, &place, &interrupt, &mut progress)?,

@@ -172,6 +172,7 @@ fn profiles(config: &Config, interfaces: &[Interface]) -> Vec<Finding> {
                 format!("{} is not there", port.display()),
             )
             .todo("plug the drive in, or correct port in the configuration"),
+            (DeviceKind::Usb, None) => finding(what, Verdict::Ok, "the EPOS2 that is found on USB"),
             (_, None) => finding(what, Verdict::Problem, "names no port")
                 .todo("add port = \"/dev/ttyUSB0\" (or what it is)"),
         });

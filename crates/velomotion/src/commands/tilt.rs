@@ -13,6 +13,7 @@ use crate::config::{self, Config, Device};
 use crate::control::{self, Asked};
 use crate::daemon::client;
 use crate::failure::{Failure, Kind};
+use crate::ports::Looks;
 use crate::report::table;
 use crate::session::{Session, SessionError};
 use crate::simulated::{Destinations, Simulated};
@@ -62,7 +63,7 @@ pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<Said, Failure> {
         drop(scanner.stop());
         return said;
     }
-    let path = ports::place(&name, &device)?;
+    let path = ports::place(&name, &device, Looks::Once, &io::discover::discover)?;
     if matches!(arguments.verb, TiltVerb::Stop) {
         match control::ask_to_stop(&path) {
             Asked::Nobody => {}

@@ -25,7 +25,7 @@ pub struct Devices {
 pub struct Device {
     /// How the drive is attached.
     pub kind: DeviceKind,
-    /// Path of the drive's serial port, or the SLCAN adapter's.
+    /// Path of the drive's serial port, or the SLCAN adapter's. None with kind `usb`: the EPOS2 that is found on USB.
     pub port: Option<PathBuf>,
     /// Name of the CAN interface of a drive of kind `can`.
     pub interface: Option<String>,
@@ -81,16 +81,21 @@ impl Device {
         }
     }
 
-    /// An EPOS2 found on USB.
+    /// The EPOS2 that is found on USB, whatever port the system gives it.
     #[must_use]
-    pub fn usb(port: PathBuf) -> Self {
+    pub fn found() -> Self {
         Self {
             kind: DeviceKind::Usb,
-            port: Some(port),
             lidar: any_address(),
             accel_deg_s2: gentle(),
             ..Self::simulator()
         }
+    }
+
+    /// Whether its drive is looked for on USB.
+    #[must_use]
+    pub fn is_looked_for(&self) -> bool {
+        self.kind == DeviceKind::Usb && self.port.is_none()
     }
 }
 

@@ -37,18 +37,45 @@ impl Client {
     /// The daemon that has the device, if one runs. One that this user may not speak to is said.
     #[must_use]
     pub fn find(profile: &str, device: &Device) -> Option<Self> {
-        for socket in sockets::candidates(profile, device) {
-            match UnixStream::connect(&socket) {
-                Ok(_) => return Some(Self { socket }),
-                Err(error) if error.kind() == ErrorKind::PermissionDenied => tracing::warn!(
-                    "a daemon may have the device, and not everybody may speak to it: {}; \
-                     join the group that owns its socket (adduser YOU velomotion), and log in again",
-                    socket.display()
-                ),
-                Err(_) => {}
-            }
+        let named = sockets::candidates(profile, device).into_iter();
+        let found = named.filter_map(Self::reach).next();
+        found.or_else(|| {
+            let looking = sockets::looking(device).into_iter();
+            let mut reached = looking.filter_map(Self::reach);
+            reached.find(|client| client.has_port(device.port.as_deref()))
+        })
+    }
+
+    /// The daemon at a socket, if one answers.
+    fn reach(socket: PathBuf) -> Option<Self> {
+        match UnixStream::connect(&socket) {
+            Ok(_) => return Some(Self { socket }),
+            Err(error) if error.kind() == ErrorKind::PermissionDenied => tracing::warn!(
+                "a daemon may have the device, and not everybody may speak to it: {}; \
+                 join the group that owns its socket (adduser YOU velomotion), and log in again",
+                socket.display()
+            ),
+            Err(_) => {}
         }
         None
+    }
+
+    /// Whether the drive that it found is at this port.
+    fn has_port(&self, port: Option<&Path>) -> bool {
+        #[derive(serde::Deserialize)]
+        struct Status {
+            drive: Drive,
+        }
+        #[derive(serde::Deserialize)]
+        struct Drive {
+            port: Option<PathBuf>,
+        }
+        let real = |port: &Path| port.canonicalize().ok();
+        let Ok(status) = self.get::<Status>("/api/v1/status") else {
+            return false;
+        };
+        let found = status.drive.port.as_deref().and_then(real);
+        found.is_some() && found == port.and_then(real)
     }
 
     /// The daemon that answers at a socket.

@@ -23,7 +23,7 @@ use crate::config::DeviceKind;
 use crate::devices;
 use crate::failure::{Failure, Kind};
 use crate::hearing::Hearing;
-use crate::ports;
+use crate::ports::{self, Looks};
 use crate::recording::Ear;
 use crate::session::SessionError;
 use crate::setup::Setup;
@@ -271,7 +271,12 @@ impl Keeper {
                         .help("see what is said of the lidar"),
                 );
             }
-            None => ports::place(&self.shared.name, &self.shared.device)?,
+            None => ports::place(
+                &self.shared.name,
+                &self.shared.device,
+                Looks::On,
+                &*self.shared.world.plugged,
+            )?,
         };
         let opened = ports::open(&self.shared.device, &place)?;
         self.shared.set_drive(|drive| {

@@ -76,7 +76,7 @@ impl Daemon {
     ///
     /// # Errors
     /// [`Kind::Usage`] where it may not listen there or this build lacks what is configured, [`Kind::BadInput`] for a wrong configuration or a folder that cannot be written,
-    /// [`Kind::NoDevice`] where another daemon has the device, or no device is configured and none is found.
+    /// [`Kind::NoDevice`] where another daemon has the device.
     pub fn start(options: Options) -> Result<Self, Failure> {
         let Options {
             config,

@@ -6,6 +6,7 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use io::discover::Findings;
 use tokio::sync::watch;
 use units::Span;
 
@@ -26,9 +27,14 @@ use crate::{devices, recording, tilting};
 /// Says how many bytes are free on the disk of a path.
 pub type FreeBytes = dyn Fn(&Path) -> std::io::Result<u64> + Send + Sync;
 
+/// Says what is plugged in.
+pub type Plugged = dyn Fn() -> Findings + Send + Sync;
+
 /// What of the machine tests make up.
 #[derive(Clone)]
 pub struct World {
+    /// What is plugged in, where the drive is looked for.
+    pub plugged: Arc<Plugged>,
     /// Free bytes on the disk of a path.
     pub free_bytes: Arc<FreeBytes>,
     /// How long the machine has slept since it was started.
@@ -40,6 +46,7 @@ pub struct World {
 impl Default for World {
     fn default() -> Self {
         Self {
+            plugged: Arc::new(io::discover::discover),
             free_bytes: Arc::new(io::files::free_bytes),
             suspended: Arc::new(io::clock::suspended),
             beat: Arc::new(|_| {}),

@@ -3,12 +3,17 @@
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
+use io::discover::{Findings, discover};
+
 use crate::config::{Device, DeviceKind};
 use crate::failure::Failure;
-use crate::ports;
+use crate::ports::{self, Looks};
 
 /// Where a service's socket is.
 const SERVICE: &str = "/run/velomotion";
+
+/// In place of the port of a drive that is looked for on USB.
+const LOOKED_FOR: &str = "-usb-epos2";
 
 /// Folder in which a daemon makes its socket.
 #[must_use]
@@ -28,10 +33,12 @@ pub fn name(profile: &str, device: &Device) -> Result<String, Failure> {
     Ok(name_of(&place(profile, device)?))
 }
 
+/// What the socket is named after. A drive that is looked for has no port of its own.
 fn place(profile: &str, device: &Device) -> Result<PathBuf, Failure> {
     match device.kind {
         DeviceKind::Sim => Ok(PathBuf::from(format!("-{profile}"))),
-        _ => ports::place(profile, device),
+        _ if device.is_looked_for() => Ok(PathBuf::from(LOOKED_FOR)),
+        _ => ports::place(profile, device, Looks::Once, &Findings::default),
     }
 }
 
@@ -48,11 +55,29 @@ fn name_of(place: &Path) -> String {
 /// that udev gives it.
 #[must_use]
 pub fn candidates(profile: &str, device: &Device) -> Vec<PathBuf> {
-    let Ok(place) = place(profile, device) else {
+    let Ok(named) = place(profile, device) else {
         return Vec::new();
     };
-    let mut names = vec![name_of(&place)];
-    names.extend(other_names(&place).iter().map(|place| name_of(place)));
+    let mut places = vec![named];
+    if device.is_looked_for() {
+        places.extend(ports::place(profile, device, Looks::Once, &discover));
+    }
+    let others: Vec<PathBuf> = places.iter().flat_map(|place| other_names(place)).collect();
+    places.extend(others);
+    trusted(places.iter().map(|place| name_of(place)).collect())
+}
+
+/// The sockets where a daemon may listen that looks for its drive: it may have found the one at `device`'s port.
+#[must_use]
+pub fn looking(device: &Device) -> Vec<PathBuf> {
+    match device.kind == DeviceKind::Usb && device.port.is_some() {
+        true => trusted(vec![name_of(Path::new(LOOKED_FOR))]),
+        false => Vec::new(),
+    }
+}
+
+/// Those of these names that are there, in every place where sockets are.
+fn trusted(names: Vec<String>) -> Vec<PathBuf> {
     let mut folders = vec![folder()];
     if folders.iter().all(|folder| folder != Path::new(SERVICE)) {
         folders.push(SERVICE.into());

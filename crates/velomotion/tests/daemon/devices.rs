@@ -1,9 +1,25 @@
 //! Devices that go and come back.
 
-use serde_json::json;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
 
-use crate::rig::{Rig, wait};
+use io::discover::{EPOS2_PRODUCT, EPOS2_VENDOR, Epos2Found, Findings, UsbIdentity};
+use serde_json::json;
+use velomotion::daemon::Options;
+
+use crate::rig::{Rig, run, said, wait};
 use crate::software_drive::Drive;
+
+/// The device `bench` with these keys, and a lidar port that nobody sends to.
+fn bench(options: &mut Options, keys: &str) {
+    let free = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    let port = free.local_addr().unwrap().port();
+    let profile = format!(
+        "[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\nlidar = '127.0.0.1'\ndata_port = {port}\nposition_port = {port}\n{keys}"
+    );
+    let own: velomotion::config::Config = toml::from_str(&profile).unwrap();
+    options.config.device = own.device;
+}
 
 fn drive(rig: &Rig, wanted: &str) -> serde_json::Value {
     wait(wanted, || {
@@ -14,20 +30,10 @@ fn drive(rig: &Rig, wanted: &str) -> serde_json::Value {
 
 #[test]
 fn a_drive_that_is_unplugged_is_missed_and_found_again() {
-    let bench = tempfile::tempdir().unwrap();
-    let link = bench.path().join("epos");
-    let profile = format!(
-        "[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\nport = '{}'\nlidar = '127.0.0.1'\ndata_port = 1\n",
-        link.display()
-    );
+    let table = tempfile::tempdir().unwrap();
+    let link = table.path().join("epos");
     let rig = Rig::with("", |options| {
-        let own: velomotion::config::Config = toml::from_str(&profile).unwrap();
-        options.config.device = own.device;
-        // A port that no lidar sends to.
-        let free = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
-        let port = free.local_addr().unwrap().port();
-        let device = options.config.device.profiles.get_mut("bench").unwrap();
-        (device.data_port, device.position_port) = (Some(port), Some(port));
+        bench(options, &format!("port = '{}'", link.display()));
     });
     let absent = drive(&rig, "absent");
     wait("why", || {
@@ -76,4 +82,99 @@ fn a_drive_that_is_unplugged_is_missed_and_found_again() {
             .load(std::sync::atomic::Ordering::Relaxed),
         2
     );
+}
+
+#[test]
+fn a_drive_that_is_looked_for_is_found_wherever_its_cable_comes_back() {
+    let table = tempfile::tempdir().unwrap();
+    let units: Arc<Mutex<Vec<Epos2Found>>> = Arc::default();
+    let on_the_bus = Arc::clone(&units);
+    let rig = Rig::with("", |options| {
+        bench(options, "");
+        options.world.plugged = Arc::new(move || Findings {
+            epos2: on_the_bus.lock().unwrap().clone(),
+            ..Findings::default()
+        });
+    });
+    let plug = |port: Option<PathBuf>| {
+        *units.lock().unwrap() = vec![Epos2Found {
+            usb: UsbIdentity {
+                vendor: EPOS2_VENDOR,
+                product: EPOS2_PRODUCT,
+                name: None,
+                serial_number: None,
+            },
+            bus_place: "1-4".to_owned(),
+            port,
+        }];
+    };
+    let problem = |word: &str| {
+        wait(word, || {
+            let problem = rig.status()["drive"]["problem"].clone();
+            problem.to_string().contains(word).then_some(problem)
+        })
+    };
+    let looking = "no drive found yet: looking for an EPOS2";
+    let absent = problem(looking);
+    assert_eq!(absent["kind"], "no-device");
+    assert!(
+        absent["help"]
+            .as_str()
+            .unwrap()
+            .contains("plug the EPOS2 in")
+    );
+    let metrics = rig.get("/metrics").text();
+    assert!(
+        metrics.contains("velomotion_drive_connected 0"),
+        "{metrics}"
+    );
+    // Whoever asks for more hears the same.
+    rig.get("/api/v1/tilt").refused(409, "status");
+    for (path, body) in [
+        ("/api/v1/tilt/home", json!({})),
+        ("/api/v1/captures", json!({"speed_deg_s": 10.0})),
+    ] {
+        let refused = rig.post(path, &body);
+        let refused = refused.refused(409, path).json();
+        assert!(
+            refused["error"].as_str().unwrap().starts_with(looking),
+            "{refused}"
+        );
+    }
+    let folder = rig.folder.path();
+    let configure = |keys: &str| {
+        let text = format!("[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\n{keys}");
+        std::fs::write(folder.join("velomotion.toml"), text).unwrap();
+    };
+    configure("");
+    for line in ["tilt status", "capture --speed 10 -o scan.ply"] {
+        let output = run(folder, line);
+        assert_eq!(output.status.code(), Some(4), "{line}: {}", said(&output));
+        assert!(said(&output).contains(looking), "{line}: {}", said(&output));
+    }
+    // One that Linux makes no port of.
+    plug(None);
+    problem("ftdi_sio");
+
+    let first = table.path().join("ttyUSB0");
+    let unit = Drive::plug(&first);
+    plug(Some(first.clone()));
+    let found = drive(&rig, "connected");
+    assert_eq!(found["port"], first.display().to_string());
+    for keys in [String::new(), format!("port = '{}'", first.display())] {
+        // Through the daemon, by whatever name: nobody else gets the port.
+        configure(&keys);
+        let output = run(folder, "tilt status --json");
+        assert!(output.status.success(), "{keys}: {}", said(&output));
+    }
+
+    units.lock().unwrap().clear();
+    drop(unit);
+    problem(looking);
+    let second = table.path().join("ttyUSB1");
+    let _unit = Drive::plug(&second);
+    plug(Some(second.clone()));
+    let found = drive(&rig, "connected");
+    assert_eq!(found["port"], second.display().to_string());
+    assert_eq!(found["problem"], json!(null));
 }
