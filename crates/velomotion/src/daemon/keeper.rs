@@ -18,7 +18,7 @@ use super::line::Line;
 use super::maker::Making;
 use super::orders::{panic_failure, port_lost};
 use super::shared::{Counters, Shared};
-use super::view::{DeviceState, Doing};
+use super::view::{DeviceState, Doing, DriveView};
 use crate::config::DeviceKind;
 use crate::devices;
 use crate::failure::{Failure, Kind};
@@ -153,15 +153,32 @@ impl Keeper {
         }
     }
 
+    /// The drive is not there.
     fn absent(&self, failure: Failure) {
+        self.unknown(Some(failure));
+    }
+
+    /// Nothing holds of the devices any more: cables may have come out, and the axis may have been moved by hand. Software goes on as it was.
+    fn forget(&self) {
+        self.unknown(None);
+        self.forget_lidar();
+    }
+
+    fn forget_lidar(&self) {
+        if self.devices.is_none() {
+            self.shared.set_hearing(None);
+        }
+    }
+
+    fn unknown(&self, problem: Option<Failure>) {
         // Whoever comes back may have been without power.
         self.shared.set_report(None);
         self.shared.set_drive(|drive| {
-            *drive = super::view::DriveView {
+            *drive = DriveView {
                 state: DeviceState::Absent,
-                problem: Some(failure),
+                problem,
                 port: drive.port.take(),
-                ..super::view::DriveView::default()
+                ..DriveView::default()
             };
         });
     }
@@ -192,7 +209,8 @@ impl Keeper {
                 self.shared.set_idle();
                 drop(answer.send(Err(failure)));
             }
-            Order::Reopen | Order::Wake => {}
+            Order::Reopen => self.forget_lidar(),
+            Order::Wake => {}
         }
     }
 
@@ -337,7 +355,10 @@ impl Keeper {
                 false => greeted.left(),
             };
             match self.orders.recv_timeout(next) {
-                Ok(Order::Reopen) => return Lost::Stale,
+                Ok(Order::Reopen) => {
+                    self.forget();
+                    return Lost::Stale;
+                }
                 Ok(Order::Wake) | Err(RecvTimeoutError::Timeout) => {}
                 Ok(order) => {
                     if let Some(lost) = self.obey(&mut line, order) {

@@ -11,6 +11,7 @@ use super::line::Line;
 use super::maker::Making;
 use super::motions::Motions;
 use super::points::Watching;
+use super::pulse;
 use super::scans::ScanState;
 use super::shared::Counters;
 use super::view::DeviceState;
@@ -115,6 +116,7 @@ impl Keeper {
     pub(super) fn capture(&mut self, line: &mut Line, setup: Setup, id: &str) -> Option<Lost> {
         let shared = Arc::clone(&self.shared);
         Counters::count(&shared.counters.captures);
+        let slept = (shared.world.suspended)();
         let Some(hearing) = shared.hearing() else {
             let problem = shared.lidar().problem;
             let failure = problem.unwrap_or_else(|| {
@@ -182,6 +184,10 @@ impl Keeper {
         let lost = ended.port_failed();
         line.failed = true;
         let mut outcome = ended.outcome();
+        // A port that did not outlive the sleep fails sooner than anybody looks at the clocks, and a sleep that no packet shows is one.
+        if let Some(slept) = pulse::suspended(slept, (shared.world.suspended)()) {
+            outcome.failure = Some(slept);
+        }
         if let Some(failure) = &mut outcome.failure
             && failure.kind == Kind::Interrupted
             && let Some(reason) = shared.stop_reason()

@@ -114,16 +114,10 @@ impl Pulse {
 
     fn sleep(&mut self) {
         let slept = (self.shared.world.suspended)();
-        let for_s = (slept - self.slept).as_secs_f64();
-        if slept - self.slept < SLEPT {
+        let Some(failure) = suspended(self.slept, slept) else {
             return;
-        }
+        };
         self.slept = slept;
-        let failure = Failure::new(
-            Kind::Incomplete,
-            format!("the machine was suspended for {for_s:.0} s"),
-        )
-        .help("scan again; see whether the machine may sleep while it scans (systemd-inhibit)");
         self.shared.interrupt(Some(failure.clone()));
         self.shared.hub.say(
             Level::Warning,
@@ -140,6 +134,19 @@ impl Pulse {
             let _ = sd_notify::notify(&[NotifyState::Watchdog]);
         }
     }
+}
+
+/// What is said where the machine has slept between two looks at how long it has slept in all.
+#[must_use]
+pub fn suspended(before: Span, now: Span) -> Option<Failure> {
+    let slept = now - before;
+    (slept >= SLEPT).then(|| {
+        Failure::new(
+            Kind::Incomplete,
+            format!("the machine was suspended for {:.0} s", slept.as_secs_f64()),
+        )
+        .help("scan again; see whether the machine may sleep while it scans (systemd-inhibit)")
+    })
 }
 
 /// Too little room.

@@ -1,12 +1,15 @@
 //! Devices that go and come back.
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use io::discover::{EPOS2_PRODUCT, EPOS2_VENDOR, Epos2Found, Findings, UsbIdentity};
 use serde_json::json;
+use units::Span;
 use velomotion::daemon::Options;
 
+use crate::events::connect;
 use crate::rig::{Rig, run, said, wait};
 use crate::software_drive::Drive;
 
@@ -177,4 +180,58 @@ fn a_drive_that_is_looked_for_is_found_wherever_its_cable_comes_back() {
     let found = drive(&rig, "connected");
     assert_eq!(found["port"], second.display().to_string());
     assert_eq!(found["problem"], json!(null));
+}
+
+#[test]
+fn after_a_sleep_nothing_is_taken_for_granted() {
+    let table = tempfile::tempdir().unwrap();
+    let link = table.path().join("epos");
+    let _unit = Drive::plug(&link);
+    let slept = Arc::new(AtomicI64::new(0));
+    let told = Arc::clone(&slept);
+    let rig = Rig::with("", |options| {
+        bench(options, &format!("port = '{}'", link.display()));
+        options.world.suspended = Arc::new(move || Span::from_nanos(told.load(Ordering::Relaxed)));
+    });
+    drive(&rig, "connected");
+    assert_eq!(rig.post("/api/v1/tilt/home", &json!({})).status, 200);
+    let shared = rig.daemon().shared();
+    let connects = || shared.counters.connects.load(Ordering::Relaxed);
+    let heard = Arc::downgrade(&shared.hearing().unwrap());
+    let mut events = connect(rig.address, "?points=false").unwrap();
+    // Less than half a second is no sleep.
+    slept.store(400_000_000, Ordering::Relaxed);
+    let mut next = |wanted: &str| loop {
+        // Pings come in between.
+        let tungstenite::Message::Text(text) = events.read().unwrap() else {
+            continue;
+        };
+        let event: serde_json::Value = serde_json::from_str(&text).unwrap();
+        if event["type"] == "status" && event["status"]["drive"]["state"] == wanted {
+            break event["status"]["drive"].clone();
+        }
+    };
+    for _ in 0..3 {
+        assert_eq!(next("connected")["referenced"], true);
+    }
+    assert_eq!(connects(), 1);
+    slept.store(7_200_000_000_000, Ordering::Relaxed);
+    // The axis may have been moved by hand, and the drive have lost its supply: it is asked.
+    let unknown = next("absent");
+    assert_eq!(
+        (&unknown["referenced"], &unknown["angle_deg"]),
+        (&json!(false), &json!(null))
+    );
+    let again = drive(&rig, "connected");
+    assert_eq!(again["referenced"], true, "{again}");
+    assert!(again["angle_deg"].is_number(), "{again}");
+    assert_eq!(connects(), 2);
+    // The lidar's sockets are others: a network that came back may have forgotten the old ones.
+    wait("other sockets", || {
+        let now = shared.hearing()?;
+        (!std::ptr::eq(heard.as_ptr(), Arc::as_ptr(&now))).then_some(())
+    });
+    wait("the end of the old ones", || {
+        heard.upgrade().is_none().then_some(())
+    });
 }

@@ -220,6 +220,33 @@ fn a_machine_that_has_slept_connects_anew_and_the_scan_is_partial() {
 }
 
 #[test]
+fn a_sleep_that_only_its_end_shows_makes_a_scan_partial() {
+    let slept = Arc::new(AtomicI64::new(0));
+    let told = Arc::clone(&slept);
+    let rig = Rig::with("", |options| {
+        // Nobody but whoever has the drive gets to look at the clocks in time.
+        options.world.suspended =
+            Arc::new(
+                move || match std::thread::current().name() == Some("keeper") {
+                    true => Span::from_nanos(told.load(Ordering::Relaxed)),
+                    false => Span::ZERO,
+                },
+            );
+    });
+    let id = sweep(rig.address);
+    slept.store(60_000_000_000, Ordering::Relaxed);
+    rig.post("/api/v1/captures/stop", &json!({}));
+    let scan = rig.finished(&id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    let why = scan["why"]["error"].as_str().unwrap();
+    assert_eq!(why, "the machine was suspended for 60 s");
+    assert_eq!(scan["recording"]["error"], why);
+    // The next one has nothing to do with it.
+    let next = rig.ready().whole_scan(&json!({"speed_deg_s": 56.25}));
+    assert_eq!(next["why"], json!(null));
+}
+
+#[test]
 fn a_download_takes_no_room_that_a_scan_was_promised() {
     // Free bytes for so many looks, and for all after those.
     let (free, looks) = (
