@@ -14,6 +14,7 @@ pub mod maker;
 pub mod monitor;
 pub mod motions;
 pub mod orders;
+pub mod origin;
 pub mod plan;
 pub mod points;
 pub mod pulse;

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use serde::Deserialize;
 
 use super::limits::TOKEN_BYTES;
+use super::origin::Origin;
 use super::ros2::settings::Ros2;
 use crate::failure::{Failure, Kind};
 
@@ -24,6 +25,8 @@ pub struct Settings {
     pub listen: SocketAddr,
     /// What every request over TCP must bring.
     pub token: Option<Token>,
+    /// Origins of pages that may ask for changes beside the daemon's own: what a proxy with TLS in front of it is called.
+    pub origins: Vec<Origin>,
     /// Folder of the scans.
     pub scans: Option<PathBuf>,
     /// How many scans are kept.
@@ -41,6 +44,7 @@ impl Default for Settings {
         Self {
             listen: SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)),
             token: None,
+            origins: Vec::new(),
             scans: None,
             keep_scans: 100,
             keep_bytes: 50_000_000_000,
@@ -185,5 +189,6 @@ mod tests {
     fn misspelt_keys_are_refused() {
         assert!(settings("keep = 3").is_err());
         assert!(settings("listen = 'here'").is_err());
+        assert!(settings("origins = ['scanner.example']").is_err());
     }
 }

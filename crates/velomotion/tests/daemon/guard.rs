@@ -27,6 +27,10 @@ fn pages_of_other_sites_get_nothing() {
         "null",
         "http://127.0.0.1",
         "http://127.0.0.1:1",
+        // The same host and port, but this daemon speaks no TLS: whatever answers there is another's.
+        &format!("https://{}", rig.address),
+        &format!("ws://{}", rig.address),
+        &format!("http://{}/", rig.address),
     ] {
         let foreign = format!("origin: {origin}\r\n");
         let answer = capture(rig.address, &foreign);
@@ -41,6 +45,33 @@ fn pages_of_other_sites_get_nothing() {
     let both = "host: evil.example:80\r\norigin: http://evil.example:80\r\n";
     capture(rig.address, both).refused(403, "rebound");
     assert_eq!(status(rig.address, "host: localhost:1\r\n").status, 200);
+}
+
+#[test]
+fn a_proxy_with_tls_is_let_in_where_it_is_named() {
+    let more = format!("token = '{TOKEN}'\norigins = ['https://scanner.example']");
+    let rig = Rig::with(&more, |_| {});
+    let from = |origin: &str| {
+        let headers = format!(
+            "host: scanner.example\r\nauthorization: Bearer {TOKEN}\r\norigin: {origin}\r\n"
+        );
+        capture(rig.address, &headers)
+    };
+    // Refused for its body, not for where it comes from.
+    from("https://scanner.example").refused(400, "the proxy's page");
+    from("https://scanner.example:443").refused(400, "the same");
+    for other in [
+        "https://scanner.example:8443",
+        "https://evil.example",
+        "https://scanner.example.evil.example",
+    ] {
+        let refused = from(other);
+        let said = refused.refused(403, other).json();
+        assert!(said["help"].as_str().unwrap().contains("origins"), "{said}");
+    }
+    // What it is named by does not stand for the token.
+    let bare = "host: scanner.example\r\norigin: https://scanner.example\r\n";
+    capture(rig.address, bare).refused(401, "no token");
 }
 
 #[test]

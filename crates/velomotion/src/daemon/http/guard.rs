@@ -18,6 +18,7 @@ use super::guests::{Guest, Standing};
 use super::page;
 use super::refusal::Refusal;
 use crate::daemon::limits::{BODY_BYTES, SIGNED_IN, TARGET_BYTES, Waits};
+use crate::daemon::origin::Origin;
 use crate::daemon::settings::equal;
 
 /// How a request came.
@@ -165,12 +166,12 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Standing, (Refusal,
         || headers.contains_key(header::UPGRADE);
     if changes && let Some(origin) = headers.get(header::ORIGIN) {
         let origin = origin.to_str().unwrap_or_default();
-        let authority = origin.split_once("://").map(|(_, authority)| authority);
-        if !authority.is_some_and(|authority| authority.eq_ignore_ascii_case(host)) {
+        if !may_change(origin, host, &api.shared.settings().origins) {
             return Err((
                 denied(
                     format!("a page of {origin:?} may not do this"),
-                    "use the daemon's own page, or a program that sends no Origin",
+                    "use the daemon's own page, or a program that sends no Origin; a proxy with TLS in front of the daemon is named by \
+                     origins = [\"https://...\"] under [daemon] of the configuration",
                 ),
                 false,
             ));
@@ -198,6 +199,13 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Standing, (Refusal,
         ),
         true,
     ))
+}
+
+/// Whether a page from there may ask for changes: the daemon's own, which speaks HTTP and is called `host`, or one that is `listed`.
+fn may_change(origin: &str, host: &str, listed: &[Origin]) -> bool {
+    origin.parse().is_ok_and(|origin: Origin| {
+        Origin::of_host(host).as_ref() == Some(&origin) || listed.contains(&origin)
+    })
 }
 
 fn denied(error: String, help: &str) -> Refusal {
