@@ -268,13 +268,16 @@ impl Ended {
         }
     }
 
+    /// What went wrong with the moves.
+    #[must_use]
+    pub fn motion_error(&self) -> Option<&SessionError> {
+        self.motion.as_ref().err()
+    }
+
     /// Whether the axis stands.
     #[must_use]
     pub fn stands(&self) -> bool {
-        !matches!(
-            self.motion,
-            Err(SessionError::NotStopped(_) | SessionError::Port(_))
-        )
+        !self.motion.as_ref().is_err_and(SessionError::may_move)
     }
 
     /// Whether the drive's port has failed.

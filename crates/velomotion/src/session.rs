@@ -19,7 +19,7 @@ pub enum SessionError {
     /// The user asked to stop; the axis has stopped.
     #[error("stopped by the user")]
     Interrupted,
-    /// The user asked to stop, and the drive did not do it.
+    /// A stop was asked for, and the drive did not do it.
     #[error("stopped by the user, but the axis may still move: {0}")]
     NotStopped(DriveError),
     /// The drive refused, reported a fault or did not answer. The axis has stopped unless the error says otherwise.
@@ -31,6 +31,16 @@ pub enum SessionError {
 }
 
 impl SessionError {
+    /// Whether the axis may move still: nobody has seen it come to rest.
+    #[must_use]
+    pub const fn may_move(&self) -> bool {
+        match self {
+            Self::Interrupted => false,
+            Self::NotStopped(_) | Self::Port(_) => true,
+            Self::Drive(error) => matches!(error, DriveError::NotStopped { .. }),
+        }
+    }
+
     /// What to do about it.
     #[must_use]
     pub fn help(&self) -> Option<String> {
@@ -83,8 +93,10 @@ impl<P: Port> Session<P> {
     ) -> Result<Outcome, SessionError> {
         let kind = command.kind();
         if let Err(error) = self.client.start(command) {
-            self.stop(on_event)?;
-            return Err(SessionError::Drive(error));
+            return Err(match self.stop(on_event)? {
+                None => SessionError::Drive(error),
+                Some(stop) => SessionError::NotStopped(stop),
+            });
         }
         self.unsafe_to_leave |= powers(kind);
         let ended = self.pump(on_event, true, None)?;
@@ -97,8 +109,12 @@ impl<P: Port> Session<P> {
             }
             // The client has brought the axis to rest, or has said that it could not.
             Ended::Failed(error) => {
-                self.unsafe_to_leave = matches!(error, DriveError::NotStopped { .. });
-                Err(SessionError::Drive(error))
+                let error = match kind {
+                    CommandKind::Stop => SessionError::NotStopped(error),
+                    _ => SessionError::Drive(error),
+                };
+                self.unsafe_to_leave = error.may_move();
+                Err(error)
             }
             Ended::Interrupted => match self.stop(on_event)? {
                 None => Err(SessionError::Interrupted),

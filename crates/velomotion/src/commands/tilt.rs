@@ -109,10 +109,7 @@ fn with_port(
         tracing::debug!(?event);
     });
     if let Some(control) = control {
-        control.ended(!matches!(
-            done,
-            Err(SessionError::NotStopped(_) | SessionError::Port(_))
-        ));
+        control.ended(!done.as_ref().is_err_and(SessionError::may_move));
     }
     let status = done.map_err(|error| tilting::failure(&error))?;
     Ok(say(

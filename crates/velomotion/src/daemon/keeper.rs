@@ -14,7 +14,7 @@ use tokio::sync::oneshot;
 use units::Span;
 
 use super::hub::Level;
-use super::line::Line;
+use super::line::{Axis, Line};
 use super::maker::Making;
 use super::orders::{panic_failure, port_lost};
 use super::shared::{Counters, Shared};
@@ -309,40 +309,43 @@ impl Keeper {
             self.shared.hub.say(Level::Warning, warning.clone(), None);
         }
         Counters::count(&self.shared.counters.connects);
-        Ok(Line {
-            opened,
-            // Whoever had it before may have left questions.
-            failed: true,
-        })
+        Ok(Line::new(opened))
     }
 
     /// Does orders with an open port until it is lost.
     fn serve(&mut self, mut line: Line) -> Lost {
         let mut look = Instant::now();
         let mut greeted = Backoff::new();
-        let mut known = false;
         loop {
             self.shared.beat();
             self.listen();
             if self.shared.is_ending() {
                 return Lost::Ending;
             }
-            // An order that is on its way connects by itself.
-            if !known && greeted.left().is_zero() && self.shared.claim(Doing::Connecting) {
+            // Unless an order is on its way.
+            if line.axis != Axis::Known
+                && greeted.left().is_zero()
+                && self.shared.claim(Doing::Connecting)
+            {
                 let done = self.ask(&mut line, &[Command::Connect]);
                 self.shared.set_idle();
                 match done {
-                    Ok(_) => known = true,
+                    Ok(_) => greeted = Backoff::new(),
                     Err(SessionError::Port(error)) => return Lost::Port(ports::failure(&error)),
-                    Err(error) => {
+                    Err(_) => {
+                        if line.axis == Axis::MayMove {
+                            // It is not let run any longer than it must.
+                            greeted = Backoff::new();
+                        }
                         greeted.failed();
-                        self.fault(tilting::failure(&error));
                     }
                 }
                 look = Instant::now() + LOOK;
             }
             if look.saturating_duration_since(Instant::now()).is_zero() {
-                if known && let Err(SessionError::Port(error)) = self.ask(&mut line, &[]) {
+                if line.axis == Axis::Known
+                    && let Err(SessionError::Port(error)) = self.ask(&mut line, &[])
+                {
                     return Lost::Port(ports::failure(&error));
                 }
                 look = Instant::now() + LOOK;
@@ -350,9 +353,9 @@ impl Keeper {
                     devices.forget_before(io::clock::now().saturating_add(-MEMORY));
                 }
             }
-            let next = match known {
-                true => look.saturating_duration_since(Instant::now()),
-                false => greeted.left(),
+            let next = match line.axis {
+                Axis::Known => look.saturating_duration_since(Instant::now()),
+                Axis::Unknown | Axis::MayMove => greeted.left(),
             };
             match self.orders.recv_timeout(next) {
                 Ok(Order::Reopen) => {
@@ -364,7 +367,6 @@ impl Keeper {
                     if let Some(lost) = self.obey(&mut line, order) {
                         return lost;
                     }
-                    known = true;
                     look = Instant::now() + LOOK;
                 }
                 Err(RecvTimeoutError::Disconnected) => return Lost::Ending,

@@ -7,7 +7,7 @@ use drive::{Client, Command, Event, Status};
 
 use super::hub::Level;
 use super::keeper::{Keeper, Lost};
-use super::line::Line;
+use super::line::{Axis, Line};
 use super::maker::Making;
 use super::motions::Motions;
 use super::points::Watching;
@@ -55,11 +55,16 @@ impl Keeper {
         });
         motions.end();
         drop(session);
+        let doubtful = line.axis == Axis::MayMove;
+        line.ended(commands.contains(&Command::Connect), done.as_ref().err());
         match done {
-            Ok(status) => Ok(self.said(&status)),
+            Ok(status) => Ok(self.said(&status, line.axis)),
             Err(error) => {
                 line.failed = true;
-                if let SessionError::Drive(_) | SessionError::NotStopped(_) = &error {
+                if let SessionError::Drive(_) | SessionError::NotStopped(_) = &error
+                    // What an axis that may move is said to do is said until it stands.
+                    && (error.may_move() || !doubtful)
+                {
                     self.fault(tilting::failure(&error));
                 }
                 Err(error)
@@ -68,7 +73,7 @@ impl Keeper {
     }
 
     /// The drive has said how it is.
-    pub(super) fn said(&self, status: &Status) -> Report {
+    pub(super) fn said(&self, status: &Status, axis: Axis) -> Report {
         let shared = &self.shared;
         let report = Report::new(&shared.name, status, shared.simulated());
         let gearing = self.axis.gearing;
@@ -87,11 +92,14 @@ impl Keeper {
             .help(fault_help(text(|fault| &fault.remedy).as_deref()))
         });
         shared.set_drive(|drive| {
-            drive.state = match fault {
-                true => DeviceState::Fault,
-                false => DeviceState::Connected,
-            };
-            drive.problem = problem;
+            // One that answers, but was not connected to, is what it was said to be.
+            if axis == Axis::Known || (fault && axis == Axis::Unknown) {
+                drive.state = match fault {
+                    true => DeviceState::Fault,
+                    false => DeviceState::Connected,
+                };
+                drive.problem = problem;
+            }
             drive.cia402 = Some(report.state.clone());
             drive.referenced = report.referenced;
             drive.angle_deg = report.angle_deg;
@@ -183,6 +191,8 @@ impl Keeper {
         };
         let lost = ended.port_failed();
         line.failed = true;
+        line.ended(true, ended.motion_error());
+        let stands = ended.stands();
         let mut outcome = ended.outcome();
         // A port that did not outlive the sleep fails sooner than anybody looks at the clocks, and a sleep that no packet shows is one.
         if let Some(slept) = pulse::suspended(slept, (shared.world.suspended)()) {
@@ -196,6 +206,13 @@ impl Keeper {
         }
         let lost = match outcome.failure.clone().filter(|_| lost) {
             Some(failure) => Some(Lost::Port(failure)),
+            // The keeper brings it to rest as soon as it is heard again.
+            None if !stands => {
+                if let Some(failure) = &outcome.failure {
+                    self.fault(failure.clone());
+                }
+                None
+            }
             // How the axis stands after it.
             None => match self.ask(line, &[]) {
                 Err(SessionError::Port(error)) => Some(Lost::Port(ports::failure(&error))),

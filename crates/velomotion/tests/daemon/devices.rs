@@ -14,7 +14,7 @@ use crate::rig::{Rig, run, said, wait};
 use crate::software_drive::Drive;
 
 /// The device `bench` with these keys, and a lidar port that nobody sends to.
-fn bench(options: &mut Options, keys: &str) {
+pub fn bench(options: &mut Options, keys: &str) {
     let free = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     let port = free.local_addr().unwrap().port();
     let profile = format!(
@@ -24,7 +24,7 @@ fn bench(options: &mut Options, keys: &str) {
     options.config.device = own.device;
 }
 
-fn drive(rig: &Rig, wanted: &str) -> serde_json::Value {
+pub fn drive(rig: &Rig, wanted: &str) -> serde_json::Value {
     wait(wanted, || {
         let drive = rig.status()["drive"].clone();
         (drive["state"] == wanted).then_some(drive)

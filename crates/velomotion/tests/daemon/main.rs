@@ -3,6 +3,7 @@
 
 mod api;
 mod commands;
+mod deaf;
 mod defects;
 mod devices;
 mod door;
