@@ -100,6 +100,7 @@ impl Daemon {
         let scans = Scans::open(&folder)?;
         let (orders, inbox) = channel();
         let shared = Arc::new(Shared::new(config, (name, device), scans, world, orders));
+        shared.look_at_disk();
         let ros2 = ros2::start(&shared)?;
         let (logs, wanted) = channel();
         for left in maker::left_over(&shared) {

@@ -47,6 +47,7 @@ pub fn run(shared: &Arc<Shared>, end: &Receiver<()>) {
         pulse.lidar();
         pulse.disk();
         shared.scans.settle();
+        shared.look_at_disk();
         pulse.sleep();
         pulse.keeper();
         shared.tell_status();

@@ -89,7 +89,7 @@ pub enum Refused {
     Failure(Failure),
 }
 
-/// The shared state. Locks are held for moments only, and never two at a time.
+/// The shared state. Locks are held for moments only, never while a disk or a device is waited for.
 pub struct Shared {
     /// The whole configuration.
     pub config: Config,
@@ -121,6 +121,8 @@ pub struct Shared {
     activity: watch::Sender<Activity>,
     drive: Mutex<DriveView>,
     lidar: Mutex<LidarView>,
+    /// As it was last seen.
+    disk: Mutex<DiskView>,
     hearing: Mutex<Option<Arc<Hearing>>>,
     report: Mutex<Option<tilting::Report>>,
     /// When it was said, if nothing has happened since.
@@ -172,6 +174,7 @@ impl Shared {
             activity: watch::Sender::new(Activity::default()),
             drive: Mutex::default(),
             lidar: Mutex::default(),
+            disk: Mutex::default(),
             hearing: Mutex::default(),
             report: Mutex::default(),
             reported: Mutex::default(),
@@ -238,8 +241,9 @@ impl Shared {
                 busy = Some(activity.doing);
                 return false;
             }
-            // What stopped the last one does not stop this one.
+            // What stopped the last one does not stop this one. Not later: whoever sees that the axis is taken may stop it at once.
             self.interrupt.store(false, Ordering::Release);
+            *locked(&self.stop_reason) = None;
             *activity = Activity {
                 doing,
                 scan: scan.clone(),
@@ -251,7 +255,6 @@ impl Shared {
             Some(doing) => Err(Refused::Busy(doing)),
             None => {
                 *locked(&self.reported) = None;
-                *locked(&self.stop_reason) = None;
                 Ok(())
             }
         }
@@ -415,22 +418,22 @@ impl Shared {
         locked(&self.alive).elapsed()
     }
 
-    /// The disk.
-    #[must_use]
-    pub fn disk(&self) -> DiskView {
+    /// Sees what the disk has. Never on the keeper's thread, nor on one that answers: a disk may take seconds, and a stop may not.
+    pub fn look_at_disk(&self) {
         let (scans, scans_bytes) = self.scans.size();
         let settings = self.settings();
-        DiskView {
+        let seen = DiskView {
             free_bytes: (self.world.free_bytes)(self.scans.folder()).ok(),
             reserve_bytes: settings.reserve_bytes,
             scans,
             scans_bytes,
             keep_scans: settings.keep_scans,
             keep_bytes: settings.keep_bytes,
-        }
+        };
+        *locked(&self.disk) = seen;
     }
 
-    /// Everything.
+    /// Everything, as it was last seen: nothing is waited for.
     #[must_use]
     pub fn status(&self) -> Status {
         let axis = &self.config.axis;
@@ -451,7 +454,7 @@ impl Shared {
                 accel_deg_s2: self.device.accel_deg_s2,
                 home_deg: axis.homing.to_deg,
             },
-            disk: self.disk(),
+            disk: *locked(&self.disk),
             clients: ClientsView {
                 events: self.hub.len(),
                 dropped: self.hub.dropped(),

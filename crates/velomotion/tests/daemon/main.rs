@@ -16,3 +16,4 @@ mod scans;
 mod service;
 #[path = "../software_drive/mod.rs"]
 mod software_drive;
+mod stall;

@@ -54,28 +54,15 @@ pub async fn begin(
     let shared = Arc::clone(&api.shared);
     answered(&shared).await;
     // Files are made, which may take a disk its time.
-    let begun = tokio::task::spawn_blocking(move || start(&shared, &asked)).await;
-    let id = begun.map_err(|_| panicked())??;
-    let view = api
-        .shared
-        .scans
-        .view(&id)
-        .ok_or_else(|| Refusal::no_scan(&id))?;
+    let id = super::with_disk(move || start(&shared, &asked)).await??;
+    let (shared, begun) = (Arc::clone(&api.shared), id.clone());
+    let view = super::with_disk(move || shared.scans.view(&begun)).await?;
+    let view = view.ok_or_else(|| Refusal::no_scan(&id))?;
     let mut response = super::json(StatusCode::CREATED, &view);
     if let Ok(location) = format!("/api/v1/scans/{id}").parse() {
         response.headers_mut().insert(header::LOCATION, location);
     }
     Ok(response)
-}
-
-/// A defect that is not the client's.
-fn panicked() -> Refusal {
-    Refusal::new(
-        StatusCode::INTERNAL_SERVER_ERROR,
-        "incomplete",
-        "a defect of the program",
-        "run the daemon with -vv and report what it says",
-    )
 }
 
 /// Begins a capture; the scan's id.
@@ -129,12 +116,14 @@ pub async fn stop(State(api): State<Arc<Api>>) -> Response {
     super::json(StatusCode::OK, &body)
 }
 
-/// Stops a capture and waits until the axis stands: whether there was one, and the scan.
+/// Stops a capture and waits until the axis stands: whether there was one, and the scan. What else moves the axis is let alone.
 pub async fn end(shared: &Shared) -> (bool, Option<String>) {
     let mut activity = shared.follow();
     // It may have been begun this moment: then its scan has no name yet.
-    let is_capture = activity.borrow().doing == Doing::Capturing;
-    let stopped = is_capture && shared.interrupt(None);
+    if activity.borrow().doing != Doing::Capturing {
+        return (false, None);
+    }
+    let stopped = shared.interrupt(None);
     let mut scan: Option<String> = None;
     loop {
         {
@@ -150,7 +139,7 @@ pub async fn end(shared: &Shared) -> (bool, Option<String>) {
             break;
         }
     }
-    (stopped, scan.filter(|_| is_capture))
+    (stopped, scan)
 }
 
 /// How long a question to the drive is waited for.

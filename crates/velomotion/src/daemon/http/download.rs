@@ -26,7 +26,7 @@ use crate::cli::TimeOf;
 use crate::commands::replay::{self, Request};
 use crate::daemon::plan;
 use crate::daemon::room::{self, Room, Roomy};
-use crate::daemon::scans::{CLOUD, LOG, THUMBNAIL};
+use crate::daemon::scans::{LOG, THUMBNAIL};
 use crate::failure::{Failure, Kind};
 use crate::output::Buffered;
 use crate::recordings::Source;
@@ -67,9 +67,11 @@ pub async fn cloud(
     let permit = downloading(&api)?;
     let file_name = format!("velomotion-{id}.{}", format.extension());
     let plain = !wanted.uncertainty && !wanted.echo;
-    let stored = api.shared.cloud(&id);
-    if format == Format::Ply && plain && stored.is_file() {
-        return send(&api, &stored, &file_name, permit);
+    if format == Format::Ply
+        && plain
+        && let Ok(stored) = open(api.shared.cloud(&id)).await?
+    {
+        return stream(&api, stored, &file_name, content_type("ply"), permit);
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
     let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
@@ -134,7 +136,7 @@ fn make(
     fields: Fields,
     accuracy: Accuracy,
     interrupt: &AtomicBool,
-) -> Result<File, Refusal> {
+) -> Result<Opened, Refusal> {
     let cannot = |error: std::io::Error| {
         Failure::new(
             Kind::Incomplete,
@@ -169,7 +171,8 @@ fn make(
     })?;
     drop(sink);
     file.seek(SeekFrom::Start(0)).map_err(cannot)?;
-    Ok(file)
+    let length = file.metadata().map_err(cannot)?.len();
+    Ok((file, length))
 }
 
 /// `GET /scans/ID/log`.
@@ -177,8 +180,10 @@ pub async fn log(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<
     let record = api.shared.scans.record(&id);
     record.ok_or_else(|| Refusal::no_scan(&id))?;
     let permit = downloading(&api)?;
-    let path = api.shared.log(&id);
-    send(&api, &path, &format!("velomotion-{id}.pcapng"), permit).map_err(|_| Refusal::no_file(LOG))
+    let file = open(api.shared.log(&id)).await?;
+    let file = file.map_err(|_| Refusal::no_file(LOG))?;
+    let name = format!("velomotion-{id}.pcapng");
+    stream(&api, file, &name, content_type("pcapng"), permit)
 }
 
 /// `GET /scans/ID/thumbnail`.
@@ -189,9 +194,10 @@ pub async fn thumbnail(
     let record = api.shared.scans.record(&id);
     record.ok_or_else(|| Refusal::no_scan(&id))?;
     let permit = downloading(&api)?;
-    let path = api.shared.scans.place(&id).join(THUMBNAIL);
-    send(&api, &path, &format!("velomotion-{id}.png"), permit)
-        .map_err(|_| Refusal::no_file(THUMBNAIL))
+    let file = open(api.shared.scans.place(&id).join(THUMBNAIL)).await?;
+    let file = file.map_err(|_| Refusal::no_file(THUMBNAIL))?;
+    let name = format!("velomotion-{id}.png");
+    stream(&api, file, &name, content_type("png"), permit)
 }
 
 fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
@@ -200,31 +206,33 @@ fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
         .map_err(|_| Refusal::too_many("downloads"))
 }
 
-/// Sends a file that is there.
-fn send(
-    api: &Api,
-    path: &FilePath,
-    name: &str,
-    permit: OwnedSemaphorePermit,
-) -> Result<Response, Refusal> {
-    let file = File::open(path).map_err(|_| Refusal::no_file(CLOUD))?;
-    let extension = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or_default();
-    stream(api, file, name, content_type(extension), permit)
+/// A file and its length.
+type Opened = (File, u64);
+
+/// Opens a file that is there. What is no file, such as a pipe, has no end.
+///
+/// # Errors
+/// As [`super::with_disk`]; within, the disk's own.
+async fn open(path: PathBuf) -> Result<std::io::Result<Opened>, Refusal> {
+    super::with_disk(move || {
+        if !std::fs::metadata(&path)?.is_file() {
+            return Err(std::io::ErrorKind::InvalidInput.into());
+        }
+        let file = File::open(&path)?;
+        let length = file.metadata()?.len();
+        Ok((file, length))
+    })
+    .await
 }
 
 /// Sends the rest of a file as it is now, a piece at a time: as fast as the client takes it.
 fn stream(
     api: &Api,
-    file: File,
+    (file, length): Opened,
     name: &str,
     content: &'static str,
     permit: OwnedSemaphorePermit,
 ) -> Result<Response, Refusal> {
-    let length = file.metadata().map(|there| there.len());
-    let length = length.map_err(|_| Refusal::no_file(CLOUD))?;
     let (pieces, inbox) = mpsc::channel(PIECES);
     let (wait, runtime) = (api.waits.download, Handle::current());
     tokio::task::spawn_blocking(move || {

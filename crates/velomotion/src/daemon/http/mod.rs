@@ -130,6 +130,23 @@ async fn status(State(api): State<Arc<Api>>) -> Response {
     json(StatusCode::OK, &api.shared.status())
 }
 
+/// Does what may wait for a disk, beside the threads that answer: a stop must get through whatever the disk does.
+///
+/// # Errors
+/// [`Refusal`] after a defect in it.
+pub async fn with_disk<T: Send + 'static>(
+    what: impl FnOnce() -> T + Send + 'static,
+) -> Result<T, Refusal> {
+    tokio::task::spawn_blocking(what).await.map_err(|_| {
+        Refusal::new(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "incomplete",
+            "a defect of the program",
+            "run the daemon with -vv and report what it says",
+        )
+    })
+}
+
 /// An answer in JSON.
 pub fn json(status: StatusCode, body: &impl serde::Serialize) -> Response {
     match serde_json::to_vec(body) {

@@ -14,18 +14,20 @@ use crate::daemon::scans::ScanView;
 use crate::failure::{Failure, Kind};
 
 /// `GET /scans`.
-pub async fn list(State(api): State<Arc<Api>>) -> Response {
+pub async fn list(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
     #[derive(Serialize)]
     struct List {
         scans: Vec<ScanView>,
     }
-    let scans = api.shared.scans.list();
-    super::json(StatusCode::OK, &List { scans })
+    let shared = Arc::clone(&api.shared);
+    let scans = super::with_disk(move || shared.scans.list()).await?;
+    Ok(super::json(StatusCode::OK, &List { scans }))
 }
 
 /// `GET /scans/ID`.
 pub async fn one(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<Response, Refusal> {
-    let scan = api.shared.scans.whole(&id);
+    let (shared, asked) = (Arc::clone(&api.shared), id.clone());
+    let scan = super::with_disk(move || shared.scans.whole(&asked)).await?;
     let scan = scan.ok_or_else(|| Refusal::no_scan(&id))?;
     Ok(super::json(StatusCode::OK, &scan))
 }
@@ -35,7 +37,13 @@ pub async fn delete(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
 ) -> Result<StatusCode, Refusal> {
-    let deleted = api.shared.scans.delete(&id).map_err(|failure| {
+    let (shared, asked) = (Arc::clone(&api.shared), id.clone());
+    let deleted = super::with_disk(move || {
+        let deleted = shared.scans.delete(&asked);
+        shared.look_at_disk();
+        deleted
+    });
+    let deleted = deleted.await?.map_err(|failure| {
         // Not the request is wrong, but its time.
         let kind = match failure.kind {
             Kind::Usage => Kind::Incomplete,
