@@ -195,6 +195,8 @@ fn a_sweep_is_watched_and_stopped_by_key_and_by_finger() {
             assert_eq!(stopped["why"]["kind"], "interrupted", "{stopped}");
             let swept = stopped["report"]["sweeps"][0]["to_deg"].as_f64().unwrap();
             assert!((-44.0..-0.02).contains(&swept), "{stopped}");
+            let said = page.text(".scan .why").await;
+            assert_eq!(said, "Stopped by the user. What was captured is kept.");
             let tilt = page.api("tilt").await;
             assert_eq!(tilt["velocity_rpm"], 0, "{tilt}");
         });

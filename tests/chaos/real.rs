@@ -136,9 +136,7 @@ impl World {
         check::agree(&all, &self.scans)?;
         // It may have been over before anything happened, and a busy machine keeps devices waiting.
         check::sound(&scan, &self.scans, Wanted::Any)?;
-        if what != Real::DiskFull {
-            check::worth_nothing(&scan, &self.scans)?;
-        }
+        check::worth_nothing(&scan, &self.scans)?;
         self.whole_is_whole(&scan)?;
         self.daemon
             .client
@@ -242,7 +240,8 @@ impl World {
         let over = wait("the end of the scan", || {
             let all = check::list(&self.daemon.client).ok()?;
             match check::named(&all, name) {
-                Ok(scan) if scan.state.is_final() => {
+                // The disk has room again.
+                Ok(scan) if scan.state.is_final() && !scan.waits_for_room => {
                     check::written(scan, &self.scans).then(|| scan.clone())
                 }
                 Ok(_) => None,

@@ -330,7 +330,7 @@ pub fn conclude(
             log.display()
         ),
         Err(failure) => format!(
-            "there is no cloud ({}); the log is {}",
+            "there is no cloud: {}\nthe log is {}",
             failure.message,
             log.display()
         ),

@@ -15,10 +15,9 @@ use cloud::formats::ply::PlyPipe;
 use cloud::{Fields, Sink, SinkError};
 
 use self::beside::write_beside;
-use self::file::Shared;
 use crate::failure::{Failure, Kind};
 
-pub(crate) use self::file::Buffered;
+pub(crate) use self::file::{Buffered, Shared};
 pub use self::texts::{make_folder, write_text};
 
 /// A cloud's destination, checked and opened before anything is measured.
@@ -51,7 +50,9 @@ impl Target {
             Failure::new(Kind::Usage, format!("{}: {error}", path.display()))
                 .help("give -o a name with one of those extensions, or - for PLY on stdout")
         })?;
-        Self::file(path, force, |buffered| format.writer(buffered, fields))
+        Self::file(path, force, |file| {
+            format.writer(Buffered::new(file), fields)
+        })
     }
 
     /// Opens `path` for an organised cloud of so many rows with the columns `fields`: a PCD.
@@ -59,8 +60,8 @@ impl Target {
     /// # Errors
     /// As [`Target::open`].
     pub fn organised(path: &Path, fields: Fields, force: bool, rows: u64) -> Result<Self, Failure> {
-        Self::file(path, force, |buffered| {
-            Box::new(PcdWriter::organised(buffered, rows).with_fields(fields))
+        Self::file(path, force, |file| {
+            Box::new(PcdWriter::organised(Buffered::new(file), rows).with_fields(fields))
         })
     }
 
@@ -69,22 +70,27 @@ impl Target {
     /// # Errors
     /// As [`Target::open`].
     pub fn turns(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
-        Self::file(path, force, |buffered| {
-            Box::new(McapWriter::new(buffered).with_fields(fields).by_turns())
+        Self::file(path, force, |file| {
+            let writer = McapWriter::new(Buffered::new(file));
+            Box::new(writer.with_fields(fields).by_turns())
         })
     }
 
-    fn file(
+    /// Opens `path` for what a `writer` makes of a cloud.
+    ///
+    /// # Errors
+    /// As [`Target::open`].
+    pub(crate) fn file(
         path: &Path,
         force: bool,
-        writer: impl FnOnce(Buffered<Shared>) -> Box<dyn Sink + Send>,
+        writer: impl FnOnce(Shared) -> Box<dyn Sink + Send>,
     ) -> Result<Self, Failure> {
         let file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
         let shared = Shared::new(file);
         Ok(Self {
             path: path.to_owned(),
             file: Some(shared.clone()),
-            sink: writer(Buffered::new(shared)),
+            sink: writer(shared),
         })
     }
 

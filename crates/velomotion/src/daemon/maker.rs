@@ -1,4 +1,5 @@
-//! The thread that makes clouds of logs: after each capture, and at the start of those that were never made.
+//! The thread that makes clouds of logs: after each capture, at the start of those that were never made, and where the disk was full once there
+//! is room.
 
 use std::fs;
 use std::io::Write;
@@ -6,24 +7,31 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::Receiver;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Duration;
 
 use cloud::Fields;
+use cloud::formats::Format;
 use io::files::{NewFile, Overwrite};
 use scanner::{Accuracy, TiltSource};
 use sim::Truth;
 
 use super::hub::Level;
+use super::plan;
+use super::room::{Room, Roomy};
 use super::scans::{CLOUD, LOG, ScanState, THUMBNAIL};
 use super::shared::{Counters, Shared};
 use crate::cli::TimeOf;
 use crate::commands::replay::{self, Request};
 use crate::failure::{Failure, Kind};
 use crate::job;
-use crate::output::{Target, file_failure};
+use crate::output::{Buffered, Target, file_failure};
 use crate::recordings::Source;
 use crate::report::Scan;
 use crate::thumbnail;
+
+/// How often it is looked whether there is room again.
+const LOOK: Duration = Duration::from_secs(1);
 
 /// A log that waits for its cloud.
 pub struct Making {
@@ -43,19 +51,39 @@ pub fn left_over(shared: &Shared) -> Vec<Making> {
     let ids = shared.scans.unfinished().into_iter();
     let making = ids.map(|id| {
         clean(&shared.scans.place(&id));
-        let record = shared.scans.record(&id);
-        let lost_records = record.as_ref().map_or(0, |record| record.lost_records);
-        let asked = record.and_then(|record| record.head.asked);
-        Making {
-            accuracy: asked
-                .and_then(|asked| asked.accuracy().ok())
-                .unwrap_or(Accuracy::Best),
-            id,
-            truth: None,
-            lost_records,
-        }
+        once_more(shared, id)
     });
     making.collect()
+}
+
+/// The log of a scan whose making has ended before there was a cloud.
+fn once_more(shared: &Shared, id: String) -> Making {
+    let record = shared.scans.record(&id);
+    let lost_records = record.as_ref().map_or(0, |record| record.lost_records);
+    let asked = record.and_then(|record| record.head.asked);
+    Making {
+        accuracy: asked
+            .and_then(|asked| asked.accuracy().ok())
+            .unwrap_or(Accuracy::Best),
+        id,
+        truth: None,
+        lost_records,
+    }
+}
+
+/// The oldest of those for which there was no room, if there is room now: of nothing that is left free or a scan was promised.
+fn with_room_now(shared: &Arc<Shared>) -> Option<Making> {
+    if shared.is_ending() {
+        return None;
+    }
+    let id = shared.scans.waiting().into_iter().next()?;
+    let log_bytes = fs::metadata(shared.log(&id)).map_or(0, |there| there.len());
+    Room::take(shared, plan::most_cloud_bytes(log_bytes)).ok()?;
+    shared.change_scan(&id, |record| {
+        record.state = ScanState::Making;
+        record.waits_for_room = false;
+    });
+    Some(once_more(shared, id))
 }
 
 /// Removes what was half written.
@@ -75,7 +103,15 @@ fn clean(place: &Path) {
 
 /// Makes clouds until nobody sends logs any more.
 pub fn run(shared: &Arc<Shared>, logs: &Receiver<Making>) {
-    while let Ok(making) = logs.recv() {
+    loop {
+        let making = match logs.recv_timeout(LOOK) {
+            Ok(making) => making,
+            Err(RecvTimeoutError::Disconnected) => return,
+            Err(RecvTimeoutError::Timeout) => match with_room_now(shared) {
+                Some(making) => making,
+                None => continue,
+            },
+        };
         if shared.abandon.load(Ordering::Acquire) {
             // Its state says that the cloud is to be made: the next start does it.
             continue;
@@ -85,9 +121,10 @@ pub fn run(shared: &Arc<Shared>, logs: &Receiver<Making>) {
     }
 }
 
-fn make(shared: &Shared, making: &Making) {
+fn make(shared: &Arc<Shared>, making: &Making) {
     let id = making.id.as_str();
-    let made = catch_unwind(AssertUnwindSafe(|| cloud(shared, making)));
+    let room = Room::of_scan(shared);
+    let made = catch_unwind(AssertUnwindSafe(|| cloud(shared, making, &room)));
     let made = made.unwrap_or_else(|_| {
         Err(Failure::new(
             Kind::Incomplete,
@@ -110,20 +147,25 @@ fn make(shared: &Shared, making: &Making) {
             .hub
             .say(Level::Warning, failure.message, failure.help);
     }
+    let waits = made.is_err() && room.refused().is_some();
     let concluded = job::conclude(made, record.outcome(), (&cloud, &log));
+    let counters = &shared.counters;
     match &concluded {
-        Ok((scan, None)) => tracing::info!("scan {id}: whole, {} points", scan.points),
+        Ok((scan, None)) => {
+            tracing::info!("scan {id}: whole, {} points", scan.points);
+            Counters::count(&counters.whole);
+        }
         Ok((scan, Some(why))) => {
             tracing::warn!("scan {id}: partial, {} points: {why}", scan.points);
+            Counters::count(&counters.partial);
         }
-        Err(why) => tracing::error!("scan {id}: no cloud: {why}"),
+        // What is to come of it is not known yet.
+        Err(why) if waits => tracing::error!("scan {id}: no cloud until there is room: {why}"),
+        Err(why) => {
+            tracing::error!("scan {id}: no cloud: {why}");
+            Counters::count(&counters.failed);
+        }
     }
-    let counters = &shared.counters;
-    Counters::count(match &concluded {
-        Ok((_, None)) => &counters.whole,
-        Ok((_, Some(_))) => &counters.partial,
-        Err(_) => &counters.failed,
-    });
     shared.change_scan(id, |record| match concluded {
         Ok((scan, why)) => {
             record.state = match &why {
@@ -137,6 +179,7 @@ fn make(shared: &Shared, making: &Making) {
         }
         Err(why) => {
             record.state = ScanState::Failed;
+            record.waits_for_room = waits;
             record.why = Some(why);
         }
     });
@@ -158,8 +201,11 @@ fn picture(cloud: &Path, to: &Path) -> Result<(), Failure> {
     file.commit().map_err(|error| file_failure(&error))
 }
 
-fn cloud(shared: &Shared, making: &Making) -> Result<Scan, Failure> {
-    let target = Target::open(&shared.cloud(&making.id), Fields::FILE, true)?;
+fn cloud(shared: &Shared, making: &Making, room: &Arc<Room>) -> Result<Scan, Failure> {
+    let target = Target::file(&shared.cloud(&making.id), true, |file| {
+        let file = Buffered::new(Roomy::new(file, Arc::clone(room)));
+        Format::Ply.writer(file, Fields::FILE)
+    })?;
     let source = Source::open(&shared.log(&making.id), None)?;
     let request = Request {
         recording: &source,
@@ -172,5 +218,8 @@ fn cloud(shared: &Shared, making: &Making) -> Result<Scan, Failure> {
         lost_records: making.lost_records,
         interrupt: &shared.abandon,
     };
-    replay::make(&request, target)
+    replay::make(&request, target).map_err(|failure| match room.refused() {
+        Some(full) => full.clone(),
+        None => failure,
+    })
 }

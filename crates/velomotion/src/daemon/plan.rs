@@ -79,6 +79,12 @@ pub fn most_points(log_bytes: u64) -> u64 {
     (log_bytes as f64 / PAYLOAD_BYTES * CHANNELS) as u64
 }
 
+/// Most bytes of the cloud of a log of so many bytes.
+#[must_use]
+pub fn most_cloud_bytes(log_bytes: u64) -> u64 {
+    (most_points(log_bytes) as f64 * ROW_BYTES) as u64
+}
+
 /// Bytes that the scans that are being recorded or made may need beyond what they have.
 #[must_use]
 pub fn still_needed(shared: &Shared) -> u64 {
@@ -90,10 +96,9 @@ pub fn still_needed(shared: &Shared) -> u64 {
             Some(plan(shared, asked, &setup).bytes)
         });
         // Of a log that was found nobody knows what it was to be: its cloud is to come.
-        let cloud = || most_points(scan.log_bytes.unwrap_or(0)) as f64 * ROW_BYTES;
         match planned {
             Some(whole) => whole.saturating_sub(scan.bytes),
-            None => cloud() as u64,
+            None => most_cloud_bytes(scan.log_bytes.unwrap_or(0)),
         }
     });
     needed.fold(0, u64::saturating_add)

@@ -1,6 +1,6 @@
-//! Room on the disk for clouds that are made for downloads: they take nothing of what is left free, nor of what a capture was promised.
+//! Room on the disk for clouds. Those made for downloads take nothing of what is left free, nor of what a capture was promised; a scan's own may
+//! have what is left free, which is what it is for.
 
-use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, OnceLock};
 
@@ -9,8 +9,10 @@ use cloud::formats::Format;
 use super::plan;
 use super::pulse::disk_full;
 use super::shared::Shared;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 
+/// Bytes that a scan's own cloud leaves for its record and others'.
+const RECORDS: u64 = 1 << 20;
 /// Bytes that are written between two looks at the disk.
 const STEP: u64 = 1 << 20;
 /// Most bytes of a point with all columns: as text some 20 a number.
@@ -32,7 +34,15 @@ pub fn most_bytes(format: Format, points: u64) -> u64 {
 /// The room that a file may take.
 pub struct Room {
     shared: Arc<Shared>,
+    of: Of,
     refused: OnceLock<Failure>,
+}
+
+/// Whose the file is.
+#[derive(Clone, Copy)]
+enum Of {
+    Download,
+    Scan,
 }
 
 impl Room {
@@ -41,12 +51,23 @@ impl Room {
     /// # Errors
     /// [`disk_full`] where it would not leave `reserve_bytes` and what scans that are under way may still need.
     pub fn take(shared: &Arc<Shared>, bytes: u64) -> Result<Arc<Self>, Failure> {
-        let room = Self {
-            shared: Arc::clone(shared),
-            refused: OnceLock::new(),
-        };
+        let room = Self::new(shared, Of::Download);
         room.look(bytes)?;
         Ok(Arc::new(room))
+    }
+
+    /// For the cloud of a scan: as far as the disk goes.
+    #[must_use]
+    pub fn of_scan(shared: &Arc<Shared>) -> Arc<Self> {
+        Arc::new(Self::new(shared, Of::Scan))
+    }
+
+    fn new(shared: &Arc<Shared>, of: Of) -> Self {
+        Self {
+            shared: Arc::clone(shared),
+            of,
+            refused: OnceLock::new(),
+        }
     }
 
     /// Whether so many bytes more may be written.
@@ -56,6 +77,12 @@ impl Room {
         let Ok(free) = (shared.world.free_bytes)(shared.scans.folder()) else {
             return Ok(());
         };
+        if let Of::Scan = self.of {
+            return match free.saturating_sub(RECORDS) >= bytes {
+                true => Ok(()),
+                false => Err(full(free)),
+            };
+        }
         let promised = plan::still_needed(shared);
         if free.saturating_sub(reserve).saturating_sub(promised) >= bytes {
             return Ok(());
@@ -84,18 +111,25 @@ impl Room {
     }
 }
 
+/// No room for the cloud of a scan.
+fn full(free: u64) -> Failure {
+    let message = format!("the disk is full: {} MB free", free / 1_000_000);
+    Failure::new(Kind::Incomplete, message)
+        .help("free some space on the disk of the scans, or delete scans: the cloud is made then")
+}
+
 /// A file that ends where the room does: a scan may have begun since, or another file have grown.
-pub struct Roomy {
-    file: File,
+pub struct Roomy<F> {
+    file: F,
     room: Arc<Room>,
     /// Bytes until the next look.
     left: u64,
 }
 
-impl Roomy {
+impl<F> Roomy<F> {
     /// That file.
     #[must_use]
-    pub const fn new(file: File, room: Arc<Room>) -> Self {
+    pub const fn new(file: F, room: Arc<Room>) -> Self {
         Self {
             file,
             room,
@@ -104,18 +138,30 @@ impl Roomy {
     }
 }
 
-impl Write for Roomy {
+impl<F: Write> Roomy<F> {
+    fn refuse(&self, failure: Failure) -> io::Error {
+        let error = io::Error::new(io::ErrorKind::StorageFull, failure.message.clone());
+        // The first word counts.
+        let _ = self.room.refused.set(failure);
+        error
+    }
+}
+
+impl<F: Write> Write for Roomy<F> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let wanted = bytes.len() as u64;
         if self.left < wanted {
-            self.room.look(wanted).map_err(|failure| {
-                let error = io::Error::new(io::ErrorKind::StorageFull, failure.message.clone());
-                let _ = self.room.refused.set(failure);
-                error
-            })?;
+            let room = self.room.look(wanted);
+            room.map_err(|failure| self.refuse(failure))?;
             self.left = STEP.max(wanted);
         }
-        let written = self.file.write(bytes)?;
+        let written = match self.file.write(bytes) {
+            // Others were quicker.
+            Err(error) if error.kind() == io::ErrorKind::StorageFull => {
+                return Err(self.refuse(full(0)));
+            }
+            written => written?,
+        };
         self.left = self.left.saturating_sub(written as u64);
         Ok(written)
     }
@@ -125,13 +171,13 @@ impl Write for Roomy {
     }
 }
 
-impl Read for Roomy {
+impl<F: Read> Read for Roomy<F> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         self.file.read(into)
     }
 }
 
-impl Seek for Roomy {
+impl<F: Seek> Seek for Roomy<F> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
     }

@@ -4,6 +4,7 @@
 
 mod found;
 mod record;
+mod summary;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -126,6 +127,7 @@ impl Scans {
             name: asked.name.clone(),
             state: ScanState::Recording,
             why: None,
+            waits_for_room: false,
             started_s: started.map_or(0.0, |since| since.as_secs_f64()),
             simulated,
             asked: Some(asked.clone()),
@@ -294,6 +296,21 @@ impl Scans {
         making.map(|record| record.id.clone()).collect()
     }
 
+    /// Those whose cloud is made once there is room for it, the oldest first.
+    #[must_use]
+    pub fn waiting(&self) -> Vec<String> {
+        let mut waiting: Vec<ScanRecord> = {
+            let scans = self.scans();
+            scans
+                .values()
+                .filter(|r| r.waits_for_room)
+                .cloned()
+                .collect()
+        };
+        waiting.sort_by(|a, b| a.started_s.total_cmp(&b.started_s));
+        waiting.into_iter().map(|record| record.head.id).collect()
+    }
+
     fn view_of(&self, record: &ScanRecord) -> ScanView {
         let place = self.place(&record.id);
         let size = |name: &str| fs::metadata(place.join(name)).ok().map(|there| there.len());
@@ -303,6 +320,7 @@ impl Scans {
             log_bytes: size(LOG),
             cloud_bytes: size(CLOUD),
             thumbnail: size(THUMBNAIL).is_some(),
+            summary: summary::of(record, &place, size(LOG).is_some()),
         }
     }
 

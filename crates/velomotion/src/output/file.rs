@@ -48,7 +48,7 @@ impl<F: Read + Write> Read for Buffered<F> {
 
 /// The file, shared between the writer inside a sink and the commit after it.
 #[derive(Clone)]
-pub(super) struct Shared(Arc<Mutex<Option<NewFile>>>);
+pub(crate) struct Shared(Arc<Mutex<Option<NewFile>>>);
 
 impl Shared {
     pub(super) fn new(file: NewFile) -> Self {

@@ -165,10 +165,11 @@ fn a_disk_that_is_nearly_full_ends_a_scan_and_begins_none() {
     let free = Arc::new(AtomicU64::new(u64::MAX));
     let told = Arc::clone(&free);
     let rig = Rig::with("", |options| {
+        options.config.daemon.reserve_bytes = 1_000_000_000;
         options.world.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
     });
     let id = sweep(rig.address);
-    free.store(999, Ordering::Relaxed);
+    free.store(999_999_999, Ordering::Relaxed);
     let scan = rig.finished(&id);
     assert_eq!(scan["state"], "partial", "{scan}");
     assert!(
@@ -244,6 +245,119 @@ fn a_sleep_that_only_its_end_shows_makes_a_scan_partial() {
     // The next one has nothing to do with it.
     let next = rig.ready().whole_scan(&json!({"speed_deg_s": 56.25}));
     assert_eq!(next["why"], json!(null));
+}
+
+/// What the disk says of a scan.
+fn written(rig: &Rig, id: &str) -> serde_json::Value {
+    let record = rig.log(id).with_file_name("scan.json");
+    serde_json::from_slice(&std::fs::read(record).unwrap()).unwrap()
+}
+
+#[test]
+fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
+    let (free, looks) = (
+        Arc::new(AtomicU64::new(u64::MAX)),
+        Arc::new(AtomicU64::new(0)),
+    );
+    let disk = || {
+        let (told, looked) = (Arc::clone(&free), Arc::clone(&looks));
+        move |options: &mut Options| {
+            options.world.free_bytes = Arc::new(move |_| {
+                looked.fetch_add(1, Ordering::SeqCst);
+                Ok(told.load(Ordering::SeqCst))
+            });
+        }
+    };
+    let mut rig = Rig::with("", disk());
+    let id = sweep(rig.address);
+    free.store(0, Ordering::SeqCst);
+    let waits = |scan: &serde_json::Value| {
+        assert_eq!(
+            (&scan["state"], &scan["waits_for_room"]),
+            (&json!("failed"), &json!(true)),
+            "{scan}"
+        );
+        assert_eq!(scan["points"], json!(null), "{scan}");
+    };
+    let scan = rig.finished(&id);
+    waits(&scan);
+    let why = scan["why"].to_string();
+    assert!(
+        why.contains("nearly full") && why.contains("the disk is full"),
+        "{why}"
+    );
+    let summary = scan["summary"].as_str().unwrap();
+    assert!(
+        summary.contains(" The log is kept: its cloud is made as soon as the disk has room. "),
+        "{summary}"
+    );
+    assert!(!summary.contains('/'), "{summary}");
+    wait("its record", || {
+        (written(&rig, &id)["state"] == "failed").then_some(())
+    });
+    waits(&written(&rig, &id));
+    rig.get(&format!("/api/v1/scans/{id}/cloud"))
+        .refused(507, "full");
+    // A byte less than it may need, beside what is left free.
+    let needs = velomotion::daemon::plan::most_cloud_bytes(scan["log_bytes"].as_u64().unwrap());
+    free.store(1_000 + needs - 1, Ordering::SeqCst);
+    let before = looks.load(Ordering::SeqCst);
+    // The status of every second looks, too.
+    wait("looks", || {
+        (looks.load(Ordering::SeqCst) > before + 8).then_some(())
+    });
+    waits(&rig.get(&format!("/api/v1/scans/{id}")).json());
+    // Not for ever: the next start knows of it.
+    let config = rig.daemon().shared().config.clone();
+    rig.daemon.take().unwrap().stop(|| false).unwrap();
+    waits(&written(&rig, &id));
+    let mut options = Options {
+        config,
+        listen: Some("127.0.0.1:0".parse().unwrap()),
+        runtime: Some(rig.folder.path().to_owned()),
+        ..Options::default()
+    };
+    disk()(&mut options);
+    let again = Daemon::start(options).unwrap();
+    rig.address = again.address();
+    rig.daemon = Some(again);
+    waits(&rig.get(&format!("/api/v1/scans/{id}")).json());
+    free.store(1_000 + needs, Ordering::SeqCst);
+    let scan = wait("the cloud", || {
+        let scan = rig.get(&format!("/api/v1/scans/{id}")).json();
+        (scan["state"] == "partial").then_some(scan)
+    });
+    assert!(scan["points"].as_u64().unwrap() > 0, "{scan}");
+    assert_eq!(scan["waits_for_room"], false);
+    assert!(
+        scan["why"]["error"]
+            .as_str()
+            .unwrap()
+            .contains("nearly full"),
+        "{scan}"
+    );
+    wait("its record", || {
+        let told = written(&rig, &id);
+        (told["state"] == "partial" && told["waits_for_room"] == false).then_some(())
+    });
+    let counters = &rig.daemon().shared().counters;
+    let counts = [&counters.partial, &counters.failed].map(|count| count.load(Ordering::Relaxed));
+    assert_eq!(counts, [1, 0]);
+}
+
+#[test]
+fn a_scan_that_waits_for_room_can_be_deleted() {
+    let free = Arc::new(AtomicU64::new(u64::MAX));
+    let told = Arc::clone(&free);
+    let rig = Rig::with("", |options| {
+        options.world.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
+    });
+    let id = sweep(rig.address);
+    free.store(0, Ordering::Relaxed);
+    assert_eq!(rig.finished(&id)["waits_for_room"], true);
+    let path = format!("/api/v1/scans/{id}");
+    assert_eq!(request(rig.address, "DELETE", &path, "", "").status, 204);
+    assert!(!rig.log(&id).exists());
 }
 
 #[test]

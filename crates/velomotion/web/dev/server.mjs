@@ -22,8 +22,9 @@ const scan = (n, more = {}) => ({
 });
 let scans = [
   scan(3),
-  scan(2, { state: "partial", why: { error: "stopped by the user", help: "the cloud holds what was swept", kind: "interrupted" }, points: 97_220, simulated: false, asked: { speed_deg_s: 5 } }),
-  scan(1, { state: "failed", why: { error: "the drive's cable was pulled out", help: "plug it in; the log is kept", kind: "device-fault" }, points: null }),
+  scan(2, { state: "partial", why: { error: "stopped by the user", help: "what was captured is saved: the cloud /data/scans/x/cloud.ply and the log /data/scans/x/log.pcapng", kind: "interrupted" }, summary: "Stopped by the user. What was captured is kept.", points: 97_220, simulated: false, asked: { speed_deg_s: 5 } }),
+  scan(1, { state: "failed", why: { error: "the disk is nearly full: 12 MB free, 1000 MB are left free", help: "delete scans", kind: "incomplete" }, waits_for_room: true,
+    summary: "The disk is nearly full: 12 MB free, 1000 MB are left free. Delete scans, or give another folder or a smaller reserve_bytes under [daemon] of the configuration. The log is kept: its cloud is made as soon as the disk has room.", points: null }),
 ];
 const sync = { clock_method: "hull", clock_residual_us: 18.4, clock_bound_us: 36.2, clock_drift_ppm: 12.02, angle_method: "profile", angle_rms_deg: 0.00071, angle_bound_deg: 0.0021 };
 
@@ -35,7 +36,7 @@ const status = () => ({
   drive: {
     state: mode === "fault" ? "fault" : mode === "absent" ? "absent" : "connected",
     problem: mode === "fault" ? { error: "the drive reports 0x8611: following error", help: "see whether something holds the platform; then clear the fault and home" }
-      : mode === "absent" ? { error: "no drive on /dev/ttyUSB0", help: "see whether its cable is in and it has power; velomotion doctor lists what is there", kind: "no-device" } : null,
+      : mode === "absent" ? { error: "no drive found yet: looking for an EPOS2 (USB 0403:A8B0) with a serial port (serial ports: none)", help: "plug the EPOS2 in and switch it on: it is connected as soon as it is there\nvelomotion doctor lists what is there; a drive that is not on USB needs a [device.NAME] of the configuration", kind: "no-device" } : null,
     port: "/dev/pts/4", link: "usb", cia402: mode === "fault" ? "Fault" : mode === "live" ? "Operation Enabled" : "Switch On Disabled", referenced: true,
     angle_deg: mode === "absent" ? null : angle, speed_deg_s: mode === "live" ? -5.625 : 0, faults: mode === "fault" ? [{ code: "0x8611", meaning: "following error" }] : [],
   },

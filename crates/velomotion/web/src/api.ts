@@ -96,6 +96,10 @@ export interface Scan {
   name?: string | null;
   state: ScanState;
   why?: Problem | null;
+  /** Whether its cloud is made once the disk has room. */
+  waits_for_room?: boolean;
+  /** Why it is not whole and what there is of it, in sentences. */
+  summary?: string | null;
   started_s: number;
   simulated: boolean;
   asked?: { [key in keyof Asked]?: Asked[key] | null } | null;

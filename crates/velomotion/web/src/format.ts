@@ -26,6 +26,12 @@ export function bytes(n: number): string {
   return `${unit === 0 ? size : size.toPrecision(3)} ${units[unit]}`;
 }
 
+/** With a capital at its begin and a stop at its end. */
+export function sentence(text: string): string {
+  const stop = /[.!?]$/.test(text) ? "" : ".";
+  return text.charAt(0).toUpperCase() + text.slice(1) + stop;
+}
+
 export function duration(seconds: number): string {
   if (seconds < 60) return `${seconds < 10 ? seconds.toFixed(2) : seconds.toFixed(0)} s`;
   if (seconds < 3_600) return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;

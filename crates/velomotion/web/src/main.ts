@@ -85,10 +85,12 @@ const events = new Events(listener);
 async function finished(scan: Scan): Promise<void> {
   if (scan.state === "recording" || scan.state === "making") return;
   const title = scan.name || scan.id;
-  const why = scan.why ? `: ${scan.why.error}` : "";
   if (scan.state === "whole") announce(`Scan ${title} is whole: ${count(scan.points ?? 0)} points`);
-  else note(scan.state === "failed" ? "error" : "warning", `Scan ${title} is ${scan.state}${why}`, scan.why?.help);
-  if (scan.state !== "failed" && viewer?.shown === scan.id) viewer.open(scan);
+  else note(scan.state === "failed" ? "error" : "warning", `Scan ${title} ${scan.state === "failed" ? "has no cloud" : "is partial"}.`, scan.summary);
+  if (viewer?.shown === scan.id) {
+    if (scan.state === "failed") viewer.ended(scan.id, title, scan.simulated);
+    else viewer.open(scan);
+  }
   await last();
 }
 

@@ -63,6 +63,12 @@ export class Viewer {
     this.changed(scan);
   }
 
+  /** A scan that was watched ended without a cloud: what was seen of it stays in view. */
+  ended(scan: string, title: string, simulated: boolean): void {
+    if (this.live === null || this.live.count === 0) return this.forget(scan);
+    this.head(`${title}: no cloud, as seen live`, simulated);
+  }
+
   /** Of live points every `thin`th comes here. */
   frame(frame: Frame, thin: number): void {
     this.stage.setTilt(frame.tilt_deg);

@@ -26,6 +26,7 @@ pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {
                 name: None,
                 state: ScanState::Making,
                 why: None,
+                waits_for_room: false,
                 started_s: modified_s(&place.join(LOG)),
                 simulated: name.contains("simulated"),
                 asked: None,

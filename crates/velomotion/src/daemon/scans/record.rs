@@ -45,6 +45,9 @@ pub struct ScanHead {
     pub state: ScanState,
     /// Why it is not whole.
     pub why: Option<Failure>,
+    /// Whether the disk was full when its cloud was made: it is made of the log once there is room.
+    #[serde(default)]
+    pub waits_for_room: bool,
     /// When it was begun, Unix seconds.
     pub started_s: f64,
     /// Whether the devices were software.
@@ -119,6 +122,8 @@ pub struct ScanView {
     pub cloud_bytes: Option<u64>,
     /// Whether there is a picture.
     pub thumbnail: bool,
+    /// Why it is not whole and what there is of it, in sentences for people, without files' places.
+    pub summary: Option<String>,
 }
 
 /// One with everything.

@@ -3,7 +3,7 @@
 import { type Fault, type Problem, type Scan, type Status, api } from "../api.ts";
 import { attribute, h, id, show, text } from "../dom.ts";
 import type { Motion } from "../events.ts";
-import { bytes, count, digits, fixed } from "../format.ts";
+import { bytes, count, digits, fixed, sentence } from "../format.ts";
 import { command } from "./control.ts";
 import { alarm } from "./messages.ts";
 
@@ -96,11 +96,11 @@ function problems(status: Status): void {
   const list = id("problems");
   list.replaceChildren(...found.map(({ device, state, problem }) => h("section", { class: "problem", "aria-label": `${device}: what is wrong`, "data-device": device.toLowerCase(), "data-state": state },
     h("h2", {}, `${device} ${STATES[state] ?? state}`),
-    h("p", {}, problem.error),
+    h("p", {}, sentence(problem.error)),
     problem.help ? h("p", { class: "todo" }, `What to do: ${problem.help}`) : null,
     device === "Drive" && state === "fault" ? h("div", { class: "row" }, h("button", { type: "button", id: "clear", click: () => void command("Clear", () => api.clear()) }, "Clear the fault")) : null,
   )));
-  if (found.length > 0) alarm(found.map(({ device, state, problem }) => `${device} ${STATES[state] ?? state}: ${problem.error}. ${problem.help ?? ""}`).join(" "));
+  if (found.length > 0) alarm(found.map(({ device, state, problem }) => `${device} ${STATES[state] ?? state}: ${sentence(problem.error)} ${problem.help ?? ""}`).join(" "));
 }
 
 const head = id("gauge-head");

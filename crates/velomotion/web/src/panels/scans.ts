@@ -1,6 +1,6 @@
 // The list of scans: pictures, opening, downloads, deleting. Left out: drawing a cloud (viewer.ts).
 
-import { type Problem, type Scan, api, cloudUrl, logUrl, thumbnailUrl } from "../api.ts";
+import { type Scan, api, cloudUrl, logUrl, thumbnailUrl } from "../api.ts";
 import { h, id, show, text } from "../dom.ts";
 import { bytes, compact, moment } from "../format.ts";
 import { command } from "./control.ts";
@@ -116,16 +116,12 @@ function content(scan: Scan): Node[] {
       h("h3", { title }, title),
       h("p", {}, moment(scan.started_s), typeof speed === "number" ? ` \u00b7 ${speed} \u00b0/s` : null),
       h("p", {}, numbers),
-      h("p", { class: "badges" }, h("span", { class: "badge", "data-state": scan.state }, STATES[scan.state] ?? scan.state), " ",
+      h("p", { class: "badges" }, h("span", { class: "badge", "data-state": scan.state }, scan.waits_for_room ? "no cloud yet" : (STATES[scan.state] ?? scan.state)), " ",
         scan.simulated ? h("span", { class: "badge", "data-state": "simulated" }, "SIMULATED") : null),
     ),
-    ...(scan.why ? [h("p", { class: "why", title: because(scan.why) }, because(scan.why))] : []),
+    ...(scan.summary ? [h("p", { class: "why", title: scan.summary }, scan.summary)] : []),
     row,
   ];
-}
-
-function because(why: Problem): string {
-  return [why.error, why.help].filter(Boolean).join(". ");
 }
 
 /** One list of formats; what is chosen is downloaded. */
