@@ -8,6 +8,9 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+/// How the name of a file ends that is being written.
+const HALF_WRITTEN: &str = ".partial";
+
 /// What to do about a file that is already there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overwrite {
@@ -247,13 +250,20 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
+/// Whether a file is what a process that was killed left of a [`NewFile`].
+#[must_use]
+pub fn is_half_written(name: &std::ffi::OsStr) -> bool {
+    let name = name.as_encoded_bytes();
+    name.starts_with(b".") && name.ends_with(HALF_WRITTEN.as_bytes())
+}
+
 /// A new file beside `path`, named after it and this process.
 fn create_temporary(path: &Path) -> io::Result<(File, PathBuf)> {
     let mut taken = io::Error::from(io::ErrorKind::AlreadyExists);
     for attempt in 0..100 {
         let mut name = std::ffi::OsString::from(".");
         name.push(path.file_name().unwrap_or_default());
-        name.push(format!(".{}-{attempt}.partial", std::process::id()));
+        name.push(format!(".{}-{attempt}{HALF_WRITTEN}", std::process::id()));
         let temporary = folder_of(path).join(name);
         match OpenOptions::new()
             .read(true)

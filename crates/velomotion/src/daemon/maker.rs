@@ -19,7 +19,7 @@ use sim::Truth;
 use super::hub::Level;
 use super::plan;
 use super::room::{Room, Roomy};
-use super::scans::{CLOUD, LOG, ScanState, THUMBNAIL};
+use super::scans::{ScanState, THUMBNAIL};
 use super::shared::{Counters, Shared};
 use crate::cli::TimeOf;
 use crate::commands::replay::{self, Request};
@@ -86,15 +86,13 @@ fn with_room_now(shared: &Arc<Shared>) -> Option<Making> {
     Some(once_more(shared, id))
 }
 
-/// Removes what was half written.
+/// Removes what was half written. Whatever else lies there is somebody's.
 fn clean(place: &Path) {
-    let known = [LOG, CLOUD, THUMBNAIL, "scan.json"];
     let Ok(entries) = fs::read_dir(place) else {
         return;
     };
     for entry in entries.flatten() {
-        let name = entry.file_name();
-        if !known.iter().any(|known| name == *known) {
+        if io::files::is_half_written(&entry.file_name()) {
             // What cannot be removed only takes room.
             let _ = fs::remove_file(entry.path());
         }
@@ -185,8 +183,18 @@ fn make(shared: &Arc<Shared>, making: &Making) {
     });
 }
 
-/// Draws the cloud for lists.
+/// Draws the cloud for lists, whatever happens in that.
 fn picture(cloud: &Path, to: &Path) -> Result<(), Failure> {
+    catch_unwind(|| draw(cloud, to)).unwrap_or_else(|_| {
+        Err(Failure::new(
+            Kind::Incomplete,
+            format!("{}: a defect of the program: no picture", to.display()),
+        )
+        .help("the scan is complete without it; run the daemon with -vv and report what it says"))
+    })
+}
+
+fn draw(cloud: &Path, to: &Path) -> Result<(), Failure> {
     let cannot = |error: &dyn std::fmt::Display| {
         Failure::new(
             Kind::Incomplete,

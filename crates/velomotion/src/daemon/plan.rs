@@ -104,6 +104,18 @@ pub fn still_needed(shared: &Shared) -> u64 {
     needed.fold(0, u64::saturating_add)
 }
 
+/// What is said of room that is promised.
+#[must_use]
+pub fn promise(bytes: u64) -> String {
+    match bytes {
+        0 => String::new(),
+        bytes => format!(
+            ", a scan that is under way may still need {} MB",
+            bytes.div_ceil(1_000_000)
+        ),
+    }
+}
+
 /// Refuses a capture for which there is no room.
 ///
 /// # Errors
@@ -113,13 +125,15 @@ pub fn fits(shared: &Shared, plan: &PlanView) -> Result<(), Failure> {
     let Ok(free) = (shared.world.free_bytes)(shared.scans.folder()) else {
         return Ok(());
     };
-    if free.saturating_sub(reserve) >= plan.bytes {
+    let promised = still_needed(shared);
+    if free.saturating_sub(reserve).saturating_sub(promised) >= plan.bytes {
         return Ok(());
     }
     let failure = disk_full(free, reserve);
     let message = format!(
-        "{}, and this scan may need {} MB",
+        "{}{}, and this scan may need {} MB",
         failure.message,
+        promise(promised),
         plan.bytes / 1_000_000
     );
     Err(Failure { message, ..failure })

@@ -88,18 +88,11 @@ impl Room {
             return Ok(());
         }
         let failure = disk_full(free, reserve);
-        let mega = |bytes: u64| bytes.div_ceil(1_000_000);
-        let promised = match promised {
-            0 => String::new(),
-            bytes => format!(
-                ", a scan that is under way may still need {} MB",
-                mega(bytes)
-            ),
-        };
         let message = format!(
-            "{}{promised}, and this cloud may need {} MB more",
+            "{}{}, and this cloud may need {} MB more",
             failure.message,
-            mega(bytes)
+            plan::promise(promised),
+            bytes.div_ceil(1_000_000)
         );
         Err(Failure { message, ..failure })
     }

@@ -6,6 +6,7 @@ mod found;
 mod record;
 mod summary;
 
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::Write;
@@ -35,6 +36,8 @@ const RECORD: &str = "scan.json";
 pub struct Scans {
     folder: PathBuf,
     scans: Mutex<BTreeMap<String, ScanRecord>>,
+    /// Held while a record is written, so that no older one comes after a newer.
+    writing: Mutex<()>,
     /// Those whose last change the disk did not take.
     unwritten: Mutex<BTreeSet<String>>,
     /// Bytes of those that do not change any more: the status is asked for every second.
@@ -81,15 +84,18 @@ impl Scans {
         for entry in entries.flatten() {
             let (path, name) = (entry.path(), entry.file_name());
             if let Some(name) = name.to_str()
-                && path.is_dir()
+                // What a link leads to is somebody else's.
+                && entry.file_type().is_ok_and(|kind| kind.is_dir())
                 && let Some(record) = found(&path, name)
             {
                 scans.insert(name.to_owned(), record);
             }
         }
+        number_those_without(&mut scans);
         Ok(Self {
             folder: folder.to_owned(),
             scans: Mutex::new(scans),
+            writing: Mutex::default(),
             unwritten: Mutex::default(),
             sizes: Mutex::default(),
         })
@@ -122,19 +128,23 @@ impl Scans {
         let now = std::time::SystemTime::now();
         let (id, place) = self.new_place(asked.name.as_deref(), now, simulated)?;
         let started = now.duration_since(std::time::UNIX_EPOCH);
-        let record = ScanRecord::new(ScanHead {
+        let mut record = ScanRecord::new(ScanHead {
             id: id.clone(),
             name: asked.name.clone(),
             state: ScanState::Recording,
             why: None,
             waits_for_room: false,
-            started_s: started.map_or(0.0, |since| since.as_secs_f64()),
+            // Whole milliseconds, which JSON gives back to the last bit.
+            started_s: started.map_or(0.0, |since| since.as_millis() as f64 / 1e3),
             simulated,
             asked: Some(asked.clone()),
             points: None,
             duration_s: None,
         });
-        if let Err(failure) = store(&place, &record) {
+        record.number = next_number(&self.scans());
+        let stored = store(&place, &record);
+        io::files::keep_name(&place);
+        if let Err(failure) = stored {
             // What was made a moment ago; whatever stays of it is found at the next start.
             let _ = fs::remove_dir_all(&place);
             return Err(failure);
@@ -191,29 +201,33 @@ impl Scans {
         id: &str,
         change: impl FnOnce(&mut ScanRecord),
     ) -> Result<Option<ScanView>, Failure> {
-        let record = {
-            let mut scans = self.scans();
-            let Some(record) = scans.get_mut(id) else {
-                return Ok(None);
-            };
-            change(record);
-            record.clone()
-        };
-        let stored = store(&self.place(id), &record);
+        match self.scans().get_mut(id) {
+            Some(record) => change(record),
+            None => return Ok(None),
+        }
+        let stored = self.write(id);
         self.sizes().remove(id);
         if let Err(failure) = stored {
             self.unwritten().insert(id.to_owned());
             return Err(failure);
         }
-        Ok(Some(self.view_of(&record)))
+        Ok(self.view(id))
+    }
+
+    /// Writes what is known of a scan now.
+    fn write(&self, id: &str) -> Result<(), Failure> {
+        let _writing = self.writing.lock().unwrap_or_else(PoisonError::into_inner);
+        match self.record(id) {
+            Some(record) if !record.unreadable => store(&self.place(id), &record),
+            _ => Ok(()),
+        }
     }
 
     /// Writes what the disk did not take when it was told.
     pub fn settle(&self) {
         let waiting = std::mem::take(&mut *self.unwritten());
         for id in waiting {
-            let record = self.record(&id);
-            if record.is_some_and(|record| store(&self.place(&id), &record).is_err()) {
+            if self.write(&id).is_err() {
                 self.unwritten().insert(id);
             }
         }
@@ -269,11 +283,7 @@ impl Scans {
     #[must_use]
     pub fn list(&self) -> Vec<ScanView> {
         let mut records: Vec<ScanRecord> = self.scans().values().cloned().collect();
-        records.sort_by(|a, b| {
-            b.started_s
-                .total_cmp(&a.started_s)
-                .then_with(|| b.id.cmp(&a.id))
-        });
+        records.sort_by(|a, b| order(b, a));
         records.iter().map(|record| self.view_of(record)).collect()
     }
 
@@ -373,7 +383,8 @@ impl Scans {
         (scans.len() as u64, bytes)
     }
 
-    /// Deletes the oldest scans until there are no more than `scans` of no more than `bytes`; which. The newest stays.
+    /// Deletes the oldest scans until there are no more than `scans` of no more than `bytes`; which. The newest stays, and those whose record
+    /// could not be read.
     pub fn retain(&self, scans: u64, bytes: u64) -> Vec<ScanView> {
         let (mut count, mut size) = self.size();
         let list = self.list();
@@ -382,13 +393,36 @@ impl Scans {
             if count <= scans && size <= bytes {
                 break;
             }
-            if view.state.is_final() && matches!(self.delete(&view.id), Ok(Some(_))) {
+            let kept = self.record(&view.id).is_none_or(|record| record.unreadable);
+            if view.state.is_final() && !kept && matches!(self.delete(&view.id), Ok(Some(_))) {
                 count -= 1;
                 size = size.saturating_sub(view.bytes);
                 gone.push(view.clone());
             }
         }
         gone
+    }
+}
+
+/// Which of two scans was made first.
+fn order(a: &ScanRecord, b: &ScanRecord) -> Ordering {
+    let by_number = a.number.cmp(&b.number);
+    let by_time = || a.started_s.total_cmp(&b.started_s);
+    by_number.then_with(by_time).then_with(|| a.id.cmp(&b.id))
+}
+
+fn next_number(scans: &BTreeMap<String, ScanRecord>) -> u64 {
+    let newest = scans.values().map(|record| record.number).max();
+    newest.unwrap_or(0).saturating_add(1)
+}
+
+/// Logs that somebody put into the folder are the newest: they are not deleted first.
+fn number_those_without(scans: &mut BTreeMap<String, ScanRecord>) {
+    let next = next_number(scans);
+    for record in scans.values_mut() {
+        if record.number == 0 && record.state == ScanState::Making && record.asked.is_none() {
+            record.number = next;
+        }
     }
 }
 
@@ -432,6 +466,84 @@ mod tests {
         let done = scans.change(&id, |record| record.state = ScanState::Whole);
         assert_eq!(done.unwrap().unwrap().cloud_bytes, Some(100));
         id
+    }
+
+    #[test]
+    fn what_is_newest_does_not_hang_on_the_clock() {
+        let folder = tempfile::tempdir().unwrap();
+        let scans = Scans::open(folder.path()).unwrap();
+        let ids: Vec<String> = (0..4).map(|_| finished(&scans, None)).collect();
+        // The clock was years ahead when the first was made, and the battery of the clock was empty at the last.
+        let set = |id: &str, at: f64| scans.change(id, |record| record.head.started_s = at);
+        set(&ids[0], 4e9).unwrap();
+        set(&ids[3], 1.0).unwrap();
+        for again in [&scans, &Scans::open(folder.path()).unwrap()] {
+            let listed: Vec<String> = again.list().iter().map(|scan| scan.id.clone()).collect();
+            assert_eq!(
+                listed,
+                [&ids[3], &ids[2], &ids[1], &ids[0]].map(Clone::clone)
+            );
+        }
+        let again = Scans::open(folder.path()).unwrap();
+        let gone: Vec<String> = again
+            .retain(2, u64::MAX)
+            .iter()
+            .map(|s| s.id.clone())
+            .collect();
+        assert_eq!(gone, [ids[0].clone(), ids[1].clone()]);
+        // The next is newer than all, whatever was deleted.
+        let next = finished(&again, None);
+        assert_eq!(again.list()[0].id, next);
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_shown_and_left_as_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let scans = Scans::open(folder.path()).unwrap();
+        let (later, strange) = (finished(&scans, None), finished(&scans, None));
+        let edit = |id: &str, from: &str, to: &str| {
+            let path = scans.place(id).join(RECORD);
+            let text = fs::read_to_string(&path).unwrap();
+            assert!(text.contains(from), "{text}");
+            fs::write(&path, text.replace(from, to)).unwrap();
+            fs::read(&path).unwrap()
+        };
+        // An option of a later program: the scan is a scan, with what this one knows of it.
+        edit(&later, "\"both_ways\": false", "\"zigzag\": 3");
+        // A state that this one does not know.
+        let bytes = edit(&strange, "\"whole\"", "\"superb\"");
+        // A folder of somebody's: a log and a cloud that nobody made here, and what else he keeps there.
+        let theirs = scans.place("hall");
+        fs::create_dir(&theirs).unwrap();
+        for name in [LOG, CLOUD, "hall.e57", "photo.jpg"] {
+            fs::write(theirs.join(name), name).unwrap();
+        }
+        std::os::unix::fs::symlink(&theirs, scans.place("linked")).unwrap();
+
+        let again = Scans::open(folder.path()).unwrap();
+        let view = |id: &str| again.view(id).unwrap();
+        assert_eq!(
+            (view(&later).state, &view(&later).asked),
+            (ScanState::Whole, &None)
+        );
+        let why = view(&strange).why.clone().unwrap();
+        assert!(why.message.contains("superb"), "{why}");
+        assert_eq!(view(&strange).state, ScanState::Partial, "it has a cloud");
+        assert_eq!(view("hall").state, ScanState::Partial);
+        assert_eq!(again.view("linked"), None);
+        assert!(
+            again.unfinished().is_empty(),
+            "nothing is made over what is there"
+        );
+        // Not to be written over, nor deleted but by whoever wants it.
+        again
+            .change(&strange, |record| record.points = Some(7))
+            .unwrap();
+        assert_eq!(fs::read(again.place(&strange).join(RECORD)).unwrap(), bytes);
+        let gone = again.retain(0, 0);
+        assert!(gone.iter().all(|scan| scan.id != strange), "{gone:?}");
+        assert!(again.view(&strange).is_some());
+        assert!(again.delete(&strange).unwrap().is_some());
     }
 
     #[test]

@@ -161,6 +161,52 @@ fn a_scan_in_which_the_daemon_is_killed_is_found_at_the_next_start() {
 }
 
 #[test]
+fn a_log_whose_end_never_reached_the_disk_makes_no_whole_scan() {
+    let mut rig = Rig::new();
+    rig.ready();
+    let id = rig.whole_scan(&json!({"speed_deg_s": 56.25}))["id"].clone();
+    let id = id.as_str().unwrap();
+    let config = rig.daemon().shared().config.clone();
+    rig.daemon.take().unwrap().stop(|| true).unwrap();
+    // As a power cut leaves it while the cloud is made, on a disk that said it had the log and did not. In the folder lies more than ours.
+    let place = rig.log(id).parent().unwrap().to_owned();
+    let record = std::fs::read_to_string(place.join("scan.json")).unwrap();
+    let making = record.replacen("\"whole\"", "\"making\"", 1);
+    assert_ne!(making, record);
+    std::fs::write(place.join("scan.json"), making).unwrap();
+    let log = std::fs::File::options()
+        .write(true)
+        .open(rig.log(id))
+        .unwrap();
+    log.set_len(log.metadata().unwrap().len() * 4 / 5).unwrap();
+    for name in ["photo.jpg", "notes.partial", ".cloud.ply.1-0.partial"] {
+        std::fs::write(place.join(name), name).unwrap();
+    }
+    let again = Daemon::start(Options {
+        config,
+        listen: Some("127.0.0.1:0".parse().unwrap()),
+        runtime: Some(rig.folder.path().to_owned()),
+        ..Options::default()
+    })
+    .unwrap();
+    let scan = finished(again.address(), id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    let why = scan["why"]["error"].as_str().unwrap();
+    assert!(
+        why.contains("the log is not whole") && why.contains("cut short"),
+        "{why}"
+    );
+    for (name, stays) in [
+        ("photo.jpg", true),
+        ("notes.partial", true),
+        (".cloud.ply.1-0.partial", false),
+    ] {
+        assert_eq!(place.join(name).exists(), stays, "{name}");
+    }
+    again.stop(|| false).unwrap();
+}
+
+#[test]
 fn a_disk_that_is_nearly_full_ends_a_scan_and_begins_none() {
     let free = Arc::new(AtomicU64::new(u64::MAX));
     let told = Arc::clone(&free);

@@ -70,6 +70,11 @@ pub async fn begin(
 /// # Errors
 /// [`Refusal`] where it cannot be, or not now.
 pub fn start(shared: &Shared, asked: &Asked) -> Result<String, Refusal> {
+    // A scan that is being recorded is why there may be no room, and not what is to be said.
+    let doing = shared.activity().doing;
+    if doing != Doing::Idle {
+        return Err(Refused::Busy(doing).into());
+    }
     // Refused before anything is made.
     let dry = plans::setup(shared, asked, "cloud".into(), "log".into())?;
     plans::fits(shared, &plans::plan(shared, asked, &dry))?;

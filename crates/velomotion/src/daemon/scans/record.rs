@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::daemon::limits::NAME_BYTES;
 use crate::failure::{Failure, Kind};
@@ -40,6 +40,7 @@ pub struct ScanHead {
     /// The name of its folder.
     pub id: String,
     /// What the user called it.
+    #[serde(default)]
     pub name: Option<String>,
     /// How far it is.
     pub state: ScanState,
@@ -52,12 +53,19 @@ pub struct ScanHead {
     pub started_s: f64,
     /// Whether the devices were software.
     pub simulated: bool,
-    /// What was asked for; absent where nobody knows any more.
+    /// What was asked for; absent where nobody knows any more, or a later program knows more of.
+    #[serde(default, deserialize_with = "if_understood")]
     pub asked: Option<Asked>,
     /// Points of the cloud.
     pub points: Option<u64>,
     /// Length of the recording, seconds.
     pub duration_s: Option<f64>,
+}
+
+/// What was asked for, where it can be read: requests with options that nobody knows are refused, but a scan that was made is a scan.
+fn if_understood<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Asked>, D::Error> {
+    let value = Option::<serde_json::Value>::deserialize(from)?;
+    Ok(value.and_then(|value| serde_json::from_value(value).ok()))
 }
 
 /// What is kept of a scan beside its files: `scan.json`.
@@ -66,6 +74,12 @@ pub struct ScanRecord {
     /// What it is known by.
     #[serde(flatten)]
     pub head: ScanHead,
+    /// Scans are numbered as they are made: clocks may be set, and what is newest must not hang on them.
+    #[serde(default)]
+    pub number: u64,
+    /// Whether the file could not be read: then nothing is written over it, and the scan stays until somebody deletes it.
+    #[serde(skip)]
+    pub unreadable: bool,
     /// What was said on the way.
     #[serde(default)]
     pub messages: Vec<String>,
@@ -89,6 +103,8 @@ impl ScanRecord {
     pub const fn new(head: ScanHead) -> Self {
         Self {
             head,
+            number: 0,
+            unreadable: false,
             messages: Vec::new(),
             recording: None,
             lost_records: 0,
