@@ -72,6 +72,14 @@ pub enum Progress {
     Moving(Plan),
     /// The axis searches its home.
     Homing,
+    /// It is on its way there: where the drive wants it to be (6062), counted from whatever zero it had before. No sample: none of a shaft
+    /// that loses its zero would be of use.
+    Searching {
+        /// When the drive said so.
+        at: Stamp<Host>,
+        /// Where.
+        demand: Quadcounts,
+    },
     /// A command failed and the axis was brought to rest; the failure follows.
     MadeSafe(Stopped),
 }

@@ -111,7 +111,11 @@ impl Ops {
         Ok(self.read_timed(object).await?.0)
     }
 
-    async fn read_timed<T: Scalar>(&self, object: Object<T>) -> Result<(T, Answered), DriveError> {
+    /// The same with when it was asked and answered.
+    pub async fn read_timed<T: Scalar>(
+        &self,
+        object: Object<T>,
+    ) -> Result<(T, Answered), DriveError> {
         let request = self.request(object.address, Access::Read, T::BYTES);
         let answered = self.ask(request).await?;
         let raw = answered.reply.value.unwrap_or_default();

@@ -68,7 +68,7 @@ async fn set_up(ops: &Ops) -> Result<(), DriveError> {
 }
 
 /// Waits for bits 10 and 12. The first look comes a period late, when the bits of an earlier homing have gone.
-async fn watch(ops: &Ops) -> Result<(), DriveError> {
+async fn watch(ops: &mut Ops) -> Result<(), DriveError> {
     const DONE: u16 = status::TARGET_REACHED | status::HOMING_ATTAINED;
     let homing = ops.config.homing;
     let limit = ops.now().saturating_add(homing.time_limit);
@@ -84,6 +84,13 @@ async fn watch(ops: &Ops) -> Result<(), DriveError> {
         }
         if got & DONE == DONE {
             return Ok(());
+        }
+        // For whoever looks on. A drive that does not tell is homed all the same; one that is gone is missed at the next look.
+        if let Ok((demand, answered)) = ops.read_timed(objects::POSITION_DEMAND).await {
+            ops.tell(Progress::Searching {
+                at: answered.answer,
+                demand: Quadcounts(demand),
+            });
         }
         if asked > limit {
             return Err(DriveError::HomingTime {

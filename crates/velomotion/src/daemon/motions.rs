@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use drive::Plan;
-use units::{Degrees, Host, Stamp};
+use drive::{Plan, Progress};
+use units::{Degrees, Gearing, Host, Stamp};
 
 use super::hub::Event;
 use super::shared::Shared;
@@ -16,6 +16,8 @@ pub struct Motions<'a> {
     shared: &'a Shared,
     told: Option<(Instant, Stamp<Host>, Degrees)>,
     until: Option<Instant>,
+    /// Whether the axis knew where it was before it began to search its home.
+    referenced: bool,
 }
 
 impl<'a> Motions<'a> {
@@ -26,6 +28,28 @@ impl<'a> Motions<'a> {
             shared,
             told: None,
             until: None,
+            referenced: false,
+        }
+    }
+
+    /// The drive's client says how far it is, moves to a plan left out.
+    pub fn progress(&mut self, step: &Progress, gearing: &Gearing) {
+        match step {
+            Progress::Homing => {
+                let known = self.shared.report();
+                self.referenced = known.is_some_and(|report| report.referenced);
+                self.shared.note(|activity| activity.homes = true);
+                self.shared.tell_status();
+            }
+            // An axis that has lost its zero is somewhere.
+            Progress::Searching { at, demand } if self.referenced => {
+                let packets = self.shared.activity().packets;
+                self.moved(*at, gearing.angle(*demand), packets);
+            }
+            step => {
+                self.shared.beat();
+                tracing::debug!(?step);
+            }
         }
     }
 
@@ -41,6 +65,7 @@ impl<'a> Motions<'a> {
             activity.from_deg = Some(plan.from.0);
             activity.to_deg = Some(plan.to.0);
             activity.left_s = Some(seconds);
+            activity.homes = false;
         });
         self.shared.tell_status();
     }

@@ -51,6 +51,7 @@ impl Keeper {
                 motions.moved(sample.answer, self.axis.gearing.angle(sample.position), 0)
             }
             Event::Progress(drive::Progress::Moving(plan)) => motions.begin(plan, 0, 0),
+            Event::Progress(step) => motions.progress(step, &self.axis.gearing),
             event => tracing::debug!(?event),
         });
         motions.end();
@@ -157,10 +158,7 @@ impl Keeper {
                 Happening::Begins => shared.tell_status(),
                 Happening::Move { number, step } => motions.begin(&step.plan, number + 1, steps),
                 Happening::Moved { at, angle, packets } => motions.moved(at, angle, packets),
-                Happening::Progress(step) => {
-                    shared.beat();
-                    tracing::debug!(?step);
-                }
+                Happening::Progress(step) => motions.progress(step, &self.axis.gearing),
                 Happening::Over => motions.end(),
                 Happening::Saving => shared.beat(),
                 Happening::Warning(text) => {

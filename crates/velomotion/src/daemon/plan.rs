@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use protocol::vlp16::models;
+
 use super::pulse::disk_full;
 use super::shared::Shared;
 use super::view::PlanView;
@@ -67,10 +69,38 @@ pub fn plan(shared: &Shared, asked: &Asked, setup: &Setup) -> PlanView {
         sweep_s: first.map_or(0.0, |plan| plan.duration.as_secs_f64()),
         moves_s,
         step_deg: first.map(|plan| plan.cruise.0 * 60.0 / rpm),
+        resolution_deg: first.map(|plan| {
+            let tilt_deg = (plan.to.0 - plan.from.0).abs();
+            let turns = tilt_deg / plan.cruise.0.abs() * rpm / 60.0;
+            resolution_deg(lidar.model, tilt_deg, turns)
+        }),
+        homing_s: homing_s(shared),
         frames: first.map(|plan| plan.duration.as_secs_f64() * rpm / 60.0),
         bytes: bytes as u64,
         headline: setup.headline(),
     }
+}
+
+/// The paper's vertical resolution: what is seen from the lowest laser at one end of a sweep to the highest at the other, shared by all lasers in
+/// all turns, ramps left out. A lidar that was not heard is a VLP-16.
+fn resolution_deg(model: Option<&str>, tilt_deg: f64, turns: f64) -> f64 {
+    let known = models::ALL
+        .into_iter()
+        .find(|known| Some(known.name) == model);
+    let lasers = known.unwrap_or(&models::VLP_16).lasers;
+    let angles = lasers.iter().map(|laser| laser.elevation_deg);
+    let (low, high) = angles.fold((f64::MAX, f64::MIN), |(low, high), at| {
+        (low.min(at), high.max(at))
+    });
+    let count = u32::try_from(lasers.len()).unwrap_or(u32::MAX);
+    analysis::device::vertical_resolution_deg(tilt_deg + high - low, count, turns)
+}
+
+/// How long the axis takes to its home from where it stands: at the speed of the search, what it does around the switch left out.
+fn homing_s(shared: &Shared) -> Option<f64> {
+    let homing = &shared.config.axis.homing;
+    let angle_deg = shared.drive().angle_deg?;
+    Some((angle_deg - homing.to_deg).abs() / homing.speed_deg_s)
 }
 
 /// Most points of a log of so many bytes: all of it packets, and every channel of each a return.

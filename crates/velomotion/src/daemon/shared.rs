@@ -224,17 +224,7 @@ impl Shared {
                 Failure::new(Kind::Interrupted, "the daemon is ending").help("start it again"),
             ));
         }
-        {
-            let drive = locked(&self.drive);
-            if drive.state == DeviceState::Absent {
-                return Err(Refused::Failure(drive.problem.clone().unwrap_or_else(
-                    || {
-                        Failure::new(Kind::NoDevice, "the drive is not connected yet")
-                            .help("wait a moment, and look at the status")
-                    },
-                )));
-            }
-        }
+        self.drive_is_there()?;
         let mut busy = None;
         self.activity.send_if_modified(|activity| {
             if activity.doing != Doing::Idle {
@@ -258,6 +248,32 @@ impl Shared {
                 Ok(())
             }
         }
+    }
+
+    /// # Errors
+    /// [`Refused`] where the drive is not there.
+    pub fn drive_is_there(&self) -> Result<(), Refused> {
+        let drive = self.drive();
+        if drive.state != DeviceState::Absent {
+            return Ok(());
+        }
+        Err(Refused::Failure(drive.problem.unwrap_or_else(|| {
+            Failure::new(Kind::NoDevice, "the drive is not connected yet")
+                .help("wait a moment, and look at the status")
+        })))
+    }
+
+    /// # Errors
+    /// [`Refused`] where the lidar is not heard.
+    pub fn lidar_is_heard(&self) -> Result<(), Refused> {
+        let lidar = self.lidar();
+        if lidar.state == DeviceState::Connected {
+            return Ok(());
+        }
+        Err(Refused::Failure(lidar.problem.unwrap_or_else(|| {
+            Failure::new(Kind::NoDevice, "the lidar is not heard yet")
+                .help("wait a moment, and look at the status")
+        })))
     }
 
     /// Takes the axis for what moves nothing, if nobody has it; whether it was free.

@@ -34,6 +34,8 @@ pub struct Activity {
     /// Whether the drive is only asked something.
     #[serde(skip)]
     pub only_asks: bool,
+    /// Whether the axis searches its home: first of all in a capture.
+    pub homes: bool,
     /// Which move, from 1; 0 before the first.
     pub step: usize,
     /// Of how many.
@@ -192,6 +194,10 @@ pub struct PlanView {
     pub moves_s: f64,
     /// Tilt between two turns of the lidar, degrees: the resolution where a beam stands across the tilt axis.
     pub step_deg: Option<f64>,
+    /// Mean angle between neighbouring rays one above the other: what all lasers see while the axis sweeps, shared by so many lasers in so many turns.
+    pub resolution_deg: Option<f64>,
+    /// Homing before the first move, seconds, about; absent while the axis does not know where it is.
+    pub homing_s: Option<f64>,
     /// Turns of the lidar in a sweep.
     pub frames: Option<f64>,
     /// Bytes that it may need of the disk.

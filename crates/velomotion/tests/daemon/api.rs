@@ -134,7 +134,51 @@ fn a_plan_says_what_a_capture_would_be() {
     near("moves_s", 2.0 * (0.8 + 56.25 / 500.0), 1e-3);
     // 10 turns a second.
     near("step_deg", 5.625, 0.05);
+    // The paper's: 75 degrees shared by 16 lasers in 8 turns.
+    near("resolution_deg", 0.586, 0.005);
     assert_eq!(rig.get("/api/v1/plan?speed_deg_s=1").status, 200);
+}
+
+#[test]
+fn the_way_home_before_a_scan_is_planned_and_seen() {
+    let rig = Rig::new();
+    rig.ready();
+    let plan = || rig.get("/api/v1/plan?speed_deg_s=56.25").json();
+    assert_eq!(
+        plan()["homing_s"],
+        json!(null),
+        "nobody knows where the axis is"
+    );
+    for (path, body) in [
+        ("home", json!({})),
+        ("goto", json!({"to_deg": -30.0, "speed_deg_s": 50.0})),
+    ] {
+        let moved = rig.post(&format!("/api/v1/tilt/{path}"), &body);
+        assert_eq!(moved.status, 200, "{}", moved.text());
+    }
+    let homing_s = plan()["homing_s"].as_f64().unwrap();
+    assert!(
+        (homing_s - 3.0).abs() < 0.01,
+        "30 deg at 10 deg/s: {homing_s}"
+    );
+    let begun = rig.post("/api/v1/captures", &json!({"speed_deg_s": 56.25}));
+    assert_eq!(begun.status, 201, "{}", begun.text());
+    // Angles on the way, each told while the axis searches its home.
+    let mut seen: Vec<f64> = Vec::new();
+    crate::rig::wait("the sweep", || {
+        let status = rig.status();
+        let (activity, drive) = (&status["activity"], &status["drive"]);
+        if activity["homes"] == true
+            && let Some(angle) = drive["angle_deg"].as_f64()
+        {
+            seen.push(angle);
+        }
+        (activity["step"].as_u64() > Some(0) || activity["doing"] == "idle").then_some(())
+    });
+    let ways = |from: f64, to: f64| seen.iter().any(|angle| (from..to).contains(angle));
+    assert!(ways(-28.0, -20.0) && ways(-15.0, -5.0), "{seen:?}");
+    rig.post("/api/v1/captures/stop", &json!({}));
+    rig.finished(begun.json()["id"].as_str().unwrap());
 }
 
 #[test]

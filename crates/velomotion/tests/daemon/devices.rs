@@ -54,15 +54,15 @@ fn a_drive_that_is_unplugged_is_missed_and_found_again() {
         (&found["link"], &found["problem"]),
         (&json!("usb"), &json!(null))
     );
-    // No lidar: nothing moves, nothing is recorded, and the scan says why.
-    let scan = rig.scan(&json!({"speed_deg_s": 10.0}));
-    assert_eq!(scan["state"], "failed", "{scan}");
-    assert_eq!(scan["why"]["kind"], "no-device");
+    // No lidar: nothing moves, nothing is recorded, and no scan is left behind.
+    let refused = rig.post("/api/v1/captures", &json!({"speed_deg_s": 10.0}));
+    let said = refused.refused(409, "no lidar").json();
+    assert_eq!(said["kind"], "no-device");
     assert!(
-        scan["why"]["error"].as_str().unwrap().contains("no lidar"),
-        "{scan}"
+        said["error"].as_str().unwrap().contains("no lidar"),
+        "{said}"
     );
-    assert_eq!(scan["log_bytes"], json!(null));
+    assert_eq!(rig.get("/api/v1/scans").json(), json!({"scans": []}));
     let lidar = rig.status()["lidar"].clone();
     assert_eq!(lidar["state"], "absent", "{lidar}");
     assert!(lidar["problem"]["help"].is_string());

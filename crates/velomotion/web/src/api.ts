@@ -28,6 +28,8 @@ export interface Status {
   activity: {
     doing: Doing;
     scan?: string | null;
+    /** The axis searches its home: first of all in a capture. */
+    homes?: boolean;
     /** From 1; 0 before the first move. */
     step?: number | null;
     steps?: number | null;
@@ -137,6 +139,10 @@ export interface Plan {
   moves_s: number;
   /** Tilt between two turns of the lidar; null while its speed is not known. */
   step_deg?: number | null;
+  /** Mean vertical resolution: what all lasers see in a sweep, shared by the lasers in all turns. */
+  resolution_deg?: number | null;
+  /** Before the first move, about; null while the axis does not know where it is. */
+  homing_s?: number | null;
   frames?: number | null;
   bytes: number;
 }

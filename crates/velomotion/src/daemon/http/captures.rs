@@ -15,7 +15,7 @@ use super::refusal::Refusal;
 use crate::daemon::hub::Event;
 use crate::daemon::keeper::Order;
 use crate::daemon::shared::{Refused, Shared};
-use crate::daemon::view::Doing;
+use crate::daemon::view::{DeviceState, Doing};
 use crate::daemon::{plan as plans, scans};
 use crate::setup::Asked;
 
@@ -52,6 +52,7 @@ pub async fn begin(
 ) -> Result<Response, Refusal> {
     let asked: Asked = body(&headers, &bytes)?;
     let shared = Arc::clone(&api.shared);
+    heard(&shared).await;
     answered(&shared).await;
     // Files are made, which may take a disk its time.
     let id = super::with_disk(move || start(&shared, &asked)).await??;
@@ -76,6 +77,8 @@ pub fn start(shared: &Shared, asked: &Asked) -> Result<String, Refusal> {
         return Err(Refused::Busy(doing).into());
     }
     // Refused before anything is made.
+    shared.drive_is_there()?;
+    shared.lidar_is_heard()?;
     let dry = plans::setup(shared, asked, "cloud".into(), "log".into())?;
     plans::fits(shared, &plans::plan(shared, asked, &dry))?;
     shared.take(Doing::Capturing, None)?;
@@ -145,6 +148,24 @@ pub async fn end(shared: &Shared) -> (bool, Option<String>) {
         }
     }
     (stopped, scan)
+}
+
+/// How long a lidar is waited for that may have been switched on a moment ago: it is looked for every second.
+const HEARD: Duration = Duration::from_secs(3);
+/// Between two looks.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Waits for a lidar that nobody has heard yet; not for one that is known to be silent.
+async fn heard(shared: &Shared) {
+    let unknown = || {
+        let lidar = shared.lidar();
+        lidar.state == DeviceState::Absent && lidar.problem.is_none()
+    };
+    let mut left = HEARD;
+    while unknown() && !left.is_zero() {
+        tokio::time::sleep(LOOK).await;
+        left = left.saturating_sub(LOOK);
+    }
 }
 
 /// How long a question to the drive is waited for.

@@ -115,7 +115,8 @@ export function setMotion(motion: Motion): void {
 }
 
 function said(now: Status, left_s: number | null): string {
-  const { doing: what, step, steps, to_deg } = now.activity;
+  const { doing: what, homes, step, steps, to_deg } = now.activity;
+  if (homes) return WORDS.homing ?? "";
   const parts = [WORDS[what] ?? what];
   if (typeof to_deg === "number" && (what === "moving" || what === "capturing")) parts[0] += ` to ${fixed(to_deg, Number.isInteger(to_deg) ? 0 : 1)}\u00b0`;
   if (step && steps && steps > 1) parts.push(`${step} of ${steps}`);

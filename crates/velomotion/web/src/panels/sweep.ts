@@ -66,8 +66,22 @@ export function setStatus(status: Status): void {
 
 /** The capture that the form asks for; null where a field is wrong, which the browser then says. */
 export function asked(): Asked | null {
+  unfold();
   if (!form.reportValidity()) return null;
   return read();
+}
+
+/** A field that is wrong cannot be pointed at where it is folded away. */
+function unfold(): void {
+  for (const more of form.querySelectorAll("details")) if (more.querySelector(":invalid") !== null) more.open = true;
+}
+
+/** The field that is wrong, in words; null where none is. */
+function wrong(): string | null {
+  const field = form.querySelector<HTMLInputElement>("input:invalid");
+  if (field === null) return null;
+  const label = field.closest("label")?.firstChild?.textContent?.trim() ?? field.name;
+  return `${label}: ${field.validity.patternMismatch ? field.title : field.validationMessage}`;
 }
 
 function read(): Asked {
@@ -90,23 +104,35 @@ function later(): void {
 
 async function plan(): Promise<void> {
   const mine = ++serial;
-  if (!(Number(speed.value) > 0)) return;
+  const words = wrong();
+  if (words !== null) return say(words);
   try {
     const found = await api.plan(read());
     if (mine === serial) draw(found);
   } catch (error) {
     if (mine !== serial || (error instanceof Refused && (error.status === 0 || error.status === 401))) return;
     const words = error instanceof Refused ? [error.message, error.help].filter(Boolean).join(": ") : String(error);
-    out.replaceChildren(h("p", { class: "wrong" }, words));
+    say(words);
   }
+}
+
+/** Why there is no plan. */
+function say(words: string): void {
+  out.replaceChildren(h("p", { class: "wrong" }, words));
 }
 
 function draw(found: Plan): void {
   const cell = (value: string, words: string) => h("span", {}, h("b", {}, value), words);
   const step = found.step_deg ?? null;
+  const resolution = found.resolution_deg ?? null;
+  const homing_s = found.homing_s ?? null;
+  const homes = homing_s === null ? ", and homing first" : homing_s >= 0.1 ? `, ${duration(homing_s)} of it to the home first` : "";
+  const all = `${duration(found.moves_s + (homing_s ?? 0))} in all${homes}`;
+  const turn = step === null ? "" : `${digits(step)}\u00b0 of tilt a turn \u00b7 `;
   out.replaceChildren(
     cell(duration(found.sweep_s), "a sweep"),
-    step === null ? cell("\u2013", "resolution: the lidar is not heard") : cell(`${digits(step)}\u00b0`, "vertical resolution"),
-    h("p", {}, `${duration(found.moves_s)} in all \u00b7 ${digits(found.motor_rpm, 4)} rpm \u00b7 ${bytes(found.bytes)} at most`),
+    resolution === null ? cell("\u2013", "mean vertical resolution") : cell(`${digits(resolution)}\u00b0`, "mean vertical resolution"),
+    h("p", {}, all),
+    h("p", {}, `${turn}${digits(found.motor_rpm, 4)} rpm \u00b7 ${bytes(found.bytes)} at most`),
   );
 }
