@@ -8,26 +8,20 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
 use drive::Command;
-use io::udp::ListenConfig;
-use protocol::record::DriveLink;
 use tokio::sync::oneshot;
 use units::Span;
 
-use super::hub::Level;
 use super::line::{Axis, Line};
 use super::maker::Making;
 use super::orders::{panic_failure, port_lost};
-use super::shared::{Counters, Shared};
-use super::view::{DeviceState, Doing, DriveView};
-use crate::config::DeviceKind;
+use super::shared::Shared;
+use super::view::Doing;
 use crate::devices;
 use crate::failure::{Failure, Kind};
-use crate::hearing::Hearing;
-use crate::ports::{self, Looks};
-use crate::recording::Ear;
+use crate::ports;
 use crate::session::SessionError;
 use crate::setup::Setup;
-use crate::simulated::{self, Simulated};
+use crate::simulated::Simulated;
 use crate::tilting::{self, Report};
 
 /// How often the drive is asked how it is while nothing is done.
@@ -69,29 +63,29 @@ pub struct Keeper {
     orders: Receiver<Order>,
     pub(super) maker: Sender<Making>,
     pub(super) devices: Option<Simulated>,
-    lidar_again: Backoff,
+    pub(super) lidar_again: Backoff,
 }
 
 /// When the next try is due.
-struct Backoff {
+pub(super) struct Backoff {
     wait: Duration,
     due: Instant,
 }
 
 impl Backoff {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             wait: AGAIN.0,
             due: Instant::now(),
         }
     }
 
-    fn failed(&mut self) {
+    pub(super) fn failed(&mut self) {
         self.due = Instant::now() + self.wait;
         self.wait = (self.wait * 2).min(AGAIN.1);
     }
 
-    fn left(&self) -> Duration {
+    pub(super) fn left(&self) -> Duration {
         self.due.saturating_duration_since(Instant::now())
     }
 }
@@ -153,36 +147,6 @@ impl Keeper {
         }
     }
 
-    /// The drive is not there.
-    fn absent(&self, failure: Failure) {
-        self.unknown(Some(failure));
-    }
-
-    /// Nothing holds of the devices any more: cables may have come out, and the axis may have been moved by hand. Software goes on as it was.
-    fn forget(&self) {
-        self.unknown(None);
-        self.forget_lidar();
-    }
-
-    fn forget_lidar(&self) {
-        if self.devices.is_none() {
-            self.shared.set_hearing(None);
-        }
-    }
-
-    fn unknown(&self, problem: Option<Failure>) {
-        // Whoever comes back may have been without power.
-        self.shared.set_report(None);
-        self.shared.set_drive(|drive| {
-            *drive = DriveView {
-                state: DeviceState::Absent,
-                problem,
-                port: drive.port.take(),
-                ..DriveView::default()
-            };
-        });
-    }
-
     /// Answers orders that came before it was known that the drive is gone.
     fn refuse_for(&mut self, wait: Duration) {
         let until = Instant::now() + wait;
@@ -212,104 +176,6 @@ impl Keeper {
             Order::Reopen => self.forget_lidar(),
             Order::Wake => {}
         }
-    }
-
-    /// Makes sure that the lidar is listened to, and that software devices run.
-    fn listen(&mut self) {
-        if self
-            .shared
-            .hearing()
-            .is_some_and(|hearing| hearing.is_sound())
-            && !self.devices.as_ref().is_some_and(Simulated::failed)
-        {
-            return;
-        }
-        if !self.lidar_again.left().is_zero() {
-            return;
-        }
-        match self.start_listening() {
-            Ok(()) => self.lidar_again = Backoff::new(),
-            Err(failure) => {
-                self.lidar_again.failed();
-                self.shared.set_hearing(None);
-                self.shared.set_lidar(|lidar| {
-                    lidar.state = DeviceState::Fault;
-                    lidar.problem = Some(failure);
-                });
-            }
-        }
-    }
-
-    fn start_listening(&mut self) -> Result<(), Failure> {
-        let simulated = self.shared.simulated();
-        // The old sockets first: the new ones may be the same.
-        self.shared.set_hearing(None);
-        let config = match simulated {
-            true => ListenConfig {
-                address: self.shared.device.lidar,
-                data_port: 0,
-                position_port: Some(0),
-                ..ListenConfig::default()
-            },
-            false => self.shared.listen_config(),
-        };
-        let ear = Ear::bind(&config)?;
-        if simulated {
-            let scan = scanner::ScanConfig {
-                mount: self.shared.config.mount,
-                ..scanner::ScanConfig::default()
-            };
-            let rig = simulated::rig(&self.axis, &scan, io::clock::now());
-            if let Some(old) = self.devices.replace(Simulated::start(rig, ear.ports())?) {
-                drop(old.stop());
-            }
-        }
-        let shared = Arc::clone(&self.shared);
-        let hearing = Hearing::start(
-            ear,
-            Box::new(move |record| {
-                shared
-                    .monitor
-                    .lock()
-                    .unwrap_or_else(std::sync::PoisonError::into_inner)
-                    .observe(record);
-                shared.feed.record(record);
-            }),
-        )?;
-        self.shared.set_hearing(Some(Arc::new(hearing)));
-        Ok(())
-    }
-
-    fn open(&self) -> Result<Line, Failure> {
-        let place = match &self.devices {
-            Some(devices) => devices.port().to_owned(),
-            None if self.shared.device.kind == DeviceKind::Sim => {
-                return Err(
-                    Failure::new(Kind::NoDevice, "the software devices do not run")
-                        .help("see what is said of the lidar"),
-                );
-            }
-            None => ports::place(
-                &self.shared.name,
-                &self.shared.device,
-                Looks::On,
-                &*self.shared.world.plugged,
-            )?,
-        };
-        let opened = ports::open(&self.shared.device, &place)?;
-        self.shared.set_drive(|drive| {
-            drive.port = Some(place.display().to_string());
-            drive.link = Some(match opened.link {
-                DriveLink::Usb => "usb",
-                DriveLink::Rs232 => "rs232",
-                DriveLink::Can => "can",
-            });
-        });
-        if let Some(warning) = &opened.warning {
-            self.shared.hub.say(Level::Warning, warning.clone(), None);
-        }
-        Counters::count(&self.shared.counters.connects);
-        Ok(Line::new(opened))
     }
 
     /// Does orders with an open port until it is lost.

@@ -18,6 +18,7 @@ pub mod origin;
 pub mod plan;
 pub mod points;
 pub mod pulse;
+pub mod reach;
 pub mod room;
 pub mod ros2;
 pub mod scans;
