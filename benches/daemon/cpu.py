@@ -36,18 +36,30 @@ def packets(path):
     return out
 
 
+def whole_turns(recorded):
+    """The packets of whole turns of the lidar, which can follow themselves, and how long they take by its clock, microseconds."""
+    data = [i for i, (_, port, _) in enumerate(recorded) if port == 2368]
+    stamp = lambda i: struct.unpack_from("<I", recorded[i][2], 1200)[0]
+    azimuth = lambda i: struct.unpack_from("<H", recorded[i][2], 2)[0]
+    begin = data[0]
+    # The packet that looks where the first does is the first of the next round.
+    end = min(data[len(data) // 2 :], key=lambda i: (abs((azimuth(i) - azimuth(begin) + 18_000) % 36_000 - 18_000), i))
+    return recorded[begin:end], (stamp(end) - stamp(begin)) % 3_600_000_000
+
+
 def lidar(recorded, ports, stop):
     out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    start, first, last = time.monotonic(), recorded[0][0], recorded[-1][0]
-    turn, step_us = 0, round((recorded[-1][0] - recorded[0][0]) * 1e6)
+    recorded, round_us = whole_turns(recorded)
+    start, first, turn = time.monotonic(), recorded[0][0], 0
     while not stop.is_set():
         for at, port, payload in recorded:
-            due = start + turn * (last - first) + at - first
+            due = start + turn * round_us * 1e-6 + at - first
             if due > time.monotonic() + 0.005:
                 time.sleep(due - time.monotonic())
-            if port == 2368:  # The lidar's clock goes on from one turn to the next.
-                stamp = (struct.unpack_from("<I", payload, 1200)[0] + turn * step_us) % 3_600_000_000
-                payload = payload[:1200] + struct.pack("<I", stamp) + payload[1204:]
+            # The lidar's clock goes on from one round to the next, in either kind of packet.
+            place = 1200 if port == 2368 else 198
+            stamp = (struct.unpack_from("<I", payload, place)[0] + turn * round_us) % 3_600_000_000
+            payload = payload[:place] + struct.pack("<I", stamp) + payload[place + 4 :]
             out.sendto(payload, ("127.0.0.1", ports[port]))
             if stop.is_set():
                 return
