@@ -194,7 +194,15 @@ impl Keeper {
         let mut outcome = ended.outcome();
         // A port that did not outlive the sleep fails sooner than anybody looks at the clocks, and a sleep that no packet shows is one.
         if let Some(slept) = pulse::suspended(slept, (shared.world.suspended)()) {
-            outcome.failure = Some(slept);
+            outcome.failure = Some(match outcome.failure.take() {
+                // What else failed may need somebody's hand.
+                Some(other) if other.kind != Kind::Interrupted => Failure {
+                    message: format!("{}; and {}", slept.message, other.message),
+                    help: other.help.or(slept.help),
+                    kind: other.kind,
+                },
+                _ => slept,
+            });
         }
         if let Some(failure) = &mut outcome.failure
             && failure.kind == Kind::Interrupted
