@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use io::discover::Findings;
 use tokio::sync::watch;
-use units::Span;
+use units::{Rpm, Span};
 
 use super::hub::{Event, Hub, Level};
 use super::keeper::Order;
@@ -118,6 +118,7 @@ pub struct Shared {
     /// Set once more: what is being made is not waited for.
     pub abandon: AtomicBool,
     started_s: f64,
+    slowest_deg_s: f64,
     activity: watch::Sender<Activity>,
     drive: Mutex<DriveView>,
     lidar: Mutex<LidarView>,
@@ -156,6 +157,9 @@ impl Shared {
         world: World,
         orders: Sender<Order>,
     ) -> Self {
+        // An axis that cannot be is refused where the keeper is made.
+        let slowest = |axis: drive::AxisConfig| axis.gearing.rate(Rpm(1)).0.abs();
+        let slowest_deg_s = devices::axis(&config.axis).map_or(0.0, slowest);
         Self {
             config,
             name,
@@ -171,6 +175,7 @@ impl Shared {
             ending: AtomicBool::new(false),
             abandon: AtomicBool::new(false),
             started_s: now_s(),
+            slowest_deg_s,
             activity: watch::Sender::new(Activity::default()),
             drive: Mutex::default(),
             lidar: Mutex::default(),
@@ -466,6 +471,7 @@ impl Shared {
                 min_deg: axis.min_deg,
                 max_deg: axis.max_deg,
                 max_speed_deg_s: axis.max_speed_deg_s,
+                min_speed_deg_s: self.slowest_deg_s,
                 max_accel_deg_s2: axis.max_accel_deg_s2,
                 accel_deg_s2: self.device.accel_deg_s2,
                 home_deg: axis.homing.to_deg,

@@ -118,6 +118,8 @@ pub struct AxisView {
     pub max_deg: f64,
     /// Largest speed.
     pub max_speed_deg_s: f64,
+    /// Slowest: one turn of the motor a minute.
+    pub min_speed_deg_s: f64,
     /// Largest acceleration.
     pub max_accel_deg_s2: f64,
     /// Acceleration that is used.

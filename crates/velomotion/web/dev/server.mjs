@@ -41,7 +41,7 @@ const status = () => ({
     angle_deg: mode === "absent" ? null : angle, speed_deg_s: mode === "live" ? -5.625 : 0, faults: mode === "fault" ? [{ code: "0x8611", meaning: "following error" }] : [],
   },
   lidar: { state: "connected", problem: null, model: "VLP-16", return_mode: "strongest", rpm: 600, packets: (packets += 754), packets_per_s: 753 + 2 * Math.random(), lost_packets: 0, dropped_by_kernel: 0 },
-  axis: { min_deg: -45, max_deg: 0, max_speed_deg_s: 98, max_accel_deg_s2: 10_000, accel_deg_s2: 5_000, home_deg: 0 },
+  axis: { min_deg: -45, max_deg: 0, max_speed_deg_s: 98, min_speed_deg_s: 0.05, max_accel_deg_s2: 10_000, accel_deg_s2: 5_000, home_deg: 0 },
   disk: { free_bytes: 34.1e9, reserve_bytes: 1e9, scans: scans.length, scans_bytes: 37e6, keep_scans: 100, keep_bytes: 5e10 },
   clients: { events: sockets.size, dropped: 0 },
 });

@@ -65,6 +65,8 @@ export interface Status {
     min_deg: number;
     max_deg: number;
     max_speed_deg_s: number;
+    /** One turn of the motor a minute. */
+    min_speed_deg_s?: number;
     max_accel_deg_s2: number;
     accel_deg_s2: number;
     home_deg?: number;

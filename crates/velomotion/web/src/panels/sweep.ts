@@ -17,7 +17,7 @@ const name = input("name");
 const tolerance = input("tolerance");
 const out = id<HTMLOutputElement>("plan");
 
-const LEAST_DEG_S = 0.025;
+let least_deg_s = 0.05;
 let most_deg_s = 98;
 let timer = 0;
 let serial = 0;
@@ -25,7 +25,7 @@ let known = "";
 
 export function wire(): void {
   slide.addEventListener("input", () => {
-    speed.value = String(round(LEAST_DEG_S * (most_deg_s / LEAST_DEG_S) ** Number(slide.value)));
+    speed.value = String(round(least_deg_s * (most_deg_s / least_deg_s) ** Number(slide.value)));
   });
   both.addEventListener("change", () => attribute(sweeps, "placeholder", both.checked ? "2" : "1"));
   form.addEventListener("input", (event) => {
@@ -34,15 +34,16 @@ export function wire(): void {
   });
 }
 
-/** One motor turn a minute is 0.05 deg/s behind the usual gear: the slider keeps to speeds that can be. */
+/** The motor makes whole turns a minute: the slider keeps to speeds that can be. */
 function round(deg_s: number): number {
-  const step = deg_s < 1 ? 0.025 : deg_s < 10 ? 0.05 : 0.25;
-  return Number((Math.round(deg_s / step) * step).toFixed(3));
+  const turns = deg_s / least_deg_s;
+  const step = turns < 200 ? 1 : 5;
+  return Number((Math.max(1, Math.round(turns / step) * step) * least_deg_s).toFixed(4));
 }
 
 function align(): void {
   const deg_s = Number(speed.value);
-  if (deg_s > 0) slide.value = String(Math.log(deg_s / LEAST_DEG_S) / Math.log(most_deg_s / LEAST_DEG_S));
+  if (deg_s > 0) slide.value = String(Math.log(deg_s / least_deg_s) / Math.log(most_deg_s / least_deg_s));
 }
 
 /** The axis's limits and what is taken where a field is empty. */
@@ -52,6 +53,8 @@ export function setStatus(status: Status): void {
   if (now === known) return;
   known = now;
   most_deg_s = axis.max_speed_deg_s;
+  least_deg_s = axis.min_speed_deg_s ?? least_deg_s;
+  attribute(speed, "min", String(least_deg_s));
   attribute(speed, "max", String(axis.max_speed_deg_s));
   attribute(accel, "max", String(axis.max_accel_deg_s2));
   attribute(accel, "placeholder", String(axis.accel_deg_s2));
