@@ -30,6 +30,8 @@ use crate::session::{Session, SessionError};
 use crate::setup::Setup;
 use crate::wholeness::{self, Watch};
 
+/// Begins the line that says why there is no cloud of what else went wrong.
+pub const NO_CLOUD: &str = "there is no cloud: ";
 /// A lidar that turns sends 754 packets a second; one that sends none in this time will not send any during the sweep.
 const LIDAR_WAIT: Duration = Duration::from_secs(2);
 
@@ -330,7 +332,7 @@ pub fn conclude(
             log.display()
         ),
         Err(failure) => format!(
-            "there is no cloud: {}\nthe log is {}",
+            "{NO_CLOUD}{}\nthe log is {}",
             failure.message,
             log.display()
         ),

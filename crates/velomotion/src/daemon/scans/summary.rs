@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::{ScanRecord, ScanState};
 use crate::failure::Failure;
+use crate::job::NO_CLOUD;
 
 /// What is said of a scan in `place`; nothing of one that is whole or has not ended.
 pub(super) fn of(record: &ScanRecord, place: &Path, has_log: bool) -> Option<String> {
@@ -30,11 +31,15 @@ pub(super) fn of(record: &ScanRecord, place: &Path, has_log: bool) -> Option<Str
     Some(all.join(" "))
 }
 
-/// What to do, a sentence a line. Lines on where a file is are for whoever reads the API.
+/// What to do, a sentence a line. Lines on where a file is are for whoever reads the API, but for the one that says why there is no cloud.
 fn todo(why: &Failure, place: &str) -> Vec<String> {
     let help = why.help.as_deref().unwrap_or_default();
     let mut lines: Vec<String> = Vec::new();
-    for line in help.lines().filter(|line| !line.contains(place)) {
+    let wanted = help
+        .lines()
+        .filter(|line| !line.contains(place) || line.starts_with(NO_CLOUD))
+        .map(|line| line.replace(&format!("{place}/"), ""));
+    for line in wanted {
         let goes_on = line.starts_with('(') || lines.last().is_some_and(|l| l.ends_with(','));
         match lines.last_mut() {
             Some(before) if goes_on => *before = format!("{before} {}", line.trim()),
@@ -110,12 +115,12 @@ mod tests {
         );
         let both = without_cloud(
             Some(stopped()),
-            Failure::new(Kind::BadInput, "no packet in the log"),
+            Failure::new(Kind::BadInput, format!("{PLACE}/log.pcapng: no packet")),
         );
         assert!(both.help.as_ref().unwrap().contains(PLACE), "{both:?}");
         assert_eq!(
             said(ScanState::Failed, both, false, true),
-            "Stopped by the user. The log is kept. There is no cloud: no packet in the log."
+            "Stopped by the user. The log is kept. There is no cloud: log.pcapng: no packet."
         );
         let silent = Failure::new(Kind::NoDevice, "no lidar")
             .help("see whether it turns,\nand its cable\n(the grey one) is in");
