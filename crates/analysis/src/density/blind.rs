@@ -4,7 +4,8 @@
 //! of such angles out, no speed fills it: blind spots stand in rows about the axis. [`bands`] tells it from the points alone, [`holes`] and [`rows`] from
 //! the holes. Left out: how the largest is found ([`super::hole`]).
 
-use std::collections::HashMap;
+use std::cmp::Ordering;
+use std::collections::{BinaryHeap, HashMap};
 
 use glam::DVec3;
 use serde::Serialize;
@@ -41,9 +42,14 @@ impl Band {
     }
 }
 
+/// How exact holes need be, over their radius.
+const EXACT: f64 = 0.01;
+/// How far outside its cell a hole may be found, radians, with room for roundings.
+const BESIDE_RAD: f64 = 2e-6;
+
 /// Holes of at least `least_rad`, the largest first, at most `most`: each as large as there is room for in its place, none with its middle in a larger
-/// one that is listed, and only in the region that `depth_rad` tells of ([`super::largest_hole_within`]). Radii are right to a
-/// thousandth of `least_rad` where more than ten points touch a hole, else to rounding.
+/// one that is listed, and only in the region that `depth_rad` tells of ([`super::largest_hole_within`]). What is larger by less than a hundredth counts as
+/// no larger, and where more than ten points touch a hole, its radius is right to so much; else to rounding.
 ///
 /// # Errors
 /// [`DensityError`] for what is no direction, or a least radius that is not above 0.
@@ -58,67 +64,161 @@ pub fn holes(
         return Err(DensityError::Least { got: least_rad });
     }
     let nearby = Nearby::new(directions);
-    let mut search = Search::new(&nearby, 1e-3 * least_rad, depth_rad);
-    let mut found = Vec::new();
-    while let Some(next) = search.next() {
-        if next.bound_rad < least_rad {
-            break;
-        }
-        match search.look_into(&next, least_rad) {
-            Done::Cut => {}
-            Done::Holes(centres) => found.extend(centres.into_iter().filter_map(|c| search.at(c))),
-            Done::Tiny => found.push(Hole {
-                centre: next.middle,
-                radius_rad: next.free_rad,
-            }),
-        }
-    }
-    found.retain(|hole| hole.radius_rad >= least_rad && depth_rad(hole.centre) >= 0.0);
-    Ok(apart(found, least_rad, most))
+    let mut list = List::new(least_rad, most);
+    looked_for(&nearby, &mut list, depth_rad);
+    Ok(list.listed)
 }
 
-/// Of holes those whose middles lie in no larger one, the largest first.
-fn apart(mut holes: Vec<Hole>, least_rad: f64, most: usize) -> Vec<Hole> {
-    let place = |hole: &Hole| hole.centre.to_array();
-    holes.sort_by(|a, b| {
-        let by_radius = b.radius_rad.total_cmp(&a.radius_rad);
-        let (a, b) = (place(a), place(b));
-        by_radius.then_with(|| b.partial_cmp(&a).unwrap_or(std::cmp::Ordering::Equal))
-    });
-    // Listed holes by the cells of a lattice in which they reach the cells about theirs; the few that are much larger stand aside.
-    let cell = 2.0 * least_rad;
-    let of = |centre: DVec3| (centre / cell).floor().to_array().map(|c| c as i64);
-    let mut lattice: HashMap<[i64; 3], Vec<Hole>> = HashMap::new();
-    let mut wide: Vec<Hole> = Vec::new();
-    let mut listed = Vec::new();
-    for hole in holes {
-        if listed.len() == most {
+/// Fills a list; says how many cells were looked into. Those that lie in a hole already listed are not: all their holes would be left out.
+fn looked_for(nearby: &Nearby, list: &mut List, depth_rad: Depth<'_>) -> usize {
+    let mut search = Search::new(nearby, EXACT * list.least_rad, depth_rad);
+    let mut looked = 0;
+    while let Some(next) = search.next() {
+        // Nothing to come is larger than the bound.
+        list.settle(next.bound_rad * (1.0 - EXACT));
+        if next.bound_rad < list.least_rad || list.is_full() {
             break;
         }
-        let covers = |other: &Hole| {
-            let chord = 2.0 * (0.5 * other.radius_rad).sin();
-            other.centre.distance_squared(hole.centre) < chord * chord
-        };
-        let [x, y, z] = of(hole.centre);
-        let around = (0..27).map(|k: i64| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
-        let near = || {
-            around
-                .clone()
-                .filter_map(|cell| lattice.get(&cell))
-                .flatten()
-        };
-        if wide.iter().chain(near()).any(covers) {
+        if list.covers(next.middle, next.reach_rad() + BESIDE_RAD) {
             continue;
         }
-        if hole.radius_rad > cell {
-            wide.push(hole);
-        } else {
-            lattice.entry([x, y, z]).or_default().push(hole);
+        looked += 1;
+        search.tolerance_rad = EXACT * next.bound_rad;
+        let keep = |hole: &Hole| depth_rad(hole.centre) >= 0.0;
+        match search.look_into(&next, list.least_rad) {
+            Done::Cut => {}
+            Done::Holes(centres) => {
+                let holes = centres.into_iter().filter_map(|c| search.at(c));
+                holes.filter(keep).for_each(|hole| list.add(hole));
+            }
+            Done::Tiny => {
+                let hole = Hole {
+                    centre: next.middle,
+                    radius_rad: next.free_rad,
+                };
+                Some(hole)
+                    .filter(keep)
+                    .into_iter()
+                    .for_each(|hole| list.add(hole));
+            }
         }
-        listed.push(hole);
     }
-    listed
+    list.settle(0.0);
+    looked
 }
+
+/// Holes whose middles lie in no larger one, the largest first.
+struct List {
+    least_rad: f64,
+    most: usize,
+    listed: Vec<Hole>,
+    /// Found, but larger ones may yet come.
+    waiting: BinaryHeap<BySize>,
+    /// Listed ones by the cells of a lattice in which they reach the cells about theirs.
+    lattice: HashMap<[i64; 3], Vec<Hole>>,
+    /// The few that are much larger.
+    wide: Vec<Hole>,
+}
+
+impl List {
+    fn new(least_rad: f64, most: usize) -> Self {
+        Self {
+            least_rad,
+            most,
+            listed: Vec::new(),
+            waiting: BinaryHeap::new(),
+            lattice: HashMap::new(),
+            wide: Vec::new(),
+        }
+    }
+
+    fn is_full(&self) -> bool {
+        self.listed.len() >= self.most
+    }
+
+    fn add(&mut self, hole: Hole) {
+        if hole.radius_rad >= self.least_rad && !self.covers(hole.centre, 0.0) {
+            self.waiting.push(BySize(hole));
+        }
+    }
+
+    /// Lists those of at least this radius.
+    fn settle(&mut self, radius_rad: f64) {
+        while !self.is_full()
+            && let Some(BySize(hole)) = self.waiting.peek().copied()
+            && hole.radius_rad >= radius_rad
+        {
+            self.waiting.pop();
+            if self.covers(hole.centre, 0.0) {
+                continue;
+            }
+            if hole.radius_rad > self.lattice_rad() {
+                self.wide.push(hole);
+            } else {
+                let cell = self.lattice.entry(self.cell(hole.centre));
+                cell.or_default().push(hole);
+            }
+            self.listed.push(hole);
+        }
+    }
+
+    /// Whether all that is within an angle of a direction lies in one of the listed.
+    fn covers(&self, middle: DVec3, reach_rad: f64) -> bool {
+        let covers = |hole: &Hole| {
+            // Of a negative angle the chord is negative: nothing is nearer.
+            let chord = 2.0 * (0.5 * (hole.radius_rad - reach_rad)).sin();
+            chord > 0.0 && hole.centre.distance_squared(middle) < chord * chord
+        };
+        let [x, y, z] = self.cell(middle);
+        let mut around = (0..27).map(|k: i64| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
+        self.wide.iter().any(covers)
+            || reach_rad < self.lattice_rad()
+                && around.any(|cell| {
+                    self.lattice
+                        .get(&cell)
+                        .is_some_and(|of| of.iter().any(covers))
+                })
+    }
+
+    fn lattice_rad(&self) -> f64 {
+        2.0 * self.least_rad
+    }
+
+    fn cell(&self, of: DVec3) -> [i64; 3] {
+        let place = (of / self.lattice_rad()).floor();
+        place.to_array().map(|c| c as i64)
+    }
+}
+
+/// The larger one is greater; of equal ones that with the greater coordinates.
+#[derive(Clone, Copy, Debug)]
+struct BySize(Hole);
+
+impl Ord for BySize {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_radius = self.0.radius_rad.total_cmp(&other.0.radius_rad);
+        let places = || {
+            let of = |hole: &Hole| hole.centre.to_array();
+            of(&self.0).into_iter().zip(of(&other.0))
+        };
+        let by_place = || places().map(|(a, b)| a.total_cmp(&b)).find(|o| o.is_ne());
+        by_radius.then_with(|| by_place().unwrap_or(Ordering::Equal))
+    }
+}
+
+impl PartialOrd for BySize {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for BySize {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for BySize {}
 
 /// Holes by their angle from an axis: where two that follow each other are more than `apart_rad` apart, another row begins.
 #[must_use]
@@ -258,6 +358,33 @@ mod tests {
             holes(&points, 0.9 * spacing, 2, &EVERYWHERE).unwrap(),
             found[..2]
         );
+    }
+
+    #[test]
+    fn equal_holes_cost_no_more_than_so_many_looks_each() {
+        // Two rings with a belt between, of pairs of points so near to each other that more than ten touch a hole: as many equal holes as pairs, each of which would be
+        // looked for on its own. They cost what the holes do that are listed, however many points there are.
+        let looks = |n: u32| {
+            let mut points = rings(&[80.0, 80.000_1, 84.0, 84.000_1], n);
+            points.extend(rings(
+                &[10.0, 30.0, 50.0, 65.0, 100.0, 120.0, 140.0, 160.0],
+                360,
+            ));
+            let nearby = Nearby::new(&points);
+            let mut list = List::new(1.95_f64.to_radians(), usize::MAX);
+            let belt = |at: DVec3| {
+                3.0_f64.to_radians() - (from_axis(at, DVec3::Y) - 82.0_f64.to_radians()).abs()
+            };
+            let looked = looked_for(&nearby, &mut list, &belt);
+            assert!(
+                (90..=185).contains(&list.listed.len()),
+                "{}",
+                list.listed.len()
+            );
+            looked
+        };
+        let (few, many) = (looks(1_800), looks(18_000));
+        assert!(many < 3 * few, "{few} {many}");
     }
 
     #[test]

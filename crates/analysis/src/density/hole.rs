@@ -77,7 +77,8 @@ const MANY: usize = 1_000;
 /// A search for holes.
 pub(super) struct Search<'a> {
     nearby: &'a Nearby,
-    tolerance_rad: f64,
+    /// Cells of a quarter of it are small enough.
+    pub tolerance_rad: f64,
     depth_rad: Depth<'a>,
     open: BinaryHeap<Open>,
     pub best: Option<Hole>,
@@ -96,6 +97,13 @@ pub(super) struct Open {
     pub free_rad: f64,
     /// Whether it is in the region, and a little more.
     inside: bool,
+}
+
+impl Open {
+    /// How far its points are from its middle at most, radians.
+    pub fn reach_rad(&self) -> f64 {
+        angle(self.ball)
+    }
 }
 
 /// What became of a cell.

@@ -38,7 +38,8 @@ fn found(points: &[DVec3]) -> (f64, Vec<Hole>) {
     let radius_rad = largest.hole.radius_rad;
     assert!(largest.bound_rad - radius_rad <= 1.01 * TOLERANCE_RAD);
     let all = holes(points, 0.9 * radius_rad, usize::MAX, &EVERYWHERE).unwrap();
-    assert!((all[0].radius_rad - radius_rad).abs() < 1e-3 * radius_rad);
+    // More than ten points touch it: to a hundredth.
+    assert!((all[0].radius_rad - radius_rad).abs() < 1e-2 * radius_rad);
     (radius_rad, all)
 }
 
