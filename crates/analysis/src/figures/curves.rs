@@ -27,13 +27,17 @@ pub fn curves(scans: &Scans) -> String {
     for scan in &scans.scans {
         let theta = scan.k.theta_rad.iter().map(|theta| theta.to_degrees());
         let points = theta.zip(scan.k.d.iter().copied());
-        differences.push(std::iter::once((0.0, 0.0)).chain(points).collect());
+        let start = scan.k.has_pairs().then_some((0.0, 0.0));
+        differences.push(start.into_iter().chain(points).collect());
         let slope = scan.k.derivative_m2_rad.iter().map(|slope| slope / area);
         slopes.push(middles_deg(&scan.k.theta_rad).zip(slope).collect());
-        about += &format!(
-            " {}: from {:.5} to {:.5}.",
-            scan.name, scan.k.d_min, scan.k.d_max
-        );
+        about += &match scan.k.has_pairs() {
+            true => format!(
+                " {}: from {:.5} to {:.5}.",
+                scan.name, scan.k.d_min, scan.k.d_max
+            ),
+            false => format!(" {}: no pairs.", scan.name),
+        };
     }
     let mut body = plot("K - K_csr, share of the sphere's area", &differences, TITLE);
     body += &plot("first derivative of it, a radian", &slopes, TITLE + PLOT);

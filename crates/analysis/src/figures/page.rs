@@ -163,7 +163,10 @@ fn summary(scans: &Scans) -> String {
             scan.scan_s.map_or("-".to_owned(), short),
             format!("{:.3}", scan.hole_deg),
             format!("{:.3}", relative_sd(scan)),
-            format!("{:.5}", scan.k.d_max.max(-scan.k.d_min)),
+            match scan.k.has_pairs() {
+                true => format!("{:.5}", scan.k.d_max.max(-scan.k.d_min)),
+                false => "-".to_owned(),
+            },
         ]
     });
     let words = [
@@ -245,6 +248,9 @@ fn extremes(scans: &Scans) -> String {
     };
     let rows = rows(scans, |scan| {
         let k = &scan.k;
+        if !k.has_pairs() {
+            return vec!["-".to_owned(); 6];
+        }
         let bound = match k.d_error_bound {
             0.0 => "0 (exact)".to_owned(),
             bound if !bound.is_finite() => "unknown".to_owned(),

@@ -7,7 +7,7 @@ use super::{Counts, Edges, Estimate};
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// The K function at the upper edges of bins.
+/// The K function at the upper edges of bins. Fewer than two points have no pairs, and so no K: all lists but the angles are empty then, and the extremes 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KCurve {
     /// `t_j`, radians; the last pi.
@@ -31,15 +31,13 @@ pub struct KCurve {
 }
 
 impl KCurve {
-    /// Of exact counts, on a sphere of this radius. Fewer than two points have no pairs: shares are those of randomness then.
+    /// Of exact counts, on a sphere of this radius.
     #[must_use]
     pub fn of_counts(counts: &Counts, radius_m: f64) -> Self {
         let all = counts.pairs();
         let share = |sum: u64| sum as f64 / all as f64;
-        let shares: Vec<f64> = counts.cumulative().into_iter().map(share).collect();
-        if all == 0 {
-            return Self::of_shares(&counts.edges, &[], 0.0, radius_m);
-        }
+        let sums = counts.cumulative().into_iter().filter(|_| all > 0);
+        let shares: Vec<f64> = sums.map(share).collect();
         Self::of_shares(&counts.edges, &shares, 0.0, radius_m)
     }
 
@@ -47,20 +45,26 @@ impl KCurve {
     #[must_use]
     pub fn of_estimate(estimate: &Estimate, radius_m: f64) -> Self {
         let bound = estimate.bound.largest();
-        Self::of_shares(&estimate.edges, &estimate.shares, bound, radius_m)
+        let shares = match estimate.points {
+            0 | 1 => &[][..],
+            _ => &estimate.shares,
+        };
+        Self::of_shares(&estimate.edges, shares, bound, radius_m)
     }
 
-    /// Of the share of all pairs up to every edge; what is missing is taken as under randomness.
+    /// Whether there are pairs to tell anything of.
+    #[must_use]
+    pub fn has_pairs(&self) -> bool {
+        !self.d.is_empty()
+    }
+
+    /// Of the share of all pairs up to every edge; none without pairs.
     fn of_shares(edges: &Edges, shares: &[f64], d_error_bound: f64, radius_m: f64) -> Self {
         let area = 4.0 * PI * radius_m * radius_m;
         let theta_rad = edges.upper_rad();
         // (1 - cos t) / 2 without the loss of digits near 0.
-        let csr = |t: &f64| (t / 2.0).sin().powi(2);
-        let csr: Vec<f64> = theta_rad.iter().map(csr).collect();
-        let share = |bin: usize, csr: f64| shares.get(bin).copied().unwrap_or(csr);
-        let shares = csr.iter().enumerate().map(|(bin, csr)| share(bin, *csr));
-        let shares: Vec<f64> = shares.collect();
-        let d: Vec<f64> = shares.iter().zip(&csr).map(|(s, csr)| s - csr).collect();
+        let csr = theta_rad.iter().map(|t| (t / 2.0).sin().powi(2));
+        let d: Vec<f64> = shares.iter().zip(csr).map(|(s, csr)| s - csr).collect();
         let width = PI / edges.bins() as f64;
         let before = std::iter::once(&0.0).chain(&d);
         let slopes = d

@@ -41,10 +41,9 @@ fn no_point_and_one_point_have_no_pairs() {
         let counts = counted(&points, 151);
         assert_eq!(counts.counts, vec![0; 151]);
         let curve = KCurve::of_counts(&counts, 10.0);
-        assert_eq!(
-            (curve.d_max, curve.d_min, curve.max_abs_m2),
-            (0.0, 0.0, 0.0)
-        );
+        assert!(!curve.has_pairs() && curve.d.is_empty() && curve.k_m2.is_empty());
+        assert_eq!(curve.theta_rad.len(), 151);
+        assert_eq!(curve, KCurve::of_estimate(&counts.into(), 10.0));
     }
 }
 

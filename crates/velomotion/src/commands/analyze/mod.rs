@@ -42,8 +42,10 @@ const RADIUS_M: f64 = 1.0;
 const LEAST_ON_EDGES: f64 = 1e-8;
 /// How often it is looked whether the user wants no more of it.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
-/// Holes that are counted one by one.
-const MOST_HOLES: usize = 10_000;
+/// So many points, and what is under way is said.
+const MANY_POINTS: usize = 1_000_000;
+/// Holes that are counted one by one: of a scan of eleven million points in some ten seconds.
+const MOST_HOLES: usize = 2_000;
 
 /// Runs the command.
 ///
@@ -107,7 +109,7 @@ fn measured(
             progress.say(name);
         }
         let input = input.read(interrupt)?;
-        let pattern = measure.one(&input, interrupt)?;
+        let pattern = measure.one(&input, &progress, interrupt)?;
         for warning in &pattern.warnings {
             progress.say(&format!("warning: {}: {warning}", pattern.name));
         }
@@ -154,11 +156,24 @@ impl Measure {
         })
     }
 
-    fn one(&self, input: &Input, interrupt: &AtomicBool) -> Result<PatternReport, Failure> {
+    fn one(
+        &self,
+        input: &Input,
+        progress: &Progress,
+        interrupt: &AtomicBool,
+    ) -> Result<PatternReport, Failure> {
+        let say = |what: &str| {
+            let points = input.directions.len();
+            if points >= MANY_POINTS {
+                progress.say(&format!("{}, {points} points: {what}", input.name));
+            }
+        };
         let wrong = |error: DensityError| failure(&input.name, &error);
         let directions = &input.directions;
         let depth = |direction: DVec3| depth_rad(input.pattern.as_ref(), direction);
+        say("density");
         let counts = Counts::new(&self.locator, directions).map_err(wrong)?;
+        say("largest holes");
         let largest = largest_hole(directions, TOLERANCE_RAD).map_err(wrong)?;
         let largest = largest.ok_or_else(|| {
             Failure::new(Kind::BadInput, format!("{}: no points", input.name))
@@ -172,6 +187,7 @@ impl Measure {
         let gaps = self.gaps(input).map_err(wrong)?;
         let least_rad = gaps.of_99_percent_deg.to_radians().max(TOLERANCE_RAD);
         go_on(interrupt)?;
+        say("blind spots");
         let found = holes(directions, least_rad, MOST_HOLES, &depth).map_err(wrong)?;
         let band_rad = report::BAND_DEG.to_radians();
         // How far a ray is from the axis does not depend on the tilt, if it starts there.
@@ -179,6 +195,8 @@ impl Measure {
             .pattern
             .as_ref()
             .is_some_and(|p| p.settings().d_m == 0.0);
+        go_on(interrupt)?;
+        say("K function");
         let (k, warnings) = self.k(input)?;
         Ok(PatternReport {
             name: input.name.clone(),
@@ -237,14 +255,15 @@ impl Measure {
         })?;
         let curve = KCurve::of_estimate(&estimate, SPHERE_M);
         let area = 4.0 * PI * RADIUS_M * RADIUS_M;
-        let bound = Some(curve.d_error_bound).filter(|bound| bound.is_finite());
+        let has_pairs = curve.has_pairs();
+        let bound = Some(curve.d_error_bound).filter(|bound| has_pairs && bound.is_finite());
         let mut warnings: Vec<String> = on_edges(&estimate).into_iter().collect();
         if estimate.points < 2 {
-            warnings.push("one point has no pairs: its K says nothing, and is 0 here".to_owned());
+            warnings.push("one point has no pairs, and so no K: null".to_owned());
         }
         let report = KReport {
             method: estimate.method,
-            bins: curve.d.len(),
+            bins: self.edges.bins(),
             radius_m: RADIUS_M,
             error_bound: bound.map(|bound| area * bound),
             theta_deg: curve
@@ -252,12 +271,12 @@ impl Measure {
                 .iter()
                 .map(|theta| theta.to_degrees())
                 .collect(),
-            k_minus_csr: curve.d.iter().map(|d| area * d).collect(),
-            max_abs: area * curve.d_max.max(-curve.d_min),
+            k_minus_csr: has_pairs.then(|| curve.d.iter().map(|d| area * d).collect()),
+            max_abs: has_pairs.then(|| area * curve.d_max.max(-curve.d_min)),
             d_error_bound: bound,
-            d: curve.d.clone(),
-            d_max: curve.d_max,
-            d_min: curve.d_min,
+            d: has_pairs.then(|| curve.d.clone()),
+            d_max: has_pairs.then_some(curve.d_max),
+            d_min: has_pairs.then_some(curve.d_min),
             on_edges: estimate.on_edges,
             curve,
         };

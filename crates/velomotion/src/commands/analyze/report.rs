@@ -76,7 +76,7 @@ pub struct HoleReport {
 }
 
 /// Ripley's K function beside that of points at random: above 0 points cluster, below they keep apart. `k_minus_csr` is K - K_csr on a sphere of `radius_m`, square metres; `d` is
-/// the same over the area of the sphere, whatever its radius: so much larger is the share of all pairs that are within an angle.
+/// the same over the area of the sphere, whatever its radius: so much larger is the share of all pairs that are within an angle. Null without pairs: of a single point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KReport {
     /// How pairs were counted: exact, turned (exact, too), sampled, gridded or harmonics.
@@ -90,17 +90,17 @@ pub struct KReport {
     /// The upper end of each bin, degrees.
     pub theta_deg: Vec<f64>,
     /// K - K_csr there, square metres.
-    pub k_minus_csr: Vec<f64>,
+    pub k_minus_csr: Option<Vec<f64>>,
     /// The largest of them, whatever its sign.
-    pub max_abs: f64,
+    pub max_abs: Option<f64>,
     /// How far any of `d` may be off; null where it is not known.
     pub d_error_bound: Option<f64>,
     /// D = (K - K_csr) / (4 pi R2), a share.
-    pub d: Vec<f64>,
+    pub d: Option<Vec<f64>>,
     /// The largest D.
-    pub d_max: f64,
+    pub d_max: Option<f64>,
     /// The smallest.
-    pub d_min: f64,
+    pub d_min: Option<f64>,
     /// Pairs that lie on an edge between two bins within rounding: counted, of samples estimated; null where the method cannot tell. They count to the smaller angle.
     pub on_edges: Option<u64>,
     /// All of it, for figures.
@@ -307,10 +307,10 @@ impl KReport {
             Some(bound) => format!("{}, within {bound:.1e}", self.method),
             None => format!("{}, error unknown", self.method),
         };
-        format!(
-            "K - K_csr from {:.5} to {:+.5} of the sphere's area ({how})",
-            self.d_min, self.d_max
-        )
+        let (Some(d_min), Some(d_max)) = (self.d_min, self.d_max) else {
+            return "no K function: a single point has no pairs".to_owned();
+        };
+        format!("K - K_csr from {d_min:.5} to {d_max:+.5} of the sphere's area ({how})")
     }
 }
 
