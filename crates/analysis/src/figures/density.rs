@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::colour::Shades;
-use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, text};
+use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, scale_name, text};
 use super::{Scan, Scans};
 use crate::density::Face;
 
@@ -184,13 +184,7 @@ fn triangle(path: &mut String, side: &Side, face: &Face) {
 fn scale(shades: &Shades, top: f64) -> String {
     let (left, wide, high) = (MARGIN + 90.0, 430.0, 12.0);
     let y = top + 12.0;
-    let mut svg = text(
-        MARGIN,
-        y + 10.0,
-        At::Start,
-        "tv-ink tv-small",
-        "points a bin",
-    );
+    let mut svg = scale_name(y, "points a bin");
     if shades.high == shades.low {
         let colour = Shades::of_step(shades.step(shades.low));
         svg += &format!(

@@ -119,3 +119,8 @@ pub(super) fn levels(axis: &Axis, left: f64, right: f64) -> String {
     }
     svg
 }
+
+/// What a scale of colours is of, before it.
+pub(super) fn scale_name(y: f64, name: &str) -> String {
+    text(MARGIN, y + 10.0, At::Start, "tv-ink tv-small", name)
+}

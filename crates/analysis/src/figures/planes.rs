@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::Scans;
 use super::colour::colour;
-use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, text};
+use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, scale_name, text};
 
 /// How far below the ground is, metres.
 const GROUND_M: f64 = 1.5;
@@ -213,13 +213,7 @@ fn shade(class: u32) -> String {
 
 fn scale(top: f64) -> String {
     let y = top + 10.0;
-    let mut svg = text(
-        MARGIN,
-        y + 10.0,
-        At::Start,
-        "tv-ink tv-small",
-        "points in a square of 0.1 m",
-    );
+    let mut svg = scale_name(y, "points in a square of 0.1 m");
     let mut x = MARGIN + 190.0;
     for class in 0..CLASSES {
         let (from, to) = (1_u32 << class, (2_u32 << class) - 1);

@@ -99,8 +99,8 @@ fn samples_hold_their_confidence_intervals() {
     }
 }
 
-#[test]
-fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
+/// Eight frames of an RMBL, and what is so of them.
+fn counted_rmbl() -> (Vec<DVec3>, Edges, Estimate) {
     let points = rmbl(8);
     let turning = Turning {
         axis: DVec3::Y,
@@ -109,6 +109,12 @@ fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
     };
     let edges = Edges::equal(151).unwrap();
     let truth = estimate(&points, Some(&turning), &edges, &wish(0.0, 1e-3), ONE).unwrap();
+    (points, edges, truth)
+}
+
+#[test]
+fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
+    let (points, edges, truth) = counted_rmbl();
     assert_eq!((truth.method, &truth.bound), ("turned", &Bound::Exact));
     let of = sampled(&points, &edges, &Sampling::default()).unwrap();
     assert!(of.bound.largest() <= 1e-4);
@@ -124,14 +130,7 @@ fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
 /// No bound is claimed of harmonics: how far off they are of scans is what was measured, and their own `Estimate` says that it is not known.
 #[test]
 fn harmonics_are_near_where_points_lie_smoothly() {
-    let points = rmbl(8);
-    let turning = Turning {
-        axis: DVec3::Y,
-        step_rad: PI / 8.0,
-        frames: 8,
-    };
-    let edges = Edges::equal(151).unwrap();
-    let truth = estimate(&points, Some(&turning), &edges, &wish(0.0, 1e-3), ONE).unwrap();
+    let (points, edges, truth) = counted_rmbl();
     let mut last = 1.0;
     for (degree, within) in [(4, 2e-3), (16, 2e-4), (64, 1e-4)] {
         let of = harmonics(&points, &edges, degree).unwrap();
