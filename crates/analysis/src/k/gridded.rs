@@ -27,14 +27,14 @@ pub fn gridded(points: &[DVec3], edges: &Edges, side: usize) -> Result<Estimate,
     let level = Registers::Best.level();
     dispatch!(level, simd => all(simd, &cells, edges.bins(), &mut between));
     let all = pairs(points.len()).max(1) as f64;
-    let (mut low, mut high) = (0.0, 0.0);
+    let (mut low, mut high) = (0_u64, 0_u64);
     let (mut shares, mut bounds) = (Vec::new(), Vec::new());
     for (last, first) in between.last.iter().zip(&between.first) {
-        low += last / all;
-        high += first / all;
-        shares.push(f64::midpoint(low, high));
-        // Sums of whole numbers below 2^53 a step; what is above is rounded by less than this.
-        bounds.push((high - low) / 2.0 + 1e-12);
+        low += last;
+        high += first;
+        shares.push(f64::midpoint(low as f64, high as f64) / all);
+        // Whole numbers until here; what follows is rounded by less than this.
+        bounds.push((high - low) as f64 / 2.0 / all + 1e-12);
     }
     Ok(Estimate {
         method: "gridded",
@@ -48,15 +48,15 @@ pub fn gridded(points: &[DVec3], edges: &Edges, side: usize) -> Result<Estimate,
 
 /// Pairs by the first bin that they may be in, and by the last.
 struct Between {
-    first: Vec<f64>,
-    last: Vec<f64>,
+    first: Vec<u64>,
+    last: Vec<u64>,
 }
 
 impl Between {
     fn new(bins: usize) -> Self {
         Self {
-            first: vec![0.0; bins],
-            last: vec![0.0; bins],
+            first: vec![0; bins],
+            last: vec![0; bins],
         }
     }
 }
@@ -75,9 +75,9 @@ fn all<S: Simd>(simd: S, cells: &Cells, bins: usize, between: &mut Between) {
             let others = cells.cells.get(start..).unwrap_or_default();
             for ((other, first), last) in others.iter().zip(&of.first).zip(&of.last) {
                 let count = if other.first == cell.first {
-                    pairs(cell.len) as f64
+                    pairs(cell.len)
                 } else {
-                    cell.len as f64 * other.len as f64
+                    cell.len as u64 * other.len as u64
                 };
                 if let Some(from) = between.first.get_mut(*first as usize) {
                     *from += count;

@@ -409,13 +409,7 @@ impl<'a> One<'a> {
         for ((from, beyond), variance) in self.from.iter().zip(&self.beyond).zip(&self.variance) {
             sum += from;
             shares.push((sum - beyond).clamp(0.0, 1.0));
-            let is_drawn = *beyond > 0.0 || *variance > 0.0 || shares.len() < bins;
-            let bound = if is_drawn {
-                bernstein(*variance, self.heaviest, log) + uneven
-            } else {
-                0.0
-            };
-            bounds.push(bound);
+            bounds.push(bernstein(*variance, self.heaviest, log) + uneven);
         }
         // All pairs are within pi.
         if let (Some(share), Some(bound)) = (shares.last_mut(), bounds.last_mut()) {

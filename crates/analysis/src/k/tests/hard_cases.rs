@@ -145,12 +145,12 @@ fn pairs_on_edges_are_counted_as_such() {
 
 #[test]
 fn f32_and_f64_and_fractions_agree_on_a_grid() {
-    // A VLP-16 of 24 degrees a step and a second one, tilted: many pairs on edges of 180 and 150 bins.
+    // A VLP-16 of 24 degrees a step and a second one, tilted: many pairs on edges of 180 and 150 bins, and of those of 15 and 30.
     let frame = vlp16(901);
     let mut grid: Vec<DVec3> = frame.chunks(16).step_by(60).flatten().copied().collect();
     let second: Vec<DVec3> = tilted(&grid, 30.0).collect();
     grid.extend(second);
-    for bins in [1, 3, 15, 30, 151] {
+    for bins in [1, 3, 15, 30, 150, 151, 180] {
         let edges = edges_in_fractions(bins);
         let mut expected = vec![0; bins as usize];
         for (i, a) in grid.iter().enumerate().step_by(5) {
