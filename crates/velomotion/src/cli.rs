@@ -300,7 +300,7 @@ pub struct Info {
 #[derive(Clone, Debug, Args)]
 pub struct Analyze {
     /// Patterns by name (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED, each with ,KEY=VALUE: rpm, step,
-    /// start, seam, from, to, tilt, frames, d), clouds, logs or recordings
+    /// start, seam, from, to, tilt, frames, d), clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings
     #[arg(value_name = "PATTERN|CLOUD|LOG", required = true)]
     pub inputs: Vec<String>,
     /// How often the icosahedron whose faces are the bins is cut: 20 x 4^N bins
@@ -315,6 +315,9 @@ pub struct Analyze {
     /// Bins of the K function, from 0 to 180 degrees
     #[arg(long, value_name = "N", default_value_t = 151, value_parser = clap::value_parser!(u16).range(1..=3_600))]
     pub bins: u16,
+    /// Where the scanner was, metres in the coordinates of the clouds: directions are seen from there [default: 0,0,0]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, conflicts_with = "sweep", value_parser = place)]
+    pub origin: Option<[f64; 3]>,
     /// Try settings of one pattern: ranges of speed, rpm or other numbers, each in steps (8 unless /N says so), and say which are best for their scan time
     #[arg(
         long,
@@ -426,6 +429,19 @@ fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
         _ => Err("expected a share from 0 (every pair is counted) to below 1".to_owned()),
+    }
+}
+
+/// A place as a user gives it, metres.
+fn place(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .filter_map(|number| number.trim().parse().ok())
+        .filter(|number: &f64| number.is_finite())
+        .collect();
+    match (numbers.try_into(), text.split(',').count()) {
+        (Ok(place), 3) => Ok(place),
+        _ => Err("expected three numbers, metres: X,Y,Z".to_owned()),
     }
 }
 

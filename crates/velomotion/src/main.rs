@@ -57,7 +57,7 @@ fn keep_words_whole() {
     }));
 }
 
-/// With `--json` exactly one object, failure or not; else the text, unless `--quiet`. Where the cloud has stdout, stderr.
+/// With `--json` exactly one object, failure or not; else the text, unless it is no result and `--quiet`. Where the cloud has stdout, stderr.
 fn print(common: &Common, said: Option<Said>, failure: Option<&Failure>) -> std::io::Result<()> {
     let stdout_taken = said.as_ref().is_some_and(|said| said.stdout_taken);
     let line = match (common.json, said) {
@@ -69,7 +69,7 @@ fn print(common: &Common, said: Option<Said>, failure: Option<&Failure>) -> std:
             }
             object.to_string()
         }
-        (false, Some(said)) if !common.quiet => said.text,
+        (false, Some(said)) if said.is_result || !common.quiet => said.text,
         (false, _) => return Ok(()),
     };
     if stdout_taken {

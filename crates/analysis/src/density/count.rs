@@ -33,6 +33,21 @@ pub struct Statistics {
     pub empty: usize,
 }
 
+impl Statistics {
+    /// Standard deviation over mean, of the same bins: how uneven they are, whatever their size; `None` without a point.
+    #[must_use]
+    pub fn sd_over_mean(&self) -> Option<f64> {
+        (self.mean > 0.0).then(|| self.sd / self.mean)
+    }
+
+    /// The share of the bins that hold a point, 0 to 1; `None` without a bin.
+    #[must_use]
+    pub fn coverage(&self) -> Option<f64> {
+        let with = self.bins.saturating_sub(self.empty);
+        (self.bins > 0).then(|| with as f64 / self.bins as f64)
+    }
+}
+
 /// A class of a histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Class {
@@ -219,6 +234,10 @@ mod tests {
     fn of_some_bins_only() {
         let counts = Counts(vec![4, 0, 8, 100]);
         let some = counts.statistics_of(|bin| bin < 3);
+        assert_eq!(some.coverage(), Some(2.0 / 3.0));
+        assert_eq!(some.sd_over_mean(), Some(some.sd / 4.0));
+        assert_eq!(counts.statistics_of(|_| false).coverage(), None);
+        assert_eq!(counts.statistics_of(|bin| bin == 1).sd_over_mean(), None);
         assert_eq!(
             (some.bins, some.mean, some.min, some.max, some.empty),
             (3, 4.0, 0, 8, 1)

@@ -54,10 +54,9 @@ pub fn density(scans: &Scans) -> String {
 #[must_use]
 pub fn histogram(scans: &Scans) -> String {
     let mut csv = "pattern,from,to,bins\n".to_owned();
-    let width = class_width(scans);
     for scan in &scans.scans {
         let name = field(&scan.name);
-        for class in scan.counts.histogram_by(width) {
+        for class in scan.counts.histogram_by(class_width(scan)) {
             let _ = writeln!(csv, "{name},{},{},{}", class.from, class.to, class.bins);
         }
     }

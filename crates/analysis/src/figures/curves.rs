@@ -13,7 +13,7 @@ const LEFT: f64 = 62.0;
 const RIGHT: f64 = WIDTH - MARGIN - 6.0;
 const TOP: f64 = 24.0;
 const BOTTOM: f64 = 276.0;
-const PLOT: f64 = 318.0;
+const PLOT: f64 = 330.0;
 
 /// A curve: angles in degrees and values.
 type Curve = Vec<(f64, f64)>;
@@ -75,6 +75,13 @@ fn plot(title: &str, curves: &[Curve], top: f64) -> String {
             &format!("{degrees}\u{b0}"),
         );
     }
+    svg += &text(
+        f64::midpoint(LEFT, RIGHT),
+        BOTTOM + 30.0,
+        At::Middle,
+        "tv-soft tv-small",
+        "angle between two points, degrees",
+    );
     svg += &levels(&y, LEFT, RIGHT);
     if let Some(zero) = y.place(0.0) {
         svg += &format!("<path class=\"tv-zero\" d=\"M{LEFT} {zero:.1}H{RIGHT}\"/>\n");

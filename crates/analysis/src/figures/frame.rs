@@ -3,7 +3,6 @@
 //! Left out: what is drawn.
 
 use crate::tradeoff::svg::labels::width;
-use crate::tradeoff::svg::marks;
 use crate::tradeoff::svg::scale::Axis;
 use crate::tradeoff::svg::{STYLE, escaped};
 
@@ -26,9 +25,10 @@ pub(super) fn document(title: &str, about: &str, height: f64, body: &str) -> Str
     let (title, about) = (escaped(title), escaped(about));
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tv\" viewBox=\"0 0 {WIDTH} {height:.0}\" width=\"{WIDTH}\" height=\"{height:.0}\" \
-         role=\"img\" aria-label=\"{title}. {about}\">\n<title>{title}</title>\n<desc>{about}</desc>\n<style>{STYLE}{MORE_STYLE}</style>\n\
+         role=\"img\" aria-label=\"{title}. {about}\">\n<title>{title}</title>\n<desc>{about}</desc>\n<style>{STYLE}{MORE_STYLE}{}</style>\n\
          <rect class=\"tv-page\" width=\"{WIDTH}\" height=\"{height:.0}\" rx=\"6\"/>\n\
-         <text class=\"tv-ink tv-title\" x=\"{MARGIN}\" y=\"21\">{title}</text>\n{body}</svg>\n"
+         <text class=\"tv-ink tv-title\" x=\"{MARGIN}\" y=\"21\">{title}</text>\n{body}</svg>\n",
+        colours()
     )
 }
 
@@ -73,13 +73,57 @@ pub(super) fn heading(name: &str, more: &str, y: f64) -> String {
         + &text(beside, y, At::Start, "tv-soft tv-small", more)
 }
 
-/// Dashes by which curves differ where their colours do not.
-const DASHES: [&str; 5] = ["none", "7 3", "2 3", "10 3 2 3", "14 4"];
+/// Colours of curves, on light and on dark: no two of the first ten are alike.
+const COLOURS: [[&str; 2]; 10] = [
+    ["#0b62b8", "#6cb4ff"],
+    ["#c2410c", "#ff9a62"],
+    ["#0f7b5a", "#4fd1a1"],
+    ["#9b3e8f", "#e79bdc"],
+    ["#8a6a00", "#e3c04d"],
+    ["#475569", "#b6c2d1"],
+    ["#b3123f", "#ff8097"],
+    ["#0e7490", "#5fd6ee"],
+    ["#5b7a0a", "#b5d84a"],
+    ["#5b3fd0", "#b3a3ff"],
+];
 
-/// The classes and the dashes of a scan's curve.
+/// A dash is this long and so is the whole of its pattern times the curves: so curves that coincide show in turns, each where the others have their gaps.
+const DASH: f64 = 9.0;
+
+/// The style of curves' colours.
+pub(super) fn colours() -> String {
+    let class =
+        |number: usize, colour: &str| format!(".tv-c{number}{{stroke:{colour};fill:{colour}}}");
+    let all = |which: usize| -> String {
+        let colours = COLOURS.iter().enumerate();
+        colours
+            .map(|(number, pair)| class(number, pair.get(which).copied().unwrap_or("#000")))
+            .collect()
+    };
+    format!(
+        "{}@media (prefers-color-scheme:dark){{{}}}.tv-c.tv-none{{fill:none}}",
+        all(0),
+        all(1)
+    )
+}
+
+/// The class of a scan's colour.
+pub(super) fn colour(number: usize) -> String {
+    format!("tv-c tv-c{}", number % COLOURS.len())
+}
+
+/// The classes and the dashes of a scan's curve: the first is a line that the later ones, dashed the finer the later, lie on.
 pub(super) fn stroke(number: usize) -> String {
-    let dash = DASHES.get(number % DASHES.len()).copied().unwrap_or("none");
-    let class = marks::colour(number);
+    let class = colour(number);
+    let dash = match number {
+        0 => "none".to_owned(),
+        // Gaps are as long as dashes, so that what lies below shows; lengths differ, so that of several no two stay on each other.
+        _ => {
+            let on = DASH * (1.0 - 0.62 * (number % COLOURS.len()) as f64 / COLOURS.len() as f64);
+            let long = number / COLOURS.len();
+            format!("{:.1} {:.1}{}", on, on * 1.1, " 2 4".repeat(long.min(3)))
+        }
+    };
     format!("class=\"{class} tv-curve tv-none\" stroke-dasharray=\"{dash}\"")
 }
 

@@ -2,10 +2,9 @@
 //!
 //! Left out: the text's histogram, whose classes are each scan's own.
 
-use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, levels, text};
+use super::frame::{At, MARGIN, TITLE, WIDTH, colour, document, heading, levels, text};
 use super::{Scan, Scans};
 use crate::tradeoff::Scale;
-use crate::tradeoff::svg::marks;
 use crate::tradeoff::svg::scale::Axis;
 
 /// Classes, about.
@@ -16,42 +15,37 @@ const TOP: f64 = 24.0;
 const BOTTOM: f64 = 150.0;
 const ROW: f64 = 182.0;
 
-/// The width of the classes of all scans, in points a bin: so that the fullest bin is in about the sixtieth.
+/// The width of the classes of a scan, in points a bin: so that its fullest bin is in about the sixtieth.
 #[must_use]
-pub fn class_width(scans: &Scans) -> u64 {
-    let fullest = scans.scans.iter().flat_map(|scan| scan.counts.by_bin());
-    (fullest.copied().max().unwrap_or(0) + 1).div_ceil(CLASSES)
+pub fn class_width(scan: &Scan) -> u64 {
+    (fullest(scan) + 1).div_ceil(CLASSES)
 }
 
-/// The figure: a plot a scan, one under the other, all of the same scale.
+/// The most points of a bin.
+fn fullest(scan: &Scan) -> u64 {
+    scan.counts.by_bin().iter().copied().max().unwrap_or(0)
+}
+
+/// The figure: a plot a scan, one under the other; upwards all have one scale, across each its own, as scans of a turn and of minutes have nothing in common there.
 #[must_use]
 pub fn histogram(scans: &Scans) -> String {
-    let width = class_width(scans);
-    let classes = scans
-        .scans
-        .iter()
-        .map(|scan| scan.counts.histogram_by(width));
-    let most = classes.flatten().map(|class| class.bins).max().unwrap_or(1);
-    let fullest = scans.scans.iter().flat_map(|scan| scan.counts.by_bin());
-    let fullest = fullest.copied().max().unwrap_or(1);
-    let x = Axis::new(
-        Scale::Linear,
-        [0.0, fullest as f64].into_iter(),
-        LEFT,
-        RIGHT,
-    );
+    let classes = |scan: &Scan| scan.counts.histogram_by(class_width(scan));
+    let all = scans.scans.iter().flat_map(classes);
+    let most = all.map(|class| class.bins).max().unwrap_or(1);
     let y = Axis::new(Scale::Log, [1.0, most as f64].into_iter(), BOTTOM, TOP);
     let mut body = String::new();
-    let mut about = format!(
-        "Classes of {width} points a bin; the number of bins in each, on a logarithmic scale."
-    );
+    let mut about =
+        "The number of bins in classes of points a bin, on a logarithmic scale.".to_owned();
     let mut top = TITLE;
     for (number, scan) in scans.scans.iter().enumerate() {
-        let s = scan.counts.statistics();
+        let (s, width) = (scan.counts.statistics(), class_width(scan));
         about += &format!(
-            " {}: mean {:.3}, standard deviation {:.2}.",
+            " {}: classes of {width}, mean {:.3}, standard deviation {:.2}.",
             scan.name, s.mean, s.sd
         );
+        // Up to the end of the fullest class.
+        let end = (fullest(scan) / width + 1) * width;
+        let x = Axis::new(Scale::Linear, [0.0, end as f64].into_iter(), LEFT, RIGHT);
         body += &format!("<g transform=\"translate(0 {top:.0})\">\n");
         body += &plot(scan, number, width, &x, &y);
         body += "</g>\n";
@@ -68,7 +62,7 @@ pub fn histogram(scans: &Scans) -> String {
 fn plot(scan: &Scan, number: usize, width: u64, x: &Axis, y: &Axis) -> String {
     let s = scan.counts.statistics();
     let more = format!(
-        "mean {:.3} (line), sd {:.2} (dashed), {} to {} points a bin",
+        "mean {:.3} (line), sd {:.2} (dashed), {} to {} points a bin, classes of {width}",
         s.mean, s.sd, s.min, s.max
     );
     let mut svg = heading(&scan.name, &more, 14.0);
@@ -88,7 +82,7 @@ fn plot(scan: &Scan, number: usize, width: u64, x: &Axis, y: &Axis) -> String {
     }
     svg += &format!(
         "<path class=\"{} tv-fill\" d=\"{bars}\"/>\n",
-        marks::colour(number)
+        colour(number)
     );
     let lines = [
         (s.mean, "tv-mean"),

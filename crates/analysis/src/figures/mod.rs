@@ -1,10 +1,11 @@
 //! Scan patterns as figures, tables and one page, in the manner of the 2018 paper's Figures 2-7 and 11, for any list of patterns side by side.
 //!
 //! Data in, text out: [`density()`] on the sphere from three sides, [`planes()`] about the scanner, [`histogram()`] and [`curves()`] as SVG; [`mod@csv`] of every curve;
-//! [`page()`] with all of it. All patterns of a figure have one scale, on which darker is more, so that it reads in print without colour, too.
+//! [`page()`] with all of it. All patterns of a figure have one scale of colours, on which darker is more, so that it reads in print without colour, too.
 //! Left out: where the numbers come from ([`crate::density`], [`crate::k`]), and files.
 
 mod colour;
+mod conclusion;
 pub mod csv;
 mod curves;
 mod density;
@@ -21,7 +22,7 @@ pub use histogram::{class_width, histogram};
 pub use page::{FILES, page};
 pub use planes::{CELL_M, Planes, planes};
 
-use crate::density::{Counts, Icosahedron};
+use crate::density::{Counts, Icosahedron, Statistics};
 use crate::k::KCurve;
 
 /// Radius of the paper's hollow sphere, metres: what square metres of a K function are of.
@@ -36,8 +37,12 @@ pub struct Scan {
     pub points: u64,
     /// How long it takes, seconds, where that is known.
     pub scan_s: Option<f64>,
-    /// Radius of the largest hole in view, degrees.
+    /// Radius of the largest hole anywhere, degrees.
     pub hole_deg: f64,
+    /// What is in view; `None` where nothing tells what the scan could see.
+    pub in_view: Option<InView>,
+    /// What may mislead.
+    pub warnings: Vec<String>,
     /// Points a bin of [`Scans::bins`].
     pub counts: Counts,
     /// K on a sphere of [`SPHERE_M`].
@@ -46,6 +51,15 @@ pub struct Scan {
     pub method: &'static str,
     /// Where its rays meet the planes.
     pub planes: Planes,
+}
+
+/// What is known of the directions that a scan could see.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InView {
+    /// Points a bin, of the bins with their middle in view.
+    pub statistics: Statistics,
+    /// Radius of the largest hole with its middle in view, degrees; `None` where nothing is in view.
+    pub hole_deg: Option<f64>,
 }
 
 /// Scans side by side.

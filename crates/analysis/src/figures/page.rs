@@ -2,8 +2,8 @@
 //!
 //! Left out: how it is written to a disk.
 
+use super::conclusion::{conclusions, farthest};
 use super::frame::short_name;
-use super::histogram::class_width;
 use super::{CELL_M, SPHERE_M, Scan, Scans, curves, density, histogram, planes};
 use crate::tradeoff::html::STYLE;
 use crate::tradeoff::number::short;
@@ -21,14 +21,21 @@ pub const FILES: [(&str, &str); 8] = [
     ("analyze.json", "everything that --json says"),
 ];
 
-/// For narrow screens, where figures shrink to the card and tables scroll in a frame of their own; and for print.
+/// For narrow screens, where figures and tables keep a size that is read and scroll in a frame of their own; and for print.
 const MORE_STYLE: &str = "\
-figure svg{max-width:45rem}section{min-width:0}figcaption{color:var(--soft);font-size:.92rem;margin-top:.5rem}\
-.scroll{border:1px solid var(--line);border-radius:6px;padding:0 .4rem;scrollbar-width:thin}\
-table{margin:.8rem 0}caption{text-align:left;color:var(--soft);font-size:.92rem;padding:.2rem 0}\
+h1,h2{overflow-wrap:anywhere}section{min-width:0}figcaption{color:var(--soft);font-size:.92rem;margin-top:.5rem}\
+figure svg{max-width:45rem}\
+.scroll{border:1px solid var(--line);border-radius:6px;padding:0 .4rem;scrollbar-width:thin}.picture{padding:0}\
+.hint{display:none;color:var(--soft);font-size:.85rem;margin:.6rem 0 .2rem}\
+main,header,footer{max-width:64rem}\
+.caption{color:var(--soft);font-size:.92rem;margin:1rem 0 .4rem}\
 td:first-child{overflow-wrap:anywhere;min-width:9rem}summary{cursor:pointer;color:var(--mark)}\
-code{overflow-wrap:anywhere}@media (max-width:34rem){figcaption{padding:0 .7rem}}\
-@media print{body{background:#fff}section{border:0;padding:0;break-inside:auto}figure,tr{break-inside:avoid}nav{display:none}.scroll{border:0;overflow:visible}}";
+code{overflow-wrap:anywhere}\
+@media (max-width:47rem){.hint{display:block}.picture svg{width:45rem;max-width:none}.scroll table{width:max-content;min-width:100%}\
+td:first-child,th:first-child{position:sticky;left:0;background:var(--card)}td:first-child{max-width:10rem}}\
+@media (max-width:34rem){h1{font-size:1.3rem}figure{margin:1rem 0}figcaption{padding:0}}\
+@media print{body{background:#fff}section{border:0;padding:0;break-inside:auto}figure,tr{break-inside:avoid}nav,.hint{display:none}\
+.scroll{border:0;overflow:visible}.picture svg{width:100%;max-width:45rem}}";
 
 /// Angles between those of the page's table of K, degrees.
 const EVERY_DEG: f64 = 15.0;
@@ -83,9 +90,8 @@ fn sections(scans: &Scans) -> Vec<Section> {
             figure(
                 &histogram(scans),
                 &format!(
-                    "{bins} bins by their points, in classes of {}. The line is the mean, dashed lines are a standard deviation off it. \
-                     Bins are counted on a logarithmic scale, so that few of them show beside thousands.",
-                    class_width(scans)
+                    "{bins} bins by their points, about sixty classes from none to each scan's fullest bin. The line is the mean, dashed lines are a standard deviation off it. \
+                     Each scan has its own scale across, and all have one upwards: bins are counted on a logarithmic scale, so that few of them show beside thousands."
                 ),
             ),
         ),
@@ -107,7 +113,7 @@ fn sections(scans: &Scans) -> Vec<Section> {
                 &curves(scans),
                 "Ripley's K function less that of points at random (complete spatial randomness), over the area of the sphere: so much larger is the share of \
                  all pairs within an angle. Above 0 points cluster, below they keep apart. The derivative says at which angles pairs are too many or too few. \
-                 Of curves that coincide the last is on top.",
+                 Curves that coincide show in turns, by their dashes.",
             ) + &extremes(scans)
                 + &k_table(scans),
         ),
@@ -115,17 +121,20 @@ fn sections(scans: &Scans) -> Vec<Section> {
     ]
 }
 
+/// What stands above what is wider than a phone, on phones.
+const HINT: &str = "<p class=\"hint\">wider than the screen: swipe sideways \u{2194}</p>\n";
+
 fn figure(svg: &str, caption: &str) -> String {
     format!(
-        "<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n",
+        "<figure>\n{HINT}<div class=\"scroll picture\" tabindex=\"0\">\n{svg}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
         escaped(caption)
     )
 }
 
-/// A table: a heading a column, the first of each row its name.
+/// A table: a heading a column, the first of each row its name. What it is of stands above it, where it breaks into lines whatever the table's width.
 fn table(caption: &str, headings: &[String], rows: &[Vec<String>]) -> String {
     let mut html = format!(
-        "<div class=\"scroll\" tabindex=\"0\"><table>\n<caption>{}</caption>\n<thead><tr>",
+        "<p class=\"caption\">{0}</p>\n{HINT}<div class=\"scroll\" tabindex=\"0\"><table aria-label=\"{0}\">\n<thead><tr>",
         escaped(caption)
     );
     for heading in headings {
@@ -157,37 +166,52 @@ fn rows(scans: &Scans, row: impl Fn(&Scan) -> Vec<String>) -> Vec<Vec<String>> {
 }
 
 fn summary(scans: &Scans) -> String {
+    let mut html = conclusions(scans);
+    for scan in &scans.scans {
+        for warning in &scan.warnings {
+            let said = escaped(&format!("{}: {warning}", scan.name));
+            html += &format!("<p class=\"caution\">{said}</p>\n");
+        }
+    }
+    let percent =
+        |share: Option<f64>| share.map_or(NONE.to_owned(), |share| format!("{:.1}", 100.0 * share));
+    let three = |number: Option<f64>| number.map_or(NONE.to_owned(), |x| format!("{x:.3}"));
     let rows = rows(scans, |scan| {
+        let all = scan.counts.statistics();
+        let seen = scan.in_view.as_ref();
         vec![
             scan.points.to_string(),
-            scan.scan_s.map_or("-".to_owned(), short),
+            scan.scan_s.map_or(NONE.to_owned(), short),
+            percent(all.coverage()),
+            percent(seen.and_then(|seen| seen.statistics.coverage())),
             format!("{:.3}", scan.hole_deg),
-            format!("{:.3}", relative_sd(scan)),
-            match scan.k.has_pairs() {
-                true => format!("{:.5}", scan.k.d_max.max(-scan.k.d_min)),
-                false => "-".to_owned(),
-            },
+            three(seen.and_then(|seen| seen.hole_deg)),
+            three(all.sd_over_mean()),
+            three(seen.and_then(|seen| seen.statistics.sd_over_mean())),
+            farthest(scan).map_or(NONE.to_owned(), |d| format!("{d:.5}")),
         ]
     });
     let words = [
         "scan",
         "points",
         "seconds",
+        "sphere covered, %",
+        "view covered, %",
+        "largest hole anywhere, deg",
         "largest hole in view, deg",
-        "sd / mean",
+        "sd / mean, all bins",
+        "sd / mean, bins in view",
         "largest |K - K_csr|",
     ];
-    table(
-        "Less is better in the last three columns.",
+    html + &table(
+        "Covered: bins that hold a point. In view: where the scan could see at all, known of patterns and logs. Less is better from the holes on.",
         &headings(&words),
         &rows,
     )
 }
 
-fn relative_sd(scan: &Scan) -> f64 {
-    let s = scan.counts.statistics();
-    if s.mean > 0.0 { s.sd / s.mean } else { 0.0 }
-}
+/// Where a number is not known.
+const NONE: &str = "-";
 
 fn densities(scans: &Scans) -> String {
     let rows = rows(scans, |scan| {

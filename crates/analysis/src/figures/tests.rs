@@ -35,7 +35,9 @@ fn scan(name: &str, directions: &[DVec3], level: u32) -> Scan {
         name: name.to_owned(),
         points: directions.len() as u64,
         scan_s: Some(0.1),
-        hole_deg: 12.5,
+        hole_deg: 55.5,
+        in_view: None,
+        warnings: Vec::new(),
         counts: Counts::new(&locator, directions).unwrap(),
         k: KCurve::of_counts(&counts, SPHERE_M),
         method: "exact",
@@ -258,7 +260,124 @@ fn page_is_whole(page: &str, scans: &Scans) {
     let body = format!("<body>{}", body.replace("</html>", ""));
     let names = elements(&body);
     assert_eq!(names.iter().filter(|name| *name == "figcaption").count(), 4);
-    assert_eq!(names.iter().filter(|name| *name == "caption").count(), 5);
+    assert_eq!(page.matches("<p class=\"caption\">").count(), 5);
+    // Whatever is wider than a phone scrolls in a frame of its own, and says so there.
+    let frames = page.matches("<div class=\"scroll").count();
+    assert_eq!((frames, page.matches("class=\"hint\"").count()), (9, 9));
+}
+
+/// What is known of a view is told, and what is not is not made up; what may mislead stands beside it.
+#[test]
+fn the_page_says_what_comes_of_it() {
+    let mut scans = scans(3);
+    let [still, turned] = scans.scans.as_mut_slice() else {
+        panic!("two scans");
+    };
+    let half: Vec<bool> = (0..1_280).map(|bin| bin % 2 == 0).collect();
+    let statistics = turned.counts.statistics_of(|bin| half[bin]);
+    turned.in_view = Some(InView {
+        statistics,
+        hole_deg: Some(3.25),
+    });
+    still.warnings.push("the origin <0,0,0> is far".to_owned());
+    let (all, uneven) = (
+        still.counts.statistics(),
+        statistics.sd_over_mean().unwrap(),
+    );
+    let page = page(&scans);
+    let glance = page.split("id=\"summary\"").nth(1).unwrap();
+    let glance = glance.split("</section>").next().unwrap();
+    for words in [
+        format!(
+            "<b>still</b> covers {:.1} % of the sphere; its largest hole anywhere has a radius of 55.50",
+            100.0 * all.coverage().unwrap()
+        ),
+        "What it could see is not known".to_owned(),
+        "its largest hole in view has a radius of 3.25\u{b0}, anywhere 55.50\u{b0}".to_owned(),
+        "smallest largest hole in view: turned,tilt=".to_owned(),
+        "<p class=\"caution\">still: the origin &lt;0,0,0&gt; is far</p>".to_owned(),
+        "<th scope=\"col\">sd / mean, all bins</th>".to_owned(),
+        "<th scope=\"col\">sd / mean, bins in view</th>".to_owned(),
+        format!("<td>{uneven:.3}</td>"),
+        // Of a scan whose view is not known: its hole and its evenness there.
+        format!(
+            "<td>55.500</td><td>-</td><td>{:.3}</td><td>-</td>",
+            all.sd_over_mean().unwrap()
+        ),
+    ] {
+        assert!(glance.contains(&words), "no {words:?} in:\n{glance}");
+    }
+    // The most even over the sphere is the one nearest to chance.
+    let nearest = scans
+        .scans
+        .iter()
+        .map(|scan| scan.k.d_max.max(-scan.k.d_min));
+    let least = nearest.fold(f64::INFINITY, f64::min);
+    assert!(glance.contains(&format!("({least:.5})")), "{glance}");
+}
+
+/// Ten scans have ten colours; all curves but the first have gaps, so that what they lie on shows.
+#[test]
+fn curves_are_told_apart_where_they_coincide() {
+    let mut scans = scans(2);
+    let one = scans.scans.swap_remove(0);
+    scans.scans = (0..10)
+        .map(|number| Scan {
+            name: format!("scan {number}"),
+            ..one.clone()
+        })
+        .collect();
+    let figure = curves(&scans);
+    let strokes = |from: &str| -> std::collections::BTreeSet<String> {
+        let found = figure.split(from).skip(1);
+        found
+            .map(|rest| rest.split('"').next().unwrap().to_owned())
+            .collect()
+    };
+    assert_eq!(strokes("<path class=\"tv-c ").len(), 10);
+    let dashes = strokes("stroke-dasharray=\"");
+    assert_eq!(dashes.len(), 10, "{dashes:?}");
+    assert_eq!(dashes.iter().filter(|dash| *dash == "none").count(), 1);
+    assert_eq!(
+        figure.matches("angle between two points, degrees").count(),
+        2
+    );
+}
+
+/// A scan of few points beside one of many is not squeezed into a corner.
+#[test]
+fn each_histogram_has_a_scale_of_its_own() {
+    let mut scans = scans(2);
+    let alone = csv::histogram(&scans);
+    let many = grid(60, &[0.0])
+        .into_iter()
+        .cycle()
+        .take(480 * 500)
+        .collect::<Vec<_>>();
+    scans.scans.push(scan("many", &many, 2));
+    // What is drawn and written of the first does not depend on the last.
+    assert!(csv::histogram(&scans).starts_with(&alone));
+    let rows = |figure: &str| -> Vec<String> {
+        let rows = figure.split("<g transform=").skip(1);
+        rows.map(|row| {
+            row.split("tv-fill\" d=\"")
+                .nth(1)
+                .unwrap()
+                .split('"')
+                .next()
+                .unwrap()
+                .to_owned()
+        })
+        .collect()
+    };
+    let drawn = rows(&histogram(&scans));
+    let last = |path: &str| -> f64 {
+        let right = path.rsplit('H').next().unwrap().split('V').next().unwrap();
+        right.parse().unwrap()
+    };
+    for path in &drawn {
+        assert!(last(path) > 500.0, "{path}");
+    }
 }
 
 #[test]

@@ -18,10 +18,11 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
     let mut positions = Positions::new();
     for cloud in reader.pointclouds() {
         for point in reader.pointcloud_simple(&cloud).map_err(wrong)? {
-            // Directions without a range are shots without a return.
-            if let CartesianCoordinate::Valid { x, y, z } = point.map_err(wrong)?.cartesian {
-                positions.push([x, y, z]);
-            }
+            // Directions without a range are shots without a return: no places.
+            positions.push(match point.map_err(wrong)?.cartesian {
+                CartesianCoordinate::Valid { x, y, z } => [x, y, z],
+                _ => [f64::NAN; 3],
+            });
         }
     }
     Ok(positions)

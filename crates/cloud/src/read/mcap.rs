@@ -131,7 +131,7 @@ impl<'a> Cdr<'a> {
     }
 }
 
-/// Adds the points of a `sensor_msgs/msg/PointCloud2` that have three finite coordinates.
+/// Adds the points of a `sensor_msgs/msg/PointCloud2`, finite or not.
 fn cloud(message: &[u8], positions: &mut Positions) -> Result<(), ReadError> {
     let mut cdr = Cdr {
         bytes: message,
@@ -174,9 +174,7 @@ fn cloud(message: &[u8], positions: &mut Positions) -> Result<(), ReadError> {
     cdr.u32()?;
     for row in cdr.sequence()?.chunks_exact(point_bytes.max(1)) {
         let read = |(offset, number): (usize, Number)| number.read(row.get(offset..)?, big_endian);
-        if let (Some(x), Some(y), Some(z)) = (read(x), read(y), read(z))
-            && [x, y, z].iter().all(|value| value.is_finite())
-        {
+        if let (Some(x), Some(y), Some(z)) = (read(x), read(y), read(z)) {
             positions.push([x, y, z]);
         }
     }

@@ -32,20 +32,34 @@ pub struct ReadError {
     pub got: String,
 }
 
-/// The positions of a cloud of this format. An organised PCD has rows for shots without a return, which are no points: those of PCDs
-/// whose coordinates are no numbers are left out.
+/// What a cloud's file has.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Read {
+    /// Where its points are.
+    pub positions: Positions,
+    /// Rows that were left out, as some coordinate of theirs is no finite number: shots without a return in organised clouds, and the like.
+    pub without_numbers: u64,
+}
+
+/// The positions of a cloud of this format. Whatever the format, rows with a coordinate that is no finite number are no points: they are left out and counted.
 ///
 /// # Errors
 /// [`ReadError`] for what is not of the format, or ends too early.
-pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError> {
-    match format {
+pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Read, ReadError> {
+    let mut positions = match format {
         Format::Ply => ply::positions(&bytes),
         Format::Pcd => pcd::positions(&bytes),
         Format::Las | Format::Laz => las::positions(format, bytes),
         Format::E57 => e57::positions(&bytes),
         Format::Mcap => mcap::positions(&bytes),
         Format::Csv => csv::positions(&bytes),
-    }
+    }?;
+    let rows = positions.len();
+    positions.retain(|position| position.iter().all(|axis| axis.is_finite()));
+    Ok(Read {
+        without_numbers: (rows - positions.len()) as u64,
+        positions,
+    })
 }
 
 /// A little-endian number somewhere in bytes.

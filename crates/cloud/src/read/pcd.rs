@@ -38,17 +38,15 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
         let words: Vec<&str> = words.collect();
         if key == "DATA" {
             let read = Read::new(&text, &header, next)?;
-            let mut positions = match words.as_slice() {
+            return match words.as_slice() {
                 ["ascii"] => read.text(),
                 ["binary"] => read.binary(),
                 ["binary_compressed"] => read.compressed(),
                 _ => {
                     let expected = "DATA ascii, binary or binary_compressed";
-                    return Err(text.wrong(offset, expected, shown(line)));
+                    Err(text.wrong(offset, expected, shown(line)))
                 }
-            }?;
-            positions.retain(|position| position.iter().all(|axis| !axis.is_nan()));
-            return Ok(positions);
+            };
         }
         let taken = header.take(key, &words);
         taken.ok_or_else(|| text.wrong(offset, "a line of a PCD header", shown(line)))?;

@@ -1,4 +1,9 @@
 use super::*;
+
+/// What a file has, without what is counted beside it.
+fn places(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError> {
+    positions(format, bytes).map(|read| read.positions)
+}
 use crate::formats::testing::{Shared, cloud_from, metadata};
 use crate::{Fields, Sink};
 
@@ -22,7 +27,7 @@ fn what_is_written_is_read_back() {
     let points = cloud(3_000);
     for format in Format::ALL {
         let bytes = written(format, &points);
-        let read = positions(format, bytes).unwrap();
+        let read = places(format, bytes).unwrap();
         assert_eq!(read.len(), points.len());
         // f32 at 100 m; 0.1 mm steps; shortest decimals.
         let most = match format {
@@ -43,9 +48,9 @@ fn every_prefix_of_a_file_is_an_error_or_its_first_points() {
     let points = cloud(5);
     for format in Format::ALL {
         let bytes = written(format, &points);
-        let whole = positions(format, bytes.clone()).unwrap();
+        let whole = places(format, bytes.clone()).unwrap();
         for end in 0..bytes.len() {
-            match positions(format, bytes[..end].to_vec()) {
+            match places(format, bytes[..end].to_vec()) {
                 Err(error) => assert!(error.offset <= end, "{error}"),
                 Ok(some) => assert!(some.len() <= whole.len(), "{format}: {end}"),
             }
@@ -64,7 +69,7 @@ fn any_byte_may_be_another() {
             for change in [0x01, 0x80, 0xFF] {
                 let mut changed = bytes.clone();
                 changed[at] ^= change;
-                if let Err(error) = positions(format, changed) {
+                if let Err(error) = places(format, changed) {
                     assert!(error.offset <= bytes.len(), "{error}");
                 }
             }
@@ -88,14 +93,14 @@ fn other_programs_ply() {
     }
     data.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]);
     let expected = [[1.5, -2.0, 3.25], [0.0, 7.0, -0.5]];
-    assert_eq!(positions(Format::Ply, little(&data)).unwrap(), expected);
+    assert_eq!(places(Format::Ply, little(&data)).unwrap(), expected);
     let mut big = b"ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty int z\nend_header\n".to_vec();
     big.extend(1.5_f32.to_be_bytes());
     big.extend((-2.0_f32).to_be_bytes());
     big.extend(3_i32.to_be_bytes());
-    assert_eq!(positions(Format::Ply, big).unwrap(), [[1.5, -2.0, 3.0]]);
+    assert_eq!(places(Format::Ply, big).unwrap(), [[1.5, -2.0, 3.0]]);
     let text = "ply\r\nformat ascii 1.0\r\nelement vertex 2\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nend_header\r\n1.5 -2 3.25\r\n0 7 -0.5\r\n";
-    assert_eq!(positions(Format::Ply, text.into()).unwrap(), expected);
+    assert_eq!(places(Format::Ply, text.into()).unwrap(), expected);
 }
 
 #[test]
@@ -103,14 +108,14 @@ fn other_programs_pcd() {
     let head = "# .PCD v.7\nVERSION .7\nFIELDS rgb x y z\nSIZE 1 4 4 4\nTYPE U F F F\nCOUNT 3 1 1 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\n";
     let expected = [[1.5, -2.0, 3.25], [0.0, 7.0, -0.5]];
     let text = format!("{head}DATA ascii\n1 2 3 1.5 -2 3.25\n0 0 0 nan nan nan\n0 0 0 0 7 -0.5\n");
-    assert_eq!(positions(Format::Pcd, text.into()).unwrap(), expected);
+    assert_eq!(places(Format::Pcd, text.into()).unwrap(), expected);
     let rows = [[1.5_f32, -2.0, 3.25], [f32::NAN; 3], [0.0, 7.0, -0.5]];
     let mut binary = format!("{head}DATA binary\n").into_bytes();
     for row in rows {
         binary.extend([9, 9, 9]);
         binary.extend(row.iter().flat_map(|axis| axis.to_le_bytes()));
     }
-    assert_eq!(positions(Format::Pcd, binary).unwrap(), expected);
+    assert_eq!(places(Format::Pcd, binary).unwrap(), expected);
     // Columns; the first, nine nines, as one and a copy that reaches into itself.
     let mut packed = vec![0, 9, 6 << 5, 0];
     for axis in 0..3 {
@@ -121,13 +126,10 @@ fn other_programs_pcd() {
     compressed.extend((packed.len() as u32).to_le_bytes());
     compressed.extend(45_u32.to_le_bytes());
     compressed.extend(&packed);
-    assert_eq!(
-        positions(Format::Pcd, compressed.clone()).unwrap(),
-        expected
-    );
+    assert_eq!(places(Format::Pcd, compressed.clone()).unwrap(), expected);
     let end = compressed.len();
     for spoilt in [end - 1, end - 30] {
-        assert!(positions(Format::Pcd, compressed[..spoilt].to_vec()).is_err());
+        assert!(places(Format::Pcd, compressed[..spoilt].to_vec()).is_err());
     }
 }
 
@@ -139,10 +141,10 @@ fn other_programs_text() {
         "# by hand\nx;y;z\n1;2;3\n4;5;6\n",
         "time,z,\"y\",x\n0,3,2,1\n0,6,5,4\n",
     ] {
-        let read = positions(Format::Csv, text.into()).unwrap();
+        let read = places(Format::Csv, text.into()).unwrap();
         assert_eq!(read, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{text}");
     }
-    assert!(positions(Format::Csv, Vec::new()).unwrap().is_empty());
+    assert!(places(Format::Csv, Vec::new()).unwrap().is_empty());
 }
 
 #[test]
@@ -206,7 +208,46 @@ fn errors_say_where_and_what() {
             "las: byte 0: expected a LAS or LAZ file",
         ),
     ] {
-        let said = positions(format, text.into()).unwrap_err().to_string();
+        let said = places(format, text.into()).unwrap_err().to_string();
         assert!(said.contains(words), "{said}");
+    }
+}
+
+/// Rows without a place are left out and counted, whatever the format that can have them.
+#[test]
+fn what_is_no_finite_number_is_left_out_and_counted() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\nnan nan nan\n4 inf 6\n7 8 9\n";
+    let pcd = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n1 2 3\nnan nan nan\n4 inf 6\n7 8 9\n";
+    let csv = "x,y,z\n1,2,3\nnan,NaN,nan\n4,inf,6\n7,8,9\n";
+    let mut binary = b"ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n".to_vec();
+    for value in [
+        1.0,
+        2.0,
+        3.0,
+        f32::NAN,
+        0.0,
+        0.0,
+        4.0,
+        f32::INFINITY,
+        6.0,
+        7.0,
+        8.0,
+        9.0_f32,
+    ] {
+        binary.extend(value.to_le_bytes());
+    }
+    for (format, bytes) in [
+        (Format::Ply, ply.into()),
+        (Format::Ply, binary),
+        (Format::Pcd, pcd.into()),
+        (Format::Csv, csv.into()),
+    ] {
+        let read = positions(format, bytes).unwrap();
+        assert_eq!(
+            read.positions,
+            [[1.0, 2.0, 3.0], [7.0, 8.0, 9.0]],
+            "{format}"
+        );
+        assert_eq!(read.without_numbers, 2, "{format}");
     }
 }

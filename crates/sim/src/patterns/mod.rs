@@ -5,9 +5,8 @@
 //! simulation ([`crate::simulate`]), which a test holds against these; where the sensor stands beside the axis they meet a hollow sphere of
 //! [`SPHERE_M`] about it. Left out: what is between the names and the numbers ([`Wish`]), and what patterns are good for.
 
+mod view;
 mod wish;
-
-use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use thiserror::Error;
@@ -16,6 +15,7 @@ use crate::motion::Stand;
 use crate::sensor::{Rays, Reach, Sensor};
 use crate::simulate::{Firing, Mount};
 
+pub use view::View;
 pub use wish::{NAMES, Wish};
 
 /// The hollow sphere that rays meet, metres: the one of the 2018 paper.
@@ -267,35 +267,23 @@ impl Pattern {
         )
     }
 
-    /// How deep a direction is within what the scan can see, from its lowest to its highest laser at every tilt on its way: radians, negative
-    /// outside. It changes by no more than the direction does. The sensor is taken to be on the axis.
+    /// The tilts at which the scan begins and ends, degrees, the least first.
     #[must_use]
-    pub fn depth_rad(&self, direction: DVec3) -> f64 {
-        let tilting = self.settings.tilting;
-        let last = self.cut_deg(f64::from(self.frames) * self.step_deg);
-        let (a, b) = (tilting.from_deg, tilting.from_deg + last);
-        let (from, to) = (a.min(b).to_radians(), a.max(b).to_radians());
-        // In the sensor's frame the height of a direction is across x cos(tilt - ahead).
-        let across = direction.x.hypot(direction.z);
-        let ahead = direction.x.atan2(direction.z);
-        let passes = |angle: f64| {
-            let turns = ((from - angle) / TAU).ceil();
-            angle + turns * TAU <= to
-        };
-        let ends = [from, to].map(|tilt| across * (tilt - ahead).cos());
-        let most = if passes(ahead) {
-            across
-        } else {
-            ends[0].max(ends[1])
-        };
-        let least = if passes(ahead + PI) {
-            -across
-        } else {
-            ends[0].min(ends[1])
-        };
-        let elevation = |height: f64| height.clamp(-1.0, 1.0).asin();
-        let [low, high] = self.elevations_deg().map(f64::to_radians);
-        (elevation(most) - low).min(high - elevation(least))
+    pub fn tilts_deg(&self) -> [f64; 2] {
+        let from_deg = self.settings.tilting.from_deg;
+        let last_deg = from_deg + self.cut_deg(f64::from(self.frames) * self.step_deg);
+        [from_deg.min(last_deg), from_deg.max(last_deg)]
+    }
+
+    /// What the scan can see, as directions from the origin of the base to the hollow sphere: where its points are.
+    #[must_use]
+    pub fn view(&self) -> View {
+        View::new(
+            self.elevations_deg(),
+            self.tilts_deg(),
+            [self.settings.d_m; 2],
+            [SPHERE_M; 2],
+        )
     }
 
     /// As far as the way goes, where it ends the scan.

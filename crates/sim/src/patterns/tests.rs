@@ -220,7 +220,7 @@ fn what_a_scan_sees_lies_in_its_view_and_fills_it() {
         let directions = pattern.directions();
         let depths = directions
             .iter()
-            .map(|direction| pattern.depth_rad(*direction));
+            .map(|direction| pattern.view().depth_rad(*direction));
         let least = depths.fold(f64::INFINITY, f64::min);
         assert!(least > -1e-7, "{text}: {least}");
         // The outermost rays are on its edge.
@@ -231,17 +231,17 @@ fn what_a_scan_sees_lies_in_its_view_and_fills_it() {
         // It changes no faster than the direction.
         for pair in directions.windows(2).step_by(97) {
             let middle = (pair[0] + DVec3::new(0.3, -0.2, 0.1)).normalize();
-            let by = (pattern.depth_rad(pair[0]) - pattern.depth_rad(middle)).abs();
+            let by = (pattern.view().depth_rad(pair[0]) - pattern.view().depth_rad(middle)).abs();
             assert!(by <= pair[0].angle_between(middle) + 1e-7, "{text}");
         }
     }
     let level = pattern("vlp16");
-    assert!((level.depth_rad(DVec3::Z) + 75_f64.to_radians()).abs() < 1e-12);
-    assert!((level.depth_rad(DVec3::Y) - 15_f64.to_radians()).abs() < 1e-12);
+    assert!((level.view().depth_rad(DVec3::Z) + 75_f64.to_radians()).abs() < 1e-12);
+    assert!((level.view().depth_rad(DVec3::Y) - 15_f64.to_radians()).abs() < 1e-12);
     let swept = pattern("velomotion16:50");
     // Straight up is 30 deg beyond the highest ray.
-    assert!((swept.depth_rad(DVec3::Z) + 30_f64.to_radians()).abs() < 1e-12);
-    assert!(pattern("rmbl:50").depth_rad(DVec3::Z) > 0.2);
+    assert!((swept.view().depth_rad(DVec3::Z) + 30_f64.to_radians()).abs() < 1e-12);
+    assert!(pattern("rmbl:50").view().depth_rad(DVec3::Z) > 0.2);
 }
 
 #[test]
@@ -261,13 +261,28 @@ fn what_is_no_pattern_is_said() {
         ("rmbl:fast", "expected a number for speed, got \"fast\""),
         ("rmbl:NaN", "a number for speed"),
         ("vlp16:50", "a sensor that stands still"),
-        ("rmbl:50,colour=red", "a number for colour"),
+        ("rmbl:50,colour=red", "expected rpm, step, start"),
         ("rmbl:50,colour=3", "expected rpm, step, start"),
+        ("rmbl:50,rpm=fast", "a number for rpm"),
+        (
+            "vlp16,start=0,start=90",
+            "expected start once, got \"start=90 as well\"",
+        ),
+        ("rmbl:50,speed=30", "expected speed once"),
+        ("rmbl:50,tilt=stepped,tilt=stepped", "expected tilt once"),
+        ("velomotion16:50,,d=1", "expected KEY=VALUE"),
+        ("velomotion16:50,", "expected KEY=VALUE"),
+        ("vlp16,", "expected KEY=VALUE"),
+        ("velomotion16:", "a number for speed"),
+        (
+            "velomotion16:50,from=0,to=0",
+            "from and to that differ (vlp16 stands still), got \"both 0\"",
+        ),
         ("rmbl:50,stepped", "KEY=VALUE"),
         ("rmbl:50,tilt=jumping", "tilt=stepped or tilt=continuous"),
         ("rmbl:50,seam=thrice", "seam=once or seam=twice"),
-        ("rmbl:50,frames=0", "frames from 1"),
-        ("rmbl:50,frames=2.5", "frames from 1"),
+        ("rmbl:50,frames=0", "frames as a whole number from 1"),
+        ("rmbl:50,frames=2.5", "frames as a whole number from 1"),
         ("rmbl:50,rpm=0", "rpm: expected 1 to 100000"),
         ("rmbl:50,step=0", "step: expected 0.001"),
         ("rmbl:50,d=7", "d: expected -5 to 5 m"),
@@ -276,4 +291,23 @@ fn what_is_no_pattern_is_said() {
         let said = wrong(text);
         assert!(said.contains(words), "{text}: {said}");
     }
+}
+
+#[test]
+fn what_is_no_number_is_not_set_as_one() {
+    let mut wish = Wish::parse("velomotion16:50").unwrap();
+    for (key, words) in [
+        (
+            "tilt",
+            "expected tilt=stepped or tilt=continuous, which is no number, got \"tilt=1\"",
+        ),
+        ("seam", "expected seam=once or seam=twice"),
+        ("colour", "a number: rpm, step, start"),
+    ] {
+        let said = wish.set_number(key, 1.0).unwrap_err().to_string();
+        assert!(said.contains(words), "{key}: {said}");
+    }
+    // A number that stands in the name may be set anew.
+    wish.set_number("speed", 10.0).unwrap();
+    assert_eq!(wish.build().unwrap().settings().tilting.speed_deg_s, 10.0);
 }

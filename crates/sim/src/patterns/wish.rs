@@ -9,6 +9,8 @@ use super::{Head, Pattern, PatternError, Seam, Settings, Steps, Tilting};
 pub const NAMES: [&str; 6] = ["vlp16", "hdl32e", "vlp32c", "rmbl", "rsbl", "velomotion16"];
 
 const KEYS: &str = "rpm, step, start, seam, from, to, speed, tilt, frames or d";
+/// Those of them that are numbers.
+const NUMBERS: [&str; 8] = ["rpm", "step", "start", "from", "to", "speed", "frames", "d"];
 
 /// A pattern as it is asked for. Numbers may be set anew before it is built.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,18 +77,26 @@ impl Wish {
         };
         let rest = text.get(name.len()..).unwrap_or_default();
         let (speed, options) = match rest.strip_prefix(':') {
-            Some(rest) => {
-                let (speed, options) = rest.split_once(',').unwrap_or((rest, ""));
-                (Some(speed), options)
-            }
-            None => (None, rest.strip_prefix(',').unwrap_or_default()),
+            Some(rest) => match rest.split_once(',') {
+                Some((speed, options)) => (Some(speed), Some(options)),
+                None => (Some(rest), None),
+            },
+            None => (None, rest.strip_prefix(',')),
         };
+        let mut set = Vec::new();
         if let Some(speed) = speed {
             wish.set("speed", speed)?;
+            set.push("speed");
         }
-        for option in options.split(',').filter(|option| !option.is_empty()) {
+        for option in options.into_iter().flat_map(|options| options.split(',')) {
             match option.split_once('=') {
-                Some((key, value)) => wish.set(key, value)?,
+                Some((key, _)) if set.contains(&key) => {
+                    return Err(wish.wrong(format!("{key} once"), format!("{option} as well")));
+                }
+                Some((key, value)) => {
+                    wish.set(key, value)?;
+                    set.push(key);
+                }
                 None => return Err(wish.wrong(format!("KEY=VALUE with {KEYS}"), option)),
             }
         }
@@ -111,6 +121,9 @@ impl Wish {
     }
 
     fn set_text(&mut self, key: &str, value: &str) -> Result<(), PatternError> {
+        if !NUMBERS.contains(&key) {
+            return Err(self.wrong(KEYS, key));
+        }
         let number = value.parse::<f64>().ok().filter(|n| n.is_finite());
         let Some(number) = number else {
             return Err(self.wrong(format!("a number for {key}"), value));
@@ -123,7 +136,7 @@ impl Wish {
     /// # Errors
     /// [`PatternError::Option`] for one that there is not.
     pub fn set_number(&mut self, key: &str, value: f64) -> Result<(), PatternError> {
-        let stands = matches!(name_of(&self.name), "vlp16" | "hdl32e" | "vlp32c");
+        let stands = self.stands();
         let settings = &mut self.settings;
         match key {
             "rpm" => settings.rpm = value,
@@ -145,8 +158,18 @@ impl Wish {
             "frames" if value.fract() == 0.0 && (1.0..=1e6).contains(&value) => {
                 settings.frames = Some(value as u32);
             }
-            "frames" => return Err(self.wrong("frames from 1 to 1000000", value.to_string())),
-            _ => return Err(self.wrong(KEYS, key)),
+            "frames" => {
+                let what = "frames as a whole number from 1 to 1000000";
+                return Err(self.wrong(what, value.to_string()));
+            }
+            "tilt" | "seam" => {
+                let what = match key {
+                    "tilt" => "tilt=stepped or tilt=continuous, which is no number",
+                    _ => "seam=once or seam=twice, which is no number",
+                };
+                return Err(self.wrong(what, format!("{key}={value}")));
+            }
+            _ => return Err(self.wrong(format!("a number: {}", NUMBERS.join(", ")), key)),
         }
         Ok(())
     }
@@ -158,7 +181,12 @@ impl Wish {
     pub fn build(&self) -> Result<Pattern, PatternError> {
         let mut settings = self.settings;
         settings.step_deg = self.step_deg.unwrap_or(settings.rpm * STEP_DEG_PER_RPM);
-        if settings.tilting.to_deg != settings.tilting.from_deg {
+        let tilting = settings.tilting;
+        if !self.stands() && tilting.to_deg == tilting.from_deg {
+            let got = format!("both {}", tilting.from_deg);
+            return Err(self.wrong("from and to that differ (vlp16 stands still)", got));
+        }
+        if tilting.to_deg != tilting.from_deg {
             let Some(speed_deg_s) = self.speed_deg_s.filter(|speed| *speed > 0.0) else {
                 let name = name_of(&self.name);
                 let got = self
@@ -169,6 +197,10 @@ impl Wish {
             settings.tilting.speed_deg_s = speed_deg_s;
         }
         Pattern::new(&self.name, settings)
+    }
+
+    fn stands(&self) -> bool {
+        matches!(name_of(&self.name), "vlp16" | "hdl32e" | "vlp32c")
     }
 
     fn wrong(&self, expected: impl Into<String>, got: impl Into<String>) -> PatternError {

@@ -48,6 +48,7 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
         text: contents.table(),
         failure,
         stdout_taken: false,
+        is_result: false,
     })
 }
 

@@ -26,6 +26,8 @@ pub struct Said {
     pub failure: Option<Failure>,
     /// Whether a cloud went to stdout: the text goes to stderr then.
     pub stdout_taken: bool,
+    /// Whether the text is what was asked for, and not about what was done: `--quiet` leaves it then.
+    pub is_result: bool,
 }
 
 /// Runs the command.
@@ -55,6 +57,7 @@ impl Said {
             text: String::new(),
             failure: None,
             stdout_taken: false,
+            is_result: false,
         }
     }
 
@@ -65,6 +68,15 @@ impl Said {
             text,
             failure: None,
             stdout_taken: false,
+            is_result: false,
+        }
+    }
+
+    /// A report that is all that comes of the command.
+    fn result(report: &impl serde::Serialize, text: String) -> Self {
+        Self {
+            is_result: true,
+            ..Self::report(report, text)
         }
     }
 
@@ -76,6 +88,7 @@ impl Said {
             text: scan.table(),
             failure,
             stdout_taken,
+            is_result: false,
         }
     }
 }

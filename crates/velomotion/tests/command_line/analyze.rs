@@ -166,6 +166,210 @@ fn a_pattern_its_clouds_and_its_log_are_analysed_alike() {
     );
 }
 
+/// The rim that a sensor beside the axis cannot see from there is in no view.
+#[test]
+fn a_view_is_that_of_the_sensor_where_it_is() {
+    let place = Place::new();
+    let line = "analyze vlp16 vlp16,d=0.5 vlp16,d=5 velomotion16:50 velomotion16:50,d=0.06 velomotion16:50,d=-0.06 --level 4 --harmonics 1 --json";
+    let report = json(&place.run(line));
+    let patterns = report["patterns"].as_array().unwrap();
+    let found: Vec<[f64; 2]> = patterns
+        .iter()
+        .map(|pattern| {
+            let hole = pattern["hole_in_view"]["radius_deg"].as_f64().unwrap();
+            [hole, pattern["gaps"]["of_99_percent_deg"].as_f64().unwrap()]
+        })
+        .collect();
+    // A level sensor's circles lie at most 2 deg apart, however high it is. Near the sphere the upper ones are farther apart, and lower ones closer.
+    assert!((found[0][0] - 1.02).abs() < 0.01, "{found:?}");
+    assert!(found[1][0] < 1.08 && found[1][1] < 1.08, "{found:?}");
+    assert!(found[2][0] < 1.6 && found[2][1] < 1.6, "{found:?}");
+    assert!((found[3][0] - 2.485).abs() < 0.001, "{found:?}");
+    for lifted in &found[4..] {
+        assert!((lifted[0] - found[3][0]).abs() < 0.05, "{found:?}");
+        assert!((lifted[1] - found[3][1]).abs() < 0.1, "{found:?}");
+    }
+}
+
+/// A log's view is that of its lidar, sweep and mount: what comes of it is what comes of its pattern. A cloud has none, and none is made up.
+#[test]
+fn logs_have_a_view_and_clouds_have_none() {
+    let place = Place::new();
+    let scene = "[sensor]\nideal = true\nrpm = 600\n[mount]\nd_m = 0.06\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -45\nspeed_deg_s = 50\n[[objects]]\nsphere = { radius_m = 10 }\n";
+    std::fs::write(place.path("swept.toml"), scene).unwrap();
+    let made = place.run("simulate swept.toml -o swept.pcapng");
+    assert!(
+        made.status.success(),
+        "{}",
+        String::from_utf8_lossy(&made.stderr)
+    );
+    let made = place.run("replay swept.pcapng -o swept.ply");
+    assert!(
+        made.status.success(),
+        "{}",
+        String::from_utf8_lossy(&made.stderr)
+    );
+    let line = "analyze velomotion16:50,rpm=600,d=0.06 swept.pcapng swept.ply --harmonics 1";
+    let report = json(&place.run(&format!("{line} --json")));
+    let [pattern, log, cloud] = report["patterns"].as_array().unwrap().as_slice() else {
+        panic!("{report}");
+    };
+    let number = |of: &serde_json::Value, path: &str| of.pointer(path).unwrap().as_f64().unwrap();
+    for (path, within) in [
+        // A log begins at an azimuth of its own and has ramps; the rim that it cannot see would be a hole of 55 deg.
+        ("/hole_in_view/radius_deg", 1.5),
+        ("/gaps/of_99_percent_deg", 0.4),
+        ("/gaps/median_deg", 0.05),
+        ("/density_in_view/bins", 10.0),
+        ("/density_in_view/coverage", 0.01),
+        ("/view/tilt_deg/0", 0.01),
+        ("/view/distance_m/0", 0.02),
+        ("/view/d_m", 1e-9),
+    ] {
+        let [a, b] = [pattern, log].map(|of| number(of, path));
+        assert!((a - b).abs() <= within, "{path}: {a} {b}");
+    }
+    assert_eq!(
+        (&log["gaps"]["of"], &cloud["gaps"]["of"]),
+        (&"view".into(), &"all".into())
+    );
+    for unknown in ["view", "hole_in_view", "density_in_view"] {
+        assert!(cloud.get(unknown).unwrap().is_null(), "{unknown}");
+        assert!(log[unknown].is_object(), "{unknown}");
+    }
+    for unknown in ["holes", "rows", "least_radius_deg"] {
+        assert!(cloud["blind"].get(unknown).unwrap().is_null(), "{unknown}");
+        assert!(!log["blind"][unknown].is_null(), "{unknown}");
+    }
+    // One definition a heading.
+    for of in [pattern, log] {
+        for density in ["density", "density_in_view"] {
+            let [sd, mean, both] =
+                ["sd", "mean", "sd_over_mean"].map(|key| number(&of[density], &format!("/{key}")));
+            assert!((sd / mean - both).abs() < 1e-12, "{density}");
+        }
+    }
+    let text = place.run(line);
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    let row = text.lines().find(|line| line.ends_with(" -"));
+    assert!(
+        row.is_some() && text.contains("largest hole in view: not known"),
+        "{text}"
+    );
+    assert!(
+        text.contains("of all directions (the whole sphere)"),
+        "{text}"
+    );
+    assert!(
+        text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
+}
+
+/// A settings' evenness is the same number wherever it is told.
+#[test]
+fn a_sweep_and_a_report_tell_the_same_of_a_pattern() {
+    let place = Place::new();
+    let sweep = json(&place.run("analyze velomotion16:400 --sweep speed=400..400 --json"));
+    let alone = json(&place.run("analyze velomotion16:400 --harmonics 1 --json"));
+    let [setting, pattern] = [&sweep["settings"][0], &alone["patterns"][0]];
+    let pairs = [
+        (
+            &setting["sd_over_mean_in_view"],
+            &pattern["density_in_view"]["sd_over_mean"],
+        ),
+        (&setting["gap_deg"], &pattern["gaps"]["of_99_percent_deg"]),
+        (&setting["hole_deg"], &pattern["hole_in_view"]["radius_deg"]),
+    ];
+    for (a, b) in pairs {
+        let [a, b] = [a, b].map(|x| x.as_f64().unwrap());
+        assert!((a - b).abs() < 0.006, "{a} {b}");
+    }
+    assert_ne!(
+        pattern["density_in_view"]["sd_over_mean"],
+        pattern["density"]["sd_over_mean"]
+    );
+}
+
+/// Where an origin is far from the cloud, as with coordinates of a country, that is said, and there is a way out.
+#[test]
+fn a_cloud_far_from_its_origin_is_warned_of_and_can_be_moved() {
+    let place = Place::new();
+    let pattern = sim::patterns::Wish::parse("velomotion16:500,step=0.8").unwrap();
+    let pattern = pattern.build().unwrap();
+    let text = |x: f64, y: f64| -> String {
+        let rows = pattern.directions().into_iter();
+        rows.map(|d| format!("{} {} {}\n", x + 7.0 * d.x, y + 7.0 * d.y, 7.0 * d.z))
+            .collect()
+    };
+    std::fs::write(place.path("here.csv"), text(0.0, 0.0)).unwrap();
+    std::fs::write(place.path("far.xyz"), text(450_000.0, 5_400_000.0)).unwrap();
+    let far = place.run("analyze far.xyz --harmonics 1 --json");
+    let said = String::from_utf8_lossy(&far.stderr).into_owned();
+    let far = json(&far)["patterns"][0].clone();
+    let warned = far["warnings"][0].as_str().unwrap();
+    assert!(
+        warned.contains("outside the cloud") && warned.contains("--origin X,Y,Z"),
+        "{warned}"
+    );
+    assert!(said.contains(warned), "{said}");
+    let moved = json(&place.run("analyze far.xyz --origin 450000,5400000,0 --harmonics 1 --json"));
+    let here = json(&place.run("analyze here.csv --harmonics 1 --json"));
+    let [moved, here] = [&moved["patterns"][0], &here["patterns"][0]];
+    assert_eq!(moved["warnings"].as_array().unwrap().len(), 0, "{moved}");
+    let radius = |of: &serde_json::Value| of["hole"]["radius_deg"].as_f64().unwrap();
+    assert!((radius(moved) - radius(here)).abs() < 1e-4 && radius(&far) > 179.0);
+    // Not of the sweep alone: negative numbers, too.
+    let back = place.run("analyze here.csv --origin -1,0.5,-0.25 --level 2 --harmonics 1");
+    assert!(
+        back.status.success(),
+        "{}",
+        String::from_utf8_lossy(&back.stderr)
+    );
+}
+
+/// What was asked for is no chatter.
+#[test]
+fn a_result_is_printed_however_quiet() {
+    let place = Place::new();
+    for line in [
+        "analyze vlp16 --level 2 --harmonics 1",
+        "analyze velomotion16,step=2 --level 2 --sweep speed=200..400/2",
+    ] {
+        let (loud, quiet) = (place.run(line), place.run(&format!("{line} -q")));
+        assert!(!quiet.stdout.is_empty() && quiet.stderr.is_empty());
+        assert_eq!(loud.stdout, quiet.stdout, "{line}");
+    }
+}
+
+/// Rows without a place are left out and told, whatever the format.
+#[test]
+fn points_that_are_no_numbers_are_left_out_and_told() {
+    let place = Place::new();
+    let rows = "1 2 3\nnan nan nan\n3 2 -1\n";
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    let pcd = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3\nHEIGHT 1\nPOINTS 3\nDATA ascii\n";
+    for (name, head) in [
+        ("a.ply", ply),
+        ("a.pcd", pcd),
+        ("a.txt", ""),
+        ("a.asc", "x y z\n"),
+    ] {
+        std::fs::write(place.path(name), format!("{head}{rows}")).unwrap();
+        let line = format!("analyze {name} --level 1 --bins 10");
+        let report = json(&place.run(&format!("{line} --json")));
+        let pattern = &report["patterns"][0];
+        assert_eq!(pattern["points"], 2, "{name}");
+        assert_eq!(pattern["without_numbers"], 1, "{name}");
+        let text = place.run(&line);
+        let text = String::from_utf8_lossy(&text.stdout).into_owned();
+        assert!(
+            text.contains("1 point whose coordinates are no numbers left out"),
+            "{text}"
+        );
+    }
+}
+
 /// A page, figures, tables and JSON of two scans side by side; nothing overwritten unasked.
 #[test]
 fn analyze_writes_a_report_that_stands_alone() {
@@ -252,14 +456,15 @@ fn what_cannot_be_analysed_is_said() {
     let place = Place::new();
     std::fs::write(place.path("one.csv"), "x,y,z\n1,2,3\n").unwrap();
     let one = json(&place.run("analyze one.csv --json"));
-    let warned = &one["patterns"][0]["warnings"][0];
-    assert!(warned.as_str().unwrap().contains("no pairs"), "{warned}");
+    let warned = one["patterns"][0]["warnings"].to_string();
+    assert!(warned.contains("no pairs"), "{warned}");
     std::fs::write(place.path("none.csv"), "x,y,z\n").unwrap();
     std::fs::write(place.path("empty.csv"), "").unwrap();
     std::fs::write(place.path("origin.csv"), "X,Y,Z\n0,0,0\n").unwrap();
     let zero = "ply\nformat ascii 1.0\nelement vertex 0\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
     std::fs::write(place.path("zero.ply"), zero).unwrap();
-    std::fs::write(place.path("nan.csv"), "x,y,z\n1,2,3\n4,nan,6\n").unwrap();
+    std::fs::write(place.path("nan.csv"), "x,y,z\n4,nan,6\n").unwrap();
+    std::fs::write(place.path("words.txt"), "no cloud at all\n").unwrap();
     std::fs::write(place.path("spoilt.ply"), "ply\nwhat\n").unwrap();
     for (line, code, words) in [
         ("analyze", 2, "PATTERN|CLOUD|LOG"),
@@ -270,7 +475,36 @@ fn what_cannot_be_analysed_is_said() {
         ("analyze empty.csv", 3, "empty.csv: the file has no points"),
         ("analyze zero.ply", 3, "zero.ply: the file has no points"),
         ("analyze origin.csv", 3, "no point that has a direction"),
-        ("analyze nan.csv", 3, "point 1 is at (4, NaN, 6)"),
+        (
+            "analyze nan.csv",
+            3,
+            "no point whose coordinates are numbers",
+        ),
+        (
+            "analyze words.txt",
+            3,
+            "expected is text with x, y and z in metres",
+        ),
+        ("analyze one.csv --origin 1,2", 2, "expected three numbers"),
+        (
+            "analyze one.csv --origin 1,2,x",
+            2,
+            "expected three numbers",
+        ),
+        (
+            "analyze one.csv --origin 1,2,3",
+            3,
+            "no point that has a direction",
+        ),
+        ("analyze vlp16 --origin 1,2,3", 2, "no cloud is named"),
+        ("analyze nosuch.ply", 3, ".e57 .mcap .csv .xyz .txt .asc"),
+        ("analyze vlp16,start=0,start=90", 2, "expected start once"),
+        ("analyze velomotion16:50,,d=1", 2, "expected KEY=VALUE"),
+        (
+            "analyze velomotion16:50,from=0,to=0",
+            2,
+            "from and to that differ",
+        ),
         (
             "analyze spoilt.ply",
             3,
@@ -314,6 +548,22 @@ fn a_sweep_says_which_settings_nothing_beats() {
     let place = Place::new();
     let output = place.run("analyze velomotion16,step=2 --sweep speed=100..400/3,tilt=1..2 --json");
     assert_eq!(output.status.code(), Some(2), "tilt is no number");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let flat = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        flat.contains("tilt is no number") && flat.contains("tilt=stepped"),
+        "{said}"
+    );
+    for (sweep, settings) in [("speed=200..200", 1), ("speed=200..400/2,rpm=600..600", 2)] {
+        let report = json(&place.run(&format!(
+            "analyze velomotion16,step=2 --sweep {sweep} --json"
+        )));
+        assert_eq!(
+            report["settings"].as_array().unwrap().len(),
+            settings,
+            "{sweep}"
+        );
+    }
     let output =
         place.run("analyze velomotion16,step=2 --sweep speed=100..400/3,rpm=600..1200/2 --json");
     let report = json(&output);
@@ -324,7 +574,7 @@ fn a_sweep_says_which_settings_nothing_beats() {
     for (best, of) in [
         ("best_hole", "hole_deg"),
         ("best_gap", "gap_deg"),
-        ("best_evenness", "unevenness"),
+        ("best_evenness", "sd_over_mean_in_view"),
     ] {
         for setting in settings {
             let beaten = settings.iter().any(|other| {

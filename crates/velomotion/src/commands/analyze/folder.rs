@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use analysis::density::Icosahedron;
-use analysis::figures::{self, Planes, Scan, Scans, csv};
+use analysis::figures::{self, InView, Planes, Scan, Scans, csv};
 
 use super::input::Input;
 use super::report::{PatternReport, Report};
@@ -57,7 +57,12 @@ impl Folder {
             name: pattern.name.clone(),
             points: pattern.points,
             scan_s: pattern.scan_s,
-            hole_deg: pattern.worst().radius_deg,
+            hole_deg: pattern.hole.radius_deg,
+            in_view: pattern.density_in_view.map(|bins| InView {
+                statistics: bins.statistics,
+                hole_deg: pattern.hole_in_view.map(|hole| hole.radius_deg),
+            }),
+            warnings: pattern.warnings.clone(),
             counts: pattern.density.counts.clone(),
             k: pattern.k.curve.clone(),
             method: pattern.k.method,
@@ -115,8 +120,12 @@ fn command(arguments: &cli::Analyze) -> String {
         tolerance,
         bins,
         harmonics,
+        origin,
         ..
     } = arguments;
+    if let Some([x, y, z]) = origin {
+        words.push(format!("--origin={x},{y},{z}"));
+    }
     words.push(format!("--level {level} --bins {bins}"));
     words.push(match harmonics {
         Some(degree) => format!("--harmonics {degree}"),

@@ -1,6 +1,7 @@
 //! What is to be analysed: a pattern by its name, a cloud, or a log or recording, as the directions of its points.
 //!
-//! Directions are as seen from the base's origin, on the tilt axis; where a recording has no tilt, from the sensor. Left out: what becomes of them.
+//! Directions are as seen from the base's origin, on the tilt axis; where a recording has no tilt, from the sensor; of clouds from their origin or where the user says that the scanner was.
+//! Left out: what can be seen (`view`), and what becomes of them.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -8,13 +9,14 @@ use std::sync::atomic::AtomicBool;
 use analysis::device::{Device, vertical_resolution_deg};
 use cloud::formats::Format;
 use cloud::read::positions;
-use cloud::{Fields, Points};
+use cloud::{Fields, Points, Sink, SinkError, TiltTrack};
 use glam::DVec3;
 use protocol::record::Wire;
 use scanner::{Accuracy, TiltSource};
 use sim::patterns::{Pattern, PatternError, Wish};
 
 use super::report::DeviceReport;
+use super::view::{Outside, Seen};
 use crate::cli::TimeOf;
 use crate::commands::replay;
 use crate::failure::{Failure, Kind};
@@ -32,7 +34,15 @@ pub struct Input {
     pub scan_s: Option<f64>,
     /// Points in the origin, which have no direction.
     pub without_direction: u64,
-    /// The pattern, if it is one: it knows what it can see.
+    /// Rows whose coordinates are no numbers: shots without a return, mostly.
+    pub without_numbers: u64,
+    /// What the scan can see, where that is known: of patterns and logs.
+    pub view: Option<Seen>,
+    /// What may mislead, beside what is measured.
+    pub warnings: Vec<String>,
+    /// Where the origin lies in what the file has; only of clouds.
+    pub outside: Option<Outside>,
+    /// The pattern, if it is one.
     pub pattern: Option<Pattern>,
 }
 
@@ -47,7 +57,7 @@ pub enum Named<'a> {
 }
 
 impl<'a> Named<'a> {
-    /// Says what it is, before any of it is read: a pattern by its name, else by the extension.
+    /// Says what it is, before any of it is read: a pattern by its name, else by the extension. Text has more than one: `.xyz`, `.txt` and `.asc` are read as `.csv` is.
     ///
     /// # Errors
     /// [`Kind::Usage`] for patterns that cannot be, [`Kind::BadInput`] for files that are not there.
@@ -63,26 +73,37 @@ impl<'a> Named<'a> {
             let what = format!("there is no pattern and no file {argument:?}");
             return Err(Failure::new(Kind::BadInput, what).help(HINT));
         }
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let is_text = TEXTS.iter().any(|text| extension == *text);
         Ok(match Format::from_path(path) {
             Ok(format) => Self::Cloud(path, format),
+            Err(_) if is_text => Self::Cloud(path, Format::Csv),
             Err(_) => Self::Log(path),
         })
     }
 
-    /// Its directions.
+    /// Whether it is a cloud, which may be seen from elsewhere than its origin.
+    pub const fn is_cloud(&self) -> bool {
+        matches!(self, Self::Cloud(..))
+    }
+
+    /// Its directions: those of a cloud from `origin_m`.
     ///
     /// # Errors
     /// [`Kind::BadInput`] for files that cannot be read, or hold no point.
-    pub fn read(&self, interrupt: &AtomicBool) -> Result<Input, Failure> {
+    pub fn read(&self, origin_m: DVec3, interrupt: &AtomicBool) -> Result<Input, Failure> {
         match self {
             Self::Pattern(pattern) => Ok(of_pattern(pattern)),
-            Self::Cloud(path, format) => of_cloud(path, *format),
+            Self::Cloud(path, format) => of_cloud(path, *format, origin_m),
             Self::Log(path) => of_log(path, interrupt),
         }
     }
 }
 
-const HINT: &str = "name a pattern (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .csv), \
+/// Extensions of text with a row a point, beside the one that is written.
+const TEXTS: [&str; 3] = ["xyz", "txt", "asc"];
+
+const HINT: &str = "name a pattern (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), \
                     or a log or recording (pcapng, pcap)";
 
 /// A pattern that cannot be.
@@ -104,6 +125,10 @@ fn of_pattern(pattern: &Pattern) -> Input {
         frames: Some(u64::from(pattern.frames())),
         scan_s: Some(pattern.scan_s()),
         without_direction: 0,
+        without_numbers: 0,
+        view: Some(Seen::of_pattern(pattern)),
+        warnings: Vec::new(),
+        outside: None,
         pattern: Some(pattern.clone()),
     }
 }
@@ -129,11 +154,12 @@ pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
     let frames = pattern.scan_s() * settings.rpm / 60.0;
     Some(DeviceReport {
         view,
-        vertical_resolution_deg: vertical_resolution_deg(high - low, pattern.lasers(), frames),
+        mean_vertical_resolution_deg: vertical_resolution_deg(high - low, pattern.lasers(), frames),
+        tilt_per_turn_deg: tilting.speed_deg_s * 60.0 / settings.rpm,
     })
 }
 
-fn of_cloud(path: &Path, format: Format) -> Result<Input, Failure> {
+fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failure> {
     let wrong = |what: String, help: &str| {
         Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(help)
     };
@@ -143,58 +169,85 @@ fn of_cloud(path: &Path, format: Format) -> Result<Input, Failure> {
             "see whether the name is right and the file may be read",
         )
     })?;
-    let positions = positions(format, bytes).map_err(|error| {
+    let read = positions(format, bytes).map_err(|error| {
         wrong(
             error.to_string(),
-            "see whether the file is whole, and is what its extension says",
+            match format {
+                Format::Csv => "expected is text with x, y and z in metres: a row a point, in the first three columns or those that a header names",
+                _ => "see whether the file is whole, and is what its extension says",
+            },
         )
     })?;
-    let (directions, without_direction) =
-        directions(path, positions.into_iter().map(DVec3::from_array))?;
+    let places = read.positions.into_iter().map(DVec3::from_array);
+    let places: Vec<DVec3> = places.map(|place| place - origin_m).collect();
+    let outside = Outside::new(&places, origin_m);
+    let (directions, without_direction) = directions(path, places, read.without_numbers)?;
     Ok(Input {
         name: path.display().to_string(),
         directions,
         frames: None,
         scan_s: None,
         without_direction,
+        without_numbers: read.without_numbers,
+        view: None,
+        warnings: Vec::new(),
+        outside,
         pattern: None,
     })
 }
 
-/// Where points are, seen from the origin; and how many are in it.
+/// Where points are, seen from the origin; and how many are in it. All are finite.
 fn directions(
     path: &Path,
-    positions: impl Iterator<Item = DVec3>,
+    positions: Vec<DVec3>,
+    without_numbers: u64,
 ) -> Result<(Vec<DVec3>, u64), Failure> {
-    let mut directions = Vec::with_capacity(positions.size_hint().0);
-    let mut without = 0;
-    for (number, position) in positions.enumerate() {
-        if position == DVec3::ZERO {
-            without += 1;
-            continue;
-        }
-        // Scaled first: squares of what is very large or very small are neither.
-        let direction = (position / position.abs().max_element()).try_normalize();
-        let Some(direction) = direction.filter(|_| position.is_finite()) else {
-            let [x, y, z] = position.to_array();
-            let what = format!("{}: point {number} is at ({x}, {y}, {z})", path.display());
-            let help = "take out what is no point; its number counts from 0";
-            return Err(Failure::new(Kind::BadInput, what).help(help));
-        };
-        directions.push(direction);
+    let all = positions.len();
+    // Scaled first: squares of what is very large or very small are neither.
+    let direction = |place: DVec3| (place / place.abs().max_element()).try_normalize();
+    let directions: Vec<DVec3> = positions.into_iter().filter_map(direction).collect();
+    let wrong = |what: &str, help: &str| {
+        Err(Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(help))
+    };
+    if !directions.is_empty() {
+        let without = (all - directions.len()) as u64;
+        return Ok((directions, without));
     }
-    if directions.is_empty() && without == 0 {
-        let what = format!("{}: the file has no points", path.display());
-        let help = "see whether it is the right file, and whole";
-        return Err(Failure::new(Kind::BadInput, what).help(help));
+    match (all, without_numbers) {
+        (0, 0) => wrong(
+            "the file has no points",
+            "see whether it is the right file, and whole",
+        ),
+        (0, _) => wrong(
+            "no point whose coordinates are numbers",
+            "see whether it is the right file",
+        ),
+        _ => wrong(
+            "no point that has a direction",
+            "points are seen from the origin, which is on the tilt axis: give a cloud of such, or --origin X,Y,Z",
+        ),
     }
-    if directions.is_empty() {
-        let what = format!("{}: no point that has a direction", path.display());
-        let help =
-            "points are seen from the origin, which is on the tilt axis: give a cloud of such";
-        return Err(Failure::new(Kind::BadInput, what).help(help));
+}
+
+/// Keeps the points of a log, and how the platform tilted.
+struct Kept {
+    points: Points,
+    track: TiltTrack,
+}
+
+impl Sink for Kept {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        Sink::points(&mut self.points, batch)
     }
-    Ok((directions, without))
+
+    fn wants_tilt(&self) -> bool {
+        true
+    }
+
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        self.track = track.clone();
+        Ok(())
+    }
 }
 
 fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
@@ -219,11 +272,16 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
         lost_records: 0,
         interrupt,
     };
-    let mut points = Points::new(Fields::NONE);
-    let scan = replay::scan(&request, &mut points, path)?;
+    let mut kept = Kept {
+        points: Points::new(Fields::NONE),
+        track: TiltTrack::default(),
+    };
+    let scan = replay::scan(&request, &mut kept, path)?;
+    let points = &kept.points;
     let places = points.x_m().iter().zip(points.y_m()).zip(points.z_m());
-    let places = places.map(|((x, y), z)| DVec3::new(*x, *y, *z));
-    let (directions, without_direction) = directions(path, places)?;
+    let places: Vec<DVec3> = places.map(|((x, y), z)| DVec3::new(*x, *y, *z)).collect();
+    let view = Seen::of_log(&scan, &kept.track, &places);
+    let (directions, without_direction) = directions(path, places, 0)?;
     let (frames, scan_s) = if scan.sweeps.is_empty() {
         let seconds = scan.contents.duration_s;
         (scan.contents.rpm.map(|rpm| seconds * rpm / 60.0), seconds)
@@ -240,6 +298,10 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
         frames: frames.map(|frames| frames.round() as u64),
         scan_s: Some(scan_s),
         without_direction,
+        without_numbers: 0,
+        view,
+        warnings: scan.contents.warnings,
+        outside: None,
         pattern: None,
     })
 }

@@ -6,6 +6,8 @@ mod folder;
 mod input;
 mod report;
 mod sweep;
+mod text;
+mod view;
 
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
@@ -21,10 +23,13 @@ use analysis::density::{
 use analysis::figures::SPHERE_M;
 use analysis::k::{self, Edges, Estimate, KCurve, Sampling, Turning};
 use glam::DVec3;
-use sim::patterns::{AXIS, Pattern};
+use sim::patterns::{AXIS, Pattern, View};
 
-pub use report::{Blind, Density, DeviceReport, Gaps, HoleReport, KReport, PatternReport, Report};
+pub use report::{
+    BinReport, Blind, Density, DeviceReport, Gaps, HoleReport, KReport, PatternReport, Report,
+};
 pub use sweep::Sweep;
+pub use view::Seen;
 
 use super::Said;
 use crate::cli::{self, Common};
@@ -94,13 +99,19 @@ fn measured(
     let measure = Measure::new(arguments)?;
     if let Some(sweep) = &arguments.sweep {
         let report = sweep.run(&arguments.inputs, &measure, progress, interrupt)?;
-        return Ok((Said::report(&report, report.text()), None));
+        return Ok((Said::result(&report, report.text()), None));
     }
     let inputs: Vec<Named<'_>> = arguments
         .inputs
         .iter()
         .map(|argument| Named::new(argument))
         .collect::<Result<_, _>>()?;
+    let origin_m = DVec3::from_array(arguments.origin.unwrap_or_default());
+    if arguments.origin.is_some() && !inputs.iter().any(Named::is_cloud) {
+        let what = "--origin is where the scanner was in a cloud, and no cloud is named";
+        let help = "leave it out: patterns and logs know where theirs is";
+        return Err(Failure::new(Kind::Usage, what).help(help));
+    }
     let mut folder = Folder::new(arguments)?;
     let mut patterns = Vec::with_capacity(inputs.len());
     for (input, name) in inputs.iter().zip(&arguments.inputs) {
@@ -108,7 +119,7 @@ fn measured(
         if inputs.len() > 1 {
             progress.say(name);
         }
-        let input = input.read(interrupt)?;
+        let input = input.read(origin_m, interrupt)?;
         let pattern = measure.one(&input, &progress, interrupt)?;
         for warning in &pattern.warnings {
             progress.say(&format!("warning: {}: {warning}", pattern.name));
@@ -119,7 +130,7 @@ fn measured(
         patterns.push(pattern);
     }
     let report = Report { patterns };
-    let said = Said::report(&report, report.text());
+    let said = Said::result(&report, report.text());
     Ok((said, folder.map(|folder| (folder, report, progress))))
 }
 
@@ -170,7 +181,7 @@ impl Measure {
         };
         let wrong = |error: DensityError| failure(&input.name, &error);
         let directions = &input.directions;
-        let depth = |direction: DVec3| depth_rad(input.pattern.as_ref(), direction);
+        let view = input.view.as_ref().map(|seen| seen.view);
         say("density");
         let counts = Counts::new(&self.locator, directions).map_err(wrong)?;
         say("largest holes");
@@ -180,51 +191,59 @@ impl Measure {
                 .help("give one that has some")
         })?;
         go_on(interrupt)?;
-        let in_view = match &input.pattern {
-            Some(_) => largest_hole_within(directions, TOLERANCE_RAD, &depth).map_err(wrong)?,
+        let hole_in_view = match view {
+            Some(view) => {
+                let depth = |direction: DVec3| view.depth_rad(direction);
+                largest_hole_within(directions, TOLERANCE_RAD, &depth).map_err(wrong)?
+            }
             None => None,
         };
         let gaps = self.gaps(input).map_err(wrong)?;
-        let least_rad = gaps.of_99_percent_deg.to_radians().max(TOLERANCE_RAD);
         go_on(interrupt)?;
         say("blind spots");
-        let found = holes(directions, least_rad, MOST_HOLES, &depth).map_err(wrong)?;
-        let band_rad = report::BAND_DEG.to_radians();
-        // How far a ray is from the axis does not depend on the tilt, if it starts there.
-        let on_axis = input
-            .pattern
-            .as_ref()
-            .is_some_and(|p| p.settings().d_m == 0.0);
+        let blind = blind(input, gaps.of_99_percent_deg).map_err(wrong)?;
+        let in_view = view.map(|view| self.in_view(&view));
+        let in_view =
+            in_view.map(|which| counts.statistics_of(|bin| which.get(bin) == Some(&true)));
+        let hole = hole_report(&largest);
         go_on(interrupt)?;
         say("K function");
-        let (k, warnings) = self.k(input)?;
+        let (k, on_edges) = self.k(input)?;
+        let outside = input.outside.as_ref();
+        let mut warnings: Vec<String> = outside
+            .and_then(|outside| outside.warning(hole.radius_deg))
+            .into_iter()
+            .collect();
+        warnings.extend(input.warnings.iter().cloned().chain(on_edges));
         Ok(PatternReport {
             name: input.name.clone(),
             points: directions.len() as u64,
             frames: input.frames,
             scan_s: input.scan_s,
             without_direction: input.without_direction,
+            without_numbers: input.without_numbers,
+            view: input.view,
             density: Density {
-                statistics: counts.statistics(),
+                bins: BinReport::new(counts.statistics()),
                 level: self.level,
                 histogram: counts.histogram(CLASSES),
                 counts,
             },
-            hole: hole_report(&largest),
-            hole_in_view: in_view.as_ref().map(hole_report),
+            density_in_view: in_view.map(BinReport::new),
+            hole,
+            hole_in_view: hole_in_view.as_ref().map(hole_report),
             gaps,
-            blind: Blind {
-                least_radius_deg: least_rad.to_degrees(),
-                holes: found.len(),
-                and_more: found.len() == MOST_HOLES,
-                rows: rows(&found, AXIS, 0.5 * least_rad),
-                bands: bands(directions, AXIS, band_rad).map_err(wrong)?,
-                bands_at_any_speed: on_axis,
-            },
+            blind,
             k,
             warnings,
             device: input.pattern.as_ref().and_then(input::device),
         })
+    }
+
+    /// Of each bin, whether its middle is in view.
+    fn in_view(&self, view: &View) -> Vec<bool> {
+        let depths = self.places.iter().map(|place| view.depth_rad(*place));
+        depths.map(|depth| depth >= 0.0).collect()
     }
 
     fn k(&self, input: &Input) -> Result<(KReport, Vec<String>), Failure> {
@@ -284,18 +303,43 @@ impl Measure {
     }
 
     fn gaps(&self, input: &Input) -> Result<Gaps, DensityError> {
-        let pattern = input.pattern.as_ref();
-        let places = self.places.iter().copied();
-        let places: Vec<DVec3> = places
-            .filter(|place| depth_rad(pattern, *place) >= 0.0)
-            .collect();
+        let mut places = self.places.clone();
+        if let Some(seen) = &input.view {
+            places.retain(|place| seen.view.depth_rad(*place) >= 0.0);
+        }
         let gaps = gaps(&input.directions, &places)?;
         let of = |share: f64| quantile(&gaps, share).unwrap_or(0.0).to_degrees();
         Ok(Gaps {
+            of: if input.view.is_some() { "view" } else { "all" },
             median_deg: of(0.5),
             of_99_percent_deg: of(0.99),
         })
     }
+}
+
+/// Holes in view that are larger than most gaps, and bands.
+fn blind(input: &Input, least_deg: f64) -> Result<Blind, DensityError> {
+    let directions = &input.directions;
+    let least_rad = least_deg.to_radians().max(TOLERANCE_RAD);
+    let found = match &input.view {
+        Some(seen) => {
+            let depth = |direction: DVec3| seen.view.depth_rad(direction);
+            Some(holes(directions, least_rad, MOST_HOLES, &depth)?)
+        }
+        None => None,
+    };
+    // How far a ray is from the axis does not depend on the tilt, if it starts there.
+    let pattern = input.pattern.as_ref();
+    let on_axis = pattern.is_some_and(|pattern| pattern.settings().d_m == 0.0);
+    let found = found.as_ref();
+    Ok(Blind {
+        least_radius_deg: found.map(|_| least_rad.to_degrees()),
+        holes: found.map(Vec::len),
+        and_more: found.map(|found| found.len() == MOST_HOLES),
+        rows: found.map(|found| rows(found, AXIS, 0.5 * least_rad)),
+        bands: bands(directions, AXIS, report::BAND_DEG.to_radians())?,
+        bands_at_any_speed: on_axis,
+    })
 }
 
 /// What to say where pairs lie on edges of bins, so that the last bit of their points decides.
@@ -313,11 +357,6 @@ fn on_edges(estimate: &Estimate) -> Option<String> {
         "K function: {about}{pairs} pairs lie on the edges of {bins} bins within rounding. They are counted to the smaller angle as far as their last digits say so, \
          and others would count them differently; --bins 151 has no such pair with azimuths of a grid of 0.4 degrees"
     ))
-}
-
-/// How deep a direction is in what a pattern can see; where none is known, in the whole sphere.
-fn depth_rad(pattern: Option<&Pattern>, direction: DVec3) -> f64 {
-    pattern.map_or(f64::INFINITY, |pattern| pattern.depth_rad(direction))
 }
 
 fn hole_report(largest: &Largest) -> HoleReport {

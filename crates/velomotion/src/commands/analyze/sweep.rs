@@ -14,7 +14,7 @@ use serde::Serialize;
 use sim::patterns::{Pattern, Wish};
 
 use super::input::pattern_failure;
-use super::report::number;
+use super::text::number;
 use super::{Measure, failure, go_on};
 use crate::failure::{Failure, Kind};
 use crate::progress::Progress;
@@ -64,12 +64,12 @@ pub struct Setting {
     /// 99 % of directions in view have a point within this, degrees.
     pub gap_deg: f64,
     /// Standard deviation over mean of points a bin, of the bins in view.
-    pub unevenness: f64,
+    pub sd_over_mean_in_view: f64,
     /// Whether no other setting is as good in time and largest hole, and better in one of them.
     pub best_hole: bool,
     /// The same of time and gap.
     pub best_gap: bool,
-    /// The same of time and unevenness.
+    /// The same of time and `sd_over_mean_in_view`.
     pub best_evenness: bool,
 }
 
@@ -82,6 +82,15 @@ impl FromStr for Sweep {
             .split(',')
             .map(Range::from_str)
             .collect::<Result<_, _>>()?;
+        for (place, range) in ranges.iter().enumerate() {
+            if ranges
+                .iter()
+                .take(place)
+                .any(|other| other.key == range.key)
+            {
+                return Err(format!("{}: expected one range of it, got two", range.key));
+            }
+        }
         let settings = ranges
             .iter()
             .try_fold(1_usize, |all, range| all.checked_mul(range.steps));
@@ -98,6 +107,16 @@ impl FromStr for Range {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || format!("expected KEY=FROM..TO or KEY=FROM..TO/STEPS, got {text:?}");
         let (key, range) = text.split_once('=').ok_or_else(wrong)?;
+        if matches!(key, "tilt" | "seam") {
+            return Err(format!(
+                "{key} is no number and has no range: set it in the pattern's name, as in velomotion16:50,{}",
+                if key == "tilt" {
+                    "tilt=stepped"
+                } else {
+                    "seam=once"
+                }
+            ));
+        }
         let (range, steps) = match range.split_once('/') {
             Some((range, steps)) => (range, steps.parse().map_err(|_| wrong())?),
             None => (range, STEPS),
@@ -113,6 +132,8 @@ impl FromStr for Range {
                 "{key}: expected at least 2 steps from {from} to {to}"
             ));
         }
+        // One number is one setting, however many steps there are to it.
+        let steps = if from == to { 1 } else { steps };
         let key = key.to_owned();
         Ok(Self {
             key,
@@ -209,12 +230,9 @@ fn measured(
     measure: &Measure,
 ) -> Result<Setting, DensityError> {
     let directions = pattern.directions();
-    let depth = |direction: DVec3| pattern.depth_rad(direction);
-    let in_view: Vec<bool> = measure
-        .places
-        .iter()
-        .map(|place| depth(*place) >= 0.0)
-        .collect();
+    let view = pattern.view();
+    let depth = |direction: DVec3| view.depth_rad(direction);
+    let in_view = measure.in_view(&view);
     let is_in_view = |bin: usize| in_view.get(bin).copied().unwrap_or(false);
     let counts = Counts::new(&measure.locator, &directions)?;
     let statistics = counts.statistics_of(is_in_view);
@@ -232,7 +250,8 @@ fn measured(
         points: directions.len() as u64,
         hole_deg: hole.map_or(180.0, |hole| hole.hole.radius_rad.to_degrees()),
         gap_deg: gap.map_or(180.0, f64::to_degrees),
-        unevenness: statistics.sd / statistics.mean,
+        // Nothing in view is as uneven as can be.
+        sd_over_mean_in_view: statistics.sd_over_mean().unwrap_or(f64::MAX),
         best_hole: false,
         best_gap: false,
         best_evenness: false,
@@ -250,7 +269,7 @@ fn mark(settings: &mut [Setting]) {
     // Holes are known to 100 times the least tolerance.
     let holes = costs(|setting| (setting.hole_deg * 100.0).round());
     let gaps = costs(|setting| setting.gap_deg);
-    let even = costs(|setting| setting.unevenness);
+    let even = costs(|setting| setting.sd_over_mean_in_view);
     for (((setting, hole), gap), even) in settings.iter_mut().zip(holes).zip(gaps).zip(even) {
         setting.best_hole = hole;
         setting.best_gap = gap;
@@ -292,12 +311,12 @@ impl SweepReport {
                 setting.points,
                 marked(setting.hole_deg, setting.best_hole),
                 marked(setting.gap_deg, setting.best_gap),
-                marked(setting.unevenness, setting.best_evenness)
+                marked(setting.sd_over_mean_in_view, setting.best_evenness)
             );
         }
         text.push_str(
-            "\nwhere the scan can see: radius of the largest hole; 99 % of directions have a\n\
-             point within; sd over mean of points a bin\n\
+            "\nall in view, where the scan can see: radius of the largest hole; 99 % of\n\
+             directions have a point within; sd / mean of points a bin, of bins in view only\n\
              * no other setting is as good in this and as quick, and better in one of them\n",
         );
         text.trim_end().to_owned()
@@ -341,22 +360,32 @@ mod tests {
         }
         let many = "speed=1..2/101,rpm=1..2/100".parse::<Sweep>();
         assert_eq!(many.unwrap_err(), "expected at most 10000 settings in all");
-        assert!("speed=5..5/1".parse::<Sweep>().is_ok());
+        let twice = "rpm=300..600,rpm=600..900".parse::<Sweep>();
+        assert_eq!(twice.unwrap_err(), "rpm: expected one range of it, got two");
+        let tilt = "tilt=1..2".parse::<Sweep>().unwrap_err();
+        assert!(
+            tilt.contains("tilt is no number") && tilt.contains("tilt=stepped"),
+            "{tilt}"
+        );
+        for one in ["speed=5..5/1", "speed=5..5", "speed=5..5/9"] {
+            assert_eq!(one.parse::<Sweep>().unwrap().ranges[0].steps, 1, "{one}");
+        }
     }
 
     #[test]
     fn fronts_hold_what_nothing_beats() {
-        let setting = |scan_s: f64, hole_deg: f64, gap_deg: f64, unevenness: f64| Setting {
-            values: vec![scan_s],
-            scan_s,
-            points: 1,
-            hole_deg,
-            gap_deg,
-            unevenness,
-            best_hole: false,
-            best_gap: false,
-            best_evenness: false,
-        };
+        let setting =
+            |scan_s: f64, hole_deg: f64, gap_deg: f64, sd_over_mean_in_view: f64| Setting {
+                values: vec![scan_s],
+                scan_s,
+                points: 1,
+                hole_deg,
+                gap_deg,
+                sd_over_mean_in_view,
+                best_hole: false,
+                best_gap: false,
+                best_evenness: false,
+            };
         let mut settings = [
             setting(1.0, 3.0, 2.0, 0.5),
             setting(2.0, 3.0, 1.0, 0.6),

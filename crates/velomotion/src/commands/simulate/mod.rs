@@ -148,6 +148,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> 
         text: report.text(),
         failure,
         stdout_taken,
+        is_result: false,
     })
 }
 

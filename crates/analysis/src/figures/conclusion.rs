@@ -1,0 +1,91 @@
+//! What comes of a comparison, in a few sentences at the top of the page.
+//!
+//! Left out: which scan is best: that depends on what it is for.
+
+use super::{Scan, Scans};
+use crate::tradeoff::number::short;
+use crate::tradeoff::svg::escaped;
+
+/// How far K is from that of points at random at its farthest, a share of the sphere; none without pairs.
+pub(super) fn farthest(scan: &Scan) -> Option<f64> {
+    let k = &scan.k;
+    k.has_pairs().then(|| k.d_max.max(-k.d_min))
+}
+
+/// A sentence a scan, and which is the most even; empty without scans.
+pub(super) fn conclusions(scans: &Scans) -> String {
+    let mut items = String::new();
+    for scan in &scans.scans {
+        items += &format!(
+            "<li><b>{}</b> {}</li>\n",
+            escaped(&scan.name),
+            escaped(&of_one(scan))
+        );
+    }
+    let mut html = match items.is_empty() {
+        true => String::new(),
+        false => format!("<ul class=\"conclusion\">\n{items}</ul>\n"),
+    };
+    if let Some(sentence) = of_all(&scans.scans) {
+        html += &format!("<p>{}</p>\n", escaped(&sentence));
+    }
+    html
+}
+
+fn of_one(scan: &Scan) -> String {
+    let percent = |share: Option<f64>| format!("{:.1} %", 100.0 * share.unwrap_or(0.0));
+    let sphere = percent(scan.counts.statistics().coverage());
+    let hole = format!("{:.2}\u{b0}", scan.hole_deg);
+    match &scan.in_view {
+        Some(seen) => {
+            let within = match seen.hole_deg {
+                Some(deg) => format!("{deg:.2}\u{b0}"),
+                None => "none".to_owned(),
+            };
+            format!(
+                "covers {sphere} of the sphere and {} of what it could see; its largest hole in view has a radius of {within}, anywhere {hole}.",
+                percent(seen.statistics.coverage())
+            )
+        }
+        None => format!(
+            "covers {sphere} of the sphere; its largest hole anywhere has a radius of {hole}. What it could see is not known, so neither is how much of that it misses."
+        ),
+    }
+}
+
+/// Which of several is best at what.
+fn of_all(scans: &[Scan]) -> Option<String> {
+    if scans.len() < 2 {
+        return None;
+    }
+    let even = least(scans, farthest)?;
+    let mut sentence = format!(
+        "Nearest to points at random over the whole sphere (largest |K - K_csr|): {} ({:.5})",
+        even.name,
+        farthest(even)?
+    );
+    let uneven = |scan: &Scan| scan.in_view.as_ref()?.statistics.sd_over_mean();
+    if let Some(best) = least(scans, uneven) {
+        let value = short(uneven(best).unwrap_or(0.0));
+        sentence += &format!(
+            "; most even within its view (sd / mean): {} ({value})",
+            best.name
+        );
+    }
+    let hole = |scan: &Scan| scan.in_view.as_ref()?.hole_deg;
+    if let Some(best) = least(scans, hole) {
+        let value = hole(best).unwrap_or(0.0);
+        sentence += &format!(
+            "; smallest largest hole in view: {} ({value:.2}\u{b0})",
+            best.name
+        );
+    }
+    Some(sentence + ".")
+}
+
+/// The scan with the least of something that some have.
+fn least(scans: &[Scan], of: impl Fn(&Scan) -> Option<f64>) -> Option<&Scan> {
+    let known = scans.iter().filter_map(|scan| Some((scan, of(scan)?)));
+    let least = known.min_by(|a, b| a.1.total_cmp(&b.1));
+    least.map(|(scan, _)| scan)
+}

@@ -1,0 +1,146 @@
+//! What a tilted lidar can see: the directions that lie between its lowest and its highest laser at some tilt.
+//!
+//! Directions are from the origin of the base, on the tilt axis, as all that is said of points is. A sensor beside the axis sees a point under another elevation than
+//! the origin does, by as much as the point is near: so a view is of the distances at which points are. Left out: what stands in the way, and sensors that look to some sides only.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+
+/// What a scan can see.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Lowest and highest elevation above the tilted horizontal, seen from the origin, radians. The lowest is above the highest where nothing is seen at all distances.
+    elevations_rad: [f64; 2],
+    /// Least and greatest tilt, radians.
+    tilt_rad: [f64; 2],
+}
+
+impl View {
+    /// Of a sensor whose outermost lasers have these elevations in its own frame (degrees, the lowest first), tilted from one angle to another (degrees, either first),
+    /// whose rays start `d_m` above the axis: what it sees at all distances from the first of `range_m` to the last, metres from the origin of the base. On the axis, distances do not matter.
+    #[must_use]
+    pub fn new(
+        elevations_deg: [f64; 2],
+        tilt_deg: [f64; 2],
+        d_m: [f64; 2],
+        range_m: [f64; 2],
+    ) -> Self {
+        let [low, high] = elevations_deg.map(f64::to_radians);
+        let [a, b] = tilt_deg.map(f64::to_radians);
+        let [near, far] = range_m;
+        // What the sensor's height moves grows steadily with its share of the distance: the nearest and the farthest decide.
+        let at = |elevation: f64, d_m: f64| {
+            [near, far].map(|range| from_axis_rad(elevation, d_m / range))
+        };
+        let [low_d_m, high_d_m] = d_m;
+        let ([low_near, low_far], [high_near, high_far]) = (at(low, low_d_m), at(high, high_d_m));
+        Self {
+            elevations_rad: [low_near.max(low_far), high_near.min(high_far)],
+            tilt_rad: [a.min(b), a.max(b)],
+        }
+    }
+
+    /// How deep a direction (length 1) is in it, from its lowest to its highest laser at every tilt on the way: radians, negative
+    /// outside. It changes by no more than the direction does.
+    #[must_use]
+    pub fn depth_rad(&self, direction: DVec3) -> f64 {
+        let [from, to] = self.tilt_rad;
+        // In the sensor's frame the height of a direction is across x cos(tilt - ahead).
+        let across = direction.x.hypot(direction.z);
+        let ahead = direction.x.atan2(direction.z);
+        let passes = |angle: f64| {
+            let turns = ((from - angle) / TAU).ceil();
+            angle + turns * TAU <= to
+        };
+        let ends = [from, to].map(|tilt| across * (tilt - ahead).cos());
+        let most = if passes(ahead) {
+            across
+        } else {
+            ends[0].max(ends[1])
+        };
+        let least = if passes(ahead + PI) {
+            -across
+        } else {
+            ends[0].min(ends[1])
+        };
+        let elevation = |height: f64| height.clamp(-1.0, 1.0).asin();
+        let [low, high] = self.elevations_rad;
+        (elevation(most) - low).min(high - elevation(least))
+    }
+}
+
+/// The elevation under which the origin sees where a laser meets a sphere about it; the sensor is `share` of the sphere's radius above the origin, at most all of it.
+fn from_axis_rad(elevation_rad: f64, share: f64) -> f64 {
+    let e = if share.is_finite() {
+        share.clamp(-1.0, 1.0)
+    } else {
+        0.0
+    };
+    let (sin, cos) = elevation_rad.sin_cos();
+    // The range along the ray, in radii, and with it the height: Eq. 9 solved for R.
+    let along = (1.0 - (e * cos).powi(2)).max(0.0).sqrt() - e * sin;
+    (e + along * sin).clamp(-1.0, 1.0).asin()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::patterns::Wish;
+
+    /// Everything that a pattern's rays meet is in its view, and what they do not come near is not: wherever the sensor is.
+    #[test]
+    fn the_view_is_that_of_the_sensor_where_it_is() {
+        for text in [
+            "vlp16",
+            "vlp16,d=0.5",
+            "vlp16,d=5",
+            "vlp16,d=-5",
+            "hdl32e,from=20,d=2",
+            "velomotion16:50,d=0.06",
+            "velomotion16:50,d=-0.06",
+            "velomotion16:50,d=3",
+            "rmbl:120,to=90,d=-1",
+        ] {
+            let pattern = Wish::parse(text).unwrap().build().unwrap();
+            let view = pattern.view();
+            let directions = pattern.directions();
+            let depths = directions.iter().map(|d| view.depth_rad(*d));
+            let least = depths.fold(f64::INFINITY, f64::min);
+            // All of it is seen, and its edge is where the outermost rays are.
+            assert!((-1e-7..1e-3).contains(&least), "{text}: {least}");
+        }
+    }
+
+    #[test]
+    fn elevations_from_the_axis_are_those_of_points_on_the_sphere() {
+        for share in [-0.95_f64, -0.5, 0.0, 0.006, 0.5, 0.9] {
+            let mut before = f64::NEG_INFINITY;
+            for degrees in -89..=89 {
+                let w = f64::from(degrees).to_radians();
+                let found = from_axis_rad(w, share);
+                assert!(found > before, "{share} {degrees}");
+                before = found;
+                // From the sensor the point is seen at w again.
+                let (up, out) = (found.sin() - share, found.cos());
+                if out.abs() > 1e-6 || up.abs() > 1e-6 {
+                    assert!((up.atan2(out) - w).abs() < 1e-7, "{share} {degrees}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_seen_from_near_to_far_is_what_is_seen_at_each_distance() {
+        let view = |range_m| View::new([-15.0, 15.0], [0.0, 0.0], [0.5; 2], range_m);
+        let (near, far, both) = (view([1.0; 2]), view([50.0; 2]), view([1.0, 50.0]));
+        for k in -90..=90 {
+            let (sin, cos) = f64::from(k).to_radians().sin_cos();
+            let direction = DVec3::new(cos, 0.0, sin);
+            let least = near.depth_rad(direction).min(far.depth_rad(direction));
+            assert!((both.depth_rad(direction) - least).abs() < 1e-12);
+        }
+        // Nothing is known of a distance of nought, and nothing panics.
+        assert!(view([0.0; 2]).depth_rad(DVec3::X).is_finite());
+    }
+}

@@ -1,0 +1,181 @@
+//! What a scan can see: of patterns by their settings, of logs by their lidar, sweeps and mount. And whether a cloud's origin is in the cloud at all.
+//!
+//! Left out: the geometry of it, which is `sim`'s ([`View`]), and clouds: nothing in them says how they were scanned.
+
+use cloud::TiltTrack;
+use glam::DVec3;
+use protocol::vlp16::Laser;
+use protocol::vlp16::models::ALL;
+use serde::Serialize;
+use sim::patterns::{Pattern, SPHERE_M, View};
+
+use crate::report::Scan;
+
+/// What a scan can see, and by what it is known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Seen {
+    /// The directions.
+    #[serde(skip)]
+    pub view: View,
+    /// Lowest and highest laser above the sensor's own horizontal, degrees.
+    pub elevations_deg: [f64; 2],
+    /// Least and greatest tilt, degrees.
+    pub tilt_deg: [f64; 2],
+    /// Height of the sensor above the tilt axis, metres.
+    pub d_m: f64,
+    /// The distances at all of which the scan sees the directions of the view, metres from the origin of the base: those of a pattern's sphere, and those between which 98 % of a log's points lie.
+    pub distance_m: [f64; 2],
+}
+
+/// Points nearer or farther than this share of them do not count for the distances of a view, or for where a cloud is.
+const FEW: f64 = 0.01;
+
+impl Seen {
+    /// Of a pattern: at the hollow sphere where its points are.
+    #[must_use]
+    pub fn of_pattern(pattern: &Pattern) -> Self {
+        let tilts = pattern.tilts_deg();
+        Self {
+            view: pattern.view(),
+            elevations_deg: pattern.elevations_deg(),
+            tilt_deg: tilts,
+            d_m: pattern.settings().d_m,
+            distance_m: [SPHERE_M; 2],
+        }
+    }
+
+    /// Of a log: `None` where its lidar's model is not known, or there are several lidars.
+    #[must_use]
+    pub fn of_log(scan: &Scan, track: &TiltTrack, places: &[DVec3]) -> Option<Self> {
+        if scan.contents.sensors.len() > 1 {
+            return None;
+        }
+        let name = scan.contents.model.as_deref()?;
+        let model = ALL.into_iter().find(|model| model.name == name)?;
+        let by = |a: &&Laser, b: &&Laser| a.elevation_deg.total_cmp(&b.elevation_deg);
+        let (low, high) = (
+            model.lasers.iter().min_by(by)?,
+            model.lasers.iter().max_by(by)?,
+        );
+        let tilts = scan
+            .sweeps
+            .iter()
+            .flat_map(|sweep| [sweep.from_deg, sweep.to_deg]);
+        let tilt_deg = ends(tilts).unwrap_or([0.0; 2]);
+        let d_m = track.mount.map_or(0.0, |d| d.0);
+        let mut distances: Vec<f64> = places.iter().map(|place| place.length()).collect();
+        let distance_m = middle(&mut distances)?;
+        let elevations_deg = [low.elevation_deg, high.elevation_deg];
+        let heights_m = [low, high].map(|laser| d_m + laser.vertical_offset_m);
+        Some(Self {
+            view: View::new(elevations_deg, tilt_deg, heights_m, distance_m),
+            elevations_deg,
+            tilt_deg,
+            d_m,
+            distance_m,
+        })
+    }
+}
+
+/// How an origin lies to a cloud: outside of where 98 % of its points are along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outside {
+    origin_m: DVec3,
+    /// From the origin to the box of those points, metres.
+    off_m: f64,
+    /// The middle of the box in the cloud's own coordinates.
+    middle_m: DVec3,
+    /// How large the box is from corner to corner.
+    size_m: f64,
+}
+
+impl Outside {
+    /// Of points as seen from `origin_m`; `None` where the origin is among them.
+    pub fn new(places: &[DVec3], origin_m: DVec3) -> Option<Self> {
+        let axis = |of: fn(&DVec3) -> f64| middle(&mut places.iter().map(of).collect::<Vec<_>>());
+        let (x, y, z) = (axis(|p| p.x)?, axis(|p| p.y)?, axis(|p| p.z)?);
+        let low = DVec3::new(x[0], y[0], z[0]);
+        let high = DVec3::new(x[1], y[1], z[1]);
+        let off_m = low.max(-high).max(DVec3::ZERO).length();
+        (off_m > 0.0).then(|| Self {
+            origin_m,
+            off_m,
+            middle_m: origin_m + low.midpoint(high),
+            size_m: low.distance(high),
+        })
+    }
+
+    /// What to say of it where a hole of this radius shows that all points lie on one side.
+    pub fn warning(&self, hole_deg: f64) -> Option<String> {
+        if hole_deg <= 90.0 {
+            return None;
+        }
+        let say = |at: DVec3| format!("{:.0},{:.0},{:.0}", at.x, at.y, at.z);
+        Some(format!(
+            "the origin {} lies {:.1} m outside the cloud, which is {:.1} m across about {}: directions from there say nothing of how it was scanned. \
+             --origin X,Y,Z says where the scanner was, in the cloud's coordinates",
+            say(self.origin_m),
+            self.off_m,
+            self.size_m,
+            say(self.middle_m)
+        ))
+    }
+}
+
+/// The least and the greatest of some numbers.
+fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let [low, high] = numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+        [low.min(x), high.max(x)]
+    });
+    (low <= high).then_some([low, high])
+}
+
+/// The least and the greatest of all numbers but the hundredth at each end; orders them as it needs.
+fn middle(numbers: &mut [f64]) -> Option<[f64; 2]> {
+    let last = numbers.len().checked_sub(1)?;
+    let few = (FEW * last as f64) as usize;
+    let mut at = |place: usize| *numbers.select_nth_unstable_by(place, f64::total_cmp).1;
+    Some([at(few), at(last - few)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hundredth_at_each_end_does_not_count() {
+        let mut numbers: Vec<f64> = (0..=200).rev().map(f64::from).collect();
+        numbers[7] = 1e9;
+        assert_eq!(middle(&mut numbers), Some([2.0, 199.0]));
+        assert_eq!(middle(&mut [3.0]), Some([3.0; 2]));
+        assert_eq!(middle(&mut []), None);
+    }
+
+    #[test]
+    fn an_origin_is_in_the_cloud_or_so_far_outside() {
+        let corners = |middle: DVec3| -> Vec<DVec3> {
+            (0..8)
+                .map(|k| {
+                    let side = |bit: i32| f64::from(2 * (k >> bit & 1) - 1);
+                    middle + 10.0 * DVec3::new(side(0), side(1), side(2))
+                })
+                .collect()
+        };
+        assert_eq!(Outside::new(&corners(DVec3::ZERO), DVec3::ZERO), None);
+        assert_eq!(Outside::new(&corners(DVec3::splat(9.9)), DVec3::ZERO), None);
+        let far = Outside::new(
+            &corners(DVec3::new(450_000.0, 5_400_000.0, 0.0)),
+            DVec3::ZERO,
+        );
+        let far = far.unwrap();
+        assert!((far.off_m - 449_990.0_f64.hypot(5_399_990.0)).abs() < 1e-6);
+        let said = far.warning(179.9).unwrap();
+        assert!(
+            said.contains("--origin") && said.contains("about 450000,5400000,0"),
+            "{said}"
+        );
+        // A scan of one wall is no mistake.
+        let beside = Outside::new(&corners(DVec3::new(11.0, 0.0, 0.0)), DVec3::ZERO).unwrap();
+        assert_eq!(beside.warning(80.0), None);
+    }
+}
