@@ -86,6 +86,40 @@ fn densities_are_what_they_were_found_to_be() {
     }
 }
 
+/// The book's figures of ours, and where it has them from: rounded as the report rounds them.
+#[test]
+fn the_book_prints_what_the_report_prints() {
+    let book = include_str!("../../docs/src/paper.md");
+    let table = book
+        .split("## ")
+        .find(|part| part.starts_with("Points a bin"));
+    let rows: Vec<Vec<&str>> = table
+        .unwrap()
+        .lines()
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    let ours: Vec<&Vec<&str>> = rows
+        .iter()
+        .filter(|row| row.get(1) == Some(&"ours"))
+        .collect();
+    assert_eq!(ours.len(), PRINTED.len());
+    for (printed, row) in PRINTED.iter().zip(ours) {
+        let directions = pattern(printed.pattern).directions();
+        let s = statistics(&directions);
+        let expected = [
+            format!("{:.3}", s.mean),
+            format!("{:.2}", s.sd),
+            s.min.to_string(),
+            s.max.to_string(),
+            format!("{:.2}", s.mean_per_deg2),
+            format!("{:.2}", s.sd_per_deg2),
+        ];
+        let points = row.get(2).unwrap().replace(',', "");
+        assert_eq!(points, directions.len().to_string(), "{}", printed.pattern);
+        assert_eq!(row.get(3..).unwrap(), expected, "{}", printed.pattern);
+    }
+}
+
 /// Points a square degree in the zone between two angles from the tilt axis, both of its ends.
 fn zone(directions: &[DVec3], from_deg: f64, to_deg: f64) -> f64 {
     let (high, low) = (from_deg.to_radians().cos(), to_deg.to_radians().cos());

@@ -7,6 +7,8 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use crate::device::vertical_resolution_deg;
+
 /// A tilt from 0 to `-way_deg`: a ramp, a cruise, the same ramp down; a way too short for both is a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep {
@@ -95,11 +97,13 @@ impl Lidar {
         high - low + sweep.way_deg
     }
 
-    /// Mean vertical resolution, degrees, as the paper has it: the field of view over lasers times turns. For 45 degrees at
-    /// 56.25 deg/s without ramps 75 / (16 x 8) = 0.586.
+    /// Mean vertical resolution, degrees, as the paper has it and [`vertical_resolution_deg`]: the field of view shared by lasers times the turns that the way takes at cruise speed.
+    /// Ramps, in which the lines lie closer, do not count. For 45 degrees at 56.25 deg/s 75 / (16 x 8) = 0.586.
     #[must_use]
     pub fn mean_resolution_deg(&self, sweep: &Sweep) -> f64 {
-        self.field_deg(sweep) / (self.elevations_deg.len() as f64 * self.turns(sweep))
+        let turns = sweep.way_deg / sweep.speed_deg_s * self.turns_per_s;
+        let lasers = u32::try_from(self.elevations_deg.len()).unwrap_or(u32::MAX);
+        vertical_resolution_deg(self.field_deg(sweep), lasers, turns)
     }
 
     /// The widest gaps between neighbouring scan lines straight across the tilt axis, in the plane that is perpendicular to it, at
@@ -305,6 +309,11 @@ mod tests {
         assert!(close(vlp.turns(&fast), 8.0, 1e-12));
         assert!(close(vlp.field_deg(&fast), 75.0, 1e-12));
         assert!(close(vlp.mean_resolution_deg(&fast), 0.5859, 5e-5));
+        // Whatever the ramps.
+        assert_eq!(
+            vlp.mean_resolution_deg(&fast),
+            vlp.mean_resolution_deg(&sweep(56.25, 500.0))
+        );
         // The paper's 5.2e-3 for its slowest scan is that of 0.5 deg/s; 0.05 deg/s gives a tenth of it.
         let slow = vlp.mean_resolution_deg(&sweep(0.5, f64::INFINITY));
         assert!(close(slow, 5.208e-3, 5e-7), "{slow}");

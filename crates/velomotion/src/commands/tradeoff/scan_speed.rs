@@ -99,8 +99,8 @@ fn about(phases: u32, step_deg: f64) -> Vec<String> {
     vec![
         format!(
             "A tilt of {WAY_DEG} degrees with ramps of {ACCEL_DEG_S2} deg/s2, computed from the directions of the scan lines: what one laser sweeps in one turn. \
-             The mean vertical resolution is the paper's: the vertical field of view, 75 degrees, over 16 lasers times the turns of the whole scan. \
-             The paper counts 0.80 s and 8 turns at 56.25 deg/s, without ramps, and has 0.586."
+             The mean vertical resolution is the paper's, as analyze has it: the vertical field of view, 75 degrees, over 16 lasers times the turns that 45 degrees take at cruise speed, \
+             0.80 s and 8 turns at 56.25 deg/s. Ramps do not count for it, but for the scan time. It is not the tilt per turn, 5.6 degrees there."
         ),
         format!(
             "The widest gap is the greatest angle between neighbouring scan lines in the plane across the tilt axis, where tilting spreads them most, the ends \
@@ -135,7 +135,7 @@ mod tests {
             row.values[column].middle()
         };
         assert!((value("56.25 deg/s", 0) - 0.9125).abs() < 1e-12);
-        assert!((value("56.25 deg/s", 1) - 75.0 / (16.0 * 9.125)).abs() < 1e-9);
+        assert!((value("56.25 deg/s", 1) - 75.0 / (16.0 * 8.0)).abs() < 1e-9);
         assert!((value("0.05 deg/s", 0) - 900.0).abs() < 1e-3);
         // 0.05 deg/s: 0.005 degrees a turn, and the ends of the field are seen by one laser alone.
         assert!((0.005..0.006).contains(&value("0.05 deg/s", 2)));
