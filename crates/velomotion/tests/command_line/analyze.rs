@@ -527,7 +527,7 @@ fn what_cannot_be_analysed_is_said() {
         (
             "analyze velomotion16 --sweep colour=1..2",
             2,
-            "expected rpm, step, start",
+            "expected a number: rpm, step, start",
         ),
         (
             "analyze velomotion16 --sweep rpm=300..600",
@@ -591,7 +591,9 @@ fn a_sweep_says_which_settings_nothing_beats() {
     let text = place.run("analyze velomotion16,step=2 --sweep speed=100..400/3,rpm=600..1200/2");
     let text = String::from_utf8_lossy(&text.stdout).into_owned();
     assert!(
-        text.contains("* no other setting") && text.lines().all(|line| line.chars().count() <= 80),
+        text.contains("in view   in view    in view")
+            && text.contains("* no other setting")
+            && text.lines().all(|line| line.chars().count() <= 80),
         "{text}"
     );
 }

@@ -288,6 +288,10 @@ impl SweepReport {
             self.pattern,
             self.settings.len()
         );
+        // All three are of what is in view: what is of all bins has other headings elsewhere.
+        let before = 9 * self.keys.len() + 18;
+        let [a, b, c] = ["in view "; 3];
+        let _ = writeln!(text, "{:before$} {a:>9} {b:>9} {c:>10}", "");
         for key in &self.keys {
             let _ = write!(text, "{key:>8} ");
         }
