@@ -62,7 +62,7 @@ pub fn run(common: &Common) -> Result<Said, Failure> {
     findings.push(receive_buffer(&read));
     let report = Report { findings };
     let text = text(&report);
-    Ok(Said::report(&report, text))
+    Ok(Said::result(&report, text))
 }
 
 fn finding(what: impl Into<String>, verdict: Verdict, found: impl Into<String>) -> Finding {

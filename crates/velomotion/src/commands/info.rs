@@ -48,7 +48,7 @@ pub fn run(arguments: &cli::Info) -> Result<Said, Failure> {
         text: contents.table(),
         failure,
         stdout_taken: false,
-        is_result: false,
+        is_result: true,
     })
 }
 

@@ -125,7 +125,10 @@ fn say(verb: &TiltVerb, report: &Report, simulated: &str) -> Said {
         TiltVerb::Faults { .. } => faults_table(report),
         _ => status_table(report, simulated),
     };
-    Said::report(report, text)
+    match verb {
+        TiltVerb::Status | TiltVerb::Faults { .. } => Said::result(report, text),
+        TiltVerb::Home | TiltVerb::Goto { .. } | TiltVerb::Stop => Said::report(report, text),
+    }
 }
 
 fn status_table(report: &Report, simulated: &str) -> String {

@@ -146,6 +146,9 @@ fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
     // The log is a plain lidar recording too, and says what it is.
     let info = place.run("info scan.pcapng --json");
     assert!(json(&info)["tilt"]["samples"].as_u64().unwrap() > 100);
+    // What was asked for is no chatter.
+    let quiet = place.run("info scan.pcapng -q").stdout;
+    assert!(!quiet.is_empty() && quiet == place.run("info scan.pcapng").stdout);
     place.fails(
         "replay scan.pcapng -o scan.ply",
         2,

@@ -79,7 +79,7 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<Said, Failure> 
     for file in folders.write(&report, arguments.force)? {
         progress.say(&format!("wrote {}", file.display()));
     }
-    Ok(Said::report(&json::report(&report), text::report(&report)))
+    Ok(Said::result(&json::report(&report), text::report(&report)))
 }
 
 /// The studies asked for, in their own order; all where none is named.
