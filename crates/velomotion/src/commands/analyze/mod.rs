@@ -49,7 +49,7 @@ const LEAST_ON_EDGES: f64 = 1e-8;
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// So many points, and what is under way is said.
 const MANY_POINTS: usize = 1_000_000;
-/// Holes that are counted one by one: of a scan of eleven million points in some ten seconds.
+/// Holes that are counted one by one: with so many a report of eleven million points takes half a minute.
 const MOST_HOLES: usize = 2_000;
 
 /// Runs the command.
