@@ -1,4 +1,4 @@
-//! Payloads in, volleys or firings out: order, loss, model, and the one packet that is held back.
+//! Payloads in, firing blocks or firings out: order, loss, model, and the one packet that is held back.
 //!
 //! A packet is decoded when its successor is there, because the rotor's rate in its last block, the length of a gap inside it
 //! and sometimes its model are known only then: 1.3 ms of delay. Left out: anything that looks further ahead.
@@ -12,13 +12,13 @@ use units::{Host, Lidar, Span, Stamp};
 use crate::continuity::{Blind, missing};
 use crate::corrections::Corrections;
 use crate::firing::{Duplicates, Echo, Firing};
+use crate::firing_block::{FiringBlock, Layer, Layers};
 use crate::geometry::{Geometry, fits};
 use crate::plan::{Link, Slot, Steps, Successor, first_azimuth};
 use crate::rotor::{Compass, Rotor};
 use crate::sorted::SortedPacket;
 use crate::stats::Stats;
 use crate::timekeeper::Timekeeper;
-use crate::volley::{Layer, Layers, Volley};
 
 /// A packet this much before its predecessor is out of order; further back, the device's clock was set.
 const REORDER: Span = Span::from_millis(10);
@@ -123,20 +123,20 @@ impl Decoder {
         payload: &[u8],
         emit: &mut impl FnMut(&Firing<'_>),
     ) {
-        self.volleys(host, payload, &mut |volley| one_by_one(volley, emit));
+        self.firing_blocks(host, payload, &mut |block| one_by_one(block, emit));
     }
 
     /// Emits the packet held back. The decoder can go on with packets of the same sensor afterwards.
     pub fn finish(&mut self, emit: &mut impl FnMut(&Firing<'_>)) {
-        self.finish_volleys(&mut |volley| one_by_one(volley, emit));
+        self.finish_firing_blocks(&mut |block| one_by_one(block, emit));
     }
 
     /// As [`Decoder::packet`], the firings of a block at a time.
-    pub fn volleys(
+    pub fn firing_blocks(
         &mut self,
         host: Stamp<Host>,
         payload: &[u8],
-        emit: &mut impl FnMut(&Volley<'_>),
+        emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let stats = &mut self.unpacker.stats;
         match DataPacket::new(payload) {
@@ -156,7 +156,7 @@ impl Decoder {
     }
 
     /// As [`Decoder::finish`], the firings of a block at a time.
-    pub fn finish_volleys(&mut self, emit: &mut impl FnMut(&Volley<'_>)) {
+    pub fn finish_firing_blocks(&mut self, emit: &mut impl FnMut(&FiringBlock<'_>)) {
         if let Some(held) = self.held.take() {
             self.emitted = Some(held.start);
             if let Ok(packet) = DataPacket::new(&self.buffer) {
@@ -176,7 +176,7 @@ impl Decoder {
         host: Stamp<Host>,
         payload: &[u8],
         packet: &DataPacket<'_>,
-        emit: &mut impl FnMut(&Volley<'_>),
+        emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let known = self.timekeeper.observe(host, packet);
         let stats = &mut self.unpacker.stats;
@@ -223,7 +223,7 @@ impl Decoder {
         packet: &DataPacket<'_>,
         new: Held,
         held: Held,
-        emit: &mut impl FnMut(&Volley<'_>),
+        emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let Ok(before) = DataPacket::new(&self.buffer) else {
             return;
@@ -248,7 +248,7 @@ impl Decoder {
         packet: &DataPacket<'_>,
         new: Held,
         held: Held,
-        emit: &mut impl FnMut(&Volley<'_>),
+        emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let stats = &mut self.unpacker.stats;
         if self.emitted.is_some_and(|emitted| new.start <= emitted) {
@@ -281,7 +281,7 @@ impl Unpacker {
         packet: &DataPacket<'_>,
         held: Held,
         next: Option<Successor>,
-        emit: &mut impl FnMut(&Volley<'_>),
+        emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let Some(model) = held.model else {
             self.stats.unidentified += 1;
@@ -329,7 +329,7 @@ impl Unpacker {
         sensor: &mut Sensor,
         i: usize,
         slot: &Slot,
-        emit: &mut impl FnMut(&Volley<'_>),
+        emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let first = if held.dual { 2 * i } else { i };
         let layer = |i: usize| {
@@ -349,7 +349,7 @@ impl Unpacker {
         self.stats.unique_returns += unique;
         self.stats.firings += sensor.geometry.model.firings_per_block as u64;
         let ahead = sensor.rotor.ahead(&sensor.geometry.fan, slot.pace_cdeg);
-        emit(&Volley {
+        emit(&FiringBlock {
             start: held.start + slot.after,
             azimuth_cdeg: slot.azimuth_cdeg,
             pace_cdeg: slot.pace_cdeg,
@@ -391,8 +391,8 @@ impl Unpacker {
     }
 }
 
-fn one_by_one(volley: &Volley<'_>, emit: &mut impl FnMut(&Firing<'_>)) {
-    for firing in volley.firings() {
+fn one_by_one(block: &FiringBlock<'_>, emit: &mut impl FnMut(&Firing<'_>)) {
+    for firing in block.firings() {
         emit(&firing);
     }
 }

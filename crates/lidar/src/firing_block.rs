@@ -1,7 +1,7 @@
 //! What one block of a packet holds, or one pair of blocks with dual returns: 32 channels that are placed together.
 //!
-//! A [`Volley`] is two firings of a 16-laser model, or one of a 32-laser one. [`Volley::firings`] is the plain way on;
-//! [`Volley::place`] is the fast one, several channels at a time, and gives the same points to some 1e-14 of their distance.
+//! A [`FiringBlock`] is two firings of a 16-laser model, or one of a 32-laser one. [`FiringBlock::firings`] is the plain way on;
+//! [`FiringBlock::place`] is the fast one, several channels at a time, and gives the same points to some 1e-14 of their distance.
 //! Left out: everything after the sensor's own frame.
 
 use protocol::vlp16::{CHANNELS, Model};
@@ -22,7 +22,7 @@ pub struct Layer<'a> {
 
 /// The firings of one block.
 #[derive(Clone, Copy, Debug)]
-pub struct Volley<'a> {
+pub struct FiringBlock<'a> {
     /// When channel 0 fired.
     pub start: Stamp<Lidar>,
     pub(crate) azimuth_cdeg: i32,
@@ -127,7 +127,7 @@ impl<'a> Layers<'a> {
     }
 }
 
-impl<'a> Volley<'a> {
+impl<'a> FiringBlock<'a> {
     /// The model it was decoded as.
     #[must_use]
     pub const fn model(&self) -> &'static Model {
@@ -243,20 +243,20 @@ impl<'a> Volley<'a> {
 
     /// The firings one by one, in order of time.
     pub fn firings(&self) -> impl ExactSizeIterator<Item = Firing<'a>> + use<'a> {
-        let volley = *self;
-        let model = volley.geometry.model;
+        let block = *self;
+        let model = block.geometry.model;
         let period_ns = f64::from(model.block_period_ns());
-        let firing_cdeg = volley.pace_cdeg / model.firings_per_block as f64;
+        let firing_cdeg = block.pace_cdeg / model.firings_per_block as f64;
         (0..model.firings_per_block).map(move |n| {
             let after = Span::from_nanos(n as i64 * i64::from(model.firing_period_ns));
-            let azimuth_cdeg = f64::from(volley.azimuth_cdeg) + firing_cdeg * n as f64;
+            let azimuth_cdeg = f64::from(block.azimuth_cdeg) + firing_cdeg * n as f64;
             Firing {
-                start: volley.start + after,
+                start: block.start + after,
                 azimuth_deg: (azimuth_cdeg / 100.0).rem_euclid(360.0),
-                azimuth_rate_deg_s: volley.pace_cdeg / 100.0 / (period_ns * 1e-9),
+                azimuth_rate_deg_s: block.pace_cdeg / 100.0 / (period_ns * 1e-9),
                 model,
-                rays: &volley.geometry.rays,
-                channels: volley.channels(n),
+                rays: &block.geometry.rays,
+                channels: block.channels(n),
                 part: after.as_nanos() as f64 / period_ns,
             }
         })

@@ -1,7 +1,7 @@
 //! Velodyne packets to firings to returns: models, azimuth, time, hour unwrap, loss, dual return.
 //!
 //! [`Decoder`] takes the payloads of one sensor in order of arrival and emits [`Firing`]s in order of device time, or, where
-//! speed matters, [`Volley`]s: the firings of a block at a time. It never guesses across a gap. [`Timekeeper`] says when
+//! speed matters, [`FiringBlock`]s: the firings of a block at a time. It never guesses across a gap. [`Timekeeper`] says when
 //! packets were fired without decoding them, by the code that the decoder
 //! itself uses, so that a first pass over a log agrees with the second to the nanosecond.
 //! Beside them: [`FrameCutter`] and [`OrganisedFrame`] (turns of the head), [`UtcClock`] (UTC from position packets), and
@@ -13,6 +13,7 @@ mod continuity;
 mod corrections;
 mod decoder;
 mod firing;
+mod firing_block;
 mod frames;
 mod geometry;
 mod hours;
@@ -24,14 +25,13 @@ mod sorted;
 mod stats;
 mod timekeeper;
 mod utc;
-mod volley;
 
 pub use corrections::{Corrections, LaserCorrection};
 pub use decoder::{Decoder, Options};
 pub use firing::{Duplicates, Echo, Firing, Return, SensorPoint, azimuth_variance_rad2};
+pub use firing_block::{FiringBlock, Heading, Layer};
 pub use frames::{Frame, FrameCutter, FrameError};
 pub use organised::{Column, OrganisedFrame};
 pub use stats::{Conflict, Stats};
 pub use timekeeper::{PacketTiming, Timekeeper};
 pub use utc::{NoUtc, Utc, UtcChange, UtcClock, UtcState};
-pub use volley::{Heading, Layer, Volley};

@@ -121,8 +121,8 @@ fn decode(recording: &Recording) -> u64 {
     let mut blocks = 0;
     for record in recording.records() {
         if let Wire::Lidar { payload, .. } = record.wire {
-            decoder.volleys(record.host, payload, &mut |volley| {
-                black_box(volley);
+            decoder.firing_blocks(record.host, payload, &mut |block| {
+                black_box(block);
                 blocks += 1;
             });
         }

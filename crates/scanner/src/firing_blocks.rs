@@ -12,7 +12,7 @@ use cloud::mount::Tilt;
 use cloud::{Fields, Points, Spare};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch};
-use lidar::{Layer, Volley};
+use lidar::{FiringBlock, Layer};
 use units::{Degrees, Host, Span, Stamp};
 
 use self::rows::{Places, Rows};
@@ -31,9 +31,9 @@ pub(crate) const MOST_POINTS: usize = 12 * N + ROOM;
 /// What rounding may make of a time, twice over.
 const EDGE: Span = Span::from_nanos(2);
 
-/// Places volleys by an alignment. Its columns begin where lines of the cache do, so that no register's worth lies across two.
+/// Places firing blocks by an alignment. Its columns begin where lines of the cache do, so that no register's worth lies across two.
 #[repr(C, align(64))]
-pub(crate) struct VolleyPlacer<'a> {
+pub(crate) struct FiringBlockPlacer<'a> {
     /// How far the platform turns from the block's start until each channel fires.
     ahead_rad: [f64; N],
     /// Variance of the tilt at each channel, square radians, where it is wanted.
@@ -64,7 +64,7 @@ enum Verdict {
     OneByOne,
 }
 
-impl<'a> VolleyPlacer<'a> {
+impl<'a> FiringBlockPlacer<'a> {
     pub(crate) fn new(alignment: &'a Alignment) -> Self {
         Self {
             alignment,
@@ -95,36 +95,41 @@ impl<'a> VolleyPlacer<'a> {
         }
     }
 
-    /// Adds the points of a volley to a batch.
-    pub(crate) fn place(&mut self, volley: &Volley<'_>, batch: &mut Points, placed: &mut Placed) {
-        dispatch!(self.level, simd => self.place_by(simd, volley, batch, placed));
+    /// Adds the points of a firing block to a batch.
+    pub(crate) fn place(
+        &mut self,
+        block: &FiringBlock<'_>,
+        batch: &mut Points,
+        placed: &mut Placed,
+    ) {
+        dispatch!(self.level, simd => self.place_by(simd, block, batch, placed));
     }
 
     #[inline(always)]
     fn place_by<S: Simd>(
         &mut self,
         simd: S,
-        volley: &Volley<'_>,
+        block: &FiringBlock<'_>,
         batch: &mut Points,
         placed: &mut Placed,
     ) {
-        let (first, second) = volley.layers();
+        let (first, second) = block.layers();
         // A second return that is no point is like none.
         let second = second.filter(|second| second.kept() != 0);
         if first.kept() == 0 && second.is_none() {
             return;
         }
-        match self.judge(simd, volley) {
+        match self.judge(simd, block) {
             Verdict::Place(pose) => {
                 if batch.fields().contains(Fields::SD) {
-                    self.weigh(volley, &pose);
+                    self.weigh(block, &pose);
                 }
                 let Some(mut rows) = batch.spare() else {
                     return;
                 };
                 let points = match second {
-                    None => self.fill(simd, volley, [first], &pose, &mut rows),
-                    Some(second) => self.fill(simd, volley, [first, second], &pose, &mut rows),
+                    None => self.fill(simd, block, [first], &pose, &mut rows),
+                    Some(second) => self.fill(simd, block, [first, second], &pose, &mut rows),
                 };
                 batch.keep(points);
                 placed.points += points as u64;
@@ -134,26 +139,26 @@ impl<'a> VolleyPlacer<'a> {
                 let second = second.map_or(0, |second| second.kept().count_ones());
                 placed.outside += u64::from(returns + second);
             }
-            Verdict::OneByOne => one_by_one(self.alignment, self.near, volley, batch, placed),
+            Verdict::OneByOne => one_by_one(self.alignment, self.near, block, batch, placed),
         }
     }
 
-    /// Looks up time and angle of a volley.
+    /// Looks up time and angle of a firing block.
     #[inline(always)]
-    fn judge<S: Simd>(&mut self, simd: S, volley: &Volley<'_>) -> Verdict {
-        let Some(tangent) = self.clock.tangent(volley.start, volley.length()) else {
+    fn judge<S: Simd>(&mut self, simd: S, block: &FiringBlock<'_>) -> Verdict {
+        let Some(tangent) = self.clock.tangent(block.start, block.length()) else {
             return Verdict::OneByOne;
         };
         let start = tangent.at.host;
         let last = start
-            .saturating_add(tangent.stretched(volley.length()))
+            .saturating_add(tangent.stretched(block.length()))
             .saturating_add(EDGE);
         match self.spans.within(start, last) {
             Within::None => return Verdict::LeaveOut,
             Within::Some => return Verdict::OneByOne,
             Within::All => {}
         }
-        let delays_ns = volley.delays_f64_ns();
+        let delays_ns = block.delays_f64_ns();
         let motion = self
             .trajectory
             .follow(simd, &tangent, last, delays_ns, &mut self.ahead_rad);
@@ -171,20 +176,20 @@ impl<'a> VolleyPlacer<'a> {
 
     /// How well the tilt is known at each channel.
     #[inline(never)]
-    fn weigh(&mut self, volley: &Volley<'_>, pose: &Pose) {
+    fn weigh(&mut self, block: &FiringBlock<'_>, pose: &Pose) {
         let sd_ns = |after| {
             self.alignment
-                .clock_sd_ns(volley.start + Span::from_nanos(after), self.near)
+                .clock_sd_ns(block.start + Span::from_nanos(after), self.near)
         };
         let mut clock_sd_ns = [sd_ns(0); N];
         // It changes from cell to cell, of which a recording has few.
-        if sd_ns(volley.length().as_nanos()).to_bits() != clock_sd_ns[0].to_bits() {
-            clock_sd_ns = volley.delays_ns().map(sd_ns);
+        if sd_ns(block.length().as_nanos()).to_bits() != clock_sd_ns[0].to_bits() {
+            clock_sd_ns = block.delays_ns().map(sd_ns);
         }
         self.trajectory.variances(
             &pose.tangent,
             pose.last,
-            volley.delays_f64_ns(),
+            block.delays_f64_ns(),
             &clock_sd_ns,
             &mut self.tilt_variance_rad2,
         );
@@ -197,7 +202,7 @@ impl<'a> VolleyPlacer<'a> {
     fn fill<S: Simd, const L: usize>(
         &self,
         simd: S,
-        volley: &Volley<'_>,
+        block: &FiringBlock<'_>,
         layers: [&Layer<'_>; L],
         pose: &Pose,
         to: &mut Spare<'_, ROOM>,
@@ -207,11 +212,11 @@ impl<'a> VolleyPlacer<'a> {
         for channel in (0..N).step_by(S::f64s::LEN) {
             let of = |column: &[f64; N]| load(simd, column, channel);
             let places: Places<S, L> = kept.places(simd, channel);
-            let (heading, ahead_rad) = (volley.heading(of), of(&self.ahead_rad));
+            let (heading, ahead_rad) = (block.heading(of), of(&self.ahead_rad));
             let tilt = pose.tilt.ahead(ahead_rad);
             let [mut x_m, mut y_m, mut z_m] = [[ahead_rad; L]; 3];
             for layer in 0..L {
-                let point = volley.place(of(layers[layer].counts()), heading, of);
+                let point = block.place(of(layers[layer].counts()), heading, of);
                 [x_m[layer], y_m[layer], z_m[layer]] = mount.place(point, tilt);
             }
             places.put(to.x_m, x_m);
@@ -221,18 +226,18 @@ impl<'a> VolleyPlacer<'a> {
                 let degrees = ahead_rad * 1_f64.to_degrees() + pose.angle.0;
                 places.put(tilt_deg, [degrees; L]);
             }
-            let delays_ns = of(volley.delays_f64_ns());
+            let delays_ns = of(block.delays_f64_ns());
             if let Some(time) = &mut to.time {
                 let nanos = pose.tangent.nanos(simd, delays_ns);
                 places.put_times(time, [nanos; L]);
             }
             if let Some(device_time) = &mut to.device_time {
-                let nanos = Tangent::of_device(volley.start).nanos(simd, delays_ns);
+                let nanos = Tangent::of_device(block.start).nanos(simd, delays_ns);
                 places.put_times(device_time, [nanos; L]);
             }
             if let Some(sd_m) = &mut to.sd_m {
                 let tilt_variance = of(&self.tilt_variance_rad2);
-                let azimuth_variance = of(volley.azimuth_variances_rad2());
+                let azimuth_variance = of(block.azimuth_variances_rad2());
                 let range_variance = self.alignment.range_sd_m * self.alignment.range_sd_m;
                 let mut sds = [ahead_rad; L];
                 for (layer, sd) in sds.iter_mut().enumerate() {
@@ -245,20 +250,20 @@ impl<'a> VolleyPlacer<'a> {
             }
         }
         if let Some(intensity) = &mut to.intensity {
-            let mut reflectivities = [volley.rings(); L];
+            let mut reflectivities = [block.rings(); L];
             for (to, layer) in reflectivities.iter_mut().zip(layers) {
                 *to = layer.reflectivities();
             }
             kept.put_bytes(simd, intensity, reflectivities);
         }
         if let Some(ring) = &mut to.ring {
-            kept.put_bytes(simd, ring, [volley.rings(); L]);
+            kept.put_bytes(simd, ring, [block.rings(); L]);
         }
         if let Some(laser) = &mut to.laser {
-            kept.put_bytes(simd, laser, [volley.lasers(); L]);
+            kept.put_bytes(simd, laser, [block.lasers(); L]);
         }
         if let Some(echo) = &mut to.echo {
-            let codes = volley.echo_codes();
+            let codes = block.echo_codes();
             let mut of = [&codes[0]; L];
             for (of, codes) in of.iter_mut().zip(&codes) {
                 *of = codes;
@@ -269,16 +274,16 @@ impl<'a> VolleyPlacer<'a> {
     }
 }
 
-/// Places the points of a volley by the definition.
+/// Places the points of a firing block by the definition.
 #[cold]
 fn one_by_one(
     alignment: &Alignment,
     near: Option<Stamp<Host>>,
-    volley: &Volley<'_>,
+    block: &FiringBlock<'_>,
     batch: &mut Points,
     placed: &mut Placed,
 ) {
-    for point in volley.firings().flat_map(|firing| firing.points()) {
+    for point in block.firings().flat_map(|firing| firing.points()) {
         match alignment.place_near(&point, near) {
             Some(point) => {
                 placed.points += 1;

@@ -6,6 +6,7 @@
 pub mod clock;
 pub mod config;
 pub mod error;
+mod firing_blocks;
 mod lanes;
 mod live;
 mod plausible;
@@ -18,7 +19,6 @@ pub mod tilt;
 pub mod tolerance;
 pub mod trajectory;
 mod uncertainty;
-mod volleys;
 
 pub use config::{LidarConfig, ScanConfig, SweepPlan};
 pub use error::ScanError;

@@ -17,11 +17,11 @@ use units::{Gearing, Host, Lidar, Span, Stamp};
 use crate::clock::{Arrival, DeviceClock, OnlineClock};
 use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
+use crate::firing_blocks::{FiringBlockPlacer, MOST_POINTS};
 use crate::polls::{QuickPolls, sample};
 use crate::scanner::{Alignment, Placed};
 use crate::sweeps::{MoveWatch, SweepWatch};
 use crate::trajectory::{AngleSample, Growing, Method, Trajectory};
-use crate::volleys::{MOST_POINTS, VolleyPlacer};
 
 /// Places points while records come in.
 pub struct Live<'a> {
@@ -151,10 +151,10 @@ impl<'a> Live<'a> {
     /// What the sink reports.
     pub fn finish(mut self) -> Result<(Placed, Stats), SinkError> {
         if let Some(alignment) = &self.alignment {
-            let mut placer = VolleyPlacer::new(alignment);
+            let mut placer = FiringBlockPlacer::new(alignment);
             let (batch, placed) = (&mut self.batch, &mut self.placed);
             self.decoder
-                .finish_volleys(&mut |volley| placer.place(volley, batch, placed));
+                .finish_firing_blocks(&mut |block| placer.place(block, batch, placed));
             self.sink.points(&self.batch)?;
         }
         Ok((self.placed, self.decoder.stats().clone()))
@@ -234,7 +234,7 @@ impl<'a> Live<'a> {
         let moment = held.and_then(|held| Some((held, self.clock.moment(held)?)));
         let (Some(alignment), Some((device, moment))) = (&mut self.alignment, moment) else {
             self.decoder
-                .volleys(waiting.arrived, &waiting.payload, &mut |_| {});
+                .firing_blocks(waiting.arrived, &waiting.payload, &mut |_| {});
             return;
         };
         // Through the held packet's first firing: the clock moves by nanoseconds within a packet.
@@ -243,10 +243,10 @@ impl<'a> Live<'a> {
         alignment
             .trajectory
             .forget_before(moment.host.saturating_add(-MEMORY));
-        let mut placer = VolleyPlacer::new(alignment);
+        let mut placer = FiringBlockPlacer::new(alignment);
         self.decoder
-            .volleys(waiting.arrived, &waiting.payload, &mut |volley| {
-                placer.place(volley, batch, placed);
+            .firing_blocks(waiting.arrived, &waiting.payload, &mut |block| {
+                placer.place(block, batch, placed);
             });
     }
 }

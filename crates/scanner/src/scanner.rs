@@ -3,7 +3,7 @@
 //! Two passes over the same records. The [`Survey`] reads times alone: packet arrivals for the lidar's clock, polls for the
 //! trajectory. The [`Placer`] then decodes every firing, asks the clock when it happened and the trajectory how the
 //! platform stood, and places its points. Both are pure functions of the records in their order. What placing a point means is
-//! [`Alignment::place`]; how it is done for millions of them is `volleys`.
+//! [`Alignment::place`]; how it is done for millions of them is `firing_blocks`.
 
 use cloud::mount::{Mount, Tilt};
 use cloud::{Fields, Point, Points, Sink, SinkError};
@@ -16,6 +16,7 @@ use units::{Degrees, Gearing, Host, Metres, Span, Stamp};
 use crate::clock::{Arrival, LidarClock, Moment};
 use crate::config::ScanConfig;
 use crate::error::ScanError;
+use crate::firing_blocks::{FiringBlockPlacer, MOST_POINTS};
 use crate::plausible;
 use crate::polls::with_clock;
 use crate::steps::{ClockStep, HostLine, Seams, Timeline};
@@ -23,7 +24,6 @@ use crate::sweeps::{MoveWatch, Sweep};
 use crate::tilt::TiltSource;
 use crate::tolerance::{Accuracy, Choice};
 use crate::trajectory::{Method, Trajectory};
-use crate::volleys::{MOST_POINTS, VolleyPlacer};
 
 /// First pass: what the records say about time and tilt.
 pub struct Survey {
@@ -346,7 +346,7 @@ impl Alignment {
 
 /// Second pass: places every firing and hands the points to a sink in batches.
 pub struct Placer<'a> {
-    volleys: VolleyPlacer<'a>,
+    block_placer: FiringBlockPlacer<'a>,
     decoder: Decoder,
     batch: Points,
     placed: Placed,
@@ -370,7 +370,7 @@ impl<'a> Placer<'a> {
     pub fn new(alignment: &'a Alignment, options: Options, sink: &'a mut dyn Sink) -> Self {
         let fields: Fields = sink.fields();
         Self {
-            volleys: VolleyPlacer::new(alignment),
+            block_placer: FiringBlockPlacer::new(alignment),
             decoder: Decoder::new(options),
             batch: Points::with_capacity(fields, BATCH_POINTS + MOST_POINTS),
             placed: Placed::default(),
@@ -386,11 +386,13 @@ impl<'a> Placer<'a> {
         let Wire::Lidar { payload, .. } = record.wire else {
             return Ok(());
         };
-        let (volleys, batch, placed) = (&mut self.volleys, &mut self.batch, &mut self.placed);
-        volleys.near(record.host);
-        self.decoder.volleys(record.host, payload, &mut |volley| {
-            volleys.place(volley, batch, placed);
-        });
+        let (block_placer, batch, placed) =
+            (&mut self.block_placer, &mut self.batch, &mut self.placed);
+        block_placer.near(record.host);
+        self.decoder
+            .firing_blocks(record.host, payload, &mut |block| {
+                block_placer.place(block, batch, placed);
+            });
         if self.batch.len() >= BATCH_POINTS {
             self.flush()?;
         }
@@ -402,9 +404,10 @@ impl<'a> Placer<'a> {
     /// # Errors
     /// What the sink reports.
     pub fn finish(mut self) -> Result<(Placed, Stats), SinkError> {
-        let (volleys, batch, placed) = (&mut self.volleys, &mut self.batch, &mut self.placed);
+        let (block_placer, batch, placed) =
+            (&mut self.block_placer, &mut self.batch, &mut self.placed);
         self.decoder
-            .finish_volleys(&mut |volley| volleys.place(volley, batch, placed));
+            .finish_firing_blocks(&mut |block| block_placer.place(block, batch, placed));
         self.flush()?;
         Ok((self.placed, self.decoder.stats().clone()))
     }

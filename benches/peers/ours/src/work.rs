@@ -121,8 +121,8 @@ impl Work {
         let mut decoder = Decoder::new(Options::default());
         for record in self.packets.records() {
             if let Wire::Lidar { payload, .. } = record.wire {
-                decoder.volleys(record.host, payload, &mut |volley| {
-                    black_box(volley);
+                decoder.firing_blocks(record.host, payload, &mut |block| {
+                    black_box(block);
                 });
             }
         }

@@ -260,17 +260,17 @@ proptest! {
         let always = vec![(Stamp::from_nanos(i64::MIN), Stamp::from_nanos(i64::MAX))];
         let mount = Mount::new(Metres(0.06));
         let alignment = Alignment::with_spans(clock(60, &[5, -20, 30, 0]), trajectory, mount, always);
-        let run = |mut placer: VolleyPlacer<'_>| {
+        let run = |mut placer: FiringBlockPlacer<'_>| {
             let (mut points, mut placed) = (Points::new(Fields::ALL), Placed::default());
             let mut decoder = Decoder::new(Options::default());
             for (ns, payload) in &packets {
-                decoder.volleys(Stamp::from_nanos(EPOCH + ns), payload, &mut |volley| {
-                    placer.place(volley, &mut points, &mut placed);
+                decoder.firing_blocks(Stamp::from_nanos(EPOCH + ns), payload, &mut |block| {
+                    placer.place(block, &mut points, &mut placed);
                 });
             }
             points
         };
-        let wide = run(VolleyPlacer::new(&alignment));
+        let wide = run(FiringBlockPlacer::new(&alignment));
         let bits = |points: &Points| -> Vec<[u64; 4]> {
             let tilts = points.tilt_deg().iter();
             points
@@ -280,7 +280,7 @@ proptest! {
                 .collect()
         };
         for level in levels() {
-            let narrow = run(VolleyPlacer::with_level(&alignment, level));
+            let narrow = run(FiringBlockPlacer::with_level(&alignment, level));
             prop_assert_eq!(bits(&wide), bits(&narrow), "{:?}", level);
             prop_assert_eq!(&wide, &narrow, "{:?}", level);
         }
