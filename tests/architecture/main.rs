@@ -1,0 +1,143 @@
+//! The rules of the architecture that a test can check: which crate may depend on which, which
+//! crate may use which library, and which crates do no input or output.
+
+mod manifests;
+
+use manifests::{Workspace, confined, locked};
+
+/// The crates that a crate may depend on, as docs/ARCHITECTURE states them.
+///
+/// Crates that are not listed here may depend on anything in the workspace.
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 11] = [
+    ("units", &[]),
+    ("protocol", &["units"]),
+    ("firmware-sim", &["units", "protocol"]),
+    ("lidar", &["units", "protocol"]),
+    ("drive", &["units", "protocol"]),
+    ("cloud", &["units"]),
+    ("scanner", &["units", "lidar", "drive", "cloud"]),
+    ("calibration", &["units", "cloud"]),
+    ("sim", &["units", "firmware-sim"]),
+    ("analysis", &["units", "cloud"]),
+    ("io", &["units", "protocol"]),
+];
+
+/// The crates above those of the table.
+const UPPER_CRATES: [&str; 7] = [
+    "engine",
+    "daemon",
+    "ros2",
+    "python",
+    "velomotion",
+    "studies",
+    "tests",
+];
+
+/// Crates that a crate does not depend on even in its tests.
+///
+/// The simulator states the geometry independently (invariant 3), and only `scanner` joins lidar and
+/// drive (invariant 2).
+const INDEPENDENT: [(&str, &[&str]); 3] = [
+    ("sim", &["lidar", "drive", "scanner", "cloud"]),
+    ("lidar", &["drive", "sim"]),
+    ("drive", &["lidar", "sim"]),
+];
+
+/// Packages that the default build leaves out: ROS 2's transport alone needs 137 crates.
+const OPTIONAL_PACKAGES: [&str; 2] = ["zenoh", "xxhash-rust"];
+
+#[test]
+fn crates_depend_only_on_what_the_table_allows() {
+    let workspace = Workspace::read();
+    for member in &workspace.members {
+        let Some((_, allowed)) = ALLOWED_DEPENDENCIES
+            .iter()
+            .find(|(name, _)| *name == member.name)
+        else {
+            assert!(
+                UPPER_CRATES.contains(&member.name.as_str()),
+                "{} is not in the table",
+                member.name
+            );
+            continue;
+        };
+        for dependency in workspace.internal_dependencies(member, false) {
+            assert!(
+                allowed.contains(&dependency),
+                "{} depends on {dependency}; the table allows {allowed:?}",
+                member.name
+            );
+        }
+    }
+}
+
+#[test]
+fn simulator_lidar_and_drive_stay_independent_even_in_tests() {
+    let workspace = Workspace::read();
+    for (name, excluded) in INDEPENDENT {
+        let member = workspace.members.iter().find(|m| m.name == name);
+        let member = member.unwrap_or_else(|| panic!("no crate {name}"));
+        for dependency in workspace.internal_dependencies(member, true) {
+            assert!(
+                !excluded.contains(&dependency),
+                "{name} depends on {dependency}"
+            );
+        }
+    }
+}
+
+#[test]
+fn confined_libraries_stay_in_the_crates_of_deny_toml() {
+    let workspace = Workspace::read();
+    let locked = locked();
+    for (library, users) in confined() {
+        assert!(
+            locked.contains(&library),
+            "deny.toml confines {library}, which Cargo.lock lacks"
+        );
+        for member in &workspace.members {
+            let uses_it = member.dependencies.iter().any(|d| d.package == library);
+            assert!(
+                !uses_it || users.contains(&member.package),
+                "{} uses {library}; deny.toml allows {users:?}",
+                member.package
+            );
+        }
+    }
+}
+
+#[test]
+fn the_default_build_leaves_ros2_out() {
+    let workspace = Workspace::read();
+    for (package, member) in workspace.default_build() {
+        assert!(
+            !OPTIONAL_PACKAGES.contains(&package),
+            "{member} needs {package}"
+        );
+    }
+}
+
+#[test]
+fn lower_crates_ban_clocks_files_and_sockets() {
+    let workspace = Workspace::read();
+    for member in &workspace.members {
+        if member.name == "io" || UPPER_CRATES.contains(&member.name.as_str()) {
+            continue;
+        }
+        let path = member.folder.join("clippy.toml");
+        let text = std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        for banned in [
+            "std::time::Instant::now",
+            "std::time::SystemTime::now",
+            "std::fs::File::open",
+            "std::net::UdpSocket::bind",
+        ] {
+            assert!(
+                text.contains(banned),
+                "{} does not ban {banned}",
+                path.display()
+            );
+        }
+    }
+}
