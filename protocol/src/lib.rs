@@ -4,7 +4,11 @@
 //! stay representable. What a value means for a scan is decided elsewhere.
 #![no_std]
 
+mod bounded;
 pub mod canopen;
+mod codes;
 pub mod epos2;
 pub mod record;
 pub mod vlp16;
+
+pub use bounded::{Bounded, Full};

@@ -237,7 +237,7 @@ fn emergency(master: &mut Master, node: NodeId) {
     master.send(&CanFrame::of(id, [0x06]));
     let emergency = master.wait_for("an emergency message", told);
     assert_eq!(emergency.node, node);
-    assert_eq!(emergency.error, DeviceError::PDO_LENGTH);
+    assert_eq!(emergency.code, DeviceError::PDO_LENGTH.0);
     assert_ne!(emergency.register, 0);
     assert_eq!(master.read(objects::ERROR_REGISTER), emergency.register);
     let latest = master.read(objects::ERROR_HISTORY_1);

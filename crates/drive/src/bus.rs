@@ -174,7 +174,8 @@ impl Bus {
             Message::Emergency(emergency)
                 if emergency.node == self.node && !emergency.is_reset() =>
             {
-                self.alarm.get_or_insert(Alarm::Emergency(emergency.error));
+                self.alarm
+                    .get_or_insert(Alarm::Emergency(DeviceError(emergency.code)));
             }
             Message::Heartbeat(_) => self.heartbeat(frame, now),
             Message::TransmitPdo(PdoNumber::One, node, data) if node == self.node => {

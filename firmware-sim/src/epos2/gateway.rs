@@ -80,21 +80,12 @@ fn code(error: TransferError) -> Abort {
 }
 
 /// Network management for other nodes; 0 is all.
-pub(super) fn nmt(bus: &mut impl Bus, node: u16, specifier: u16) {
-    let (Ok(node), Ok(specifier)) = (u8::try_from(node), u8::try_from(specifier)) else {
-        return;
-    };
-    let meant = NodeId::new(node);
-    if meant.is_none() && node != 0 {
-        return;
+pub(super) fn nmt(bus: &mut impl Bus, node: u16, command: NmtCommand) {
+    let addressed = u8::try_from(node).ok().and_then(NodeId::new);
+    if addressed.is_some() || node == 0 {
+        let node = addressed;
+        bus.send(&Nmt { node, command }.to_frame(), &mut |_| {});
     }
-    let command = NmtCommand::from_u8(specifier);
-    let frame = Nmt {
-        node: meant,
-        command,
-    }
-    .to_frame();
-    bus.send(&frame, &mut |_| {});
 }
 
 /// Puts a frame on the bus; what comes back because of it nobody has asked for.

@@ -3,10 +3,10 @@
 extern crate std;
 use std::vec::Vec;
 
-use protocol::canopen::nmt::NmtState;
+use protocol::canopen::nmt::{NmtCommand, NmtState};
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, NmtCommand, ReadObject,
-    RequestCanFrame, SegmentedRead, SegmentedWrite, SendCanFrame, WriteObject, WriteSegment,
+    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, RequestCanFrame,
+    SegmentedRead, SegmentedWrite, SendCanFrame, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::rs232::encode_body;
@@ -186,9 +186,15 @@ fn long_objects_of_other_nodes_come_in_segments() {
 #[test]
 fn network_management_reaches_whom_it_names() {
     let mut bench = Bench::new();
-    let mut tell = |node, command| {
+    let mut tell = |node, command: NmtCommand| {
         assert_eq!(
-            bench.error(&Nmt { node, command }.to_frame()),
+            bench.error(
+                &Nmt {
+                    node,
+                    specifier: u16::from(command.to_u8())
+                }
+                .to_frame()
+            ),
             CommError::NONE
         );
         let [a, b] = &bench.far;

@@ -1,7 +1,7 @@
 //! Network management as the node sees it: its NMT state, and when it starts anew.
 
+use protocol::canopen::nmt::NmtCommand;
 use protocol::canopen::nmt::NmtState;
-use protocol::epos2::message::NmtCommand;
 
 use super::node::Node;
 

@@ -4,7 +4,8 @@ extern crate std;
 use std::vec::Vec;
 
 use proptest::prelude::*;
-use protocol::epos2::message::{Nmt, NmtCommand, ReadObject, WriteObject};
+use protocol::canopen::nmt::NmtCommand;
+use protocol::epos2::message::{Nmt, ReadObject, WriteObject};
 use protocol::epos2::rs232::{BodyDecoder, encode_body};
 use protocol::epos2::{DeviceError, Frame, objects};
 
@@ -110,7 +111,7 @@ fn network_management_has_no_answer() {
     let (mut server, mut node) = (Rs232Server::new(4), node());
     let request = Nmt {
         node: 1,
-        command: NmtCommand::Start,
+        specifier: NmtCommand::Start.to_u8().into(),
     }
     .to_frame();
     assert_eq!(send(&mut server, &mut node, &[request.opcode]), b"O");

@@ -2,6 +2,7 @@
 //!
 //! Words of an answer that a command does not use are garbage, as on a real unit, and an error is answered in two words or in four.
 
+use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::message::{
     Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, ReadSegment, Request,
     RequestCanFrame, SegmentedRead, SegmentedWrite, WriteObject, WriteSegment,
@@ -231,9 +232,12 @@ fn write(node: &mut Node, bus: &mut impl Bus, request: WriteObject) -> Result<()
 
 /// Network management is broadcast on the bus and has no errors. The unit hears what it says itself.
 fn nmt(node: &mut Node, bus: &mut impl Bus, request: Nmt) -> Frame {
-    gateway::nmt(bus, request.node, request.command.to_u16());
-    if request.node == 0 || request.node == u16::from(node.node_id()) {
-        node.nmt(request.command);
+    if let Ok(specifier) = u8::try_from(request.specifier) {
+        let command = NmtCommand::from_u8(specifier);
+        gateway::nmt(bus, request.node, command);
+        if request.node == 0 || request.node == u16::from(node.node_id()) {
+            node.nmt(command);
+        }
     }
     Answer::bare(CommError::NONE).to_frame()
 }

@@ -4,9 +4,10 @@ extern crate std;
 use std::vec::Vec;
 
 use proptest::prelude::*;
+use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, NmtCommand, ReadObject,
-    RequestCanFrame, SegmentedRead, SegmentedWrite, SendCanFrame, WriteObject, WriteSegment,
+    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, RequestCanFrame,
+    SegmentedRead, SegmentedWrite, SendCanFrame, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
@@ -268,7 +269,7 @@ fn network_management_and_can_frames_are_answered_on_usb() {
     let (mut server, mut node) = (UsbServer::new(7), node());
     let start = Nmt {
         node: 0,
-        command: NmtCommand::Start,
+        specifier: NmtCommand::Start.to_u8().into(),
     }
     .to_frame();
     assert_eq!(
@@ -281,7 +282,7 @@ fn network_management_and_can_frames_are_answered_on_usb() {
     );
     let other = Nmt {
         node: 9,
-        command: NmtCommand::Stop,
+        specifier: NmtCommand::Stop.to_u8().into(),
     }
     .to_frame();
     ask(&mut server, &mut node, &other);

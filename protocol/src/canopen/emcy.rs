@@ -1,33 +1,31 @@
-//! Emergency messages (CiA 301, "Emergency object"): a node tells of an error the moment it happens, and of its end.
-//!
-//! What a code means and how the drive reacts is [`DeviceError`]'s.
+//! Emergency messages (CiA 301, "Emergency object"): a node reports an error when it occurs, and
+//! its end. The meaning of most codes depends on the device.
 
 use super::cob_id::{Channel, NodeId};
 use super::error::{Layer, MessageError};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
-use crate::epos2::DeviceError;
 
 /// An error of a node, or its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Emergency {
-    /// Who tells.
+    /// The reporting node.
     pub node: NodeId,
-    /// What happened; [`DeviceError::NONE`]: all errors are gone.
-    pub error: DeviceError,
+    /// Error code; 0: all errors are gone.
+    pub code: u16,
     /// The error register (1001).
     pub register: u8,
-    /// The manufacturer's; the EPOS2 leaves them zero.
+    /// Manufacturer-specific bytes.
     pub vendor: [u8; 5],
 }
 
 impl Emergency {
-    /// The message of an EPOS2.
+    /// A message without manufacturer-specific bytes.
     #[must_use]
-    pub const fn new(node: NodeId, error: DeviceError, register: u8) -> Self {
+    pub const fn new(node: NodeId, code: u16, register: u8) -> Self {
         Self {
             node,
-            error,
+            code,
             register,
             vendor: [0; 5],
         }
@@ -36,7 +34,7 @@ impl Emergency {
     /// The message as a frame.
     #[must_use]
     pub fn to_frame(&self) -> CanFrame {
-        let [low, high] = self.error.0.to_le_bytes();
+        let [low, high] = self.code.to_le_bytes();
         let [a, b, c, d, e] = self.vendor;
         CanFrame::of(
             Channel::Emergency(self.node).cob_id(),
@@ -56,15 +54,15 @@ impl Emergency {
         let [low, high, register, vendor @ ..] = *bytes::<8>(layer, frame)?;
         Ok(Self {
             node,
-            error: DeviceError(u16::from_le_bytes([low, high])),
+            code: u16::from_le_bytes([low, high]),
             register,
             vendor,
         })
     }
 
-    /// Whether it says that all errors are gone.
+    /// Whether all errors are gone.
     #[must_use]
     pub const fn is_reset(&self) -> bool {
-        self.error.0 == DeviceError::NONE.0
+        self.code == 0
     }
 }

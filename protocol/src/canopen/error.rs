@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::frame::CanId;
+use super::frame::{CanFrame, CanId};
 
 /// Which service's message an error was found in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,4 +125,28 @@ pub enum MessageError {
         /// What does.
         got: u8,
     },
+}
+
+/// The data of a frame that must have `N` bytes of it.
+pub(super) fn data<const N: usize>(
+    layer: Layer,
+    frame: &CanFrame,
+) -> Result<&[u8; N], MessageError> {
+    if frame.is_remote() {
+        return Err(MessageError::Remote { layer });
+    }
+    frame.data().try_into().map_err(|_| MessageError::Length {
+        layer,
+        expected: N,
+        got: frame.data().len(),
+    })
+}
+
+/// The error of a frame with the identifier of another service.
+pub(super) fn wrong_id(layer: Layer, expected: &'static str, frame: &CanFrame) -> MessageError {
+    MessageError::Id {
+        layer,
+        expected,
+        got: frame.id(),
+    }
 }

@@ -2,13 +2,14 @@
 
 use super::cob_id::{Channel, CobId, NodeId, PdoNumber};
 use super::emcy::Emergency;
-use super::error::{Layer, MessageError};
+use super::error::MessageError;
+pub(super) use super::error::{data as bytes, wrong_id};
 use super::frame::CanFrame;
 use super::heartbeat::Heartbeat;
 use super::nmt::Nmt;
 use super::sdo::{Answer, Request};
 use super::sync::Sync;
-use crate::epos2::Bounded;
+use crate::Bounded;
 
 /// A frame with its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,28 +89,4 @@ impl Message {
 pub(super) fn pdo(id: CobId, data: &Bounded<u8, 8>) -> CanFrame {
     // Both hold eight bytes at most, so there is no error to take this way out.
     CanFrame::new(id, data).unwrap_or_else(|_| CanFrame::of(id, []))
-}
-
-/// The data of a frame that must have `N` bytes of it.
-pub(super) fn bytes<const N: usize>(
-    layer: Layer,
-    frame: &CanFrame,
-) -> Result<&[u8; N], MessageError> {
-    if frame.is_remote() {
-        return Err(MessageError::Remote { layer });
-    }
-    frame.data().try_into().map_err(|_| MessageError::Length {
-        layer,
-        expected: N,
-        got: frame.data().len(),
-    })
-}
-
-/// The error of a frame on another service's identifier.
-pub(super) fn wrong_id(layer: Layer, expected: &'static str, frame: &CanFrame) -> MessageError {
-    MessageError::Id {
-        layer,
-        expected,
-        got: frame.id(),
-    }
 }

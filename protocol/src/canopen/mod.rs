@@ -13,6 +13,7 @@ mod frame;
 pub mod heartbeat;
 mod message;
 pub mod nmt;
+mod object;
 pub mod pdo;
 pub mod sdo;
 pub mod slcan;
@@ -22,6 +23,7 @@ pub use cob_id::{Channel, CobId, NodeId, PdoNumber};
 pub use error::{FrameError, Layer, MessageError};
 pub use frame::{CanFrame, CanId, ExtendedId, SOCKETCAN_LEN};
 pub use message::Message;
+pub use object::{Address, Object, Scalar};
 
 #[cfg(test)]
 mod tests;

@@ -8,57 +8,21 @@ use super::cob_id::{CobId, NodeId};
 use super::error::{Layer, MessageError};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
-use crate::epos2::message::NmtCommand as GatewayCommand;
+use crate::codes::byte_codes;
 
-/// What nodes are told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NmtCommand {
-    /// 01: to operational.
-    Start,
-    /// 02: to stopped.
-    Stop,
-    /// 80: to pre-operational.
-    EnterPreOperational,
-    /// 81: restart of the node.
-    ResetNode,
-    /// 82: restart of its communication.
-    ResetCommunication,
-    /// A command specifier that CiA 301 does not know.
-    Unknown(u8),
-}
-
-impl NmtCommand {
-    /// The command specifier.
-    #[must_use]
-    pub const fn to_u8(self) -> u8 {
-        match self {
-            Self::Start => 0x01,
-            Self::Stop => 0x02,
-            Self::EnterPreOperational => 0x80,
-            Self::ResetNode => 0x81,
-            Self::ResetCommunication => 0x82,
-            Self::Unknown(specifier) => specifier,
-        }
-    }
-
-    /// The command of a specifier.
-    #[must_use]
-    pub const fn from_u8(specifier: u8) -> Self {
-        match specifier {
-            0x01 => Self::Start,
-            0x02 => Self::Stop,
-            0x80 => Self::EnterPreOperational,
-            0x81 => Self::ResetNode,
-            0x82 => Self::ResetCommunication,
-            specifier => Self::Unknown(specifier),
-        }
-    }
-}
-
-/// The same command through a unit's serial interface.
-impl From<NmtCommand> for GatewayCommand {
-    fn from(command: NmtCommand) -> Self {
-        Self::from_u16(u16::from(command.to_u8()))
+byte_codes! {
+    /// A command to nodes.
+    pub enum NmtCommand {
+        /// Go to operational.
+        Start = 0x01,
+        /// Go to stopped.
+        Stop = 0x02,
+        /// Go to pre-operational.
+        EnterPreOperational = 0x80,
+        /// Restart the node.
+        ResetNode = 0x81,
+        /// Restart the node's communication.
+        ResetCommunication = 0x82,
     }
 }
 
@@ -110,44 +74,17 @@ impl Nmt {
     }
 }
 
-/// A node's state as its heartbeat tells it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum NmtState {
-    /// 00: it has just started and is about to be pre-operational.
-    BootUp,
-    /// 04: only NMT and heartbeat.
-    Stopped,
-    /// 05: everything.
-    Operational,
-    /// 7F: everything but PDOs.
-    PreOperational,
-    /// A value that CiA 301 does not know.
-    Unknown(u8),
-}
-
-impl NmtState {
-    /// The byte of a heartbeat.
-    #[must_use]
-    pub const fn to_u8(self) -> u8 {
-        match self {
-            Self::BootUp => 0x00,
-            Self::Stopped => 0x04,
-            Self::Operational => 0x05,
-            Self::PreOperational => 0x7F,
-            Self::Unknown(state) => state,
-        }
-    }
-
-    /// The state of a heartbeat's byte.
-    #[must_use]
-    pub const fn from_u8(state: u8) -> Self {
-        match state {
-            0x00 => Self::BootUp,
-            0x04 => Self::Stopped,
-            0x05 => Self::Operational,
-            0x7F => Self::PreOperational,
-            state => Self::Unknown(state),
-        }
+byte_codes! {
+    /// The state of a node as its heartbeat reports it.
+    pub enum NmtState {
+        /// Just started, about to become pre-operational.
+        BootUp = 0x00,
+        /// Only NMT and heartbeat.
+        Stopped = 0x04,
+        /// All services.
+        Operational = 0x05,
+        /// All services but PDOs.
+        PreOperational = 0x7F,
     }
 }
 
@@ -172,10 +109,6 @@ mod tests {
         for byte in 0..=255 {
             assert_eq!(NmtCommand::from_u8(byte).to_u8(), byte);
             assert_eq!(NmtState::from_u8(byte).to_u8(), byte);
-            assert_eq!(
-                GatewayCommand::from(NmtCommand::from_u8(byte)).to_u16(),
-                u16::from(byte)
-            );
         }
     }
 

@@ -9,12 +9,13 @@ use proptest::prelude::*;
 use super::emcy::Emergency;
 use super::heartbeat::Heartbeat;
 use super::nmt::{Nmt, NmtCommand, NmtState};
+use super::object::{Address, Object};
 use super::pdo::{CommunicationId, TransmissionType};
 use super::sdo::{Answer, Expedited, Initiate, Request, Segment};
 use super::sync::Sync;
 use super::{CanFrame, CanId, CobId, ExtendedId, Layer, Message, MessageError, NodeId, PdoNumber};
-use crate::epos2::objects::{Address, DEVICE_NAME, STATUSWORD};
-use crate::epos2::{Bounded, CommError, DeviceError};
+use crate::Bounded;
+use crate::epos2::CommError;
 
 fn node(id: u8) -> NodeId {
     NodeId::new(id).unwrap()
@@ -46,7 +47,12 @@ pub(super) fn any_frame() -> impl Strategy<Value = CanFrame> {
     ]
 }
 
-const NAME: Address = DEVICE_NAME;
+/// Objects of CiA 301 and CiA 402 that the tests name.
+const NAME: Address = Address::new(0x1008, 0);
+pub(super) const TIMESTAMP: Object<u32> = Object::new(0x1013, 0, "High Resolution Time Stamp");
+pub(super) const STATUSWORD: Object<u16> = Object::new(0x6041, 0, "Statusword");
+pub(super) const MODE_DISPLAY: Object<i8> = Object::new(0x6061, 0, "Modes of Operation Display");
+pub(super) const POSITION_ACTUAL: Object<i32> = Object::new(0x6064, 0, "Position Actual Value");
 
 fn upload(address: Address, data: &[u8]) -> Answer {
     let transfer = Initiate::Expedited(Expedited::new(data).unwrap());
@@ -234,11 +240,11 @@ fn other_messages() -> Vec<(&'static str, Message)> {
         ("080#F0", Message::Sync(Sync { counter: Some(240) })),
         (
             "081#1186200000000000",
-            Message::Emergency(Emergency::new(node(1), DeviceError::FOLLOWING, 0x20))
+            Message::Emergency(Emergency::new(node(1), 0x8611, 0x20))
         ),
         (
             "081#0000000000000000",
-            Message::Emergency(Emergency::new(node(1), DeviceError::NONE, 0))
+            Message::Emergency(Emergency::new(node(1), 0, 0))
         ),
         (
             "181#3703",
@@ -287,7 +293,7 @@ fn the_end_of_errors_is_told_apart() {
     let error = parse("0FF#06FF800102030405");
     assert!(!error.is_reset());
     assert_eq!(error.node, node(127));
-    assert_eq!(error.error, DeviceError::NEGATIVE_LIMIT);
+    assert_eq!(error.code, 0xFF06);
     assert_eq!((error.register, error.vendor), (0x80, [1, 2, 3, 4, 5]));
 }
 

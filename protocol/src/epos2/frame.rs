@@ -1,7 +1,7 @@
 //! A frame without its framing: an opcode and some words, the same on USB and RS232.
 
-use super::bounded::Bounded;
 use super::error::{FrameError, Layer};
+use crate::Bounded;
 
 /// The most words a frame is allowed here. The longest the Communication Guide knows, the answer to a segmented read, has 34; the
 /// limit lets a damaged length byte show at once instead of after half a kilobyte.

@@ -4,7 +4,6 @@
 //! (objects, device control, device errors). The same objects over CANopen are framed elsewhere; here is neither a
 //! timeout nor a retry nor an opinion about what to ask the drive.
 
-mod bounded;
 pub mod cia402;
 pub mod comm_error;
 mod crc;
@@ -16,7 +15,7 @@ pub mod objects;
 pub mod rs232;
 pub mod usb;
 
-pub use bounded::{Bounded, Full};
+pub use crate::{Bounded, Full};
 pub use comm_error::CommError;
 pub use crc::{Crc, crc16};
 pub use device_error::DeviceError;

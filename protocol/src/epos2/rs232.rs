@@ -5,10 +5,10 @@
 //! OpCode and Len-1 (as one word, **OpCode** in the high byte: the other order than on USB) and the data. Here are the body and
 //! its checksum; the turns of the handshake, with their timeout of 500 ms, belong to the client and to the device.
 
-use super::bounded::Bounded;
 use super::crc::Crc;
 use super::error::{FrameError, Layer};
 use super::frame::{Frame, MAX_WORDS, Words};
+use crate::Bounded;
 
 /// Handshake: go on.
 pub const OKAY: u8 = b'O';

@@ -6,9 +6,8 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::message::{
-    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, NmtCommand, ReadObject,
-    ReadSegment, Request, RequestCanFrame, SegmentedRead, SegmentedWrite, SendCanFrame,
-    WriteObject, WriteSegment,
+    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, ReadSegment, Request,
+    RequestCanFrame, SegmentedRead, SegmentedWrite, SendCanFrame, WriteObject, WriteSegment,
 };
 use super::objects::{self, Address};
 use super::rs232::{self, BodyDecoder};
@@ -334,7 +333,7 @@ fn request() -> impl Strategy<Value = Request> {
         )),
         (any::<u16>(), any::<u16>()).prop_map(|(node, cs)| Request::Nmt(Nmt {
             node,
-            command: NmtCommand::from_u16(cs)
+            specifier: cs
         })),
         (any::<u16>(), any::<u16>(), any::<[u8; 8]>()).prop_map(|(cob_id, len, data)| {
             Request::SendCanFrame(SendCanFrame { cob_id, len, data })

@@ -4,10 +4,10 @@
 //! frame at any point. The CRC is taken before stuffing over Len, OpCode (as one word, Len in the high byte) and the data.
 //! When to give up waiting for the rest of a frame is the caller's business ([`UsbDecoder::reset`]).
 
-use super::bounded::Bounded;
 use super::crc::Crc;
 use super::error::{FrameError, Layer};
 use super::frame::{Frame, MAX_WORDS, Words};
+use crate::Bounded;
 
 /// Data link escape: begins a frame, doubled inside.
 pub const DLE: u8 = 0x90;

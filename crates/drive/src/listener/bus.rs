@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use protocol::canopen::nmt::NmtState;
 use protocol::canopen::pdo::{CommunicationId, Layout, MAX_ENTRIES, Mapping, TransmissionType};
 use protocol::canopen::{CanFrame, CanId, Channel, Message, NodeId};
+use protocol::epos2::DeviceError;
 use units::{Host, Stamp};
 
 use crate::beat::Beats;
@@ -72,7 +73,7 @@ impl BusWatch {
                 return sdo_decode(&answer).map_or(Said::Noise, Said::Answer);
             }
             Message::Emergency(emergency) if ours(emergency.node) => {
-                let error = emergency.error;
+                let error = DeviceError(emergency.code);
                 emit(Observation::Emergency { error, host });
             }
             Message::Heartbeat(beat) if ours(beat.node) && beat.state == NmtState::BootUp => {

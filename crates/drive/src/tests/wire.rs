@@ -14,7 +14,7 @@ use protocol::epos2::message::{
 use protocol::epos2::objects::Address;
 use protocol::epos2::rs232::{BodyDecoder, FAILED, OKAY, encode_body};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{Bounded, CommError, DeviceError, Frame};
+use protocol::epos2::{Bounded, CommError, Frame};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -381,10 +381,7 @@ impl Fake {
 
     pub fn emergency(&mut self, code: u16, now: Stamp<Host>) {
         if self.bus.state == NmtState::Operational {
-            self.say(
-                &Emergency::new(node(), DeviceError(code), 1).to_frame(),
-                now,
-            );
+            self.say(&Emergency::new(node(), code, 1).to_frame(), now);
         }
     }
 

@@ -145,7 +145,7 @@ impl CanServer {
                 if let Ok(command) = Nmt::parse(frame)
                     && command.is_for(id)
                 {
-                    node.nmt(command.command.into());
+                    node.nmt(command.command);
                 }
             }
             Some(Channel::Sync) if Sync::parse(frame).is_ok() => self.sync(node, out),
@@ -194,7 +194,7 @@ fn tell_news(node: &mut Node, id: NodeId, out: &mut impl FnMut(&CanFrame)) {
     const OUT_OF_USE: u32 = 1 << 31;
     let cob_id = node.dictionary.raw(EMCY_ID);
     while let Some(news) = node.errors.next_news() {
-        let frame = Emergency::new(id, news.error, news.register).to_frame();
+        let frame = Emergency::new(id, news.error.0, news.register).to_frame();
         let moved = u16::try_from(cob_id & 0x7FF).ok().and_then(CobId::new);
         if cob_id & OUT_OF_USE == 0
             && let Some(moved) = moved

@@ -1,8 +1,8 @@
 //! The state machine (Firmware Specification, "Device Control"; CiA 402).
 
+use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{State, control};
-use protocol::epos2::message::NmtCommand;
 use protocol::epos2::objects;
 
 use super::super::{Node, NodeConfig};

@@ -1,7 +1,7 @@
 //! What outlives power-off and what does not, and the configuration of process data.
 
+use protocol::canopen::nmt::NmtCommand;
 use protocol::canopen::nmt::NmtState;
-use protocol::epos2::message::NmtCommand;
 use protocol::epos2::objects::{self, Address};
 
 use super::super::{Abort, Node};

@@ -5,8 +5,8 @@
 use super::communication::{CommunicationId, TransmissionType};
 use super::layout::Layout;
 use crate::canopen::cob_id::{Channel, NodeId, PdoNumber};
+use crate::canopen::object::{Address, Scalar};
 use crate::canopen::sdo::Expedited;
-use crate::epos2::objects::{Address, Scalar};
 
 /// One of a node's PDOs; the direction is seen from the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use crate::canopen::pdo::Mapping;
     use crate::canopen::sdo::{Initiate, Request};
-    use crate::epos2::objects::{POSITION_ACTUAL, TIMESTAMP};
+    use crate::canopen::tests::{POSITION_ACTUAL, TIMESTAMP};
     use std::vec::Vec;
 
     fn angle() -> Configuration {

@@ -6,8 +6,8 @@ use core::fmt;
 
 use thiserror::Error;
 
-use crate::epos2::Bounded;
-use crate::epos2::objects::{Address, Object, Scalar};
+use crate::Bounded;
+use crate::canopen::object::{Address, Object, Scalar};
 
 /// Entries a mapping of the EPOS2 has room for.
 pub const MAX_ENTRIES: usize = 8;
@@ -68,7 +68,7 @@ pub enum LayoutError {
         /// Entries given.
         got: usize,
     },
-    /// More bits than a frame holds; a node answers it with [`crate::epos2::CommError::PDO_LENGTH`].
+    /// More bits than a frame holds.
     #[error("PDO mapping: {got} bits, expected at most {max}")]
     TooLong {
         /// 64.
@@ -230,7 +230,7 @@ mod tests {
     extern crate std;
 
     use super::*;
-    use crate::epos2::objects::{MODE_DISPLAY, POSITION_ACTUAL, STATUSWORD, TIMESTAMP};
+    use crate::canopen::tests::{MODE_DISPLAY, POSITION_ACTUAL, STATUSWORD, TIMESTAMP};
     use proptest::prelude::*;
 
     fn entry(bits: u8) -> Mapping {

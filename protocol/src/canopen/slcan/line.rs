@@ -1,7 +1,7 @@
 //! Bytes to lines, and hexadecimal digits.
 
 use super::error::SlcanError;
-use crate::epos2::Bounded;
+use crate::Bounded;
 
 /// Ends a line; alone, it is an adapter's "done".
 pub const CR: u8 = 0x0D;

@@ -11,7 +11,7 @@ mod segmented_write;
 mod write_object;
 
 pub use can_frame::{RequestCanFrame, SendCanFrame};
-pub use nmt::{Nmt, NmtCommand};
+pub use nmt::Nmt;
 pub use read_object::ReadObject;
 pub use segmented_read::{InitiateSegmentedRead, ReadSegment, SegmentedRead};
 pub use segmented_write::{InitiateSegmentedWrite, SegmentedWrite, WriteSegment};

@@ -1,0 +1,101 @@
+//! Entries of an object dictionary (CiA 301, "Object dictionary"): addresses, value types, typed entries.
+
+use core::fmt;
+use core::marker::PhantomData;
+
+/// Index and subindex of an entry.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Address {
+    /// Index.
+    pub index: u16,
+    /// Subindex.
+    pub sub: u8,
+}
+
+impl Address {
+    /// The entry `index`:`sub`.
+    #[must_use]
+    pub const fn new(index: u16, sub: u8) -> Self {
+        Self { index, sub }
+    }
+}
+
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:04X}:{:02X}", self.index, self.sub)
+    }
+}
+
+/// A value type of up to 32 bits, as it stands in the data of a serial command or an expedited SDO.
+pub trait Scalar: Copy {
+    /// Bytes of the object.
+    const BYTES: u8;
+    /// The value in the low bytes of `raw`; what stands above is ignored (a real unit leaves garbage there).
+    fn from_raw(raw: u32) -> Self;
+    /// The value in the low bytes, extended to 32 bits by its sign.
+    fn to_raw(self) -> u32;
+}
+
+macro_rules! scalar {
+    ($($t:ty),*) => {$(
+        impl Scalar for $t {
+            const BYTES: u8 = size_of::<$t>() as u8;
+            fn from_raw(raw: u32) -> Self {
+                raw as $t
+            }
+            fn to_raw(self) -> u32 {
+                // Through i64 signed types extend by their sign, unsigned ones by zero.
+                i64::from(self) as u32
+            }
+        }
+    )*};
+}
+scalar!(u8, u16, u32, i8, i16, i32);
+
+/// An entry with its type.
+pub struct Object<T> {
+    /// Where it stands.
+    pub address: Address,
+    /// The specification's name.
+    pub name: &'static str,
+    value: PhantomData<fn() -> T>,
+}
+
+impl<T> Object<T> {
+    /// The entry `index`:`sub`.
+    #[must_use]
+    pub const fn new(index: u16, sub: u8, name: &'static str) -> Self {
+        Self {
+            address: Address::new(index, sub),
+            name,
+            value: PhantomData,
+        }
+    }
+}
+
+impl<T: Scalar> Object<T> {
+    /// The value in an answer's data.
+    #[must_use]
+    pub fn decode(&self, raw: u32) -> T {
+        T::from_raw(raw)
+    }
+
+    /// The data of a write.
+    #[must_use]
+    pub fn encode(&self, value: T) -> u32 {
+        value.to_raw()
+    }
+}
+
+// Derives would ask for `T: Clone` and so on; the type is only a name.
+impl<T> Clone for Object<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T> Copy for Object<T> {}
+impl<T> fmt::Debug for Object<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.address, self.name)
+    }
+}
