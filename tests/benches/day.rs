@@ -9,18 +9,18 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
+use daemon::hub::{Event, Hub};
+use daemon::maker::{self, Making};
+use daemon::points::Watching;
+use daemon::scans::{LOG, ScanState, Scans};
+use daemon::shared::{Shared, World};
+use engine::capture::request::CaptureRequest;
+use engine::config::Config;
+use engine::devices::profile as devices;
 use io::log::OwnedRecord;
 use io::recording::Recording;
 use scanner::Accuracy;
 use units::{DegPerS, Degrees};
-use velomotion::config::Config;
-use velomotion::daemon::hub::{Event, Hub};
-use velomotion::daemon::maker::{self, Making};
-use velomotion::daemon::points::Watching;
-use velomotion::daemon::scans::{LOG, ScanState, Scans};
-use velomotion::daemon::shared::{Shared, World};
-use velomotion::devices;
-use velomotion::setup::Asked;
 use velomotion_tests::capture::{Captured, Setting};
 
 /// Scans of a day.
@@ -110,9 +110,9 @@ fn records(log: &Captured) -> Vec<OwnedRecord> {
 
 /// One capture, as the keeper tells of it.
 fn one(shared: &Shared, log: &Captured, records: &[OwnedRecord]) -> String {
-    let asked = Asked {
+    let asked = CaptureRequest {
         speed_deg_s: 56.25,
-        ..Asked::default()
+        ..CaptureRequest::default()
     };
     let id = shared.scans.begin(&asked, true).unwrap().id.clone();
     std::fs::copy(log.log(), shared.scans.place(&id).join(LOG)).unwrap();

@@ -13,6 +13,10 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use drive::{AxisConfig, Client, Command, Listener, Observation, ShaftSample, Taken};
+use engine::config::{Axis, Device, DeviceKind};
+use engine::devices::drive_port as ports;
+use engine::devices::drive_session::Session;
+use engine::devices::profile as devices;
 use io::can::{CanPort, Slcan, SocketCan};
 use io::port::{Port, Recorder, SerialPort};
 use protocol::canopen::sdo::SdoClient;
@@ -22,9 +26,6 @@ use protocol::epos2::objects::POSITION_ACTUAL;
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Quadcounts, Span, Stamp};
 use velomotion::cli::{Common, FirmwareSim};
-use velomotion::config::{Axis, Device, DeviceKind};
-use velomotion::session::Session;
-use velomotion::{devices, ports};
 
 /// First argument of the process that is the software drive.
 const SOFTWARE_DRIVE: &str = "--software-drive";

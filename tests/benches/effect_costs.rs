@@ -21,7 +21,7 @@ use units::{Gearing, Stamp};
 /// First argument of the process that callgrind watches.
 const ONE: &str = "--one";
 
-/// Settings as one would have them.
+/// DaemonConfig as one would have them.
 const TABLES: [(&str, &str); 18] = [
     ("limited_field_of_view", "from_deg = 30.0\nto_deg = 330.0"),
     (

@@ -15,15 +15,15 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use cloud::Fields;
+use engine::output::Target;
+use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
 use scanner::trajectory::Method;
 use scanner::{Accuracy, TiltSource};
 use sim::Attached;
 use sim::effects::GearRipple;
 use units::{DegPerS2, Degrees};
-use velomotion::commands::replay::{self, Request};
-use velomotion::output::Target;
-use velomotion::recordings::Source;
 use velomotion_tests::capture::{Captured, Setting};
 
 /// As many pairs where none are asked for.
@@ -112,7 +112,7 @@ fn replayed(log: &Path, accuracy: Accuracy, cloud: &Path) -> (u64, &'static str)
         recording: &Source::open(log, None).unwrap(),
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: velomotion::cli::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeOf::Host,
         accuracy,
         pace: None,
         truth: None,

@@ -8,18 +8,18 @@ mod browser;
 use std::net::SocketAddr;
 use std::path::Path;
 
+use daemon::{Daemon, Options};
+use engine::config::Config;
+use engine::config::daemon::DaemonConfig;
 use serde_json::Value;
 use tokio::task::spawn_blocking;
-use velomotion::config::Config;
-use velomotion::daemon::settings::Settings;
-use velomotion::daemon::{Daemon, Options};
 
 use browser::{DESKTOP, Driver, NARROW, PHONE, Page};
 use velomotion_tests::bench::Bench;
 
 /// A daemon with its own folder; the port is 0 for one that is free.
 fn daemon(config: Config, device: Option<&str>, folder: &Path, port: u16) -> Daemon {
-    let settings = Settings {
+    let settings = DaemonConfig {
         scans: Some(folder.join("scans")),
         // The machine's disk is not what is tested here.
         reserve_bytes: 0,

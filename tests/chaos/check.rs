@@ -7,12 +7,12 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
+use daemon::client::Client;
+use daemon::scans::{CLOUD, LOG, ScanState, ScanView};
+use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::source::Source;
 use io::recording::Recording;
 use scanner::{Accuracy, TiltSource};
-use velomotion::commands::replay::{self, Request};
-use velomotion::daemon::client::Client;
-use velomotion::daemon::scans::{CLOUD, LOG, ScanState, ScanView};
-use velomotion::recordings::Source;
 
 /// What must become of a capture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,7 +147,7 @@ fn points_of(log: &Path) -> Option<u64> {
         recording: &Source::open(log, None).ok()?,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: velomotion::cli::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeOf::Host,
         accuracy: Accuracy::Best,
         pace: None,
         truth: None,

@@ -17,7 +17,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use velomotion::daemon::scans::Scans;
+use daemon::scans::Scans;
 
 use check::Wanted;
 use disk::Disk;

@@ -1,8 +1,8 @@
 //! What a seed stands for: which fault, when, in which capture.
 
+use engine::capture::moves::SweepRequest;
 use sim::Attached;
 use units::{DegPerS, DegPerS2, Degrees, Span};
-use velomotion::motion::Wish;
 use velomotion_tests::capture::PacketLoss;
 use velomotion_tests::inject::Fault;
 use velomotion_tests::random::Random;
@@ -53,7 +53,7 @@ pub struct Plan {
     /// What it follows from.
     pub seed: u64,
     /// The moves.
-    pub wish: Wish,
+    pub wish: SweepRequest,
     /// What goes wrong.
     pub fault: Either,
     /// How long after the begin.
@@ -127,7 +127,7 @@ impl Plan {
                 _ => Real::Killed,
             }),
         };
-        let wish = Wish {
+        let wish = SweepRequest {
             from: Degrees(0.0),
             to: Degrees(-(random.between(10, 46) as f64)),
             speed: DegPerS(random.between(20, 91) as f64),

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use daemon::client::Client;
 use velomotion::cli::{self, Cli, Common};
 use velomotion::commands;
-use velomotion::daemon::client::Client;
 
 /// What makes this program a daemon.
 pub const ARGUMENT: &str = "--be-a-daemon";

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use daemon::scans::{ScanState, ScanView};
+use engine::capture::request::CaptureRequest;
 use serde_json::Value;
 use tempfile::TempDir;
 use units::Span;
-use velomotion::daemon::scans::{ScanState, ScanView};
-use velomotion::setup::Asked;
 use velomotion_tests::bench::{Bench, free_port};
 use velomotion_tests::random::Random;
 
@@ -105,7 +105,7 @@ impl World {
 
     fn go_through(&mut self, plan: &Plan, what: Real) -> Result<Made, String> {
         self.ready()?;
-        let asked = Asked {
+        let asked = CaptureRequest {
             speed_deg_s: plan.wish.speed.0,
             from_deg: Some(plan.wish.from.0),
             to_deg: Some(plan.wish.to.0),

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use velomotion::daemon::scans::ScanState;
+use daemon::scans::ScanState;
 
 use crate::plan::ROWS;
 use crate::real::{Came, Made};

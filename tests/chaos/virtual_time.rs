@@ -2,14 +2,14 @@
 
 use std::fs::File;
 
+use daemon::scans::{LOG, ScanState, Scans};
 use drive::DriveError;
+use engine::capture::log_recorder::Recorded;
+use engine::capture::request::CaptureRequest;
+use engine::capture::run::Ended;
+use engine::devices::drive_session::SessionError;
 use io::recording::Recording;
 use units::{Host, Span, Stamp};
-use velomotion::daemon::scans::{LOG, ScanState, Scans};
-use velomotion::job::Ended;
-use velomotion::recording::Recorded;
-use velomotion::session::SessionError;
-use velomotion::setup::Asked;
 use velomotion_tests::capture::{Captured, Rejoined, Setting};
 use velomotion_tests::inject::Fault;
 use velomotion_tests::port::Links;
@@ -26,10 +26,10 @@ const SAFE: Span = Span::from_secs(2);
 pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String> {
     let (captured, ended) = Captured::run(setting(plan, what));
     rests(plan, &captured, &ended)?;
-    let asked = Asked {
+    let asked = CaptureRequest {
         speed_deg_s: plan.wish.speed.0,
         name: Some(plan.name()),
-        ..Asked::default()
+        ..CaptureRequest::default()
     };
     let id = scans
         .begin(&asked, true)

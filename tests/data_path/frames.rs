@@ -3,13 +3,13 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use engine::reconstruct::frames::FramePlan;
+use engine::reconstruct::replay::TimeOf;
+use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::report::Scan;
+use engine::reconstruct::source::Source;
 use scanner::TiltSource;
 use units::Degrees;
-use velomotion::cli::TimeOf;
-use velomotion::commands::frames::FramePlan;
-use velomotion::commands::replay::{self, Request};
-use velomotion::recordings::Source;
-use velomotion::report::Scan;
 use velomotion_tests::capture::{Captured, Setting};
 
 fn frames(log: &Path, output: &Path, organised: bool) -> Scan {

@@ -1,11 +1,11 @@
 //! The cloud while it is measured: the same records one by one.
 
 use cloud::{Fields, Points};
+use engine::reconstruct::source::Source;
 use io::recording::Recording;
 use scanner::Live;
 use sim::Attached;
 use units::Span;
-use velomotion::recordings::Source;
 use velomotion_tests::capture::{Captured, Setting};
 
 /// The newest angle may be this much ahead of the cloud.

@@ -7,8 +7,8 @@ mod mechanism;
 mod sensors;
 mod tolerance;
 
+use engine::devices::drive_session::SessionError;
 use units::{DegPerS, DegPerS2, Host, Span, Stamp};
-use velomotion::session::SessionError;
 use velomotion_tests::capture::{Captured, Setting};
 
 /// The card's scan: 45 degrees at 56.25 deg/s in a hall no surface of which is farther than 20 m.

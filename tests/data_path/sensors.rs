@@ -4,13 +4,14 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
+use engine::failure::Failure;
+use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::report::Scan;
+use engine::reconstruct::source::Source;
 use io::files::Overwrite;
 use io::log::{LogConfig, LogWriter};
 use protocol::record::{Record, Wire};
 use scanner::TiltSource;
-use velomotion::commands::replay::{self, Request};
-use velomotion::recordings::Source;
-use velomotion::{Failure, report::Scan};
 use velomotion_tests::capture::{Captured, Setting};
 
 /// The log with every lidar packet once more from each of `others`.
@@ -51,7 +52,7 @@ fn scan(log: &Path, sensor: Option<&str>) -> Result<Scan, Failure> {
         recording: &Source::open(log, sensor).unwrap(),
         tilt: TiltSource::None,
         options: lidar::Options::default(),
-        time: velomotion::cli::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeOf::Host,
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,

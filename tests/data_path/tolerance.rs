@@ -1,11 +1,11 @@
 //! An accuracy instead of a method.
 
 use cloud::{Fields, Points};
+use engine::reconstruct::source::Source;
 use io::recording::Recording;
 use scanner::trajectory::Method;
 use scanner::{Accuracy, Alignment, Placer, ScanError, Survey, TiltSource, Tolerance};
 use sim::Attached;
-use velomotion::recordings::Source;
 use velomotion_tests::capture::{Captured, Setting};
 
 fn solve(captured: &Captured, tolerance: &str) -> Result<Alignment, ScanError> {

@@ -7,10 +7,10 @@
 use std::fmt::Write;
 
 use drive::DriveError;
+use engine::devices::drive_session::SessionError;
 use protocol::epos2::DeviceError;
 use sim::Attached;
 use units::{DegPerS, DegPerS2, Span, Stamp};
-use velomotion::session::SessionError;
 use velomotion_tests::capture::{Captured, Setting};
 use velomotion_tests::inject::Fault;
 

@@ -13,12 +13,13 @@ use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use engine::config::Axis;
+use engine::devices::profile as devices;
+use engine::devices::simulated;
+use engine::devices::simulated_drive::{self as software_drive, Interface};
 use firmware_sim::epos2::SlcanServer;
 use serde_json::Value;
 use sim::Attached;
-use velomotion::config::Axis;
-use velomotion::software_drive::{self, Interface};
-use velomotion::{devices, simulated};
 use velomotion_tests::capture::{Captured, Setting};
 
 /// What the program printed, or `None`, said aloud, where it or one of its modules is not there.

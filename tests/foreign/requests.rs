@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use velomotion::daemon::{Daemon, Options};
+use daemon::{Daemon, Options};
 use velomotion_tests::bench::Bench;
 
 /// What is always right to ask, and moves the axis or stops it.
@@ -23,7 +23,7 @@ fn daemon(bench: &Bench, folder: &Path) -> Daemon {
     let daemon = daemon.unwrap();
     let connected = || {
         let status = daemon.shared().status();
-        let well = velomotion::daemon::view::DeviceState::Connected;
+        let well = daemon::view::DeviceState::Connected;
         status.drive.state == well && status.lidar.state == well
     };
     while !connected() {

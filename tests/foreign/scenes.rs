@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use glam::DVec3;
 use velomotion::cli::Common;
 use velomotion::commands::simulate;
-use velomotion::progress::Progress;
+use velomotion::terminal::Progress;
 
 use crate::python;
 

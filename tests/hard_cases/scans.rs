@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
+use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::report::Scan;
+use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
 use scanner::TiltSource;
 use sim::Attached;
 use units::{DegPerS2, Degrees, Span, Stamp};
-use velomotion::commands::replay::{self, Request};
-use velomotion::recordings::Source;
-use velomotion::report::Scan;
 use velomotion_tests::capture::{Captured, Setting};
 
 /// 2100-01-01 00:00:00 UTC during the sweep: nanoseconds beyond 2^61, where a double steps by half a microsecond. The same scan a whole
@@ -132,7 +132,7 @@ fn scan(log: &Path) -> (Scan, Points) {
         recording: &Source::open(log, None).unwrap(),
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: velomotion::cli::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeOf::Host,
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,

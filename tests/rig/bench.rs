@@ -10,13 +10,14 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use engine::config::{Axis, Config, Device, DeviceKind, Devices};
+use engine::devices::lidar_sockets::DATA_PORT;
+use engine::devices::profile as devices;
+use engine::devices::simulated;
 use io::port::{Port, Pty};
 use sim::{Rig, RigConfig};
 use tempfile::TempDir;
 use units::Span;
-use velomotion::config::{Axis, Config, Device, DeviceKind, Devices};
-use velomotion::recording::DATA_PORT;
-use velomotion::{devices, simulated};
 
 use crate::drive::{is_powered, moves};
 

@@ -13,6 +13,18 @@ use std::sync::atomic::AtomicBool;
 use analysis::truth::TruthReport;
 use cloud::{Fields, Points};
 use drive::{Client, Observation};
+use engine::capture::moves as motion;
+use engine::capture::request::scan_config;
+use engine::config::{Axis, Config};
+use engine::devices::drive_port::BusLine;
+use engine::devices::drive_session::{Session, SessionError};
+use engine::devices::profile as devices;
+use engine::devices::simulated;
+use engine::failure::Failure;
+use engine::output::Target;
+use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::report::Scan;
+use engine::reconstruct::source::Source;
 use io::can::Slcan;
 use io::port::{Port, Recorder};
 use protocol::canopen::slcan::Bitrate;
@@ -24,16 +36,6 @@ use scanner::TiltSource;
 use sim::{Attached, Rig};
 use tempfile::TempDir;
 use units::{Degrees, Host, Span, Stamp};
-use velomotion::commands::replay::{self, Request};
-use velomotion::config::{Axis, Config};
-use velomotion::motion;
-use velomotion::output::Target;
-use velomotion::ports::BusLine;
-use velomotion::recordings::Source;
-use velomotion::report::Scan;
-use velomotion::session::{Session, SessionError};
-use velomotion::setup::scan_config;
-use velomotion::{Failure, devices, simulated};
 
 use crate::inject::{Fault, FaultInjector};
 use crate::port::VirtualPort;
@@ -365,7 +367,7 @@ impl Captured {
             recording: &Source::open(&self.log(), None).unwrap(),
             tilt: TiltSource::Log,
             options: lidar::Options::default(),
-            time: velomotion::cli::TimeOf::Host,
+            time: engine::reconstruct::replay::TimeOf::Host,
             accuracy: scanner::Accuracy::Best,
             pace: None,
             truth: None,
@@ -401,7 +403,7 @@ impl Captured {
             recording: &Source::open(&self.log(), None).unwrap(),
             tilt,
             options: lidar::Options::default(),
-            time: velomotion::cli::TimeOf::Host,
+            time: engine::reconstruct::replay::TimeOf::Host,
             accuracy: scanner::Accuracy::Best,
             pace: None,
             truth: None,

@@ -11,15 +11,16 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
+use engine::reconstruct::replay;
+use engine::reconstruct::report::Scan;
+use engine::reconstruct::source::Source;
 use scanner::TiltSource;
 use sim::scene_file::Scene;
 use sim::simulate::{Event, Out, TruePoint};
 use tempfile::TempDir;
 use velomotion::cli::Common;
-use velomotion::commands::{replay, simulate};
-use velomotion::progress::Progress;
-use velomotion::recordings::Source;
-use velomotion::report::Scan;
+use velomotion::commands::simulate;
+use velomotion::terminal::Progress;
 
 /// A scene that was simulated: its log, and the truth by firing and laser.
 struct Simulated {
@@ -137,7 +138,7 @@ fn replayed(log: &Path, tilt: TiltSource) -> (Scan, Points) {
         recording: &Source::open(log, None).unwrap(),
         tilt,
         options: lidar::Options::default(),
-        time: velomotion::cli::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeOf::Host,
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,

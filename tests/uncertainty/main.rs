@@ -5,13 +5,13 @@
 //! What no scan tells, and sd leaves out, is taken away first as a calibration would: of each way to the drive one delay and one zero
 //! of the angle, over all of its seeds and speeds.
 
+use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
 use scanner::clock::Moment;
 use scanner::trajectory::Method;
 use scanner::{Accuracy, Survey, TiltSource};
 use sim::Attached;
 use units::{DegPerS, DegPerS2, Degrees, Span};
-use velomotion::recordings::Source;
 use velomotion_tests::capture::{Captured, Setting};
 
 const SEEDS: u64 = 8;

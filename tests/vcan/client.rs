@@ -7,17 +7,17 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use drive::{Client, Command, Listener, Observation, Outcome, ShaftSample};
+use engine::capture::moves::{self as motion, SweepRequest};
+use engine::config::Axis;
+use engine::devices::drive_port::BusLine;
+use engine::devices::drive_session::Session;
+use engine::devices::profile as devices;
 use io::can::{CanPort as _, SocketCan};
 use io::files::Overwrite;
 use io::log::{LogConfig, LogWriter};
 use io::port::Recorder;
 use protocol::record::{DriveLink, Record, Wire};
 use units::{DegPerS, DegPerS2, Degrees, Span};
-use velomotion::config::Axis;
-use velomotion::devices;
-use velomotion::motion::{self, Wish};
-use velomotion::ports::BusLine;
-use velomotion::session::Session;
 
 use crate::BUS;
 use crate::logs::{CANDUMP_LOG, LOG};
@@ -66,7 +66,7 @@ pub fn sweep(out: &Path) {
     axis.can.host_limit = Span::from_secs(2);
     axis.can.node_limit = Span::from_secs(2);
     axis.timing.timeout_moving = Span::from_secs(1);
-    let wish = Wish {
+    let wish = SweepRequest {
         from: Degrees(0.0),
         to: Degrees(-45.0),
         speed: DegPerS(10.0),

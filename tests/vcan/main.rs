@@ -18,6 +18,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
+use engine::config::Axis;
+use engine::devices::profile as devices;
+use engine::devices::simulated;
+use engine::devices::simulated_drive::{self as software_drive, Interface, SoftwareDriveError};
 use firmware_sim::epos2::CanServer;
 use io::can::SocketCan;
 use io::clock;
@@ -31,9 +35,6 @@ use protocol::epos2::objects::{self, Address};
 use protocol::epos2::{CommError, DeviceError};
 use tempfile::TempDir;
 use units::Span;
-use velomotion::config::Axis;
-use velomotion::software_drive::{self, Interface, SoftwareDriveError};
-use velomotion::{devices, simulated};
 
 use bus::Master;
 

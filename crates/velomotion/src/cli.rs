@@ -7,11 +7,16 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cloud::Fields;
+use engine::capture::jog::JogRequest;
+use engine::capture::request::CaptureRequest;
+use engine::reconstruct::decoder_options::DecoderRequest;
+use engine::reconstruct::replay;
+use lidar::Duplicates;
 use protocol::vlp16::{Model, models};
 use scanner::Tolerance;
 
 use crate::commands::analyze::Sweep;
-use crate::recordings::SensorName;
+use engine::reconstruct::source::SensorName;
 
 /// Version, and the commit that the program was built from.
 pub const VERSION: &str = env!("VELOMOTION_VERSION");
@@ -243,6 +248,65 @@ pub enum Equal {
     Once,
     /// Two points
     Twice,
+}
+
+impl From<TimeOf> for replay::TimeOf {
+    fn from(time: TimeOf) -> Self {
+        match time {
+            TimeOf::Host => Self::Host,
+            TimeOf::Utc => Self::Utc,
+        }
+    }
+}
+
+impl Lidar {
+    /// The request to the engine.
+    #[must_use]
+    pub fn request(&self) -> DecoderRequest {
+        DecoderRequest {
+            model: self.model.map(ModelName::model),
+            calibration: self.calibration.clone(),
+            duplicates: match self.equal_returns {
+                Equal::Once => Duplicates::Unique,
+                Equal::Twice => Duplicates::All,
+            },
+            one_origin: self.one_origin,
+        }
+    }
+}
+
+impl From<TiltVerb> for JogRequest {
+    fn from(verb: TiltVerb) -> Self {
+        match verb {
+            TiltVerb::Status | TiltVerb::Faults { clear: false } => Self::Status,
+            TiltVerb::Faults { clear: true } => Self::ClearFaults,
+            TiltVerb::Stop => Self::Stop,
+            TiltVerb::Home => Self::Home,
+            TiltVerb::Goto { to, speed, accel } => Self::Goto {
+                to_deg: to,
+                speed_deg_s: speed,
+                accel_deg_s2: accel,
+            },
+        }
+    }
+}
+
+impl From<&Capture> for CaptureRequest {
+    fn from(arguments: &Capture) -> Self {
+        Self {
+            speed_deg_s: arguments.speed,
+            from_deg: arguments.from,
+            to_deg: arguments.to,
+            accel_deg_s2: arguments.accel,
+            sweeps: arguments.sweeps,
+            both_ways: arguments.both_ways,
+            tolerance: arguments
+                .accuracy
+                .tolerance
+                .map(|t| format!("{}m@{}m", t.off.0, t.at.0)),
+            name: None,
+        }
+    }
 }
 
 impl ModelName {

@@ -4,11 +4,11 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
+use engine::failure::{Failure, Kind};
 use velomotion::cli::{Cli, Common};
-use velomotion::commands::{self, Said};
-use velomotion::failure::{Failure, Kind};
-use velomotion::journal;
-use velomotion::progress::to_stderr;
+use velomotion::commands::{self, CommandOutput};
+use velomotion::logging;
+use velomotion::terminal::to_stderr;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -37,7 +37,7 @@ fn main() -> ExitCode {
         None => ExitCode::SUCCESS,
         Some(failure) => {
             let code = failure.kind.exit_code();
-            journal::failed(failure);
+            logging::failed(failure);
             ExitCode::from(code)
         }
     }
@@ -58,7 +58,11 @@ fn keep_words_whole() {
 }
 
 /// With `--json` exactly one object, failure or not; else the text, unless it is no result and `--quiet`. Where the cloud has stdout, stderr.
-fn print(common: &Common, said: Option<Said>, failure: Option<&Failure>) -> std::io::Result<()> {
+fn print(
+    common: &Common,
+    said: Option<CommandOutput>,
+    failure: Option<&Failure>,
+) -> std::io::Result<()> {
     let stdout_taken = said.as_ref().is_some_and(|said| said.stdout_taken);
     let line = match (common.json, said) {
         (_, Some(said)) if said.json.is_null() => return Ok(()),
@@ -90,7 +94,7 @@ fn error_object(failure: &Failure) -> serde_json::Value {
 }
 
 fn start_log(common: &Common) {
-    journal::start(match (common.quiet, common.verbose) {
+    logging::start(match (common.quiet, common.verbose) {
         (true, _) => "error",
         // What zenoh says of a router that is not there, the daemon says better.
         (false, 0) => "warn,zenoh=error",

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
-use crate::failure::{Failure, Kind};
+use engine::failure::{Failure, Kind};
 
 /// A flag that becomes true at Ctrl-C, SIGTERM, SIGQUIT, or when the terminal goes away. There is no shorter way out: the axis is
 /// stopped first, and every wait has its limit.

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use drive::{AxisConfig, Client};
+use engine::devices::drive_port::BusLine;
+use engine::devices::drive_session::Session;
 use io::can::Slcan;
 use io::port::Port;
 use protocol::canopen::slcan::Bitrate;
 use protocol::record::DriveLink;
 use sim::Attached;
 use units::Span;
-use velomotion::ports::BusLine;
-use velomotion::session::Session;
 
 use crate::port::VirtualPort;
 

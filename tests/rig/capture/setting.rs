@@ -1,10 +1,10 @@
 //! What is captured, over what links, and what goes wrong meanwhile.
 
+use engine::capture::moves::SweepRequest;
 use firmware_sim::epos2::Servo;
 use sim::Attached;
 use sim::effects::GearRipple;
 use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
-use velomotion::motion::Wish;
 
 use crate::inject::Fault;
 use crate::port::{Arrived, Links};
@@ -14,7 +14,7 @@ use crate::random::Random;
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
     /// The moves.
-    pub wish: Wish,
+    pub wish: SweepRequest,
     /// The links' delays.
     pub links: Links,
     /// When it begins.
@@ -86,7 +86,7 @@ impl Default for Setting {
     /// The card's command: 45 degrees at 56.25 deg/s over USB, 2026-11-21 02:05:33 UTC.
     fn default() -> Self {
         Self {
-            wish: Wish {
+            wish: SweepRequest {
                 from: Degrees(0.0),
                 to: Degrees(-45.0),
                 speed: DegPerS(56.25),

@@ -4,32 +4,37 @@
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::SystemTime;
 
 use io::udp::ListenConfig;
 use sim::Truth;
 
-use super::{Said, through_daemon};
+use super::{CommandOutput, through_daemon};
 use crate::cli::{self, Common};
-use crate::control::Control;
-use crate::daemon::client::Client;
-use crate::failure::{Failure, Kind};
-use crate::hearing::Hearing;
-use crate::job::{self, Ended, Happening, Job};
-use crate::output::{self, Aside, Target};
-use crate::ports::Looks;
-use crate::progress::Progress;
-use crate::recording::{Ear, listen_config};
-use crate::setup::Setup;
 use crate::signals;
-use crate::simulated::{self, Simulated};
-use crate::{devices, ports};
+use crate::terminal::Progress;
+use daemon::client::Client;
+use engine::capture::request::CapturePlan;
+use engine::capture::request::CaptureRequest;
+use engine::capture::run::{self as job, CaptureEvent, Ended, Job};
+use engine::config;
+use engine::default_paths;
+use engine::devices::drive_port as ports;
+use engine::devices::drive_port::Looks;
+use engine::devices::lidar_receiver::LidarReceiver;
+use engine::devices::lidar_sockets::{LidarSockets, listen_config};
+use engine::devices::profile;
+use engine::devices::simulated::{self, Simulated};
+use engine::failure::{Failure, Kind};
+use engine::output::{self, Aside, Target};
+use engine::stop_socket::Control;
 
 /// Runs the command.
 ///
 /// # Errors
 /// [`Failure`] where nothing was recorded, or no cloud came of it.
-pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
-    let setup = Setup::new(arguments, common)?;
+pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, Failure> {
+    let setup = plan(arguments, common)?;
     output::one_for_stdout(Some(&setup.cloud), common.json)?;
     output::log_is_file(&setup.log, "--log")?;
     let target = Target::open(&setup.cloud, arguments.output.fields(), setup.force)?;
@@ -45,7 +50,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
         return through_daemon::capture(&client, arguments, what, &interrupt, &mut progress);
     }
     let older_log = Aside::put(&setup.log)?;
-    let (truth, ended) = if devices::simulated(&setup.device) {
+    let (truth, ended) = if profile::simulated(&setup.device) {
         simulate(&setup, &interrupt, &mut progress)?
     } else {
         let place = ports::place(
@@ -54,7 +59,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
             Looks::Once,
             &io::discover::discover,
         )?;
-        let ear = Ear::bind(&listen_config(&setup.device))?;
+        let ear = LidarSockets::bind(&listen_config(&setup.device))?;
         (
             None,
             record(&setup, ear, &place, &interrupt, &mut progress)?,
@@ -76,16 +81,45 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<Said, Failure> {
         older_log.replaced();
     }
     let (scan, failure) = job::conclude(made, ended.outcome(), (&setup.cloud, &setup.log))?;
-    Ok(Said::scan(&scan, failure, stdout))
+    Ok(CommandOutput::scan(&scan, failure, stdout))
+}
+
+/// Checks the arguments against the axis and plans the moves.
+fn plan(arguments: &cli::Capture, common: &Common) -> Result<CapturePlan, Failure> {
+    let start = SystemTime::now();
+    let config = config::load(common.config.as_deref())?;
+    let (name, device) = profile::choose(&config, common.device.as_deref())?;
+    let simulated = profile::simulated(&device);
+    let cloud = arguments
+        .output
+        .output
+        .clone()
+        .unwrap_or_else(|| default_paths::cloud(start, simulated));
+    let log = arguments
+        .log
+        .clone()
+        .unwrap_or_else(|| default_paths::log_of(&cloud, start, simulated));
+    let plan = CapturePlan {
+        force: arguments.output.force,
+        ..CapturePlan::of(
+            &CaptureRequest::from(arguments),
+            &config,
+            (&name, &device),
+            cloud,
+            log,
+        )?
+    };
+    output::two_files(&plan.log, &plan.cloud)?;
+    Ok(plan)
 }
 
 /// The same, against software devices that are started for it; with what truly happened.
 fn simulate(
-    setup: &Setup,
+    setup: &CapturePlan,
     interrupt: &Arc<AtomicBool>,
     progress: &mut Progress,
 ) -> Result<(Option<Truth>, Ended), Failure> {
-    let ear = Ear::bind(&ListenConfig {
+    let ear = LidarSockets::bind(&ListenConfig {
         address: setup.device.lidar,
         data_port: 0,
         position_port: Some(0),
@@ -101,8 +135,8 @@ fn simulate(
 
 /// Records both devices while the axis makes its moves.
 fn record(
-    setup: &Setup,
-    ear: Ear,
+    setup: &CapturePlan,
+    ear: LidarSockets,
     place: &Path,
     interrupt: &Arc<AtomicBool>,
     progress: &mut Progress,
@@ -111,7 +145,7 @@ fn record(
     if let Some(warning) = &opened.warning {
         progress.say(&format!("warning: {warning}"));
     }
-    let hearing = Arc::new(Hearing::start(ear, Box::new(|_| {}))?);
+    let hearing = Arc::new(LidarReceiver::start(ear, Box::new(|_| {}))?);
     let control = Control::listen(place, interrupt);
     let job = Job {
         setup,
@@ -130,13 +164,13 @@ fn record(
 }
 
 /// What a person at the terminal sees of it.
-fn show(happening: Happening<'_>, progress: &mut Progress) {
+fn show(happening: CaptureEvent<'_>, progress: &mut Progress) {
     match happening {
-        Happening::Begins | Happening::Saving => {}
-        Happening::Move { step, .. } => progress.begin_move(&step.plan),
-        Happening::Moved { at, angle, packets } => progress.moved(at, angle, packets),
-        Happening::Progress(step) => tracing::info!(?step),
-        Happening::Over => progress.end_move(),
-        Happening::Warning(text) => progress.say(&format!("warning: {text}")),
+        CaptureEvent::Begins | CaptureEvent::Saving => {}
+        CaptureEvent::Move { step, .. } => progress.begin_move(&step.plan),
+        CaptureEvent::Moved { at, angle, packets } => progress.moved(at, angle, packets),
+        CaptureEvent::Progress(step) => tracing::info!(?step),
+        CaptureEvent::Over => progress.end_move(),
+        CaptureEvent::Warning(text) => progress.say(&format!("warning: {text}")),
     }
 }

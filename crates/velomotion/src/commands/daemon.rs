@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use sd_notify::NotifyState;
 
-use super::Said;
+use super::CommandOutput;
 use crate::cli::{self, Common};
-use crate::config;
-use crate::daemon::{Daemon, Options};
-use crate::failure::{Failure, Kind};
-use crate::progress::to_stderr;
 use crate::signals;
+use crate::terminal::to_stderr;
+use daemon::{Daemon, Options};
+use engine::config;
+use engine::failure::{Failure, Kind};
 
 /// How often signals are looked at.
 const LOOK: Duration = Duration::from_millis(100);
@@ -21,7 +21,7 @@ const LOOK: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 /// [`Failure`] where it cannot start, or its devices' thread is gone.
-pub fn run(arguments: &cli::Daemon, common: &Common) -> Result<Said, Failure> {
+pub fn run(arguments: &cli::Daemon, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
     let daemon = Daemon::start(Options {
         config: config::load(common.config.as_deref())?,
@@ -50,7 +50,7 @@ pub fn run(arguments: &cli::Daemon, common: &Common) -> Result<Said, Failure> {
                 .help("see whether the axis stands; run with -vv and report what it says"),
         );
     }
-    Ok(Said::nothing())
+    Ok(CommandOutput::nothing())
 }
 
 /// Ends it. Whoever asks once more does not wait for clouds.

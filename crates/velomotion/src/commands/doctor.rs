@@ -7,11 +7,11 @@ use io::can::Interface;
 use io::discover::{Epos2Found, Findings, discover};
 use serde::Serialize;
 
-use super::Said;
+use super::CommandOutput;
 use crate::cli::Common;
-use crate::config::{self, Axis, Config, DeviceKind};
-use crate::devices;
-use crate::failure::Failure;
+use engine::config::{self, Axis, Config, DeviceKind};
+use engine::devices::profile as devices;
+use engine::failure::Failure;
 
 /// One thing that was looked at.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -47,7 +47,7 @@ type Sysfs<'a> = &'a dyn Fn(&Path) -> Option<String>;
 ///
 /// # Errors
 /// Where the configuration cannot be read.
-pub fn run(common: &Common) -> Result<Said, Failure> {
+pub fn run(common: &Common) -> Result<CommandOutput, Failure> {
     let config = config::load(common.config.as_deref())?;
     let read = |path: &Path| {
         fs::read_to_string(path)
@@ -62,7 +62,7 @@ pub fn run(common: &Common) -> Result<Said, Failure> {
     findings.push(receive_buffer(&read));
     let report = Report { findings };
     let text = text(&report);
-    Ok(Said::result(&report, text))
+    Ok(CommandOutput::result(&report, text))
 }
 
 fn finding(what: impl Into<String>, verdict: Verdict, found: impl Into<String>) -> Finding {

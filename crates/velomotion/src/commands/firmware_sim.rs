@@ -9,17 +9,20 @@ use firmware_sim::epos2::{CanServer, Rs232Server, SlcanServer, UsbServer};
 use io::can::SocketCan;
 use io::port::Pty;
 
-use super::Said;
+use super::CommandOutput;
 use crate::cli::{self, Common};
-use crate::failure::{Failure, Kind};
-use crate::software_drive::{self, Interface};
-use crate::{config, devices, signals, simulated};
+use crate::signals;
+use engine::config;
+use engine::devices::profile as devices;
+use engine::devices::simulated;
+use engine::devices::simulated_drive::{self as software_drive, Interface};
+use engine::failure::{Failure, Kind};
 
 /// Runs the command: the first line on stdout is the port; it ends at SIGTERM, Ctrl-C, or when a stdin that is no terminal closes.
 ///
 /// # Errors
 /// Where the machine gives no pseudo-terminal or has no such CAN interface, or the link cannot be made.
-pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<Said, Failure> {
+pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutput, Failure> {
     let config = config::load(common.config.as_deref())?;
     let axis = devices::axis(&config.axis)?;
     let stop = signals::interrupt_flag()?;
@@ -35,7 +38,7 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<Said, Failur
     let ended = software_drive::run(simulated::node(&axis), interface, &stop);
     drop(link);
     ended.map_err(|error| failed(&error))?;
-    Ok(Said::nothing())
+    Ok(CommandOutput::nothing())
 }
 
 /// One of the interfaces that are a pseudo-terminal, with the link to it.

@@ -5,7 +5,6 @@ pub mod capture;
 pub mod daemon;
 pub mod doctor;
 pub mod firmware_sim;
-pub mod frames;
 pub mod info;
 pub mod replay;
 pub mod simulate;
@@ -14,10 +13,10 @@ pub mod tilt;
 pub mod tradeoff;
 
 use crate::cli::{Cli, Command};
-use crate::failure::Failure;
+use engine::failure::Failure;
 
 /// What a command has to say on stdout: one JSON object, or text for people.
-pub struct Said {
+pub struct CommandOutput {
     /// For programs.
     pub json: serde_json::Value,
     /// For people.
@@ -34,7 +33,7 @@ pub struct Said {
 ///
 /// # Errors
 /// [`Failure`] where nothing came of it.
-pub fn run(cli: &Cli) -> Result<Said, Failure> {
+pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
     match &cli.command {
         Command::Capture(arguments) => capture::run(arguments, &cli.common),
         Command::Replay(arguments) => replay::run(arguments, &cli.common),
@@ -49,7 +48,7 @@ pub fn run(cli: &Cli) -> Result<Said, Failure> {
     }
 }
 
-impl Said {
+impl CommandOutput {
     /// Everything was said while the command ran.
     const fn nothing() -> Self {
         Self {
@@ -82,10 +81,14 @@ impl Said {
 
     /// A scan's report. Where the cloud itself went to stdout, nothing else may.
     #[must_use]
-    pub fn scan(scan: &crate::report::Scan, failure: Option<Failure>, stdout_taken: bool) -> Self {
+    pub fn scan(
+        scan: &engine::reconstruct::report::Scan,
+        failure: Option<Failure>,
+        stdout_taken: bool,
+    ) -> Self {
         Self {
             json: json(scan),
-            text: scan.table(),
+            text: crate::tables::scan_table(scan),
             failure,
             stdout_taken,
             is_result: false,

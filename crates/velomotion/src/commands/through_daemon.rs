@@ -11,18 +11,18 @@ use io::files::NewFile;
 use serde::Deserialize;
 use units::{Degrees, Span, Stamp};
 
-use super::Said;
+use super::CommandOutput;
 use crate::cli::{self, TiltVerb};
-use crate::daemon::client::Client;
-use crate::daemon::http::tilt::Goto;
-use crate::daemon::scans::{ScanState, ScanView, WholeView};
-use crate::failure::{Failure, Kind};
-use crate::job;
-use crate::output::{self, Aside, Target, file_failure, overwrite};
-use crate::progress::Progress;
-use crate::report;
-use crate::setup::{Asked, Setup};
-use crate::tilting::Report;
+use crate::terminal::Progress;
+use daemon::client::Client;
+use daemon::http::tilt::Goto;
+use daemon::scans::{ScanState, ScanView, WholeView};
+use engine::capture::jog::Report;
+use engine::capture::request::{CapturePlan, CaptureRequest};
+use engine::capture::run as job;
+use engine::failure::{Failure, Kind};
+use engine::output::{self, Aside, Target, file_failure, overwrite};
+use engine::reconstruct::report;
 
 /// How often the daemon is asked how far it is.
 const LOOK: Duration = Duration::from_millis(50);
@@ -54,11 +54,11 @@ struct Drive {
 pub fn capture(
     client: &Client,
     arguments: &cli::Capture,
-    (setup, target): (&Setup, Target),
+    (setup, target): (&CapturePlan, Target),
     interrupt: &Arc<AtomicBool>,
     progress: &mut Progress,
-) -> Result<Said, Failure> {
-    let begun: ScanView = client.post("/api/v1/captures", &Asked::from(arguments))?;
+) -> Result<CommandOutput, Failure> {
+    let begun: ScanView = client.post("/api/v1/captures", &CaptureRequest::from(arguments))?;
     let older_log = Aside::put(&setup.log)?;
     let scan = wait(client, &begun.id, setup, interrupt, progress)?;
     if scan.scan.log_bytes.is_none() {
@@ -84,7 +84,7 @@ pub fn capture(
         reception: scan.reception,
     };
     let (scan, failure) = job::conclude(made, outcome, (&setup.cloud, &setup.log))?;
-    Ok(Said::scan(&scan, failure, stdout))
+    Ok(CommandOutput::scan(&scan, failure, stdout))
 }
 
 /// What the daemon's simulator knows of the cloud.
@@ -97,7 +97,7 @@ fn truth(scan: &WholeView) -> Option<report::Truth> {
 fn wait(
     client: &Client,
     id: &str,
-    setup: &Setup,
+    setup: &CapturePlan,
     interrupt: &AtomicBool,
     progress: &mut Progress,
 ) -> Result<WholeView, Failure> {

@@ -7,28 +7,31 @@ use std::sync::atomic::AtomicBool;
 use drive::{Client, Command};
 use serde::Serialize;
 
-use super::{Said, through_daemon};
+use super::{CommandOutput, through_daemon};
 use crate::cli::{self, Common, TiltVerb};
-use crate::config::{self, Config, Device};
-use crate::control::{self, Asked};
-use crate::daemon::client;
-use crate::failure::{Failure, Kind};
-use crate::ports::Looks;
-use crate::report::table;
-use crate::session::{Session, SessionError};
-use crate::simulated::{Destinations, Simulated};
-use crate::tilting::{self, Homing, Report};
-use crate::{devices, ports, signals, simulated};
+use crate::signals;
+use crate::tables::table;
+use daemon::client;
+use engine::capture::jog::{self as tilting, Homing, Report};
+use engine::config::{self, Config, Device};
+use engine::devices::drive_port as ports;
+use engine::devices::drive_port::Looks;
+use engine::devices::drive_session::{Session, SessionError};
+use engine::devices::profile as devices;
+use engine::devices::simulated;
+use engine::devices::simulated::{Destinations, Simulated};
+use engine::failure::{Failure, Kind};
+use engine::stop_socket::{self as control, Asked};
 
 /// Runs the command.
 ///
 /// # Errors
 /// [`Failure`] where the drive is not there, refuses, or does not do it.
-pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<Said, Failure> {
+pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<CommandOutput, Failure> {
     let config = config::load(common.config.as_deref())?;
     let (name, device) = devices::choose(&config, common.device.as_deref())?;
     // Refused before a device is touched.
-    let commands = tilting::commands(&arguments.verb, &config, &device)?;
+    let commands = tilting::commands(arguments.verb.into(), &config, &device)?;
     if let Some(client) = client::Client::find(&name, &device) {
         let interrupt = signals::interrupt_flag()?;
         let report = through_daemon::tilt(&client, arguments.verb, &interrupt)?;
@@ -94,7 +97,7 @@ fn with_port(
     place: &Path,
     commands: &[Command],
     interrupt: Arc<AtomicBool>,
-) -> Result<Said, Failure> {
+) -> Result<CommandOutput, Failure> {
     let simulated = devices::simulated(device);
     let opened = ports::open(device, place)?;
     let client = Client::with_link(devices::axis(&config.axis)?, opened.link);
@@ -120,14 +123,16 @@ fn with_port(
 }
 
 /// The report as the verb shows it.
-fn say(verb: &TiltVerb, report: &Report, simulated: &str) -> Said {
+fn say(verb: &TiltVerb, report: &Report, simulated: &str) -> CommandOutput {
     let text = match verb {
         TiltVerb::Faults { .. } => faults_table(report),
         _ => status_table(report, simulated),
     };
     match verb {
-        TiltVerb::Status | TiltVerb::Faults { .. } => Said::result(report, text),
-        TiltVerb::Home | TiltVerb::Goto { .. } | TiltVerb::Stop => Said::report(report, text),
+        TiltVerb::Status | TiltVerb::Faults { .. } => CommandOutput::result(report, text),
+        TiltVerb::Home | TiltVerb::Goto { .. } | TiltVerb::Stop => {
+            CommandOutput::report(report, text)
+        }
     }
 }
 
@@ -184,7 +189,7 @@ fn faults_table(report: &Report) -> String {
     text
 }
 
-fn stopped_elsewhere(device: &str) -> Said {
+fn stopped_elsewhere(device: &str) -> CommandOutput {
     #[derive(Serialize)]
     struct Stopped<'a> {
         device: &'a str,
@@ -194,7 +199,7 @@ fn stopped_elsewhere(device: &str) -> Said {
         device,
         stopped: true,
     };
-    Said::report(
+    CommandOutput::report(
         &report,
         "the program that has the drive has stopped the axis".to_owned(),
     )

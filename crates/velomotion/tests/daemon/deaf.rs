@@ -83,9 +83,9 @@ impl Drop for Cable {
 fn an_axis_that_could_not_be_stopped_is_said_to_move_until_it_is_brought_to_rest() {
     let table = tempfile::tempdir().unwrap();
     let link = table.path().join("epos");
-    let axis = velomotion::config::Config::default().axis;
-    let axis = velomotion::devices::axis(&axis).unwrap();
-    let cable = Cable::plug(&link, velomotion::simulated::node(&axis));
+    let axis = engine::config::Config::default().axis;
+    let axis = engine::devices::profile::axis(&axis).unwrap();
+    let cable = Cable::plug(&link, engine::devices::simulated::node(&axis));
     let rig = Rig::with("", |options| {
         bench(options, &format!("port = '{}'", link.display()));
     });

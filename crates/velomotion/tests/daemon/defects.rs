@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use daemon::view::Doing;
+use engine::failure::Kind;
 use serde_json::json;
-use velomotion::daemon::view::Doing;
-use velomotion::failure::Kind;
 
 use crate::rig::{Rig, sweep, wait};
 

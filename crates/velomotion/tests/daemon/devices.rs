@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Arc, Mutex};
 
+use daemon::Options;
 use io::discover::{EPOS2_PRODUCT, EPOS2_VENDOR, Epos2Found, Findings, UsbIdentity};
 use serde_json::json;
 use units::Span;
-use velomotion::daemon::Options;
 
 use crate::events::connect;
 use crate::rig::{Rig, run, said, wait};
@@ -20,7 +20,7 @@ pub fn bench(options: &mut Options, keys: &str) {
     let profile = format!(
         "[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\nlidar = '127.0.0.1'\ndata_port = {port}\nposition_port = {port}\n{keys}"
     );
-    let own: velomotion::config::Config = toml::from_str(&profile).unwrap();
+    let own: engine::config::Config = toml::from_str(&profile).unwrap();
     options.config.device = own.device;
 }
 

@@ -6,9 +6,9 @@ use std::os::unix::net::{UnixListener, UnixStream};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use daemon::client::Client;
+use daemon::limits::{CONNECTIONS, LOCAL_CONNECTIONS};
 use serde_json::Value;
-use velomotion::daemon::client::Client;
-use velomotion::daemon::limits::{CONNECTIONS, LOCAL_CONNECTIONS};
 
 use crate::rig::{Rig, request, velomotion, wait};
 

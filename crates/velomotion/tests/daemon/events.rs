@@ -126,7 +126,7 @@ fn who_stops_reading_is_dropped() {
     let long = "x".repeat(100_000);
     let mut told = 0;
     while hub.dropped() == 0 {
-        hub.say(velomotion::daemon::hub::Level::Info, long.clone(), None);
+        hub.say(daemon::hub::Level::Info, long.clone(), None);
         told += 1;
         assert!(told < 10_000, "never dropped");
     }

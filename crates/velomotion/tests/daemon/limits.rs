@@ -6,11 +6,11 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use serde_json::json;
-use velomotion::daemon::limits::{
+use daemon::limits::{
     self, BODY_BYTES, CONNECTIONS, DOWNLOADS, HEAD_BYTES, HEADERS, LOCAL_CONNECTIONS, MAKING,
     SHARE, SUBSCRIBERS, TARGET_BYTES, Waits,
 };
+use serde_json::json;
 
 use crate::events::connect;
 use crate::rig::{Rig, raw, request, wait};
@@ -270,7 +270,7 @@ fn there_are_no_more_websockets_than_allowed() {
 fn a_client_that_says_too_much_is_disconnected() {
     let rig = Rig::new();
     let mut socket = connect(rig.address, "").unwrap();
-    let long = "x".repeat(velomotion::daemon::limits::CLIENT_MESSAGE_BYTES + 1);
+    let long = "x".repeat(daemon::limits::CLIENT_MESSAGE_BYTES + 1);
     socket.send(tungstenite::Message::text(long)).unwrap();
     // Whatever was on its way, then the end.
     while socket.read().is_ok() {}

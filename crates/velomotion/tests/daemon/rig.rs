@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use daemon::limits::Waits;
+use daemon::shared::World;
+use daemon::{Daemon, Options};
+use engine::config::Config;
 use serde_json::{Value, json};
-use velomotion::config::Config;
-use velomotion::daemon::limits::Waits;
-use velomotion::daemon::shared::World;
-use velomotion::daemon::{Daemon, Options};
 
 /// Whatever is waited for comes sooner, or never.
 const LIMIT: Duration = Duration::from_secs(90);

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 
 use cloud::formats::Format;
+use daemon::{Daemon, Options, room};
 use serde_json::json;
 use units::Span;
-use velomotion::daemon::{Daemon, Options, room};
 
 use crate::rig::{Process, Rig, finished, place, request, run, sweep, wait};
 
@@ -345,7 +345,7 @@ fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
     rig.get(&format!("/api/v1/scans/{id}/cloud"))
         .refused(507, "full");
     // A byte less than it may need, beside what is left free.
-    let needs = velomotion::daemon::plan::most_cloud_bytes(scan["log_bytes"].as_u64().unwrap());
+    let needs = daemon::plan::most_cloud_bytes(scan["log_bytes"].as_u64().unwrap());
     free.store(1_000 + needs - 1, Ordering::SeqCst);
     let before = looks.load(Ordering::SeqCst);
     // The status of every second looks, too.

@@ -11,9 +11,9 @@ use super::input::Input;
 use super::report::{PatternReport, Report};
 use crate::cli;
 use crate::commands::json;
-use crate::failure::{Failure, Kind};
-use crate::output::{make_folder, write_text};
-use crate::progress::Progress;
+use crate::terminal::Progress;
+use engine::failure::{Failure, Kind};
+use engine::output::{make_folder, write_text};
 
 /// A folder that fills.
 pub struct Folder {

@@ -17,10 +17,10 @@ use sim::patterns::{Pattern, PatternError, Wish};
 
 use super::report::DeviceReport;
 use super::view::{Outside, Seen};
-use crate::cli::TimeOf;
-use crate::commands::replay;
-use crate::failure::{Failure, Kind};
-use crate::recordings::Source;
+use engine::failure::{Failure, Kind};
+use engine::reconstruct::replay;
+use engine::reconstruct::replay::TimeOf;
+use engine::reconstruct::source::Source;
 
 /// Directions, and what is known of how they came about.
 pub struct Input {

@@ -31,11 +31,11 @@ pub use report::{
 pub use sweep::Sweep;
 pub use view::Seen;
 
-use super::Said;
+use super::CommandOutput;
 use crate::cli::{self, Common};
-use crate::failure::{Failure, Kind};
-use crate::progress::Progress;
 use crate::signals;
+use crate::terminal::Progress;
+use engine::failure::{Failure, Kind};
 use folder::Folder;
 use input::{Input, Named};
 
@@ -56,7 +56,7 @@ const MOST_HOLES: usize = 2_000;
 ///
 /// # Errors
 /// [`Kind::Usage`] for patterns that cannot be, [`Kind::BadInput`] for files that cannot be read.
-pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
+pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
     let (arguments, common, flag) = (arguments.clone(), common.clone(), Arc::clone(&interrupt));
     let (done, all) = mpsc::channel();
@@ -87,7 +87,7 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<Said, Failure> {
 }
 
 /// What is said, and the folder that is still to be written.
-type Measured = (Said, Option<(Folder, Report, Progress)>);
+type Measured = (CommandOutput, Option<(Folder, Report, Progress)>);
 
 /// Measures all that was asked for.
 fn measured(
@@ -99,7 +99,7 @@ fn measured(
     let measure = Measure::new(arguments)?;
     if let Some(sweep) = &arguments.sweep {
         let report = sweep.run(&arguments.inputs, &measure, progress, interrupt)?;
-        return Ok((Said::result(&report, report.text()), None));
+        return Ok((CommandOutput::result(&report, report.text()), None));
     }
     let inputs: Vec<Named<'_>> = arguments
         .inputs
@@ -130,7 +130,7 @@ fn measured(
         patterns.push(pattern);
     }
     let report = Report { patterns };
-    let said = Said::result(&report, report.text());
+    let said = CommandOutput::result(&report, report.text());
     Ok((said, folder.map(|folder| (folder, report, progress))))
 }
 

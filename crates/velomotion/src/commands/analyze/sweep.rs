@@ -16,8 +16,8 @@ use sim::patterns::{Pattern, Wish};
 use super::input::pattern_failure;
 use super::text::number;
 use super::{Measure, failure, go_on};
-use crate::failure::{Failure, Kind};
-use crate::progress::Progress;
+use crate::terminal::Progress;
+use engine::failure::{Failure, Kind};
 
 /// Numbers of a pattern that are tried.
 #[derive(Clone, Debug, PartialEq)]

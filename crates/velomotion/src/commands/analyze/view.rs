@@ -9,7 +9,7 @@ use protocol::vlp16::models::ALL;
 use serde::Serialize;
 use sim::patterns::{Pattern, SPHERE_M, View};
 
-use crate::report::Scan;
+use engine::reconstruct::report::Scan;
 
 /// What a scan can see, and by what it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -19,9 +19,9 @@ use sim::scene_file::Scene;
 use sim::simulate::{Ask, Event, Out, Simulation, TruePoint};
 use units::{Degrees, Gearing, Host, Lidar, Span, Stamp};
 
-use crate::failure::{Failure, Kind};
-use crate::output::{Target, sink_failure};
-use crate::progress::Progress;
+use crate::terminal::Progress;
+use engine::failure::{Failure, Kind};
+use engine::output::{Target, sink_failure};
 
 /// Where a sensor's packets come from unless it was configured otherwise (63-9243).
 const SOURCE: [u8; 4] = [192, 168, 1, 201];

@@ -21,12 +21,12 @@ use sim::scene_file::{SHIPPED, Scene};
 use sim::simulate::{SimulateError, Summary};
 use units::Metres;
 
-use super::Said;
+use super::CommandOutput;
 use crate::cli::{self, Common};
-use crate::failure::{Failure, Kind};
-use crate::output::{self, Target};
-use crate::progress::Progress;
-use crate::{report, signals};
+use crate::signals;
+use crate::terminal::Progress;
+use engine::failure::{Failure, Kind};
+use engine::output::{self, Target};
 use log::{Log, scan_config};
 
 /// What was simulated.
@@ -103,7 +103,7 @@ pub struct Request<'a> {
 ///
 /// # Errors
 /// [`Failure`] for a scene that cannot be read and files that cannot be written.
-pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> {
+pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
     let (name, text) = find(&arguments.scene)?;
     let clock: Stopwatch = match arguments.explain {
@@ -143,7 +143,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<Said, Failure> 
         progress: Progress::new(common),
     };
     let (report, failure) = make(scene, request)?;
-    Ok(Said {
+    Ok(CommandOutput {
         json: super::json(&report),
         text: report.text(),
         failure,
@@ -393,7 +393,7 @@ impl Report {
         rows.extend(self.truth.iter().map(|truth| ("truth", truth.clone())));
         let warnings = self.warnings.iter();
         rows.extend(warnings.map(|warning| ("warning", warning.clone())));
-        report::table(rows)
+        crate::tables::table(rows)
     }
 }
 

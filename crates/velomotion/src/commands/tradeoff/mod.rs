@@ -23,11 +23,11 @@ use analysis::tradeoff::{
     Bench, Effort, Findings, KFunction, Report, Study, html, json, markdown, svg, text,
 };
 
-use super::Said;
+use super::CommandOutput;
 use crate::cli::{self, Common};
-use crate::failure::{Failure, Kind};
-use crate::output::{check_free, make_folder, write_text};
-use crate::progress::Progress;
+use crate::terminal::Progress;
+use engine::failure::{Failure, Kind};
+use engine::output::{check_free, make_folder, write_text};
 
 /// The studies, in the order of the page.
 fn studies() -> Vec<&'static dyn Study> {
@@ -49,7 +49,7 @@ fn studies() -> Vec<&'static dyn Study> {
 ///
 /// # Errors
 /// [`Kind::Usage`] for a study that there is not, or a file that is there; [`Kind::Incomplete`] where a study or a file fails.
-pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<Said, Failure> {
+pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, Failure> {
     let chosen = choose(&arguments.only)?;
     let names: Vec<&str> = chosen.iter().map(|study| study.name()).collect();
     let folders = Folders::new(arguments);
@@ -79,7 +79,10 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<Said, Failure> 
     for file in folders.write(&report, arguments.force)? {
         progress.say(&format!("wrote {}", file.display()));
     }
-    Ok(Said::result(&json::report(&report), text::report(&report)))
+    Ok(CommandOutput::result(
+        &json::report(&report),
+        text::report(&report),
+    ))
 }
 
 /// The studies asked for, in their own order; all where none is named.

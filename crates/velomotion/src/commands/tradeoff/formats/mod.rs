@@ -18,7 +18,7 @@ use units::{Degrees, Metres};
 
 use super::granularity::place_packets;
 use super::workload::{Random, Ray, Workload};
-use crate::output::Buffered;
+use engine::output::Buffered;
 
 /// The study.
 pub(super) struct Formats;

@@ -1,0 +1,245 @@
+//! How the commands talk to a daemon that has the device: HTTP over its Unix socket, a connection a request.
+
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::os::unix::net::UnixStream;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::sockets;
+use engine::config::Device;
+use engine::failure::{Failure, Kind};
+
+/// The longest that an answer may take: a homing, or a stop of a capture.
+const ANSWER: Duration = Duration::from_secs(180);
+/// Longest line of an answer's head, and most of them.
+const LINE: u64 = 8 << 10;
+const LINES: usize = 64;
+/// Largest answer in JSON.
+const JSON: u64 = 64 << 20;
+
+/// A daemon.
+#[derive(Clone, Debug)]
+pub struct Client {
+    socket: PathBuf,
+}
+
+/// An answer whose body has not been read.
+struct Answer {
+    status: u16,
+    length: u64,
+    body: BufReader<UnixStream>,
+}
+
+impl Client {
+    /// The daemon that has the device, if one runs. One that this user may not speak to is said.
+    #[must_use]
+    pub fn find(profile: &str, device: &Device) -> Option<Self> {
+        let named = sockets::candidates(profile, device).into_iter();
+        let found = named.filter_map(Self::reach).next();
+        found.or_else(|| {
+            let looking = sockets::looking(device).into_iter();
+            let mut reached = looking.filter_map(Self::reach);
+            reached.find(|client| client.has_port(device.port.as_deref()))
+        })
+    }
+
+    /// The daemon at a socket, if one answers.
+    fn reach(socket: PathBuf) -> Option<Self> {
+        match UnixStream::connect(&socket) {
+            Ok(_) => return Some(Self { socket }),
+            Err(error) if error.kind() == ErrorKind::PermissionDenied => tracing::warn!(
+                "a daemon may have the device, and not everybody may speak to it: {}; \
+                 join the group that owns its socket (adduser YOU velomotion), and log in again",
+                socket.display()
+            ),
+            Err(_) => {}
+        }
+        None
+    }
+
+    /// Whether the drive that it found is at this port.
+    fn has_port(&self, port: Option<&Path>) -> bool {
+        #[derive(serde::Deserialize)]
+        struct Status {
+            drive: Drive,
+        }
+        #[derive(serde::Deserialize)]
+        struct Drive {
+            port: Option<PathBuf>,
+        }
+        let real = |port: &Path| port.canonicalize().ok();
+        let Ok(status) = self.get::<Status>("/api/v1/status") else {
+            return false;
+        };
+        let found = status.drive.port.as_deref().and_then(real);
+        found.is_some() && found == port.and_then(real)
+    }
+
+    /// The daemon that answers at a socket.
+    #[must_use]
+    pub const fn at(socket: PathBuf) -> Self {
+        Self { socket }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn socket(&self) -> &Path {
+        &self.socket
+    }
+
+    /// `GET`, in JSON.
+    ///
+    /// # Errors
+    /// What the daemon says, or that it is gone.
+    pub fn get<T: DeserializeOwned>(&self, path: &str) -> Result<T, Failure> {
+        self.json(self.request("GET", path, None)?)
+    }
+
+    /// `POST` of a body, in JSON.
+    ///
+    /// # Errors
+    /// As [`Client::get`].
+    pub fn post<T: DeserializeOwned>(
+        &self,
+        path: &str,
+        body: &impl Serialize,
+    ) -> Result<T, Failure> {
+        let body = serde_json::to_vec(body).map_err(|error| self.gone(&error.to_string()))?;
+        self.json(self.request("POST", path, Some(&body))?)
+    }
+
+    /// `DELETE`.
+    ///
+    /// # Errors
+    /// As [`Client::get`].
+    pub fn delete(&self, path: &str) -> Result<(), Failure> {
+        let answer = self.request("DELETE", path, None)?;
+        match answer.status {
+            200..300 => Ok(()),
+            _ => Err(self.refused(answer)),
+        }
+    }
+
+    /// `GET` into a file or anything else; how many bytes.
+    ///
+    /// # Errors
+    /// As [`Client::get`], and where the file cannot be written.
+    pub fn download(&self, path: &str, out: &mut dyn Write) -> Result<u64, Failure> {
+        let mut answer = self.request("GET", path, None)?;
+        if answer.status != 200 {
+            return Err(self.refused(answer));
+        }
+        let length = answer.length;
+        let copied = std::io::copy(&mut (&mut answer.body).take(length), out);
+        match copied {
+            Ok(copied) if copied == length => Ok(copied),
+            Ok(copied) => Err(self.gone(&format!("{copied} of {length} bytes came"))),
+            Err(error) => Err(Failure::new(
+                Kind::Incomplete,
+                format!("what the daemon recorded could not be copied: {error}"),
+            )
+            .help("free some space; the scan is kept by the daemon")),
+        }
+    }
+
+    fn json<T: DeserializeOwned>(&self, answer: Answer) -> Result<T, Failure> {
+        if !(200..300).contains(&answer.status) {
+            return Err(self.refused(answer));
+        }
+        let length = answer.length.min(JSON);
+        serde_json::from_reader(answer.body.take(length))
+            .map_err(|error| self.gone(&format!("its answer is not what was expected: {error}")))
+    }
+
+    /// What the daemon says when it says no.
+    fn refused(&self, answer: Answer) -> Failure {
+        #[derive(serde::Deserialize)]
+        struct Said {
+            error: String,
+            help: Option<String>,
+            kind: String,
+        }
+        let status = answer.status;
+        let length = answer.length.min(JSON);
+        let Ok(said) = serde_json::from_reader::<_, Said>(answer.body.take(length)) else {
+            return self.gone(&format!("it answers {status}"));
+        };
+        let kind = serde_json::from_value(serde_json::Value::String(said.kind));
+        Failure {
+            // Busy is what a port is that another program has.
+            kind: kind.unwrap_or(Kind::NoDevice),
+            message: said.error,
+            help: said.help,
+        }
+    }
+
+    fn gone(&self, why: &str) -> Failure {
+        Failure::new(
+            Kind::Incomplete,
+            format!("the daemon at {} went away: {why}", self.socket.display()),
+        )
+        .help("see what the daemon says (journalctl -u velomotion); what it had recorded is found when it starts again")
+    }
+
+    fn request(&self, method: &str, path: &str, body: Option<&[u8]>) -> Result<Answer, Failure> {
+        self.try_request(method, path, body)
+            .map_err(|error| self.gone(&error.to_string()))
+    }
+
+    fn try_request(
+        &self,
+        method: &str,
+        path: &str,
+        body: Option<&[u8]>,
+    ) -> std::io::Result<Answer> {
+        let mut stream = UnixStream::connect(&self.socket)?;
+        stream.set_read_timeout(Some(ANSWER))?;
+        let mut request =
+            format!("{method} {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n");
+        if let Some(body) = body {
+            let length = body.len();
+            request.push_str(&format!(
+                "content-type: application/json\r\ncontent-length: {length}\r\n"
+            ));
+        }
+        request.push_str("\r\n");
+        stream.write_all(request.as_bytes())?;
+        stream.write_all(body.unwrap_or_default())?;
+        let mut answer = BufReader::new(stream);
+        let status = line(&mut answer)?;
+        let status = status.split(' ').nth(1).and_then(|code| code.parse().ok());
+        let mut length = None;
+        for _ in 0..LINES {
+            let line = line(&mut answer)?;
+            if line.is_empty() {
+                return match (status, length) {
+                    (Some(status), length) => Ok(Answer {
+                        status,
+                        length: length.unwrap_or(0),
+                        body: answer,
+                    }),
+                    (None, _) => Err(std::io::Error::other("it speaks no HTTP")),
+                };
+            }
+            if let Some((name, value)) = line.split_once(':')
+                && name.eq_ignore_ascii_case("content-length")
+            {
+                length = value.trim().parse().ok();
+            }
+        }
+        Err(std::io::Error::other("it says too much"))
+    }
+}
+
+/// A line of the answer's head, without its end.
+fn line(answer: &mut BufReader<UnixStream>) -> std::io::Result<String> {
+    let mut line = String::new();
+    answer.take(LINE).read_line(&mut line)?;
+    if !line.ends_with('\n') {
+        return Err(std::io::Error::other("its answer ends too early"));
+    }
+    Ok(line.trim_end().to_owned())
+}

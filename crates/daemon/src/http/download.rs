@@ -1,0 +1,292 @@
+//! A scan's files. A cloud in another form is made of the log into a file without a name, and sent from there: never all of it in memory.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path as FilePath, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use axum::body::{Body, Bytes};
+use axum::extract::rejection::QueryRejection;
+use axum::extract::{Path, Query, State};
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use cloud::Fields;
+use cloud::formats::Format;
+use futures_util::stream::unfold;
+use scanner::{Accuracy, TiltSource};
+use serde::Deserialize;
+use tokio::runtime::Handle;
+use tokio::sync::{OwnedSemaphorePermit, mpsc};
+
+use super::Api;
+use super::refusal::Refusal;
+use crate::plan;
+use crate::room::{self, Room, Roomy};
+use crate::scans::{LOG, THUMBNAIL};
+use engine::failure::{Failure, Kind};
+use engine::output::Buffered;
+use engine::reconstruct::replay::TimeOf;
+use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::source::Source;
+
+/// Bytes that are read at once.
+const PIECE: usize = 256 << 10;
+/// Pieces that wait for the client.
+const PIECES: usize = 2;
+
+/// How a cloud is wanted.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Wanted {
+    /// The format by its extension; PLY.
+    format: Option<String>,
+    /// A column sd.
+    uncertainty: bool,
+    /// A column echo.
+    echo: bool,
+}
+
+/// `GET /scans/ID/cloud`.
+pub async fn cloud(
+    State(api): State<Arc<Api>>,
+    Path(id): Path<String>,
+    query: Result<Query<Wanted>, QueryRejection>,
+) -> Result<Response, Refusal> {
+    let Query(wanted) = query?;
+    let name = wanted.format.as_deref().unwrap_or("ply");
+    let format = Format::from_extension(name).map_err(|error| Refusal::usage(error.to_string()))?;
+    let record = api.shared.scans.record(&id);
+    let record = record.ok_or_else(|| Refusal::no_scan(&id))?;
+    if !record.state.is_final() {
+        return Err(Failure::new(Kind::Incomplete, "the scan is being made")
+            .help("wait until its state says that it is over")
+            .into());
+    }
+    let permit = downloading(&api)?;
+    let file_name = format!("velomotion-{id}.{}", format.extension());
+    let plain = !wanted.uncertainty && !wanted.echo;
+    if format == Format::Ply
+        && plain
+        && let Ok(stored) = open(api.shared.cloud(&id)).await?
+    {
+        return stream(&api, stored, &file_name, content_type("ply"), permit);
+    }
+    let making = Arc::clone(&api.making).try_acquire_owned();
+    let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
+    let (points, shared) = (record.points, Arc::clone(&api.shared));
+    let accuracy = record.head.asked.and_then(|asked| asked.accuracy().ok());
+    let mut fields = Fields::FILE;
+    if wanted.uncertainty {
+        fields |= Fields::SD;
+    }
+    if wanted.echo {
+        fields |= Fields::ECHO;
+    }
+    let log = api.shared.log(&id);
+    let gone = Gone::default();
+    let interrupt = Arc::clone(&gone.0);
+    let made = tokio::task::spawn_blocking(move || {
+        let _making = making;
+        let log_bytes = || std::fs::metadata(&log).map_or(0, |there| there.len());
+        let points = points.unwrap_or_else(|| plan::most_points(log_bytes()));
+        let room = Room::take(&shared, room::most_bytes(format, points));
+        make(
+            &log,
+            (shared.scans.folder(), &room.map_err(Refusal::no_room)?),
+            format,
+            fields,
+            accuracy.unwrap_or(Accuracy::Best),
+            &interrupt,
+        )
+    });
+    let file = made.await.map_err(|_| {
+        Failure::new(
+            Kind::Incomplete,
+            "a defect of the program ended the making of the cloud",
+        )
+        .help("run velomotion replay on the log with -vv and report what it says")
+    })??;
+    drop(gone);
+    stream(
+        &api,
+        file,
+        &file_name,
+        content_type(format.extension()),
+        permit,
+    )
+}
+
+/// Tells the making that the client went away.
+#[derive(Default)]
+struct Gone(Arc<AtomicBool>);
+
+impl Drop for Gone {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Makes a cloud as `velomotion replay` does, into a file without a name.
+fn make(
+    log: &FilePath,
+    (folder, room): (&FilePath, &Arc<Room>),
+    format: Format,
+    fields: Fields,
+    accuracy: Accuracy,
+    interrupt: &AtomicBool,
+) -> Result<Opened, Refusal> {
+    let cannot = |error: std::io::Error| {
+        Failure::new(
+            Kind::Incomplete,
+            format!("no room to make the cloud in {}: {error}", folder.display()),
+        )
+        .help("free some space on that disk")
+    };
+    let source = Source::open(log, None)?;
+    let request = Request {
+        recording: &source,
+        tilt: TiltSource::Log,
+        options: lidar::Options::default(),
+        time: TimeOf::Host,
+        accuracy,
+        pace: None,
+        truth: None,
+        lost_records: 0,
+        interrupt,
+    };
+    let mut file = io::files::scratch_in(folder).map_err(cannot)?;
+    let out = Roomy::new(file.try_clone().map_err(cannot)?, Arc::clone(room));
+    let out = Buffered::new(out);
+    let mut sink = format.writer(out, fields);
+    let output = PathBuf::from(format!("cloud.{}", format.extension()));
+    let made = replay::scan(&request, &mut *sink, &output).and_then(|_| {
+        sink.finish()
+            .map_err(|error| engine::output::sink_failure(&output, &error))
+    });
+    made.map_err(|failure| match room.refused() {
+        Some(full) => Refusal::no_room(full.clone()),
+        None => failure.into(),
+    })?;
+    drop(sink);
+    file.seek(SeekFrom::Start(0)).map_err(cannot)?;
+    let length = file.metadata().map_err(cannot)?.len();
+    Ok((file, length))
+}
+
+/// `GET /scans/ID/log`.
+pub async fn log(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<Response, Refusal> {
+    let record = api.shared.scans.record(&id);
+    record.ok_or_else(|| Refusal::no_scan(&id))?;
+    let permit = downloading(&api)?;
+    let file = open(api.shared.log(&id)).await?;
+    let file = file.map_err(|_| Refusal::no_file(LOG))?;
+    let name = format!("velomotion-{id}.pcapng");
+    stream(&api, file, &name, content_type("pcapng"), permit)
+}
+
+/// `GET /scans/ID/thumbnail`.
+pub async fn thumbnail(
+    State(api): State<Arc<Api>>,
+    Path(id): Path<String>,
+) -> Result<Response, Refusal> {
+    let record = api.shared.scans.record(&id);
+    record.ok_or_else(|| Refusal::no_scan(&id))?;
+    let permit = downloading(&api)?;
+    let file = open(api.shared.scans.place(&id).join(THUMBNAIL)).await?;
+    let file = file.map_err(|_| Refusal::no_file(THUMBNAIL))?;
+    let name = format!("velomotion-{id}.png");
+    stream(&api, file, &name, content_type("png"), permit)
+}
+
+fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
+    Arc::clone(&api.downloads)
+        .try_acquire_owned()
+        .map_err(|_| Refusal::too_many("downloads"))
+}
+
+/// A file and its length.
+type Opened = (File, u64);
+
+/// Opens a file that is there. What is no file, such as a pipe, has no end.
+///
+/// # Errors
+/// As [`super::with_disk`]; within, the disk's own.
+async fn open(path: PathBuf) -> Result<std::io::Result<Opened>, Refusal> {
+    super::with_disk(move || {
+        if !std::fs::metadata(&path)?.is_file() {
+            return Err(std::io::ErrorKind::InvalidInput.into());
+        }
+        let file = File::open(&path)?;
+        let length = file.metadata()?.len();
+        Ok((file, length))
+    })
+    .await
+}
+
+/// Sends the rest of a file as it is now, a piece at a time: as fast as the client takes it.
+fn stream(
+    api: &Api,
+    (file, length): Opened,
+    name: &str,
+    content: &'static str,
+    permit: OwnedSemaphorePermit,
+) -> Result<Response, Refusal> {
+    let (pieces, inbox) = mpsc::channel(PIECES);
+    let (wait, runtime) = (api.waits.download, Handle::current());
+    tokio::task::spawn_blocking(move || {
+        let _permit = permit;
+        // Whoever reads the stream sees that it ends too early.
+        read(file, length, &pieces, wait, &runtime)
+    });
+    let body = Body::from_stream(unfold(inbox, |mut inbox| async move {
+        let piece: std::io::Result<Bytes> = inbox.recv().await?;
+        Some((piece, inbox))
+    }));
+    let headers = [
+        (header::CONTENT_TYPE, content.to_owned()),
+        (header::CONTENT_LENGTH, length.to_string()),
+        (
+            header::CONTENT_DISPOSITION,
+            format!("attachment; filename=\"{name}\""),
+        ),
+        (header::CACHE_CONTROL, "no-store".to_owned()),
+    ];
+    Ok((StatusCode::OK, headers, body).into_response())
+}
+
+fn read(
+    file: File,
+    length: u64,
+    pieces: &mpsc::Sender<std::io::Result<Bytes>>,
+    wait: Duration,
+    runtime: &Handle,
+) {
+    // A log may grow while it is read: what was announced is sent.
+    let mut file = file.take(length);
+    loop {
+        let mut piece = vec![0; PIECE];
+        let read = match file.read(&mut piece) {
+            Ok(0) => return,
+            Ok(read) => read,
+            Err(error) => {
+                let _ = runtime.block_on(pieces.send(Err(error)));
+                return;
+            }
+        };
+        piece.truncate(read);
+        let sent = runtime.block_on(tokio::time::timeout(wait, pieces.send(Ok(piece.into()))));
+        if !matches!(sent, Ok(Ok(()))) {
+            return;
+        }
+    }
+}
+
+fn content_type(extension: &str) -> &'static str {
+    match extension {
+        "png" => "image/png",
+        "csv" => "text/csv; charset=utf-8",
+        _ => "application/octet-stream",
+    }
+}

@@ -1,0 +1,165 @@
+//! The page and what belongs to it, from the binary; signing in; the API's description.
+
+use std::sync::Arc;
+
+use axum::body::Bytes;
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, Method, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+
+use super::Api;
+use super::captures;
+use super::refusal::Refusal;
+
+/// The API in OpenAPI 3.1.
+pub const OPENAPI: &str = include_str!("openapi.json");
+
+/// Path, content type, content.
+type Asset = (&'static str, &'static str, &'static [u8]);
+
+const HTML: &str = "text/html; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+
+/// What the page is made of (`web/build` makes it). Everything is in the binary: there may be no network.
+const ASSETS: [Asset; 6] = [
+    ("/", HTML, include_bytes!("../../web/dist/index.html")),
+    ("/page.js", SCRIPT, include_bytes!("../../web/dist/page.js")),
+    (
+        "/worker.js",
+        SCRIPT,
+        include_bytes!("../../web/dist/worker.js"),
+    ),
+    (
+        "/page.css",
+        "text/css; charset=utf-8",
+        include_bytes!("../../web/dist/page.css"),
+    ),
+    (
+        "/icon.svg",
+        "image/svg+xml",
+        include_bytes!("../../web/dist/icon.svg"),
+    ),
+    (
+        "/LICENSES.txt",
+        "text/plain; charset=utf-8",
+        include_bytes!("../../web/dist/LICENSES.txt"),
+    ),
+];
+
+/// What a page may load: nothing that does not come from here.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; worker-src 'self'; \
+                      base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+
+/// Whether a path is answered without the token: signing in, and how it looks.
+#[must_use]
+pub fn is_open(path: &str) -> bool {
+    matches!(path, "/login" | "/page.css" | "/icon.svg")
+}
+
+/// `GET /api/v1/openapi.json`.
+pub async fn openapi() -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], OPENAPI).into_response()
+}
+
+/// Whatever has no route.
+pub async fn asset(request: Request) -> Response {
+    let path = match request.uri().path() {
+        "/index.html" => "/",
+        path => path,
+    };
+    let Some((_, content, bytes)) = ASSETS.iter().find(|(own, _, _)| *own == path) else {
+        return Refusal::new(
+            StatusCode::NOT_FOUND,
+            "not-found",
+            format!("there is nothing at {path}"),
+            "GET /api/v1/openapi.json lists what there is",
+        )
+        .into_response();
+    };
+    if !matches!(*request.method(), Method::GET | Method::HEAD) {
+        let mut response = super::no_method().await.into_response();
+        let allow = header::HeaderValue::from_static("GET,HEAD");
+        response.headers_mut().insert(header::ALLOW, allow);
+        return response;
+    }
+    html(StatusCode::OK, content, bytes)
+}
+
+fn html(status: StatusCode, content: &'static str, bytes: &'static [u8]) -> Response {
+    let headers = [
+        (header::CONTENT_TYPE, content),
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::CACHE_CONTROL, "no-cache"),
+    ];
+    (status, headers, bytes).into_response()
+}
+
+/// Where a person signs in.
+pub fn sign_in(status: StatusCode) -> Response {
+    let page = include_bytes!("../../web/dist/sign-in.html");
+    html(status, HTML, page)
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Login {
+    token: String,
+}
+
+/// `POST /login`: the token in a form or in JSON, for a cookie.
+pub async fn login(
+    State(api): State<Arc<Api>>,
+    headers: HeaderMap,
+    bytes: Bytes,
+) -> Result<Response, Refusal> {
+    let content = headers
+        .get(header::CONTENT_TYPE)
+        .and_then(|c| c.to_str().ok());
+    let form = content.is_some_and(|c| c.starts_with("application/x-www-form-urlencoded"));
+    // A token has no character that a form would write otherwise.
+    let given = match form {
+        true => {
+            let body = String::from_utf8_lossy(&bytes).into_owned();
+            let token = body.strip_prefix("token=").filter(|t| !t.contains('&'));
+            token
+                .ok_or_else(|| Refusal::usage("the form: expected token, and nothing else"))?
+                .to_owned()
+        }
+        false => captures::body::<Login>(&headers, &bytes)?.token,
+    };
+    let right = api.shared.settings().token.as_ref();
+    if !right.is_none_or(|token| token.is(given.as_bytes())) {
+        return Ok(match form {
+            true => sign_in(StatusCode::UNAUTHORIZED),
+            false => Refusal::new(
+                StatusCode::UNAUTHORIZED,
+                "denied",
+                "the token is wrong",
+                "it is in the daemon's configuration, under [daemon]",
+            )
+            .into_response(),
+        });
+    }
+    let cookie = api.sessions.begin().map_err(|error| {
+        Refusal::new(
+            StatusCode::CONFLICT,
+            "incomplete",
+            format!("the system gives no random bytes: {error}"),
+            "use Authorization: Bearer TOKEN",
+        )
+    })?;
+    Ok(match form {
+        true => (
+            StatusCode::SEE_OTHER,
+            [
+                (header::LOCATION, "/".to_owned()),
+                (header::SET_COOKIE, cookie),
+            ],
+        )
+            .into_response(),
+        false => (StatusCode::NO_CONTENT, [(header::SET_COOKIE, cookie)]).into_response(),
+    })
+}

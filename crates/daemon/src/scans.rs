@@ -1,0 +1,452 @@
+//! The scans folder: a folder a scan, and nothing remembered that is not in there.
+//!
+//! Left out: how scans are made.
+
+mod found;
+mod record;
+mod summary;
+
+use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use io::files::{NewFile, Overwrite};
+
+pub use record::{ScanHead, ScanRecord, ScanState, ScanView, WholeView, check_name};
+
+use super::limits::MESSAGES;
+use engine::capture::request::CaptureRequest;
+use engine::failure::{Failure, Kind};
+use engine::output::file_failure;
+use found::found;
+
+/// The log in a scan's folder.
+pub const LOG: &str = "log.pcapng";
+/// The cloud.
+pub const CLOUD: &str = "cloud.ply";
+/// The picture.
+pub const THUMBNAIL: &str = "thumbnail.png";
+const RECORD: &str = "scan.json";
+
+/// The scans of a folder.
+#[derive(Debug)]
+pub struct Scans {
+    folder: PathBuf,
+    scans: Mutex<BTreeMap<String, ScanRecord>>,
+    /// Held while a record is written, so that no older one comes after a newer.
+    writing: Mutex<()>,
+    /// Those whose last change the disk did not take.
+    unwritten: Mutex<BTreeSet<String>>,
+    /// Bytes of those that do not change any more: the status is asked for every second.
+    sizes: Mutex<BTreeMap<String, u64>>,
+}
+
+fn cannot(path: &Path, what: &str, error: &std::io::Error) -> Failure {
+    Failure::new(
+        Kind::BadInput,
+        format!("{}: cannot {what}: {error}", path.display()),
+    )
+    .help("see whether the disk is full and the folder may be written to; scans = \"...\" under [daemon] names another")
+}
+
+/// Takes the scans folder for this process, making it where it is missing, until what is returned is dropped.
+///
+/// # Errors
+/// [`Kind::BadInput`] where another daemon has it, or it cannot be written to.
+pub fn lock(folder: &Path) -> Result<fs::File, Failure> {
+    fs::create_dir_all(folder).map_err(|error| cannot(folder, "make the folder", &error))?;
+    let path = folder.join(".lock");
+    let file = fs::File::create(&path).map_err(|error| cannot(&path, "make", &error))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(fs::TryLockError::WouldBlock) => Err(Failure::new(
+            Kind::BadInput,
+            format!("{}: another daemon keeps its scans here", folder.display()),
+        )
+        .help("end that one, or give this one another folder (scans = \"...\" under [daemon])")),
+        Err(fs::TryLockError::Error(error)) => Err(cannot(&path, "lock", &error)),
+    }
+}
+
+impl Scans {
+    /// The scans in `folder`, which is made where it is missing. Those that were under way when nobody could end them are
+    /// [`ScanState::Making`]: [`Scans::unfinished`] lists them.
+    ///
+    /// # Errors
+    /// Where the folder cannot be made or read.
+    pub fn open(folder: &Path) -> Result<Self, Failure> {
+        fs::create_dir_all(folder).map_err(|error| cannot(folder, "make the folder", &error))?;
+        let mut scans = BTreeMap::new();
+        let entries = fs::read_dir(folder).map_err(|error| cannot(folder, "read", &error))?;
+        for entry in entries.flatten() {
+            let (path, name) = (entry.path(), entry.file_name());
+            if let Some(name) = name.to_str()
+                // What a link leads to is somebody else's.
+                && entry.file_type().is_ok_and(|kind| kind.is_dir())
+                && let Some(record) = found(&path, name)
+            {
+                scans.insert(name.to_owned(), record);
+            }
+        }
+        number_those_without(&mut scans);
+        Ok(Self {
+            folder: folder.to_owned(),
+            scans: Mutex::new(scans),
+            writing: Mutex::default(),
+            unwritten: Mutex::default(),
+            sizes: Mutex::default(),
+        })
+    }
+
+    fn scans(&self) -> MutexGuard<'_, BTreeMap<String, ScanRecord>> {
+        self.scans.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The folder.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The folder of a scan.
+    #[must_use]
+    pub fn place(&self, id: &str) -> PathBuf {
+        self.folder.join(id)
+    }
+
+    /// A scan begins: its folder is made.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for a name that cannot be one, and where the folder cannot be written to.
+    pub fn begin(&self, asked: &CaptureRequest, simulated: bool) -> Result<ScanRecord, Failure> {
+        if let Some(name) = &asked.name {
+            check_name(name)?;
+        }
+        let now = std::time::SystemTime::now();
+        let (id, place) = self.new_place(asked.name.as_deref(), now, simulated)?;
+        let started = now.duration_since(std::time::UNIX_EPOCH);
+        let mut record = ScanRecord::new(ScanHead {
+            id: id.clone(),
+            name: asked.name.clone(),
+            state: ScanState::Recording,
+            why: None,
+            waits_for_room: false,
+            // Whole milliseconds, which JSON gives back to the last bit.
+            started_s: started.map_or(0.0, |since| since.as_millis() as f64 / 1e3),
+            simulated,
+            asked: Some(asked.clone()),
+            points: None,
+            duration_s: None,
+        });
+        record.number = next_number(&self.scans());
+        let stored = store(&place, &record);
+        io::files::keep_name(&place);
+        if let Err(failure) = stored {
+            // What was made a moment ago; whatever stays of it is found at the next start.
+            let _ = fs::remove_dir_all(&place);
+            return Err(failure);
+        }
+        self.scans().insert(id, record.clone());
+        Ok(record)
+    }
+
+    /// Takes back a scan that was begun a moment ago, and of which nothing came.
+    pub fn forget(&self, id: &str) {
+        self.scans().remove(id);
+        // What stays of it is a failed scan at the next start.
+        let _ = fs::remove_dir_all(self.place(id));
+    }
+
+    fn new_place(
+        &self,
+        name: Option<&str>,
+        now: std::time::SystemTime,
+        simulated: bool,
+    ) -> Result<(String, PathBuf), Failure> {
+        let dated = engine::default_paths::cloud(now, simulated).with_extension("");
+        let dated = dated.to_string_lossy();
+        let dated = dated.trim_start_matches("velomotion-");
+        let base = match name {
+            Some(name) => format!("{name}-{dated}"),
+            None => dated.to_owned(),
+        };
+        let mut number = 1;
+        loop {
+            let id = match number {
+                1 => base.clone(),
+                _ => format!("{base}-{number}"),
+            };
+            let place = self.place(&id);
+            match fs::create_dir(&place) {
+                Ok(()) => return Ok((id, place)),
+                Err(error)
+                    if error.kind() == std::io::ErrorKind::AlreadyExists && number < 1_000 =>
+                {
+                    number += 1;
+                }
+                Err(error) => return Err(cannot(&place, "make the folder", &error)),
+            }
+        }
+    }
+
+    /// Changes a scan, in the list and on the disk. `None` where there is no such scan.
+    ///
+    /// # Errors
+    /// Where it cannot be written; the list has it then, and [`Scans::settle`] writes it once there is room.
+    pub fn change(
+        &self,
+        id: &str,
+        change: impl FnOnce(&mut ScanRecord),
+    ) -> Result<Option<ScanView>, Failure> {
+        match self.scans().get_mut(id) {
+            Some(record) => change(record),
+            None => return Ok(None),
+        }
+        let stored = self.write(id);
+        self.sizes().remove(id);
+        if let Err(failure) = stored {
+            self.unwritten().insert(id.to_owned());
+            return Err(failure);
+        }
+        Ok(self.view(id))
+    }
+
+    /// Writes what is known of a scan now.
+    fn write(&self, id: &str) -> Result<(), Failure> {
+        let _writing = self.writing.lock().unwrap_or_else(PoisonError::into_inner);
+        match self.record(id) {
+            Some(record) if !record.unreadable => store(&self.place(id), &record),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes what the disk did not take when it was told.
+    pub fn settle(&self) {
+        let waiting = std::mem::take(&mut *self.unwritten());
+        for id in waiting {
+            if self.write(&id).is_err() {
+                self.unwritten().insert(id);
+            }
+        }
+    }
+
+    fn sizes(&self) -> MutexGuard<'_, BTreeMap<String, u64>> {
+        self.sizes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn unwritten(&self) -> MutexGuard<'_, BTreeSet<String>> {
+        self.unwritten
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds a sentence to what was said of a scan, unless much was said already. It reaches the disk with the next change.
+    pub fn say(&self, id: &str, message: &str) {
+        if let Some(record) = self.scans().get_mut(id)
+            && record.messages.len() < MESSAGES
+        {
+            record.messages.push(message.to_owned());
+        }
+    }
+
+    /// What is kept of a scan.
+    #[must_use]
+    pub fn record(&self, id: &str) -> Option<ScanRecord> {
+        self.scans().get(id).cloned()
+    }
+
+    /// A scan as lists show it.
+    #[must_use]
+    pub fn view(&self, id: &str) -> Option<ScanView> {
+        let record = self.record(id)?;
+        Some(self.view_of(&record))
+    }
+
+    /// A scan with everything.
+    #[must_use]
+    pub fn whole(&self, id: &str) -> Option<WholeView> {
+        let record = self.record(id)?;
+        Some(WholeView {
+            scan: self.view_of(&record),
+            messages: record.messages,
+            recording: record.recording,
+            lost_records: record.lost_records,
+            reception: record.reception,
+            report: record.report,
+        })
+    }
+
+    /// Every scan, the newest first.
+    #[must_use]
+    pub fn list(&self) -> Vec<ScanView> {
+        let mut records: Vec<ScanRecord> = self.scans().values().cloned().collect();
+        records.sort_by(|a, b| order(b, a));
+        records.iter().map(|record| self.view_of(record)).collect()
+    }
+
+    /// Those that are being recorded or made.
+    #[must_use]
+    pub fn under_way(&self) -> Vec<ScanView> {
+        let records: Vec<ScanRecord> = {
+            let scans = self.scans();
+            let open = scans.values().filter(|record| !record.state.is_final());
+            open.cloned().collect()
+        };
+        records.iter().map(|record| self.view_of(record)).collect()
+    }
+
+    /// Those whose log waits for a cloud.
+    #[must_use]
+    pub fn unfinished(&self) -> Vec<String> {
+        let scans = self.scans();
+        let making = scans.values().filter(|r| r.state == ScanState::Making);
+        making.map(|record| record.id.clone()).collect()
+    }
+
+    /// Those whose cloud is made once there is room for it, the oldest first.
+    #[must_use]
+    pub fn waiting(&self) -> Vec<String> {
+        let mut waiting: Vec<ScanRecord> = {
+            let scans = self.scans();
+            scans
+                .values()
+                .filter(|r| r.waits_for_room)
+                .cloned()
+                .collect()
+        };
+        waiting.sort_by(|a, b| a.started_s.total_cmp(&b.started_s));
+        waiting.into_iter().map(|record| record.head.id).collect()
+    }
+
+    fn view_of(&self, record: &ScanRecord) -> ScanView {
+        let place = self.place(&record.id);
+        let size = |name: &str| fs::metadata(place.join(name)).ok().map(|there| there.len());
+        ScanView {
+            head: record.head.clone(),
+            bytes: bytes_in(&place),
+            log_bytes: size(LOG),
+            cloud_bytes: size(CLOUD),
+            thumbnail: size(THUMBNAIL).is_some(),
+            summary: summary::of(record, &place, size(LOG).is_some()),
+        }
+    }
+
+    /// Deletes a scan for good; what it was.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] while it is being made, and where the disk refuses.
+    pub fn delete(&self, id: &str) -> Result<Option<ScanView>, Failure> {
+        let Some(view) = self.view(id) else {
+            return Ok(None);
+        };
+        if !view.state.is_final() {
+            return Err(
+                Failure::new(Kind::Usage, format!("the scan {id} is being made"))
+                    .help("wait for it, or stop it first"),
+            );
+        }
+        // Under another name first, which no start takes for a scan: half a scan is none.
+        let (place, gone) = (self.place(id), self.folder.join(format!(".{id}.deleted")));
+        fs::rename(&place, &gone).map_err(|error| cannot(&place, "delete", &error))?;
+        self.scans().remove(id);
+        self.sizes().remove(id);
+        fs::remove_dir_all(&gone).map_err(|error| cannot(&gone, "delete", &error))?;
+        Ok(Some(view))
+    }
+
+    /// Scans and their bytes.
+    #[must_use]
+    pub fn size(&self) -> (u64, u64) {
+        let heads = self.scans();
+        let scans: Vec<(String, bool)> = heads
+            .values()
+            .map(|record| (record.id.clone(), record.state.is_final()))
+            .collect();
+        drop(heads);
+        let mut known = self.sizes();
+        let kept = scans.iter().map(|(id, is_final)| match known.get(id) {
+            Some(&bytes) if *is_final => bytes,
+            _ => {
+                let bytes = bytes_in(&self.place(id));
+                known.insert(id.clone(), bytes);
+                bytes
+            }
+        });
+        let bytes = kept.sum();
+        if known.len() > scans.len() {
+            // Of some that were deleted meanwhile.
+            known.retain(|id, _| scans.iter().any(|(own, _)| own == id));
+        }
+        (scans.len() as u64, bytes)
+    }
+
+    /// Deletes the oldest scans until there are no more than `scans` of no more than `bytes`; which. The newest stays, and those whose record
+    /// could not be read.
+    pub fn retain(&self, scans: u64, bytes: u64) -> Vec<ScanView> {
+        let (mut count, mut size) = self.size();
+        let list = self.list();
+        let mut gone = Vec::new();
+        for view in list.iter().skip(1).rev() {
+            if count <= scans && size <= bytes {
+                break;
+            }
+            let kept = self.record(&view.id).is_none_or(|record| record.unreadable);
+            if view.state.is_final() && !kept && matches!(self.delete(&view.id), Ok(Some(_))) {
+                count -= 1;
+                size = size.saturating_sub(view.bytes);
+                gone.push(view.clone());
+            }
+        }
+        gone
+    }
+}
+
+/// Which of two scans was made first.
+fn order(a: &ScanRecord, b: &ScanRecord) -> Ordering {
+    let by_number = a.number.cmp(&b.number);
+    let by_time = || a.started_s.total_cmp(&b.started_s);
+    by_number.then_with(by_time).then_with(|| a.id.cmp(&b.id))
+}
+
+fn next_number(scans: &BTreeMap<String, ScanRecord>) -> u64 {
+    let newest = scans.values().map(|record| record.number).max();
+    newest.unwrap_or(0).saturating_add(1)
+}
+
+/// Logs that somebody put into the folder are the newest: they are not deleted first.
+fn number_those_without(scans: &mut BTreeMap<String, ScanRecord>) {
+    let next = next_number(scans);
+    for record in scans.values_mut() {
+        if record.number == 0 && record.state == ScanState::Making && record.asked.is_none() {
+            record.number = next;
+        }
+    }
+}
+
+fn store(place: &Path, record: &ScanRecord) -> Result<(), Failure> {
+    let path = place.join(RECORD);
+    let text = serde_json::to_vec_pretty(record).map_err(|error| {
+        Failure::new(Kind::BadInput, format!("{}: {error}", path.display()))
+            .help("this is a defect of the program")
+    })?;
+    let mut file =
+        NewFile::create(&path, Overwrite::Replace).map_err(|error| file_failure(&error))?;
+    file.write_all(&text)
+        .map_err(|error| cannot(&path, "write", &error))?;
+    file.commit().map_err(|error| file_failure(&error))
+}
+
+/// All files right in a folder.
+fn bytes_in(place: &Path) -> u64 {
+    let Ok(entries) = fs::read_dir(place) else {
+        return 0;
+    };
+    let sizes = entries.flatten().filter_map(|entry| entry.metadata().ok());
+    sizes.map(|there| there.len()).sum()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,113 @@
+//! What the scans folder holds when a daemon starts: also of scans that nobody ended.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use super::{CLOUD, LOG, RECORD, ScanHead, ScanRecord, ScanState};
+use engine::failure::{Failure, Kind};
+
+/// What a folder says about its scan. One that says nothing, but has a log, is a scan all the same.
+pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {
+    // What was being deleted when the power went.
+    if name.starts_with('.') {
+        if name.ends_with(".deleted") {
+            let _ = fs::remove_dir_all(place);
+        }
+        return None;
+    }
+    let has_log = place.join(LOG).is_file();
+    let mut record = match fs::read(place.join(RECORD)) {
+        Ok(text) => match serde_json::from_slice::<ScanRecord>(&text) {
+            Ok(record) => record,
+            Err(error) => return Some(unreadable(place, name, &error)),
+        },
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            return has_log.then(|| without_record(place, name));
+        }
+        Err(error) => return Some(unreadable(place, name, &error)),
+    };
+    // Folders may be renamed by hand.
+    record.id = name.to_owned();
+    match record.state {
+        ScanState::Recording => {
+            record.recording = Some(interrupted());
+            record.state = ScanState::Making;
+        }
+        ScanState::Making | ScanState::Whole | ScanState::Partial | ScanState::Failed => {}
+    }
+    if record.state == ScanState::Making && !has_log {
+        record.state = ScanState::Failed;
+        record.why = Some(interrupted());
+    }
+    Some(record)
+}
+
+/// A log that somebody put there. A cloud that lies beside it is theirs, too.
+fn without_record(place: &Path, name: &str) -> ScanRecord {
+    let mut record = of_folder(place, name);
+    match place.join(CLOUD).exists() {
+        false => {
+            record.state = ScanState::Making;
+            record.recording = Some(interrupted());
+        }
+        true => {
+            record.state = ScanState::Partial;
+            let failure = Failure::new(
+                Kind::Incomplete,
+                format!("nobody knows how this cloud was made: its folder has no {RECORD}"),
+            );
+            record.why = Some(failure.help("replay its log to see what it holds"));
+        }
+    }
+    record
+}
+
+/// A scan whose record is damaged, or of a later program.
+fn unreadable(place: &Path, name: &str, error: &dyn std::fmt::Display) -> ScanRecord {
+    let mut record = of_folder(place, name);
+    record.unreadable = true;
+    record.state = match place.join(CLOUD).is_file() {
+        true => ScanState::Partial,
+        false => ScanState::Failed,
+    };
+    let failure = Failure::new(
+        Kind::Incomplete,
+        format!("{RECORD} cannot be read: {error}"),
+    );
+    record.why = Some(failure.help(
+        "the files are as they were; if a later velomotion made the scan, use that one, else replay the log",
+    ));
+    record
+}
+
+/// What a folder says of itself.
+fn of_folder(place: &Path, name: &str) -> ScanRecord {
+    ScanRecord::new(ScanHead {
+        id: name.to_owned(),
+        name: None,
+        state: ScanState::Failed,
+        why: None,
+        waits_for_room: false,
+        started_s: modified_s(&place.join(LOG)),
+        simulated: name.contains("simulated"),
+        asked: None,
+        points: None,
+        duration_s: None,
+    })
+}
+
+/// What is said of a scan that nobody ended.
+fn interrupted() -> Failure {
+    Failure::new(
+        Kind::Incomplete,
+        "the daemon or the machine was stopped in the middle of this scan",
+    )
+    .help("what the log held by then is here; scan again for the rest")
+}
+
+fn modified_s(path: &Path) -> f64 {
+    let modified = fs::metadata(path).and_then(|there| there.modified()).ok();
+    let since = modified.and_then(|at| at.duration_since(std::time::UNIX_EPOCH).ok());
+    since.map_or(0.0, |since| since.as_secs_f64())
+}

@@ -1,0 +1,157 @@
+use super::*;
+
+fn asked(name: Option<&str>) -> CaptureRequest {
+    CaptureRequest {
+        speed_deg_s: 10.0,
+        name: name.map(str::to_owned),
+        ..CaptureRequest::default()
+    }
+}
+
+fn finished(scans: &Scans, name: Option<&str>) -> String {
+    let id = scans.begin(&asked(name), true).unwrap().head.id;
+    fs::write(scans.place(&id).join(CLOUD), [0; 100]).unwrap();
+    let done = scans.change(&id, |record| record.state = ScanState::Whole);
+    assert_eq!(done.unwrap().unwrap().cloud_bytes, Some(100));
+    id
+}
+
+#[test]
+fn what_is_newest_does_not_hang_on_the_clock() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = Scans::open(folder.path()).unwrap();
+    let ids: Vec<String> = (0..4).map(|_| finished(&scans, None)).collect();
+    // The clock was years ahead when the first was made, and the battery of the clock was empty at the last.
+    let set = |id: &str, at: f64| scans.change(id, |record| record.head.started_s = at);
+    set(&ids[0], 4e9).unwrap();
+    set(&ids[3], 1.0).unwrap();
+    for again in [&scans, &Scans::open(folder.path()).unwrap()] {
+        let listed: Vec<String> = again.list().iter().map(|scan| scan.id.clone()).collect();
+        assert_eq!(
+            listed,
+            [&ids[3], &ids[2], &ids[1], &ids[0]].map(Clone::clone)
+        );
+    }
+    let again = Scans::open(folder.path()).unwrap();
+    let gone: Vec<String> = again
+        .retain(2, u64::MAX)
+        .iter()
+        .map(|s| s.id.clone())
+        .collect();
+    assert_eq!(gone, [ids[0].clone(), ids[1].clone()]);
+    // The next is newer than all, whatever was deleted.
+    let next = finished(&again, None);
+    assert_eq!(again.list()[0].id, next);
+}
+
+#[test]
+fn what_cannot_be_read_is_shown_and_left_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = Scans::open(folder.path()).unwrap();
+    let (later, strange) = (finished(&scans, None), finished(&scans, None));
+    let edit = |id: &str, from: &str, to: &str| {
+        let path = scans.place(id).join(RECORD);
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.contains(from), "{text}");
+        fs::write(&path, text.replace(from, to)).unwrap();
+        fs::read(&path).unwrap()
+    };
+    // An option of a later program: the scan is a scan, with what this one knows of it.
+    edit(&later, "\"both_ways\": false", "\"zigzag\": 3");
+    // A state that this one does not know.
+    let bytes = edit(&strange, "\"whole\"", "\"superb\"");
+    // A folder of somebody's: a log and a cloud that nobody made here, and what else he keeps there.
+    let theirs = scans.place("hall");
+    fs::create_dir(&theirs).unwrap();
+    for name in [LOG, CLOUD, "hall.e57", "photo.jpg"] {
+        fs::write(theirs.join(name), name).unwrap();
+    }
+    std::os::unix::fs::symlink(&theirs, scans.place("linked")).unwrap();
+
+    let again = Scans::open(folder.path()).unwrap();
+    let view = |id: &str| again.view(id).unwrap();
+    assert_eq!(
+        (view(&later).state, &view(&later).asked),
+        (ScanState::Whole, &None)
+    );
+    let why = view(&strange).why.clone().unwrap();
+    assert!(why.message.contains("superb"), "{why}");
+    assert_eq!(view(&strange).state, ScanState::Partial, "it has a cloud");
+    assert_eq!(view("hall").state, ScanState::Partial);
+    assert_eq!(again.view("linked"), None);
+    assert!(
+        again.unfinished().is_empty(),
+        "nothing is made over what is there"
+    );
+    // Not to be written over, nor deleted but by whoever wants it.
+    again
+        .change(&strange, |record| record.points = Some(7))
+        .unwrap();
+    assert_eq!(fs::read(again.place(&strange).join(RECORD)).unwrap(), bytes);
+    let gone = again.retain(0, 0);
+    assert!(gone.iter().all(|scan| scan.id != strange), "{gone:?}");
+    assert!(again.view(&strange).is_some());
+    assert!(again.delete(&strange).unwrap().is_some());
+}
+
+#[test]
+fn the_folder_is_the_truth() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = Scans::open(folder.path()).unwrap();
+    let (first, second) = (finished(&scans, Some("hall")), finished(&scans, None));
+    assert!(first.starts_with("hall-simulated-"), "{first}");
+    let again = Scans::open(folder.path()).unwrap();
+    assert_eq!(again.list(), scans.list());
+    assert_eq!(again.delete(&first).unwrap().unwrap().id, first);
+    assert_eq!(again.delete(&first).unwrap(), None);
+    let left = Scans::open(folder.path()).unwrap().list();
+    assert_eq!(left.len(), 1);
+    assert_eq!(left[0].id, second);
+}
+
+#[test]
+fn what_nobody_ended_waits_for_its_cloud() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = Scans::open(folder.path()).unwrap();
+    let with_log = scans.begin(&asked(Some("a")), false).unwrap().head.id;
+    fs::write(scans.place(&with_log).join(LOG), b"log").unwrap();
+    let without = scans.begin(&asked(Some("b")), false).unwrap().head.id;
+    // Nobody can delete what is being made.
+    assert!(scans.delete(&without).is_err());
+    // A folder with nothing but a log, and one that is no scan.
+    fs::create_dir(folder.path().join("copied")).unwrap();
+    fs::write(folder.path().join("copied").join(LOG), b"log").unwrap();
+    fs::create_dir(folder.path().join("other")).unwrap();
+    let again = Scans::open(folder.path()).unwrap();
+    let mut unfinished = again.unfinished();
+    unfinished.sort();
+    assert_eq!(unfinished, [with_log.as_str(), "copied"]);
+    assert_eq!(again.view(&without).unwrap().state, ScanState::Failed);
+    assert!(again.record(&with_log).unwrap().recording.is_some());
+    assert_eq!(again.list().len(), 3);
+}
+
+#[test]
+fn the_oldest_go_when_there_are_too_many_and_the_newest_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = Scans::open(folder.path()).unwrap();
+    let ids: Vec<String> = (0..4).map(|_| finished(&scans, None)).collect();
+    let gone = scans.retain(3, u64::MAX);
+    assert_eq!(gone.len(), 1);
+    assert_eq!(gone[0].id, ids[0]);
+    // One scan has some hundred bytes.
+    assert_eq!(scans.retain(3, 1).len(), 2);
+    assert_eq!(scans.list()[0].id, ids[3]);
+}
+
+#[test]
+fn names_cannot_leave_the_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = Scans::open(folder.path()).unwrap();
+    for name in ["", "../x", "a/b", "a b", ".", &"x".repeat(61)] {
+        let failure = scans.begin(&asked(Some(name)), true).unwrap_err();
+        assert_eq!(failure.kind, Kind::Usage, "{name}");
+    }
+    assert_eq!(scans.view("../x"), None);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}

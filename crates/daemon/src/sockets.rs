@@ -1,0 +1,146 @@
+//! Where the commands find the daemon: a Unix socket named after the drive's port.
+
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+use io::discover::{Findings, discover};
+
+use engine::config::{Device, DeviceKind};
+use engine::devices::drive_port::{self as ports, Looks};
+use engine::failure::Failure;
+
+/// Where a service's socket is.
+const SERVICE: &str = "/run/velomotion";
+
+/// In place of the port of a drive that is looked for on USB.
+const LOOKED_FOR: &str = "-usb-epos2";
+
+/// Folder in which a daemon makes its socket.
+#[must_use]
+pub fn folder() -> PathBuf {
+    let var = |name| std::env::var_os(name).map(PathBuf::from);
+    var("RUNTIME_DIRECTORY")
+        .or_else(|| var("XDG_RUNTIME_DIR"))
+        .unwrap_or_else(std::env::temp_dir)
+}
+
+/// The socket's name for a device: its port as the configuration calls it. What a link to it leads to is another file when the cable
+/// comes back elsewhere, and none before it is there.
+///
+/// # Errors
+/// Where the profile names no port.
+pub fn name(profile: &str, device: &Device) -> Result<String, Failure> {
+    Ok(name_of(&place(profile, device)?))
+}
+
+/// What the socket is named after. A drive that is looked for has no port of its own.
+fn place(profile: &str, device: &Device) -> Result<PathBuf, Failure> {
+    match device.kind {
+        DeviceKind::Sim => Ok(PathBuf::from(format!("-{profile}"))),
+        _ if device.is_looked_for() => Ok(PathBuf::from(LOOKED_FOR)),
+        _ => ports::place(profile, device, Looks::Once, &Findings::default),
+    }
+}
+
+fn name_of(place: &Path) -> String {
+    let name: String = place
+        .to_string_lossy()
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+        .collect();
+    format!("velomotion{name}.daemon.sock")
+}
+
+/// The sockets where a daemon that has the device may listen, the likeliest first. A daemon may know the port by another name, of those
+/// that udev gives it.
+#[must_use]
+pub fn candidates(profile: &str, device: &Device) -> Vec<PathBuf> {
+    let Ok(named) = place(profile, device) else {
+        return Vec::new();
+    };
+    let mut places = vec![named];
+    if device.is_looked_for() {
+        places.extend(ports::place(profile, device, Looks::Once, &discover));
+    }
+    let others: Vec<PathBuf> = places.iter().flat_map(|place| other_names(place)).collect();
+    places.extend(others);
+    trusted(places.iter().map(|place| name_of(place)).collect())
+}
+
+/// The sockets where a daemon may listen that looks for its drive: it may have found the one at `device`'s port.
+#[must_use]
+pub fn looking(device: &Device) -> Vec<PathBuf> {
+    match device.kind == DeviceKind::Usb && device.port.is_some() {
+        true => trusted(vec![name_of(Path::new(LOOKED_FOR))]),
+        false => Vec::new(),
+    }
+}
+
+/// Those of these names that are there, in every place where sockets are.
+fn trusted(names: Vec<String>) -> Vec<PathBuf> {
+    let mut folders = vec![folder()];
+    if folders.iter().all(|folder| folder != Path::new(SERVICE)) {
+        folders.push(SERVICE.into());
+    }
+    let sockets = folders
+        .into_iter()
+        .flat_map(|folder| names.iter().map(move |name| folder.join(name)));
+    sockets.filter(|socket| is_trusted(socket)).collect()
+}
+
+/// Where a port is a link to, and the other links to the same in `/dev` and beside the port.
+fn other_names(place: &Path) -> Vec<PathBuf> {
+    let Ok(real) = place.canonicalize() else {
+        return Vec::new();
+    };
+    let folders = [Some(Path::new("/dev")), place.parent()];
+    let entries = folders
+        .into_iter()
+        .flatten()
+        .filter_map(|folder| std::fs::read_dir(folder).ok());
+    let links = entries
+        .flatten()
+        .flatten()
+        .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_symlink()))
+        .map(|entry| entry.path())
+        .filter(|link| link.canonicalize().is_ok_and(|leads| leads == real));
+    let mut names: Vec<PathBuf> = std::iter::once(real.clone()).chain(links).collect();
+    names.sort();
+    names.dedup();
+    names.retain(|name| name != place);
+    names
+}
+
+/// Whether whoever made it may be told what to do: this user, or the system. The temporary folder is everybody's.
+fn is_trusted(socket: &Path) -> bool {
+    let owner = std::fs::metadata(socket).map(|there| there.uid());
+    let own = std::fs::metadata("/proc/self").map(|there| there.uid());
+    match (owner, own) {
+        (Ok(owner), Ok(own)) => owner == own || owner == 0 || socket.starts_with(SERVICE),
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_port_has_every_name_that_leads_to_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().canonicalize().unwrap().join(name);
+        std::fs::write(path("ttyUSB0"), "").unwrap();
+        std::fs::write(path("ttyUSB1"), "").unwrap();
+        std::os::unix::fs::symlink("ttyUSB0", path("velomotion-epos2")).unwrap();
+        std::os::unix::fs::symlink("ttyUSB1", path("other")).unwrap();
+        // CaptureRequest for by either name, both are tried; before the cable is there, the one that is known.
+        assert_eq!(other_names(&path("ttyUSB0")), [path("velomotion-epos2")],);
+        assert_eq!(other_names(&path("velomotion-epos2")), [path("ttyUSB0")]);
+        std::fs::remove_file(path("ttyUSB0")).unwrap();
+        assert!(other_names(&path("velomotion-epos2")).is_empty());
+        assert_eq!(
+            name_of(Path::new("/dev/velomotion-epos2")),
+            "velomotion-dev-velomotion-epos2.daemon.sock"
+        );
+    }
+}

@@ -1,0 +1,196 @@
+//! The axis by hand: what a wish becomes for the drive's client, and how the axis then stands. For the command, and for the daemon.
+
+use drive::{Command, DeviceError, Event, Outcome, Status};
+use io::port::Port;
+use serde::{Deserialize, Serialize};
+use units::{DegPerS, DegPerS2, Degrees};
+
+use crate::config::{Config, Device};
+use crate::devices::drive_session::{Session, SessionError};
+use crate::devices::profile as devices;
+use crate::failure::{Failure, Kind};
+
+/// What the drive said about itself.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Name of the device's profile.
+    pub device: String,
+    /// The drive's state (CiA 402).
+    pub state: String,
+    /// Statusword (6041).
+    pub statusword: u16,
+    /// Mode of operation (6061).
+    pub mode: i8,
+    /// Whether the axis knows where it is.
+    pub referenced: bool,
+    /// Absent while the axis does not know where it is.
+    pub angle_deg: Option<f64>,
+    /// Position, quadcounts.
+    pub position_qc: i32,
+    /// Speed of the motor.
+    pub velocity_rpm: i32,
+    /// Whether the lower limit switch is pressed.
+    pub negative_limit: bool,
+    /// Whether the upper one is.
+    pub positive_limit: bool,
+    /// Whether the home switch is.
+    pub home_switch: bool,
+    /// The error history, newest first.
+    pub faults: Vec<Fault>,
+    /// Whether the drive is software.
+    pub simulated: bool,
+}
+
+/// An entry of the error history.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fault {
+    /// Four hexadecimal digits.
+    pub code: String,
+    /// What the guides call it.
+    pub name: Option<String>,
+    /// What it means.
+    pub meaning: Option<String>,
+    /// What to do about it.
+    pub remedy: Option<String>,
+}
+
+/// A request to look at or move the axis outside a capture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JogRequest {
+    /// Report the state; nothing moves.
+    Status,
+    /// Find the zero position at the limit switch.
+    Home,
+    /// Move to an angle.
+    Goto {
+        /// Target, degrees.
+        to_deg: f64,
+        /// Speed, degrees per second.
+        speed_deg_s: f64,
+        /// Acceleration, degrees per second squared; the device's own without it.
+        accel_deg_s2: Option<f64>,
+    },
+    /// Stop now and set the brake.
+    Stop,
+    /// Leave the fault state; the fault history stays.
+    ClearFaults,
+}
+
+/// The drive commands of a request, in order.
+///
+/// # Errors
+/// [`Kind::Usage`] for a move that this axis cannot make.
+pub fn commands(
+    request: JogRequest,
+    config: &Config,
+    device: &Device,
+) -> Result<Vec<Command>, Failure> {
+    Ok(match request {
+        JogRequest::Status => vec![],
+        JogRequest::ClearFaults => vec![Command::ClearFaults],
+        JogRequest::Stop => vec![Command::Stop],
+        JogRequest::Home => vec![Command::Connect, Command::Home, Command::Brake],
+        JogRequest::Goto {
+            to_deg,
+            speed_deg_s,
+            accel_deg_s2,
+        } => {
+            let axis = devices::axis(&config.axis)?;
+            let accel = accel_deg_s2.unwrap_or(device.accel_deg_s2);
+            let plan = axis
+                .plan(
+                    Degrees(config.axis.homing.to_deg),
+                    Degrees(to_deg),
+                    DegPerS(speed_deg_s),
+                    DegPerS2(accel),
+                )
+                .map_err(|error| Failure::new(Kind::Usage, error.to_string()).help(error.help()))?;
+            let to = drive::Move {
+                to: plan.to,
+                speed: plan.speed,
+                acceleration: plan.acceleration,
+            };
+            vec![Command::Connect, Command::Goto(to), Command::Brake]
+        }
+    })
+}
+
+/// Whether a move may home the axis first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Homing {
+    /// Only where that is what was asked for.
+    AsAsked,
+    /// Before any move.
+    First,
+}
+
+/// Runs the commands and asks how the axis then stands.
+///
+/// # Errors
+/// [`SessionError`].
+pub fn ask<P: Port>(
+    session: &mut Session<P>,
+    commands: &[Command],
+    homing: Homing,
+    told: &mut dyn FnMut(&Event),
+) -> Result<Status, SessionError> {
+    for command in commands {
+        if homing == Homing::First && matches!(command, Command::Goto(_)) {
+            session.run(Command::Home, told)?;
+        }
+        session.run(*command, told)?;
+    }
+    match session.run(Command::Status, &mut |_| {})? {
+        Outcome::Status(status) => Ok(status),
+        _ => Err(SessionError::Interrupted),
+    }
+}
+
+impl Report {
+    /// The report on what the drive called `device` said.
+    #[must_use]
+    pub fn new(device: &str, status: &Status, simulated: bool) -> Self {
+        Self {
+            device: device.to_owned(),
+            state: status
+                .state
+                .map_or("unknown".to_owned(), |state| state.to_string()),
+            statusword: status.statusword,
+            mode: status.mode,
+            referenced: status.referenced,
+            angle_deg: status.angle.map(|angle| angle.0),
+            position_qc: status.position.0,
+            velocity_rpm: status.velocity_rpm,
+            negative_limit: status.inputs & 1 != 0,
+            positive_limit: status.inputs & 2 != 0,
+            home_switch: status.inputs & 4 != 0,
+            faults: status.history.iter().map(|error| fault(*error)).collect(),
+            simulated,
+        }
+    }
+}
+
+/// A fault of the drive with what is known of it.
+#[must_use]
+pub fn fault(error: DeviceError) -> Fault {
+    let meaning = error.meaning();
+    Fault {
+        code: format!("{:04X}", error.0),
+        name: meaning.map(|m| m.name.to_owned()),
+        meaning: meaning.map(|m| m.meaning.to_owned()),
+        remedy: meaning.map(|m| m.remedy.to_owned()),
+    }
+}
+
+/// Why the axis was not moved, with what to do about it.
+#[must_use]
+pub fn failure(error: &SessionError) -> Failure {
+    let kind = match error {
+        SessionError::Interrupted => Kind::Interrupted,
+        _ => Kind::DeviceFault,
+    };
+    let help = error.help().unwrap_or_else(|| {
+        "the axis stands, its power stage off, its brake set if it has one".to_owned()
+    });
+    Failure::new(kind, error.to_string()).help(help)
+}

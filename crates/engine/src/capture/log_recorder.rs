@@ -1,0 +1,133 @@
+//! A recording under way: both devices' traffic into one log.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use io::files::Overwrite;
+use io::log::{LogConfig, LogError, LogWriter, Recorder, RecorderCounts, RecorderHandle};
+use io::udp::ListenCounts;
+use protocol::record::DriveLink;
+use scanner::ScanConfig;
+
+use crate::devices::lidar_receiver::LidarReceiver;
+use crate::failure::{Failure, Kind};
+
+/// A recording under way.
+pub struct Recording {
+    log: Recorder,
+    hearing: Arc<LidarReceiver>,
+    /// What was heard before it began.
+    before: ListenCounts,
+    packets_before: u64,
+}
+
+/// What was recorded.
+#[derive(Clone, Copy, Debug)]
+pub struct Recorded {
+    /// What the lidar's sockets heard and the kernel dropped.
+    pub lidar: ListenCounts,
+    /// What is in the log.
+    pub log: RecorderCounts,
+}
+
+impl Recording {
+    /// Makes the log and records from now on what `hearing` hears.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] where the log exists and may not be replaced, [`Kind::BadInput`] where it cannot be made, and where the lidar's
+    /// sockets have failed.
+    pub fn start(
+        hearing: &Arc<LidarReceiver>,
+        path: &Path,
+        config: &ScanConfig,
+        link: DriveLink,
+    ) -> Result<Self, Failure> {
+        let head = LogConfig {
+            metadata: toml::to_string(config).map_err(|error| {
+                Failure::new(
+                    Kind::BadInput,
+                    format!("the configuration has no TOML: {error}"),
+                )
+                .help("see whether every number in the configuration is finite")
+            })?,
+            drive: Some(link),
+        };
+        let writer =
+            LogWriter::create(path, &head, Overwrite::Refuse).map_err(|e| log_failure(&e))?;
+        let log = Recorder::to_disk(writer).map_err(|e| log_failure(&e))?;
+        let packets_before = hearing.packets();
+        let before = hearing.record_to(Some(log.handle()))?;
+        Ok(Self {
+            log,
+            hearing: Arc::clone(hearing),
+            before,
+            packets_before,
+        })
+    }
+
+    /// Where the drive's records go.
+    #[must_use]
+    pub fn handle(&self) -> RecorderHandle {
+        self.log.handle()
+    }
+
+    /// Lidar packets heard so far.
+    #[must_use]
+    pub fn packets(&self) -> u64 {
+        self.hearing.packets().saturating_sub(self.packets_before)
+    }
+
+    /// Whether the log cannot be written any more.
+    #[must_use]
+    pub fn failed(&self) -> bool {
+        self.log.failed()
+    }
+
+    /// Takes what has come until now and closes the log; `waiting` is called every few milliseconds until the disk has it.
+    ///
+    /// # Errors
+    /// [`Kind::Incomplete`] where the log could not be written to its end or the lidar's socket failed; what was written stays.
+    pub fn finish(self, waiting: &mut dyn FnMut()) -> Result<Recorded, Failure> {
+        let heard = self.hearing.record_to(None);
+        let log = self
+            .log
+            .finish_while(waiting)
+            .map_err(|e| log_failure(&e))?;
+        Ok(Recorded {
+            lidar: since(heard?, self.before),
+            log,
+        })
+    }
+}
+
+/// What was heard between two counts.
+fn since(now: ListenCounts, before: ListenCounts) -> ListenCounts {
+    ListenCounts {
+        data: now.data.saturating_sub(before.data),
+        position: now.position.saturating_sub(before.position),
+        dropped: now.dropped.saturating_sub(before.dropped),
+        without_kernel_time: now
+            .without_kernel_time
+            .saturating_sub(before.without_kernel_time),
+        foreign: now.foreign.saturating_sub(before.foreign),
+        unwanted: now.unwanted.saturating_sub(before.unwanted),
+    }
+}
+
+fn log_failure(error: &LogError) -> Failure {
+    let (kind, help) = match error {
+        LogError::Exists { .. } => (
+            Kind::Usage,
+            "choose another name with --log or -o, or overwrite it with --force",
+        ),
+        LogError::Create { .. } => (
+            Kind::BadInput,
+            "see whether the folder exists and may be written to",
+        ),
+        _ => (
+            Kind::Incomplete,
+            "see whether the disk is full; what was written is there and can be replayed",
+        ),
+    };
+    Failure::new(kind, error.to_string()).help(help)
+}

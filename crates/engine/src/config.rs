@@ -1,0 +1,120 @@
+//! The configuration file: which devices there are and how the scanner is built.
+//!
+//! Values of the command line win over the file, the file over what is built in. A key that is not known is an error with
+//! its line: a misspelt limit must not pass for none.
+
+mod axis;
+pub mod daemon;
+mod device;
+pub mod origin;
+pub mod ros2;
+
+use std::path::{Path, PathBuf};
+
+use scanner::config::{LidarConfig, MountConfig};
+use serde::Deserialize;
+
+pub use axis::{Axis, Homing, LimitSwitches};
+pub use device::{Device, DeviceKind, Devices};
+
+use crate::config::daemon::DaemonConfig;
+use crate::failure::{Failure, Kind};
+
+/// The whole file.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// `device = "NAME"`, or a `[device.NAME]` table each and `[device] default = "NAME"`.
+    pub device: Devices,
+    /// How the lidar sits on the tilt axis.
+    pub mount: MountConfig,
+    /// How well the lidar measures; software devices say it themselves.
+    pub lidar: LidarConfig,
+    /// The tilt axis.
+    pub axis: Axis,
+    /// The daemon.
+    pub daemon: DaemonConfig,
+}
+
+/// Reads the configuration: `file` if given, else the first there is of the usual places, else what is built in.
+///
+/// # Errors
+/// Where a file was named and cannot be read, or any that is read cannot be understood.
+pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
+    let Some(path) = file.map(Path::to_owned).or_else(usual_place) else {
+        return Ok(Config::default());
+    };
+    let text = std::fs::read_to_string(&path).map_err(|error| {
+        Failure::new(
+            Kind::BadInput,
+            format!("cannot read the configuration {}: {error}", path.display()),
+        )
+        .help("name a text file that exists with --config, or leave the option out")
+    })?;
+    let config: Config = toml::from_str(&text).map_err(|error| {
+        Failure::new(
+            Kind::BadInput,
+            format!(
+                "the configuration {} cannot be understood:\n{}",
+                path.display(),
+                error.to_string().trim_end()
+            ),
+        )
+        .help("correct that line; docs/src/wiring.md shows every key")
+    })?;
+    config.check().map_err(|what| {
+        Failure::new(
+            Kind::BadInput,
+            format!("the configuration {}: {what}", path.display()),
+        )
+        .help("correct that value; docs/src/wiring.md says what each one means")
+    })?;
+    Ok(config)
+}
+
+impl Config {
+    /// Refuses numbers that no scanner has (TOML knows nan and inf).
+    fn check(&self) -> Result<(), String> {
+        between("mount.d_m", self.mount.d_m, -10.0, 10.0)?;
+        between("lidar.range_sd_m", self.lidar.range_sd_m, 0.0, 10.0)?;
+        self.axis.check()?;
+        let mut devices = self.device.profiles.iter();
+        devices.try_for_each(|(name, device)| device.check(name))
+    }
+}
+
+/// Refuses a number that is not from `low` to `high`. Not a number is not within either.
+fn between(name: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
+    match (low..=high).contains(&value) {
+        true => Ok(()),
+        false => Err(format!(
+            "{name}: expected a number from {low} to {high}, got {value}"
+        )),
+    }
+}
+
+/// Refuses a number that is not above 0, or above `high`. Directions are no business of these: a sign is a mistake.
+fn positive(name: &str, value: f64, high: f64) -> Result<(), String> {
+    match value > 0.0 && value <= high {
+        true => Ok(()),
+        false => Err(format!(
+            "{name}: expected a number above 0 up to {high}, got {value}"
+        )),
+    }
+}
+
+fn usual_place() -> Option<PathBuf> {
+    let var = |name| std::env::var_os(name).map(PathBuf::from);
+    let user = var("XDG_CONFIG_HOME").or_else(|| var("HOME").map(|home| home.join(".config")));
+    [
+        Some(PathBuf::from("velomotion.toml")),
+        user.map(|dir| dir.join("velomotion/velomotion.toml")),
+        Some(PathBuf::from("/etc/velomotion/velomotion.toml")),
+    ]
+    .into_iter()
+    .flatten()
+    .find(|path| path.is_file())
+}
+
+#[cfg(test)]
+mod tests;

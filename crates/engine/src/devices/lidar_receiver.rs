@@ -1,0 +1,277 @@
+//! The lidar, heard on a thread of its own from when it is listened to until nobody wants it any more, whether or not a log is being
+//! written.
+//!
+//! What a log gets begins and ends at turns of that thread, so that the counts belong to the log exactly. Left out: what the packets mean.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use io::log::RecorderHandle;
+use io::udp::{GATHER, ListenCounts, Listener, UdpError};
+use protocol::record::{Record, Wire};
+
+use crate::devices::lidar_sockets::{DATA_PORT, LidarSockets, POSITION_PORT};
+use crate::devices::simulated::Destinations;
+use crate::failure::{Failure, Kind};
+
+/// How long packets gather while nobody records them: their times are the kernel's, and rates are looked at every second.
+const UNRECORDED: Duration = Duration::from_millis(50);
+/// A thread that has not come round after this long will not: it looks up every 50 ms, and when it is asked.
+const TURN_LIMIT: Duration = Duration::from_secs(10);
+
+/// Whoever else looks at every record of the lidar. It is on the way of the packets: it may not wait.
+pub type PacketTap = Box<dyn FnMut(&Record<'_>) + Send>;
+
+/// A lidar that is listened to. Dropped, the listening ends.
+pub struct LidarReceiver {
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Default)]
+struct Shared {
+    /// Set where the thread is to come round.
+    turn: AtomicBool,
+    stop: AtomicBool,
+    packets: AtomicU64,
+    requests: Mutex<Requests>,
+}
+
+#[derive(Default)]
+struct Requests {
+    waiting: Vec<Request>,
+    failed: Option<Failure>,
+}
+
+/// Where records go from the turn on, if that is to change, and who wants to know the counts at the turn.
+struct Request {
+    log: Option<Option<RecorderHandle>>,
+    answer: Sender<Result<ListenCounts, Failure>>,
+}
+
+impl Shared {
+    fn requests(&self) -> MutexGuard<'_, Requests> {
+        self.requests.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl LidarReceiver {
+    /// Listens from now on.
+    ///
+    /// # Errors
+    /// [`Kind::NoDevice`] where the system gives no thread.
+    pub fn start(sockets: LidarSockets, onlooker: PacketTap) -> Result<Self, Failure> {
+        let shared = Arc::new(Shared::default());
+        let theirs = Arc::clone(&shared);
+        let thread = std::thread::Builder::new()
+            .name("lidar".to_owned())
+            .spawn(move || listen(sockets, onlooker, &theirs))
+            .map_err(|error| {
+                Failure::new(Kind::NoDevice, format!("no thread for the lidar: {error}"))
+                    .help("end other programs; see ulimit -u")
+            })?;
+        Ok(Self {
+            shared,
+            thread: Some(thread),
+        })
+    }
+
+    /// Packets heard so far.
+    #[must_use]
+    pub fn packets(&self) -> u64 {
+        self.shared.packets.load(Ordering::Relaxed)
+    }
+
+    /// Whether it goes on: no socket has failed, and the thread lives.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.shared.requests().failed.is_none()
+            && self
+                .thread
+                .as_ref()
+                .is_some_and(|thread| !thread.is_finished())
+    }
+
+    /// What was heard so far.
+    ///
+    /// # Errors
+    /// Where the sockets have failed.
+    pub fn counts(&self) -> Result<ListenCounts, Failure> {
+        self.ask(None)
+    }
+
+    /// Gives records to `log` from now on, or to none; what was heard before, all of which went where records went until now.
+    ///
+    /// # Errors
+    /// Where the sockets have failed.
+    pub fn record_to(&self, log: Option<RecorderHandle>) -> Result<ListenCounts, Failure> {
+        self.ask(Some(log))
+    }
+
+    fn ask(&self, log: Option<Option<RecorderHandle>>) -> Result<ListenCounts, Failure> {
+        let (answer, counts) = channel();
+        {
+            let mut requests = self.shared.requests();
+            if let Some(failure) = &requests.failed {
+                return Err(failure.clone());
+            }
+            requests.waiting.push(Request { log, answer });
+        }
+        self.come_round();
+        counts.recv_timeout(TURN_LIMIT).unwrap_or_else(|_| {
+            Err(
+                Failure::new(Kind::Incomplete, "the lidar's thread does not answer")
+                    .help("this is a defect of the program; run with -vv and report what it says"),
+            )
+        })
+    }
+}
+
+impl LidarReceiver {
+    fn come_round(&self) {
+        self.shared.turn.store(true, Ordering::Release);
+        if let Some(thread) = &self.thread {
+            thread.thread().unpark();
+        }
+    }
+}
+
+impl Drop for LidarReceiver {
+    fn drop(&mut self) {
+        self.shared.stop.store(true, Ordering::Release);
+        self.come_round();
+        if let Some(thread) = self.thread.take() {
+            // A panic of that thread has been told to whoever asked for its counts.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &Shared) {
+    let (mut listener, ports) = sockets.into_parts();
+    let mut log = None;
+    while !shared.stop.load(Ordering::Acquire) {
+        listener.gather(match log {
+            Some(_) => GATHER,
+            None => UNRECORDED,
+        });
+        let heard = turn(&mut listener, ports, log.as_ref(), &mut onlooker, shared);
+        // Before the requests are looked at: one that comes later sets it again.
+        shared.turn.store(false, Ordering::Release);
+        let mut requests = shared.requests();
+        let heard = heard.map_err(|error| Failure {
+            kind: Kind::Incomplete,
+            ..lidar_failure(&error)
+        });
+        for request in requests.waiting.drain(..) {
+            if let Some(wanted) = request.log {
+                log = wanted;
+            }
+            // Whoever went away needs no answer.
+            let _ = request.answer.send(heard.clone());
+        }
+        if let Err(failure) = heard {
+            requests.failed = Some(failure);
+            return;
+        }
+    }
+}
+
+/// Listens until it is to come round.
+fn turn(
+    listener: &mut Listener,
+    ports: Destinations,
+    log: Option<&RecorderHandle>,
+    onlooker: &mut PacketTap,
+    shared: &Shared,
+) -> Result<ListenCounts, UdpError> {
+    listener.run(&shared.turn, |record| {
+        shared.packets.fetch_add(1, Ordering::Relaxed);
+        let record = with_port_of_the_lidar(record, ports);
+        if let Some(log) = log {
+            log.record(&record);
+        }
+        onlooker(&record);
+    })
+}
+
+/// In a log the lidar's packets stand under the ports that they have by the manual, whatever the socket's was.
+fn with_port_of_the_lidar<'a>(record: &Record<'a>, local: Destinations) -> Record<'a> {
+    let mut record = *record;
+    if let Wire::Lidar { port, .. } = &mut record.wire {
+        if *port == local.data {
+            *port = DATA_PORT;
+        } else if *port == local.position {
+            *port = POSITION_PORT;
+        }
+    }
+    record
+}
+
+/// A lidar that cannot be listened to, with what to do about it.
+#[must_use]
+pub fn lidar_failure(error: &UdpError) -> Failure {
+    let help = match error {
+        UdpError::Busy { .. } => {
+            "close the other program that listens to the lidar (another capture, VeloView, a ROS driver)"
+        }
+        UdpError::NoInterface { .. } => {
+            "give lidar in the device's profile an address of this machine, or 0.0.0.0"
+        }
+        UdpError::Io { action: "join", .. } => {
+            "see whether lidar in the device's profile is the address of an interface that is up, or, where it is 0.0.0.0, whether a\n\
+             route to lidar_group exists (ip route get GROUP)"
+        }
+        UdpError::NoRuntime { .. } | UdpError::Io { .. } => {
+            "see whether the network interface is up and this user may open sockets"
+        }
+    };
+    Failure::new(Kind::NoDevice, error.to_string()).help(help)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use io::log::{LogConfig, LogWriter, Recorder};
+    use io::udp::ListenConfig;
+    use std::net::{Ipv4Addr, UdpSocket};
+
+    fn hearing() -> (LidarReceiver, UdpSocket) {
+        let config = ListenConfig {
+            address: Ipv4Addr::LOCALHOST,
+            data_port: 0,
+            position_port: Some(0),
+            ..ListenConfig::default()
+        };
+        let sockets = LidarSockets::bind(&config).unwrap();
+        let to = sockets.ports().data;
+        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        socket.connect((Ipv4Addr::LOCALHOST, to)).unwrap();
+        (
+            LidarReceiver::start(sockets, Box::new(|_| {})).unwrap(),
+            socket,
+        )
+    }
+
+    #[test]
+    fn a_log_gets_exactly_what_came_between_its_turns() {
+        let (hearing, socket) = hearing();
+        let send = |n| (0..n).for_each(|_| assert_eq!(socket.send(&[7; 100]).unwrap(), 100));
+        send(3);
+        // On loopback a datagram is in the receiver's queue when it is sent.
+        let writer = LogWriter::new(Vec::new(), &LogConfig::default()).unwrap();
+        let log = Recorder::start(writer).unwrap();
+        let before = hearing.record_to(Some(log.handle())).unwrap();
+        assert_eq!(before.data, 3);
+        send(5);
+        let after = hearing.record_to(None).unwrap();
+        assert_eq!(after.data, 8);
+        send(2);
+        assert_eq!(hearing.counts().unwrap().data, 10);
+        assert_eq!(hearing.packets(), 10);
+        assert_eq!(log.finish().unwrap().log.lidar, 5);
+    }
+}

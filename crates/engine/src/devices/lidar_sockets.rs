@@ -1,0 +1,59 @@
+//! The lidar's UDP sockets.
+
+use io::udp::{ListenConfig, Listener};
+
+use crate::config::Device;
+use crate::devices::lidar_receiver::lidar_failure;
+use crate::devices::simulated::Destinations;
+use crate::failure::Failure;
+
+/// UDP port of data packets (VLP-16 manual, section 9).
+pub const DATA_PORT: u16 = 2368;
+/// UDP port of position packets.
+pub const POSITION_PORT: u16 = 8308;
+
+/// The lidar's sockets, bound; nothing is recorded yet.
+pub struct LidarSockets {
+    listener: Listener,
+    ports: Destinations,
+}
+
+/// Where a device's lidar is to be heard.
+#[must_use]
+pub fn listen_config(device: &Device) -> ListenConfig {
+    ListenConfig {
+        address: device.lidar,
+        data_port: device.data_port.unwrap_or(DATA_PORT),
+        position_port: Some(device.position_port.unwrap_or(POSITION_PORT)),
+        group: device.lidar_group,
+        sources: device.lidar_source.into_iter().collect(),
+        ..ListenConfig::default()
+    }
+}
+
+impl LidarSockets {
+    /// Binds the sockets.
+    ///
+    /// # Errors
+    /// [`Kind::NoDevice`] where another program has the ports, or the address is not this machine's.
+    pub fn bind(config: &ListenConfig) -> Result<Self, Failure> {
+        let listener = Listener::bind(config).map_err(|error| lidar_failure(&error))?;
+        let mut local = listener.sockets().iter().map(|s| s.address().port());
+        let ports = Destinations {
+            data: local.next().unwrap_or(DATA_PORT),
+            position: local.next().unwrap_or(POSITION_PORT),
+        };
+        Ok(Self { listener, ports })
+    }
+
+    /// The local ports.
+    #[must_use]
+    pub fn ports(&self) -> Destinations {
+        self.ports
+    }
+
+    /// The sockets, and which local ports they have.
+    pub(crate) fn into_parts(self) -> (Listener, Destinations) {
+        (self.listener, self.ports)
+    }
+}

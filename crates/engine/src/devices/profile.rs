@@ -1,0 +1,137 @@
+//! From a device profile to an open drive port and a lidar address.
+
+use drive::config::{Brake, Homing, LimitSwitches, Limits, Timing};
+use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
+
+use crate::config::{Axis, Config, Device, DeviceKind};
+use crate::failure::{Failure, Kind};
+
+/// Acceleration while homing, of an axis that may take so much.
+const HOMING_ACCELERATION: RpmPerS = RpmPerS(5_000);
+
+/// The device to use and its name: `--device`, else the configuration's, else `auto`, whatever is plugged in when its port is wanted
+/// ([`ports::place`](crate::devices::drive_port::place)).
+///
+/// # Errors
+/// [`Kind::Usage`] for a name that is not there.
+pub fn choose(config: &Config, asked: Option<&str>) -> Result<(String, Device), Failure> {
+    let name = asked
+        .or(config.device.default.as_deref())
+        .unwrap_or("auto")
+        .to_owned();
+    if let Some(device) = config.device.profiles.get(&name) {
+        return Ok((name, device.clone()));
+    }
+    match name.as_str() {
+        "sim" => Ok((name, Device::simulator())),
+        "auto" => Ok((name, Device::found())),
+        _ => {
+            let mut known: Vec<&str> = config.device.profiles.keys().map(String::as_str).collect();
+            known.extend(["sim", "auto"]);
+            Err(Failure::new(
+                Kind::Usage,
+                format!("no device is called {name}: expected one of {}", known.join(", ")),
+            )
+            .help(format!(
+                "add a [device.{name}] to the configuration, or use --device sim for software devices"
+            )))
+        }
+    }
+}
+
+/// The axis as its client knows it.
+///
+/// # Errors
+/// [`Kind::BadInput`] where the configuration describes no axis that can be.
+pub fn axis(axis: &Axis) -> Result<drive::AxisConfig, Failure> {
+    let wrong = |error: &dyn std::fmt::Display| {
+        Failure::new(
+            Kind::BadInput,
+            format!("the configuration's [axis]: {error}"),
+        )
+        .help(
+            "correct that value in the configuration; docs/src/wiring.md says what each one means",
+        )
+    };
+    let gearing = axis.scan().gearing().map_err(|error| wrong(&error))?;
+    let rpm = |deg_s: f64| gearing.rpm(DegPerS(deg_s));
+    let homing = &axis.homing;
+    let max_acceleration = gearing.rpm_per_s(DegPerS2(axis.max_accel_deg_s2));
+    let config = drive::AxisConfig {
+        node: axis.node,
+        gearing,
+        limits: Limits {
+            min: Degrees(axis.min_deg),
+            max: Degrees(axis.max_deg),
+        },
+        max_speed: rpm(axis.max_speed_deg_s),
+        max_acceleration,
+        quick_stop: gearing.rpm_per_s(DegPerS2(axis.quick_stop_deg_s2)),
+        limit_switches: LimitSwitches {
+            negative: axis.limit_switches.negative,
+            positive: axis.limit_switches.positive,
+            active_low: axis.limit_switches.normally_closed,
+        },
+        brake: axis.brake_output.map(|output| Brake {
+            output,
+            ..Brake::default()
+        }),
+        homing: Homing {
+            method: homing.method,
+            switch_speed: rpm(homing.speed_deg_s),
+            zero_speed: rpm(homing.edge_speed_deg_s),
+            acceleration: HOMING_ACCELERATION.min(max_acceleration),
+            offset: Degrees(homing.to_deg - homing.at_deg),
+            home_position: Degrees(homing.to_deg),
+            time_limit: Span::from_secs(60),
+            ..Homing::default()
+        },
+        timing: Timing::default(),
+        ..drive::AxisConfig::default()
+    };
+    config.check().map_err(|error| wrong(&error))?;
+    Ok(config)
+}
+
+/// Whether the device is software.
+#[must_use]
+pub fn simulated(device: &Device) -> bool {
+    device.kind == DeviceKind::Sim
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config;
+
+    #[test]
+    fn a_gentle_axis_homes_gently() {
+        let gentle = Axis {
+            max_accel_deg_s2: 100.0,
+            ..Axis::default()
+        };
+        let config = axis(&gentle).unwrap();
+        assert_eq!(config.homing.acceleration, config.max_acceleration);
+        let strong = axis(&Axis::default()).unwrap();
+        assert_eq!(strong.homing.acceleration, HOMING_ACCELERATION);
+    }
+
+    #[test]
+    fn limit_switches_reach_the_client_as_configured() {
+        let switches = config::LimitSwitches {
+            negative: None,
+            positive: Some(2),
+            normally_closed: true,
+        };
+        let config = axis(&Axis {
+            limit_switches: switches,
+            ..Axis::default()
+        });
+        let expected = LimitSwitches {
+            negative: None,
+            positive: Some(2),
+            active_low: true,
+        };
+        assert_eq!(config.unwrap().limit_switches, expected);
+    }
+}

@@ -1,0 +1,192 @@
+//! The software scanner in real time: one thread that moves a [`sim::Rig`] along with the host's clock, answers on a
+//! pseudo-terminal and sends lidar packets over loopback.
+
+use std::net::{Ipv4Addr, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+
+use firmware_sim::vlp16::DISTANCE_UNIT_MM;
+use io::port::{Port, PortError, Pty};
+use scanner::{LidarConfig, ScanConfig};
+use sim::{Rig, RigConfig, Truth};
+use thiserror::Error;
+use units::{Host, Metres, Span, Stamp};
+
+use crate::devices::lidar_sockets::DATA_PORT;
+pub use crate::devices::simulated_axis::node;
+use crate::failure::{Failure, Kind};
+
+/// Where the software lidar sends its packets.
+#[derive(Clone, Copy, Debug)]
+pub struct Destinations {
+    /// Local port that receives data packets.
+    pub data: u16,
+    /// Local port that receives position packets.
+    pub position: u16,
+}
+
+/// A software scanner that runs.
+pub struct Simulated {
+    port: PathBuf,
+    stop: Arc<AtomicBool>,
+    requests: Sender<Request>,
+    thread: JoinHandle<Result<Truth, SimulatorError>>,
+}
+
+/// What whoever has the devices may want of them.
+enum Request {
+    /// What truly happened so far.
+    Truth(Sender<Truth>),
+    /// What happened before that is of no interest.
+    Forget(Stamp<Host>),
+}
+
+/// Why the devices stopped.
+#[derive(Debug, Error)]
+enum SimulatorError {
+    #[error("pseudo-terminal: {0}")]
+    Port(#[from] PortError),
+    #[error("loopback socket: {0}")]
+    Socket(#[from] std::io::Error),
+}
+
+/// Longest nap: the drive's control cycle.
+const CYCLE: Span = Span::from_millis(1);
+/// Where the machine is too busy for the devices, their time runs slower: else they would catch up for ever longer, answer nothing meanwhile,
+/// and not see that they are to stop.
+const LONGEST_STEP: Span = Span::from_millis(500);
+
+impl Simulated {
+    /// Starts the devices. They live until [`Simulated::stop`].
+    ///
+    /// # Errors
+    /// Where the machine gives no pseudo-terminal or no socket.
+    pub fn start(config: RigConfig, to: Destinations) -> Result<Self, Failure> {
+        let cannot = |what: &str, error: &dyn std::fmt::Display| {
+            Failure::new(Kind::NoDevice, format!("the simulator cannot open {what}: {error}"))
+                .help("see whether this machine gives out pseudo-terminals (/dev/ptmx) and loopback sockets")
+        };
+        let pty = Pty::open().map_err(|error| cannot("a pseudo-terminal", &error))?;
+        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))
+            .map_err(|error| cannot("a loopback socket", &error))?;
+        let port = pty.path().to_owned();
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopping = Arc::clone(&stop);
+        let (requests, inbox) = channel();
+        let thread = std::thread::Builder::new()
+            .name("software scanner".to_owned())
+            .spawn(move || run(Rig::new(config), pty, (&socket, to), &stopping, &inbox))
+            .map_err(|error| cannot("a thread", &error))?;
+        Ok(Self {
+            port,
+            stop,
+            requests,
+            thread,
+        })
+    }
+
+    /// The serial port of the software drive.
+    #[must_use]
+    pub fn port(&self) -> &Path {
+        &self.port
+    }
+
+    /// What truly happened so far; `None` where the devices have failed.
+    #[must_use]
+    pub fn truth(&self) -> Option<Truth> {
+        let (answer, truth) = channel();
+        self.requests.send(Request::Truth(answer)).ok()?;
+        truth.recv().ok()
+    }
+
+    /// Lets the devices forget what happened before `host`: they may run for days.
+    pub fn forget_before(&self, host: Stamp<Host>) {
+        // Devices that have failed have nothing to forget.
+        let _ = self.requests.send(Request::Forget(host));
+    }
+
+    /// Whether the devices have failed.
+    #[must_use]
+    pub fn failed(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    /// Switches the devices off and gives what truly happened.
+    ///
+    /// # Errors
+    /// Where the devices had failed.
+    pub fn stop(self) -> Result<Truth, Failure> {
+        self.stop.store(true, Ordering::Relaxed);
+        let failed = |why: String| {
+            Failure::new(Kind::DeviceFault, format!("the simulator failed: {why}"))
+                .help("run with -vv and report what it says; the log of what came before is kept")
+        };
+        match self.thread.join() {
+            Ok(Ok(truth)) => Ok(truth),
+            Ok(Err(error)) => Err(failed(error.to_string())),
+            Err(_) => Err(failed("its thread panicked".to_owned())),
+        }
+    }
+}
+
+fn run(
+    mut rig: Rig,
+    mut pty: Pty,
+    (socket, to): (&UdpSocket, Destinations),
+    stop: &AtomicBool,
+    requests: &Receiver<Request>,
+) -> Result<Truth, SimulatorError> {
+    let mut buffer = [0; 512];
+    while !stop.load(Ordering::Relaxed) {
+        while let Ok(request) = requests.try_recv() {
+            match request {
+                // Whoever went away needs no answer.
+                Request::Truth(answer) => drop(answer.send(rig.truth())),
+                Request::Forget(host) => rig.forget_before(host),
+            }
+        }
+        let now = io::clock::now();
+        let nap = rig
+            .next_event()
+            .saturating_since(now)
+            .clamp(Span::ZERO, CYCLE);
+        let read = pty.read(&mut buffer, nap)?.map_or(0, |(count, _)| count);
+        rig.advance(io::clock::now().min(rig.now() + LONGEST_STEP));
+        rig.drive_input(buffer.get(..read).unwrap_or_default());
+        while let Some(sent) = rig.drive_output() {
+            pty.write_frame(&sent.bytes)?;
+        }
+        while let Some(datagram) = rig.poll_datagram() {
+            let port = if datagram.port == DATA_PORT {
+                to.data
+            } else {
+                to.position
+            };
+            socket.send_to(&datagram.payload, (Ipv4Addr::LOCALHOST, port))?;
+        }
+    }
+    Ok(rig.truth())
+}
+
+/// The software scanner that fits an axis: its drive, and the lidar at 10 Hz in the hall, switched on at `start`.
+#[must_use]
+pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> RigConfig {
+    RigConfig {
+        mount: Metres(scan.mount.d_m),
+        gearing: axis.gearing,
+        drive: node(axis),
+        ..RigConfig::new(start)
+    }
+}
+
+/// How well the software lidar measures: ranges come in steps and have no other error.
+#[must_use]
+pub fn lidar() -> LidarConfig {
+    let step_m = f64::from(DISTANCE_UNIT_MM) * 1e-3;
+    LidarConfig {
+        range_sd_m: step_m / f64::sqrt(12.0),
+    }
+}

@@ -1,0 +1,96 @@
+//! The file behind a sink: buffered, and shared with whoever gives it its name when it is complete.
+
+use std::io::{self as stdio, BufWriter, Read, Seek, SeekFrom, Write};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ::io::files::NewFile;
+
+/// Enough for what comes in small pieces (LAZ, E57, CSV); less than a batch of rows, which then goes to the system without being copied.
+const BUFFER_BYTES: usize = 1 << 16;
+
+/// A file with a buffer for writing, which can be read, too.
+pub struct Buffered<F: Write>(BufWriter<F>);
+
+impl<F: Write> Buffered<F> {
+    /// A buffer in front of `file`.
+    pub fn new(file: F) -> Self {
+        Self(BufWriter::with_capacity(BUFFER_BYTES, file))
+    }
+}
+
+impl<F: Write> Write for Buffered<F> {
+    fn write(&mut self, bytes: &[u8]) -> stdio::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> stdio::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl<F: Write + Seek> Seek for Buffered<F> {
+    fn seek(&mut self, to: SeekFrom) -> stdio::Result<u64> {
+        self.0.seek(to)
+    }
+
+    /// Without writing the buffer out.
+    fn stream_position(&mut self) -> stdio::Result<u64> {
+        self.0.stream_position()
+    }
+}
+
+impl<F: Read + Write> Read for Buffered<F> {
+    fn read(&mut self, bytes: &mut [u8]) -> stdio::Result<usize> {
+        self.0.flush()?;
+        self.0.get_mut().read(bytes)
+    }
+}
+
+/// The file, shared between the writer inside a sink and the commit after it.
+#[derive(Clone)]
+pub struct Shared(Arc<Mutex<Option<NewFile>>>);
+
+impl Shared {
+    pub(super) fn new(file: NewFile) -> Self {
+        Self(Arc::new(Mutex::new(Some(file))))
+    }
+
+    /// The file; from now on nobody else can write to it.
+    pub(super) fn release(&self) -> Option<NewFile> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut NewFile) -> stdio::Result<T>) -> stdio::Result<T> {
+        match self
+            .0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .as_mut()
+        {
+            Some(file) => act(file),
+            None => Err(stdio::Error::other("the file is complete already")),
+        }
+    }
+}
+
+impl Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> stdio::Result<usize> {
+        self.with(|file| file.write(bytes))
+    }
+
+    fn flush(&mut self) -> stdio::Result<()> {
+        self.with(NewFile::flush)
+    }
+}
+
+impl Read for Shared {
+    fn read(&mut self, bytes: &mut [u8]) -> stdio::Result<usize> {
+        self.with(|file| file.read(bytes))
+    }
+}
+
+impl Seek for Shared {
+    fn seek(&mut self, to: SeekFrom) -> stdio::Result<u64> {
+        self.with(|file| file.seek(to))
+    }
+}

@@ -1,0 +1,97 @@
+//! Decoder options from a user's request: model, equal returns, calibration of the individual sensor.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use lidar::calibration::{from_ros_yaml, from_toml};
+use lidar::{Corrections, Decoder, Duplicates, Options};
+use protocol::record::Wire;
+use protocol::vlp16::Model;
+
+use crate::failure::{Failure, Kind};
+use crate::reconstruct::source::Source;
+
+/// Data packets after which the model is known.
+const ENOUGH: u64 = 200;
+
+/// How a user wants packets decoded.
+#[derive(Clone, Debug, Default)]
+pub struct DecoderRequest {
+    /// Model, if the packets do not tell it right.
+    pub model: Option<&'static Model>,
+    /// Calibration file of the individual lidar: `.yaml` (ROS) or `.toml`.
+    pub calibration: Option<PathBuf>,
+    /// Equal returns of a dual-return packet.
+    pub duplicates: Duplicates,
+    /// Whether all rays start in one point instead of at the height of their laser.
+    pub one_origin: bool,
+}
+
+/// The decoder's options for `source`.
+///
+/// # Errors
+/// [`Kind::BadInput`] for an unusable calibration.
+pub fn decoder_options(request: &DecoderRequest, source: &Source) -> Result<Options, Failure> {
+    let plain = Options {
+        model: request.model,
+        duplicates: request.duplicates,
+        vertical_offsets: !request.one_origin,
+        ..Options::default()
+    };
+    let Some(path) = &request.calibration else {
+        return Ok(plain);
+    };
+    let model = model(&plain, source)?;
+    let corrections = calibration(path, model)?;
+    Ok(Options {
+        corrections: Some(Arc::new(corrections)),
+        ..plain
+    })
+}
+
+/// The model that the first packets show: a calibration is of one.
+fn model(options: &Options, source: &Source) -> Result<&'static Model, Failure> {
+    let mut decoder = Decoder::new(options.clone());
+    source.read_until(|record| {
+        if let Wire::Lidar { payload, .. } = record.wire {
+            decoder.packet(record.host, payload, &mut |_| {});
+        }
+        decoder.stats().data < ENOUGH
+    })?;
+    decoder.finish(&mut |_| {});
+    decoder.stats().model.ok_or_else(|| {
+        Failure::new(
+            Kind::BadInput,
+            format!(
+                "{}: nothing tells which lidar the calibration is for",
+                source.path().display()
+            ),
+        )
+        .help("say which with --model")
+    })
+}
+
+/// Reads a calibration: ROS YAML, or the program's own TOML.
+fn calibration(path: &Path, model: &'static Model) -> Result<Corrections, Failure> {
+    let wrong = |what: String| {
+        Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
+            "give a calibration as velodyne_pointcloud has it (.yaml), or one [[laser]] table a laser (.toml; docs, Replay)",
+        )
+    };
+    let text =
+        std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    if extension == "toml" {
+        return from_toml(&text, model).map_err(|error| wrong(error.to_string()));
+    }
+    let read = from_ros_yaml(&text, model).map_err(|error| wrong(error.to_string()))?;
+    for ignored in &read.ignored {
+        tracing::warn!(
+            "{} line {}: {} is not applied",
+            path.display(),
+            ignored.line,
+            ignored.key
+        );
+    }
+    Ok(read.corrections)
+}

@@ -1,0 +1,128 @@
+//! What the report on a scan says, as checks that a recording keeps beside its points.
+
+use cloud::{Check, Level};
+
+use crate::reconstruct::report::{Contents, Scan, Sync};
+
+/// The checks of a scan: whether the devices were real, what was lost, how well clocks and angles agree, what is doubtful.
+#[must_use]
+pub fn of(scan: &Scan) -> Vec<Check> {
+    vec![
+        devices(&scan.contents),
+        lidar(scan),
+        clock(&scan.sync),
+        tilt(scan),
+        cloud(scan),
+    ]
+}
+
+/// Names and values, without those that are not known.
+struct Values(Vec<(String, String)>);
+
+impl Values {
+    const fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    fn with(mut self, name: &str, value: impl ToString) -> Self {
+        self.0.push((name.to_owned(), value.to_string()));
+        self
+    }
+
+    fn with_some(self, name: &str, value: Option<impl ToString>) -> Self {
+        match value {
+            Some(value) => self.with(name, value),
+            None => self,
+        }
+    }
+}
+
+fn check(name: &str, doubt: Option<String>, fine: &str, values: Values) -> Check {
+    Check {
+        name: format!("velomotion: {name}"),
+        level: match doubt {
+            Some(_) => Level::Warn,
+            None => Level::Ok,
+        },
+        message: doubt.unwrap_or_else(|| fine.to_owned()),
+        values: values.0,
+    }
+}
+
+fn devices(contents: &Contents) -> Check {
+    let doubt = contents
+        .simulated
+        .then(|| "SIMULATED: software devices, not a scan of anything real".to_owned());
+    let values = Values::new().with("simulated", contents.simulated);
+    check("devices", doubt, "real devices", values)
+}
+
+fn lidar(scan: &Scan) -> Check {
+    let contents = &scan.contents;
+    let lost = contents.lost_packets.saturating_add(scan.lost_records);
+    let doubt = (lost > 0).then(|| format!("{lost} packets were lost"));
+    let packets = contents.packets;
+    let values = Values::new()
+        .with_some("model", contents.model.as_ref())
+        .with_some("return_mode", contents.return_mode.as_ref())
+        .with_some("rpm", contents.rpm)
+        .with("data_packets", packets.data)
+        .with("position_packets", packets.position)
+        .with("malformed_packets", packets.malformed)
+        .with("lost_packets", contents.lost_packets)
+        .with("lost_records", scan.lost_records)
+        .with("returns", contents.returns)
+        .with("duration_s", contents.duration_s);
+    check("lidar", doubt, "nothing was lost", values)
+}
+
+fn clock(sync: &Sync) -> Check {
+    let steps = sync.steps.len();
+    let doubt = (steps > 0).then(|| format!("clocks were set {steps} times, which was undone"));
+    let values = Values::new()
+        .with("method", sync.clock_method)
+        .with("residual_us", sync.clock_residual_us)
+        .with("bound_us", sync.clock_bound_us)
+        .with("drift_ppm", sync.clock_drift_ppm)
+        .with("steps", steps);
+    let fine = format!("known within {:.0} us", sync.clock_bound_us);
+    check("clock", doubt, &fine, values)
+}
+
+fn tilt(scan: &Scan) -> Check {
+    let sync = &scan.sync;
+    let tilt = scan.contents.tilt.as_ref();
+    let values = Values::new()
+        .with("method", sync.angle_method)
+        .with_some("residual_rms_deg", sync.angle_rms_deg)
+        .with_some("bound_deg", sync.angle_bound_deg)
+        .with_some("samples", tilt.map(|tilt| tilt.samples))
+        .with_some("transport", tilt.map(|tilt| tilt.transport.as_str()))
+        .with("sweeps", scan.sweeps.len());
+    let fine = match sync.angle_rms_deg {
+        Some(rms) => format!("samples agree to {rms:.4} deg RMS"),
+        None => "no tilt".to_owned(),
+    };
+    check("tilt", None, &fine, values)
+}
+
+fn cloud(scan: &Scan) -> Check {
+    let contents = &scan.contents;
+    let mut values = Values::new()
+        .with("points", scan.points)
+        .with("returns_left_out", scan.left_out);
+    let doubts: Vec<&String> = contents
+        .truncated
+        .iter()
+        .chain(&contents.warnings)
+        .collect();
+    for (number, doubt) in doubts.iter().enumerate() {
+        values = values.with(&format!("warning {}", number + 1), doubt);
+    }
+    let doubt = match doubts.as_slice() {
+        [] => None,
+        [one] => Some((*one).clone()),
+        [first, rest @ ..] => Some(format!("{first}; and {} more", rest.len())),
+    };
+    check("cloud", doubt, "nothing is doubtful", values)
+}

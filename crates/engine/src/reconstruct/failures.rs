@@ -1,0 +1,59 @@
+//! Why no cloud came of a recording, and what to do.
+
+use std::path::Path;
+
+use scanner::{OutOfReach, ScanError};
+
+use crate::failure::{Failure, Kind};
+
+/// The failure of a reconstruction, with what to do about it.
+#[must_use]
+pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
+    if let ScanError::OutOfReach(out) = error {
+        return out_of_reach(path, out);
+    }
+    let help = match error {
+        ScanError::NoLidarPackets => {
+            "give a recording of the lidar's UDP traffic (ports 2368 and 8308); info says what this file holds"
+        }
+        ScanError::NoTilt => {
+            "this is a plain lidar recording: add --tilt none for the sensor's own frame, or --tilt ANGLES.csv"
+        }
+        ScanError::NoSweep => {
+            "the recording ended before a sweep began: --tilt none gives its points in the sensor's own frame"
+        }
+        ScanError::TableElsewhere { .. }
+        | ScanError::TableShort { .. }
+        | ScanError::TableRange { .. }
+        | ScanError::TableOrder { .. } => {
+            "give times as Unix seconds like the recording's, or as seconds since its first packet"
+        }
+        ScanError::NoBound => "leave --tolerance out, or use the angles of the log",
+        ScanError::OutOfReach(_) => "ask for less",
+        ScanError::Gearing(_) => "correct encoder_lines and gear in the configuration",
+    };
+    Failure::new(Kind::BadInput, format!("{}: {error}", path.display())).help(help)
+}
+
+/// No cloud is as accurate as was asked for: what would be.
+fn out_of_reach(path: &Path, out: &OutOfReach) -> Failure {
+    let mut would = Vec::new();
+    if let Some(speed) = out.speed_that_would_do() {
+        would.push(format!("sweeps at {:.2} deg/s or slower", speed.0));
+    }
+    if out.delay_share > 0.5 {
+        would
+            .push("a link to the drive with shorter round trips (CAN, where it is not)".to_owned());
+    }
+    let coarser = out.tolerance_that_would_do();
+    let mm = format!("{:.6}", coarser.off.0 * 1e3);
+    would.push(format!(
+        "of this recording --tolerance {}mm@{}m",
+        mm.trim_end_matches('0').trim_end_matches('.'),
+        coarser.at.0
+    ));
+    Failure::new(Kind::Incomplete, format!("{}: {out}", path.display())).help(format!(
+        "no cloud was made; the recording is as it was. What would do: {}",
+        would.join("; ")
+    ))
+}

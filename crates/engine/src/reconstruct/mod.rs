@@ -1,0 +1,15 @@
+//! From a log or recording to a cloud and a report.
+
+pub mod contents;
+pub mod decoder_options;
+pub mod diagnostics;
+mod doubts;
+mod failures;
+pub mod frames;
+pub mod replay;
+pub mod report;
+pub mod source;
+pub mod tilt_table;
+pub mod utc;
+
+pub use failures::scan_failure;
