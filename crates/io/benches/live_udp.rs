@@ -1,10 +1,12 @@
-//! Three sensors at the dual-return rate on loopback, received and recorded as `capture` does it: what is lost, what it costs.
+//! Three sensors at the dual-return rate on loopback, received and recorded as `capture` does it:
+//! what is lost, what it costs.
 //!
 //! `cargo bench -p io --bench live_udp -- --seconds 60 [--log FILE]`
 //!
-//! The sensors are a process of their own that sends 1206 bytes every 663.552 us (12 sequences of 55.296 us, VLP-16 user manual 63-9243,
-//! 9.3.2) and 512 bytes every 6.8 ms for each, numbered, from 127.0.0.2 to 127.0.0.4. The log is read back in the end. Fails where
-//! anything is lost. The content of the packets is not a scene's: nothing here decodes them.
+//! The sensors are a process of their own that sends 1206 bytes every 663.552 us (12 sequences of
+//! 55.296 us, VLP-16 user manual 63-9243, 9.3.2) and 512 bytes every 6.8 ms for each, numbered,
+//! from 127.0.0.2 to 127.0.0.4. The log is read back in the end. Fails where anything is lost. The
+//! content of the packets is not a scene's: nothing here decodes them.
 
 use std::error::Error;
 use std::io::{BufRead, BufReader, Write};
@@ -29,7 +31,8 @@ const SENSORS: u8 = 3;
 const FIRST_ADDRESS: u8 = 2;
 const DATA_PERIOD: Duration = Duration::from_nanos(663_552);
 const POSITION_PERIOD: Duration = Duration::from_micros(6_800);
-/// Where the bench's own number stands: in the first block's channels, and in front of a position packet's time.
+/// Where the bench's own number stands: in the first block's channels, and in front of a position
+/// packet's time.
 const NUMBER_AT: usize = 4;
 /// What may still be under way when the sensors have ended.
 const GRACE: Duration = Duration::from_millis(300);

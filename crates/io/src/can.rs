@@ -1,8 +1,9 @@
 //! The drive's CAN bus: frames out and in, each with the host time at which it passed.
 //!
-//! Two ways to a bus: an interface of the kernel ([`SocketCan`]), and an adapter on a serial port that speaks SLCAN
-//! ([`Slcan`]). Nothing here knows CANopen. Recording is a wrapper ([`Recorder`]), never a flag inside. Interfaces are
-//! found and used, not set up: that takes the administrator's rights, and errors say the command.
+//! Two ways to a bus: an interface of the kernel ([`SocketCan`]), and an adapter on a serial port
+//! that speaks SLCAN ([`Slcan`]). Nothing here knows CANopen. Recording is a wrapper
+//! ([`Recorder`]), never a flag inside. Interfaces are found and used, not set up: that takes the
+//! administrator's rights, and errors say the command.
 
 mod interfaces;
 mod recorder;
@@ -23,29 +24,29 @@ use crate::port::PortError;
 
 /// A way to a CAN bus.
 pub trait CanPort {
-    /// Sends a frame; the time just before it was handed to the system. Whether it reached the bus shows only in what
-    /// comes back.
+    /// Sends a frame; the time just before it was handed to the system. Whether it reached the bus
+    /// shows only in what comes back.
     ///
     /// # Errors
     /// [`CanError`].
     fn write_frame(&mut self, frame: &CanFrame) -> Result<Stamp<Host>, CanError>;
 
-    /// The next frame from the bus, and when it came; `None` if none comes within `timeout` (a span of zero or less: if
-    /// none is there). Frames sent here do not come back.
+    /// The next frame from the bus, and when it came; `None` if none comes within `timeout` (a span
+    /// of zero or less: if none is there). Frames sent here do not come back.
     ///
     /// # Errors
     /// [`CanError`]. After [`CanError::NotSent`] the port goes on.
     fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError>;
 
-    /// Frames of the bus that are known to have been lost between it and this program, at least so many. A loss shows with
-    /// what is read after it, if at all.
+    /// Frames of the bus that are known to have been lost between it and this program, at least so
+    /// many. A loss shows with what is read after it, if at all.
     fn dropped(&self) -> u64;
 
     /// What the bus is called: the interface's name, or `SLCAN`.
     fn name(&self) -> &str;
 
-    /// The time by which whoever uses this port keeps deadlines: it never steps ([`crate::clock::steady`]). Ports of a virtual
-    /// world have their own.
+    /// The time by which whoever uses this port keeps deadlines: it never steps
+    /// ([`crate::clock::steady`]). Ports of a virtual world have their own.
     fn now(&self) -> Stamp<Host> {
         crate::clock::steady()
     }

@@ -1,12 +1,14 @@
-//! The host's clock, read in one place. Two ways and what tells a sleep: [`now`] is the system's time, which the kernel's stamps are of too and whose
-//! steps show in the log; [`steady`] never steps, and is what deadlines are kept by. No steering.
+//! The host's clock, read in one place. Two ways and what tells a sleep: [`now`] is the system's
+//! time, which the kernel's stamps are of too and whose steps show in the log; [`steady`] never
+//! steps, and is what deadlines are kept by. No steering.
 
 use std::sync::OnceLock;
 use std::time::{Instant, SystemTime};
 
 use units::{Host, Span, Stamp};
 
-/// Nanoseconds of `CLOCK_REALTIME` now; held at the ends of the range of `i64` nanoseconds (years 1677 and 2262).
+/// Nanoseconds of `CLOCK_REALTIME` now; held at the ends of the range of `i64` nanoseconds (years
+/// 1677 and 2262).
 #[must_use]
 pub fn now() -> Stamp<Host> {
     let ns = match SystemTime::now().duration_since(SystemTime::UNIX_EPOCH) {
@@ -16,9 +18,11 @@ pub fn now() -> Stamp<Host> {
     Stamp::from_nanos(ns)
 }
 
-/// The system's time when this was first called, carried on by the monotonic clock: a step of the system time does not move it.
+/// The system's time when this was first called, carried on by the monotonic clock: a step of the
+/// system time does not move it.
 ///
-/// For deadlines and spans. Once the system time has stepped it is not the time of the log's records.
+/// For deadlines and spans. Once the system time has stepped it is not the time of the log's
+/// records.
 #[must_use]
 pub fn steady() -> Stamp<Host> {
     static BEGIN: OnceLock<(Instant, Stamp<Host>)> = OnceLock::new();
@@ -27,8 +31,8 @@ pub fn steady() -> Stamp<Host> {
     stamp.saturating_add(Span::from_nanos(since))
 }
 
-/// How long this machine has slept since it was started: what `CLOCK_BOOTTIME` is ahead of `CLOCK_MONOTONIC`. Zero where the system does
-/// not tell.
+/// How long this machine has slept since it was started: what `CLOCK_BOOTTIME` is ahead of
+/// `CLOCK_MONOTONIC`. Zero where the system does not tell.
 #[must_use]
 pub fn suspended() -> Span {
     use nix::time::{ClockId, clock_gettime};

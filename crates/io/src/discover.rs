@@ -1,7 +1,8 @@
 //! What is plugged in: serial ports, and EPOS2 units on USB with or without a serial port to them.
 //!
-//! Linux's `ftdi_sio` driver does not know the EPOS2's product number, so that a unit can be on the bus and still have
-//! no port; only sysfs shows that. Whether a device answers is not tried, and the network is not searched.
+//! Linux's `ftdi_sio` driver does not know the EPOS2's product number, so that a unit can be on the
+//! bus and still have no port; only sysfs shows that. Whether a device answers is not tried, and
+//! the network is not searched.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -99,7 +100,8 @@ fn serial_port(found: serialport::SerialPortInfo) -> SerialPortFound {
     }
 }
 
-/// The EPOS2 units under sysfs's list of USB devices. No such list (no USB on this machine, a container): none.
+/// The EPOS2 units under sysfs's list of USB devices. No such list (no USB on this machine, a
+/// container): none.
 fn find_epos2(devices: &Path) -> std::io::Result<Vec<Epos2Found>> {
     let mut units = Vec::new();
     let entries = match fs::read_dir(devices) {

@@ -1,7 +1,7 @@
 //! Output files that are never half there: written under a temporary name, renamed when complete.
 //!
-//! Logs do not go through here: a log must be readable while it grows. Formats are written by others through
-//! [`std::io::Write`] and [`std::io::Seek`].
+//! Logs do not go through here: a log must be readable while it grows. Formats are written by
+//! others through [`std::io::Write`] and [`std::io::Seek`].
 
 use std::env;
 use std::fs::{self, File, OpenOptions};
@@ -55,12 +55,13 @@ pub enum FileError {
     },
 }
 
-/// A file being written. It takes its name on [`NewFile::commit`]; dropped before, it leaves no trace and an older
-/// file of that name is untouched.
+/// A file being written. It takes its name on [`NewFile::commit`]; dropped before, it leaves no
+/// trace and an older file of that name is untouched.
 ///
 /// Not buffered: wrap it in [`std::io::BufWriter`] and take it out again to commit.
 ///
-/// A name that is a device or a pipe (`/dev/null`, `/dev/stdout`) is written in place: there is nothing to preserve.
+/// A name that is a device or a pipe (`/dev/null`, `/dev/stdout`) is written in place: there is
+/// nothing to preserve.
 #[derive(Debug)]
 pub struct NewFile {
     file: File,
@@ -74,8 +75,8 @@ impl NewFile {
     /// Opens a temporary file beside `path`.
     ///
     /// # Errors
-    /// [`FileError`]: the name is taken (and `overwrite` says [`Overwrite::Refuse`]), is a directory, lies in a folder
-    /// that is missing, or cannot be written.
+    /// [`FileError`]: the name is taken (and `overwrite` says [`Overwrite::Refuse`]), is a
+    /// directory, lies in a folder that is missing, or cannot be written.
     pub fn create(path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Self, FileError> {
         let path = path.as_ref();
         let io_error = |source| FileError::Io {
@@ -135,8 +136,8 @@ impl NewFile {
     /// Makes the bytes durable and gives the file its name, durably too.
     ///
     /// # Errors
-    /// [`FileError::Exists`] if another program made the file meanwhile and it may not be replaced; [`FileError::Io`].
-    /// After an error the older file is as it was.
+    /// [`FileError::Exists`] if another program made the file meanwhile and it may not be replaced;
+    /// [`FileError::Io`]. After an error the older file is as it was.
     pub fn commit(mut self) -> Result<(), FileError> {
         let Some(temporary) = self.temporary.clone() else {
             return self.file.flush().map_err(|e| self.io_error("write", e));
@@ -148,7 +149,8 @@ impl NewFile {
             Overwrite::Replace => {
                 fs::rename(&temporary, &self.path).map_err(|e| self.io_error("rename", e))?;
             }
-            // `link` fails where the name is taken, which `rename` would not; Drop then removes the other name.
+            // `link` fails where the name is taken, which `rename` would not; Drop then removes the
+            // other name.
             Overwrite::Refuse => match fs::hard_link(&temporary, &self.path) {
                 Ok(()) => {
                     keep_name(&self.path);
@@ -159,7 +161,8 @@ impl NewFile {
                         path: self.path.clone(),
                     });
                 }
-                // File systems without hard links (FAT, some network mounts): the check is not atomic there.
+                // File systems without hard links (FAT, some network mounts): the check is not
+                // atomic there.
                 Err(_) if !self.path.exists() => {
                     fs::rename(&temporary, &self.path).map_err(|e| self.io_error("rename", e))?;
                 }
@@ -216,7 +219,8 @@ impl Seek for NewFile {
     }
 }
 
-/// Waits until a disk has all bytes of a file, which then survive a power cut. Devices and pipes have no such thing, and that is fine.
+/// Waits until a disk has all bytes of a file, which then survive a power cut. Devices and pipes
+/// have no such thing, and that is fine.
 ///
 /// # Errors
 /// What the disk says.
@@ -234,8 +238,8 @@ pub fn make_durable(file: &File) -> io::Result<()> {
     }
 }
 
-/// Has the disk remember the name of a file or folder that was just made: it may else be gone after a power cut, however safe the bytes are.
-/// File systems that cannot are left alone.
+/// Has the disk remember the name of a file or folder that was just made: it may else be gone after
+/// a power cut, however safe the bytes are. File systems that cannot are left alone.
 pub fn keep_name(path: &Path) {
     if let Ok(folder) = File::open(folder_of(path)) {
         // Some network file systems refuse; the file is as safe there as it can be.
@@ -279,7 +283,8 @@ fn create_temporary(path: &Path) -> io::Result<(File, PathBuf)> {
     Err(taken)
 }
 
-/// A file without a name for what does not fit memory, in [`scratch_folder`]; it is gone when it is closed.
+/// A file without a name for what does not fit memory, in [`scratch_folder`]; it is gone when it is
+/// closed.
 ///
 /// # Errors
 /// Where none can be made there; the error names the folder.

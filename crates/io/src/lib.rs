@@ -1,8 +1,10 @@
-//! Everything that touches the machine: recordings and logs, the lidar's socket, the drive's port, files, the clock.
+//! Everything that touches the machine: recordings and logs, the lidar's socket, the drive's port,
+//! files, the clock.
 //!
-//! What passes here is bytes with the host time at which they passed ([`protocol::record::Record`]); what they mean is
-//! decided elsewhere. Nothing here decodes a lidar packet, speaks to a drive or knows a scan. Signals, arguments and
-//! printing belong to the binary.
+//! What passes here is bytes with the host time at which they passed
+//! ([`protocol::record::Record`]); what they mean is decided elsewhere. Nothing here decodes a
+//! lidar packet, speaks to a drive or knows a scan. Signals, arguments and printing belong to the
+//! binary.
 
 pub mod can;
 pub mod clock;

@@ -1,6 +1,7 @@
 //! The drive's port: bytes out and in, each with the host time at which it passed.
 //!
-//! A port knows no frames of the drive and no commands. Recording is a wrapper ([`Recorder`]), never a flag inside.
+//! A port knows no frames of the drive and no commands. Recording is a wrapper ([`Recorder`]),
+//! never a flag inside.
 
 mod delimit;
 mod pty;
@@ -24,8 +25,9 @@ pub trait Port {
     /// [`PortError::Disconnected`], [`PortError::WriteTimeout`], [`PortError::Io`].
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError>;
 
-    /// Reads what has come, waiting for the first byte up to `timeout` (a span of zero or less: not at all): the number
-    /// of bytes and the time just after they were read, or `None` if nothing came.
+    /// Reads what has come, waiting for the first byte up to `timeout` (a span of zero or less: not
+    /// at all): the number of bytes and the time just after they were read, or `None` if nothing
+    /// came.
     ///
     /// # Errors
     /// [`PortError::Disconnected`], [`PortError::Io`].
@@ -35,8 +37,8 @@ pub trait Port {
         timeout: Span,
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError>;
 
-    /// The time by which whoever uses this port keeps deadlines: it never steps ([`crate::clock::steady`]). Ports of a virtual
-    /// world have their own.
+    /// The time by which whoever uses this port keeps deadlines: it never steps
+    /// ([`crate::clock::steady`]). Ports of a virtual world have their own.
     fn now(&self) -> Stamp<Host> {
         crate::clock::steady()
     }
@@ -98,7 +100,8 @@ pub enum PortError {
         /// The system's words.
         reason: String,
     },
-    /// The device went away: unplugged, switched off, or the other side of a pseudo-terminal closed.
+    /// The device went away: unplugged, switched off, or the other side of a pseudo-terminal
+    /// closed.
     #[error("port {port}: disconnected ({reason})")]
     Disconnected {
         /// The port's path.

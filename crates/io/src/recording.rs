@@ -1,11 +1,13 @@
 //! Recordings read back: pcap and pcapng into [`Record`]s in file order, with bounded memory.
 //!
-//! Whatever can be read is yielded. A packet that makes no sense is counted and passed over; damage in the middle of a pcapng file is
-//! counted and reading goes on at the next sound block; a file cut off in mid-record yields everything before the cut and then says
-//! where it was cut ([`End`]). Only a file that is no recording at all, or that the system cannot read, is an error.
+//! Whatever can be read is yielded. A packet that makes no sense is counted and passed over; damage
+//! in the middle of a pcapng file is counted and reading goes on at the next sound block; a file
+//! cut off in mid-record yields everything before the cut and then says where it was cut ([`End`]).
+//! Only a file that is no recording at all, or that the system cannot read, is an error.
 //!
-//! The lidar's datagrams are known by their content ([`DatagramKind`]), on any port and from any address; what else shared the wire is
-//! counted. Not here: what the packets say, checksums, and more than one sensor's worth of meaning ([`Sensors`] tells them apart).
+//! The lidar's datagrams are known by their content ([`DatagramKind`]), on any port and from any
+//! address; what else shared the wire is counted. Not here: what the packets say, checksums, and
+//! more than one sensor's worth of meaning ([`Sensors`] tells them apart).
 
 mod classify;
 mod counts;
@@ -141,12 +143,12 @@ enum Place {
 }
 
 impl Recording<File> {
-    /// Opens a recording and reads its header. `-` is the standard input; that, and a pipe by its name, can be read once only: see
-    /// [`Input`] for more passes.
+    /// Opens a recording and reads its header. `-` is the standard input; that, and a pipe by its
+    /// name, can be read once only: see [`Input`] for more passes.
     ///
     /// # Errors
-    /// [`RecordingError`]: the file is missing or unreadable, empty, too short for a header, of another kind, or of a
-    /// link type that carries neither IP nor CAN.
+    /// [`RecordingError`]: the file is missing or unreadable, empty, too short for a header, of
+    /// another kind, or of a link type that carries neither IP nor CAN.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         let path = path.as_ref();
         Self::new(input::open(path)?, path)

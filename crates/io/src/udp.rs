@@ -1,8 +1,9 @@
 //! The lidar's datagrams with the kernel's receive time, and a count of those the kernel dropped.
 //!
-//! The kernel's time is taken when the packet comes out of the network stack; a time read by the program can be late by
-//! many milliseconds when the machine is busy. IPv4 only, as the lidars of this family are. A payload is looked into only to count whose
-//! it is; every datagram from a wanted source is given on.
+//! The kernel's time is taken when the packet comes out of the network stack; a time read by the
+//! program can be late by many milliseconds when the machine is busy. IPv4 only, as the lidars of
+//! this family are. A payload is looked into only to count whose it is; every datagram from a
+//! wanted source is given on.
 
 mod batch;
 mod listener;

@@ -1,9 +1,9 @@
 //! How many packets are missing between two, by device time.
 //!
-//! Packets leave at the model's spacing, so that missing ones leave a whole number of spacings. A sensor with a limited field
-//! of view is also silent while it looks away, for a time that is no such multiple; once a jump inside a packet has shown
-//! where it looks away, missing packets are counted by azimuth, that sector left out.
-//! Left out: what the missing packets held.
+//! Packets leave at the model's spacing, so that missing ones leave a whole number of spacings. A
+//! sensor with a limited field of view is also silent while it looks away, for a time that is no
+//! such multiple; once a jump inside a packet has shown where it looks away, missing packets are
+//! counted by azimuth, that sector left out. Left out: what the missing packets held.
 
 use crate::plan::{CONTIGUOUS_NS, Steps, Successor, TURN_CDEG, turned};
 

@@ -1,15 +1,15 @@
 //! What a calibration of one sensor says of its lasers, whatever file it came from.
 //!
-//! Where a beam starts and points relative to the sensor's own frame, and by how much its range is off. Left out:
-//! reflectivity, and how any of it was measured.
+//! Where a beam starts and points relative to the sensor's own frame, and by how much its range is
+//! off. Left out: reflectivity, and how any of it was measured.
 
 use protocol::vlp16::{Laser, Model};
 
 /// One laser of one sensor, in place of the model's table.
 ///
-/// With R the measured range and a the azimuth at which the laser fired, azimuth offset included, its point is
-/// x = r sin a - t cos a, y = r cos a + t sin a, z = (R + range offset) sin w + vertical offset, where
-/// r = (R + range offset) cos w + radial offset and t = tangential offset.
+/// With R the measured range and a the azimuth at which the laser fired, azimuth offset included,
+/// its point is x = r sin a - t cos a, y = r cos a + t sin a, z = (R + range offset) sin w +
+/// vertical offset, where r = (R + range offset) cos w + radial offset and t = tangential offset.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LaserCorrection {
     /// Angle of the beam above the sensor's horizontal (w).
@@ -34,10 +34,11 @@ pub struct Corrections {
 }
 
 impl LaserCorrection {
-    /// The point of one return by the formula above, in metres, x right, y forward, z up: exact and plain, for what need not
-    /// be fast, and to hold against what is.
+    /// The point of one return by the formula above, in metres, x right, y forward, z up: exact and
+    /// plain, for what need not be fast, and to hold against what is.
     ///
-    /// `range_m` is the measured range, `azimuth_deg` the rotor's azimuth when this laser fired, its offset not yet added.
+    /// `range_m` is the measured range, `azimuth_deg` the rotor's azimuth when this laser fired,
+    /// its offset not yet added.
     #[must_use]
     pub fn place(&self, range_m: f64, azimuth_deg: f64) -> [f64; 3] {
         let (sin_w, cos_w) = self.elevation_deg.to_radians().sin_cos();

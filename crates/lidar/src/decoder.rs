@@ -1,7 +1,9 @@
-//! Payloads in, firing blocks or firings out: order, loss, model, and the one packet that is held back.
+//! Payloads in, firing blocks or firings out: order, loss, model, and the one packet that is held
+//! back.
 //!
-//! A packet is decoded when its successor is there, because the rotor's rate in its last block, the length of a gap inside it
-//! and sometimes its model are known only then: 1.3 ms of delay. Left out: anything that looks further ahead.
+//! A packet is decoded when its successor is there, because the rotor's rate in its last block, the
+//! length of a gap inside it and sometimes its model are known only then: 1.3 ms of delay. Left
+//! out: anything that looks further ahead.
 
 use core::ptr;
 use std::sync::Arc;
@@ -20,7 +22,8 @@ use crate::sorted::SortedPacket;
 use crate::stats::Stats;
 use crate::timekeeper::Timekeeper;
 
-/// A packet this much before its predecessor is out of order; further back, the device's clock was set.
+/// A packet this much before its predecessor is out of order; further back, the device's clock was
+/// set.
 const REORDER: Span = Span::from_millis(10);
 /// A gap this long is checked against the host's clock before packets are called lost.
 const LONG_GAP: Span = Span::from_secs(1);
@@ -36,8 +39,9 @@ pub struct Options {
     pub vertical_offsets: bool,
     /// Dual returns at one distance.
     pub duplicates: Duplicates,
-    /// Where this sensor's lasers truly are and what its ranges are off by, in place of the model's table. Used only where they
-    /// have a laser for each of the model's; [`Stats::corrections_refused`] says where they do not.
+    /// Where this sensor's lasers truly are and what its ranges are off by, in place of the model's
+    /// table. Used only where they have a laser for each of the model's;
+    /// [`Stats::corrections_refused`] says where they do not.
     pub corrections: Option<Arc<Corrections>>,
 }
 
@@ -114,7 +118,8 @@ impl Decoder {
         }
     }
 
-    /// Takes a UDP payload that arrived at `host` and emits what it completes: the firings of the packet before it.
+    /// Takes a UDP payload that arrived at `host` and emits what it completes: the firings of the
+    /// packet before it.
     ///
     /// Nothing is an error here: payloads that are no data packets are counted in [`Stats`].
     pub fn packet(
@@ -126,7 +131,8 @@ impl Decoder {
         self.firing_blocks(host, payload, &mut |block| one_by_one(block, emit));
     }
 
-    /// Emits the packet held back. The decoder can go on with packets of the same sensor afterwards.
+    /// Emits the packet held back. The decoder can go on with packets of the same sensor
+    /// afterwards.
     pub fn finish(&mut self, emit: &mut impl FnMut(&Firing<'_>)) {
         self.finish_firing_blocks(&mut |block| one_by_one(block, emit));
     }

@@ -1,13 +1,15 @@
 //! One firing of all lasers, and its returns as points of the sensor's frame.
 //!
-//! Points are made as they are asked for: who only needs the times pays for no geometry. Left out: where the sensor stood.
+//! Points are made as they are asked for: who only needs the times pays for no geometry. Left out:
+//! where the sensor stood.
 
 use protocol::vlp16::{Channel, Model};
 use units::{Lidar, Span, Stamp};
 
 use crate::geometry::Ray;
 
-/// What to do where both returns of a dual-return pair have the same distance: one pulse reported twice.
+/// What to do where both returns of a dual-return pair have the same distance: one pulse reported
+/// twice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Duplicates {
     /// Give it once.
@@ -26,8 +28,8 @@ pub enum Echo {
     Last,
     /// Dual mode, both returns at one distance: the last is the strongest.
     LastAndStrongest,
-    /// Dual mode's second return: the strongest, or the second strongest where the last is the strongest. The packet
-    /// does not say which.
+    /// Dual mode's second return: the strongest, or the second strongest where the last is the
+    /// strongest. The packet does not say which.
     StrongestOrSecond,
     /// The return mode is not known.
     Unknown,
@@ -69,7 +71,8 @@ pub struct SensorPoint {
     pub position_m: [f64; 3],
     /// Measured distance in metres, uncorrected.
     pub range_m: f64,
-    /// Variance of its azimuth, square radians: what the wire's steps of it leave after interpolation ([`crate::azimuth_variance_rad2`]).
+    /// Variance of its azimuth, square radians: what the wire's steps of it leave after
+    /// interpolation ([`crate::azimuth_variance_rad2`]).
     pub azimuth_variance_rad2: f64,
     /// Place in the firing order, from 0.
     pub laser: u8,
@@ -83,9 +86,10 @@ pub struct SensorPoint {
 
 /// Variance of an azimuth, square radians, that is carried on over `part` of a block's period.
 ///
-/// The wire has the azimuth of each block's begin in steps of 0.01 degrees, whose errors are even over a step: s = 0.01 deg / sqrt 12. Between
-/// two of them it is (1 - p) a + p b, so that its variance is s^2 ((1 - p)^2 + p^2). Left out: how unevenly the rotor turns, and
-/// the zero of its encoder, which no packet tells.
+/// The wire has the azimuth of each block's begin in steps of 0.01 degrees, whose errors are even
+/// over a step: s = 0.01 deg / sqrt 12. Between two of them it is (1 - p) a + p b, so that its
+/// variance is s^2 ((1 - p)^2 + p^2). Left out: how unevenly the rotor turns, and the zero of its
+/// encoder, which no packet tells.
 #[must_use]
 pub fn azimuth_variance_rad2(part: f64) -> f64 {
     let step_rad = 0.01_f64.to_radians();
@@ -124,7 +128,8 @@ pub struct Firing<'a> {
 }
 
 impl<'a> Firing<'a> {
-    /// The returns in firing order; a laser without one is absent. Of a dual pair the last return comes first.
+    /// The returns in firing order; a laser without one is absent. Of a dual pair the last return
+    /// comes first.
     #[must_use]
     pub const fn returns(&self) -> Returns<'a> {
         Returns {
@@ -136,9 +141,9 @@ impl<'a> Firing<'a> {
 
     /// The returns as points of the sensor's frame, in firing order.
     ///
-    /// x = R cos w sin a, y = R cos w cos a, z = R sin w + vertical offset (manual 9.2; the paper's Eq. 1-3), with the
-    /// azimuth a carried on at the rotor's rate to when each laser fired; with corrections by the formula of
-    /// [`crate::LaserCorrection`].
+    /// x = R cos w sin a, y = R cos w cos a, z = R sin w + vertical offset (manual 9.2; the paper's
+    /// Eq. 1-3), with the azimuth a carried on at the rotor's rate to when each laser fired; with
+    /// corrections by the formula of [`crate::LaserCorrection`].
     pub fn points(&self) -> impl Iterator<Item = SensorPoint> + use<'a> {
         let firing = *self;
         self.returns().filter_map(move |seen| {
@@ -146,7 +151,8 @@ impl<'a> Firing<'a> {
         })
     }
 
-    /// Azimuth at which a laser fired, in degrees, not brought back below 360; `None` for a laser the model lacks.
+    /// Azimuth at which a laser fired, in degrees, not brought back below 360; `None` for a laser
+    /// the model lacks.
     #[must_use]
     pub fn laser_azimuth_deg(&self, laser: u8) -> Option<f64> {
         let ray = self.rays.get(usize::from(laser))?;
@@ -308,7 +314,8 @@ mod tests {
         let firing = firing(&geometry, &raw);
         let points: Vec<SensorPoint> = firing.points().collect();
         assert_eq!(points.len(), 16);
-        // Laser 15: 34.56 us later, so 0.124416 deg on; 15 deg up; it starts 11.2 mm below the origin.
+        // Laser 15: 34.56 us later, so 0.124416 deg on; 15 deg up; it starts 11.2 mm below the
+        // origin.
         let p = points[15];
         let (azimuth, elevation) = (90.124_416_f64.to_radians(), 15f64.to_radians());
         let expected = [

@@ -1,8 +1,10 @@
-//! What one block of a packet holds, or one pair of blocks with dual returns: 32 channels that are placed together.
+//! What one block of a packet holds, or one pair of blocks with dual returns: 32 channels that are
+//! placed together.
 //!
-//! A [`FiringBlock`] is two firings of a 16-laser model, or one of a 32-laser one. [`FiringBlock::firings`] is the plain way on;
-//! [`FiringBlock::place`] is the fast one, several channels at a time, and gives the same points to some 1e-14 of their distance.
-//! Left out: everything after the sensor's own frame.
+//! A [`FiringBlock`] is two firings of a 16-laser model, or one of a 32-laser one.
+//! [`FiringBlock::firings`] is the plain way on; [`FiringBlock::place`] is the fast one, several
+//! channels at a time, and gives the same points to some 1e-14 of their distance. Left out:
+//! everything after the sensor's own frame.
 
 use protocol::vlp16::{CHANNELS, Model};
 use units::{Lidar, Real, Span, Stamp};
@@ -12,7 +14,8 @@ use crate::geometry::Geometry;
 use crate::rotor::{Ahead, SinCos};
 use crate::sorted::{Raw, Sorted};
 
-/// The returns of one block: each channel's only one, or of a pair of blocks each channel's first or second.
+/// The returns of one block: each channel's only one, or of a pair of blocks each channel's first
+/// or second.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a> {
     raw: &'a Raw,
@@ -134,7 +137,8 @@ impl<'a> FiringBlock<'a> {
         self.geometry.model
     }
 
-    /// The returns, and with dual returns each channel's second ones. Of one channel the first comes first.
+    /// The returns, and with dual returns each channel's second ones. Of one channel the first
+    /// comes first.
     #[inline]
     #[must_use]
     pub const fn layers(&self) -> (&Layer<'a>, Option<&Layer<'a>>) {
@@ -146,7 +150,8 @@ impl<'a> FiringBlock<'a> {
         }
     }
 
-    /// Which return each channel's is ([`Echo::code`]), a row a layer; of no meaning where a channel has none.
+    /// Which return each channel's is ([`Echo::code`]), a row a layer; of no meaning where a
+    /// channel has none.
     #[inline(never)]
     #[must_use]
     pub fn echo_codes(&self) -> [[u8; CHANNELS]; 2] {
@@ -207,8 +212,8 @@ impl<'a> FiringBlock<'a> {
         &self.geometry.fan.ring
     }
 
-    /// Where channels look along the horizon: how far right and forward they get by one count. `of` takes the values of some channels, the same
-    /// ones every time, from a column of all.
+    /// Where channels look along the horizon: how far right and forward they get by one count. `of`
+    /// takes the values of some channels, the same ones every time, from a column of all.
     #[inline(always)]
     pub fn heading<V: Real>(&self, of: impl Fn(&[f64; CHANNELS]) -> V) -> Heading<V> {
         let (SinCos { sin, cos }, ahead) = (self.azimuth, self.ahead);
@@ -219,8 +224,8 @@ impl<'a> FiringBlock<'a> {
         }
     }
 
-    /// The points of channels in the sensor's frame (x right, y forward, z up, metres) from their distance counts. Of a channel
-    /// without a return that is a place of no meaning.
+    /// The points of channels in the sensor's frame (x right, y forward, z up, metres) from their
+    /// distance counts. Of a channel without a return that is a place of no meaning.
     #[inline(always)]
     pub fn place<V: Real>(
         &self,

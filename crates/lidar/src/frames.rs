@@ -1,9 +1,9 @@
 //! Where one turn of the head ends and the next begins, firing by firing.
 //!
-//! The way of the rotor is counted from the last cut, so that jitter over the cut azimuth does not cut twice, a gap over it
-//! cuts where firing goes on, and it does not matter which way round the head turns.
-//! Left out: whether packets are missing within a frame (the decoder's statistics say that), and the points themselves
-//! ([`crate::OrganisedFrame`]).
+//! The way of the rotor is counted from the last cut, so that jitter over the cut azimuth does not
+//! cut twice, a gap over it cuts where firing goes on, and it does not matter which way round the
+//! head turns. Left out: whether packets are missing within a frame (the decoder's statistics say
+//! that), and the points themselves ([`crate::OrganisedFrame`]).
 
 use thiserror::Error;
 use units::{Lidar, Stamp};
@@ -13,7 +13,8 @@ use crate::firing::Firing;
 const TURN_DEG: f64 = 360.0;
 /// A way back by more is no jitter: the head turns the other way.
 const REVERSED_DEG: f64 = 10.0;
-/// Weight of a new rate in the running mean: azimuths are whole hundredths of a degree, rates of single blocks are rough.
+/// Weight of a new rate in the running mean: azimuths are whole hundredths of a degree, rates of
+/// single blocks are rough.
 const RATE_WEIGHT: f64 = 1.0 / 32.0;
 
 /// Cuts the firings of one sensor into frames.
@@ -35,8 +36,8 @@ pub struct Frame {
     pub last: Stamp<Lidar>,
     /// Firings in it.
     pub firings: u64,
-    /// Whether it reaches from cut to cut. The first and the last frame rarely do; nor do those beside an outage of a turn or
-    /// more, or where the head changes its direction.
+    /// Whether it reaches from cut to cut. The first and the last frame rarely do; nor do those
+    /// beside an outage of a turn or more, or where the head changes its direction.
     pub whole: bool,
 }
 
@@ -63,7 +64,8 @@ pub enum FrameError {
 #[derive(Clone, Copy, Debug)]
 struct Turning {
     frame: Frame,
-    /// Way since the cut azimuth in the direction of the turn, up to 360; a little less than 0 where the rotor jitters.
+    /// Way since the cut azimuth in the direction of the turn, up to 360; a little less than 0
+    /// where the rotor jitters.
     way_deg: f64,
     /// The furthest so far.
     peak_deg: f64,
@@ -95,10 +97,11 @@ impl FrameCutter {
         })
     }
 
-    /// Takes the next firing. `Some` frame has ended before it, and it begins the next; otherwise it belongs to the frame being
-    /// filled.
+    /// Takes the next firing. `Some` frame has ended before it, and it begins the next; otherwise
+    /// it belongs to the frame being filled.
     ///
-    /// A firing belongs to the frame in which its first laser fired; the others follow within some hundredths of a degree.
+    /// A firing belongs to the frame in which its first laser fired; the others follow within some
+    /// hundredths of a degree.
     pub fn firing(&mut self, firing: &Firing<'_>) -> Option<Frame> {
         let Some(mut turning) = self.state else {
             self.state = Some(self.begin(firing));
@@ -121,7 +124,8 @@ impl FrameCutter {
             turning.frame.firings += 1;
             None
         } else {
-            // A view that leaves out a part of the turn is no outage; nothing for a turn or more is.
+            // A view that leaves out a part of the turn is no outage; nothing for a turn or more
+            // is.
             let outage = way_deg - turning.way_deg >= TURN_DEG;
             way_deg = way_deg.rem_euclid(TURN_DEG);
             turning.peak_deg = way_deg;

@@ -1,7 +1,9 @@
-//! Where each laser points and starts, as the sines, cosines and offsets that its points need, computed once a sensor.
+//! Where each laser points and starts, as the sines, cosines and offsets that its points need,
+//! computed once a sensor.
 //!
-//! Twice: a [`Ray`] a laser for the exact path, which follows [`crate::LaserCorrection`]'s formula word by word, and [`Fan`],
-//! a column a term over the 32 channels of a block, for the fast one. Left out: everything that changes while the sensor turns.
+//! Twice: a [`Ray`] a laser for the exact path, which follows [`crate::LaserCorrection`]'s formula
+//! word by word, and [`Fan`], a column a term over the 32 channels of a block, for the fast one.
+//! Left out: everything that changes while the sensor turns.
 
 use core::array;
 
@@ -26,11 +28,12 @@ pub(crate) struct Ray {
     pub ring: u8,
 }
 
-/// A value for each channel of a block. Blocks have 32 channels in every model: two firings of 16 lasers, or one of 32.
+/// A value for each channel of a block. Blocks have 32 channels in every model: two firings of 16
+/// lasers, or one of 32.
 pub(crate) type PerChannel<T> = [T; CHANNELS];
 
-/// The lasers by channel: distance counts c become out = `out_per_count` (c + `out_counts`) along the horizon and
-/// up = `up_per_count` c + `up_m`.
+/// The lasers by channel: distance counts c become out = `out_per_count` (c + `out_counts`) along
+/// the horizon and up = `up_per_count` c + `up_m`.
 ///
 /// Columns begin where lines of the cache do, so that no register's worth lies across two.
 #[derive(Clone, Debug)]

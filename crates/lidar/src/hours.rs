@@ -1,17 +1,21 @@
 //! From microseconds past some hour to a time line that goes on.
 //!
-//! A packet says how far into the hour it is, never which hour. The first packet takes the hour nearest to the host's clock;
-//! a later one continues the last one's if it lies close to it, and otherwise takes the hour that the host's clock
-//! predicts. "It decreased, so an hour has passed" is deliberately not a rule: reordered packets decrease too.
+//! A packet says how far into the hour it is, never which hour. The first packet takes the hour
+//! nearest to the host's clock; a later one continues the last one's if it lies close to it, and
+//! otherwise takes the hour that the host's clock predicts. "It decreased, so an hour has passed"
+//! is deliberately not a rule: reordered packets decrease too.
 
 use units::{Host, Lidar, Span, Stamp};
 
 const HOUR_NS: i64 = 3_600_000_000_000;
-/// This close to the last packet no other hour is considered, whatever the host's clock did meanwhile: some fifteen packets.
+/// This close to the last packet no other hour is considered, whatever the host's clock did
+/// meanwhile: some fifteen packets.
 const CONTINUES: Span = Span::from_millis(20);
-/// Clocks that disagree by more since the last packet did not drift: one of them was set, and the host's tells nothing.
+/// Clocks that disagree by more since the last packet did not drift: one of them was set, and the
+/// host's tells nothing.
 const HOST_TRUST: Span = Span::from_secs(60);
-/// Stamps are held this far from the ends of `i64`, so that sums with a packet's length cannot overflow.
+/// Stamps are held this far from the ends of `i64`, so that sums with a packet's length cannot
+/// overflow.
 const LIMIT_NS: i64 = i64::MAX - 1_000 * HOUR_NS;
 
 /// Unwraps the timestamps of one sensor.

@@ -1,8 +1,9 @@
 //! Which model a sensor is: what its factory byte says, checked against the spacing of its packets.
 //!
-//! Firmware before 3.0.29 has no factory bytes; VLP-16 recordings of 2014 carry 0x21 there, the HDL-32E's. Device time
-//! between packets tells: each model fills a packet in its own time. A spacing that is a multiple of the named
-//! model's own means lost packets, not another model. Left out: guessing from a single packet.
+//! Firmware before 3.0.29 has no factory bytes; VLP-16 recordings of 2014 carry 0x21 there, the
+//! HDL-32E's. Device time between packets tells: each model fills a packet in its own time. A
+//! spacing that is a multiple of the named model's own means lost packets, not another model. Left
+//! out: guessing from a single packet.
 
 use core::ptr;
 
@@ -14,14 +15,16 @@ use units::Span;
 
 use crate::stats::Conflict;
 
-/// Stamps are whole microseconds, so spacings are off by up to one; the rest is for a clock being steered.
+/// Stamps are whole microseconds, so spacings are off by up to one; the rest is for a clock being
+/// steered.
 const TOLERANCE_NS: i64 = 3_000;
 /// Longer gaps are no packet's.
 const LONGEST: Span = Span::from_millis(100);
 /// Multiples of the named model's spacing taken for loss; further apart, spacing tells nothing.
 const MOST_LOST: i64 = 8;
-/// So many spacings in a row that loss would explain, and another model without any, are the other model's: where the named
-/// model's own has never been seen, nobody loses every second packet and none besides.
+/// So many spacings in a row that loss would explain, and another model without any, are the other
+/// model's: where the named model's own has never been seen, nobody loses every second packet and
+/// none besides.
 const TOO_REGULAR: u8 = 4;
 
 /// Whether two blocks of this packet share a firing.
@@ -32,7 +35,8 @@ pub(crate) fn is_dual(packet: &DataPacket<'_>) -> bool {
         .unwrap_or_else(|| pairs_share_azimuths(packet))
 }
 
-/// For a return mode byte that is not listed: dual packets repeat every azimuth once and then move on.
+/// For a return mode byte that is not listed: dual packets repeat every azimuth once and then move
+/// on.
 fn pairs_share_azimuths(packet: &DataPacket<'_>) -> bool {
     let mut azimuths = packet.blocks().map(|block| block.azimuth_cdeg());
     let first = azimuths.clone().next();
@@ -77,7 +81,8 @@ impl Identifier {
         }
     }
 
-    /// The model after this packet, `spacing` after the packet that arrived before it. `None` until anything says which.
+    /// The model after this packet, `spacing` after the packet that arrived before it. `None` until
+    /// anything says which.
     pub(crate) fn observe(
         &mut self,
         packet: &DataPacket<'_>,
@@ -113,8 +118,9 @@ impl Identifier {
 
     /// Another model than the one that holds, if this spacing is reason enough.
     ///
-    /// At first one spacing is: no packet before it had the time to say anything else. Against a model that spacings have
-    /// confirmed it takes two in a row: one can be chance, where a clock was set or the sensor looked away.
+    /// At first one spacing is: no packet before it had the time to say anything else. Against a
+    /// model that spacings have confirmed it takes two in a row: one can be chance, where a clock
+    /// was set or the sensor looked away.
     fn weigh(
         &mut self,
         spacing: Span,
@@ -270,7 +276,8 @@ mod tests {
                 for named in [&VLP_16, &PUCK_HI_RES, &HDL_32E, &VLP_32C] {
                     let timing = |model: &Model| model.packet_period_ns(dual);
                     let is_multiple = timing(real).is_multiple_of(timing(named));
-                    // A VLP-32C that loses every second packet is all that a VLP-16 can be taken for.
+                    // A VLP-32C that loses every second packet is all that a VLP-16 can be taken
+                    // for.
                     assert!(
                         !is_multiple || timing(real) == timing(named) || named.name == "VLP-32C"
                     );
@@ -291,7 +298,8 @@ mod tests {
         bytes
     }
 
-    /// The models that hold after packets that follow each other at these spacings, and how many conflicts were reported.
+    /// The models that hold after packets that follow each other at these spacings, and how many
+    /// conflicts were reported.
     fn follow(product: u8, spacings_us: &[i64]) -> (Vec<&'static str>, usize) {
         let bytes = bytes(0x37, product);
         let packet = DataPacket::new(&bytes).unwrap();
@@ -341,7 +349,8 @@ mod tests {
 
     #[test]
     fn one_spacing_by_chance_changes_nothing() {
-        // A clock that was set, or a gap of a limited field of view, may look like another model's packet once.
+        // A clock that was set, or a gap of a limited field of view, may look like another model's
+        // packet once.
         let chance = follow(0x22, &[1_327, 1_327, 553, 1_327, 1_328, 664, 553, 1_327]);
         assert_eq!(chance, (vec!["VLP-16"; 9], 0));
         let hdl = follow(0x21, &[553, 1_327, 553, 553]);

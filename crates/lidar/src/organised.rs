@@ -1,7 +1,8 @@
-//! A frame as a grid: a row a ring, a column a firing, a cell for every shot whether anything came back or not.
+//! A frame as a grid: a row a ring, a column a firing, a cell for every shot whether anything came
+//! back or not.
 //!
-//! Columns are firings as they were fired, so that their number varies by a few from turn to turn. Left out: resampling to a
-//! fixed number of columns, which would move points or drop them.
+//! Columns are firings as they were fired, so that their number varies by a few from turn to turn.
+//! Left out: resampling to a fixed number of columns, which would move points or drop them.
 
 use std::ptr;
 
@@ -22,13 +23,15 @@ pub struct Column {
 
 /// The returns of some firings of one sensor, ring by firing.
 ///
-/// Layer 0 holds the strongest or last return of a single-return mode, and of dual mode the last. Layer 1 holds dual mode's
-/// second return; a pulse whose two returns are one has it in both layers.
+/// Layer 0 holds the strongest or last return of a single-return mode, and of dual mode the last.
+/// Layer 1 holds dual mode's second return; a pulse whose two returns are one has it in both
+/// layers.
 #[derive(Clone, Debug, Default)]
 pub struct OrganisedFrame {
     model: Option<&'static Model>,
     columns: Vec<Column>,
-    /// Firing by firing, within one from the lowest ring up; a `Vec` a layer, the second empty until it is needed.
+    /// Firing by firing, within one from the lowest ring up; a `Vec` a layer, the second empty
+    /// until it is needed.
     layers: [Vec<Option<SensorPoint>>; 2],
 }
 
@@ -42,7 +45,8 @@ impl OrganisedFrame {
     /// Adds a firing as the next column.
     ///
     /// # Errors
-    /// [`FrameError::Model`] where it is not of the model of those before it; the frame stays as it was.
+    /// [`FrameError::Model`] where it is not of the model of those before it; the frame stays as it
+    /// was.
     pub fn push(&mut self, firing: &Firing<'_>) -> Result<(), FrameError> {
         let model = *self.model.get_or_insert(firing.model);
         if !ptr::eq(model, firing.model) {

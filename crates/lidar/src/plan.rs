@@ -1,9 +1,11 @@
-//! When each block of a packet fired and how fast the rotor turned, from the packet and the one after it.
+//! When each block of a packet fired and how fast the rotor turned, from the packet and the one
+//! after it.
 //!
-//! A packet gives one time and twelve azimuths. Blocks follow at the model's period, except where the sensor's field of
-//! view is limited: such a sensor is silent while it looks away, and the packet that it was filling then goes on a whole gap
-//! later. The azimuths show that jump; the time of the next packet says how long it took.
-//! Left out: what lies beyond the next packet, and any guess where packets are missing.
+//! A packet gives one time and twelve azimuths. Blocks follow at the model's period, except where
+//! the sensor's field of view is limited: such a sensor is silent while it looks away, and the
+//! packet that it was filling then goes on a whole gap later. The azimuths show that jump; the time
+//! of the next packet says how long it took. Left out: what lies beyond the next packet, and any
+//! guess where packets are missing.
 
 use protocol::vlp16::{BLOCKS, DataPacket, Model};
 use units::Span;
@@ -16,7 +18,8 @@ pub(crate) const TURN_CDEG: i32 = 36_000;
 const BACKLASH_CDEG: i32 = 100;
 /// A step of more than twice the usual one and this much is a jump.
 const JUMP_CDEG: i32 = 20;
-/// Packets this close to the nominal spacing follow each other without a gap; stamps are whole microseconds.
+/// Packets this close to the nominal spacing follow each other without a gap; stamps are whole
+/// microseconds.
 pub(crate) const CONTIGUOUS_NS: i64 = 20_000;
 /// How far a measured gap may exceed what the rotor's rate makes of it.
 const GAP_SLACK: f64 = 1.5;
@@ -159,7 +162,8 @@ impl Steps {
     }
 
     pub(crate) fn is_jump(&self, step_cdeg: i32) -> bool {
-        // What is none against the least step is none against the median; finding that takes longer than all the rest.
+        // What is none against the least step is none against the median; finding that takes longer
+        // than all the rest.
         exceeds(step_cdeg, self.least_cdeg)
             && exceeds(step_cdeg, self.usual_cdeg.unwrap_or_else(|| self.median()))
     }
@@ -221,7 +225,8 @@ impl Steps {
         if inner_ns <= 0.0 || excess_ns < 0 {
             return Link::missing();
         }
-        // With a narrow field of view the sensor may have looked away once more between the two packets.
+        // With a narrow field of view the sensor may have looked away once more between the two
+        // packets.
         let looked_away = self
             .jump()
             .is_some_and(|blind| blind.is_between(self.last_azimuth(), next.azimuth_cdeg));
@@ -249,7 +254,8 @@ impl Steps {
         let mut after_ns = 0;
         let steps = self.inner().map(Some).chain([link.step_cdeg]);
         for ((slot, &azimuth), step) in slots.iter_mut().zip(self.azimuths()).zip(steps) {
-            // A jump says nothing of the pace; the packet's mean does, and better than any single step, which is rounded.
+            // A jump says nothing of the pace; the packet's mean does, and better than any single
+            // step, which is rounded.
             let even = step.filter(|&step| !self.is_jump(step));
             let pace = even.map_or(self.mean_cdeg, f64::from);
             *slot = Slot {

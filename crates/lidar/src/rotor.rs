@@ -1,9 +1,11 @@
 //! Sines and cosines of a turning head without computing one for every firing.
 //!
-//! A block's azimuth is a whole number of hundredths of a degree: a table of whole degrees and one of hundredths, joined by
-//! the addition theorem, give its sine and cosine as exactly as an angle in radians can say it, some 1e-15. How far each channel is ahead of its block depends on the rotor's
-//! pace alone, which takes few values: their sines and cosines are kept by pace. Every value is a function of its key, so
-//! that what was kept before changes no result. Left out: the azimuth itself ([`crate::Firing`] has it).
+//! A block's azimuth is a whole number of hundredths of a degree: a table of whole degrees and one
+//! of hundredths, joined by the addition theorem, give its sine and cosine as exactly as an angle
+//! in radians can say it, some 1e-15. How far each channel is ahead of its block depends on the
+//! rotor's pace alone, which takes few values: their sines and cosines are kept by pace. Every
+//! value is a function of its key, so that what was kept before changes no result. Left out: the
+//! azimuth itself ([`crate::Firing`] has it).
 
 use core::array;
 use std::sync::LazyLock;
@@ -41,8 +43,8 @@ impl SinCos {
     }
 }
 
-/// How far each channel's azimuth is ahead of its block's: sine and cosine, times the way along the horizon of one count.
-/// Aligned as [`Fan`] is.
+/// How far each channel's azimuth is ahead of its block's: sine and cosine, times the way along the
+/// horizon of one count. Aligned as [`Fan`] is.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Ahead {
@@ -66,7 +68,8 @@ pub(crate) struct Rotor {
 }
 
 impl Compass {
-    /// The only one: it is the same for all sensors, and for a short recording it would be much of the work.
+    /// The only one: it is the same for all sensors, and for a short recording it would be much of
+    /// the work.
     pub(crate) fn get() -> &'static Self {
         static COMPASS: LazyLock<Compass> = LazyLock::new(|| {
             let table = |i: usize, step_deg: f64| SinCos::of_degrees(i as f64 * step_deg);
@@ -157,7 +160,8 @@ mod tests {
         for model in [&VLP_16, &VLP_32C] {
             let fan = Geometry::new(model, true, None).fan;
             let mut rotor = Rotor::new(&fan);
-            // Paces that share a place, come back, stand still, run backwards and are no whole numbers.
+            // Paces that share a place, come back, stand still, run backwards and are no whole
+            // numbers.
             for pace_cdeg in [
                 39.0, 40.0, 47.0, 39.0, 0.0, -0.0, -40.0, 39.818, 36_000.0, 40.0,
             ] {

@@ -1,7 +1,8 @@
-//! The channels of a packet's blocks by kind: distances, reflectivities, and bits that say where there is a return.
+//! The channels of a packet's blocks by kind: distances, reflectivities, and bits that say where
+//! there is a return.
 //!
-//! On the wire they come three bytes a channel. All twelve blocks are taken apart together, in the widest registers that the
-//! processor has. Left out: what a distance is in metres.
+//! On the wire they come three bytes a channel. All twelve blocks are taken apart together, in the
+//! widest registers that the processor has. Left out: what a distance is in metres.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, u8x64, u16x32};

@@ -26,9 +26,11 @@ pub struct Stats {
     pub duplicates: u64,
     /// Data packets that arrived after their successor and were put back in order.
     pub reordered: u64,
-    /// Data packets that arrived after their successor had been emitted; left out, so that time never runs backwards.
+    /// Data packets that arrived after their successor had been emitted; left out, so that time
+    /// never runs backwards.
     pub late: u64,
-    /// Times that the device's clock was set: forwards against the host's, or backwards. Nothing is counted lost there.
+    /// Times that the device's clock was set: forwards against the host's, or backwards. Nothing is
+    /// counted lost there.
     pub clock_steps: u64,
     /// Data packets missing, by device time.
     pub lost_packets: u64,
@@ -52,7 +54,8 @@ pub struct Stats {
     pub duration: Span,
     /// Where sources of the model disagreed, each kind once.
     pub conflicts: Vec<Conflict>,
-    /// How many lasers the corrections asked for have, where the model has another number of them: then none was applied.
+    /// How many lasers the corrections asked for have, where the model has another number of them:
+    /// then none was applied.
     pub corrections_refused: Option<usize>,
 }
 

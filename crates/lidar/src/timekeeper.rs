@@ -1,6 +1,7 @@
 //! When packets were fired: the part of decoding that a clock fit needs, without points.
 //!
-//! The decoder holds one of these and has no other source of time, so a survey and the decoding after it agree exactly.
+//! The decoder holds one of these and has no other source of time, so a survey and the decoding
+//! after it agree exactly.
 
 use protocol::vlp16::{DATA_LEN, DataPacket, Model};
 use units::{Host, Lidar, Span, Stamp};
@@ -15,9 +16,9 @@ use crate::stats::Conflict;
 pub struct PacketTiming {
     /// Instant of the first firing.
     pub first_firing: Stamp<Lidar>,
-    /// Time from the first firing to when the packet was complete and could leave: 24 firings of 55.296 us for a VLP-16,
-    /// 12 with dual returns. A packet that straddles the gap of a limited field of view takes longer than said here,
-    /// by the gap.
+    /// Time from the first firing to when the packet was complete and could leave: 24 firings of
+    /// 55.296 us for a VLP-16, 12 with dual returns. A packet that straddles the gap of a limited
+    /// field of view takes longer than said here, by the gap.
     pub fill: Span,
 }
 
@@ -34,7 +35,8 @@ pub struct Timekeeper {
 pub(crate) struct Known {
     pub start: Stamp<Lidar>,
     pub dual: bool,
-    /// The model after this packet; it is told by the spacing before it, so it holds for the packet before as well.
+    /// The model after this packet; it is told by the spacing before it, so it holds for the packet
+    /// before as well.
     pub model: Option<&'static Model>,
     pub conflict: Option<Conflict>,
 }
@@ -50,10 +52,11 @@ impl Timekeeper {
         }
     }
 
-    /// When a payload that arrived at `host` was fired; `None` for anything but a sound data packet of a known model.
+    /// When a payload that arrived at `host` was fired; `None` for anything but a sound data packet
+    /// of a known model.
     ///
-    /// Where the factory byte is wrong, the model is found from the second packet on; the first packet's fill is the named
-    /// model's.
+    /// Where the factory byte is wrong, the model is found from the second packet on; the first
+    /// packet's fill is the named model's.
     pub fn packet(&mut self, host: Stamp<Host>, payload: &[u8]) -> Option<PacketTiming> {
         if payload.len() != DATA_LEN {
             return None;

@@ -1,9 +1,11 @@
-//! UTC for a sensor with a receiver: the hour from NMEA, everything below the hour from the sensor's own clock.
+//! UTC for a sensor with a receiver: the hour from NMEA, everything below the hour from the
+//! sensor's own clock.
 //!
-//! With a pulse per second and a valid fix the sensor sets its minutes and seconds from the sentence and steers the rest by
-//! the pulse, so that its time past the hour is UTC's. A position packet's sentence only has to tell which hour that is:
-//! how old the sentence is when it is sent does not matter, as long as it is a few seconds and not half an hour.
-//! Left out: any guess where the lock is missing, host time, and leap seconds, which the sensor's counter does not show.
+//! With a pulse per second and a valid fix the sensor sets its minutes and seconds from the
+//! sentence and steers the rest by the pulse, so that its time past the hour is UTC's. A position
+//! packet's sentence only has to tell which hour that is: how old the sentence is when it is sent
+//! does not matter, as long as it is a few seconds and not half an hour. Left out: any guess where
+//! the lock is missing, host time, and leap seconds, which the sensor's counter does not show.
 
 use std::collections::VecDeque;
 use std::{fmt, mem};
@@ -12,16 +14,18 @@ use protocol::vlp16::{NmeaError, PositionPacket, Pps};
 use units::{Host, Lidar, Span, Stamp};
 
 const HOUR_NS: i64 = 3_600_000_000_000;
-/// A sentence tells of a second that has begun and is repeated until the next; a receiver may take two for it. Older ones
-/// are left from a receiver that fell silent.
+/// A sentence tells of a second that has begun and is repeated until the next; a receiver may take
+/// two for it. Older ones are left from a receiver that fell silent.
 const OLDEST_FIX: Span = Span::from_secs(5);
 /// Times further apart than this are two clocks that never met, not an old sentence.
 const APART: Span = Span::from_secs(60);
 /// Some receivers name the second that the next pulse begins.
 const NEWEST_FIX: Span = Span::from_millis(-1_500);
-/// Sensors send a position packet every ten milliseconds or so; without any for this long nothing says that the lock holds.
+/// Sensors send a position packet every ten milliseconds or so; without any for this long nothing
+/// says that the lock holds.
 const LONGEST_SILENCE: Span = Span::from_secs(5);
-/// Position packets this much before the last one are out of order; further back, the clock was set.
+/// Position packets this much before the last one are out of order; further back, the clock was
+/// set.
 const REORDER: Span = Span::from_secs(2);
 /// Data this much before the last one were overtaken by it; further back, the clock was set.
 const OVERTAKEN: Span = Span::from_millis(20);
@@ -36,7 +40,8 @@ pub enum Utc {}
 pub enum UtcState {
     /// Pulse and fix are good: UTC is device time plus this many hours.
     Locked {
-        /// Hours between device time, which follows the host's hour, and UTC: 0 where the host's clock is right.
+        /// Hours between device time, which follows the host's hour, and UTC: 0 where the host's
+        /// clock is right.
         hours: i64,
     },
     /// Why it cannot.
@@ -59,7 +64,8 @@ pub enum NoUtc {
         /// Device time since the second that it tells.
         age: Span,
     },
-    /// Device time past the hour is not the sentence's: the sensor has not set its minutes and seconds.
+    /// Device time past the hour is not the sentence's: the sensor has not set its minutes and
+    /// seconds.
     Apart {
         /// Device time past the hour less the sentence's, within half an hour.
         by: Span,
@@ -90,7 +96,8 @@ struct Lock {
 
 /// Follows the position packets of one sensor and turns device time into UTC.
 ///
-/// Feed it packets in order of arrival, and device times as the decoder gives them, so that both are of the same hour.
+/// Feed it packets in order of arrival, and device times as the decoder gives them, so that both
+/// are of the same hour.
 #[derive(Clone, Debug)]
 pub struct UtcClock {
     state: UtcState,
@@ -130,7 +137,8 @@ impl UtcClock {
         self.data = Some(at);
         if back > Span::ZERO {
             self.position = None;
-            // The device goes through these times a second time: what they were the first time helps nobody.
+            // The device goes through these times a second time: what they were the first time
+            // helps nobody.
             self.locks.retain(|lock| lock.from < at);
             for lock in &mut self.locks {
                 lock.until = Some(lock.until.map_or(at, |until| until.min(at)));
@@ -149,7 +157,8 @@ impl UtcClock {
 
     /// Takes a position packet that arrived at `host`; says what it changed.
     ///
-    /// Packets that arrive after a later one change nothing: they are counted in [`UtcClock::late`].
+    /// Packets that arrive after a later one change nothing: they are counted in
+    /// [`UtcClock::late`].
     pub fn position(
         &mut self,
         host: Stamp<Host>,
@@ -170,7 +179,8 @@ impl UtcClock {
         }
     }
 
-    /// UTC at an instant of device time; `None` where the clock was not locked, and beyond the year 2262, which no stamp can say.
+    /// UTC at an instant of device time; `None` where the clock was not locked, and beyond the year
+    /// 2262, which no stamp can say.
     #[must_use]
     pub fn utc(&self, at: Stamp<Lidar>) -> Option<Stamp<Utc>> {
         let lock = self.locks.iter().rev().find(|lock| {
@@ -202,7 +212,8 @@ impl UtcClock {
         self.late
     }
 
-    /// Device time of a position packet: in the hour that lies nearest to the data, without any to the host's clock.
+    /// Device time of a position packet: in the hour that lies nearest to the data, without any to
+    /// the host's clock.
     fn device_time(&self, us: u32, host: Stamp<Host>) -> Stamp<Lidar> {
         let seen = self.data.or(self.position).map(Stamp::as_nanos);
         let past_hour = i64::from(us) * 1_000;
@@ -332,7 +343,8 @@ mod tests {
         Stamp::from_nanos(ns)
     }
 
-    /// A position packet sent at `device_ns` of the sensor's clock with the sentence of a whole UTC second.
+    /// A position packet sent at `device_ns` of the sensor's clock with the sentence of a whole UTC
+    /// second.
     fn packet(device_ns: i64, pps: u8, status: char, fix_s: i64) -> Vec<u8> {
         let of_day = fix_s.rem_euclid(86_400);
         let (hour, minute, second) = (of_day / 3_600, of_day / 60 % 60, of_day % 60);
@@ -353,7 +365,8 @@ mod tests {
         bytes
     }
 
-    /// Gives the clock a packet sent at a device time, to a host whose clock is `off_s` ahead of UTC.
+    /// Gives the clock a packet sent at a device time, to a host whose clock is `off_s` ahead of
+    /// UTC.
     fn say(
         clock: &mut UtcClock,
         device_ns: i64,
@@ -516,7 +529,8 @@ mod tests {
 
     #[test]
     fn a_clock_set_by_the_first_sentence_is_utc_from_then_on() {
-        // Free-running minutes, 700 s ahead, until the device reads the sentence and sets its clock back.
+        // Free-running minutes, 700 s ahead, until the device reads the sentence and sets its clock
+        // back.
         let t = TEN_59 * S;
         let mut clock = UtcClock::new();
         clock.data(stamp(t + 700 * S));

@@ -1,5 +1,5 @@
-//! Calibration files of both kinds become the corrections that their own conventions mean, and wrong ones are refused with the
-//! line. All numbers are made up here.
+//! Calibration files of both kinds become the corrections that their own conventions mean, and
+//! wrong ones are refused with the line. All numbers are made up here.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use std::fmt::Write as _;

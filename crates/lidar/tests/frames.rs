@@ -1,7 +1,8 @@
-//! Frames begin where the rotor passes the cut, whatever the rotor does; organised frames keep every shot.
+//! Frames begin where the rotor passes the cut, whatever the rotor does; organised frames keep
+//! every shot.
 //!
-//! The packets are written here from manual 9.3.2 and from an angle that is a function of time, so that the frame of every
-//! firing is known in closed form.
+//! The packets are written here from manual 9.3.2 and from an angle that is a function of time, so
+//! that the frame of every firing is known in closed form.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use lidar::{Decoder, Duplicates, Echo, Firing, Frame, FrameCutter, Options, OrganisedFrame};
@@ -15,7 +16,8 @@ const BEGIN_NS: i64 = 470_000 * 3_600_000_000_000 + 5_000_000_000;
 /// One UDP payload and when its first block fired, counted from the first packet.
 type Packet = (i64, Vec<u8>);
 
-/// Packets of a VLP-16 whose angle after `t` ns is `turned_deg(t)`, not brought back below 360; `seen` says where it fires.
+/// Packets of a VLP-16 whose angle after `t` ns is `turned_deg(t)`, not brought back below 360;
+/// `seen` says where it fires.
 fn packets(
     blocks: i64,
     turned_deg: impl Fn(i64) -> f64,
@@ -91,7 +93,8 @@ fn anywhere(_: f64) -> bool {
     true
 }
 
-/// Every firing is in the frame that the angle says, but for those so close to the cut that wire angles cannot tell.
+/// Every firing is in the frame that the angle says, but for those so close to the cut that wire
+/// angles cannot tell.
 fn assert_frames(
     firings: &[(i64, u64)],
     cut_deg: f64,
@@ -169,7 +172,8 @@ proptest! {
         let seen = |azimuth: f64| (azimuth - first_deg).rem_euclid(360.0) < width_deg;
         let packets = packets(9_000, turned, seen, false);
         let (frames, firings) = cut(&packets, cut_deg);
-        // Times across a gap are right to some microseconds, except in the last packet: nothing after it measures its gap.
+        // Times across a gap are right to some microseconds, except in the last packet: nothing
+        // after it measures its gap.
         let measured = &firings[..firings.len() - 24];
         assert_frames(measured, cut_deg, turned, 0.1);
         let at: Vec<i64> = measured.iter().map(|firing| firing.0).collect();
@@ -248,7 +252,8 @@ fn a_head_that_turns_back_is_cut_where_that_shows() {
 
 #[test]
 fn a_frame_that_ends_within_a_step_of_the_cut_is_whole() {
-    // 38 packets are 912 firings; they turn from the cut to just behind the next, or to just before it.
+    // 38 packets are 912 firings; they turn from the cut to just behind the next, or to just before
+    // it.
     for (turn_deg, whole) in [(360.1, true), (359.9, false)] {
         let turned = |t: i64| turn_deg * t as f64 / (912 * FIRING_NS) as f64;
         let (frames, _) = cut(&packets(456, turned, anywhere, false), 0.0);
@@ -298,7 +303,8 @@ fn a_grid_has_a_cell_for_every_shot() {
                 + column as i64 % 24 * FIRING_NS
         );
         for ring in 0..16 {
-            // Elevations climb by 2 deg a ring: even lasers from -15, odd ones from 1 (manual table 9-1).
+            // Elevations climb by 2 deg a ring: even lasers from -15, odd ones from 1 (manual table
+            // 9-1).
             let laser = if ring < 8 {
                 2 * ring
             } else {

@@ -1,7 +1,8 @@
 //! Real recordings decode to the counts and sums that two independent decoders agree on.
 //!
-//! The recordings are not part of the project. They are looked for in `$VELOMOTION_RECORDINGS`, or in a folder
-//! `shared/recordings` beside the checkout; where they are absent each test says that it was skipped.
+//! The recordings are not part of the project. They are looked for in `$VELOMOTION_RECORDINGS`, or
+//! in a folder `shared/recordings` beside the checkout; where they are absent each test says that
+//! it was skipped.
 #![expect(
     clippy::disallowed_methods,
     clippy::unwrap_used,
@@ -225,7 +226,8 @@ fn vlp16_with_a_limited_field_of_view() {
     }
     println!("gaps (ms, from deg, to deg): {gaps:?}");
     assert_eq!(gaps.len(), 2);
-    // Timed back from the next packet: 156045 us less one packet and one firing, and 157262 likewise.
+    // Timed back from the next packet: 156045 us less one packet and one firing, and 157262
+    // likewise.
     assert!((gaps[0].0 - (156.045 - 1.327_104 + 0.055_296)).abs() < 1e-3);
     assert!((gaps[1].0 - (157.262 - 1.327_104 + 0.055_296)).abs() < 1e-3);
     // The rotor's mean rate over the field of view agrees with those times to 2 %.
@@ -399,8 +401,8 @@ fn organised_frames_hold_every_return_and_every_shot() {
     }
 }
 
-/// What the position packets of a recording make of the clock: changes of the lock, and UTC less the host's clock in seconds
-/// for every position packet.
+/// What the position packets of a recording make of the clock: changes of the lock, and UTC less
+/// the host's clock in seconds for every position packet.
 fn utc(datagrams: &[Datagram]) -> (Vec<UtcState>, Vec<f64>, usize) {
     let mut clock = UtcClock::new();
     let mut decoder = Decoder::new(Options::default());
@@ -448,7 +450,8 @@ fn utc_of_a_locked_sensor_agrees_with_the_host() {
     // The host's clock is 0.367 s fast; what is left is the jitter of arrival, 88 us.
     assert!((-0.367..-0.3665).contains(&least) && (-0.367..-0.3665).contains(&most));
     assert!(most - least < 0.000_2, "{least} {most}");
-    // All points but those before the first position packet, and of the packet held back and the last one.
+    // All points but those before the first position packet, and of the packet held back and the
+    // last one.
     assert!(told > 72_000, "{told}");
 }
 

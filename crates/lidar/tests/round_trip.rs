@@ -1,7 +1,8 @@
-//! Packets of the software sensor decode to firings from which the same packets can be built again, bit by bit; and every laser's
-//! azimuth is that of the rotor when it fired.
+//! Packets of the software sensor decode to firings from which the same packets can be built again,
+//! bit by bit; and every laser's azimuth is that of the rotor when it fired.
 //!
-//! The packets come from `firmware-sim`, which writes them from the manual without any code of this crate.
+//! The packets come from `firmware-sim`, which writes them from the manual without any code of this
+//! crate.
 
 use firmware_sim::vlp16::{DualPacketBuilder, LASERS, PacketBuilder, Returns};
 use lidar::{Decoder, Duplicates, Echo, Firing, Options};
@@ -170,7 +171,8 @@ proptest! {
         }
     }
 
-    /// Two azimuths of a hundredth of a degree each are off by half of one at most, and so is what lies between them.
+    /// Two azimuths of a hundredth of a degree each are off by half of one at most, and so is what
+    /// lies between them.
     #[test]
     fn azimuths_are_the_rotors_within_half_a_hundredth(
         rotor in any_rotor(), dual: bool, shots in any_shots(),

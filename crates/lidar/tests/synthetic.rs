@@ -1,4 +1,5 @@
-//! Packets of a rotor whose every instant is known decode to that rotor: azimuth, time, hour, gaps, loss, order.
+//! Packets of a rotor whose every instant is known decode to that rotor: azimuth, time, hour, gaps,
+//! loss, order.
 //!
 //! The packets are written here from manual 9.3.2, without the code under test.
 #![expect(clippy::unwrap_used, reason = "a test")]
@@ -75,7 +76,8 @@ impl Sensor {
                 bytes.extend([0xFF, 0xEE]);
                 bytes.extend(azimuth.to_le_bytes());
                 for channel in 0..32u16 {
-                    // Channel 0 differs between the two returns, channel 1 is missing from the first.
+                    // Channel 0 differs between the two returns, channel 1 is missing from the
+                    // first.
                     let distance = match (channel, half) {
                         (0, 1) => 4_000,
                         (1, 0) if self.dual => 0,
@@ -128,7 +130,8 @@ fn apart_deg(a: f64, b: f64) -> f64 {
     apart.min(360.0 - apart)
 }
 
-/// Each firing where and when the rotor was; times are known to the stamp's microsecond and `slack_ns`.
+/// Each firing where and when the rotor was; times are known to the stamp's microsecond and
+/// `slack_ns`.
 fn assert_true(sensor: &Sensor, seen: &[Seen], blocks: &[i64], tolerance_deg: f64, slack_ns: i64) {
     assert_eq!(seen.len(), 2 * blocks.len());
     for (i, seen) in seen.iter().enumerate() {
@@ -289,7 +292,8 @@ proptest! {
         prop_assert_eq!(stats.duplicates, twice.len() as u64);
     }
 
-    /// Bytes of any kind, at any host time, in any order: counted, never a panic, and both passes of one mind.
+    /// Bytes of any kind, at any host time, in any order: counted, never a panic, and both passes
+    /// of one mind.
     #[test]
     fn anything_at_all_is_survived(
         junk in prop::collection::vec(junk(), 1..40),
@@ -370,7 +374,8 @@ fn golden_packet_to_points() {
     decoder.packet(packets[0].host, &packets[0].bytes, &mut keep);
     decoder.finish(&mut keep);
     assert_eq!(points.len(), 12 * 32);
-    // Second firing, laser 3 (channel 19): 55.296 + 3 x 2.304 us on; 3 deg up; 2 mm x 5019; 2.2 mm below the origin.
+    // Second firing, laser 3 (channel 19): 55.296 + 3 x 2.304 us on; 3 deg up; 2 mm x 5019; 2.2 mm
+    // below the origin.
     let point = points[19];
     assert_eq!((point.laser, point.ring, point.reflectivity), (3, 9, 19));
     assert_eq!(point.time.as_nanos(), sensor.begin_ns + 62_208);

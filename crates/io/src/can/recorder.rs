@@ -1,4 +1,5 @@
-//! A way to a bus that records: every frame sent and every frame received goes to a sink as a record.
+//! A way to a bus that records: every frame sent and every frame received goes to a sink as a
+//! record.
 
 use protocol::canopen::CanFrame;
 use protocol::record::{Direction, DriveLink, Record, Wire};
@@ -8,8 +9,9 @@ use super::{CanError, CanPort};
 
 /// A recording wrapper around a way to a bus.
 ///
-/// The sink gets each frame once, as a record with the port's own time: on SocketCAN the kernel's receive time. Records
-/// come in the order in which frames were handed over, so times may run back by what a received frame had waited.
+/// The sink gets each frame once, as a record with the port's own time: on SocketCAN the kernel's
+/// receive time. Records come in the order in which frames were handed over, so times may run back
+/// by what a received frame had waited.
 #[derive(Debug)]
 pub struct Recorder<P, S> {
     port: P,

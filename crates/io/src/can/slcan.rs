@@ -1,7 +1,8 @@
 //! A CAN bus behind an adapter on a serial port that speaks SLCAN (CANUSB, CANable and the like).
 //!
-//! Adapters differ in what they answer; those that answer nothing are taken at their silence. A received frame's time is
-//! that of the read which brought its line: an adapter's own time stamps are milliseconds, and stay switched off.
+//! Adapters differ in what they answer; those that answer nothing are taken at their silence. A
+//! received frame's time is that of the read which brought its line: an adapter's own time stamps
+//! are milliseconds, and stay switched off.
 
 use std::collections::VecDeque;
 
@@ -14,13 +15,15 @@ use crate::port::Port;
 
 /// How long an adapter is given to answer a command.
 const ANSWER_TIMEOUT: Span = Span::from_millis(200);
-/// After closing: how long nothing comes until what was under way is taken to be over, and how long that may take.
+/// After closing: how long nothing comes until what was under way is taken to be over, and how long
+/// that may take.
 const QUIET: Span = Span::from_millis(50);
 const DRAIN_TIMEOUT: Span = Span::from_millis(300);
-/// How often an adapter that answers is asked whether frames were lost in it. An answer that does not come is not missed.
+/// How often an adapter that answers is asked whether frames were lost in it. An answer that does
+/// not come is not missed.
 const STATUS_PERIOD: Span = Span::from_secs(1);
-/// What tells of lost frames in its answer (CANUSB manual, command F): bit 0, its receive queue was full; bit 3, its
-/// controller was overrun.
+/// What tells of lost frames in its answer (CANUSB manual, command F): bit 0, its receive queue was
+/// full; bit 3, its controller was overrun.
 const LOST: u8 = 1 << 0 | 1 << 3;
 
 /// An open channel of an adapter. Dropping it closes the channel.
@@ -50,9 +53,9 @@ struct Status {
 }
 
 impl<P: Port> Slcan<P> {
-    /// Opens the adapter's channel: closes it, as another program may have left it open, sets the bit rate (an EPOS2 has
-    /// 1 Mbit/s from the factory) and opens it. Takes 50 ms with an adapter that answers, half a second with one that
-    /// does not.
+    /// Opens the adapter's channel: closes it, as another program may have left it open, sets the
+    /// bit rate (an EPOS2 has 1 Mbit/s from the factory) and opens it. Takes 50 ms with an adapter
+    /// that answers, half a second with one that does not.
     ///
     /// # Errors
     /// [`CanError::Refused`], [`CanError::Port`].
@@ -68,7 +71,8 @@ impl<P: Port> Slcan<P> {
             status: Status::default(),
             dropped: 0,
         };
-        // A line that was begun must not swallow the command. An adapter may refuse to close what is closed.
+        // A line that was begun must not swallow the command. An adapter may refuse to close what
+        // is closed.
         channel.send(&Command::Empty)?;
         channel.send(&Command::Close)?;
         channel.drain()?;
@@ -89,7 +93,8 @@ impl<P: Port> Slcan<P> {
         self.answers
     }
 
-    /// Lines so far that were neither frames nor answers: a sign of a wrong baud rate or of lost bytes.
+    /// Lines so far that were neither frames nor answers: a sign of a wrong baud rate or of lost
+    /// bytes.
     #[must_use]
     pub const fn noise(&self) -> u64 {
         self.noise
@@ -154,7 +159,8 @@ impl<P: Port> Slcan<P> {
                             command: name(command),
                         });
                     }
-                    // What is not an answer must not be lost: a node may speak as soon as the channel is open.
+                    // What is not an answer must not be lost: a node may speak as soon as the
+                    // channel is open.
                     reply => self.take(reply, host),
                 }
             }
@@ -183,7 +189,8 @@ impl<P: Port> Slcan<P> {
         match reply {
             Reply::Received { frame, .. } => self.waiting.push_back(Ok((frame, host))),
             Reply::Done | Reply::Sent | Reply::SentExtended => self.frame_answered(),
-            // Flags are cleared by reading them, so each set one is another loss. They do not say of how many frames.
+            // Flags are cleared by reading them, so each set one is another loss. They do not say
+            // of how many frames.
             Reply::Status(flags) => {
                 self.status.behind = None;
                 self.dropped += u64::from(flags & LOST != 0);

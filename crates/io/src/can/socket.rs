@@ -1,9 +1,11 @@
-//! A CAN interface of the kernel, through the `socketcan` crate: classic frames with the kernel's receive time.
+//! A CAN interface of the kernel, through the `socketcan` crate: classic frames with the kernel's
+//! receive time.
 //!
-//! Blocking with timeouts, like the serial port: a drive's client waits for one answer at a time, on its own thread. The
-//! kernel's error reports and CAN FD are left switched off. Waiting is `ppoll`'s, since the socket's own timeouts have
-//! the kernel's tick. Frames are received here and not by the crate, as it passes over the kernel's count of those it dropped:
-//! a socket holds some hundred frames, and what does not fit is gone without a word.
+//! Blocking with timeouts, like the serial port: a drive's client waits for one answer at a time,
+//! on its own thread. The kernel's error reports and CAN FD are left switched off. Waiting is
+//! `ppoll`'s, since the socket's own timeouts have the kernel's tick. Frames are received here and
+//! not by the crate, as it passes over the kernel's count of those it dropped: a socket holds some
+//! hundred frames, and what does not fit is gone without a word.
 
 use std::io::{self, ErrorKind, IoSliceMut};
 use std::os::fd::{AsFd, AsRawFd};
@@ -41,7 +43,8 @@ pub struct SocketCan {
 }
 
 impl SocketCan {
-    /// Opens an interface that is up, such as `can0`. Others may have it open too. No rights are needed.
+    /// Opens an interface that is up, such as `can0`. Others may have it open too. No rights are
+    /// needed.
     ///
     /// # Errors
     /// [`CanError`]: no CAN in the kernel, no such interface, not a CAN interface, down.
@@ -123,8 +126,8 @@ impl SocketCan {
     }
 }
 
-/// Room for as many frames as the kernel lets this program have: its limit for users makes that half a second of a stream at
-/// 1 kHz, which is enough, so that a refusal is none of an opening.
+/// Room for as many frames as the kernel lets this program have: its limit for users makes that
+/// half a second of a stream at 1 kHz, which is enough, so that a refusal is none of an opening.
 fn enlarge_buffer(socket: &CanSocket) {
     if setsockopt(socket, sockopt::RcvBufForce, &RECEIVE_BUFFER).is_err() {
         let _ = setsockopt(socket, sockopt::RcvBuf, &RECEIVE_BUFFER);
@@ -147,7 +150,8 @@ impl CanPort for SocketCan {
                             interface: self.interface.clone(),
                         });
                     }
-                    // The socket counts as writable while the interface's queue is full: there is nothing to wait for.
+                    // The socket counts as writable while the interface's queue is full: there is
+                    // nothing to wait for.
                     thread::sleep(RETRY);
                 }
                 Err(e) => return Err(self.io_error("write", e)),
@@ -174,7 +178,8 @@ impl CanPort for SocketCan {
         }
     }
 
-    /// Frames that the kernel dropped because this program did not read fast enough, as far as those read tell.
+    /// Frames that the kernel dropped because this program did not read fast enough, as far as
+    /// those read tell.
     fn dropped(&self) -> u64 {
         self.dropped
     }
@@ -190,7 +195,8 @@ fn is_full(error: &io::Error) -> bool {
 
 fn open_error(interface: &str, source: io::Error) -> CanError {
     let interface = interface.to_owned();
-    // An interface is looked up before a socket is made; without CAN there can be none, and that says more.
+    // An interface is looked up before a socket is made; without CAN there can be none, and that
+    // says more.
     let errno = CanSocket::open_iface(0)
         .err()
         .and_then(|e| e.raw_os_error())
@@ -240,7 +246,8 @@ fn to_kernel(frame: &CanFrame) -> Option<socketcan::CanFrame> {
     }
 }
 
-/// A `struct can_frame` as the kernel lays it out, with the identifier in this machine's order; `None` for an error report.
+/// A `struct can_frame` as the kernel lays it out, with the identifier in this machine's order;
+/// `None` for an error report.
 fn from_kernel(mut bytes: [u8; SOCKETCAN_LEN]) -> Option<CanFrame> {
     let (id, _) = bytes.split_first_chunk_mut::<4>()?;
     *id = u32::from_ne_bytes(*id).to_be_bytes();

@@ -1,5 +1,6 @@
-//! pcapng blocks as bytes (draft-ietf-opsawg-pcapng), little-endian, appended to a buffer. Only the three block types
-//! that a log has. And the older pcap (draft-ietf-opsawg-pcap), with microseconds, which everything reads.
+//! pcapng blocks as bytes (draft-ietf-opsawg-pcapng), little-endian, appended to a buffer. Only the
+//! three block types that a log has. And the older pcap (draft-ietf-opsawg-pcap), with
+//! microseconds, which everything reads.
 
 use byteorder::{ByteOrder, LittleEndian};
 use protocol::record::Direction;
@@ -27,7 +28,8 @@ const OPT_END: u16 = 0;
 /// Bytes an option's value may have.
 pub(super) const MAX_OPTION_LEN: usize = u16::MAX as usize;
 
-/// A section header with a comment. The section's length is left open (-1), as it is not known in advance.
+/// A section header with a comment. The section's length is left open (-1), as it is not known in
+/// advance.
 pub(super) fn section_header(out: &mut Vec<u8>, comment: &str) {
     block(out, SECTION_HEADER, |out| {
         put_u32(out, BYTE_ORDER_MAGIC);
@@ -67,7 +69,8 @@ pub(super) fn packet(
         put_u32(out, interface);
         put_u32(out, (time_ns >> 32) as u32);
         put_u32(out, time_ns as u32);
-        // The writer refuses payloads beyond what UDP or a frame can have, so that this does not cut.
+        // The writer refuses payloads beyond what UDP or a frame can have, so that this does not
+        // cut.
         let length = parts.iter().map(|part| part.len()).sum::<usize>() as u32;
         put_u32(out, length);
         put_u32(out, length);

@@ -1,5 +1,6 @@
-//! Ethernet, IPv4 and UDP headers around a payload whose own headers the socket did not give. What the socket does not
-//! tell is filled in as a VLP-16 sends it from the factory: broadcast, source port equal to the destination port.
+//! Ethernet, IPv4 and UDP headers around a payload whose own headers the socket did not give. What
+//! the socket does not tell is filled in as a VLP-16 sends it from the factory: broadcast, source
+//! port equal to the destination port.
 
 use etherparse::{EtherType, Ethernet2Header, IpFragOffset, IpNumber, Ipv4Header, UdpHeader};
 

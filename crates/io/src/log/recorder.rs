@@ -1,9 +1,10 @@
 //! The recording thread: records in from any thread, a file in time order out.
 //!
-//! Records of the two devices reach the thread in nearly the order of their host times; they are held for 0.2 to 0.4 s
-//! and written in that order, so that at most the last half second is lost when the process is killed. A sender never
-//! waits for the disk: when the queue is full the record is dropped and counted, for the motor must not wait.
-//! A log on a disk is durable once it is finished: what is made of it is told as whole, also after a power cut.
+//! Records of the two devices reach the thread in nearly the order of their host times; they are
+//! held for 0.2 to 0.4 s and written in that order, so that at most the last half second is lost
+//! when the process is killed. A sender never waits for the disk: when the queue is full the record
+//! is dropped and counted, for the motor must not wait. A log on a disk is durable once it is
+//! finished: what is made of it is told as whole, also after a power cut.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -22,9 +23,11 @@ use super::owned::OwnedRecord;
 use super::writer::{LogCounts, LogError, LogWriter};
 use crate::files;
 
-/// How long a record is held at least, for an earlier one to overtake it; also how often the file is flushed.
+/// How long a record is held at least, for an earlier one to overtake it; also how often the file
+/// is flushed.
 const HOLD: Duration = Duration::from_millis(200);
-/// Records that may wait for the disk: 40 s of a VLP-16 in dual return and a drive polled at 300 Hz, some 80 MB.
+/// Records that may wait for the disk: 40 s of a VLP-16 in dual return and a drive polled at 300
+/// Hz, some 80 MB.
 const QUEUE_LEN: usize = 65_536;
 /// How often it is looked whether everything is saved.
 const SAVING: Duration = Duration::from_millis(2);
@@ -53,7 +56,8 @@ struct Shared {
     failed: AtomicBool,
 }
 
-/// The owner's side of a recording thread. End it with [`Recorder::finish`]: merely dropped, it may lose what it holds.
+/// The owner's side of a recording thread. End it with [`Recorder::finish`]: merely dropped, it may
+/// lose what it holds.
 #[derive(Debug)]
 pub struct Recorder {
     handle: RecorderHandle,
@@ -68,8 +72,8 @@ pub struct RecorderHandle {
 }
 
 impl RecorderHandle {
-    /// Hands a record over without waiting. If the queue is full the record is counted as dropped; if the log failed,
-    /// [`Recorder::failed`] says so.
+    /// Hands a record over without waiting. If the queue is full the record is counted as dropped;
+    /// if the log failed, [`Recorder::failed`] says so.
     pub fn record(&self, record: &Record<'_>) {
         match self
             .queue
@@ -84,7 +88,8 @@ impl RecorderHandle {
 }
 
 impl Recorder {
-    /// Starts the thread on a file whose head is written; [`Recorder::finish`] returns when the disk has it all.
+    /// Starts the thread on a file whose head is written; [`Recorder::finish`] returns when the
+    /// disk has it all.
     ///
     /// # Errors
     /// [`LogError::Thread`] where the system gives no thread.
@@ -136,7 +141,8 @@ impl Recorder {
     /// Writes what is held, flushes and stops the thread, even if senders are still around.
     ///
     /// # Errors
-    /// [`LogError::Write`] if a write failed, now or earlier; [`LogError::Thread`] if the thread died.
+    /// [`LogError::Write`] if a write failed, now or earlier; [`LogError::Thread`] if the thread
+    /// died.
     pub fn finish(self) -> Result<RecorderCounts, LogError> {
         self.finish_while(|| {})
     }
@@ -148,7 +154,8 @@ impl Recorder {
     pub fn finish_while(self, mut waiting: impl FnMut()) -> Result<RecorderCounts, LogError> {
         let mut told = false;
         while !self.thread.is_finished() {
-            // A full queue takes it later. A thread that has ended on an error no longer listens; its result says so.
+            // A full queue takes it later. A thread that has ended on an error no longer listens;
+            // its result says so.
             told = told || self.handle.queue.try_send(Message::Finish).is_ok();
             waiting();
             thread::sleep(SAVING);
@@ -187,8 +194,9 @@ impl Ord for Held {
     }
 }
 
-/// The thread's state. Time is cut into turns of [`HOLD`]: at the end of each, everything up to the latest record of
-/// the turn before is written, so that whatever clock steps do, no record is held for more than two turns.
+/// The thread's state. Time is cut into turns of [`HOLD`]: at the end of each, everything up to the
+/// latest record of the turn before is written, so that whatever clock steps do, no record is held
+/// for more than two turns.
 struct Order<W> {
     writer: LogWriter<W>,
     held: BinaryHeap<Reverse<Held>>,

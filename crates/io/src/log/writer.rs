@@ -1,4 +1,5 @@
-//! Records into a pcapng file, in the order they come. Buffering is here so that a flush is one write.
+//! Records into a pcapng file, in the order they come. Buffering is here so that a flush is one
+//! write.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
@@ -100,8 +101,9 @@ pub struct LogCounts {
 
 /// A log being written.
 ///
-/// Bytes wait in memory until [`LogWriter::flush`], [`LogWriter::finish`] or 64 KiB of them. After a failed write nothing
-/// more is written: the file then ends in a record that may be cut, which a reader knows how to take.
+/// Bytes wait in memory until [`LogWriter::flush`], [`LogWriter::finish`] or 64 KiB of them. After
+/// a failed write nothing more is written: the file then ends in a record that may be cut, which a
+/// reader knows how to take.
 #[derive(Debug)]
 pub struct LogWriter<W> {
     out: W,
@@ -118,12 +120,14 @@ pub struct LogWriter<W> {
 enum Form {
     /// pcapng with everything in it.
     Log,
-    /// Plain pcap, the lidar's datagrams alone: what programs of libpcap read, which take one type of link a file.
+    /// Plain pcap, the lidar's datagrams alone: what programs of libpcap read, which take one type
+    /// of link a file.
     Pcap,
 }
 
 impl LogWriter<File> {
-    /// Makes a plain pcap file, for programs that read nothing else. It holds the lidar's datagrams; frames of the drive are left out.
+    /// Makes a plain pcap file, for programs that read nothing else. It holds the lidar's
+    /// datagrams; frames of the drive are left out.
     ///
     /// # Errors
     /// [`LogError::Exists`], [`LogError::Create`], [`LogError::Write`].
@@ -206,8 +210,8 @@ impl<W: Write> LogWriter<W> {
     /// Appends a record.
     ///
     /// # Errors
-    /// [`LogError::TooLong`] and [`LogError::Time`] leave the log as it was, fit for further records;
-    /// [`LogError::Write`] ends it.
+    /// [`LogError::TooLong`] and [`LogError::Time`] leave the log as it was, fit for further
+    /// records; [`LogError::Write`] ends it.
     pub fn write(&mut self, record: &Record<'_>) -> Result<(), LogError> {
         self.check_sound()?;
         let time_ns = u64::try_from(record.host.as_nanos())

@@ -1,7 +1,8 @@
-//! Where EPOS2 USB frames start and end in a stream of bytes: for the log, which keeps raw bytes and loses none.
+//! Where EPOS2 USB frames start and end in a stream of bytes: for the log, which keeps raw bytes
+//! and loses none.
 //!
-//! The frames are those of [`UsbDecoder`]; what they say is thrown away here, and a frame with a wrong CRC is a frame like
-//! any other, as it was on the wire.
+//! The frames are those of [`UsbDecoder`]; what they say is thrown away here, and a frame with a
+//! wrong CRC is a frame like any other, as it was on the wire.
 
 use protocol::epos2::FrameError;
 use protocol::epos2::usb::{DLE, UsbDecoder};
@@ -25,7 +26,8 @@ pub(super) struct Delimiter {
 }
 
 impl Delimiter {
-    /// Takes a byte; a piece that ends with it, or (noise) two bytes before it where a frame starts.
+    /// Takes a byte; a piece that ends with it, or (noise) two bytes before it where a frame
+    /// starts.
     pub(super) fn push(&mut self, byte: u8) -> Option<Piece> {
         self.open += 1;
         self.last = byte;

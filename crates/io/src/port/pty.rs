@@ -1,5 +1,6 @@
-//! The device's side of a pseudo-terminal: what the software drive stands behind. The other side is a serial port by
-//! path, for this program or another. No baud rate is imitated: bytes pass at memory speed.
+//! The device's side of a pseudo-terminal: what the software drive stands behind. The other side is
+//! a serial port by path, for this program or another. No baud rate is imitated: bytes pass at
+//! memory speed.
 
 use std::io;
 use std::os::fd::{AsFd, OwnedFd};

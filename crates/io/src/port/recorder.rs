@@ -1,7 +1,9 @@
-//! A port that records: every frame written and every byte received goes to a sink as a record, none is lost.
+//! A port that records: every frame written and every byte received goes to a sink as a record,
+//! none is lost.
 //!
-//! On USB the received bytes are cut at frame boundaries, one whole frame a record, and bytes outside frames become
-//! records of their own. RS232 is a dialogue of single bytes and frames; there a record is what one read gave.
+//! On USB the received bytes are cut at frame boundaries, one whole frame a record, and bytes
+//! outside frames become records of their own. RS232 is a dialogue of single bytes and frames;
+//! there a record is what one read gave.
 
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Span, Stamp};
@@ -14,8 +16,8 @@ const FRAME_TIMEOUT: Span = Span::from_millis(500);
 
 /// A recording wrapper around a port.
 ///
-/// The sink gets each record once, in the order in which the bytes passed; the host time of a received frame is that of
-/// the read which completed it.
+/// The sink gets each record once, in the order in which the bytes passed; the host time of a
+/// received frame is that of the read which completed it.
 pub struct Recorder<P, S: FnMut(&Record<'_>)> {
     port: P,
     link: DriveLink,
@@ -46,7 +48,8 @@ impl<P, S: FnMut(&Record<'_>)> Recorder<P, S> {
         &self.port
     }
 
-    /// Records the bytes of a frame that has not been completed. Done by itself when the recorder is dropped.
+    /// Records the bytes of a frame that has not been completed. Done by itself when the recorder
+    /// is dropped.
     pub fn flush(&mut self) {
         let piece = self.delimiter.flush();
         if let (Some(piece), Some(host)) = (piece, self.last) {

@@ -1,7 +1,8 @@
 //! A serial port by path and speed, through the `serialport` crate: exclusive, raw, 8N1.
 //!
-//! That crate's read waits with `ppoll` on Linux, so timeouts below a millisecond hold; `poll`, which it uses elsewhere,
-//! would round them down to none. Modem lines, parity and flow control are left alone: no EPOS2 uses them.
+//! That crate's read waits with `ppoll` on Linux, so timeouts below a millisecond hold; `poll`,
+//! which it uses elsewhere, would round them down to none. Modem lines, parity and flow control are
+//! left alone: no EPOS2 uses them.
 
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
@@ -17,14 +18,16 @@ use crate::clock;
 
 const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// How long a USB serial adapter gathers bytes before it hands them on, ms (FTDI; 16 from the factory).
+/// How long a USB serial adapter gathers bytes before it hands them on, ms (FTDI; 16 from the
+/// factory).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LatencyTimer {
     /// The port has none (no FTDI adapter) or does not tell.
     Unknown,
     /// It is 1 ms, as wanted.
     Low,
-    /// It could not be set to 1 ms (the file in sysfs belongs to root): each answer of the drive is late by up to this.
+    /// It could not be set to 1 ms (the file in sysfs belongs to root): each answer of the drive is
+    /// late by up to this.
     High {
         /// Milliseconds.
         ms: u32,
@@ -41,8 +44,8 @@ pub struct SerialPort {
 }
 
 impl SerialPort {
-    /// Opens a port for this program alone, throws away what was waiting in it, and sets the adapter's latency timer
-    /// to 1 ms where there is one and this user may.
+    /// Opens a port for this program alone, throws away what was waiting in it, and sets the
+    /// adapter's latency timer to 1 ms where there is one and this user may.
     ///
     /// # Errors
     /// [`PortError`]: not found, permission, busy, unsuitable.
@@ -84,7 +87,8 @@ impl SerialPort {
 
     fn io_error(&self, action: &'static str, source: io::Error) -> PortError {
         match source.kind() {
-            // serialport gives BrokenPipe for a hang-up, NotFound for "no device", Other for EIO, ENXIO and ENODEV.
+            // serialport gives BrokenPipe for a hang-up, NotFound for "no device", Other for EIO,
+            // ENXIO and ENODEV.
             ErrorKind::BrokenPipe
             | ErrorKind::NotFound
             | ErrorKind::Other
@@ -192,7 +196,8 @@ fn set_low_latency(path: &Path) -> LatencyTimer {
     set_latency(&file)
 }
 
-/// Where sysfs keeps the latency timer of a port, by the port's real name (`/dev/serial/by-id/...` is a link).
+/// Where sysfs keeps the latency timer of a port, by the port's real name (`/dev/serial/by-id/...`
+/// is a link).
 fn latency_file(sysfs: &Path, port: &Path) -> Option<PathBuf> {
     let real = port.canonicalize().ok()?;
     let file = sysfs

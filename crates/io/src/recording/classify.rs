@@ -1,5 +1,5 @@
-//! One packet of a recording: what it carries, how it is counted, and whether it is given on. How packets are framed and taken apart is
-//! told elsewhere.
+//! One packet of a recording: what it carries, how it is counted, and whether it is given on. How
+//! packets are framed and taken apart is told elsewhere.
 
 use std::ops::Range;
 
@@ -13,7 +13,8 @@ impl<R> Recording<R> {
         let data = self.window.bytes().get(packet.data.clone());
         let data = data.unwrap_or_default();
         let content = match link::look_inside(packet.link, packet.direction, data) {
-            // A capture that kept the whole datagram and lost only what was behind it is as good as any.
+            // A capture that kept the whole datagram and lost only what was behind it is as good as
+            // any.
             Ok(content @ Content::Datagram { .. }) => Ok(content),
             _ if (data.len() as u64) < u64::from(packet.original) => Err(Fault::Snapped {
                 captured: data.len() as u32,

@@ -7,7 +7,8 @@ use protocol::record::Direction;
 
 use super::Fault;
 
-/// Distinct pairs of port and size that are told apart; a stranger's recording must not fill the memory.
+/// Distinct pairs of port and size that are told apart; a stranger's recording must not fill the
+/// memory.
 const MAX_KINDS: usize = 1024;
 
 /// The first packet that could not be used.
@@ -19,14 +20,14 @@ pub struct Malformed {
     pub fault: Fault,
 }
 
-/// Numbers of packets by kind. `records` is the sum of `datagrams`, `more_datagrams`, `to_drive`, `from_drive`, `other`, `fragments`,
-/// `joined` and `malformed`; the rest tells more of these.
+/// Numbers of packets by kind. `records` is the sum of `datagrams`, `more_datagrams`, `to_drive`,
+/// `from_drive`, `other`, `fragments`, `joined` and `malformed`; the rest tells more of these.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Packets in the file, of whatever kind; a damaged stretch is one.
     pub records: u64,
-    /// The lidar's datagrams ([`DatagramKind::is_lidar`](super::DatagramKind::is_lidar)) by destination port and payload size in bytes;
-    /// the first 1024 such pairs.
+    /// The lidar's datagrams ([`DatagramKind::is_lidar`](super::DatagramKind::is_lidar)) by
+    /// destination port and payload size in bytes; the first 1024 such pairs.
     pub datagrams: BTreeMap<(u16, usize), u64>,
     /// The lidar's datagrams beyond those pairs.
     pub more_datagrams: u64,
@@ -40,7 +41,8 @@ pub struct Counts {
     pub foreign: BTreeMap<(u16, usize), u64>,
     /// Fragments of IP packets that were not put together.
     pub fragments: u64,
-    /// Fragments of datagrams that were put together, the last of each excepted: that one counts as the datagram.
+    /// Fragments of datagrams that were put together, the last of each excepted: that one counts as
+    /// the datagram.
     pub joined: u64,
     /// Datagrams that were put together of fragments, whatever they were then counted as.
     pub reassembled: u64,

@@ -66,7 +66,8 @@ pub enum RecordingError {
 pub enum End {
     /// After a whole record.
     Complete,
-    /// In mid-record: the program or the machine that wrote it was stopped, or the file was not copied whole.
+    /// In mid-record: the program or the machine that wrote it was stopped, or the file was not
+    /// copied whole.
     Truncated {
         /// Where the incomplete record starts, in bytes from the start of the file.
         offset: u64,

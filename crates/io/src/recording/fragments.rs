@@ -1,8 +1,8 @@
-//! Fragments of IP packets put together again, as far as a lidar's packet needs it: the 1214 bytes of UDP that an interface with a
-//! small MTU (a tunnel, a relay) sends in two or three pieces.
+//! Fragments of IP packets put together again, as far as a lidar's packet needs it: the 1214 bytes
+//! of UDP that an interface with a small MTU (a tunnel, a relay) sends in two or three pieces.
 //!
-//! Bounded: 32 datagrams of at most 2 KiB at a time; what is larger, older than a second or one too many is given up. Not here:
-//! checksums, and packets that are whole.
+//! Bounded: 32 datagrams of at most 2 KiB at a time; what is larger, older than a second or one too
+//! many is given up. Not here: checksums, and packets that are whole.
 
 use std::collections::VecDeque;
 use std::net::IpAddr;
@@ -16,7 +16,8 @@ const MAX_LEN: usize = 2048;
 const UNIT_LEN: usize = 8;
 /// Datagrams of which parts are kept.
 const MAX_OPEN: usize = 32;
-/// An identification is used again after 65,536 packets: 11 s of a sensor in dual return and its position packets at the worst.
+/// An identification is used again after 65,536 packets: 11 s of a sensor in dual return and its
+/// position packets at the worst.
 const MAX_AGE: Span = Span::from_secs(1);
 
 /// Which datagram a fragment is of.
@@ -59,8 +60,8 @@ pub(super) struct Joiner {
 }
 
 impl Joiner {
-    /// Takes a fragment that was captured at `host`. If that was the last one missing: how many there were; the datagram is
-    /// then in [`Joiner::bytes`].
+    /// Takes a fragment that was captured at `host`. If that was the last one missing: how many
+    /// there were; the datagram is then in [`Joiner::bytes`].
     pub(super) fn take(
         &mut self,
         host: Stamp<Host>,

@@ -1,7 +1,7 @@
 //! Where a recording comes from: a file, a pipe by its name, or the standard input (`-`).
 //!
-//! A pipe gives its bytes once. For more passes over it [`Input`] keeps a copy in a temporary file, up to a limit, and removes it in the
-//! end. A file is read where it lies.
+//! A pipe gives its bytes once. For more passes over it [`Input`] keeps a copy in a temporary file,
+//! up to a limit, and removes it in the end. A file is read where it lies.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -33,11 +33,13 @@ pub struct Input {
 }
 
 impl Input {
-    /// Takes a file as it is. Anything that can be read only once is read now, to its end, into a temporary file of at most `limit`
-    /// bytes: in `$TMPDIR`, or else in `/var/tmp`, which unlike `/tmp` is no memory.
+    /// Takes a file as it is. Anything that can be read only once is read now, to its end, into a
+    /// temporary file of at most `limit` bytes: in `$TMPDIR`, or else in `/var/tmp`, which unlike
+    /// `/tmp` is no memory.
     ///
     /// # Errors
-    /// [`RecordingError::Open`]; [`RecordingError::Read`] where the pipe cannot be read or copied, or holds more than `limit` bytes.
+    /// [`RecordingError::Open`]; [`RecordingError::Read`] where the pipe cannot be read or copied,
+    /// or holds more than `limit` bytes.
     pub fn open(path: impl AsRef<Path>, limit: u64) -> Result<Self, RecordingError> {
         let name = path.as_ref();
         let file = open(name)?;

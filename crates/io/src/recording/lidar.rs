@@ -1,12 +1,15 @@
-//! Whose datagram is it: told by what is in it, since ports and addresses are whatever somebody has set.
+//! Whose datagram is it: told by what is in it, since ports and addresses are whatever somebody has
+//! set.
 //!
-//! Deliberately shallow: what the packet says is the decoder's matter, and so is what exactly is wrong with a damaged one.
+//! Deliberately shallow: what the packet says is the decoder's matter, and so is what exactly is
+//! wrong with a damaged one.
 
 use protocol::vlp16::{BLOCK_LEN, BLOCKS, DATA_LEN, POSITION_LEN};
 
 /// A block's flag (VLP-16 user manual 63-9243, 9.3.2).
 const FLAG: [u8; 2] = [0xFF, 0xEE];
-/// Flags that make 1206 bytes a lidar's packet though others are wrong: one may stand in anybody's packet by chance.
+/// Flags that make 1206 bytes a lidar's packet though others are wrong: one may stand in anybody's
+/// packet by chance.
 const FLAGS_OF_A_LIDAR: usize = 2;
 /// State of the pulse-per-second input, 0 to 3 (manual 9.3.3).
 const PPS_AT: usize = 202;
@@ -20,8 +23,8 @@ pub enum DatagramKind {
     Data,
     /// A position packet: 512 bytes, a known PPS state, a sentence or none where one belongs.
     Position,
-    /// A lidar's, but not as the manual has it: another length behind `FF EE`, some flags wrong (a damaged packet, or a larger
-    /// model). For the decoder to say what is wrong.
+    /// A lidar's, but not as the manual has it: another length behind `FF EE`, some flags wrong (a
+    /// damaged packet, or a larger model). For the decoder to say what is wrong.
     Damaged,
     /// Something else that shared the wire.
     Foreign,
@@ -53,7 +56,8 @@ impl DatagramKind {
     }
 }
 
-/// 512 bytes that can be a position packet: the rest is not promised to be zero, and real sensors do fill it.
+/// 512 bytes that can be a position packet: the rest is not promised to be zero, and real sensors
+/// do fill it.
 fn position(payload: &[u8]) -> bool {
     let pps = payload.get(PPS_AT).is_some_and(|&state| state <= 3);
     let nmea = payload.get(NMEA_AT);

@@ -1,4 +1,5 @@
-//! From a captured packet to what it carries: link, network and transport headers by etherparse, CAN frames by hand.
+//! From a captured packet to what it carries: link, network and transport headers by etherparse,
+//! CAN frames by hand.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::ops::Range;
@@ -42,7 +43,8 @@ pub(super) enum LinkType {
 }
 
 impl LinkType {
-    /// The link type of a registered number; `name` is the interface's, which tells our use of LINKTYPE_USER0.
+    /// The link type of a registered number; `name` is the interface's, which tells our use of
+    /// LINKTYPE_USER0.
     pub(super) fn from_number(number: u32, name: Option<&str>) -> Option<Self> {
         Some(match number {
             0 | 108 => Self::Loopback,
@@ -163,10 +165,12 @@ fn loopback(data: &[u8]) -> Result<Option<Network<'_>>, Fault> {
     let Some((family, packet)) = data.split_first_chunk::<4>() else {
         return Err(short("loopback header", 4, data));
     };
-    // Its bytes stand in the order of the capturing machine (LINKTYPE_NULL) or the network's (LINKTYPE_LOOP).
+    // Its bytes stand in the order of the capturing machine (LINKTYPE_NULL) or the network's
+    // (LINKTYPE_LOOP).
     let little = u32::from_le_bytes(*family);
     let kind = match little.min(little.swap_bytes()) {
-        // AF_INET is 2 everywhere; AF_INET6 is 10 on Linux, 24 on NetBSD and OpenBSD, 28 on FreeBSD, 30 on macOS.
+        // AF_INET is 2 everywhere; AF_INET6 is 10 on Linux, 24 on NetBSD and OpenBSD, 28 on
+        // FreeBSD, 30 on macOS.
         2 => EtherType::IPV4,
         10 | 24 | 28 | 30 => EtherType::IPV6,
         _ => return Ok(None),
@@ -240,7 +244,8 @@ fn fragment_v6(ip: &Ipv6Slice<'_>, data: &[u8]) -> Content {
     })
 }
 
-/// The port and payload of a UDP datagram that was put together of fragments; the payload counts from its start.
+/// The port and payload of a UDP datagram that was put together of fragments; the payload counts
+/// from its start.
 pub(super) fn udp(datagram: &[u8]) -> Result<(u16, Range<usize>), Fault> {
     let Some((&[_, _, p0, p1, l0, l1, _, _], _)) = datagram.split_first_chunk::<8>() else {
         return Err(short("UDP header", UdpHeader::LEN, datagram));
@@ -258,8 +263,9 @@ fn within(whole: &[u8], part: &[u8]) -> Range<usize> {
     start..start.saturating_add(part.len())
 }
 
-/// A datagram whose IP header claims more than there is while its UDP length is all there: VLP-16 firmware of 2014 gives its
-/// position packets the IP length of a data packet. A packet that was cut short does not pass: its UDP length is missing bytes too.
+/// A datagram whose IP header claims more than there is while its UDP length is all there: VLP-16
+/// firmware of 2014 gives its position packets the IP length of a data packet. A packet that was
+/// cut short does not pass: its UDP length is missing bytes too.
 fn by_udp_length(network: &Network<'_>, data: &[u8]) -> Option<Content> {
     let lax = LaxSlicedPacket::from_ether_type(network.kind, network.packet);
     match (&lax.net, &lax.transport) {
@@ -298,8 +304,9 @@ fn can(data: &[u8], direction: Option<Direction>) -> Result<Content, Fault> {
     })
 }
 
-/// Which way a CANopen message goes, where the recording does not say (candump, Wireshark): by its function code
-/// (CiA 301, predefined connection set), seen from the drive: NMT, SYNC, time, RPDO1-4 and SDO requests come to it.
+/// Which way a CANopen message goes, where the recording does not say (candump, Wireshark): by its
+/// function code (CiA 301, predefined connection set), seen from the drive: NMT, SYNC, time,
+/// RPDO1-4 and SDO requests come to it.
 fn direction_of_can(id: u32) -> Direction {
     match id & 0x780 {
         0x080 if id & 0x7F != 0 => Direction::FromDevice,

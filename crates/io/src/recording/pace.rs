@@ -1,9 +1,10 @@
-//! Records at their true times: each is given when it is due by its own time stamp, so that what listens sees the devices' rhythm,
-//! whatever packet rate the sensor had.
+//! Records at their true times: each is given when it is due by its own time stamp, so that what
+//! listens sees the devices' rhythm, whatever packet rate the sensor had.
 //!
-//! A long silence in a recording is announced and not slept through; so is a clock that was set back in it. A listener that falls behind
-//! gets the next records at once until it has caught up, unless it was behind by more than the same limit: then the rhythm starts anew
-//! from there. Deliberately absent: changing records, or their order.
+//! A long silence in a recording is announced and not slept through; so is a clock that was set
+//! back in it. A listener that falls behind gets the next records at once until it has caught up,
+//! unless it was behind by more than the same limit: then the rhythm starts anew from there.
+//! Deliberately absent: changing records, or their order.
 
 use std::io::Read;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -70,7 +71,8 @@ pub enum PaceError {
 pub enum Gap {
     /// The recording is silent for this long before it. Not waited for.
     Silence(Span),
-    /// Its time is before that of the record in front by this much: the clock was set back, or recordings were put together.
+    /// Its time is before that of the record in front by this much: the clock was set back, or
+    /// recordings were put together.
     Backwards(Span),
     /// The listener was behind by this much: it was stopped, or cannot follow.
     Behind(Span),
@@ -123,7 +125,8 @@ pub struct Pacer<T = SteadyTimer> {
 }
 
 impl Pacer {
-    /// `factor` times as fast as recorded; silences that would take longer than `limit` are skipped.
+    /// `factor` times as fast as recorded; silences that would take longer than `limit` are
+    /// skipped.
     ///
     /// # Errors
     /// [`PaceError::Factor`] outside 0.001 to 1000.
@@ -174,7 +177,8 @@ impl<T: Timer> Pacer<T> {
         stopped_or(stop, Turn::Due)
     }
 
-    /// The latest that a record was given after it was due. Records that come out of order in the file count too.
+    /// The latest that a record was given after it was due. Records that come out of order in the
+    /// file count too.
     #[must_use]
     pub fn worst_late(&self) -> Span {
         self.worst_late
@@ -237,7 +241,8 @@ impl<R: Read, T: Timer> Paced<R, T> {
         Self { recording, pacer }
     }
 
-    /// The next record, when it is due, and why the rhythm started anew, if it did. `None` after the last, or once `stop` is set.
+    /// The next record, when it is due, and why the rhythm started anew, if it did. `None` after
+    /// the last, or once `stop` is set.
     ///
     /// # Errors
     /// As [`Recording::next_record`].

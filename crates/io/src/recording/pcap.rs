@@ -1,5 +1,6 @@
-//! Classic pcap: a 24-byte header, then records. Microseconds or nanoseconds, either byte order, and the "modified"
-//! records of old Linux kernels. Nothing in a record marks its start, so a wrong length is the end of the reading.
+//! Classic pcap: a 24-byte header, then records. Microseconds or nanoseconds, either byte order,
+//! and the "modified" records of old Linux kernels. Nothing in a record marks its start, so a wrong
+//! length is the end of the reading.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -17,7 +18,8 @@ use super::{Format, Packet, Step};
 /// Bytes of the file header.
 pub(super) const HEADER_LEN: usize = 24;
 
-/// The longest record believed. libpcap's own limit is 256 KiB; USB captures go to 128 MiB, but carry no lidar.
+/// The longest record believed. libpcap's own limit is 256 KiB; USB captures go to 128 MiB, but
+/// carry no lidar.
 const MAX_PACKET_LEN: u32 = 1 << 20;
 
 /// The facts of the file header.

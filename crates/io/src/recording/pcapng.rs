@@ -1,6 +1,6 @@
-//! pcapng: sections of blocks, each framed by its length in front and behind, so that a block whose inside is wrong can
-//! be passed over. Only section headers, interface descriptions and packets are looked into. Where the framing itself is wrong, reading
-//! goes on at the next block that is sound.
+//! pcapng: sections of blocks, each framed by its length in front and behind, so that a block whose
+//! inside is wrong can be passed over. Only section headers, interface descriptions and packets are
+//! looked into. Where the framing itself is wrong, reading goes on at the next block that is sound.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -26,11 +26,14 @@ const MAX_BLOCK_LEN: u32 = 16 << 20;
 pub(super) const FRAMING_LEN: u32 = 12;
 /// Reads the same in both byte orders.
 pub(super) const SECTION_HEADER: u32 = SHB_MAGIC;
-/// Byte-order magic of a section in this machine-independent order (draft-ietf-opsawg-pcapng, section 4.1).
+/// Byte-order magic of a section in this machine-independent order (draft-ietf-opsawg-pcapng,
+/// section 4.1).
 pub(super) const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
-/// The obsolete packet block: as an enhanced one, but for 16 bits of interface and 16 of a drop counter in front.
+/// The obsolete packet block: as an enhanced one, but for 16 bits of interface and 16 of a drop
+/// counter in front.
 pub(super) const PACKET_BLOCK: u32 = 2;
-/// Packet data in an enhanced packet block starts behind type, length, interface, two halves of the time, two lengths.
+/// Packet data in an enhanced packet block starts behind type, length, interface, two halves of the
+/// time, two lengths.
 pub(super) const PACKET_DATA_OFFSET: usize = 28;
 /// Option codes of the draft that pcap-parser does not name for this block.
 const EPB_FLAGS: OptionCode = OptionCode(2);
@@ -150,7 +153,8 @@ impl Section {
         })
     }
 
-    /// Where no block can be framed: to the next that can. A file that was merely cut off has none, and ends as `end` says.
+    /// Where no block can be framed: to the next that can. A file that was merely cut off has none,
+    /// and ends as `end` says.
     fn go_on_behind<R: Read>(&mut self, window: &mut Window<R>, end: End) -> io::Result<Step> {
         let (offset, fault) = match &end {
             End::Complete => return Ok(Step::End(end)),
@@ -161,7 +165,8 @@ impl Section {
             } => (offset, Fault::Cut { expected, got }),
             End::Unreadable { offset, fault } => (*offset, fault.clone()),
         };
-        // A damaged description keeps its number, so that those behind it keep theirs; a damaged section is a section.
+        // A damaged description keeps its number, so that those behind it keep theirs; a damaged
+        // section is a section.
         match words(window.bytes()).map(|[kind, _, _]| self.u32(kind)) {
             Some(IDB_MAGIC) => self.keep(UNKNOWN),
             Some(SHB_MAGIC) => self.interfaces.clear(),
@@ -201,7 +206,8 @@ impl Section {
             return truncated(FRAMING_LEN, start.len());
         };
         if kind == SHB_MAGIC.to_le_bytes() {
-            // A section header tells the byte order of everything up to the next one, itself included.
+            // A section header tells the byte order of everything up to the next one, itself
+            // included.
             self.big_endian = match third {
                 magic if magic == BYTE_ORDER_MAGIC.to_le_bytes() => false,
                 magic if magic == BYTE_ORDER_MAGIC.to_be_bytes() => true,
@@ -237,7 +243,8 @@ impl Section {
         } else {
             parse_interfacedescriptionblock_le
         };
-        // An interface that cannot be understood keeps its number, so that those behind it keep theirs.
+        // An interface that cannot be understood keeps its number, so that those behind it keep
+        // theirs.
         let interface = match parse(block) {
             Ok((_, described)) => self.interface(&described),
             Err(_) => UNKNOWN,

@@ -1,8 +1,10 @@
-//! Behind a damaged pcapng block: where the next sound one begins. A block is known by its type and by the length that stands in front
-//! and behind; in one that we look into, its parts must fit that length too.
+//! Behind a damaged pcapng block: where the next sound one begins. A block is known by its type and
+//! by the length that stands in front and behind; in one that we look into, its parts must fit that
+//! length too.
 //!
-//! Deliberately not for classic pcap, where nothing marks the start of a record. Bounded: blocks of up to 128 KiB are recognised (a
-//! packet has 64 KiB at most), each byte is looked at once, and no more is held than for reading.
+//! Deliberately not for classic pcap, where nothing marks the start of a record. Bounded: blocks of
+//! up to 128 KiB are recognised (a packet has 64 KiB at most), each byte is looked at once, and no
+//! more is held than for reading.
 
 use std::io::{self, Read};
 
@@ -16,7 +18,8 @@ use pcap_parser::pcapng::{EPB_MAGIC, IDB_MAGIC, SPB_MAGIC};
 const MAX_LEN: usize = 128 << 10;
 /// Blocks in a row that leave no doubt.
 const CHAIN_LEN: usize = 3;
-/// Name resolution, interface statistics, systemd's journal, decryption secrets, the two custom blocks: only their frame is looked at.
+/// Name resolution, interface statistics, systemd's journal, decryption secrets, the two custom
+/// blocks: only their frame is looked at.
 const OTHERS: [u32; 6] = [4, 5, 9, 10, 0x0BAD, 0x4000_0BAD];
 
 /// Where reading can go on.
@@ -28,7 +31,8 @@ pub(super) struct Sound {
     pub(super) big_endian: bool,
 }
 
-/// Moves the window to the next sound block behind its first byte; `None`: there is none up to the end of the stream.
+/// Moves the window to the next sound block behind its first byte; `None`: there is none up to the
+/// end of the stream.
 pub(super) fn resync<R: Read>(
     window: &mut Window<R>,
     big_endian: bool,
@@ -62,10 +66,11 @@ pub(super) fn resync<R: Read>(
     }
 }
 
-/// Of what looks like a block within the three bytes behind `first`: where one begins, and its byte order.
+/// Of what looks like a block within the three bytes behind `first`: where one begins, and its byte
+/// order.
 ///
-/// Seen three bytes too early or too late, a block among zeros looks like one of the other byte order. What comes behind it then does
-/// not; if it does, the order that was good so far is kept.
+/// Seen three bytes too early or too late, a block among zeros looks like one of the other byte
+/// order. What comes behind it then does not; if it does, the order that was good so far is kept.
 fn likeliest(bytes: &[u8], first: usize, big_endian: bool) -> (usize, bool) {
     let mut best = (0, first, big_endian);
     for order in [big_endian, !big_endian] {

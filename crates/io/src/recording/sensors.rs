@@ -1,8 +1,8 @@
-//! Which sensors there are in a recording, or on a socket: told apart by the address they send from and, where one address sends data
-//! to several ports (a relay, a simulator), by that port too.
+//! Which sensors there are in a recording, or on a socket: told apart by the address they send from
+//! and, where one address sends data to several ports (a relay, a simulator), by that port too.
 //!
-//! A position packet goes with the data of its address: with all of it, where a relay hides several sensors behind one. Nothing is
-//! decoded.
+//! A position packet goes with the data of its address: with all of it, where a relay hides several
+//! sensors behind one. Nothing is decoded.
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
@@ -35,7 +35,8 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// Whether a record is this sensor's: from its address and, unless it is a position packet, to its data port.
+    /// Whether a record is this sensor's: from its address and, unless it is a position packet, to
+    /// its data port.
     #[must_use]
     pub fn sent(&self, record: &Record<'_>) -> bool {
         let Wire::Lidar {
@@ -165,9 +166,10 @@ pub fn sensors(path: impl AsRef<Path>) -> Result<Vec<Sensor>, RecordingError> {
 
 /// What a record carries as source for an address.
 ///
-/// A lidar of this family speaks IPv4 only, so that its address stands there as it is. For data that somebody relays over IPv6 it is
-/// the IPv4 address that it maps (`::ffff:a.b.c.d`), or else a stand-in that differs from sensor to sensor: 28 bits of the address's
-/// FNV-1a hash within 240.0.0.0/4, which RFC 1112 reserves and no host has.
+/// A lidar of this family speaks IPv4 only, so that its address stands there as it is. For data
+/// that somebody relays over IPv6 it is the IPv4 address that it maps (`::ffff:a.b.c.d`), or else a
+/// stand-in that differs from sensor to sensor: 28 bits of the address's FNV-1a hash within
+/// 240.0.0.0/4, which RFC 1112 reserves and no host has.
 #[must_use]
 pub fn source_of(address: IpAddr) -> [u8; 4] {
     let v6 = match address {

@@ -10,7 +10,8 @@ use crate::log::{LogConfig, LogWriter, OwnedRecord};
 
 const SOURCE: [u8; 4] = [192, 168, 1, 201];
 
-/// An IPv4 packet with UDP in it, written without etherparse and without checksums, which recordings often lack.
+/// An IPv4 packet with UDP in it, written without etherparse and without checksums, which
+/// recordings often lack.
 fn ip(port: u16, payload: &[u8]) -> Vec<u8> {
     let udp_len = (payload.len() + 8) as u16;
     let mut out = vec![0x45, 0];
@@ -115,7 +116,8 @@ fn packet(big: bool, interface: u32, time: u64, data: &[u8], flags: Option<u32>)
     block(6, big, &body)
 }
 
-/// A data packet as far as it is known by: `FF EE` in front of each block, and the blocks filled with something.
+/// A data packet as far as it is known by: `FF EE` in front of each block, and the blocks filled
+/// with something.
 fn data_packet(fill: u8) -> Vec<u8> {
     let mut data = vec![fill; DATA_LEN];
     for block in data.chunks_exact_mut(100) {

@@ -62,15 +62,18 @@ impl<R: Read> Window<R> {
         }
     }
 
-    /// Reads until `wanted` bytes are in the window or the stream ends; the window, which may hold more.
+    /// Reads until `wanted` bytes are in the window or the stream ends; the window, which may hold
+    /// more.
     pub(super) fn fill(&mut self, wanted: usize) -> io::Result<&[u8]> {
-        // Moved only where the rest of the buffer is too short, so that a slow reader does not cost a move a byte.
+        // Moved only where the rest of the buffer is too short, so that a slow reader does not cost
+        // a move a byte.
         let short = self.end - self.start < wanted && !self.ended;
         if short && self.buffer.len() - self.start < wanted {
             self.buffer.copy_within(self.start..self.end, 0);
             self.end -= self.start;
             self.start = 0;
-            // Twice, so that moving what is left costs no more than reading it did, however often so much is asked for.
+            // Twice, so that moving what is left costs no more than reading it did, however often
+            // so much is asked for.
             let room = wanted.saturating_mul(2);
             if self.buffer.len() < room {
                 self.buffer.resize(room, 0);

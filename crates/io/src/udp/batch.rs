@@ -1,4 +1,5 @@
-//! Datagrams taken from a socket by one system call, and handed on one by one. Not here: waiting for them, and whose they are.
+//! Datagrams taken from a socket by one system call, and handed on one by one. Not here: waiting
+//! for them, and whose they are.
 
 use std::io::{self, IoSliceMut};
 
@@ -8,7 +9,8 @@ use super::socket::{Received, control_space, described};
 
 /// Most datagrams of one call.
 pub(super) const LEN: usize = 64;
-/// The longest UDP payload. Of the memory only what datagrams reach is ever touched: a lidar's, one page each.
+/// The longest UDP payload. Of the memory only what datagrams reach is ever touched: a lidar's, one
+/// page each.
 const BUFFER_LEN: usize = 65_535;
 
 /// Buffers that are kept from call to call, and what is in them.
@@ -51,7 +53,8 @@ impl Batch {
         self.received.len() == LEN
     }
 
-    /// Receives anew; what was not handed on is gone. `overflow` hears the kernel's drop counter as each datagram brings it.
+    /// Receives anew; what was not handed on is gone. `overflow` hears the kernel's drop counter as
+    /// each datagram brings it.
     ///
     /// # Errors
     /// The system's, `WouldBlock` where nothing is there; the batch is empty then.
@@ -63,8 +66,9 @@ impl Batch {
             .chunks_exact_mut(BUFFER_LEN)
             .map(|buffer| [IoSliceMut::new(buffer)])
             .collect();
-        // Made anew each time: the kernel leaves in them how much room for control messages it used, and the next call would find no
-        // more than that. The drop counter, which comes only once something was dropped, would not fit.
+        // Made anew each time: the kernel leaves in them how much room for control messages it
+        // used, and the next call would find no more than that. The drop counter, which comes only
+        // once something was dropped, would not fit.
         let mut headers = MultiHeaders::<SockaddrIn>::preallocate(LEN, Some(control_space()));
         let messages = recvmmsg(fd, &mut headers, &mut parts, MsgFlags::empty(), None)?;
         for message in messages {

@@ -1,5 +1,5 @@
-//! All of the lidars' ports on one plain thread, until a flag says stop. Several sensors may share a port: their addresses tell them
-//! apart. Not here: storing, and IPv6.
+//! All of the lidars' ports on one plain thread, until a flag says stop. Several sensors may share
+//! a port: their addresses tell them apart. Not here: storing, and IPv6.
 
 use std::future::poll_fn;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -17,18 +17,20 @@ use crate::recording::{Sensor, Sensors};
 
 /// How soon a stop is noticed.
 const STOP_INTERVAL: Duration = Duration::from_millis(20);
-/// How long datagrams gather behind the first before they are read, unless [`Listener::gather`] says otherwise: a wake-up and a system call
-/// then serve several. Their times are the kernel's, whenever they are read, and three VLP-16 in dual return fill no more than 60 KB of receive
+/// How long datagrams gather behind the first before they are read, unless [`Listener::gather`]
+/// says otherwise: a wake-up and a system call then serve several. Their times are the kernel's,
+/// whenever they are read, and three VLP-16 in dual return fill no more than 60 KB of receive
 /// buffer meanwhile.
 pub const GATHER: Duration = Duration::from_millis(5);
-/// Datagrams that are to gather at most, three quarters of what is read at once: 110 KB of receive buffer, a quarter of what a Linux gives
-/// that was not told otherwise.
+/// Datagrams that are to gather at most, three quarters of what is read at once: 110 KB of receive
+/// buffer, a quarter of what a Linux gives that was not told otherwise.
 const GATHERED: u64 = 48;
 
 /// Where the lidars send to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ListenConfig {
-    /// Local address; 0.0.0.0 for every interface, which broadcast needs. With a `group`, the address of the interface to join it on.
+    /// Local address; 0.0.0.0 for every interface, which broadcast needs. With a `group`, the
+    /// address of the interface to join it on.
     pub address: Ipv4Addr,
     /// Data packets; 0 for any free port.
     pub data_port: u16,
@@ -157,8 +159,8 @@ impl Listener {
         })
     }
 
-    /// Lets datagrams gather for so long at most, and for less where they come so fast that more than 48 would. Who is in a hurry sets the flag
-    /// of [`Listener::run`] and unparks its thread.
+    /// Lets datagrams gather for so long at most, and for less where they come so fast that more
+    /// than 48 would. Who is in a hurry sets the flag of [`Listener::run`] and unparks its thread.
     pub fn gather(&mut self, longest: Duration) {
         self.gather = (longest, longest.min(self.gather.1.max(GATHER)));
     }
@@ -194,8 +196,9 @@ impl Listener {
         }
     }
 
-    /// Gives each datagram to `sink` until `stop` is set; looks at `stop` every 25 ms at least, or as late as datagrams gather. What had arrived
-    /// by then is still given. Datagrams of several sockets come in the order of their times as far as they are read together, which is as they
+    /// Gives each datagram to `sink` until `stop` is set; looks at `stop` every 25 ms at least, or
+    /// as late as datagrams gather. What had arrived by then is still given. Datagrams of several
+    /// sockets come in the order of their times as far as they are read together, which is as they
     /// gather. May be called again.
     ///
     /// # Errors
@@ -234,7 +237,8 @@ impl Listener {
         self.counts.data + self.counts.position + self.counts.unwanted
     }
 
-    /// Gives on what has come, in the order of its times, up to a batch of each socket; whether there may be more.
+    /// Gives on what has come, in the order of its times, up to a batch of each socket; whether
+    /// there may be more.
     fn drain(&mut self, sink: &mut impl FnMut(&Record<'_>)) -> Result<bool, UdpError> {
         for (socket, batch) in self.sockets.iter_mut().zip(&mut self.batches) {
             if batch.next().is_none() {

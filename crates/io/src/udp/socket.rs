@@ -1,4 +1,5 @@
-//! One UDP socket: kernel receive times (SO_TIMESTAMPNS), drop counter (SO_RXQ_OVFL), a large receive buffer.
+//! One UDP socket: kernel receive times (SO_TIMESTAMPNS), drop counter (SO_RXQ_OVFL), a large
+//! receive buffer.
 
 use std::io::{self, IoSliceMut};
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket as StdSocket};
@@ -27,7 +28,8 @@ pub struct Received {
     pub source: SocketAddrV4,
     /// When the kernel got it.
     pub host: Stamp<Host>,
-    /// `host` is the kernel's time; otherwise the kernel gave none, and it is the time of the read, which may be late.
+    /// `host` is the kernel's time; otherwise the kernel gave none, and it is the time of the read,
+    /// which may be late.
     pub kernel_time: bool,
     /// The payload was longer than the buffer; its end is lost.
     pub cut: bool,
@@ -46,8 +48,9 @@ pub struct LidarSocket {
 }
 
 impl LidarSocket {
-    /// Binds `address` (port 0: any free one) and asks for a receive buffer of `receive_buffer` bytes; what the kernel
-    /// granted is [`LidarSocket::receive_buffer`]. Must be called within a tokio runtime that has I/O enabled.
+    /// Binds `address` (port 0: any free one) and asks for a receive buffer of `receive_buffer`
+    /// bytes; what the kernel granted is [`LidarSocket::receive_buffer`]. Must be called within a
+    /// tokio runtime that has I/O enabled.
     ///
     /// # Errors
     /// [`UdpError`].
@@ -55,12 +58,14 @@ impl LidarSocket {
         Self::open(address, receive_buffer, None)
     }
 
-    /// Binds `port` on every interface and joins a multicast group on the interface that has the address `interface` (0.0.0.0: the
-    /// one that the routes say). Other programs on this machine may listen to the same port and group. What is sent to this machine
-    /// alone, or to all, is heard as well. Otherwise as [`LidarSocket::bind`].
+    /// Binds `port` on every interface and joins a multicast group on the interface that has the
+    /// address `interface` (0.0.0.0: the one that the routes say). Other programs on this machine
+    /// may listen to the same port and group. What is sent to this machine alone, or to all, is
+    /// heard as well. Otherwise as [`LidarSocket::bind`].
     ///
     /// # Errors
-    /// [`UdpError`]; [`UdpError::Io`] with `join` where the group is none, or no interface has that address.
+    /// [`UdpError`]; [`UdpError::Io`] with `join` where the group is none, or no interface has that
+    /// address.
     pub fn bind_group(
         group: Ipv4Addr,
         interface: Ipv4Addr,
@@ -133,14 +138,15 @@ impl LidarSocket {
         self.address
     }
 
-    /// Bytes of receive buffer that the kernel granted. It counts its own overhead in: some 2300 bytes a packet of
-    /// 1206, so that a second of a VLP-16 (754 packets) wants 1.7 MB.
+    /// Bytes of receive buffer that the kernel granted. It counts its own overhead in: some 2300
+    /// bytes a packet of 1206, so that a second of a VLP-16 (754 packets) wants 1.7 MB.
     #[must_use]
     pub fn receive_buffer(&self) -> usize {
         self.receive_buffer
     }
 
-    /// Datagrams that the kernel dropped because this program did not read fast enough, as far as those read tell.
+    /// Datagrams that the kernel dropped because this program did not read fast enough, as far as
+    /// those read tell.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.dropped
@@ -235,7 +241,8 @@ impl LidarSocket {
     }
 }
 
-/// Asks for a receive buffer, past the limit for users (`net.core.rmem_max`) where this program may; bytes granted.
+/// Asks for a receive buffer, past the limit for users (`net.core.rmem_max`) where this program
+/// may; bytes granted.
 fn enlarge_buffer(socket: &Socket, wanted: usize) -> io::Result<usize> {
     // The kernel takes a C int, and doubles it.
     let wanted = wanted.min(i32::MAX as usize / 2);
@@ -245,7 +252,8 @@ fn enlarge_buffer(socket: &Socket, wanted: usize) -> io::Result<usize> {
     socket.recv_buffer_size()
 }
 
-/// Reads from a socket, whatever tokio thinks of it: it says no unless its reactor has run since the datagram came; the kernel knows.
+/// Reads from a socket, whatever tokio thinks of it: it says no unless its reactor has run since
+/// the datagram came; the kernel knows.
 fn attempt<T>(socket: &UdpSocket, mut read: impl FnMut(i32) -> io::Result<T>) -> io::Result<T> {
     let fd = socket.as_raw_fd();
     let mut asked = false;
@@ -256,7 +264,8 @@ fn attempt<T>(socket: &UdpSocket, mut read: impl FnMut(i32) -> io::Result<T>) ->
     if asked { tried } else { read(fd) }
 }
 
-/// The kernel's counter (32 bits, wraps) as last seen and what it adds up to, after it was seen anew.
+/// The kernel's counter (32 bits, wraps) as last seen and what it adds up to, after it was seen
+/// anew.
 fn counted((last, dropped): (u32, u64), counter: u32) -> (u32, u64) {
     (counter, dropped + u64::from(counter.wrapping_sub(last)))
 }

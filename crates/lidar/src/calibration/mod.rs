@@ -1,8 +1,9 @@
 //! Per-laser corrections from a file: the YAML of ROS drivers, or this project's own TOML.
 //!
-//! Both become [`Corrections`]. A file is believed only as a whole: what is missing, twice there, not understood or out of
-//! all proportion is an error with its line, because a correction that is silently not applied looks like a bad sensor.
-//! Left out: opening files, corrections of reflectivity, and telling which file belongs to which sensor.
+//! Both become [`Corrections`]. A file is believed only as a whole: what is missing, twice there,
+//! not understood or out of all proportion is an error with its line, because a correction that is
+//! silently not applied looks like a bad sensor. Left out: opening files, corrections of
+//! reflectivity, and telling which file belongs to which sensor.
 
 mod native;
 mod ros;
@@ -16,7 +17,8 @@ use crate::corrections::{Corrections, LaserCorrection};
 pub use native::from_toml;
 pub use ros::{Ignored, RosCalibration, from_ros_yaml};
 
-/// A sensor's own angles are some hundredths of a degree off its model's; more is another laser, another model or another sign.
+/// A sensor's own angles are some hundredths of a degree off its model's; more is another laser,
+/// another model or another sign.
 const MOST_OFF_DEG: f64 = 2.0;
 /// No beam of this family starts further from the origin, or is further off in range.
 const MOST_OFF_M: f64 = 1.0;

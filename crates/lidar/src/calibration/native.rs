@@ -1,7 +1,9 @@
-//! This project's own TOML: `model`, and a `[[laser]]` table for each laser with its units in the keys' names.
+//! This project's own TOML: `model`, and a `[[laser]]` table for each laser with its units in the
+//! keys' names.
 //!
-//! `id` is the laser's place in the firing order and `elevation_deg` its angle; of the other keys, one that is absent leaves
-//! what the model's table says. Quantities are those of [`LaserCorrection`]. Left out: writing such a file.
+//! `id` is the laser's place in the firing order and `elevation_deg` its angle; of the other keys,
+//! one that is absent leaves what the model's table says. Quantities are those of
+//! [`LaserCorrection`]. Left out: writing such a file.
 
 use std::ops::Range;
 

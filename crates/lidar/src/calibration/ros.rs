@@ -1,11 +1,13 @@
 //! The YAML of the ROS velodyne drivers.
 //!
-//! Their convention, with d the measured range, in this project's axes (theirs are x forward, y left, which is a rotation of
-//! the result): azimuth a = raw - rot_correction, elevation w = vert_correction, D = d + dist_correction;
-//! xy = D cos w - vert_offset sin w, x = xy sin a - horiz_offset cos a, y = xy cos a + horiz_offset sin a,
-//! z = D sin w + vert_offset cos w. So the vertical offset is square to the beam, half of it outwards for a beam that points
-//! down steeply. Angles are radians, lengths metres. `laser_id` is the channel's number in the packet, which is the firing
-//! order of every model here. Left out: corrections of reflectivity, which are named in [`RosCalibration::ignored`].
+//! Their convention, with d the measured range, in this project's axes (theirs are x forward, y
+//! left, which is a rotation of the result): azimuth a = raw - rot_correction, elevation w =
+//! vert_correction, D = d + dist_correction; xy = D cos w - vert_offset sin w, x = xy sin a -
+//! horiz_offset cos a, y = xy cos a + horiz_offset sin a, z = D sin w + vert_offset cos w. So the
+//! vertical offset is square to the beam, half of it outwards for a beam that points down steeply.
+//! Angles are radians, lengths metres. `laser_id` is the channel's number in the packet, which is
+//! the firing order of every model here. Left out: corrections of reflectivity, which are named in
+//! [`RosCalibration::ignored`].
 
 use std::f64::consts::PI;
 
@@ -58,8 +60,8 @@ pub struct Ignored {
 
 /// Reads the text of such a file for a sensor of `model`.
 ///
-/// Two-point corrections, made for the HDL-64E, lengthen x and y by different amounts that depend on both; where a file has
-/// them and they are not all equal, they do not fit [`LaserCorrection`].
+/// Two-point corrections, made for the HDL-64E, lengthen x and y by different amounts that depend
+/// on both; where a file has them and they are not all equal, they do not fit [`LaserCorrection`].
 ///
 /// # Errors
 /// [`CalibrationError`], with the line.
@@ -171,7 +173,8 @@ fn entry(item: &Node, ignored: &mut Vec<Ignored>) -> Result<Entry, CalibrationEr
     })
 }
 
-/// Passes two-point corrections only where they come to nothing: where both equal the one for all distances.
+/// Passes two-point corrections only where they come to nothing: where both equal the one for all
+/// distances.
 fn two_point(laser: &Mapping<'_>, range_offset_m: f64) -> Result<(), CalibrationError> {
     const AVAILABLE: &str = "two_pt_correction_available";
     let Some(available) = laser.get(AVAILABLE) else {

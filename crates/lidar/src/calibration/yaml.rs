@@ -1,4 +1,5 @@
-//! A YAML document as a tree that knows its lines: as much of the language as calibration files use.
+//! A YAML document as a tree that knows its lines: as much of the language as calibration files
+//! use.
 //!
 //! Left out: anchors and aliases, tags, and more than one document; each is an error.
 

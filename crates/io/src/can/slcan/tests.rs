@@ -28,8 +28,8 @@ enum Manner {
     NoFrames,
 }
 
-/// An adapter on a pseudo-terminal, with a node on its bus that sends each frame back with the identifier 080 lower.
-/// It ends with the port or when told to, and says which commands it got.
+/// An adapter on a pseudo-terminal, with a node on its bus that sends each frame back with the
+/// identifier 080 lower. It ends with the port or when told to, and says which commands it got.
 struct Adapter {
     thread: JoinHandle<Vec<Command>>,
     end: mpsc::Sender<()>,
@@ -287,7 +287,8 @@ fn a_recorder_around_it_keeps_frames_and_not_lines() {
     assert_eq!(frames, [(sent, request()), (received, answered())]);
 }
 
-/// A port with a clock of its own that answers each line as the script says; what was written is kept.
+/// A port with a clock of its own that answers each line as the script says; what was written is
+/// kept.
 #[derive(Default)]
 struct Scripted {
     now_s: i64,

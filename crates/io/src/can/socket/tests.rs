@@ -1,5 +1,6 @@
-//! On a kernel with CAN and an interface `vcan0` that is up, these send frames; elsewhere they say why they do not, and
-//! fail for it where `VELOMOTION_VCAN_INSIDE` is set in the environment, as a run in a machine made for them does.
+//! On a kernel with CAN and an interface `vcan0` that is up, these send frames; elsewhere they say
+//! why they do not, and fail for it where `VELOMOTION_VCAN_INSIDE` is set in the environment, as a
+//! run in a machine made for them does.
 
 use protocol::canopen::{CobId, ExtendedId};
 use socketcan::Frame as _;
@@ -118,7 +119,8 @@ fn what_is_no_interface_says_why() {
     );
 }
 
-/// Takes an interface of its own, since it takes it down; adding one needs the administrator's rights.
+/// Takes an interface of its own, since it takes it down; adding one needs the administrator's
+/// rights.
 #[test]
 fn an_interface_that_is_down_says_how_to_bring_it_up() {
     const OWN: &str = "vcan7";
@@ -158,7 +160,8 @@ fn an_interface_that_is_down_says_how_to_bring_it_up() {
     }
 }
 
-/// A socket that nobody reads holds so many frames; the kernel drops the others, and says how many with the next one that it keeps.
+/// A socket that nobody reads holds so many frames; the kernel drops the others, and says how many
+/// with the next one that it keeps.
 #[test]
 fn dropped_frames_are_counted() {
     const SENT: u64 = 20_000;

@@ -90,11 +90,13 @@ fn what_is_a_second_old_is_in_the_file_while_it_grows() {
     let path = folder.path().join("log.pcapng");
     let writer = LogWriter::create(&path, &LogConfig::default(), Overwrite::Refuse).unwrap();
     let recorder = Recorder::start(writer).unwrap();
-    // The latest time comes first and nothing after it: neither clock steps nor silence may hold a record back.
+    // The latest time comes first and nothing after it: neither clock steps nor silence may hold a
+    // record back.
     for ns in [1_000_000_000_000, 5, 3, 4] {
         recorder.handle().record(&record(ns, b"x"));
     }
-    // As a reader finds it after kill -9: nothing has been finished. Two turns are 0.4 s; the rest is for a busy machine.
+    // As a reader finds it after kill -9: nothing has been finished. Two turns are 0.4 s; the rest
+    // is for a busy machine.
     let deadline = Instant::now() + Duration::from_secs(3);
     let (mut seen, mut end) = times(&path);
     while seen.len() < 4 && Instant::now() < deadline {

@@ -30,7 +30,8 @@ fn one_damaged_block_costs_one_packet() {
         let (file, starts) = sound(big, 6);
         let start = starts[4]; // packet 2
         let length = starts[5] - start;
-        // Its length in front: too small, odd, larger than the block, than the file, than anything; and that behind.
+        // Its length in front: too small, odd, larger than the block, than the file, than anything;
+        // and that behind.
         let fields = [12_u32, 15, 64, 2_000, 1 << 20, 15 << 20, u32::MAX];
         let damages = fields
             .iter()
@@ -185,8 +186,8 @@ fn ip_part_of_nothing() -> Vec<u8> {
     packet
 }
 
-/// As a hostile file: every other block claims to be as long as is believed, and few bytes follow. Were they moved or looked at again
-/// for each, this would take hours.
+/// As a hostile file: every other block claims to be as long as is believed, and few bytes follow.
+/// Were they moved or looked at again for each, this would take hours.
 #[test]
 fn lengths_that_lie_cost_neither_memory_nor_time() {
     let mut body = Vec::new();
@@ -221,7 +222,8 @@ fn lengths_that_lie_cost_neither_memory_nor_time() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Whatever happens to one block, those that begin behind the damage and its neighbours in front are read.
+    /// Whatever happens to one block, those that begin behind the damage and its neighbours in
+    /// front are read.
     #[test]
     fn damage_stays_where_it_is(
         big in any::<bool>(),

@@ -218,7 +218,8 @@ fn what_waits_on_several_ports_comes_whole_and_in_the_order_of_its_times() {
     let mut listener = Listener::bind(&local(4 << 20)).unwrap();
     let [data, position] = [0, 1].map(|n: usize| listener.sockets()[n].address());
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
-    // Several batches, of which one port has far more than the other; the longest datagram there is among them.
+    // Several batches, of which one port has far more than the other; the longest datagram there is
+    // among them.
     let mut sent = Vec::new();
     for n in 0..600_usize {
         let to = if n % 10 == 0 { position } else { data };
