@@ -143,7 +143,7 @@ impl Scans {
         });
         record.number = next_number(&self.scans());
         let stored = store(&place, &record);
-        io::files::keep_name(&place);
+        io::files::sync_folder(&place);
         if let Err(failure) = stored {
             // What was made a moment ago; whatever stays of it is found at the next start.
             let _ = fs::remove_dir_all(&place);

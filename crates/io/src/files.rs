@@ -1,82 +1,87 @@
-//! Output files that are never half there: written under a temporary name, renamed when complete.
+//! Output files that are complete or absent: they are written under a temporary name and renamed.
 //!
-//! Logs do not go through here: a log must be readable while it grows. Formats are written by
-//! others through [`std::io::Write`] and [`std::io::Seek`].
+//! Logs are written in place instead, since a log must be readable while it grows.
 
 use std::env;
-use std::fs::{self, File, OpenOptions};
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
-/// How the name of a file ends that is being written.
-const HALF_WRITTEN: &str = ".partial";
+use tempfile::{Builder, NamedTempFile};
 
-/// What to do about a file that is already there.
+/// Suffix of the temporary name.
+const PARTIAL: &str = ".partial";
+
+/// Treatment of an existing file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overwrite {
-    /// Leave it and fail.
+    /// Keeps it and fails.
     Refuse,
-    /// Replace it (`--force`).
+    /// Replaces it (`--force`).
     Replace,
 }
 
-/// Why an output file could not be made.
+/// Failure to write an output file.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// The name is taken and may not be replaced.
+    /// The file exists and must not be replaced.
     #[error("{} exists already", path.display())]
     Exists {
-        /// The file in the way.
+        /// The existing file.
         path: PathBuf,
     },
-    /// The name is a directory's.
+    /// The path is a directory.
     #[error("{}: expected the name of a file, got a directory", path.display())]
     Directory {
         /// The directory.
         path: PathBuf,
     },
-    /// The folder for the file is missing.
+    /// The directory of the file is missing.
     #[error("{}: the folder {} does not exist", path.display(), folder.display())]
     NoFolder {
-        /// The file asked for.
+        /// The requested file.
         path: PathBuf,
-        /// The folder which is missing.
+        /// The missing directory.
         folder: PathBuf,
     },
-    /// The system refused.
+    /// A system call failed.
     #[error("{}: cannot {action}: {source}", path.display())]
     Io {
-        /// The file asked for.
+        /// The requested file.
         path: PathBuf,
-        /// What was being done: `create`, `write` or `rename`.
+        /// `create`, `write` or `rename`.
         action: &'static str,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
 }
 
-/// A file being written. It takes its name on [`NewFile::commit`]; dropped before, it leaves no
-/// trace and an older file of that name is untouched.
+/// A file that appears under its name on [`NewFile::commit`]. Dropped before, it leaves no trace,
+/// and an older file of that name stays untouched.
 ///
-/// Not buffered: wrap it in [`std::io::BufWriter`] and take it out again to commit.
-///
-/// A name that is a device or a pipe (`/dev/null`, `/dev/stdout`) is written in place: there is
-/// nothing to preserve.
+/// It is not buffered: wrap it in [`std::io::BufWriter`]. A device or pipe (`/dev/null`,
+/// `/dev/stdout`) is written in place.
 #[derive(Debug)]
 pub struct NewFile {
-    file: File,
+    target: Target,
     path: PathBuf,
-    /// Where the bytes are until the commit; `None` once renamed, and for devices.
-    temporary: Option<PathBuf>,
     overwrite: Overwrite,
 }
 
+#[derive(Debug)]
+enum Target {
+    Temporary(NamedTempFile),
+    Device(File),
+}
+
 impl NewFile {
-    /// Opens a temporary file beside `path`.
+    /// Opens a temporary file in the directory of `path`.
     ///
     /// # Errors
-    /// [`FileError`]: the name is taken (and `overwrite` says [`Overwrite::Refuse`]), is a
-    /// directory, lies in a folder that is missing, or cannot be written.
+    /// [`FileError`]: the file exists (with [`Overwrite::Refuse`]), is a directory, lies in a
+    /// missing directory, or cannot be created.
     pub fn create(path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Self, FileError> {
         let path = path.as_ref();
         let io_error = |source| FileError::Io {
@@ -84,165 +89,128 @@ impl NewFile {
             action: "create",
             source,
         };
-        // Through a symbolic link it is the file behind it that is replaced, not the link.
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        match fs::metadata(&target) {
-            Ok(there) if there.is_dir() => {
+        // A symbolic link stays; the file that it points to is replaced.
+        let file_path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let target = match fs::metadata(&file_path) {
+            Ok(metadata) if metadata.is_dir() => {
                 return Err(FileError::Directory {
                     path: path.to_owned(),
                 });
             }
-            Ok(there) if !there.is_file() => {
-                let file = OpenOptions::new()
-                    .write(true)
-                    .open(&target)
-                    .map_err(io_error)?;
-                return Ok(Self {
-                    file,
-                    path: target,
-                    temporary: None,
-                    overwrite,
-                });
+            Ok(metadata) if !metadata.is_file() => {
+                let device = OpenOptions::new().write(true).open(&file_path);
+                Target::Device(device.map_err(io_error)?)
             }
             Ok(_) if overwrite == Overwrite::Refuse => {
                 return Err(FileError::Exists {
                     path: path.to_owned(),
                 });
             }
-            _ => {}
-        }
-        let folder = folder_of(&target);
-        if !folder.is_dir() {
-            return Err(FileError::NoFolder {
-                path: path.to_owned(),
-                folder: folder.to_owned(),
-            });
-        }
-        let (file, temporary) = create_temporary(&target).map_err(io_error)?;
+            _ => {
+                let folder = folder_of(&file_path);
+                if !folder.is_dir() {
+                    return Err(FileError::NoFolder {
+                        path: path.to_owned(),
+                        folder: folder.to_owned(),
+                    });
+                }
+                Target::Temporary(create_temporary(&file_path, folder).map_err(io_error)?)
+            }
+        };
         Ok(Self {
-            file,
-            path: target,
-            temporary: Some(temporary),
+            target,
+            path: file_path,
             overwrite,
         })
     }
 
-    /// The name the file will have.
+    /// The name that the file will have.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Makes the bytes durable and gives the file its name, durably too.
+    /// Syncs the bytes to disk and gives the file its name.
     ///
     /// # Errors
-    /// [`FileError::Exists`] if another program made the file meanwhile and it may not be replaced;
-    /// [`FileError::Io`]. After an error the older file is as it was.
-    pub fn commit(mut self) -> Result<(), FileError> {
-        let Some(temporary) = self.temporary.clone() else {
-            return self.file.flush().map_err(|e| self.io_error("write", e));
+    /// [`FileError::Exists`] if another program created the file meanwhile and it must not be
+    /// replaced; [`FileError::Io`]. After an error the older file is unchanged.
+    pub fn commit(self) -> Result<(), FileError> {
+        let path = self.path;
+        let io_error = |action, source| FileError::Io {
+            path: path.clone(),
+            action,
+            source,
         };
-        self.file
-            .sync_all()
-            .map_err(|e| self.io_error("write", e))?;
-        match self.overwrite {
-            Overwrite::Replace => {
-                fs::rename(&temporary, &self.path).map_err(|e| self.io_error("rename", e))?;
-            }
-            // `link` fails where the name is taken, which `rename` would not; Drop then removes the
-            // other name.
-            Overwrite::Refuse => match fs::hard_link(&temporary, &self.path) {
-                Ok(()) => {
-                    keep_name(&self.path);
-                    return Ok(());
-                }
-                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
-                    return Err(FileError::Exists {
-                        path: self.path.clone(),
-                    });
-                }
-                // File systems without hard links (FAT, some network mounts): the check is not
-                // atomic there.
-                Err(_) if !self.path.exists() => {
-                    fs::rename(&temporary, &self.path).map_err(|e| self.io_error("rename", e))?;
-                }
-                Err(_) => {
-                    return Err(FileError::Exists {
-                        path: self.path.clone(),
-                    });
-                }
+        let temporary = match self.target {
+            Target::Device(mut device) => return device.flush().map_err(|e| io_error("write", e)),
+            Target::Temporary(temporary) => temporary,
+        };
+        let synced = temporary.as_file().sync_all();
+        synced.map_err(|e| io_error("write", e))?;
+        let persisted = match self.overwrite {
+            Overwrite::Replace => temporary.persist(&path),
+            Overwrite::Refuse => match temporary.persist_noclobber(&path) {
+                // File systems with neither hard links nor renameat2 (some network mounts): the
+                // check is not atomic there.
+                Err(error) if !path.exists() => error.file.persist(&path),
+                result => result,
             },
+        };
+        if let Err(error) = persisted {
+            return Err(match self.overwrite {
+                Overwrite::Refuse if path.exists() => FileError::Exists { path },
+                _ => io_error("rename", error.error),
+            });
         }
-        self.temporary = None;
-        keep_name(&self.path);
+        sync_folder(&path);
         Ok(())
     }
 
-    fn io_error(&self, action: &'static str, source: io::Error) -> FileError {
-        FileError::Io {
-            path: self.path.clone(),
-            action,
-            source,
-        }
-    }
-}
-
-impl Drop for NewFile {
-    fn drop(&mut self) {
-        if let Some(temporary) = &self.temporary {
-            // Nobody is left to tell, and a stale temporary file harms nothing.
-            let _ = fs::remove_file(temporary);
+    fn file(&self) -> &File {
+        match &self.target {
+            Target::Temporary(temporary) => temporary.as_file(),
+            Target::Device(device) => device,
         }
     }
 }
 
 impl Write for NewFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
+        self.file().write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
+        self.file().flush()
     }
 }
 
-/// What was written can be read again, but for devices and pipes.
+/// Written bytes can be read again, except from devices and pipes.
 impl Read for NewFile {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        self.file.read(bytes)
+        self.file().read(bytes)
     }
 }
 
 impl Seek for NewFile {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.file.seek(to)
+        self.file().seek(to)
     }
 }
 
-/// Waits until a disk has all bytes of a file, which then survive a power cut. Devices and pipes
-/// have no such thing, and that is fine.
-///
-/// # Errors
-/// What the disk says.
-pub fn make_durable(file: &File) -> io::Result<()> {
+/// Syncs a file to disk, so that it survives a power cut; does nothing for devices and pipes.
+pub(crate) fn sync(file: &File) -> io::Result<()> {
+    use io::ErrorKind::{InvalidInput, Unsupported};
     match file.sync_data() {
-        Err(error)
-            if matches!(
-                error.kind(),
-                io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported
-            ) =>
-        {
-            Ok(())
-        }
+        Err(error) if matches!(error.kind(), InvalidInput | Unsupported) => Ok(()),
         synced => synced,
     }
 }
 
-/// Has the disk remember the name of a file or folder that was just made: it may else be gone after
-/// a power cut, however safe the bytes are. File systems that cannot are left alone.
-pub fn keep_name(path: &Path) {
+/// Syncs the directory of a new file or directory: its name may otherwise be lost in a power cut.
+/// Some network file systems refuse, which is ignored.
+pub fn sync_folder(path: &Path) {
     if let Ok(folder) = File::open(folder_of(path)) {
-        // Some network file systems refuse; the file is as safe there as it can be.
         let _ = folder.sync_all();
     }
 }
@@ -254,45 +222,34 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Whether a file is what a process that was killed left of a [`NewFile`].
+/// Whether a file name is that of a [`NewFile`] whose process was killed.
 #[must_use]
-pub fn is_half_written(name: &std::ffi::OsStr) -> bool {
+pub fn is_half_written(name: &OsStr) -> bool {
     let name = name.as_encoded_bytes();
-    name.starts_with(b".") && name.ends_with(HALF_WRITTEN.as_bytes())
+    name.starts_with(b".") && name.ends_with(PARTIAL.as_bytes())
 }
 
-/// A new file beside `path`, named after it and this process.
-fn create_temporary(path: &Path) -> io::Result<(File, PathBuf)> {
-    let mut taken = io::Error::from(io::ErrorKind::AlreadyExists);
-    for attempt in 0..100 {
-        let mut name = std::ffi::OsString::from(".");
-        name.push(path.file_name().unwrap_or_default());
-        name.push(format!(".{}-{attempt}{HALF_WRITTEN}", std::process::id()));
-        let temporary = folder_of(path).join(name);
-        match OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create_new(true)
-            .open(&temporary)
-        {
-            Ok(file) => return Ok((file, temporary)),
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => taken = e,
-            Err(e) => return Err(e),
-        }
-    }
-    Err(taken)
+/// A temporary file in `folder`, named after `path`.
+fn create_temporary(path: &Path, folder: &Path) -> io::Result<NamedTempFile> {
+    let mut prefix = OsString::from(".");
+    prefix.push(path.file_name().unwrap_or_default());
+    prefix.push(".");
+    Builder::new()
+        .prefix(&prefix)
+        .suffix(PARTIAL)
+        .permissions(Permissions::from_mode(0o666)) // less the umask, as for any new file
+        .tempfile_in(folder)
 }
 
-/// A file without a name for what does not fit memory, in [`scratch_folder`]; it is gone when it is
-/// closed.
+/// An unnamed file for data that does not fit memory, in [`scratch_folder`].
 ///
 /// # Errors
-/// Where none can be made there; the error names the folder.
+/// The system's; the message names the folder.
 pub fn scratch() -> io::Result<File> {
     scratch_in(&scratch_folder())
 }
 
-/// The same in a folder of the caller's.
+/// An unnamed file in `folder`.
 ///
 /// # Errors
 /// As [`scratch`].
@@ -305,7 +262,7 @@ pub fn scratch_in(folder: &Path) -> io::Result<File> {
     })
 }
 
-/// `$TMPDIR`, or else `/var/tmp`, which unlike `/tmp` is no memory.
+/// `$TMPDIR`, or else `/var/tmp`, which unlike `/tmp` is never held in memory.
 #[must_use]
 pub fn scratch_folder() -> PathBuf {
     match env::var_os("TMPDIR") {
@@ -318,7 +275,7 @@ pub fn scratch_folder() -> PathBuf {
 /// Bytes that this user can still write to the file system of `path`.
 ///
 /// # Errors
-/// Where the path is not there or the system does not tell.
+/// The system's, such as a missing path.
 pub fn free_bytes(path: &Path) -> io::Result<u64> {
     let stat = nix::sys::statvfs::statvfs(path)?;
     // Their widths differ between systems.
@@ -344,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn the_free_space_is_what_df_says() {
+    fn the_free_space_agrees_with_df() {
         let folder = tempfile::tempdir().unwrap();
         let df = std::process::Command::new("df")
             .args(["--output=avail", "-B1"])
@@ -354,13 +311,13 @@ mod tests {
         let text = String::from_utf8(df.stdout).unwrap();
         let says: f64 = text.lines().last().unwrap().trim().parse().unwrap();
         let free = free_bytes(folder.path()).unwrap() as f64;
-        // Others write in between.
+        // Other programs may write in between.
         assert!((free / says - 1.0).abs() < 0.05, "{free} and {says}");
         assert!(free_bytes(&folder.path().join("none")).is_err());
     }
 
     #[test]
-    fn a_committed_file_has_its_name_and_nothing_else_is_left() {
+    fn a_commit_leaves_the_named_file_alone() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cloud.ply");
         let mut file = NewFile::create(&path, Overwrite::Refuse).unwrap();
@@ -374,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn an_existing_file_is_refused_or_survives_until_the_commit() {
+    fn existing_files_are_refused_or_kept_until_the_commit() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cloud.ply");
         fs::write(&path, "precious").unwrap();
@@ -394,32 +351,32 @@ mod tests {
     }
 
     #[test]
-    fn a_file_made_by_someone_else_meanwhile_is_not_replaced() {
+    fn files_created_by_others_meanwhile_are_not_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cloud.ply");
-        let mine = NewFile::create(&path, Overwrite::Refuse).unwrap();
+        let ours = NewFile::create(&path, Overwrite::Refuse).unwrap();
         fs::write(&path, "theirs").unwrap();
-        assert!(matches!(mine.commit(), Err(FileError::Exists { .. })));
+        assert!(matches!(ours.commit(), Err(FileError::Exists { .. })));
         assert_eq!(fs::read_to_string(&path).unwrap(), "theirs");
         assert_eq!(names(folder.path()), ["cloud.ply"]);
     }
 
     #[test]
-    fn two_writers_of_one_name_do_not_share_a_temporary_file() {
+    fn two_writers_of_one_name_use_two_temporary_files() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cloud.ply");
-        let mut one = NewFile::create(&path, Overwrite::Replace).unwrap();
-        let mut two = NewFile::create(&path, Overwrite::Replace).unwrap();
-        one.write_all(b"one").unwrap();
-        two.write_all(b"two").unwrap();
-        one.commit().unwrap();
-        assert_eq!(fs::read_to_string(&path).unwrap(), "one");
-        two.commit().unwrap();
-        assert_eq!(fs::read_to_string(&path).unwrap(), "two");
+        let mut first = NewFile::create(&path, Overwrite::Replace).unwrap();
+        let mut second = NewFile::create(&path, Overwrite::Replace).unwrap();
+        first.write_all(b"first").unwrap();
+        second.write_all(b"second").unwrap();
+        first.commit().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "first");
+        second.commit().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "second");
     }
 
     #[test]
-    fn directories_missing_folders_and_devices() {
+    fn directories_and_missing_folders_are_refused_and_devices_written() {
         let folder = tempfile::tempdir().unwrap();
         assert!(matches!(
             NewFile::create(folder.path(), Overwrite::Replace),
@@ -437,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn a_symbolic_link_stays_a_link() {
+    fn symbolic_links_are_kept() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("real.ply");
         let link = folder.path().join("link.ply");

@@ -6,6 +6,7 @@
 //! lidar packet, speaks to a drive or knows a scan. Signals, arguments and printing belong to the
 //! binary.
 
+mod ancillary;
 pub mod can;
 pub mod clock;
 pub mod discover;

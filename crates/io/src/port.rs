@@ -7,7 +7,7 @@ mod delimit;
 mod pty;
 mod recorder;
 mod serial;
-mod wait;
+pub(crate) mod wait;
 
 use std::io;
 

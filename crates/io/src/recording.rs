@@ -12,13 +12,13 @@
 mod classify;
 mod counts;
 mod error;
-mod fragments;
 mod input;
 mod lidar;
 mod link;
 mod pace;
 mod pcap;
 mod pcapng;
+mod reassembly;
 mod resync;
 mod sensors;
 mod window;
@@ -38,9 +38,9 @@ pub use lidar::DatagramKind;
 pub use pace::{Gap, PaceError, Paced, Pacer, SteadyTimer, Timer, Turn};
 pub use sensors::{Sensor, Sensors, sensors, source_of};
 
-use fragments::Joiner;
 use link::LinkType;
 pub(crate) use link::{RS232_NAME, USB_NAME};
+use reassembly::Reassembler;
 use window::Window;
 
 /// The file format of a recording.
@@ -70,7 +70,7 @@ pub struct Recording<R = File> {
     end: Option<End>,
     /// A CAN frame shorter than `struct can_frame`, filled up with zeros.
     can_frame: [u8; link::CAN_FRAME_LEN],
-    joiner: Joiner,
+    reassembler: Reassembler,
     keep_foreign: bool,
 }
 
@@ -138,8 +138,8 @@ enum FoundWire {
 #[derive(Clone, Copy)]
 enum Place {
     Window,
-    /// Put together of fragments.
-    Joiner,
+    /// Reassembled from fragments.
+    Reassembler,
 }
 
 impl Recording<File> {
@@ -191,7 +191,7 @@ impl<R: Read> Recording<R> {
             held: 0,
             end: None,
             can_frame: [0; link::CAN_FRAME_LEN],
-            joiner: Joiner::default(),
+            reassembler: Reassembler::default(),
             keep_foreign: false,
         })
     }
@@ -250,7 +250,7 @@ impl<R: Read> Recording<R> {
                 port,
                 payload: match place {
                     Place::Window => bytes.get(payload),
-                    Place::Joiner => self.joiner.bytes().get(payload),
+                    Place::Reassembler => self.reassembler.datagram().get(payload),
                 }
                 .unwrap_or_default(),
             },

@@ -1,9 +1,7 @@
-//! The lidar's datagrams with the kernel's receive time, and a count of those the kernel dropped.
+//! The lidar's datagrams with kernel receive times, and a count of the datagrams the kernel dropped.
 //!
-//! The kernel's time is taken when the packet comes out of the network stack; a time read by the
-//! program can be late by many milliseconds when the machine is busy. IPv4 only, as the lidars of
-//! this family are. A payload is looked into only to count whose it is; every datagram from a
-//! wanted source is given on.
+//! The kernel takes the time when a packet leaves the network stack. A time read by the program can
+//! be many milliseconds late on a busy machine. IPv4 only, like the lidars of this family.
 
 mod batch;
 mod listener;
@@ -13,37 +11,31 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
 
 pub use listener::{GATHER, ListenConfig, ListenCounts, Listener, listen};
-pub use socket::{LidarSocket, Received};
+pub use socket::LidarSocket;
 
-/// Why a socket could not be had or read.
+/// Failure to open or read a socket.
 #[derive(Debug, thiserror::Error)]
 pub enum UdpError {
-    /// Another program has the port.
+    /// Another program uses the port.
     #[error("UDP port {}: in use by another program", address.port())]
     Busy {
-        /// What was to be bound.
+        /// Address to bind.
         address: SocketAddrV4,
     },
     /// No interface of this machine has that address.
     #[error("UDP address {address}: expected an address of this machine or 0.0.0.0")]
     NoInterface {
-        /// What was to be bound.
+        /// Address to bind.
         address: Ipv4Addr,
     },
-    /// A socket was made outside a tokio runtime.
-    #[error("UDP socket {address}: expected a tokio runtime around it, got none")]
-    NoRuntime {
-        /// What was to be bound.
-        address: SocketAddrV4,
-    },
-    /// The system refused.
+    /// A system call failed.
     #[error("UDP socket {address}: cannot {action}: {source}")]
     Io {
-        /// What was to be bound, or is.
+        /// Address of the socket.
         address: SocketAddrV4,
         /// `bind`, `configure`, `join`, `wait` or `receive`.
         action: &'static str,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
 }

@@ -225,7 +225,7 @@ pub fn lidar_failure(error: &UdpError) -> Failure {
             "see whether lidar in the device's profile is the address of an interface that is up, or, where it is 0.0.0.0, whether a\n\
              route to lidar_group exists (ip route get GROUP)"
         }
-        UdpError::NoRuntime { .. } | UdpError::Io { .. } => {
+        UdpError::Io { .. } => {
             "see whether the network interface is up and this user may open sockets"
         }
     };

@@ -1,11 +1,11 @@
 //! A CAN interface of the kernel, through the `socketcan` crate: classic frames with the kernel's
 //! receive time.
 //!
-//! Blocking with timeouts, like the serial port: a drive's client waits for one answer at a time,
-//! on its own thread. The kernel's error reports and CAN FD are left switched off. Waiting is
-//! `ppoll`'s, since the socket's own timeouts have the kernel's tick. Frames are received here and
-//! not by the crate, as it passes over the kernel's count of those it dropped: a socket holds some
-//! hundred frames, and what does not fit is gone without a word.
+//! Calls block with a timeout, like those of the serial port: a drive client waits for one answer
+//! at a time, on its own thread. Error frames and CAN FD stay disabled. Waiting uses `ppoll`, since
+//! socket timeouts have the resolution of the kernel's tick. Frames are received here rather than
+//! by the crate, which ignores the kernel's drop counter: a socket buffers some hundred frames and
+//! drops the rest silently.
 
 use std::io::{self, ErrorKind, IoSliceMut};
 use std::os::fd::{AsFd, AsRawFd};
@@ -13,22 +13,23 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use nix::errno::Errno;
-use nix::poll::{PollFd, PollFlags, ppoll};
-use nix::sys::socket::{ControlMessageOwned, MsgFlags, recvmsg, setsockopt, sockopt};
-use nix::sys::time::TimeSpec;
+use nix::poll::PollFlags;
+use nix::sys::socket::{MsgFlags, recvmsg, setsockopt, sockopt};
 use protocol::canopen::{CanFrame, CanId, SOCKETCAN_LEN};
 use socketcan::{CanSocket, EmbeddedFrame as _, Id, Socket as _};
 use units::{Host, Span, Stamp};
 
 use super::interfaces::{interfaces, up_command};
 use super::{CanError, CanPort};
+use crate::ancillary::{self, Ancillary, DropCounter};
 use crate::clock;
+use crate::port::wait::{duration, wait};
 
-/// How long a frame may wait for room in the interface's queue.
+/// Longest time that a frame waits for space in the interface's queue.
 const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
-/// Bytes asked for; a frame takes some 770 of them.
+/// Bytes requested; a frame takes 770 of them.
 const RECEIVE_BUFFER: usize = 4 << 20;
-/// Between two tries at a full queue: some frames of the bus.
+/// Time between two attempts at a full queue: some eight frames at 1 Mbit/s.
 const RETRY: Duration = Duration::from_millis(1);
 
 /// An open CAN interface.
@@ -37,14 +38,12 @@ pub struct SocketCan {
     socket: CanSocket,
     interface: String,
     control: Vec<u8>,
-    /// The kernel's counter of dropped frames, as it was last told, and all of them.
-    overflow_counter: u32,
-    dropped: u64,
+    dropped: DropCounter,
 }
 
 impl SocketCan {
-    /// Opens an interface that is up, such as `can0`. Others may have it open too. No rights are
-    /// needed.
+    /// Opens an interface that is up, such as `can0`. Other programs may use it too. Needs no
+    /// privileges.
     ///
     /// # Errors
     /// [`CanError`]: no CAN in the kernel, no such interface, not a CAN interface, down.
@@ -53,18 +52,15 @@ impl SocketCan {
         let port = Self {
             socket,
             interface: interface.to_owned(),
-            control: nix::cmsg_space!(TimeSpec, u32),
-            overflow_counter: 0,
-            dropped: 0,
+            control: ancillary::buffer(),
+            dropped: DropCounter::default(),
         };
-        // Binding to an interface that is down works; the kernel leaves the error at the socket.
+        // Binding to an interface that is down succeeds; the error is pending at the socket.
         let pending = port.socket.as_raw_socket().take_error();
         if let Some(down) = pending.map_err(|e| port.io_error("open", e))? {
             return Err(port.io_error("open", down));
         }
-        setsockopt(&port.socket, sockopt::ReceiveTimestampns, &true)
-            .and_then(|()| setsockopt(&port.socket, sockopt::RxqOvfl, &1))
-            .map_err(|e| port.io_error("open", e.into()))?;
+        ancillary::enable(&port.socket).map_err(|e| port.io_error("open", e.into()))?;
         enlarge_buffer(&port.socket);
         port.socket
             .set_nonblocking(true)
@@ -88,11 +84,11 @@ impl SocketCan {
         }
     }
 
-    /// A frame, if one is there.
+    /// The next waiting frame.
     fn receive(&mut self) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError> {
         loop {
             match self.receive_message() {
-                // An error report, which was not asked for, is no frame.
+                // An error frame.
                 Ok((None, _)) => {}
                 Ok((Some(frame), host)) => return Ok(Some((frame, host))),
                 Err(Errno::EINTR) => {}
@@ -102,7 +98,7 @@ impl SocketCan {
         }
     }
 
-    /// One `recvmsg`: the frame and the kernel's time of it; its count of dropped frames is noted.
+    /// Receives one frame with its kernel time and counts dropped frames.
     fn receive_message(&mut self) -> Result<(Option<CanFrame>, Stamp<Host>), Errno> {
         let mut bytes = [0; SOCKETCAN_LEN];
         let mut parts = [IoSliceMut::new(&mut bytes)];
@@ -110,24 +106,15 @@ impl SocketCan {
         let fd = self.socket.as_raw_fd();
         let flags = MsgFlags::empty();
         let message = recvmsg::<()>(fd, &mut parts, Some(&mut self.control), flags)?;
-        let (mut host, mut overflow) = (None, None);
-        for part in message.cmsgs()? {
-            match part {
-                ControlMessageOwned::ScmTimestampns(time) => host = Some(stamp(time)),
-                ControlMessageOwned::RxqOvfl(counter) => overflow = Some(counter),
-                _ => {}
-            }
-        }
-        if let Some(counter) = overflow {
-            self.dropped += u64::from(counter.wrapping_sub(self.overflow_counter));
-            self.overflow_counter = counter;
-        }
-        Ok((from_kernel(bytes), host.unwrap_or_else(clock::now)))
+        let ancillary = Ancillary::of(&message)?;
+        self.dropped.update(ancillary.overflow);
+        let host = ancillary.received.unwrap_or_else(clock::now);
+        Ok((from_kernel(bytes), host))
     }
 }
 
-/// Room for as many frames as the kernel lets this program have: its limit for users makes that
-/// half a second of a stream at 1 kHz, which is enough, so that a refusal is none of an opening.
+/// Requests the largest buffer that the kernel grants. Its limit for users holds half a second of
+/// frames at 1 kHz, which suffices, so a refusal is no error.
 fn enlarge_buffer(socket: &CanSocket) {
     if setsockopt(socket, sockopt::RcvBufForce, &RECEIVE_BUFFER).is_err() {
         let _ = setsockopt(socket, sockopt::RcvBuf, &RECEIVE_BUFFER);
@@ -150,8 +137,7 @@ impl CanPort for SocketCan {
                             interface: self.interface.clone(),
                         });
                     }
-                    // The socket counts as writable while the interface's queue is full: there is
-                    // nothing to wait for.
+                    // The socket polls as writable while the interface's queue is full.
                     thread::sleep(RETRY);
                 }
                 Err(e) => return Err(self.io_error("write", e)),
@@ -160,28 +146,27 @@ impl CanPort for SocketCan {
     }
 
     fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError> {
-        let timeout = Duration::from_nanos(u64::try_from(timeout.as_nanos()).unwrap_or(0));
+        let timeout = duration(timeout);
         let deadline = Instant::now().checked_add(timeout);
         loop {
             if let Some(read) = self.receive()? {
                 return Ok(Some(read));
             }
-            let left = deadline.map(|at| at.saturating_duration_since(Instant::now()));
-            if left.is_some_and(|left| left.is_zero()) {
+            let left = deadline.map_or(timeout, |deadline| {
+                deadline.saturating_duration_since(Instant::now())
+            });
+            if left.is_zero() {
                 return Ok(None);
             }
-            let mut fds = [PollFd::new(self.socket.as_fd(), PollFlags::POLLIN)];
-            match ppoll(&mut fds, left.map(TimeSpec::from_duration), None) {
-                Ok(_) | Err(Errno::EINTR) => {}
-                Err(e) => return Err(self.io_error("read", e.into())),
-            }
+            wait(self.socket.as_fd(), PollFlags::POLLIN, left)
+                .map_err(|e| self.io_error("read", e.into()))?;
         }
     }
 
-    /// Frames that the kernel dropped because this program did not read fast enough, as far as
-    /// those read tell.
+    /// Frames that the kernel dropped because the receive buffer was full. The count arrives with
+    /// the next frame.
     fn dropped(&self) -> u64 {
-        self.dropped
+        self.dropped.total()
     }
 
     fn name(&self) -> &str {
@@ -195,8 +180,8 @@ fn is_full(error: &io::Error) -> bool {
 
 fn open_error(interface: &str, source: io::Error) -> CanError {
     let interface = interface.to_owned();
-    // An interface is looked up before a socket is made; without CAN there can be none, and that
-    // says more.
+    // The interface is looked up before the socket is made. A kernel without CAN has no interfaces,
+    // so that error takes precedence.
     let errno = CanSocket::open_iface(0)
         .err()
         .and_then(|e| e.raw_os_error())
@@ -224,16 +209,7 @@ fn open_error(interface: &str, source: io::Error) -> CanError {
     }
 }
 
-/// The kernel's time of the system clock.
-fn stamp(time: TimeSpec) -> Stamp<Host> {
-    Stamp::from_nanos(
-        time.tv_sec()
-            .saturating_mul(1_000_000_000)
-            .saturating_add(time.tv_nsec()),
-    )
-}
-
-/// The frame as the kernel's; `None` only for an identifier that `CanFrame` cannot have.
+/// Converts to the kernel's frame; `None` only for an identifier that `CanFrame` excludes.
 fn to_kernel(frame: &CanFrame) -> Option<socketcan::CanFrame> {
     let id: Id = match frame.id() {
         CanId::Standard(id) => socketcan::StandardId::new(id.get())?.into(),
@@ -246,8 +222,8 @@ fn to_kernel(frame: &CanFrame) -> Option<socketcan::CanFrame> {
     }
 }
 
-/// A `struct can_frame` as the kernel lays it out, with the identifier in this machine's order;
-/// `None` for an error report.
+/// Converts from `struct can_frame`, whose identifier is in native byte order; `None` for an error
+/// frame.
 fn from_kernel(mut bytes: [u8; SOCKETCAN_LEN]) -> Option<CanFrame> {
     let (id, _) = bytes.split_first_chunk_mut::<4>()?;
     *id = u32::from_ne_bytes(*id).to_be_bytes();

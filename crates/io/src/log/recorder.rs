@@ -94,7 +94,7 @@ impl Recorder {
     /// # Errors
     /// [`LogError::Thread`] where the system gives no thread.
     pub fn to_disk(writer: LogWriter<File>) -> Result<Self, LogError> {
-        Self::with_end(writer, files::make_durable)
+        Self::with_end(writer, files::sync)
     }
 
     /// Starts the thread on a log whose head is written, in anything that takes bytes.

@@ -9,7 +9,7 @@ use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Stamp};
 
 use super::{block, datagram};
-use crate::files::{Overwrite, keep_name};
+use crate::files::{Overwrite, sync_folder};
 use crate::recording::{RS232_NAME, USB_NAME};
 
 /// Bytes gathered before a write.
@@ -151,7 +151,7 @@ impl LogWriter<File> {
         // Before an older log is emptied for it.
         check_metadata(config)?;
         let writer = Self::new(new_file(path, overwrite)?, config)?;
-        keep_name(path);
+        sync_folder(path);
         Ok(writer)
     }
 }

@@ -1,4 +1,4 @@
-//! Waiting for a file descriptor with nanoseconds of timeout (`poll` has only milliseconds).
+//! Waiting for a file descriptor with a timeout in nanoseconds (`poll` has milliseconds).
 
 use std::os::fd::BorrowedFd;
 use std::time::{Duration, Instant};
@@ -8,13 +8,13 @@ use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::time::TimeSpec;
 use units::Span;
 
-/// A span as a duration; nothing for a negative one.
-pub(super) fn duration(span: Span) -> Duration {
+/// The duration of a span; zero for a negative one.
+pub(crate) fn duration(span: Span) -> Duration {
     Duration::from_nanos(u64::try_from(span.as_nanos()).unwrap_or(0))
 }
 
-/// Waits until one of `events` or a hang-up happens or `timeout` is over; what happened.
-pub(super) fn wait(
+/// Waits for one of `events` or a hang-up, up to `timeout`; returns what happened.
+pub(crate) fn wait(
     fd: BorrowedFd<'_>,
     events: PollFlags,
     timeout: Duration,

@@ -3,9 +3,9 @@
 
 use std::ops::Range;
 
-use super::fragments::Fragment;
 use super::link::{self, Content};
-use super::{DatagramKind, Fault, Found, FoundWire, Packet, Place, Recording, source_of};
+use super::reassembly::Fragment;
+use super::{DatagramKind, Fault, Found, FoundWire, Packet, Place, Recording};
 
 impl<R> Recording<R> {
     /// Looks inside a packet and counts it.
@@ -76,7 +76,7 @@ impl<R> Recording<R> {
     ) -> Option<FoundWire> {
         let bytes = match place {
             Place::Window => self.window.bytes().get(payload.clone()),
-            Place::Joiner => self.joiner.bytes().get(payload.clone()),
+            Place::Reassembler => self.reassembler.datagram().get(payload.clone()),
         };
         let bytes = bytes.unwrap_or_default();
         if DatagramKind::of(bytes).is_lidar() {
@@ -99,15 +99,14 @@ impl<R> Recording<R> {
     fn fragment(&mut self, packet: &Packet, fragment: &Fragment, offset: u64) -> Option<FoundWire> {
         let data = self.window.bytes().get(packet.data.clone())?;
         let bytes = data.get(fragment.payload.clone())?;
-        let Some(parts) = self.joiner.take(packet.host, fragment, bytes) else {
+        let Some(parts) = self.reassembler.add(packet.host, fragment, bytes) else {
             self.counts.fragments += 1;
             return None;
         };
         self.counts.reassembled(parts);
-        match link::udp(self.joiner.bytes()) {
+        match link::udp(self.reassembler.datagram()) {
             Ok((port, payload)) => {
-                let source = source_of(fragment.key.source);
-                self.datagram(source, port, payload, Place::Joiner)
+                self.datagram(fragment.id.source, port, payload, Place::Reassembler)
             }
             Err(fault) => {
                 self.counts.malformed(offset, fault);

@@ -61,25 +61,6 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Datagrams to `port`, whatever their size and content.
-    #[must_use]
-    pub fn to_port(&self, port: u16) -> u64 {
-        [&self.datagrams, &self.foreign]
-            .into_iter()
-            .flat_map(|kinds| kinds.range((port, 0)..=(port, usize::MAX)))
-            .map(|(_, n)| n)
-            .sum()
-    }
-
-    /// Datagrams of `size` bytes to `port`, whatever their content.
-    #[must_use]
-    pub fn to_port_of_size(&self, port: u16, size: usize) -> u64 {
-        [&self.datagrams, &self.foreign]
-            .into_iter()
-            .filter_map(|kinds| kinds.get(&(port, size)))
-            .sum()
-    }
-
     pub(super) fn packet(&mut self) {
         self.records += 1;
     }
@@ -152,9 +133,6 @@ mod tests {
         assert_eq!(counts.datagrams.len(), MAX_KINDS);
         assert_eq!(counts.more_datagrams, 2000 - 1024 + 1);
         assert_eq!((counts.foreign.len(), counts.other), (MAX_KINDS, 2000));
-        assert_eq!(counts.to_port_of_size(3, 7), 2);
-        assert_eq!(counts.to_port_of_size(3, 9), 1);
-        assert_eq!(counts.to_port(3), 3);
-        assert_eq!(counts.to_port(1999), 0);
+        assert_eq!((counts.datagrams[&(3, 7)], counts.foreign[&(3, 9)]), (2, 1));
     }
 }

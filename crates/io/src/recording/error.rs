@@ -50,7 +50,7 @@ pub enum RecordingError {
         got: String,
     },
     /// A recording of something else than Ethernet, IP or CAN.
-    #[error("{}: at byte {offset}: expected link type Ethernet (1), Linux cooked (113, 276), raw IP (101, 228, 229), loopback (0, 108) or SocketCAN (227), got {got}", path.display())]
+    #[error("{}: at byte {offset}: expected link type Ethernet (1), Linux cooked (113, 276), raw IP (101, 228, 229) or SocketCAN (227), got {got}", path.display())]
     Link {
         /// The file.
         path: PathBuf,

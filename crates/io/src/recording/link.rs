@@ -1,18 +1,19 @@
 //! From a captured packet to what it carries: link, network and transport headers by etherparse,
 //! CAN frames by hand.
 
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
+use std::net::Ipv6Addr;
 use std::ops::Range;
 
+use etherparse::err::LenError;
 use etherparse::err::packet::SliceError;
 use etherparse::{
-    EtherType, IpNumber, Ipv4Slice, Ipv6ExtensionSlice, Ipv6Slice, LaxNetSlice, LaxSlicedPacket,
-    NetSlice, SlicedPacket, TransportSlice, UdpHeader,
+    EtherType, IpNumber, Ipv4Slice, LaxNetSlice, LaxSlicedPacket, NetSlice, SlicedPacket,
+    TransportSlice, UdpHeader, UdpSlice,
 };
 use protocol::record::{Direction, DriveLink};
 
 use super::Fault;
-use super::fragments::{Fragment, Key};
+use super::reassembly::{DatagramId, Fragment};
 use super::sensors::source_of;
 
 /// Bytes of a `struct can_frame`: id (big-endian), length, three reserved, eight of data.
@@ -33,8 +34,6 @@ pub(super) enum LinkType {
     Cooked2,
     /// Starts with the IP header, of either version.
     Ip,
-    /// BSD's: four bytes of address family in either byte order, then the IP header.
-    Loopback,
     Can,
     /// Our own: the drive's serial frames.
     Serial(DriveLink),
@@ -47,10 +46,8 @@ impl LinkType {
     /// LINKTYPE_USER0.
     pub(super) fn from_number(number: u32, name: Option<&str>) -> Option<Self> {
         Some(match number {
-            0 | 108 => Self::Loopback,
             1 => Self::Ethernet,
-            // 12 and 14: what some systems write for 101.
-            12 | 14 | 101 | 228 | 229 => Self::Ip,
+            101 | 228 | 229 => Self::Ip,
             113 => Self::Cooked1,
             276 => Self::Cooked2,
             227 => Self::Can,
@@ -100,10 +97,6 @@ pub(super) fn look_inside(
         LinkType::Cooked1 => behind(data, "Linux cooked header", 14, 16)?,
         LinkType::Cooked2 => behind(data, "Linux cooked header", 0, 20)?,
         LinkType::Ip => bare(data)?,
-        LinkType::Loopback => match loopback(data)? {
-            Some(network) => network,
-            None => return Ok(Content::Other),
-        },
         LinkType::Can => return can(data, direction),
         LinkType::Serial(link) => {
             let direction = direction.ok_or(Fault::Undirected)?;
@@ -160,24 +153,6 @@ fn bare(packet: &[u8]) -> Result<Network<'_>, Fault> {
     Ok(Network { kind, packet })
 }
 
-/// The IP packet behind a loopback header, or `None` for another address family.
-fn loopback(data: &[u8]) -> Result<Option<Network<'_>>, Fault> {
-    let Some((family, packet)) = data.split_first_chunk::<4>() else {
-        return Err(short("loopback header", 4, data));
-    };
-    // Its bytes stand in the order of the capturing machine (LINKTYPE_NULL) or the network's
-    // (LINKTYPE_LOOP).
-    let little = u32::from_le_bytes(*family);
-    let kind = match little.min(little.swap_bytes()) {
-        // AF_INET is 2 everywhere; AF_INET6 is 10 on Linux, 24 on NetBSD and OpenBSD, 28 on
-        // FreeBSD, 30 on macOS.
-        2 => EtherType::IPV4,
-        10 | 24 | 28 | 30 => EtherType::IPV6,
-        _ => return Ok(None),
-    };
-    Ok(Some(Network { kind, packet }))
-}
-
 fn short(layer: &str, expected: usize, data: &[u8]) -> Fault {
     Fault::Short {
         layer: layer.to_owned(),
@@ -190,8 +165,8 @@ fn short(layer: &str, expected: usize, data: &[u8]) -> Fault {
 /// What a packet that etherparse has taken apart carries.
 fn content(sliced: &SlicedPacket<'_>, data: &[u8]) -> Content {
     let source = match &sliced.net {
-        Some(NetSlice::Ipv4(ip)) if ip.is_payload_fragmented() => return fragment_v4(ip, data),
-        Some(NetSlice::Ipv6(ip)) if ip.is_payload_fragmented() => return fragment_v6(ip, data),
+        Some(NetSlice::Ipv4(ip)) if ip.is_payload_fragmented() => return fragment(ip, data),
+        Some(NetSlice::Ipv6(ip)) if ip.is_payload_fragmented() => return Content::OtherFragment,
         Some(NetSlice::Ipv4(ip)) => ip.header().source(),
         Some(NetSlice::Ipv6(ip)) => source_of(Ipv6Addr::from(ip.header().source()).into()),
         _ => return Content::Other,
@@ -206,55 +181,27 @@ fn content(sliced: &SlicedPacket<'_>, data: &[u8]) -> Content {
     }
 }
 
-fn fragment_v4(ip: &Ipv4Slice<'_>, data: &[u8]) -> Content {
+fn fragment(ip: &Ipv4Slice<'_>, data: &[u8]) -> Content {
     let header = ip.header();
     if header.protocol() != IpNumber::UDP {
         return Content::OtherFragment;
     }
     Content::Fragment(Fragment {
-        key: Key {
-            source: IpAddr::V4(Ipv4Addr::from(header.source())),
-            destination: IpAddr::V4(Ipv4Addr::from(header.destination())),
-            identification: header.identification().into(),
+        id: DatagramId {
+            source: header.source(),
+            destination: header.destination(),
+            identification: header.identification(),
         },
-        offset: usize::from(header.fragments_offset().value()) * 8,
-        more: header.more_fragments(),
+        offset: header.fragments_offset(),
+        more_fragments: header.more_fragments(),
         payload: within(data, ip.payload().payload),
     })
 }
 
-fn fragment_v6(ip: &Ipv6Slice<'_>, data: &[u8]) -> Content {
-    let part = ip.extensions().clone().into_iter().find_map(|e| match e {
-        Ipv6ExtensionSlice::Fragment(part) => Some(part),
-        _ => None,
-    });
-    let Some(part) = part.filter(|part| part.next_header() == IpNumber::UDP) else {
-        return Content::OtherFragment;
-    };
-    let header = ip.header();
-    Content::Fragment(Fragment {
-        key: Key {
-            source: IpAddr::V6(Ipv6Addr::from(header.source())),
-            destination: IpAddr::V6(Ipv6Addr::from(header.destination())),
-            identification: part.identification(),
-        },
-        offset: usize::from(part.fragment_offset().value()) * 8,
-        more: part.more_fragments(),
-        payload: within(data, ip.payload().payload),
-    })
-}
-
-/// The port and payload of a UDP datagram that was put together of fragments; the payload counts
-/// from its start.
+/// Port and payload of a reassembled UDP datagram; the payload counts from its start.
 pub(super) fn udp(datagram: &[u8]) -> Result<(u16, Range<usize>), Fault> {
-    let Some((&[_, _, p0, p1, l0, l1, _, _], _)) = datagram.split_first_chunk::<8>() else {
-        return Err(short("UDP header", UdpHeader::LEN, datagram));
-    };
-    let length = usize::from(u16::from_be_bytes([l0, l1]));
-    if !(UdpHeader::LEN..=datagram.len()).contains(&length) {
-        return Err(short("UDP payload", length, datagram));
-    }
-    Ok((u16::from_be_bytes([p0, p1]), UdpHeader::LEN..length))
+    let udp = UdpSlice::from_slice(datagram).map_err(|error| short_layer(&error, 0))?;
+    Ok((udp.destination_port(), within(datagram, udp.payload())))
 }
 
 /// Where a part lies in the whole it was sliced from.
@@ -315,16 +262,20 @@ fn direction_of_can(id: u32) -> Direction {
     }
 }
 
-/// The same in our words, for a network layer that starts `start` bytes into the packet.
+/// The fault that etherparse found in a network layer `start` bytes into the packet.
 fn fault(error: SliceError, start: usize) -> Fault {
     match error {
-        SliceError::Len(e) => Fault::Short {
-            layer: e.layer.to_string(),
-            offset: start.saturating_add(e.layer_start_offset),
-            expected: e.required_len,
-            got: e.len,
-        },
+        SliceError::Len(error) => short_layer(&error, start),
         other => Fault::Header(other.to_string()),
+    }
+}
+
+fn short_layer(error: &LenError, start: usize) -> Fault {
+    Fault::Short {
+        layer: error.layer.to_string(),
+        offset: start.saturating_add(error.layer_start_offset),
+        expected: error.required_len,
+        got: error.len,
     }
 }
 

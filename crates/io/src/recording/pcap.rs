@@ -5,9 +5,7 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use pcap_parser::pcap::{
-    PcapHeader, parse_pcap_frame, parse_pcap_frame_be, parse_pcap_frame_modified, parse_pcap_header,
-};
+use pcap_parser::pcap::{PcapHeader, parse_pcap_frame, parse_pcap_frame_be, parse_pcap_header};
 use units::Stamp;
 
 use super::error::{End, Fault, RecordingError};
@@ -17,6 +15,8 @@ use super::{Format, Packet, Step};
 
 /// Bytes of the file header.
 pub(super) const HEADER_LEN: usize = 24;
+/// Bytes of a record header.
+const RECORD_HEADER_LEN: usize = 16;
 
 /// The longest record believed. libpcap's own limit is 256 KiB; USB captures go to 128 MiB, but
 /// carry no lidar.
@@ -28,14 +28,13 @@ pub(super) struct Header {
     link: LinkType,
     nanoseconds: bool,
     big_endian: bool,
-    modified: bool,
 }
 
 impl Header {
     /// Reads the header at the start of a file.
     pub(super) fn parse(start: &[u8], path: &Path) -> Result<Self, RecordingError> {
         let header = match parse_pcap_header(start) {
-            Ok((_, header)) => header,
+            Ok((_, header)) if !header.is_modified_format() => header,
             Err(pcap_parser::nom::Err::Incomplete(_)) => {
                 return Err(RecordingError::Short {
                     path: path.to_owned(),
@@ -43,7 +42,7 @@ impl Header {
                     got: start.len() as u64,
                 });
             }
-            Err(_) => {
+            _ => {
                 return Err(RecordingError::Foreign {
                     path: path.to_owned(),
                     got: describe(start),
@@ -60,7 +59,6 @@ impl Header {
             link,
             nanoseconds: header.is_nanosecond_precision(),
             big_endian: header.is_bigendian(),
-            modified: header.is_modified_format(),
         })
     }
 
@@ -74,8 +72,7 @@ impl Header {
     /// Reads the next record into the window.
     pub(super) fn step<R: Read>(&self, window: &mut Window<R>) -> io::Result<Step> {
         let offset = window.offset();
-        let header_len = if self.modified { 24 } else { 16 };
-        let bytes = window.fill(header_len)?;
+        let bytes = window.fill(RECORD_HEADER_LEN)?;
         if bytes.is_empty() {
             return Ok(Step::End(End::Complete));
         }
@@ -89,7 +86,7 @@ impl Header {
         let captured = match bytes.get(8..12).and_then(|b| <[u8; 4]>::try_from(b).ok()) {
             Some(field) if self.big_endian => u32::from_be_bytes(field),
             Some(field) => u32::from_le_bytes(field),
-            None => return Ok(truncated(header_len, bytes.len())),
+            None => return Ok(truncated(RECORD_HEADER_LEN, bytes.len())),
         };
         if captured > MAX_PACKET_LEN {
             let fault = Fault::Length {
@@ -98,15 +95,14 @@ impl Header {
             };
             return Ok(Step::End(End::Unreadable { offset, fault }));
         }
-        let length = header_len + captured as usize;
+        let length = RECORD_HEADER_LEN + captured as usize;
         let bytes = window.fill(length)?;
         let Some(record) = bytes.get(..length) else {
             return Ok(truncated(length, bytes.len()));
         };
-        let parse = match (self.modified, self.big_endian) {
-            (true, _) => parse_pcap_frame_modified,
-            (false, true) => parse_pcap_frame_be,
-            (false, false) => parse_pcap_frame,
+        let parse = match self.big_endian {
+            true => parse_pcap_frame_be,
+            false => parse_pcap_frame,
         };
         let Ok((_, frame)) = parse(record) else {
             return Ok(truncated(length, bytes.len()));
@@ -116,7 +112,7 @@ impl Header {
         Ok(Step::Packet(Packet {
             host: Stamp::from_nanos(ns),
             length,
-            data: header_len..length,
+            data: RECORD_HEADER_LEN..length,
             link: self.link,
             direction: None,
             original: frame.origlen,
@@ -131,11 +127,15 @@ fn link_number(header: &PcapHeader) -> u32 {
 
 /// What the first bytes of a file look like, for a person who opened the wrong one.
 fn describe(start: &[u8]) -> String {
-    let known: [(&[u8], &str); 9] = [
+    let known: [(&[u8], &str); 10] = [
         (b"\x1F\x8B", "gzip (unpack it first)"),
         (b"\xFD7zXZ", "xz (unpack it first)"),
         (b"\x28\xB5\x2F\xFD", "zstd (unpack it first)"),
         (b"PK\x03\x04", "a zip archive (unpack it first)"),
+        (
+            b"\x34\xCD\xB2\xA1",
+            "modified pcap (convert it with editcap)",
+        ),
         (b"ply", "a PLY cloud"),
         (b"LASF", "a LAS or LAZ cloud"),
         (b"#ROSBAG", "a ROS 1 bag"),

@@ -29,9 +29,6 @@ pub(super) const SECTION_HEADER: u32 = SHB_MAGIC;
 /// Byte-order magic of a section in this machine-independent order (draft-ietf-opsawg-pcapng,
 /// section 4.1).
 pub(super) const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
-/// The obsolete packet block: as an enhanced one, but for 16 bits of interface and 16 of a drop
-/// counter in front.
-pub(super) const PACKET_BLOCK: u32 = 2;
 /// Packet data in an enhanced packet block starts behind type, length, interface, two halves of the
 /// time, two lengths.
 pub(super) const PACKET_DATA_OFFSET: usize = 28;
@@ -64,15 +61,6 @@ const UNKNOWN: Interface = Interface {
     resolution: 6,
     offset_s: 0,
 };
-
-/// The fixed fields of an enhanced or obsolete packet block.
-#[derive(Clone, Copy, Debug)]
-struct Fields {
-    interface: u32,
-    units: u64,
-    captured: u32,
-    original: u32,
-}
 
 /// Whether a file that starts so is pcapng. The block type reads the same in both byte orders.
 pub(super) fn is_section_header(start: &[u8]) -> bool {
@@ -141,7 +129,7 @@ impl Section {
                 self.describe(block);
                 Step::Skip { length }
             }
-            EPB_MAGIC | PACKET_BLOCK => match self.packet(kind, block) {
+            EPB_MAGIC => match self.packet(block) {
                 Ok(packet) => Step::Packet(packet),
                 Err(fault) => Step::Malformed { length, fault },
             },
@@ -281,66 +269,28 @@ impl Section {
         }
     }
 
-    fn packet(&self, kind: u32, block: &[u8]) -> Result<Packet, Fault> {
-        let (fields, direction) = if kind == EPB_MAGIC {
-            self.enhanced(block)
-        } else {
-            self.obsolete(block).map(|fields| (fields, None))
-        }
-        .ok_or(Fault::Block { kind })?;
-        let interface = usize::try_from(fields.interface)
+    fn packet(&self, block: &[u8]) -> Result<Packet, Fault> {
+        let parse = match self.big_endian {
+            true => parse_enhancedpacketblock_be,
+            false => parse_enhancedpacketblock_le,
+        };
+        let (_, packet) = parse(block).map_err(|_| Fault::Block { kind: EPB_MAGIC })?;
+        let interface = usize::try_from(packet.if_id)
             .ok()
             .and_then(|id| self.interfaces.get(id))
             .ok_or(Fault::Interface {
-                got: fields.interface,
+                got: packet.if_id,
                 described: self.interfaces.len(),
             })?;
+        let ticks = (u64::from(packet.ts_high) << 32) | u64::from(packet.ts_low);
         Ok(Packet {
-            host: interface.time(fields.units),
+            host: interface.time(ticks),
             length: block.len(),
-            data: PACKET_DATA_OFFSET..PACKET_DATA_OFFSET.saturating_add(fields.captured as usize),
+            data: PACKET_DATA_OFFSET..PACKET_DATA_OFFSET.saturating_add(packet.caplen as usize),
             link: interface.link.unwrap_or(LinkType::Unused),
-            direction,
-            original: fields.original,
-        })
-    }
-
-    fn enhanced(&self, block: &[u8]) -> Option<(Fields, Option<Direction>)> {
-        let parse = if self.big_endian {
-            parse_enhancedpacketblock_be
-        } else {
-            parse_enhancedpacketblock_le
-        };
-        let (_, packet) = parse(block).ok()?;
-        let fields = Fields {
-            interface: packet.if_id,
-            units: (u64::from(packet.ts_high) << 32) | u64::from(packet.ts_low),
-            captured: packet.caplen,
+            direction: self.direction(&packet.options),
             original: packet.origlen,
-        };
-        Some((fields, self.direction(&packet.options)))
-    }
-
-    /// pcap-parser does not know this one (draft-ietf-opsawg-pcapng, appendix A).
-    fn obsolete(&self, block: &[u8]) -> Option<Fields> {
-        let word = |at: usize| {
-            let field = *block.get(at..)?.first_chunk()?;
-            Some(self.u32(field))
-        };
-        let &[i0, i1] = block.get(8..)?.first_chunk()?;
-        let interface = if self.big_endian {
-            u16::from_be_bytes([i0, i1])
-        } else {
-            u16::from_le_bytes([i0, i1])
-        };
-        let fields = Fields {
-            interface: interface.into(),
-            units: (u64::from(word(12)?) << 32) | u64::from(word(16)?),
-            captured: word(20)?,
-            original: word(24)?,
-        };
-        let room = block.len().checked_sub(PACKET_DATA_OFFSET + 4)?;
-        (fields.captured as usize <= room).then_some(fields)
+        })
     }
 
     /// Bits 0 and 1 of `epb_flags`: 1 inbound, 2 outbound.

@@ -8,9 +8,7 @@
 
 use std::io::{self, Read};
 
-use super::pcapng::{
-    BYTE_ORDER_MAGIC, FRAMING_LEN, PACKET_BLOCK, PACKET_DATA_OFFSET, SECTION_HEADER,
-};
+use super::pcapng::{BYTE_ORDER_MAGIC, FRAMING_LEN, PACKET_DATA_OFFSET, SECTION_HEADER};
 use super::window::Window;
 use pcap_parser::pcapng::{EPB_MAGIC, IDB_MAGIC, SPB_MAGIC};
 
@@ -110,7 +108,7 @@ fn sound(bytes: &[u8], big_endian: bool) -> Option<usize> {
         SECTION_HEADER => 28,
         IDB_MAGIC => 20,
         SPB_MAGIC => 16,
-        EPB_MAGIC | PACKET_BLOCK => PACKET_DATA_OFFSET + 4,
+        EPB_MAGIC => PACKET_DATA_OFFSET + 4,
         _ if OTHERS.contains(&kind) => FRAMING_LEN as usize,
         _ => return None,
     };
@@ -119,7 +117,7 @@ fn sound(bytes: &[u8], big_endian: bool) -> Option<usize> {
         && word(length - 4) == Some(front);
     let fits = match kind {
         SECTION_HEADER => word(8)? == BYTE_ORDER_MAGIC,
-        EPB_MAGIC | PACKET_BLOCK => word(20)? as usize <= length.saturating_sub(least),
+        EPB_MAGIC => word(20)? as usize <= length.saturating_sub(least),
         _ => true,
     };
     (framed && fits).then_some(length)

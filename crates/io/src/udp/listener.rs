@@ -1,5 +1,5 @@
-//! All of the lidars' ports on one plain thread, until a flag says stop. Several sensors may share
-//! a port: their addresses tell them apart. Not here: storing, and IPv6.
+//! Receives the lidars' datagrams on all their ports, on one plain thread, until a flag says stop.
+//! Several sensors may share a port; their addresses tell them apart. IPv4 only.
 
 use std::future::poll_fn;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -15,39 +15,38 @@ use super::batch::Batch;
 use super::{LidarSocket, UdpError};
 use crate::recording::{Sensor, Sensors};
 
-/// How soon a stop is noticed.
+/// Longest time until a stop is noticed.
 const STOP_INTERVAL: Duration = Duration::from_millis(20);
-/// How long datagrams gather behind the first before they are read, unless [`Listener::gather`]
-/// says otherwise: a wake-up and a system call then serve several. Their times are the kernel's,
-/// whenever they are read, and three VLP-16 in dual return fill no more than 60 KB of receive
-/// buffer meanwhile.
+/// Default time for which datagrams gather after the first before they are read: one wake-up and
+/// one system call then serve several. Receive times are the kernel's and do not change. Three
+/// VLP-16 in dual return fill 60 KB of receive buffer in this time.
 pub const GATHER: Duration = Duration::from_millis(5);
-/// Datagrams that are to gather at most, three quarters of what is read at once: 110 KB of receive
-/// buffer, a quarter of what a Linux gives that was not told otherwise.
+/// Most datagrams that should gather: three quarters of a batch, 110 KB of receive buffer, a
+/// quarter of the Linux default.
 const GATHERED: u64 = 48;
 
-/// Where the lidars send to.
+/// Addresses that the lidars send to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ListenConfig {
     /// Local address; 0.0.0.0 for every interface, which broadcast needs. With a `group`, the
-    /// address of the interface to join it on.
+    /// address of the interface that joins it.
     pub address: Ipv4Addr,
-    /// Data packets; 0 for any free port.
+    /// Port of data packets; 0 for any free port.
     pub data_port: u16,
-    /// Position packets, if wanted; 0 for any free port.
+    /// Port of position packets, if wanted; 0 for any free port.
     pub position_port: Option<u16>,
-    /// Further data ports, for sensors that do not share one.
+    /// Further data ports, for sensors with a port of their own.
     pub more_ports: Vec<u16>,
-    /// Bytes of receive buffer to ask for, a socket.
+    /// Bytes of receive buffer to request for each socket.
     pub receive_buffer: usize,
-    /// A multicast group to join on all of these ports.
+    /// Multicast group to join on all ports.
     pub group: Option<Ipv4Addr>,
-    /// Addresses of the sensors that are wanted; empty: whoever sends.
+    /// Addresses of the wanted sensors; empty accepts all.
     pub sources: Vec<Ipv4Addr>,
 }
 
 impl Default for ListenConfig {
-    /// The VLP-16's factory ports (user manual, 63-9243), every interface, 8 MiB.
+    /// The VLP-16's factory ports (user manual 63-9243), every interface, 8 MiB.
     fn default() -> Self {
         Self {
             address: Ipv4Addr::UNSPECIFIED,
@@ -61,41 +60,41 @@ impl Default for ListenConfig {
     }
 }
 
-/// What was heard.
+/// Numbers of datagrams.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ListenCounts {
     /// Datagrams on the data ports.
     pub data: u64,
     /// Datagrams on the position port.
     pub position: u64,
-    /// Datagrams the kernel dropped because this program was too slow, all ports.
+    /// Datagrams dropped by the kernel because the program read too slowly, on all ports.
     pub dropped: u64,
     /// Datagrams without a kernel time; their host time is that of the read.
     pub without_kernel_time: u64,
-    /// Of `data` and `position`: what is no lidar's by its content.
+    /// Datagrams of `data` and `position` whose content is not a lidar's.
     pub foreign: u64,
-    /// Datagrams from other sources than the wanted ones: in none of the above, and not given on.
+    /// Datagrams from unwanted sources: in no other count, and not delivered.
     pub unwanted: u64,
 }
 
-/// Sockets bound and a runtime of their own; owned by one thread.
+/// Bound sockets with a runtime of their own, owned by one thread.
 #[derive(Debug)]
 pub struct Listener {
     /// Data first, then position, then further data.
     sockets: Vec<LidarSocket>,
-    /// What each of them gave and is not given on yet.
+    /// Undelivered datagrams of each socket.
     batches: Vec<Batch>,
-    /// Which of them is for position packets only.
+    /// Index of the socket for position packets only.
     position: Option<usize>,
     sources: Vec<Ipv4Addr>,
     runtime: Runtime,
     counts: ListenCounts,
     sensors: Sensors,
-    /// How long datagrams gather, at most and now.
-    gather: (Duration, Duration),
+    longest_gather: Duration,
+    gather: Duration,
 }
 
-/// Binds, listens until `stop`, and gives each datagram to `sink` in a record.
+/// Binds, listens until `stop`, and passes each datagram to `sink` as a record.
 ///
 /// # Errors
 /// [`UdpError`].
@@ -113,13 +112,13 @@ impl Listener {
     /// # Errors
     /// [`UdpError`].
     pub fn bind(config: &ListenConfig) -> Result<Self, UdpError> {
-        let at = |port| SocketAddrV4::new(config.address, port);
+        let address_of = |port| SocketAddrV4::new(config.address, port);
         let runtime = Builder::new_current_thread()
             .enable_io()
             .enable_time()
             .build()
             .map_err(|source| UdpError::Io {
-                address: at(config.data_port),
+                address: address_of(config.data_port),
                 action: "wait",
                 source,
             })?;
@@ -127,13 +126,13 @@ impl Listener {
             Some(group) => {
                 LidarSocket::bind_group(group, config.address, port, config.receive_buffer)
             }
-            None => LidarSocket::bind(at(port), config.receive_buffer),
+            None => LidarSocket::bind(address_of(port), config.receive_buffer),
         };
         let mut position = None;
         let sockets = {
             let _inside = runtime.enter();
             let mut sockets = vec![bind(config.data_port)?];
-            // A lidar set to send both to one port needs one socket.
+            // A lidar that sends both kinds to one port needs one socket.
             if let Some(port) = config.position_port
                 && (port != config.data_port || port == 0)
             {
@@ -155,27 +154,28 @@ impl Listener {
             runtime,
             counts: ListenCounts::default(),
             sensors: Sensors::default(),
-            gather: (GATHER, GATHER),
+            longest_gather: GATHER,
+            gather: GATHER,
         })
     }
 
-    /// Lets datagrams gather for so long at most, and for less where they come so fast that more
-    /// than 48 would. Who is in a hurry sets the flag of [`Listener::run`] and unparks its thread.
+    /// Sets the longest time for which datagrams gather; it shortens while more than 48 datagrams
+    /// arrive in it. To stop sooner, set the flag of [`Listener::run`] and unpark its thread.
     pub fn gather(&mut self, longest: Duration) {
-        self.gather = (longest, longest.min(self.gather.1.max(GATHER)));
+        self.longest_gather = longest;
+        self.gather = longest.min(self.gather.max(GATHER));
     }
 
-    /// Halves or doubles the time by how many datagrams came in it.
-    fn adapt(&mut self, came: u64) {
-        let (longest, now) = self.gather;
-        self.gather.1 = match came {
-            0..=20 => (now * 2).min(longest),
-            21..=GATHERED => now,
-            _ => (now / 2).max(GATHER.min(longest)),
+    /// Halves or doubles the gathering time by the number of datagrams that arrived in it.
+    fn adapt(&mut self, arrived: u64) {
+        self.gather = match arrived {
+            0..=20 => (self.gather * 2).min(self.longest_gather),
+            21..=GATHERED => self.gather,
+            _ => (self.gather / 2).max(GATHER.min(self.longest_gather)),
         };
     }
 
-    /// The sensors heard so far.
+    /// The sensors seen so far.
     #[must_use]
     pub fn sensors(&self) -> Vec<Sensor> {
         self.sensors.list()
@@ -187,7 +187,7 @@ impl Listener {
         &self.sockets
     }
 
-    /// What was heard so far.
+    /// Numbers of datagrams so far.
     #[must_use]
     pub fn counts(&self) -> ListenCounts {
         ListenCounts {
@@ -196,10 +196,9 @@ impl Listener {
         }
     }
 
-    /// Gives each datagram to `sink` until `stop` is set; looks at `stop` every 25 ms at least, or
-    /// as late as datagrams gather. What had arrived by then is still given. Datagrams of several
-    /// sockets come in the order of their times as far as they are read together, which is as they
-    /// gather. May be called again.
+    /// Passes each datagram to `sink` until `stop` is set, then those that had arrived by then.
+    /// `stop` is read every 25 ms, or as rarely as datagrams gather. Datagrams of several sockets
+    /// that are read together are passed in order of their times. May be called again.
     ///
     /// # Errors
     /// [`UdpError::Io`].
@@ -219,65 +218,64 @@ impl Listener {
                     Ok(ready) => ready?,
                     Err(_elapsed) => continue,
                 }
-                // The time of the read is no time to be late.
+                // Without kernel times the time of the read counts, and must not be delayed.
                 if self.counts.without_kernel_time == 0 {
-                    thread::park_timeout(self.gather.1);
+                    thread::park_timeout(self.gather);
                 }
             }
-            let before = self.came();
+            let before = self.arrived();
             more = self.drain(&mut sink)?;
-            self.adapt(self.came() - before);
+            self.adapt(self.arrived() - before);
         }
         while self.drain(&mut sink)? {}
         Ok(self.counts())
     }
 
-    /// Datagrams so far, wanted or not.
-    const fn came(&self) -> u64 {
+    /// Datagrams so far, unwanted ones included.
+    const fn arrived(&self) -> u64 {
         self.counts.data + self.counts.position + self.counts.unwanted
     }
 
-    /// Gives on what has come, in the order of its times, up to a batch of each socket; whether
-    /// there may be more.
+    /// Delivers the datagrams that arrived in order of their times, up to one batch per socket;
+    /// returns whether more may be waiting.
     fn drain(&mut self, sink: &mut impl FnMut(&Record<'_>)) -> Result<bool, UdpError> {
         for (socket, batch) in self.sockets.iter_mut().zip(&mut self.batches) {
-            if batch.next().is_none() {
+            if batch.peek().is_none() {
                 socket.try_recv_batch(batch)?;
             }
         }
         while let Some(index) = earliest(&self.batches) {
-            self.give(index, sink);
-            let emptied = self.batches.get(index).is_some_and(|b| b.next().is_none());
-            // What waits behind a full batch may be earlier than what other sockets gave.
-            if emptied && self.batches.get(index).is_some_and(Batch::was_full) {
+            self.deliver(index, sink);
+            let batch = self.batches.get(index);
+            // Datagrams behind a full batch may be earlier than those of other sockets.
+            if batch.is_some_and(|batch| batch.peek().is_none() && batch.was_full()) {
                 return Ok(true);
             }
         }
         Ok(false)
     }
 
-    /// Gives the next datagram of a socket on, if it is wanted.
-    fn give(&mut self, index: usize, sink: &mut impl FnMut(&Record<'_>)) {
+    /// Delivers the next datagram of a socket, if it is wanted.
+    fn deliver(&mut self, index: usize, sink: &mut impl FnMut(&Record<'_>)) {
         let (Some(socket), Some((received, payload))) = (
             self.sockets.get(index),
             self.batches.get_mut(index).and_then(Batch::take),
         ) else {
             return;
         };
-        let source = received.source.ip();
-        if !self.sources.is_empty() && !self.sources.contains(source) {
+        if !self.sources.is_empty() && !self.sources.contains(&received.source) {
             self.counts.unwanted += 1;
             return;
         }
         let record = Record {
             host: received.host,
             wire: Wire::Lidar {
-                source: source.octets(),
+                source: received.source.octets(),
                 port: socket.address().port(),
                 payload,
             },
         };
-        self.counts.without_kernel_time += u64::from(!received.kernel_time);
+        self.counts.without_kernel_time += u64::from(!received.has_kernel_time);
         if self.position == Some(index) {
             self.counts.position += 1;
         } else {
@@ -290,20 +288,20 @@ impl Listener {
     }
 }
 
-/// The batch whose next datagram came first.
+/// Index of the batch whose next datagram arrived first.
 fn earliest(batches: &[Batch]) -> Option<usize> {
     let next = batches
         .iter()
         .enumerate()
-        .filter_map(|(index, batch)| Some((batch.next()?.host, index)));
+        .filter_map(|(index, batch)| Some((batch.peek()?.host, index)));
     next.min().map(|(_, index)| index)
 }
 
-/// Until one of the sockets may have something.
+/// Resolves when one of the sockets may be readable.
 async fn readable(sockets: &[LidarSocket]) -> Result<(), UdpError> {
     poll_fn(|context| {
         let mut ready = Poll::Pending;
-        // Each is asked, so that each will wake this.
+        // All are polled, so that each of them wakes this task.
         for socket in sockets {
             match socket.poll_ready(context) {
                 Poll::Ready(Ok(())) => ready = Poll::Ready(Ok(())),

@@ -78,7 +78,7 @@ fn sound_files() -> Vec<Vec<u8>> {
     let can = [0, 0, 6, 1, 2, 0, 0, 0, 0x40, 0x41];
     let mut files = vec![
         pcap(
-            0xA1B2_CD34,
+            0xA1B2_3C4D,
             false,
             1,
             &[(1, 2, None, &[0; 40]), (3, 4, None, &data)],
@@ -95,7 +95,12 @@ fn sound_files() -> Vec<Vec<u8>> {
             113,
             &[(1, 2, None, &data), (3, 4, None, &data)],
         ),
-        pcap(0xA1B2_C3D4, false, 0, &[(1, 2, None, &data)]),
+        pcap(
+            0xA1B2_C3D4,
+            false,
+            101,
+            &[(1, 2, None, &ip(2368, b"firing"))],
+        ),
     ];
     for big in [false, true] {
         files.push(pcap(
