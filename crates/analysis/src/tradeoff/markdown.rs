@@ -1,29 +1,59 @@
-//! Findings as a page of the book. The figures stand beside it, in a folder of its name.
+//! Findings as a page of the book.
 
-use super::{Findings, Report, number};
+use std::path::{Path, PathBuf};
 
-/// The page: `command` is what makes it, `folder` where its figures are, seen from the page.
-#[must_use]
-pub fn page(report: &Report, command: &str, folder: &str) -> String {
-    let mut page = vec![
-        "# What accuracy costs in time".to_owned(),
-        format!(
-            "Every choice that buys accuracy with time, measured by `{command}` on {}. Times are the median of repeated runs, with the least \
-             and the greatest; the competitors took turns. Less is better everywhere: a choice is on the Pareto front (*, or the \
-             figure's number) where no other is at least as good in both and better in one, not even than its best run.",
-            escaped(&report.machine.line())
-        ),
-    ];
-    page.extend(
-        report
-            .cautions()
-            .iter()
-            .map(|caution| format!("**{caution}**")),
-    );
-    for findings in &report.studies {
-        page.push(section(findings, folder));
+use super::{Findings, Report, number, svg};
+
+/// A page of the book that a command writes, with its figures in a folder of the page's name.
+#[derive(Clone, Copy, Debug)]
+pub struct Book<'a> {
+    /// Title of the page.
+    pub title: &'a str,
+    /// Command that writes the page.
+    pub command: &'a str,
+    /// Name of the page and of the folder of its figures.
+    pub name: &'a str,
+}
+
+impl Book<'_> {
+    /// The page and its figures: paths within the book, and contents.
+    #[must_use]
+    pub fn files(&self, report: &Report) -> Vec<(PathBuf, String)> {
+        let page = (
+            PathBuf::from(format!("{}.md", self.name)),
+            self.page(report),
+        );
+        let figures = report.studies.iter().map(|study| {
+            let path = Path::new(self.name).join(format!("{}.svg", study.name));
+            (path, svg::figure(study))
+        });
+        [page].into_iter().chain(figures).collect()
     }
-    page.join("\n\n") + "\n"
+
+    fn page(&self, report: &Report) -> String {
+        let mut page = vec![
+            format!("# {}", escaped(self.title)),
+            format!(
+                "Measured by `{}` on {}. Times are the median of repeated runs, with the minimum \
+                 and the maximum; the choices ran in turns. Smaller is better everywhere. A \
+                 choice is on the Pareto front (*, or the number of the figure) unless another \
+                 choice is at least as good in both columns and better in one, compared with the \
+                 best run.",
+                self.command,
+                escaped(&report.machine.line())
+            ),
+        ];
+        page.extend(
+            report
+                .cautions()
+                .iter()
+                .map(|caution| format!("**{caution}**")),
+        );
+        for findings in &report.studies {
+            page.push(section(findings, self.name));
+        }
+        page.join("\n\n") + "\n"
+    }
 }
 
 fn section(findings: &Findings, folder: &str) -> String {
@@ -78,10 +108,16 @@ mod tests {
     use super::super::study::example;
     use super::*;
 
+    const BOOK: Book<'_> = Book {
+        title: "Accuracy and time",
+        command: "velomotion tradeoff",
+        name: "tradeoff",
+    };
+
     #[test]
     fn the_page_names_machine_command_figures_and_every_choice() {
         let report = example();
-        let page = self::page(&report, "velomotion tradeoff", "tradeoff");
+        let page = BOOK.page(&report);
         assert!(page.contains("`velomotion tradeoff` on Processor &lt;4&gt;, 2 cores, Linux."));
         assert!(page.contains("**A quick look"), "{page}");
         assert!(page.contains("![Ways &amp; means](tradeoff/example.svg)"));
@@ -92,6 +128,9 @@ mod tests {
             page.contains("| coarse &lt;&amp;&gt; way | 2 (1.8..3.4) | 130 | 10 | 1 |"),
             "{page}"
         );
+        let files = BOOK.files(&report);
+        assert_eq!(files[0], (PathBuf::from("tradeoff.md"), page.clone()));
+        assert_eq!(files[1].0, PathBuf::from("tradeoff/example.svg"));
         let columns = |line: &str| line.matches('|').count();
         let lines: Vec<&str> = page.lines().filter(|l| l.starts_with('|')).collect();
         assert_eq!(lines.len(), 6);

@@ -1,25 +1,30 @@
-//! What accuracy costs in time: studies of choices, measured and compared.
+//! Studies of choices that trade accuracy for time.
 //!
-//! A [`Study`] measures every way to do one thing and gives [`Findings`]: a table, what is traded for what, and which ways are
-//! on the Pareto front ([`front`]). The rest says findings: [`text`] at 80 columns, [`svg`] figures, [`markdown`] and [`html`]
-//! pages, [`json`]. [`placing`] and [`pattern`] are what studies here and elsewhere measure; [`KFunction`] is one.
-//! Left out: the clock, which is an argument ([`Clock`]), files, and studies of what this crate may not see.
+//! A [`Study`] measures every choice and returns [`Findings`]: a table, the pairs of columns that
+//! are traded, and the choices on the Pareto front ([`front`]). [`text`], [`svg`], [`Book`],
+//! [`html`] and [`json`] show the findings. [`KFunction`] and [`ScanSpeed`] are studies; others
+//! are in `velomotion` and in `studies`. The clock is an argument ([`Clock`]).
 
 pub mod front;
 pub mod html;
 pub mod json;
 mod k_function;
-pub mod markdown;
+mod markdown;
+mod noise;
 pub mod number;
 pub mod pattern;
-pub mod placing;
+mod scan_speed;
 mod study;
 pub mod svg;
 pub mod text;
 mod timing;
 
 pub use k_function::KFunction;
+pub use markdown::Book;
+pub use noise::SeededNoise;
+pub use scan_speed::ScanSpeed;
 pub use study::{
-    Bench, Column, Effort, Findings, Machine, Report, Row, Scale, Study, StudyError, Trade, Value,
+    Bench, Column, Effort, Findings, Machine, Report, Row, Scale, Study, StudyError, Trade,
+    UnknownStudy, Value, select,
 };
 pub use timing::{Clock, Plan, Spread, Work, in_rounds};

@@ -1,5 +1,7 @@
 //! What a study is, and what it finds.
 
+use std::fmt;
+
 use cloud::SinkError;
 use serde::Serialize;
 use units::Span;
@@ -22,6 +24,41 @@ pub trait Study {
     fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError>;
 }
 
+/// The studies of `all` with the names `only`, in their own order; all of them if `only` is empty.
+///
+/// # Errors
+/// [`UnknownStudy`] if a name belongs to no study.
+pub fn select<'a>(
+    all: &[&'a dyn Study],
+    only: &[String],
+) -> Result<Vec<&'a dyn Study>, UnknownStudy> {
+    if let Some(name) = only
+        .iter()
+        .find(|name| all.iter().all(|s| s.name() != *name))
+    {
+        return Err(UnknownStudy {
+            name: name.clone(),
+            known: all.iter().map(|study| study.name()).collect(),
+        });
+    }
+    let selected = |name| only.is_empty() || only.iter().any(|wanted| wanted == name);
+    Ok(all
+        .iter()
+        .copied()
+        .filter(|study| selected(study.name()))
+        .collect())
+}
+
+/// A name that belongs to no study.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no study {name:?}; the studies are {}", known.join(", "))]
+pub struct UnknownStudy {
+    /// The unknown name.
+    pub name: String,
+    /// Names of all studies.
+    pub known: Vec<&'static str>,
+}
+
 /// Why a study came to nothing.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
@@ -31,18 +68,13 @@ pub enum StudyError {
     /// What was to be measured could not be set up.
     #[error("workload: {0}")]
     Workload(Box<dyn std::error::Error + Send + Sync>),
-    /// What was written does not read back.
-    #[error("{format} read back, byte {offset}: expected {expected}, got {got}")]
-    ReadBack {
-        /// The format.
-        format: &'static str,
-        /// Where in the file.
-        offset: usize,
-        /// What should be there.
-        expected: String,
-        /// What is.
-        got: String,
-    },
+}
+
+impl StudyError {
+    /// A workload that could not be set up.
+    pub fn workload(error: impl fmt::Display) -> Self {
+        Self::Workload(error.to_string().into())
+    }
 }
 
 /// How thoroughly a study measures.
@@ -327,6 +359,26 @@ pub struct Machine {
 }
 
 impl Machine {
+    /// This machine; `read` gives the text of a file of the system, if it is there.
+    #[must_use]
+    pub fn current(read: impl Fn(&str) -> Option<String>) -> Self {
+        let read = |path| read(path).unwrap_or_default();
+        let cpu = cpu_name(&read("/proc/cpuinfo"));
+        Self {
+            cpu: cpu.unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            os: os_name(
+                &read("/etc/os-release"),
+                &read("/proc/sys/kernel/osrelease"),
+            ),
+            build: if cfg!(debug_assertions) {
+                "debug"
+            } else {
+                "release"
+            },
+        }
+    }
+
     /// One line.
     #[must_use]
     pub fn line(&self) -> String {
@@ -335,6 +387,26 @@ impl Machine {
             n => format!("{n} cores"),
         };
         format!("{}, {cores}, {}", self.cpu, self.os)
+    }
+}
+
+/// The processor's name; ARM kernels give the whole board's instead.
+fn cpu_name(cpuinfo: &str) -> Option<String> {
+    let of = |key: &str| {
+        let mut lines = cpuinfo.lines().filter_map(|line| line.split_once(':'));
+        let (_, value) = lines.find(|(name, _)| name.trim() == key)?;
+        Some(value.split_whitespace().collect::<Vec<_>>().join(" "))
+    };
+    of("model name").or_else(|| of("Model"))
+}
+
+fn os_name(os_release: &str, kernel: &str) -> String {
+    let mut lines = os_release.lines();
+    let name = lines.find_map(|line| line.strip_prefix("PRETTY_NAME="));
+    let name = name.map_or(std::env::consts::OS, |name| name.trim_matches('"'));
+    match kernel.trim() {
+        "" => name.to_owned(),
+        kernel => format!("{name}, kernel {kernel}"),
     }
 }
 
@@ -468,5 +540,21 @@ mod tests {
         report.effort = Effort::Full;
         report.machine.build = "release";
         assert!(report.cautions().is_empty());
+    }
+
+    #[test]
+    fn processors_are_named_on_both_architectures() {
+        let x86 = "processor\t: 0\nmodel\t\t: 17\nmodel name\t: Some  CPU @ 3GHz\n";
+        assert_eq!(cpu_name(x86).as_deref(), Some("Some CPU @ 3GHz"));
+        let arm = "processor\t: 0\nBogoMIPS\t: 108.00\n\nModel\t\t: A Board Rev 1.1\n";
+        assert_eq!(cpu_name(arm).as_deref(), Some("A Board Rev 1.1"));
+        assert_eq!(cpu_name(""), None);
+    }
+
+    #[test]
+    fn the_system_is_named_with_its_kernel() {
+        let release = "NAME=\"X\"\nPRETTY_NAME=\"X 12 (y)\"\n";
+        assert_eq!(os_name(release, "6.1.0\n"), "X 12 (y), kernel 6.1.0");
+        assert_eq!(os_name("", ""), std::env::consts::OS);
     }
 }

@@ -22,17 +22,7 @@ fn what_accuracy_costs_is_measured_and_shown() {
         .iter()
         .map(|s| s["name"].as_str().unwrap())
         .collect();
-    for name in [
-        "granularity",
-        "trigonometry",
-        "clocks",
-        "formats",
-        "beam-sampling",
-        "precision",
-        "bvh-quality",
-        "k-function",
-        "scan-speed",
-    ] {
+    for name in ["trajectory", "k-function", "scan-speed"] {
         assert!(names.contains(&name), "{names:?}");
     }
     for study in studies {
@@ -62,7 +52,7 @@ fn what_accuracy_costs_is_measured_and_shown() {
     place.fails("tradeoff --only nonsense", 2, &["nonsense", "scan-speed"]);
 
     // What is computed comes out the same again, and as text it fits a terminal.
-    let again = place.run("tradeoff --quick --only scan-speed,formats --json");
+    let again = place.run("tradeoff --quick --only scan-speed,trajectory --json");
     let again = json(&again);
     assert_eq!(Some(&again["studies"][1]), studies.last());
     assert_eq!(again["studies"].as_array().unwrap().len(), 2);

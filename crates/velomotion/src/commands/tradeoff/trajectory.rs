@@ -4,14 +4,13 @@ use std::hint::black_box;
 
 use analysis::tradeoff::pattern;
 use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+    Bench, Column, Effort, Findings, Row, Scale, SeededNoise, Study, StudyError, Trade, Value,
+    Work, in_rounds,
 };
 use scanner::clock::Moment;
 use scanner::sweeps::{Commanded, Sweep};
 use scanner::trajectory::{AngleSample, Method, Trajectory};
 use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
-
-use super::workload::{Random, workload};
 
 /// The study.
 pub(super) struct Trajectories;
@@ -234,10 +233,10 @@ fn polls(shaft: &[f64], hz: f64, circumstance: Circumstance, seed: u64) -> Vec<A
         quantum_deg,
         ..
     } = circumstance;
-    let mut noise = Random(seed);
+    let mut noise = SeededNoise(seed);
     let end_s = BEFORE_S + SWEEP.duration_s() + AFTER_S - 0.01;
     // No poll falls on a corner of the motion.
-    let begin_s = 0.01 + noise.even() / hz;
+    let begin_s = 0.01 + noise.uniform() / hz;
     let mut last_s = 0.0_f64;
     (0..)
         .map(|i| begin_s + f64::from(i) / hz)
@@ -283,7 +282,7 @@ fn through(
     };
     let quantum = Degrees(circumstance.quantum_deg);
     Trajectory::through(samples, quantum, &[sweep], Some(method))
-        .ok_or_else(|| workload("polls that make no trajectory"))
+        .ok_or_else(|| StudyError::workload("polls that make no trajectory"))
 }
 
 /// The blocks' instants from the sweep's begin until it has settled.

@@ -2,7 +2,7 @@
 //!
 //! Written alike, in the registers there are, so that what differs is the numbers. Left out: which triangles to test.
 
-use analysis::tradeoff::placing::Number;
+use crate::placing::Number;
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch, f32x8, f64x8, prelude::*};
 use sim::cast::Sheared8;
 

@@ -9,10 +9,8 @@ use scanner::clock::{Arrival, LidarClock, OnlineClock};
 use sim::packet_clock::{ArrivalLink, Oscillator, PACKET_NS, PacketClock, TimedPacket};
 use units::{Host, Lidar, Span, Stamp};
 
-use super::workload::workload;
-
 /// The study.
-pub(super) struct Clocks;
+pub(crate) struct Clocks;
 
 /// Host and lidar at the start, a minute apart in their seconds' count.
 const BEGIN: Stamp<Host> = Stamp::from_nanos(1_700_002_800_000_000_000);
@@ -148,7 +146,8 @@ struct Off {
 fn off(recordings: &[Vec<TimedPacket>], method: Method) -> Result<Off, StudyError> {
     let (mut bias_us, mut worst_us) = (0.0, 0.0);
     for packets in recordings {
-        let hosts = method(packets).ok_or_else(|| workload("packets that make no clock"))?;
+        let hosts =
+            method(packets).ok_or_else(|| StudyError::workload("packets that make no clock"))?;
         let settled = packets
             .iter()
             .zip(hosts)

@@ -12,12 +12,11 @@ use glam::DVec3;
 use sim::cast::{Caster, Hit, Mesh, Object, Quality, Ray, Rays, Reach, Surface, Threads};
 use sim::scenery::{Scenery, no_files, shipped};
 
-use super::ball::Ball;
-use super::shots::Shots;
-use super::workload::workload;
+use crate::ball::Ball;
+use crate::shots::Shots;
 
 /// The study.
-pub(super) struct BvhQuality;
+pub(crate) struct BvhQuality;
 
 /// Lasers of a firing.
 const BEAMS: usize = 16;
@@ -188,7 +187,9 @@ impl Scene {
     fn new(name: &'static str, objects: Vec<Object>) -> Result<Self, StudyError> {
         let scene = Self { name, objects };
         if scene.meshes().next().is_none() {
-            return Err(workload(format!("{name}: a scene without a mesh")));
+            return Err(StudyError::workload(format!(
+                "{name}: a scene without a mesh"
+            )));
         }
         Ok(scene)
     }
@@ -208,7 +209,7 @@ impl Scene {
             Surface::Mesh(mesh) => Object::new(mesh.rebuilt(quality)).placed(*object.placement()),
             _ => object.clone(),
         });
-        Caster::new(objects).map_err(workload)
+        Caster::new(objects).map_err(StudyError::workload)
     }
 }
 
@@ -235,7 +236,7 @@ fn rays(shots: &Shots) -> Result<Vec<Ray>, StudyError> {
     for (firing, _) in &shots.firings {
         let both = firing.origins_m.iter().zip(&firing.directions);
         for (from, way) in both.take(BEAMS) {
-            rays.push(Ray::new(*from, *way).map_err(workload)?);
+            rays.push(Ray::new(*from, *way).map_err(StudyError::workload)?);
         }
     }
     Ok(rays)
@@ -243,8 +244,11 @@ fn rays(shots: &Shots) -> Result<Vec<Ray>, StudyError> {
 
 /// What the quarry's scene file places.
 fn quarry(seed: u64) -> Result<Vec<Object>, StudyError> {
-    let scenery = Scenery::parse(shipped("quarry").unwrap_or_default()).map_err(workload)?;
-    let placed = scenery.place(seed, &mut no_files).map_err(workload)?;
+    let scenery =
+        Scenery::parse(shipped("quarry").unwrap_or_default()).map_err(StudyError::workload)?;
+    let placed = scenery
+        .place(seed, &mut no_files)
+        .map_err(StudyError::workload)?;
     Ok(placed.objects)
 }
 
@@ -268,14 +272,14 @@ fn cave(walls: Ball) -> Result<Vec<Object>, StudyError> {
         let away_m = 6.0 + 8.0 * (boulder * 0.618).fract();
         let height_m = 3.0 * (boulder * 0.382).fract() - 3.0;
         let middle_m = DVec3::new(away_m * turn.cos(), away_m * turn.sin(), height_m);
-        let first = u32::try_from(vertices.len()).map_err(workload)?;
+        let first = u32::try_from(vertices.len()).map_err(StudyError::workload)?;
         vertices.extend(
             BOULDER.vertices(|along| middle_m + along * (0.4 + 0.1 * (5.0 * along.x).sin())),
         );
         let own = BOULDER.triangles().into_iter();
         triangles.extend(own.map(|corners| corners.map(|at| at + first)));
     }
-    let mesh = Mesh::new(&vertices, &triangles).map_err(workload)?;
+    let mesh = Mesh::new(&vertices, &triangles).map_err(StudyError::workload)?;
     Ok(vec![Object::new(mesh)])
 }
 

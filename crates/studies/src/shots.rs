@@ -14,13 +14,11 @@ use sim::scenery::shipped;
 use sim::sensor::ReturnMode;
 use sim::simulate::{Echoes, Event, Firing, Out, Surroundings};
 
-use super::workload::workload;
-
 /// Firings that stay together: as many as are cast together.
 const TOGETHER: u64 = 8;
 
 /// What a sensor sees of a scene.
-pub(super) struct Shots {
+pub(crate) struct Shots {
     /// The scene's.
     pub seed: u64,
     /// What is around it.
@@ -32,8 +30,9 @@ pub(super) struct Shots {
 impl Shots {
     /// About `firings` of the sweep in a scene that comes with the simulator, in groups that are evenly spread over it.
     pub fn of(name: &str, firings: usize) -> Result<Self, StudyError> {
-        let text = shipped(name).ok_or_else(|| workload(format!("there is no scene {name}")))?;
-        let scene = Scene::parse(text, None, None).map_err(workload)?;
+        let text = shipped(name)
+            .ok_or_else(|| StudyError::workload(format!("there is no scene {name}")))?;
+        let scene = Scene::parse(text, None, None).map_err(StudyError::workload)?;
         let mut simulation = scene.simulation;
         simulation.returns = ReturnMode::Dual;
         let all = simulation.motion.end_s() * 1e9 / f64::from(VLP_16.firing_period_ns);
@@ -57,12 +56,13 @@ impl Shots {
         };
         simulation
             .run(&mut effects, NonZeroUsize::MIN, &mut Nobody)
-            .map_err(workload)?;
+            .map_err(StudyError::workload)?;
         let mut taken = taken.lock().unwrap_or_else(PoisonError::into_inner);
         let surroundings = taken.surroundings.take();
         Ok(Self {
             seed: scene.seed,
-            surroundings: surroundings.ok_or_else(|| workload("a scene without firings"))?,
+            surroundings: surroundings
+                .ok_or_else(|| StudyError::workload("a scene without firings"))?,
             firings: std::mem::take(&mut taken.firings),
         })
     }

@@ -1,12 +1,10 @@
 //! Tilt speed against scan time, resolution and what stays unseen. Computed, not timed.
 
-use analysis::tradeoff::pattern::{Lidar, Sweep};
-use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value,
-};
+use super::pattern::{Lidar, Sweep};
+use super::{Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value};
 
 /// The study.
-pub(super) struct ScanSpeed;
+pub struct ScanSpeed;
 
 /// 45 degrees, with the drive's factory ramps.
 const WAY_DEG: f64 = 45.0;

@@ -3,9 +3,7 @@
 //! 10 turns a second, one return a firing and laser, distances as the study asks for. Packets arrive as they are full, at no
 //! delay. Left out: everything that makes clocks hard; other studies are about that.
 
-use std::fmt::Display;
-
-use analysis::tradeoff::placing::{Beam, Head, LASERS, Shot};
+use crate::placing::{Beam, Head, LASERS, Shot};
 use analysis::tradeoff::{Bench, Effort, StudyError};
 use drive::record::{Record, Wire};
 use firmware_sim::vlp16::{DATA_PORT, PacketBuilder};
@@ -22,17 +20,17 @@ const START: Stamp<Host> = Stamp::from_nanos(1_700_002_800_000_000_000);
 const FIRINGS: u64 = 24;
 
 /// The tilt angle in degrees, seconds after the first firing, and before it.
-pub(super) type Tilt = fn(f64) -> f64;
+pub(crate) type Tilt = fn(f64) -> f64;
 
 /// A laser's shot, to be answered with a distance in counts (0 for none) and a reflectivity.
-pub(super) struct Ray {
+pub(crate) struct Ray {
     pub laser: usize,
     pub azimuth_deg: f64,
     pub tilt_deg: f64,
 }
 
 /// Packets of a tilting lidar.
-pub(super) struct Workload {
+pub(crate) struct Workload {
     tilt_deg: Tilt,
     seconds: f64,
     packets: Vec<(Stamp<Host>, [u8; protocol::vlp16::DATA_LEN])>,
@@ -88,7 +86,7 @@ impl Workload {
     /// Clock and angle as a scan finds them, the angle known every millisecond.
     pub fn alignment(&self) -> Result<Alignment, StudyError> {
         let config = ScanConfig::default();
-        let mut survey = Survey::new(&config, Options::default()).map_err(workload)?;
+        let mut survey = Survey::new(&config, Options::default()).map_err(StudyError::workload)?;
         for record in self.records() {
             survey.observe(&record);
         }
@@ -96,10 +94,10 @@ impl Workload {
         let rows = times
             .take_while(|t| *t < self.seconds + 0.1)
             .map(|t| (t, (self.tilt_deg)(t)));
-        let table = AngleTable::new(rows.collect()).map_err(workload)?;
+        let table = AngleTable::new(rows.collect()).map_err(StudyError::workload)?;
         survey
             .solve(&config, &TiltSource::Table(table))
-            .map_err(workload)
+            .map_err(StudyError::workload)
     }
 
     /// The firings with their angles, as the decoder and the alignment have them.
@@ -137,7 +135,7 @@ impl Workload {
 }
 
 /// The VLP-16 at the height of the configuration's mount.
-pub(super) fn head() -> Head {
+pub(crate) fn head() -> Head {
     let beam = |i: usize| {
         VLP_16.lasers.get(i).map_or(Beam::default(), |laser| Beam {
             elevation_deg: laser.elevation_deg,
@@ -153,12 +151,12 @@ pub(super) fn head() -> Head {
 }
 
 /// The cruise of the paper's fast scan, 56.25 deg/s. No ramp: a line is then what the angle is, between samples too.
-pub(super) fn cruise_deg(t_s: f64) -> f64 {
+pub(crate) fn cruise_deg(t_s: f64) -> f64 {
     -56.25 * t_s
 }
 
 /// How long 45 degrees of it take; of a quick look less.
-pub(super) const fn cruise_s(bench: &Bench<'_>) -> f64 {
+pub(crate) const fn cruise_s(bench: &Bench<'_>) -> f64 {
     match bench.effort {
         Effort::Quick => 0.2,
         Effort::Full => 0.8,
@@ -166,33 +164,9 @@ pub(super) const fn cruise_s(bench: &Bench<'_>) -> f64 {
 }
 
 /// Something `range_m` away in every direction.
-pub(super) fn all_at(range_m: f64) -> impl FnMut(&Ray) -> (u16, u8) {
+pub(crate) fn all_at(range_m: f64) -> impl FnMut(&Ray) -> (u16, u8) {
     let count = (range_m / VLP_16.distance_unit_m) as u16;
     move |_| (count, 40)
-}
-
-/// Chance that is the same on every machine (splitmix64).
-pub(super) struct Random(pub u64);
-
-impl Random {
-    /// Even in 0..1.
-    pub fn even(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Nearly normal, of standard deviation 1: the sum of twelve even ones, less 6.
-    pub fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.even()).sum::<f64>() - 6.0
-    }
-}
-
-/// What could not be set up.
-pub(super) fn workload(error: impl Display) -> StudyError {
-    StudyError::Workload(error.to_string().into())
 }
 
 #[cfg(test)]
@@ -220,18 +194,5 @@ mod tests {
             let off = (shot.azimuth_deg - azimuth + 180.0).rem_euclid(360.0) - 180.0;
             assert!(off.abs() < 0.011, "{i}: {shot:?} {azimuth}");
         }
-    }
-
-    #[test]
-    fn the_noise_has_the_deviation_it_should() {
-        let mut noise = Random(7);
-        let drawn: Vec<f64> = (0..20_000).map(|_| noise.normal()).collect();
-        let n = drawn.len() as f64;
-        let mean = drawn.iter().sum::<f64>() / n;
-        let deviation = (drawn.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
-        assert!(
-            mean.abs() < 0.02 && (deviation - 1.0).abs() < 0.02,
-            "{mean} {deviation}"
-        );
     }
 }

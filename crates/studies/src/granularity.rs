@@ -2,9 +2,7 @@
 
 use std::hint::black_box;
 
-use analysis::tradeoff::placing::{
-    BLOCK, Exact, FIRING, Head, PACKET, Places, RETURN, Shot, place, worst_m,
-};
+use crate::placing::{BLOCK, Exact, FIRING, Head, PACKET, Places, RETURN, Shot, place, worst_m};
 use analysis::tradeoff::{
     Bench, Column, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
 };
@@ -13,10 +11,10 @@ use drive::record::Wire;
 use lidar::{Decoder, Options};
 use scanner::{Alignment, Placer};
 
-use super::workload::{Workload, all_at, cruise_deg, cruise_s, head, workload};
+use crate::workload::{Workload, all_at, cruise_deg, cruise_s, head};
 
 /// The study.
-pub(super) struct Granularity;
+pub(crate) struct Granularity;
 
 const RANGE_M: f64 = 100.0;
 
@@ -181,7 +179,7 @@ impl Sink for Ignore {
 }
 
 /// velomotion's second pass.
-pub(super) fn place_packets(
+pub(crate) fn place_packets(
     packets: &Workload,
     alignment: &Alignment,
     sink: &mut dyn Sink,
@@ -225,7 +223,9 @@ fn own_error_m(
     place_packets(packets, alignment, &mut cloud)?;
     if cloud.len() != truth.len() {
         let (got, expected) = (cloud.len(), truth.len());
-        return Err(workload(format!("expected {expected} points, got {got}")));
+        return Err(StudyError::workload(format!(
+            "expected {expected} points, got {got}"
+        )));
     }
     Ok(worst_m(
         [cloud.x_m(), cloud.y_m(), cloud.z_m()],

@@ -208,12 +208,6 @@ impl<T: Number> Places<T> {
         self.x_m.len()
     }
 
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.x_m.is_empty()
-    }
-
     /// The greatest distance of any place from its own of `truth`, metres; infinite where one has more than the other.
     #[must_use]
     pub fn worst_m(&self, truth: &Places<f64>) -> f64 {
@@ -245,13 +239,6 @@ pub fn worst_m<T: Number>(places_m: [&[T]; 3], truth_m: [&[f64]; 3]) -> f64 {
         }
     });
     worst.sqrt()
-}
-
-/// Returns of shots.
-#[must_use]
-pub fn returns(shots: &[Shot]) -> usize {
-    let counts = shots.iter().flat_map(|shot| shot.counts);
-    counts.filter(|count| *count != 0).count()
 }
 
 /// Places every return, its azimuth and tilt taken once a `AZIMUTH` and once a `TILT` ([`PACKET`], [`BLOCK`], [`FIRING`] or
@@ -324,6 +311,11 @@ mod tests {
     use glam::{DMat3, DVec3};
 
     use super::*;
+
+    fn returns(shots: &[Shot]) -> usize {
+        let counts = shots.iter().flat_map(|shot| shot.counts);
+        counts.filter(|count| *count != 0).count()
+    }
 
     const RANGE_M: f64 = 100.0;
     /// 10 turns and 56.25 degrees a second.

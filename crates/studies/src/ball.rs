@@ -4,7 +4,7 @@ use glam::DVec3;
 
 /// A closed ball in rings from the bottom to the top, each cut into sectors.
 #[derive(Clone, Copy)]
-pub(super) struct Ball {
+pub(crate) struct Ball {
     /// Rings, the two of triangles at the ends included.
     pub rings: usize,
     /// Sectors of a ring.

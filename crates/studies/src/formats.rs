@@ -1,23 +1,22 @@
 //! Point formats: bytes, seconds, and what rounding costs.
 
-mod read_back;
-
 use std::io::{self, Cursor, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::placing::worst_m;
 use ::cloud::formats::Format;
-use ::cloud::{Fields, Metadata, Points};
+use ::cloud::{Fields, Metadata, Points, read};
 use analysis::tradeoff::pattern::Sweep;
-use analysis::tradeoff::placing::worst_m;
 use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+    Bench, Column, Effort, Findings, Row, Scale, SeededNoise, Study, StudyError, Trade, Value,
+    Work, in_rounds,
 };
 use protocol::vlp16::models::VLP_16;
 use sim::{MAX_RANGE_M, MIN_RANGE_M, scenes};
 use units::{Degrees, Metres};
 
-use super::granularity::place_packets;
-use super::workload::{Random, Ray, Workload};
+use crate::granularity::place_packets;
+use crate::workload::{Ray, Workload};
 use engine::output::Buffered;
 
 /// The study.
@@ -130,7 +129,7 @@ fn about(points: usize) -> Vec<String> {
 fn hall(seconds: f64) -> Result<Points, StudyError> {
     let scene = scenes::hall();
     let head = sim::Head::new(Metres(0.06));
-    let mut noise = Random(1);
+    let mut noise = SeededNoise(1);
     let answer = |ray: &Ray| {
         let (azimuth, tilt) = (Degrees(ray.azimuth_deg), Degrees(ray.tilt_deg));
         let beam = head.beam(ray.laser, azimuth, tilt);
@@ -173,7 +172,17 @@ fn write(format: Format, memory: &Memory, batches: &[Points]) -> Result<(), Stud
 
 /// The greatest distance of a point from where it was.
 fn error_m(format: Format, bytes: &[u8], cloud: &Points) -> Result<f64, StudyError> {
-    let [x, y, z] = read_back::places(format, bytes, cloud.len())?;
+    let positions = read::positions(format, bytes.to_vec())
+        .map_err(StudyError::workload)?
+        .positions;
+    if positions.len() != cloud.len() {
+        return Err(StudyError::workload(format!(
+            ".{format} read back: expected {} points, got {}",
+            cloud.len(),
+            positions.len()
+        )));
+    }
+    let [x, y, z] = [0, 1, 2].map(|axis| positions.iter().map(|p| p[axis]).collect::<Vec<f64>>());
     Ok(worst_m(
         [&x, &y, &z],
         [cloud.x_m(), cloud.y_m(), cloud.z_m()],
@@ -251,23 +260,5 @@ mod tests {
         let las = error_um(Format::Las);
         assert!((50.0..=50.0 * 3_f64.sqrt() + 0.01).contains(&las), "{las}");
         assert_eq!(error_um(Format::Laz), las);
-    }
-
-    #[test]
-    fn what_does_not_read_back_says_where() {
-        let error =
-            |format, bytes: &[u8]| read_back::places(format, bytes, 3).unwrap_err().to_string();
-        for format in Format::ALL {
-            let said = error(format, b"nothing of the kind");
-            assert!(
-                said.contains(format.extension()) && said.contains("byte"),
-                "{said}"
-            );
-        }
-        let said = error(Format::Csv, b"x_m,y_m,z_m\n1,2,3\n1,x,3\n");
-        assert!(
-            said.contains("a number") && said.contains("\"x\""),
-            "{said}"
-        );
     }
 }

@@ -118,7 +118,8 @@ pub fn ranges(patches: &[Patch<f64>]) -> Vec<[f64; LANES]> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::workload::Random;
+    use analysis::tradeoff::SeededNoise;
+
     use super::*;
 
     /// In whole numbers nothing is rounded: the determinants fit i128.
@@ -139,11 +140,11 @@ mod tests {
 
     #[test]
     fn it_is_what_whole_numbers_give() {
-        let mut chance = Random(3);
+        let mut chance = SeededNoise(3);
         // Numbers up to 2^26: products of three have 80 bits, more than an f64 holds. Small ones too, which make rays through edges and corners common.
         let mut whole = |bits: u32| {
             let size = (1_i64 << bits) as f64;
-            i128::from(((chance.even() - 0.5) * size) as i64)
+            i128::from(((chance.uniform() - 0.5) * size) as i64)
         };
         let (mut hits, mut on_edges) = (0, 0);
         for at in 0..4_000 {

@@ -10,8 +10,7 @@ use analysis::tradeoff::{
 use sim::effects::{Beam, Divergence, DivergenceSettings};
 use sim::simulate::{Echo, Echoes, Firing};
 
-use super::shots::Shots;
-use super::workload::workload;
+use crate::shots::Shots;
 use reference::Footprint;
 
 /// The study.
@@ -185,7 +184,7 @@ fn choices(grids: &[[usize; 2]]) -> Result<Vec<Choice>, StudyError> {
             rows,
             ..DivergenceSettings::default()
         };
-        Divergence::new(&settings).map_err(workload)
+        Divergence::new(&settings).map_err(StudyError::workload)
     };
     let mut choices = vec![Choice {
         name: "the middle alone".to_owned(),
@@ -249,7 +248,8 @@ fn edges(shots: &Shots) -> Result<Vec<Edge>, StudyError> {
     for (number, (firing, _)) in shots.firings.iter().enumerate() {
         for laser in firing.alive() {
             let footprint = Footprint::of(firing, laser);
-            let footprint = footprint.ok_or_else(|| workload("a shot without a footprint"))?;
+            let footprint =
+                footprint.ok_or_else(|| StudyError::workload("a shot without a footprint"))?;
             let samples = footprint.samples(FINE, &shots.surroundings);
             if !samples.are_plane() {
                 edges.push(Edge {

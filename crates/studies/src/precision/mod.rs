@@ -5,14 +5,15 @@ mod reference;
 
 use std::hint::black_box;
 
-use analysis::tradeoff::placing::Number;
+use crate::placing::Number;
 use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+    Bench, Column, Effort, Findings, Row, Scale, SeededNoise, Study, StudyError, Trade, Value,
+    Work, in_rounds,
 };
 use glam::DVec3;
 
-use super::ball::Ball;
-use super::workload::{Random, workload};
+use crate::ball::Ball;
+
 use kernels::{Cast, Eight, Kernel, LANES, Patch};
 
 /// The study.
@@ -195,7 +196,9 @@ impl Set {
         let (mut squares, mut worst_m, mut met, mut missed) = (0.0, 0.0_f64, 0_u32, 0_u32);
         for (got, truth) in ranges_m.iter().flatten().zip(self.truth_m.iter().flatten()) {
             if !truth.is_finite() {
-                return Err(workload("a ray that meets nothing in a closed ball"));
+                return Err(StudyError::workload(
+                    "a ray that meets nothing in a closed ball",
+                ));
             }
             if got.is_finite() {
                 let off_m = (got - truth).abs();
@@ -264,8 +267,8 @@ fn patches_of(middle_m: DVec3, count: usize) -> Vec<Patch<f64>> {
         let lumps = (5.0 * along.x + 2.0).sin() * (7.0 * along.y).sin() * (6.0 * along.z).cos();
         middle_m + along * RADIUS_M * (1.0 + LUMPS * lumps)
     });
-    let mut chance = Random(6);
-    let mut below = move |end: usize| ((chance.even() * end as f64) as usize).min(end - 1);
+    let mut chance = SeededNoise(6);
+    let mut below = move |end: usize| ((chance.uniform() * end as f64) as usize).min(end - 1);
     let mut patches = Vec::with_capacity(count);
     while patches.len() < count {
         // Away from the ends, where cells are no squares.

@@ -2,17 +2,17 @@
 
 use std::hint::black_box;
 
-use analysis::tradeoff::placing::{
+use crate::placing::{
     Addition, Exact, Head, LASERS, Number, Places, RETURN, Shot, Sine, Table, place,
 };
 use analysis::tradeoff::{
     Bench, Column, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
 };
 
-use super::workload::{Workload, all_at, cruise_deg, cruise_s, head};
+use crate::workload::{Workload, all_at, cruise_deg, cruise_s, head};
 
 /// The study.
-pub(super) struct Trigonometry;
+pub(crate) struct Trigonometry;
 
 const RANGE_M: f64 = 100.0;
 

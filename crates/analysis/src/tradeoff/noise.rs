@@ -1,0 +1,40 @@
+//! Seeded random numbers for the workloads of studies.
+
+/// SplitMix64 (Steele, Lea and Flood 2014): the same numbers on every machine.
+#[derive(Clone, Debug)]
+pub struct SeededNoise(pub u64);
+
+impl SeededNoise {
+    /// The next number, uniform in 0..1.
+    pub fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// The next number of nearly normal distribution with standard deviation 1 (Irwin-Hall: the
+    /// sum of twelve uniform numbers, less 6).
+    pub fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_noise_has_the_deviation_it_should() {
+        let mut noise = SeededNoise(7);
+        let drawn: Vec<f64> = (0..20_000).map(|_| noise.normal()).collect();
+        let n = drawn.len() as f64;
+        let mean = drawn.iter().sum::<f64>() / n;
+        let deviation = (drawn.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
+        assert!(
+            mean.abs() < 0.02 && (deviation - 1.0).abs() < 0.02,
+            "{mean} {deviation}"
+        );
+    }
+}

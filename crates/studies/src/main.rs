@@ -1,0 +1,92 @@
+//! Measurements behind velomotion's own choices. One file per study; [`studies`] lists them.
+//!
+//! ```sh
+//! cargo run --release -p studies -- --markdown docs/src
+//! ```
+//!
+//! The study framework (tables, Pareto fronts, figures, pages) is `analysis::tradeoff`, which
+//! `velomotion tradeoff` uses too.
+
+mod ball;
+mod beam_sampling;
+mod bvh_quality;
+mod clocks;
+mod formats;
+mod granularity;
+mod placing;
+mod precision;
+mod shots;
+#[cfg(test)]
+mod tests;
+mod trigonometry;
+mod workload;
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use analysis::tradeoff::{self, Bench, Book, Effort, Machine, Report, Study, text};
+use clap::Parser;
+
+/// Measures the choices behind velomotion's own arithmetic.
+#[derive(Parser)]
+struct Arguments {
+    /// Folder of the book's pages: writes studies.md, and its figures into studies/
+    #[arg(long, value_name = "DIR")]
+    markdown: Option<PathBuf>,
+    /// Only these studies
+    #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
+    only: Vec<String>,
+    /// Smaller workloads and fewer rounds
+    #[arg(long)]
+    quick: bool,
+}
+
+/// The page of the book that this program writes.
+const BOOK: Book<'_> = Book {
+    title: "Studies behind velomotion's choices",
+    command: "cargo run --release -p studies -- --markdown docs/src",
+    name: "studies",
+};
+
+/// The studies in the order of the page.
+const STUDIES: [&dyn Study; 7] = [
+    &granularity::Granularity,
+    &trigonometry::Trigonometry,
+    &clocks::Clocks,
+    &formats::Formats,
+    &beam_sampling::BeamSampling,
+    &precision::Precision,
+    &bvh_quality::BvhQuality,
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    let effort = if arguments.quick {
+        Effort::Quick
+    } else {
+        Effort::Full
+    };
+    let mut findings = Vec::new();
+    for study in tradeoff::select(&STUDIES, &arguments.only)? {
+        eprintln!("{}", study.title());
+        findings.push(study.measure(&mut Bench {
+            clock: &mut io::clock::steady,
+            effort,
+            say: &mut |line| eprintln!("  {line}"),
+        })?);
+    }
+    let report = Report {
+        program: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
+        effort,
+        machine: Machine::current(|path| std::fs::read_to_string(path).ok()),
+        studies: findings,
+    };
+    if let Some(folder) = arguments.markdown {
+        std::fs::create_dir_all(folder.join(BOOK.name))?;
+        for (path, content) in BOOK.files(&report) {
+            std::fs::write(folder.join(path), content)?;
+        }
+    }
+    print!("{}", text::report(&report));
+    Ok(())
+}

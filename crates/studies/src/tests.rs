@@ -1,0 +1,44 @@
+//! Every study in its quick form.
+
+use std::collections::BTreeSet;
+
+use analysis::tradeoff::{Bench, Effort, Findings, Value};
+
+use crate::STUDIES;
+
+#[test]
+fn every_study_is_complete() {
+    for study in STUDIES {
+        let mut bench = Bench {
+            clock: &mut io::clock::steady,
+            effort: Effort::Quick,
+            say: &mut |_| (),
+        };
+        let findings = study.measure(&mut bench).unwrap();
+        assert_eq!(findings.name, study.name());
+        check_complete(&findings);
+    }
+}
+
+/// Every row has every column, spreads are in order, and every trade has a front.
+fn check_complete(findings: &Findings) {
+    assert!(findings.rows.len() > 3 && findings.columns.len() > 1);
+    let names: BTreeSet<&str> = findings.rows.iter().map(|row| row.name.as_str()).collect();
+    assert_eq!(names.len(), findings.rows.len(), "{names:?}");
+    for row in &findings.rows {
+        assert_eq!(row.values.len(), findings.columns.len(), "{row:?}");
+        for value in &row.values {
+            match value {
+                Value::Timed(spread) => {
+                    assert!(0.0 < spread.min && spread.min <= spread.median, "{row:?}");
+                    assert!(spread.median <= spread.max && spread.runs > 1, "{row:?}");
+                }
+                // An unknown bound is infinite.
+                Value::Computed(x) => assert!(*x >= 0.0, "{row:?}"),
+            }
+        }
+    }
+    for trade in &findings.trades {
+        assert!(findings.front(trade).contains(&true), "{trade:?}");
+    }
+}
