@@ -5,7 +5,7 @@
 use firmware_sim::epos2::{Node, NodeConfig, Rs232Server, UsbServer};
 use protocol::epos2::message::{Answer, Request};
 use protocol::epos2::rs232::{self, BodyDecoder};
-use protocol::epos2::usb::{self, UsbDecoder, UsbDelimiter};
+use protocol::epos2::usb::{self, UsbDecoder};
 use protocol::epos2::{Frame, FrameError, MAX_WORDS};
 
 use super::input::Input;
@@ -42,29 +42,17 @@ fn decode_usb(bytes: &[u8]) -> Vec<Result<Frame, FrameError>> {
     pushed.flatten().collect()
 }
 
-/// Any bytes: each frame in them encodes and decodes to itself, and the delimiter cuts where the decoder does.
+/// Any bytes: each frame in them encodes to the bytes it came from.
 fn usb_bytes(bytes: &[u8]) {
-    let decoded = decode_usb(bytes);
-    for frame in decoded.iter().flatten() {
-        let again = usb::to_bytes(frame);
-        assert_eq!(decode_usb(&again), [Ok(*frame)]);
-        read_message(frame);
-    }
-    let mut delimiter = UsbDelimiter::new();
-    let mut cut = Vec::new();
-    for (read, &byte) in (1..).zip(bytes) {
-        if let Some((raw, outcome)) = delimiter.push(byte) {
-            // Behind a frame that broke off stand the two bytes of the next.
-            let broken_off = matches!(outcome, Err(FrameError::BrokenOff { .. }));
-            let end: usize = if broken_off { read - 2 } else { read };
-            assert!(bytes[..end].ends_with(&raw), "{raw:X?}");
-            if let Ok(frame) = outcome {
-                assert_eq!(raw, usb::to_bytes(&frame));
-            }
-            cut.push(outcome);
+    let mut decoder = UsbDecoder::new();
+    for (end, &byte) in (1..).zip(bytes) {
+        if let Some(Ok(frame)) = decoder.push(byte) {
+            let again = usb::to_bytes(&frame);
+            assert!(bytes[..end].ends_with(&again), "{again:X?}");
+            assert_eq!(decode_usb(&again), [Ok(frame)]);
+            read_message(&frame);
         }
     }
-    assert_eq!(cut, decoded);
 }
 
 /// Whatever a frame holds, reading it as a message ends well, and an answer is written as it was read.

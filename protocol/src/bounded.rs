@@ -1,35 +1,31 @@
-//! A short list in a fixed array: what frames and words are kept in where there is no heap.
-//!
-//! It only grows at its end and is read as a slice.
+//! A short list in a fixed array. Unlike `heapless::Vec` it is `Copy`, as the messages that contain
+//! it are, and extending it past its capacity does not panic.
 
 use core::fmt;
 use core::ops::Deref;
 
 use thiserror::Error;
 
-/// At most `N` values in place.
+/// A list of at most `N` values, read as a slice.
 #[derive(Clone, Copy)]
 pub struct Bounded<T, const N: usize> {
     items: [T; N],
     len: usize,
 }
 
-/// The list holds as many values as it can.
+/// The list is at its capacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("no room for more than {capacity} values")]
 pub struct Full {
-    /// How many it holds.
+    /// The most values it holds.
     pub capacity: usize,
 }
 
 impl<T: Copy + Default, const N: usize> Bounded<T, N> {
-    /// Nothing yet.
+    /// An empty list.
     #[must_use]
     pub fn new() -> Self {
-        Self {
-            items: [T::default(); N],
-            len: 0,
-        }
+        Self::default()
     }
 
     /// A copy of `items`.
@@ -37,26 +33,23 @@ impl<T: Copy + Default, const N: usize> Bounded<T, N> {
     /// # Errors
     /// [`Full`] where they are more than `N`.
     pub fn from_slice(items: &[T]) -> Result<Self, Full> {
-        let mut list = Self::new();
-        list.items
-            .get_mut(..items.len())
-            .ok_or(Full { capacity: N })?
-            .copy_from_slice(items);
-        list.len = items.len();
-        Ok(list)
+        if items.len() > N {
+            return Err(Full { capacity: N });
+        }
+        Ok(items.iter().copied().collect())
     }
 
     /// Appends `item`.
     ///
     /// # Errors
-    /// [`Full`] where there are `N` already; the list stays as it was.
+    /// [`Full`] where there are `N` already; the list is unchanged.
     pub fn push(&mut self, item: T) -> Result<(), Full> {
         *self.items.get_mut(self.len).ok_or(Full { capacity: N })? = item;
         self.len += 1;
         Ok(())
     }
 
-    /// Forgets everything.
+    /// Removes all values.
     pub fn clear(&mut self) {
         self.len = 0;
     }
@@ -64,46 +57,61 @@ impl<T: Copy + Default, const N: usize> Bounded<T, N> {
     /// The values.
     #[must_use]
     pub fn as_slice(&self) -> &[T] {
-        self.items.get(..self.len).unwrap_or_default()
+        self
     }
 }
 
 impl<T: Copy + Default, const N: usize> Default for Bounded<T, N> {
     fn default() -> Self {
-        Self::new()
+        let items = [T::default(); N];
+        Self { items, len: 0 }
     }
 }
 
-impl<T: Copy + Default, const N: usize> Deref for Bounded<T, N> {
+impl<T, const N: usize> Deref for Bounded<T, N> {
     type Target = [T];
 
     fn deref(&self) -> &[T] {
-        self.as_slice()
+        self.items.get(..self.len).unwrap_or_default()
     }
 }
 
-/// Appends as long as there is room and drops the rest: for buffers sized for the longest content there is.
+/// Appends up to the capacity and drops the rest.
 impl<T: Copy + Default, const N: usize> Extend<T> for Bounded<T, N> {
     fn extend<I: IntoIterator<Item = T>>(&mut self, items: I) {
-        for item in items {
-            if self.push(item).is_err() {
-                return;
-            }
-        }
+        items.into_iter().all(|item| self.push(item).is_ok());
     }
 }
 
-impl<T: Copy + Default + PartialEq, const N: usize> PartialEq for Bounded<T, N> {
+/// Takes values up to the capacity and drops the rest.
+impl<T: Copy + Default, const N: usize> FromIterator<T> for Bounded<T, N> {
+    fn from_iter<I: IntoIterator<Item = T>>(items: I) -> Self {
+        let mut list = Self::default();
+        list.extend(items);
+        list
+    }
+}
+
+impl<T, const N: usize> IntoIterator for Bounded<T, N> {
+    type Item = T;
+    type IntoIter = core::iter::Take<core::array::IntoIter<T, N>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.items.into_iter().take(self.len)
+    }
+}
+
+impl<T: PartialEq, const N: usize> PartialEq for Bounded<T, N> {
     fn eq(&self, other: &Self) -> bool {
-        self.as_slice() == other.as_slice()
+        **self == **other
     }
 }
 
-impl<T: Copy + Default + Eq, const N: usize> Eq for Bounded<T, N> {}
+impl<T: Eq, const N: usize> Eq for Bounded<T, N> {}
 
-impl<T: Copy + Default + fmt::Debug, const N: usize> fmt::Debug for Bounded<T, N> {
+impl<T: fmt::Debug, const N: usize> fmt::Debug for Bounded<T, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.as_slice().fmt(f)
+        (**self).fmt(f)
     }
 }
 
@@ -125,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn equality_ignores_what_was_cleared() {
+    fn equality_ignores_cleared_values() {
         let mut list = Bounded::<u8, 4>::from_slice(&[9, 9]).unwrap();
         list.clear();
         list.extend([1]);

@@ -3,10 +3,7 @@
 //!
 //! Wire time at the baud rate belongs to the link, not here.
 
-use protocol::epos2::message::{
-    InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, RequestCanFrame, SegmentedRead,
-    SegmentedWrite, SendCanFrame, WriteObject,
-};
+use protocol::epos2::message::{Nmt, Request, SendCanFrame};
 use protocol::epos2::rs232::{BodyDecoder, Bytes, FAILED, OKAY, encode_body};
 use protocol::epos2::{Frame, objects};
 
@@ -35,19 +32,6 @@ enum Turn {
     /// The master's: whether it has understood the answer.
     Receipt,
 }
-
-/// Opcodes that the unit takes.
-const KNOWN: [u8; 9] = [
-    ReadObject::OPCODE,
-    WriteObject::OPCODE,
-    InitiateSegmentedRead::OPCODE,
-    InitiateSegmentedWrite::OPCODE,
-    SegmentedRead::OPCODE,
-    SegmentedWrite::OPCODE,
-    Nmt::OPCODE,
-    SendCanFrame::OPCODE,
-    RequestCanFrame::OPCODE,
-];
 
 impl Rs232Server {
     /// An interface whose garbage in unused words follows from `seed`.
@@ -96,7 +80,7 @@ impl Rs232Server {
         out: &mut impl FnMut(&[u8]),
     ) -> Turn {
         match turn {
-            Turn::Opcode if KNOWN.contains(&byte) => {
+            Turn::Opcode if Request::OPCODES.contains(&byte) => {
                 out(&[OKAY]);
                 Turn::Body(BodyDecoder::new(byte))
             }

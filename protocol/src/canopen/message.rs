@@ -43,8 +43,7 @@ impl Message {
         let Some(id) = frame.cob_id().filter(|_| !frame.is_remote()) else {
             return Ok(Self::Other(*frame));
         };
-        let mut data = Bounded::new();
-        data.extend(frame.data().iter().copied());
+        let data = frame.data().iter().copied().collect();
         Ok(match Channel::of(id) {
             Channel::Nmt => Self::Nmt(Nmt::parse(frame)?),
             Channel::Sync => Self::Sync(Sync::parse(frame)?),

@@ -1,121 +1,91 @@
-//! The device control state machine's words: statusword, controlword, modes (Firmware Specification, "Device Control"; CiA 402).
-//!
-//! Names and bits only; who may go where is the device's business, which way to take the client's.
+//! The words of the device control state machine: statusword, controlword, modes of operation
+//! (Firmware Specification, "Device Control"; CiA 402).
 
 use core::fmt;
 
-/// States as the statusword shows them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+/// A device state; the discriminant is its pattern in the statusword.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u16)]
 pub enum State {
     /// Boot-up.
-    Start,
+    Start = 0x0000,
     /// Current offset is being measured.
-    NotReadyToSwitchOn,
+    NotReadyToSwitchOn = 0x0100,
     /// Initialised; drive function disabled.
-    SwitchOnDisabled,
+    SwitchOnDisabled = 0x0140,
     /// Ready for "switch on".
-    ReadyToSwitchOn,
+    ReadyToSwitchOn = 0x0121,
     /// Power stage on, no drive function.
-    SwitchedOn,
+    SwitchedOn = 0x0123,
     /// Power stage refresh.
-    Refresh,
+    Refresh = 0x4123,
     /// Power applied, first current measurement.
-    MeasureInit,
+    MeasureInit = 0x4133,
     /// Drive function enabled, the motor holds or moves.
-    OperationEnabled,
+    OperationEnabled = 0x0137,
     /// Ramping down or stopped after "quick stop", power still on.
-    QuickStopActive,
-    /// An error is being dealt with, drive function already off.
-    FaultReactionDisabled,
-    /// An error is being dealt with, drive function still on.
-    FaultReactionEnabled,
+    QuickStopActive = 0x0117,
+    /// Fault reaction, drive function already off.
+    FaultReactionDisabled = 0x010F,
+    /// Fault reaction, drive function still on.
+    FaultReactionEnabled = 0x011F,
     /// Error; power off until it is reset.
-    Fault,
+    Fault = 0x0108,
 }
 
+/// Bits of the statusword that identify the state.
+const MASK: u16 = 0x417F;
+
+const STATES: [(State, &str); 12] = [
+    (State::Start, "start"),
+    (State::NotReadyToSwitchOn, "not ready to switch on"),
+    (State::SwitchOnDisabled, "switch-on disabled"),
+    (State::ReadyToSwitchOn, "ready to switch on"),
+    (State::SwitchedOn, "switched on"),
+    (State::Refresh, "refresh"),
+    (State::MeasureInit, "measure init"),
+    (State::OperationEnabled, "operation enabled"),
+    (State::QuickStopActive, "quick stop active"),
+    (
+        State::FaultReactionDisabled,
+        "fault reaction active (disabled)",
+    ),
+    (
+        State::FaultReactionEnabled,
+        "fault reaction active (enabled)",
+    ),
+    (State::Fault, "fault"),
+];
+
 impl State {
-    /// The bits of the statusword that make the state.
-    pub const MASK: u16 = 0x417F;
-
-    /// All states with their pattern under [`State::MASK`].
-    pub const PATTERNS: [(Self, u16); 12] = [
-        (Self::Start, 0x0000),
-        (Self::NotReadyToSwitchOn, 0x0100),
-        (Self::SwitchOnDisabled, 0x0140),
-        (Self::ReadyToSwitchOn, 0x0121),
-        (Self::SwitchedOn, 0x0123),
-        (Self::Refresh, 0x4123),
-        (Self::MeasureInit, 0x4133),
-        (Self::OperationEnabled, 0x0137),
-        (Self::QuickStopActive, 0x0117),
-        (Self::FaultReactionDisabled, 0x010F),
-        (Self::FaultReactionEnabled, 0x011F),
-        (Self::Fault, 0x0108),
-    ];
-
-    /// The state of a statusword; `None` where its bits make none.
+    /// The state of a statusword; `None` where its bits match none.
     #[must_use]
     pub fn from_statusword(statusword: u16) -> Option<Self> {
-        Self::PATTERNS
-            .iter()
-            .find(|(_, pattern)| *pattern == statusword & Self::MASK)
-            .map(|&(state, _)| state)
+        let mut states = STATES.iter().map(|(state, _)| *state);
+        states.find(|state| state.pattern() == statusword & MASK)
     }
 
     /// The bits that this state sets in the statusword.
     #[must_use]
     pub const fn pattern(self) -> u16 {
-        match self {
-            Self::Start => 0x0000,
-            Self::NotReadyToSwitchOn => 0x0100,
-            Self::SwitchOnDisabled => 0x0140,
-            Self::ReadyToSwitchOn => 0x0121,
-            Self::SwitchedOn => 0x0123,
-            Self::Refresh => 0x4123,
-            Self::MeasureInit => 0x4133,
-            Self::OperationEnabled => 0x0137,
-            Self::QuickStopActive => 0x0117,
-            Self::FaultReactionDisabled => 0x010F,
-            Self::FaultReactionEnabled => 0x011F,
-            Self::Fault => 0x0108,
-        }
+        self as u16
     }
 }
 
 impl fmt::Display for State {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Start => "start",
-            Self::NotReadyToSwitchOn => "not ready to switch on",
-            Self::SwitchOnDisabled => "switch-on disabled",
-            Self::ReadyToSwitchOn => "ready to switch on",
-            Self::SwitchedOn => "switched on",
-            Self::Refresh => "refresh",
-            Self::MeasureInit => "measure init",
-            Self::OperationEnabled => "operation enabled",
-            Self::QuickStopActive => "quick stop active",
-            Self::FaultReactionDisabled => "fault reaction active (disabled)",
-            Self::FaultReactionEnabled => "fault reaction active (enabled)",
-            Self::Fault => "fault",
-        })
+        let name = STATES.iter().find(|(state, _)| state == self);
+        f.write_str(name.map_or("", |(_, name)| name))
     }
 }
 
-/// Bits of the statusword (6041).
+/// Bits of the statusword (6041) outside the pattern of the state.
 pub mod status {
-    /// Voltage applied to the motor (part of the state's pattern).
-    pub const VOLTAGE_ENABLED: u16 = 1 << 4;
-    /// A warning is pending (not used by the EPOS2).
-    pub const WARNING: u16 = 1 << 7;
-    /// Current offset has been measured (part of the state's pattern).
-    pub const OFFSET_MEASURED: u16 = 1 << 8;
     /// NMT state is operational.
     pub const REMOTE: u16 = 1 << 9;
-    /// Target reached; at a halt: standing still.
+    /// Target reached; at a halt: standstill.
     pub const TARGET_REACHED: u16 = 1 << 10;
-    /// Current is limited by I2t.
-    pub const I2T: u16 = 1 << 11;
-    /// Profile position: the setpoint bit has been seen.
+    /// Profile position: the drive has taken the setpoint.
     pub const SETPOINT_ACKNOWLEDGE: u16 = 1 << 12;
     /// Homing: reference found. The same bit as [`SETPOINT_ACKNOWLEDGE`].
     pub const HOMING_ATTAINED: u16 = 1 << 12;
@@ -123,13 +93,11 @@ pub mod status {
     pub const FOLLOWING_ERROR: u16 = 1 << 13;
     /// Homing: failed. The same bit as [`FOLLOWING_ERROR`].
     pub const HOMING_ERROR: u16 = 1 << 13;
-    /// The power stage is refreshed (part of the state's pattern).
-    pub const REFRESH: u16 = 1 << 14;
     /// Position is referenced to home.
     pub const REFERENCED: u16 = 1 << 15;
 }
 
-/// The controlword (6040): commands, and bits that a mode adds.
+/// Bits and commands of the controlword (6040).
 pub mod control {
     /// Bit 0.
     pub const SWITCH_ON_BIT: u16 = 1 << 0;
@@ -143,13 +111,13 @@ pub mod control {
     pub const NEW_SETPOINT: u16 = 1 << 4;
     /// Homing: start on the rising edge. The same bit as [`NEW_SETPOINT`].
     pub const HOMING_START: u16 = 1 << 4;
-    /// Profile position: break off the present move for the new one.
+    /// Profile position: replace the present move at once.
     pub const AT_ONCE: u16 = 1 << 5;
-    /// Profile position: the target counts from the present demand.
+    /// Profile position: the target is relative to the present demand.
     pub const RELATIVE: u16 = 1 << 6;
     /// Fault reset on the rising edge.
     pub const FAULT_RESET: u16 = 1 << 7;
-    /// Stop with the profile deceleration and stay.
+    /// Stop with the profile deceleration and hold.
     pub const HALT: u16 = 1 << 8;
 
     /// Power stage off.
@@ -158,7 +126,7 @@ pub mod control {
     pub const SHUTDOWN: u16 = 0x0006;
     /// To "switched on".
     pub const SWITCH_ON: u16 = 0x0007;
-    /// To "operation enabled", by itself through "switched on".
+    /// To "operation enabled", passing "switched on".
     pub const ENABLE_OPERATION: u16 = 0x000F;
     /// Ramp down with the quick-stop deceleration (bit 3 as in "operation enabled").
     pub const QUICK_STOP: u16 = 0x000B;
@@ -176,28 +144,14 @@ pub mod control {
     pub const HALT_MOTION: u16 = 0x010F;
 }
 
-/// Modes of operation (6060, 6061) that the tilt axis uses or may meet.
+/// Modes of operation (6060, 6061) that the tilt axis uses.
 pub mod mode {
     /// Moves to a target with a profile.
     pub const PROFILE_POSITION: i8 = 1;
-    /// Turns at a speed with a profile.
+    /// Runs at a speed with a profile.
     pub const PROFILE_VELOCITY: i8 = 3;
     /// Finds the reference.
     pub const HOMING: i8 = 6;
-    /// Follows positions that the master interpolates.
-    pub const INTERPOLATED_POSITION: i8 = 7;
-    /// maxon: position without profile.
-    pub const POSITION: i8 = -1;
-    /// maxon: velocity without profile.
-    pub const VELOCITY: i8 = -2;
-    /// maxon: current.
-    pub const CURRENT: i8 = -3;
-    /// maxon: diagnostic.
-    pub const DIAGNOSTIC: i8 = -4;
-    /// maxon: master encoder.
-    pub const MASTER_ENCODER: i8 = -5;
-    /// maxon: step and direction.
-    pub const STEP_DIRECTION: i8 = -6;
 }
 
 #[cfg(test)]
@@ -206,9 +160,9 @@ mod tests {
 
     #[test]
     fn patterns_differ_and_read_back() {
-        for (state, pattern) in State::PATTERNS {
-            assert_eq!(state.pattern(), pattern);
-            assert_eq!(pattern & !State::MASK, 0);
+        for (state, _) in STATES {
+            let pattern = state.pattern();
+            assert_eq!(pattern & !MASK, 0);
             for other in [0x0000, 0x0200, 0x8480, 0xBE80] {
                 assert_eq!(State::from_statusword(pattern | other), Some(state));
             }
@@ -216,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn other_bits_do_not_matter_and_missing_ones_do() {
+    fn only_the_bits_of_the_pattern_count() {
         assert_eq!(State::from_statusword(0x0237), None); // bit 8 missing
         assert_eq!(
             State::from_statusword(0x0337),

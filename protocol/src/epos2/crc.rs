@@ -1,49 +1,22 @@
-//! The checksum of EPOS2 serial frames: CRC-16/XMODEM over 16-bit words (Communication Guide, "CRC Calculation").
-//!
-//! Which words are fed, and in which order the header's two bytes, differs between USB and RS232 and is said there.
+//! The checksum of EPOS2 serial frames: CRC-16/XMODEM over 16-bit words (Communication Guide, "CRC
+//! Calculation"). USB and RS232 order the two bytes of the header word differently.
 
-/// A checksum under way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Crc(pub(super) u16);
-
-/// Generator x^16 + x^12 + x^5 + 1.
+/// Generator polynomial x^16 + x^12 + x^5 + 1.
 const POLYNOMIAL: u16 = 0x1021;
 
-impl Crc {
-    /// Feeds one word, high byte first.
-    #[must_use]
-    pub const fn word(self, word: u16) -> Self {
-        let mut crc = self.0 ^ word;
-        let mut bit = 0;
-        while bit < 16 {
-            crc = if crc & 0x8000 != 0 {
-                (crc << 1) ^ POLYNOMIAL
-            } else {
-                crc << 1
-            };
-            bit += 1;
-        }
-        Self(crc)
-    }
-
-    /// The checksum of what has been fed.
-    #[must_use]
-    pub const fn value(self) -> u16 {
-        self.0
-    }
-}
-
-/// The checksum of `words`.
-pub fn crc16(words: impl Iterator<Item = u16>) -> u16 {
-    words.fold(Crc::default(), Crc::word).value()
+/// The checksum of `words`, high byte of each first.
+pub fn crc16(words: impl IntoIterator<Item = u16>) -> u16 {
+    let shift = |crc: u16, _| crc << 1 ^ if crc & 0x8000 == 0 { 0 } else { POLYNOMIAL };
+    let word = |crc: u16, word: u16| (0..16).fold(crc ^ word, shift);
+    words.into_iter().fold(0, word)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The same polynomial byte by byte, written the other way round: shifted in at the bottom with 16 zero bits at the end,
-    /// as the guide's own listing does it.
+    /// The same polynomial byte by byte: bits enter at the bottom and 16 zero bits follow, as in
+    /// the listing of the guide.
     fn by_the_guide(bytes: &[u8]) -> u16 {
         let mut crc: u32 = 0;
         for byte in bytes.iter().chain(&[0, 0]) {
@@ -61,7 +34,7 @@ mod tests {
     fn the_catalogues_check_value() {
         // CRC-16/XMODEM of "123456789" is 31C3; eight digits fill four words.
         let words = [0x3132, 0x3334, 0x3536, 0x3738];
-        assert_eq!(crc16(words.into_iter()), by_the_guide(b"12345678"));
+        assert_eq!(crc16(words), by_the_guide(b"12345678"));
         assert_eq!(by_the_guide(b"123456789"), 0x31C3);
     }
 
@@ -72,7 +45,7 @@ mod tests {
             for (pair, word) in bytes.chunks_exact_mut(2).zip(words) {
                 pair.copy_from_slice(&word.to_be_bytes());
             }
-            proptest::prop_assert_eq!(crc16(words.into_iter()), by_the_guide(&bytes));
+            proptest::prop_assert_eq!(crc16(words), by_the_guide(&bytes));
         }
     }
 }

@@ -17,7 +17,6 @@ pub mod usb;
 
 pub use crate::{Bounded, Full};
 pub use comm_error::CommError;
-pub use crc::{Crc, crc16};
 pub use device_error::DeviceError;
 pub use error::{FrameError, Layer};
 pub use frame::{Frame, MAX_WORDS, Words};

@@ -76,16 +76,6 @@ objects! {
     USB_FRAME_TIMEOUT: u16 = 0x2006, 0, "USB Frame Timeout";
     /// Averaged velocity, rpm.
     VELOCITY_AVERAGED: i32 = 0x2028, 0, "Velocity Actual Value Averaged";
-    /// Purpose of digital input 1.
-    INPUT_1: u16 = 0x2070, 1, "Configuration of Digital Input1";
-    /// Purpose of digital input 2.
-    INPUT_2: u16 = 0x2070, 2, "Configuration of Digital Input2";
-    /// Purpose of digital input 3.
-    INPUT_3: u16 = 0x2070, 3, "Configuration of Digital Input3";
-    /// Purpose of digital input 4 (2 home switch by default).
-    INPUT_4: u16 = 0x2070, 4, "Configuration of Digital Input4";
-    /// Purpose of digital input 5 (1 positive limit by default).
-    INPUT_5: u16 = 0x2070, 5, "Configuration of Digital Input5";
     /// Purpose of digital input 6 (0 negative limit by default).
     INPUT_6: u16 = 0x2070, 6, "Configuration of Digital Input6";
     /// Inputs after mask and polarity, one bit a purpose.
@@ -100,16 +90,8 @@ objects! {
     OUTPUT_STATE: u16 = 0x2078, 1, "Digital Output State";
     /// Which outputs the state drives.
     OUTPUT_MASK: u16 = 0x2078, 2, "Digital Output Mask";
-    /// Bit set: active low.
-    OUTPUT_POLARITY: u16 = 0x2078, 3, "Digital Output Polarity";
     /// Purpose of digital output 1; [`OUTPUT_BRAKE`] makes it the holding brake.
     OUTPUT_1: u16 = 0x2079, 1, "Configuration of Digital Output1";
-    /// Purpose of digital output 2.
-    OUTPUT_2: u16 = 0x2079, 2, "Configuration of Digital Output2";
-    /// Purpose of digital output 3.
-    OUTPUT_3: u16 = 0x2079, 3, "Configuration of Digital Output3";
-    /// Purpose of digital output 4.
-    OUTPUT_4: u16 = 0x2079, 4, "Configuration of Digital Output4";
     /// Homing to a mechanical stop: mA.
     HOMING_CURRENT: u16 = 0x2080, 0, "Current Threshold for Homing Mode";
     /// The position that home gets, qc.
@@ -193,8 +175,6 @@ objects! {
     /// 10 sinusoidal EC motor, 11 block commutated, 1 DC.
     MOTOR_TYPE: u16 = 0x6402, 0, "Motor Type";
     /// mA.
-    CONTINUOUS_CURRENT: u16 = 0x6410, 1, "Continuous Current Limit";
-    /// mA.
     OUTPUT_CURRENT: u16 = 0x6410, 2, "Output Current Limit";
     /// rpm.
     MAX_MOTOR_SPEED: u32 = 0x6410, 4, "Maximal Motor Speed";
@@ -220,18 +200,12 @@ pub mod input {
     pub const POSITIVE_LIMIT: u16 = 1 << 1;
     /// Home switch.
     pub const HOME_SWITCH: u16 = 1 << 2;
-    /// Position marker.
-    pub const POSITION_MARKER: u16 = 1 << 3;
-    /// Enable.
-    pub const DRIVE_ENABLE: u16 = 1 << 4;
     /// Quick stop.
     pub const QUICK_STOP: u16 = 1 << 5;
 }
 
 /// Purpose of a digital output: holding brake (2079), and the number of its bit in 2078.
 pub const OUTPUT_BRAKE: u16 = 2;
-/// Purpose of a digital output: ready / fault.
-pub const OUTPUT_READY: u16 = 0;
 
 /// The error history's entry `n`, 1 to 5, latest first.
 #[must_use]

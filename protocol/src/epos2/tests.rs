@@ -11,7 +11,7 @@ use super::message::{
 };
 use super::objects::{self, Address};
 use super::rs232::{self, BodyDecoder};
-use super::usb::{self, UsbDecoder, UsbDelimiter};
+use super::usb::{self, UsbDecoder};
 use super::{Bounded, CommError, Frame, FrameError, Layer, MAX_WORDS};
 
 fn hex(text: &str) -> Vec<u8> {
@@ -265,43 +265,6 @@ fn errors_say_where_and_what() {
     assert!(out.is_empty());
 }
 
-#[test]
-fn the_delimiter_keeps_frames_as_they_were_on_the_wire() {
-    let mut stream = hex("00 90 55");
-    let mut expected = Vec::new();
-    for (bytes, frame) in usb_frames() {
-        stream.extend(hex("01 02 90 90"));
-        stream.extend(hex(bytes));
-        expected.push((hex(bytes), Ok(frame)));
-    }
-    // A broken frame in front of a whole one, and one that stays open.
-    stream.extend(hex("90 02 10 02 41 90 02 10 02 41 60 00 01 64 CF 90 02 10"));
-    expected.push((
-        hex("90 02 10 02 41"),
-        Err(FrameError::BrokenOff {
-            layer: Layer::Usb,
-            expected: 8,
-            got: 3,
-        }),
-    ));
-    expected.push((
-        hex("90 02 10 02 41 60 00 01 64 CF"),
-        Ok(read(objects::STATUSWORD.address)),
-    ));
-    let mut delimiter = UsbDelimiter::new();
-    let got: Vec<_> = stream
-        .iter()
-        .filter_map(|&byte| delimiter.push(byte))
-        .map(|(raw, outcome)| (raw.to_vec(), outcome))
-        .collect();
-    assert_eq!(got, expected);
-    assert_eq!(
-        delimiter.abandon().map(|raw| raw.to_vec()),
-        Some(hex("90 02 10"))
-    );
-    assert_eq!(delimiter.abandon(), None);
-}
-
 fn address() -> impl Strategy<Value = Address> {
     (any::<u16>(), any::<u8>()).prop_map(|(index, sub)| Address { index, sub })
 }
@@ -343,27 +306,11 @@ fn request() -> impl Strategy<Value = Request> {
     ]
 }
 
-fn to_frame(request: &Request) -> Frame {
-    match request {
-        Request::ReadObject(it) => it.to_frame(),
-        Request::WriteObject(it) => it.to_frame(),
-        Request::InitiateSegmentedRead(it) => it.to_frame(),
-        Request::InitiateSegmentedWrite(it) => it.to_frame(),
-        Request::SegmentedRead(it) => it.to_frame(),
-        Request::SegmentedWrite(it) => it.to_frame(),
-        Request::Nmt(it) => it.to_frame(),
-        Request::SendCanFrame(it) => it.to_frame(),
-        Request::RequestCanFrame(it) => it.to_frame(),
-    }
-}
-
 proptest! {
     #[test]
     fn usb_decodes_what_it_encodes(opcode: u8, words in prop::collection::vec(any::<u16>(), 0..=MAX_WORDS)) {
-        let mut bytes = Vec::new();
-        usb::encode(opcode, &words, &mut bytes).unwrap();
-        prop_assert!(bytes.len() <= usb::MAX_BYTES);
-        prop_assert_eq!(decode_all(&bytes), [Ok(Frame::new(opcode, &words).unwrap())]);
+        let frame = Frame::new(opcode, &words).unwrap();
+        prop_assert_eq!(decode_all(&usb::to_bytes(&frame)), [Ok(frame)]);
     }
 
     #[test]
@@ -397,15 +344,6 @@ proptest! {
         stream.extend_from_slice(&usb::to_bytes(&frame));
         let all = decode_all(&stream);
         prop_assert_eq!(all.last(), Some(&Ok(frame)));
-        // The delimiter sees the same, and its raw bytes decode to the same again.
-        let mut delimiter = UsbDelimiter::new();
-        let raw: Vec<_> = stream.iter().filter_map(|&byte| delimiter.push(byte)).collect();
-        prop_assert_eq!(raw.iter().map(|(_, outcome)| *outcome).collect::<Vec<_>>(), all);
-        for (raw, outcome) in raw {
-            if outcome.is_ok() {
-                prop_assert_eq!(decode_all(&raw), [outcome]);
-            }
-        }
     }
 
     #[test]
@@ -423,14 +361,14 @@ proptest! {
 
     #[test]
     fn requests_read_back(request in request()) {
-        prop_assert_eq!(Request::parse(&to_frame(&request)), Ok(Some(request)));
+        prop_assert_eq!(Request::parse(&request.to_frame()), Ok(Some(request)));
     }
 
     #[test]
     fn any_frame_parses_or_says_why(opcode: u8, words in prop::collection::vec(any::<u16>(), 0..=MAX_WORDS)) {
         let frame = Frame::new(opcode, &words).unwrap();
         if let Ok(Some(request)) = Request::parse(&frame) {
-            prop_assert_eq!(to_frame(&request).opcode, opcode);
+            prop_assert_eq!(request.to_frame().opcode, opcode);
         }
         let _ = (
             ReadObject::parse_answer(&frame), WriteObject::parse_answer(&frame), SegmentedRead::parse_answer(&frame),

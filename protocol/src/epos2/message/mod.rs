@@ -1,124 +1,170 @@
-//! The commands of the serial interfaces, one file a command, encode and parse together (Communication Guide, "Command Reference").
+//! The commands of the serial interfaces, encode and parse together (Communication Guide, "Command
+//! Reference").
 //!
-//! An answer says neither which command nor which object it belongs to: pairing is the client's business. Words that a command
-//! does not use are ignored, as a real unit fills them with garbage.
+//! An answer names neither its command nor its object: the client pairs it with a request. Words
+//! that a command does not use are ignored, since a real unit fills them with garbage.
 
-mod can_frame;
-mod nmt;
-mod read_object;
-mod segmented_read;
-mod segmented_write;
-mod write_object;
+mod bus;
+mod object;
+mod segmented;
 
-pub use can_frame::{RequestCanFrame, SendCanFrame};
-pub use nmt::Nmt;
-pub use read_object::ReadObject;
-pub use segmented_read::{InitiateSegmentedRead, ReadSegment, SegmentedRead};
-pub use segmented_write::{InitiateSegmentedWrite, SegmentedWrite, WriteSegment};
-pub use write_object::WriteObject;
+pub use bus::{Nmt, RequestCanFrame, SendCanFrame};
+pub use object::{ReadObject, WriteObject};
+pub use segmented::{
+    InitiateSegmentedRead, InitiateSegmentedWrite, ReadSegment, SegmentedRead, SegmentedWrite,
+    WriteSegment,
+};
 
 use super::comm_error::CommError;
 use super::error::{FrameError, Layer};
 use super::frame::{Frame, Words};
-use super::objects::Address;
+use crate::canopen::Address;
 
-/// Any request that a unit knows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Request {
-    /// Opcode 10.
-    ReadObject(ReadObject),
-    /// Opcode 11.
-    WriteObject(WriteObject),
-    /// Opcode 12.
-    InitiateSegmentedRead(InitiateSegmentedRead),
-    /// Opcode 13.
-    InitiateSegmentedWrite(InitiateSegmentedWrite),
-    /// Opcode 14.
-    SegmentedRead(SegmentedRead),
-    /// Opcode 15.
-    SegmentedWrite(SegmentedWrite),
-    /// Opcode 0E.
-    Nmt(Nmt),
-    /// Opcode 20.
-    SendCanFrame(SendCanFrame),
-    /// Opcode 21.
-    RequestCanFrame(RequestCanFrame),
-}
+/// Implements a command of fixed length: its opcode, its words, and the command of these words.
+macro_rules! command {
+    ($name:ident = $opcode:literal, $words:expr, $parse:expr) => {
+        impl $name {
+            /// Opcode of the command.
+            pub const OPCODE: u8 = $opcode;
 
-impl Request {
-    /// The request in `frame`; `None` for an opcode that the guide does not know.
-    ///
-    /// # Errors
-    /// [`FrameError::WordCount`] where the command has another number of words.
-    pub fn parse(frame: &Frame) -> Result<Option<Self>, FrameError> {
-        Ok(Some(match frame.opcode {
-            ReadObject::OPCODE => Self::ReadObject(ReadObject::parse(frame)?),
-            WriteObject::OPCODE => Self::WriteObject(WriteObject::parse(frame)?),
-            InitiateSegmentedRead::OPCODE => {
-                Self::InitiateSegmentedRead(InitiateSegmentedRead::parse(frame)?)
+            /// The request as a frame.
+            #[must_use]
+            pub fn to_frame(&self) -> crate::epos2::Frame {
+                crate::epos2::Frame::of(Self::OPCODE, $words(self))
             }
-            InitiateSegmentedWrite::OPCODE => {
-                Self::InitiateSegmentedWrite(InitiateSegmentedWrite::parse(frame)?)
-            }
-            SegmentedRead::OPCODE => Self::SegmentedRead(SegmentedRead::parse(frame)?),
-            SegmentedWrite::OPCODE => Self::SegmentedWrite(SegmentedWrite::parse(frame)?),
-            Nmt::OPCODE => Self::Nmt(Nmt::parse(frame)?),
-            SendCanFrame::OPCODE => Self::SendCanFrame(SendCanFrame::parse(frame)?),
-            RequestCanFrame::OPCODE => Self::RequestCanFrame(RequestCanFrame::parse(frame)?),
-            _ => return Ok(None),
-        }))
-    }
-}
 
-/// An answer before it is known what it answers: an error code, then the command's data.
+            /// The request in `frame`.
+            ///
+            /// # Errors
+            /// [`FrameError::Opcode`](crate::epos2::FrameError::Opcode),
+            /// [`FrameError::WordCount`](crate::epos2::FrameError::WordCount).
+            pub fn parse(frame: &crate::epos2::Frame) -> Result<Self, crate::epos2::FrameError> {
+                frame.exactly(Self::OPCODE).map($parse)
+            }
+        }
+    };
+}
+use command;
+
+/// Defines the enum of all requests and its parser.
+macro_rules! requests {
+    ($($name:ident),*) => {
+        /// Any request that a unit knows.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Request {
+            $(#[doc = concat!("[`", stringify!($name), "`].")] $name($name),)*
+        }
+
+        impl Request {
+            /// The opcodes of all requests.
+            pub const OPCODES: [u8; 9] = [$($name::OPCODE),*];
+
+            /// The request in `frame`; `None` for an opcode that the guide does not list.
+            ///
+            /// # Errors
+            /// [`FrameError::WordCount`] where the command has another number of words.
+            pub fn parse(frame: &Frame) -> Result<Option<Self>, FrameError> {
+                Ok(Some(match frame.opcode {
+                    $($name::OPCODE => Self::$name($name::parse(frame)?),)*
+                    _ => return Ok(None),
+                }))
+            }
+
+            /// The request as a frame.
+            #[must_use]
+            pub fn to_frame(&self) -> Frame {
+                match self {
+                    $(Self::$name(request) => request.to_frame(),)*
+                }
+            }
+        }
+    };
+}
+requests!(
+    ReadObject,
+    WriteObject,
+    InitiateSegmentedRead,
+    InitiateSegmentedWrite,
+    SegmentedRead,
+    SegmentedWrite,
+    Nmt,
+    SendCanFrame,
+    RequestCanFrame
+);
+
+/// An answer to any command: an error code, then the command's data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer {
     /// Whether the command was carried out.
     pub error: CommError,
-    /// What follows the error code, garbage included.
+    /// The words after the error code, garbage included.
     pub data: Words,
 }
 
 impl Answer {
-    /// An answer that says only that the command failed, or that it was carried out.
+    /// An answer without data.
     #[must_use]
     pub fn bare(error: CommError) -> Self {
-        Self {
-            error,
-            data: Words::new(),
-        }
+        let data = Words::new();
+        Self { error, data }
     }
 
     /// The answer in `frame`.
     ///
     /// # Errors
-    /// [`FrameError::Opcode`] for a request (an echo, for instance), [`FrameError::WordCount`] below two words.
+    /// [`FrameError::Opcode`] for a request (an echo, for instance), [`FrameError::WordCount`] below
+    /// two words.
     pub fn parse(frame: &Frame) -> Result<Self, FrameError> {
         frame.expect_opcode(Frame::ANSWER)?;
         let [low, high, data @ ..] = frame.words.as_slice() else {
             return Err(word_count(2, frame.words.len()));
         };
-        let mut answer = Self::bare(CommError::from_words(*low, *high));
-        answer.data.extend(data.iter().copied());
-        Ok(answer)
+        Ok(Self {
+            error: CommError::from_words(*low, *high),
+            data: data.iter().copied().collect(),
+        })
     }
 
-    /// The answer as a frame; data beyond a frame's room is cut off.
+    /// The answer as a frame; data that does not fit is cut off.
     #[must_use]
     pub fn to_frame(&self) -> Frame {
         let mut frame = Frame::of(Frame::ANSWER, self.error.to_words());
-        frame.words.extend(self.data.iter().copied());
+        frame.words.extend(self.data);
         frame
     }
 
-    /// The data as one number, low word first: what a read object command returns. Above an object's width it is garbage.
+    /// The data as one number, low word first: the value of a read object command. The bits above
+    /// the width of the object are garbage.
     ///
     /// # Errors
     /// [`FrameError::WordCount`] below two data words.
     pub fn value(&self) -> Result<u32, FrameError> {
         match self.data.as_slice() {
-            [low, high, ..] => Ok(CommError::from_words(*low, *high).0),
+            [low, high, ..] => Ok(dword(*low, *high)),
             short => Err(word_count(4, 2 + short.len())),
+        }
+    }
+
+    /// The frame that answers with the data of a success, or with the error of a failure.
+    fn of<D: IntoIterator<Item = u16>>(outcome: Result<D, CommError>) -> Frame {
+        let mut answer = Self::bare(CommError::NONE);
+        match outcome {
+            Ok(data) => answer.data.extend(data),
+            Err(error) => answer.error = error,
+        }
+        answer.to_frame()
+    }
+
+    /// What `read` finds in an answer of success; the inner error is what the unit reports.
+    fn read<T>(
+        frame: &Frame,
+        read: impl FnOnce(&Self) -> Result<T, FrameError>,
+    ) -> Result<Result<T, CommError>, FrameError> {
+        let answer = Self::parse(frame)?;
+        if answer.error.is_none() {
+            read(&answer).map(Ok)
+        } else {
+            Ok(Err(answer.error))
         }
     }
 }
@@ -142,9 +188,10 @@ fn parse_target(index: u16, node_sub: u16) -> (u8, Address) {
     (node, Address { index, sub })
 }
 
-/// The low and the high word.
-fn words(value: u32) -> [u16; 2] {
-    CommError(value).to_words()
+/// The words of an object of a node and a number, low word first.
+fn target_and_number(node: u8, address: Address, number: u32) -> [u16; 4] {
+    let [index, node_sub] = target(node, address);
+    [index, node_sub, number as u16, (number >> 16) as u16]
 }
 
 /// The number of a low and a high word.

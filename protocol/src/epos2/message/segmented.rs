@@ -1,0 +1,196 @@
+//! Segmented read and write, opcodes 12 to 15: objects of any length, such as the device name.
+
+use super::{Answer, command, dword, parse_target, target, target_and_number, word_count};
+use crate::Bounded;
+use crate::canopen::Address;
+use crate::epos2::{CommError, Frame, FrameError, Words};
+
+/// Toggle bit of a control byte.
+const TOGGLE: u8 = 1 << 6;
+/// Bit of a control byte: more segments follow.
+const MORE: u8 = 1 << 7;
+/// Length bits of a control byte.
+const LENGTH: u8 = 0x3F;
+/// The most bytes in a segment.
+const MAX_BYTES: usize = LENGTH as usize;
+
+/// Begins to read an object; the answer has no data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InitiateSegmentedRead {
+    /// Node id; the unit itself executes 0 and its own.
+    pub node: u8,
+    /// The object.
+    pub address: Address,
+}
+
+command!(
+    InitiateSegmentedRead = 0x12,
+    |it: &Self| target(it.node, it.address),
+    |[index, node_sub]: [u16; 2]| {
+        let (node, address) = parse_target(index, node_sub);
+        Self { node, address }
+    }
+);
+
+/// Begins to write an object; the answer has no data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InitiateSegmentedWrite {
+    /// Node id; the unit itself executes 0 and its own.
+    pub node: u8,
+    /// The object.
+    pub address: Address,
+    /// Bytes to come.
+    pub len: u32,
+}
+
+command!(
+    InitiateSegmentedWrite = 0x13,
+    |it: &Self| target_and_number(it.node, it.address, it.len),
+    |[index, node_sub, low, high]: [u16; 4]| {
+        let (node, address) = parse_target(index, node_sub);
+        let len = dword(low, high);
+        Self { node, address, len }
+    }
+);
+
+/// Reads the next segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SegmentedRead {
+    /// Alternates from segment to segment, beginning with `false`.
+    pub toggle: bool,
+}
+
+command!(
+    SegmentedRead = 0x14,
+    |it: &Self| [u16::from(toggle_bit(it.toggle))],
+    |[control]: [u16; 1]| Self {
+        toggle: has_toggle(control),
+    }
+);
+
+/// A segment that was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReadSegment {
+    /// As in the request.
+    pub toggle: bool,
+    /// More segments follow.
+    pub more: bool,
+    /// Its bytes, at most 63.
+    pub bytes: Bounded<u8, MAX_BYTES>,
+}
+
+impl SegmentedRead {
+    /// The answer to it.
+    #[must_use]
+    pub fn answer(outcome: &Result<ReadSegment, CommError>) -> Frame {
+        Answer::of(outcome.as_ref().map_err(|error| *error).map(|segment| {
+            let more = if segment.more { MORE } else { 0 };
+            pack(toggle_bit(segment.toggle) | more, &segment.bytes)
+        }))
+    }
+
+    /// The segment in its answer.
+    ///
+    /// # Errors
+    /// [`FrameError::Opcode`], [`FrameError::WordCount`] if `frame` is no such answer or holds fewer
+    /// bytes than it announces; the inner error is what the unit reports.
+    pub fn parse_answer(frame: &Frame) -> Result<Result<ReadSegment, CommError>, FrameError> {
+        Answer::read(frame, |answer| {
+            let (control, bytes) = unpack(&answer.data, 2)?;
+            Ok(ReadSegment {
+                toggle: control & TOGGLE != 0,
+                more: control & MORE != 0,
+                bytes,
+            })
+        })
+    }
+}
+
+/// A segment to write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WriteSegment {
+    /// Alternates from segment to segment, beginning with `false`.
+    pub toggle: bool,
+    /// Its bytes, at most 63.
+    pub bytes: Bounded<u8, MAX_BYTES>,
+}
+
+/// Writes the next segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SegmentedWrite(pub WriteSegment);
+
+impl SegmentedWrite {
+    /// Opcode of the command.
+    pub const OPCODE: u8 = 0x15;
+
+    /// The request as a frame.
+    #[must_use]
+    pub fn to_frame(&self) -> Frame {
+        let mut frame = Frame::of(Self::OPCODE, []);
+        frame.words = pack(toggle_bit(self.0.toggle), &self.0.bytes);
+        frame
+    }
+
+    /// The request in `frame`.
+    ///
+    /// # Errors
+    /// [`FrameError::Opcode`]; [`FrameError::WordCount`] where it holds fewer bytes than it
+    /// announces.
+    pub fn parse(frame: &Frame) -> Result<Self, FrameError> {
+        frame.expect_opcode(Self::OPCODE)?;
+        let (control, bytes) = unpack(&frame.words, 0)?;
+        let toggle = control & TOGGLE != 0;
+        Ok(Self(WriteSegment { toggle, bytes }))
+    }
+
+    /// The answer to it: the toggle bit as received.
+    #[must_use]
+    pub fn answer(outcome: Result<bool, CommError>) -> Frame {
+        Answer::of(outcome.map(|toggle| [u16::from(toggle_bit(toggle))]))
+    }
+
+    /// The toggle bit in its answer.
+    ///
+    /// # Errors
+    /// [`FrameError::Opcode`], [`FrameError::WordCount`] if `frame` is no such answer; the inner
+    /// error is what the unit reports.
+    pub fn parse_answer(frame: &Frame) -> Result<Result<bool, CommError>, FrameError> {
+        Answer::read(frame, |answer| {
+            let control = answer.data.first().ok_or(word_count(3, 2))?;
+            Ok(has_toggle(*control))
+        })
+    }
+}
+
+const fn toggle_bit(toggle: bool) -> u8 {
+    if toggle { TOGGLE } else { 0 }
+}
+
+const fn has_toggle(control: u16) -> bool {
+    control & TOGGLE as u16 != 0
+}
+
+/// Control byte (with the length added) and bytes as words, low byte first.
+fn pack(flags: u8, bytes: &[u8]) -> Words {
+    let mut rest = bytes.iter().copied();
+    let mut words = Words::new();
+    let first = rest.next().unwrap_or_default();
+    words.extend([u16::from_le_bytes([flags | bytes.len() as u8, first])]);
+    while let Some(low) = rest.next() {
+        let high = rest.next().unwrap_or_default();
+        words.extend([u16::from_le_bytes([low, high])]);
+    }
+    words
+}
+
+/// The control byte and the bytes it announces; `before` words of the frame precede.
+fn unpack(words: &[u16], before: usize) -> Result<(u8, Bounded<u8, MAX_BYTES>), FrameError> {
+    let mut all = words.iter().flat_map(|word| word.to_le_bytes());
+    let control = all.next().ok_or(word_count(before + 1, before))?;
+    let len = usize::from(control & LENGTH);
+    let bytes: Bounded<_, MAX_BYTES> = all.take(len).collect();
+    if bytes.len() < len {
+        return Err(word_count(before + 1 + len / 2, before + words.len()));
+    }
+    Ok((control, bytes))
+}
