@@ -17,7 +17,7 @@ fn solve(captured: &Captured, tolerance: &str) -> Result<Alignment, ScanError> {
         survey.observe(&record);
     }
     let tolerance: Tolerance = tolerance.parse().unwrap();
-    survey.solve_to(&config, &TiltSource::Log, Accuracy::Within(tolerance))
+    survey.solve(&config, &TiltSource::Log, Accuracy::Within(tolerance))
 }
 
 /// The range's share of a point's error: half of 2 mm, and the azimuth's 0.01 degrees at the distance of this room's corners.
@@ -75,7 +75,7 @@ fn the_cheapest_method_that_is_good_enough_is_taken_and_is() {
 #[test]
 fn where_no_method_is_good_enough_it_is_said_what_would_be() {
     let captured = Captured::new(Setting::over(Attached::Usb));
-    let Err(ScanError::OutOfReach(out)) = solve(&captured, "1mm@100m") else {
+    let Err(ScanError::UnreachableTolerance(out)) = solve(&captured, "1mm@100m") else {
         panic!("polls of a millisecond and more cannot be that accurate");
     };
     assert!(out.bound.0 > 1e-3 && out.fastest.0 < -55.0, "{out:?}");

@@ -1,9 +1,10 @@
 //! Angles: motions and samples at which arithmetic, or a fit, is hard.
 
 use cloud::mount::{Mount, Tilt};
+use scanner::AngleSample;
 use scanner::clock::Moment;
 use scanner::sweeps::{Commanded, Sweep};
-use scanner::trajectory::{AngleSample, Method, Remark, Trajectory};
+use scanner::trajectory::{Method, Remark, Trajectory};
 use units::{DegPerS, DegPerS2, Degrees, Host, Metres, Span, Stamp};
 
 /// 2026-11-21 02:05:33 UTC.
@@ -123,7 +124,10 @@ fn methods() -> impl Iterator<Item = Option<Method>> {
 /// Either a fit is well conditioned, or it says what it did about it.
 fn says_why(trajectory: &Trajectory) -> bool {
     trajectory.fits().iter().all(|fit| {
-        let regularised = fit.remarks.iter().any(|r| matches!(r, Remark::Held(_)));
+        let regularised = fit
+            .remarks
+            .iter()
+            .any(|r| matches!(r, Remark::Regularised(_)));
         let well = fit.condition.is_none_or(|condition| condition < 1e6);
         // Nobody knows the angle of an axis that moves exactly from steps of an encoder.
         let exact = fit.method.is_fit() && fit.rms_deg > 0.0 && fit.sd_deg < 1e-6;

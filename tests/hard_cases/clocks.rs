@@ -258,28 +258,3 @@ fn the_online_clock_begins_anew() {
         assert!((0..60_000).contains(&off), "{device_by} {host_by}: {off}");
     }
 }
-
-/// The online clock's tangent is its moments, and none where it bends.
-#[test]
-fn the_online_clocks_tangent_is_its_moments() {
-    let mut online = OnlineClock::new();
-    assert!(online.moment(Stamp::from_nanos(0)).is_none());
-    let length = Span::from_nanos(110_592);
-    let mut bent = 0;
-    for i in 0..5_000i64 {
-        let device = i * 1_327_104;
-        online.observe(arrival(device, device + i * 7_919 % 600_000));
-        for block in 0..12 {
-            let start = Stamp::from_nanos(device + block * 110_592);
-            let Some(tangent) = online.tangent(start, length) else {
-                bent += 1;
-                continue;
-            };
-            let end = online.moment(start + length).unwrap();
-            let by_tangent = tangent.at.rest_ns + length.as_nanos() as f64 * (1.0 + tangent.gain);
-            let off = (end.host - tangent.at.host).as_nanos() as f64 + end.rest_ns - by_tangent;
-            assert!(off.abs() < 1e-3, "{i} {block}: {off} ns");
-        }
-    }
-    assert!(bent > 0 && bent < 100, "{bent}");
-}

@@ -311,7 +311,11 @@ impl Captured {
             })
             .ok()?;
         let alignment = survey
-            .solve(&source.config().ok()?, &TiltSource::Log)
+            .solve(
+                &source.config().ok()?,
+                &TiltSource::Log,
+                scanner::Accuracy::Best,
+            )
             .ok()?;
         alignment.sweeps.last().map(|sweep| sweep.end)
     }

@@ -200,7 +200,7 @@ fn angles(captured: &Captured, method: Method, case: usize, seed: u64) -> Vec<Se
     });
     read.unwrap();
     let alignment = survey
-        .solve_to(&config, &TiltSource::Log, Accuracy::By(method))
+        .solve(&config, &TiltSource::Log, Accuracy::By(method))
         .unwrap();
     let (sweep, truth) = (&alignment.sweeps[0], captured.truth());
     let length = sweep.end - sweep.start;

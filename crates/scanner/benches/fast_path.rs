@@ -15,7 +15,7 @@ use cloud::{Fields, Points, Sink, SinkError};
 use common::{RECORDINGS, Recording, Timing};
 use drive::record::Wire;
 use lidar::{Decoder, Options};
-use scanner::{Alignment, Placer};
+use scanner::Alignment;
 
 /// x, y, z, time and tilt of 8 bytes, intensity and ring of one.
 const BYTES_PER_POINT: usize = 5 * 8 + 2;
@@ -109,11 +109,8 @@ fn table(recording: &Recording, runs: usize, only: &str) {
 
 /// The product's own second pass.
 fn place(recording: &Recording, alignment: &Alignment, sink: &mut dyn Sink) {
-    let mut placer = Placer::new(alignment, Options::default(), sink);
-    for record in recording.records() {
-        placer.observe(&record).unwrap();
-    }
-    black_box(placer.finish().unwrap());
+    let options = Options::default();
+    black_box(scanner::place(recording.records(), alignment, options, sink).unwrap());
 }
 
 fn decode(recording: &Recording) -> u64 {

@@ -5,16 +5,17 @@
 //! to a whole recording (`envelope`). The smallest delay itself (a cable, an interrupt: tens of microseconds) is invisible
 //! to timing and stays in the result. Clocks that are set in mid-recording are told apart in [`crate::steps`].
 
-mod cursor;
 mod device;
 mod endpoint;
 mod envelope;
 mod online;
+mod segment;
 
-pub use cursor::{ClockCursor, Moment, Tangent};
 pub use device::DeviceClock;
 pub(crate) use device::Stretch;
 pub use online::OnlineClock;
+pub use segment::Moment;
+pub(crate) use segment::{ClockSegment, ROUND_TO_INTEGER, round};
 
 use units::{Host, Lidar, Stamp};
 

@@ -31,7 +31,7 @@ const READ_BODY_BITS: i64 = 7 * 10;
 
 impl ScanConfig {
     /// How long the question for a position is under way on an RS232 line before the drive has all of it; nothing elsewhere.
-    pub(crate) fn question(&self) -> Span {
+    pub(crate) fn request_transmission_time(&self) -> Span {
         let baud = i64::from(self.rs232_baud.unwrap_or(0));
         Span::from_nanos(
             (READ_BODY_BITS * 1_000_000_000)

@@ -3,7 +3,7 @@
 use thiserror::Error;
 use units::GearingError;
 
-use crate::tolerance::OutOfReach;
+use crate::tolerance::UnreachableTolerance;
 
 /// Why a scan could not be made of its records.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -53,7 +53,7 @@ pub enum ScanError {
     },
     /// Angles more accurate than any method can tell them from this recording.
     #[error("{0}")]
-    OutOfReach(OutOfReach),
+    UnreachableTolerance(UnreachableTolerance),
     /// An accuracy was asked of angles that nobody says how accurate they are.
     #[error(
         "a tolerance was asked for, but the tilt angles are not of the log: nothing says how accurate they are"

@@ -1,28 +1,48 @@
-//! The synchroniser: which angle the platform had when a laser fired.
+//! Synchroniser of lidar and tilt drive: the platform's angle at the instant each laser fired.
 //!
-//! [`scanner`] is the whole path on one page; [`clock`], [`steps`], [`polls`], [`trajectory`] and [`sweeps`] are its parts. Nothing here
-//! reads a clock or a file: the same records give the same cloud, bit for bit.
+//! [`scanner`] is the data path in one reading: [`align`] finds clock, angles, sweeps and trajectory
+//! in the records of a log, [`place()`] turns its firings into points. [`Live`] does both while
+//! records come in. Nothing here reads a clock or a file: the same records give the same cloud.
+//!
+//! ```
+//! use cloud::Points;
+//! use scanner::{Accuracy, ScanConfig, TiltSource};
+//! # fn records() -> Vec<drive::record::Record<'static>> { Vec::new() }
+//!
+//! fn scan(sink: &mut Points) -> Result<u64, Box<dyn std::error::Error>> {
+//!     let config = ScanConfig::default();
+//!     let options = lidar::Options::default();
+//!     let alignment =
+//!         scanner::align(records(), &config, options.clone(), &TiltSource::Log, Accuracy::Best)?;
+//!     let (counts, _) = scanner::place(records(), &alignment, options, sink)?;
+//!     Ok(counts.points)
+//! }
+//! # assert!(scan(&mut Points::default()).is_err());
+//! ```
 
+mod alignment;
+mod angles;
 pub mod clock;
 pub mod config;
 pub mod error;
-mod firing_blocks;
-mod lanes;
+mod fast;
 mod live;
-mod plausible;
-pub mod polls;
+mod placer;
 pub mod scanner;
 pub mod steps;
-mod stream;
+mod survey;
 pub mod sweeps;
-pub mod tilt;
+mod tilt_source;
 pub mod tolerance;
 pub mod trajectory;
-mod uncertainty;
 
+pub use alignment::{Alignment, PlacementCounts};
+pub use angles::{AngleSample, AngleTable, TableTime};
 pub use config::{LidarConfig, ScanConfig, SweepPlan};
 pub use error::ScanError;
 pub use live::Live;
-pub use scanner::{Alignment, Placed, Placer, Survey};
-pub use tilt::{AngleTable, TableTime, TiltSource};
-pub use tolerance::{Accuracy, Choice, OutOfReach, Tolerance};
+pub use placer::Placer;
+pub use scanner::{align, place};
+pub use survey::Survey;
+pub use tilt_source::TiltSource;
+pub use tolerance::{Accuracy, MethodChoice, Tolerance, UnreachableTolerance};

@@ -1,72 +1,71 @@
-//! The cloud while it is measured: the same path as on [`crate::scanner`]'s page, with what is known so far.
+//! The cloud while it is measured, by the same steps as [`crate::scanner`], with streaming estimates.
 //!
-//! Records come in as they happen. A packet waits until the angle is known for the whole of the one before it, and that one is placed: by
-//! the clock as it is then (Olson's) and on straight lines between samples, which are all that can be had before a sweep is over. Decoder,
-//! cursor, mount and placing are those of a replay, which places the same points better.
-//! Left out: what only a whole recording tells, such as steps of a clock being undone and the commanded motion.
+//! Each packet waits until the angle is known for all of the packet before it; that one is then
+//! placed. The clock is Olson's online estimate, and the trajectory is straight lines between
+//! samples, as a fit needs the whole sweep. Clock steps are not undone. A replay of the same records
+//! places the same points more accurately.
 
 use std::collections::VecDeque;
 
 use cloud::mount::Mount;
 use cloud::{Points, Sink, SinkError};
+use drive::ShaftSample;
 use drive::record::{Record, Wire};
-use drive::{Listener, Observation, ShaftSample};
-use lidar::{Decoder, Options, Stats, Timekeeper};
+use lidar::{Decoder, Options, Stats};
 use units::{Gearing, Host, Lidar, Span, Stamp};
 
-use crate::clock::{Arrival, DeviceClock, OnlineClock};
+use crate::alignment::{Alignment, PlacementCounts};
+use crate::angles::{SlowPollFilter, sample};
+use crate::clock::{DeviceClock, Moment, OnlineClock};
 use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
-use crate::firing_blocks::{FiringBlockPlacer, MOST_POINTS};
-use crate::polls::{QuickPolls, sample};
-use crate::scanner::{Alignment, Placed};
+use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS};
+use crate::survey::{DriveEvent, DriveFrame, RecordReader};
 use crate::sweeps::{MoveWatch, SweepWatch};
-use crate::trajectory::{AngleSample, Growing, Method, Trajectory};
+use crate::trajectory::{Method, StreamingFit, Trajectory};
 
 /// Places points while records come in.
 pub struct Live<'a> {
     gearing: Gearing,
     plan: Option<SweepPlan>,
-    question: Span,
-    timekeeper: Timekeeper,
-    listener: Listener,
+    reader: RecordReader,
     clock: OnlineClock,
-    quick: QuickPolls,
-    growing: Growing,
+    slow_polls: SlowPollFilter,
     moves: MoveWatch,
     sweeps: SweepWatch,
-    waiting: VecDeque<Waiting>,
+    fit: StreamingFit,
     alignment: Option<Alignment>,
     mount: Mount,
     range_sd_m: f64,
+    waiting: VecDeque<WaitingPacket>,
     /// First firing of the packet that the decoder holds back.
-    held: Option<Stamp<Lidar>>,
+    pending: Option<Stamp<Lidar>>,
     decoder: Decoder,
     batch: Points,
-    placed: Placed,
-    /// First firing of the last packet that was handed on: what came before it is placed.
-    reached: Option<Stamp<Host>>,
+    counts: PlacementCounts,
+    /// First firing of the packet last decoded; everything before it is placed.
+    placed_until: Option<Stamp<Host>>,
     sink: &'a mut dyn Sink,
 }
 
-/// A packet whose time has not come.
-struct Waiting {
-    arrived: Stamp<Host>,
-    /// When its first laser fired, by the lidar's clock and by the host's; `None` of what is no data packet.
+/// A packet whose angles are not known yet.
+struct WaitingPacket {
+    received: Stamp<Host>,
+    /// First firing by the lidar's clock and the host's; `None` if it is not a data packet.
     fired: Option<(Stamp<Lidar>, Stamp<Host>)>,
     payload: Vec<u8>,
 }
 
-/// Angles older than this are forgotten.
-const MEMORY: Span = Span::from_millis(100);
-/// More packets do not wait: without a drive that answers there are no angles for them.
-const MOST_WAITING: usize = 4_096;
+/// Angles older than this are dropped.
+const TRAJECTORY_MEMORY: Span = Span::from_millis(100);
+/// Packets that wait for angles, at most: 5 s of a VLP-16, for a drive that does not answer.
+const MAX_WAITING: usize = 4_096;
 
 impl<'a> Live<'a> {
-    /// A cloud into `sink`, which has begun, of devices that are configured so.
+    /// A cloud into `sink`, which has begun, of devices configured by `config`.
     ///
     /// # Errors
-    /// [`ScanError::Gearing`] where the configuration's gearing cannot exist.
+    /// [`ScanError::Gearing`] if a number of the configured gearing is zero.
     pub fn new(
         config: &ScanConfig,
         options: Options,
@@ -76,28 +75,26 @@ impl<'a> Live<'a> {
         Ok(Self {
             gearing,
             plan: config.sweep,
-            question: config.question(),
-            timekeeper: Timekeeper::new(options.clone()),
-            listener: Listener::new(config.axis.node),
+            reader: RecordReader::new(config, options.clone()),
             clock: OnlineClock::new(),
-            quick: QuickPolls::default(),
-            growing: Growing::default(),
+            slow_polls: SlowPollFilter::default(),
             moves: MoveWatch::new(gearing),
             sweeps: SweepWatch::new(gearing),
-            waiting: VecDeque::new(),
+            fit: StreamingFit::default(),
             alignment: None,
             mount: config.mount.mount(),
             range_sd_m: config.lidar.range_sd_m,
-            held: None,
+            waiting: VecDeque::new(),
+            pending: None,
             decoder: Decoder::new(options),
-            batch: Points::with_capacity(sink.fields(), 2 * MOST_POINTS),
-            placed: Placed::default(),
-            reached: None,
+            batch: Points::with_capacity(sink.fields(), 2 * MAX_PACKET_POINTS),
+            counts: PlacementCounts::default(),
+            placed_until: None,
             sink,
         })
     }
 
-    /// Takes one record, and places what it makes possible.
+    /// Takes one record, and places the points whose angles it completes.
     ///
     /// # Errors
     /// What the sink reports.
@@ -109,109 +106,100 @@ impl<'a> Live<'a> {
                 direction,
                 frame,
             } => {
-                let mut samples = Vec::new();
-                let moves = &mut self.moves;
-                let question = self.question;
-                self.listener.observe(
+                let frame = DriveFrame {
                     link,
                     direction,
                     frame,
-                    record.host,
-                    &mut |seen| match seen {
-                        Observation::Sample(poll) => samples.push(ShaftSample {
-                            request: poll.answer.min(poll.request + question),
-                            ..poll
-                        }),
-                        Observation::Wrote {
-                            address,
-                            value,
-                            request,
-                            ..
-                        } => moves.wrote(address, value, request),
-                        _ => {}
-                    },
-                );
-                for poll in samples {
-                    self.sample(&poll);
+                };
+                let (reader, moves) = (&mut self.reader, &mut self.moves);
+                let mut samples = Vec::new();
+                reader.frame(record.host, frame, &mut |event| match event {
+                    DriveEvent::Sample(sample) => samples.push(sample),
+                    DriveEvent::Write(write) => {
+                        moves.wrote(write.address, write.value, write.request)
+                    }
+                });
+                for sample in samples {
+                    self.sample(&sample);
                 }
             }
         }
         self.release()
     }
 
-    /// How far the cloud is behind the newest angle: from the first firing that is not placed yet. `None` before there is both.
+    /// Delay of the cloud: from the first firing not placed yet to the newest angle. `None` before
+    /// both exist.
     #[must_use]
     pub fn lag(&self) -> Option<Span> {
-        Some(self.growing.newest()?.host.saturating_since(self.reached?))
+        Some(self.fit.newest()?.host.saturating_since(self.placed_until?))
     }
 
-    /// Places what the decoder still holds, and says what came of it all. The sink is not finished: its owner does that.
+    /// Places what the decoder still holds. The caller finishes the sink.
     ///
     /// # Errors
     /// What the sink reports.
-    pub fn finish(mut self) -> Result<(Placed, Stats), SinkError> {
+    pub fn finish(mut self) -> Result<(PlacementCounts, Stats), SinkError> {
         if let Some(alignment) = &self.alignment {
             let mut placer = FiringBlockPlacer::new(alignment);
-            let (batch, placed) = (&mut self.batch, &mut self.placed);
+            let (batch, counts) = (&mut self.batch, &mut self.counts);
             self.decoder
-                .finish_firing_blocks(&mut |block| placer.place(block, batch, placed));
+                .finish_firing_blocks(&mut |block| placer.place(block, batch, counts));
             self.sink.points(&self.batch)?;
         }
-        Ok((self.placed, self.decoder.stats().clone()))
+        Ok((self.counts, self.decoder.stats().clone()))
     }
 
-    fn packet(&mut self, arrived: Stamp<Host>, payload: &[u8]) {
-        let timing = self.timekeeper.packet(arrived, payload);
-        let fired = timing.and_then(|timing| {
-            self.clock.observe(Arrival {
-                device: timing.first_firing,
-                host: arrived.saturating_add(-timing.fill),
-            });
-            let host = self.clock.moment(timing.first_firing)?.host;
-            Some((timing.first_firing, host))
+    /// Clock: an arrival, and a packet that waits for its angles.
+    fn packet(&mut self, received: Stamp<Host>, payload: &[u8]) {
+        let fired = self.reader.packet(received, payload).and_then(|arrival| {
+            self.clock.observe(arrival);
+            Some((arrival.device, self.clock.moment(arrival.device)?.host))
         });
-        if self.waiting.len() >= MOST_WAITING {
+        if self.waiting.len() >= MAX_WAITING {
             self.waiting.pop_front();
         }
-        self.waiting.push_back(Waiting {
-            arrived,
+        self.waiting.push_back(WaitingPacket {
+            received,
             fired,
             payload: payload.to_vec(),
         });
     }
 
-    fn sample(&mut self, poll: &ShaftSample) {
-        let sample: AngleSample = sample(poll, self.gearing);
-        if !self.quick.is_quick(&sample, self.growing.newest()) {
+    /// Angle, sweep and trajectory of a shaft sample.
+    fn sample(&mut self, shaft: &ShaftSample) {
+        let sample = sample(shaft, self.gearing);
+        if !self.slow_polls.accepts(&sample, self.fit.newest()) {
             return;
         }
-        let Some(piece) = self.growing.add(sample) else {
+        let Some(piece) = self.fit.add(sample) else {
             return;
         };
         self.sweeps.sample(&sample, &self.moves, self.plan.as_ref());
         match &mut self.alignment {
-            Some(alignment) => alignment.trajectory.go_on(piece, sample.host),
+            Some(alignment) => alignment.trajectory.append(piece, sample.host),
             None => {
-                let trajectory = Trajectory::of(piece, sample.host, Method::Linear);
-                self.alignment =
-                    trajectory.map(|t| Alignment::live(t, self.mount, self.range_sd_m));
+                let trajectory = Trajectory::of_piece(piece, sample.host, Method::Linear);
+                // The clock of each packet replaces this one.
+                let clock =
+                    DeviceClock::through(Stamp::from_nanos(0), Moment::at(Stamp::from_nanos(0)));
+                self.alignment = trajectory.map(|trajectory| {
+                    Alignment::new(clock, trajectory, self.mount, self.range_sd_m, Vec::new())
+                });
             }
         }
     }
 
-    /// Hands on every packet before whose first firing all angles are known.
+    /// Decodes every packet before whose first firing all angles are known.
     fn release(&mut self) -> Result<(), SinkError> {
-        let Some(newest) = self.growing.newest().copied() else {
+        let Some(newest) = self.fit.newest().copied() else {
             return Ok(());
         };
-        while let Some(waiting) = self.waiting.front() {
-            if waiting.fired.is_some_and(|(_, host)| host > newest.host) {
-                break;
-            }
-            let Some(waiting) = self.waiting.pop_front() else {
-                break;
-            };
-            self.hand_on(&waiting);
+        let is_ready =
+            |packet: &WaitingPacket| packet.fired.is_none_or(|(_, host)| host <= newest.host);
+        while self.waiting.front().is_some_and(is_ready)
+            && let Some(packet) = self.waiting.pop_front()
+        {
+            self.decode(&packet);
         }
         if self.batch.is_empty() {
             return Ok(());
@@ -221,32 +209,33 @@ impl<'a> Live<'a> {
         Ok(())
     }
 
-    /// Gives a packet to the decoder, and places what that emits: the packet before it.
-    fn hand_on(&mut self, waiting: &Waiting) {
-        let (batch, placed) = (&mut self.batch, &mut self.placed);
-        let held = match waiting.fired {
+    /// Decodes a packet, and places what the decoder emits: the packet before it.
+    fn decode(&mut self, packet: &WaitingPacket) {
+        let (batch, counts) = (&mut self.batch, &mut self.counts);
+        let pending = match packet.fired {
             Some((device, host)) => {
-                self.reached = Some(host);
-                self.held.replace(device)
+                self.placed_until = Some(host);
+                self.pending.replace(device)
             }
-            None => self.held,
+            None => self.pending,
         };
-        let moment = held.and_then(|held| Some((held, self.clock.moment(held)?)));
+        let moment = pending.and_then(|device| Some((device, self.clock.moment(device)?)));
         let (Some(alignment), Some((device, moment))) = (&mut self.alignment, moment) else {
             self.decoder
-                .firing_blocks(waiting.arrived, &waiting.payload, &mut |_| {});
+                .firing_blocks(packet.received, &packet.payload, &mut |_| {});
             return;
         };
-        // Through the held packet's first firing: the clock moves by nanoseconds within a packet.
+        // Through the first firing of the pending packet: within a packet the clock drifts by ns.
         alignment.clock = DeviceClock::through(device, moment);
-        alignment.set_spans(self.sweeps.spans());
+        alignment.spans.clear();
+        alignment.spans.extend_from_slice(self.sweeps.spans());
         alignment
             .trajectory
-            .forget_before(moment.host.saturating_add(-MEMORY));
+            .drop_before(moment.host.saturating_add(-TRAJECTORY_MEMORY));
         let mut placer = FiringBlockPlacer::new(alignment);
         self.decoder
-            .firing_blocks(waiting.arrived, &waiting.payload, &mut |block| {
-                placer.place(block, batch, placed);
+            .firing_blocks(packet.received, &packet.payload, &mut |block| {
+                placer.place(block, batch, counts);
             });
     }
 }

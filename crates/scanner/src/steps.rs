@@ -6,13 +6,13 @@
 //! host's clock alone, so if they jump by as much at the same place of the recording, it was the host's; else, and without
 //! records of the drive, it was the clock whose spacing from packet to packet was not its usual one.
 //!
-//! All host stamps after a step of the host's clock, the drive's too (`seams`), are brought back to the clock before it, so time goes on evenly and
+//! All host stamps after a step of the host's clock, the drive's too (`monotonic`), are brought back to the clock before it, so time goes on evenly and
 //! so do clock and trajectory. A lidar's clock that was set has another piece from then on. Steps of the host's clock below 10 ms
 //! are not looked for: they show in the clock's bound. So does what is undone within six seconds.
 //! An hour that wraps is nothing to be found here: `lidar` unwraps it.
 
 mod jumps;
-mod seams;
+mod monotonic;
 
 use core::fmt;
 
@@ -20,8 +20,8 @@ use units::{Host, Span, Stamp};
 
 use crate::clock::{Arrival, LidarClock, Stretch};
 use jumps::Jump;
-use seams::before;
-pub(crate) use seams::{HostLine, Seams};
+use monotonic::before;
+pub(crate) use monotonic::{ClockSteps, HostTimeline};
 
 /// Which clock was set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ pub(crate) struct Timeline {
     pub clock: LidarClock,
     pub steps: Vec<ClockStep>,
     /// Host stamps of the drive's records, brought to one clock.
-    pub drive: HostLine,
+    pub drive: HostTimeline,
     /// The lidar's packets, likewise.
     pub arrivals: Vec<Arrival>,
 }
@@ -82,12 +82,12 @@ const UNSURE: usize = 16;
 impl Timeline {
     /// Finds the lidar's clock and what steps there were, from packets in the order in which they were recorded. `None` without
     /// a packet.
-    pub fn new(arrivals: &[Arrival], seams: &Seams) -> Option<Self> {
+    pub fn new(arrivals: &[Arrival], monotonic: &ClockSteps) -> Option<Self> {
         let found = jumps::find(arrivals);
         let mut cuts: Vec<(Jump, SetClock)> = found
             .jumps
             .iter()
-            .filter_map(|jump| Some((*jump, judge(*jump, &found, arrivals, seams)?)))
+            .filter_map(|jump| Some((*jump, judge(*jump, &found, arrivals, monotonic)?)))
             .collect();
         cuts.sort_by_key(|(jump, _)| jump.at);
         let pieces = pieces(arrivals, &cuts, &found.strays);
@@ -97,7 +97,7 @@ impl Timeline {
             .collect();
         let (clock, rises) = LidarClock::fit_pieces(&pieces, &host_was_set)?;
         let begin = arrivals.first()?.host;
-        let mut line = HostLine::new(seams);
+        let mut line = HostTimeline::new(monotonic);
         let mut steps = Vec::new();
         let mut corrected = arrivals.to_vec();
         let mut total = Span::ZERO;
@@ -113,7 +113,7 @@ impl Timeline {
                 for arrival in corrected.get_mut(jump.at..).unwrap_or_default() {
                     arrival.host = before(arrival.host, by);
                 }
-                line.set(seams.boundary(jump.at, by), by);
+                line.set(monotonic.boundary(jump.at, by), by);
             }
             let when = match clock {
                 SetClock::Host => before(when, by),
@@ -138,15 +138,15 @@ impl Timeline {
 /// Whose clock jumped; `None` where neither did, and packets were merely delayed.
 fn judge(
     jump: Jump,
-    found: &jumps::Found,
+    found: &jumps::JumpReport,
     arrivals: &[Arrival],
-    seams: &Seams,
+    monotonic: &ClockSteps,
 ) -> Option<SetClock> {
-    if seams.shows(jump.at, jump.by) {
+    if monotonic.shows(jump.at, jump.by) {
         return Some(SetClock::Host);
     }
     let device_jumped = found.device_jumped(arrivals, jump.at);
-    if seams.is_dense(jump.at) {
+    if monotonic.is_dense(jump.at) {
         return device_jumped.then_some(SetClock::Lidar);
     }
     if device_jumped {

@@ -4,14 +4,14 @@
 //! when it came to rest. A move is a sweep of the plan if it starts at one end of the plan and heads for the other, so moves to
 //! the starting place, homing and returns drop out without marks in the log. A sweep that was cut short stays one, with the angle it reached.
 
-mod watch;
+mod streaming;
 
 use drive::objects::{self, Address};
 use units::{DegPerS, DegPerS2, Degrees, Gearing, Host, Quadcounts, Rpm, RpmPerS, Stamp};
 
+use crate::angles::AngleSample;
 use crate::config::SweepPlan;
-use crate::trajectory::AngleSample;
-pub(crate) use watch::SweepWatch;
+pub(crate) use streaming::SweepWatch;
 
 /// One sweep as it happened.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -36,7 +36,7 @@ pub enum Accuracy {
 
 /// Why a method was taken.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
+pub struct MethodChoice {
     /// What was asked for.
     pub tolerance: Tolerance,
     /// Bounds at the distance asked for, the cheapest method first; the last one is the one taken.
@@ -49,7 +49,7 @@ pub struct Choice {
     "no method is within {tolerance}: the best, {}, is within {} mm there ({:.4} deg at {:.2} deg/s)",
     .best.name(), three_digits(.bound.0 * 1e3), .bound_angle.0, .fastest.0.abs()
 )]
-pub struct OutOfReach {
+pub struct UnreachableTolerance {
     /// What was asked for.
     pub tolerance: Tolerance,
     /// The best method.
@@ -70,7 +70,7 @@ fn three_digits(number: f64) -> String {
     format!("{number:.*}", decimals.clamp(0.0, 9.0) as usize)
 }
 
-impl OutOfReach {
+impl UnreachableTolerance {
     /// The tolerance at the same distance that the best method meets with a tenth to spare, rounded up to two digits.
     #[must_use]
     pub fn tolerance_that_would_do(&self) -> Tolerance {
@@ -115,9 +115,9 @@ impl Tolerance {
         clock: Span,
         spans: &[(units::Stamp<units::Host>, units::Stamp<units::Host>)],
         through: impl Fn(Method) -> Option<Trajectory>,
-    ) -> Result<(Trajectory, Choice), Option<OutOfReach>> {
+    ) -> Result<(Trajectory, MethodChoice), Option<UnreachableTolerance>> {
         let mut bounds = Vec::new();
-        let mut best: Option<OutOfReach> = None;
+        let mut best: Option<UnreachableTolerance> = None;
         for method in Method::ALL {
             let Some(trajectory) = through(method) else {
                 continue;
@@ -127,14 +127,14 @@ impl Tolerance {
             let bound = self.off_by(bound_deg);
             bounds.push((method, bound));
             if bound.0 <= self.off.0 {
-                let choice = Choice {
+                let choice = MethodChoice {
                     tolerance: *self,
                     bounds,
                 };
                 return Ok((trajectory, choice));
             }
             if best.as_ref().is_none_or(|best| bound.0 < best.bound.0) {
-                best = Some(OutOfReach {
+                best = Some(UnreachableTolerance {
                     tolerance: *self,
                     best: method,
                     bound,
@@ -154,7 +154,7 @@ impl fmt::Display for Tolerance {
     }
 }
 
-impl fmt::Display for Choice {
+impl fmt::Display for MethodChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(((method, bound), cheaper)) = self.bounds.split_last() else {
             return Ok(());
@@ -182,13 +182,13 @@ impl fmt::Display for Choice {
 /// What a tolerance cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("expected a length at a distance, such as 2mm@20m (mm, cm or m)")]
-pub struct NotATolerance;
+pub struct ParseToleranceError;
 
 impl FromStr for Tolerance {
-    type Err = NotATolerance;
+    type Err = ParseToleranceError;
 
-    fn from_str(text: &str) -> Result<Self, NotATolerance> {
-        let (off, at) = text.split_once('@').ok_or(NotATolerance)?;
+    fn from_str(text: &str) -> Result<Self, ParseToleranceError> {
+        let (off, at) = text.split_once('@').ok_or(ParseToleranceError)?;
         Ok(Self {
             off: length(off)?,
             at: length(at)?,
@@ -197,18 +197,18 @@ impl FromStr for Tolerance {
 }
 
 /// A positive length with its unit.
-fn length(text: &str) -> Result<Metres, NotATolerance> {
+fn length(text: &str) -> Result<Metres, ParseToleranceError> {
     let text = text.trim();
     let units = [("mm", 1e-3), ("cm", 1e-2), ("m", 1.0)];
     let (number, unit) = units
         .iter()
         .find_map(|(name, metres)| Some((text.strip_suffix(name)?, metres)))
-        .ok_or(NotATolerance)?;
-    let number: f64 = number.trim().parse().map_err(|_| NotATolerance)?;
+        .ok_or(ParseToleranceError)?;
+    let number: f64 = number.trim().parse().map_err(|_| ParseToleranceError)?;
     let metres = number * unit;
     (metres > 0.0 && metres.is_finite())
         .then_some(Metres(metres))
-        .ok_or(NotATolerance)
+        .ok_or(ParseToleranceError)
 }
 
 #[cfg(test)]
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn what_would_do_is_no_coarser_than_it_must_be() {
-        let out = |bound_mm: f64| OutOfReach {
+        let out = |bound_mm: f64| UnreachableTolerance {
             tolerance: "0.001mm@20m".parse().unwrap(),
             best: Method::Profile,
             bound: Metres(bound_mm * 1e-3),
@@ -260,7 +260,11 @@ mod tests {
             "2km@1m",
             "2mm@20m@3",
         ] {
-            assert_eq!(wrong.parse::<Tolerance>(), Err(NotATolerance), "{wrong}");
+            assert_eq!(
+                wrong.parse::<Tolerance>(),
+                Err(ParseToleranceError),
+                "{wrong}"
+            );
         }
     }
 }

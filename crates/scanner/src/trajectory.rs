@@ -7,16 +7,16 @@
 
 use units::{DegPerS, Degrees, Host, Span, Stamp};
 
+use crate::angles::AngleSample;
 use crate::clock::Moment;
 use crate::sweeps::Sweep;
 
 mod bound;
 mod choose;
-mod cursor;
-mod held;
 mod interpolate;
 mod noise;
 mod pieces;
+mod prior;
 mod profile;
 mod profile_fit;
 mod spline;
@@ -24,23 +24,11 @@ mod spline;
 mod tests;
 
 pub use choose::SweepFit;
-pub use cursor::{Motion, TrajectoryCursor};
-pub use held::Held;
-pub(crate) use interpolate::Growing;
+pub(crate) use interpolate::StreamingFit;
 pub use noise::Noise;
-pub use pieces::{Piece, Pieces};
+pub use pieces::{CubicPiece, PiecewiseCubic};
+pub use prior::RegularisedParameters;
 pub use profile::Profile;
-
-/// The platform's angle at an instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AngleSample {
-    /// When the angle held: middle of request and answer.
-    pub host: Stamp<Host>,
-    /// Half of the round trip: the angle held within this span of `host` for certain.
-    pub bound: Span,
-    /// Tilt angle.
-    pub angle: Degrees,
-}
 
 /// How the angle between samples is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -109,7 +97,7 @@ pub enum Remark {
         off: Degrees,
     },
     /// The samples do not tell all of the motion: this was held near what was commanded.
-    Held(Held),
+    Regularised(RegularisedParameters),
     /// No fit was possible: too few samples; they are joined by straight lines.
     TooFewSamples,
 }
@@ -122,7 +110,7 @@ impl std::fmt::Display for Remark {
                 "the motion was not the commanded one, by {:.3} deg: the angles follow the samples instead",
                 off.0
             ),
-            Self::Held(held) => {
+            Self::Regularised(held) => {
                 let parts = [
                     (held.start, "beginning"),
                     (held.ramp_up, "acceleration"),
@@ -147,7 +135,7 @@ impl std::fmt::Display for Remark {
 /// The tilt angle as a function of host time.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
-    shape: Shape,
+    curve: Curve,
     method: Method,
     fits: Vec<SweepFit>,
     /// As they came, in strictly increasing time.
@@ -157,9 +145,9 @@ pub struct Trajectory {
 }
 
 #[derive(Clone, Debug)]
-enum Shape {
+pub(crate) enum Curve {
     Fixed(Degrees),
-    Pieces(Pieces),
+    Piecewise(PiecewiseCubic),
 }
 
 impl Trajectory {
@@ -167,7 +155,7 @@ impl Trajectory {
     #[must_use]
     pub const fn fixed(angle: Degrees) -> Self {
         Self {
-            shape: Shape::Fixed(angle),
+            curve: Curve::Fixed(angle),
             method: Method::None,
             fits: Vec::new(),
             samples: Vec::new(),
@@ -194,7 +182,7 @@ impl Trajectory {
         }?;
         let simple = method.filter(|m| !m.is_fit() && *m != Method::None);
         let mut trajectory = Self {
-            shape: Shape::Pieces(pieces),
+            curve: Curve::Piecewise(pieces),
             method: simple.unwrap_or(Method::Linear),
             fits: Vec::new(),
             samples,
@@ -209,8 +197,8 @@ impl Trajectory {
     /// The same, of samples whose instants are all off together, by a standard deviation in nanoseconds: what that is worth at its speed
     /// is added to each piece's.
     #[must_use]
-    pub(crate) fn with_shared(mut self, sd_ns: f64) -> Self {
-        if let Shape::Pieces(pieces) = &mut self.shape {
+    pub(crate) fn with_shared_sd(mut self, sd_ns: f64) -> Self {
+        if let Curve::Piecewise(pieces) = &mut self.curve {
             pieces.widen(sd_ns);
         }
         self
@@ -218,7 +206,7 @@ impl Trajectory {
 
     /// Replaces the straight lines over each sweep by a fit.
     fn fit(&mut self, noise: &Noise, sweeps: &[Sweep], method: Option<Method>) {
-        let Shape::Pieces(pieces) = &mut self.shape else {
+        let Curve::Piecewise(pieces) = &mut self.curve else {
             return;
         };
         for (i, sweep) in sweeps.iter().enumerate() {
@@ -257,9 +245,9 @@ impl Trajectory {
     }
 
     /// One that grows piece by piece; `None` without time.
-    pub(crate) fn of(piece: Piece, end: Stamp<Host>, method: Method) -> Option<Self> {
+    pub(crate) fn of_piece(piece: CubicPiece, end: Stamp<Host>, method: Method) -> Option<Self> {
         Some(Self {
-            shape: Shape::Pieces(Pieces::new(vec![piece], end)?),
+            curve: Curve::Piecewise(PiecewiseCubic::new(vec![piece], end)?),
             method,
             fits: Vec::new(),
             samples: Vec::new(),
@@ -268,34 +256,34 @@ impl Trajectory {
     }
 
     /// Goes on with `piece` until `end`.
-    pub(crate) fn go_on(&mut self, piece: Piece, end: Stamp<Host>) {
-        if let Shape::Pieces(pieces) = &mut self.shape {
-            pieces.go_on(piece, end);
+    pub(crate) fn append(&mut self, piece: CubicPiece, end: Stamp<Host>) {
+        if let Curve::Piecewise(pieces) = &mut self.curve {
+            pieces.append(piece, end);
         }
     }
 
     /// Forgets what ended before `host`.
-    pub(crate) fn forget_before(&mut self, host: Stamp<Host>) {
-        if let Shape::Pieces(pieces) = &mut self.shape {
-            pieces.forget_before(host);
+    pub(crate) fn drop_before(&mut self, host: Stamp<Host>) {
+        if let Curve::Piecewise(pieces) = &mut self.curve {
+            pieces.drop_before(host);
         }
     }
 
     /// The angle at an instant; `None` outside the time that samples cover.
     #[must_use]
     pub fn angle(&self, at: Moment) -> Option<Degrees> {
-        match &self.shape {
-            Shape::Fixed(angle) => Some(*angle),
-            Shape::Pieces(pieces) => pieces.angle(at),
+        match &self.curve {
+            Curve::Fixed(angle) => Some(*angle),
+            Curve::Piecewise(pieces) => pieces.angle(at),
         }
     }
 
     /// The piece that holds at an instant; `None` of a platform that stands still, and outside the time that samples cover.
     #[must_use]
-    pub fn piece(&self, at: Moment) -> Option<&Piece> {
-        match &self.shape {
-            Shape::Fixed(_) => None,
-            Shape::Pieces(pieces) => pieces.piece(at),
+    pub fn piece(&self, at: Moment) -> Option<&CubicPiece> {
+        match &self.curve {
+            Curve::Fixed(_) => None,
+            Curve::Piecewise(pieces) => pieces.piece(at),
         }
     }
 
@@ -308,13 +296,8 @@ impl Trajectory {
         })
     }
 
-    /// Follows the angle through times that mostly grow, without a search for each.
-    #[must_use]
-    pub fn cursor(&self) -> TrajectoryCursor<'_> {
-        match &self.shape {
-            Shape::Fixed(angle) => TrajectoryCursor::fixed(*angle),
-            Shape::Pieces(pieces) => TrajectoryCursor::of(pieces),
-        }
+    pub(crate) const fn curve(&self) -> &Curve {
+        &self.curve
     }
 
     /// The samples that it goes by, in strictly increasing time; none of a platform that stands still.
@@ -361,8 +344,8 @@ impl Trajectory {
     pub fn bound_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> f64 {
         let over = |(i, span): (usize, &(Stamp<Host>, Stamp<Host>))| {
             let fit = self.fits.get(i).filter(|fit| fit.method.is_fit());
-            match (fit, &self.shape) {
-                (Some(fit), Shape::Pieces(pieces)) => bound::of_fit(pieces, *span, fit),
+            match (fit, &self.curve) {
+                (Some(fit), Curve::Piecewise(pieces)) => bound::of_fit(pieces, *span, fit),
                 _ => self.step_deg + bound::of_joined(&self.samples, *span, self.method),
             }
         };

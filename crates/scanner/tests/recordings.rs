@@ -14,21 +14,26 @@ use common::{RECORDINGS, Recording};
 use drive::record::Wire;
 use lidar::{Corrections, Decoder, Duplicates, Options};
 use protocol::vlp16::Model;
-use scanner::{Alignment, Placed, Placer};
+use scanner::{Alignment, PlacementCounts};
 
-fn fast(recording: &Recording, alignment: &Alignment, options: Options) -> (Points, Placed) {
+fn fast(
+    recording: &Recording,
+    alignment: &Alignment,
+    options: Options,
+) -> (Points, PlacementCounts) {
     let mut points = Points::new(Fields::ALL);
-    let mut placer = Placer::new(alignment, options, &mut points);
-    for record in recording.records() {
-        placer.observe(&record).unwrap();
-    }
-    let (placed, stats) = placer.finish().unwrap();
+    let (counts, stats) =
+        scanner::place(recording.records(), alignment, options, &mut points).unwrap();
     assert_eq!(stats.corrections_refused, None);
-    (points, placed)
+    (points, counts)
 }
 
-fn slow(recording: &Recording, alignment: &Alignment, options: Options) -> (Points, Placed) {
-    let (mut points, mut placed) = (Points::new(Fields::ALL), Placed::default());
+fn slow(
+    recording: &Recording,
+    alignment: &Alignment,
+    options: Options,
+) -> (Points, PlacementCounts) {
+    let (mut points, mut placed) = (Points::new(Fields::ALL), PlacementCounts::default());
     let mut decoder = Decoder::new(options);
     let mut each = |firing: &lidar::Firing<'_>| {
         for point in firing.points() {

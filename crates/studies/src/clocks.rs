@@ -211,12 +211,7 @@ fn online(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
 fn whole(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
     let arrivals: Vec<Arrival> = arrivals(packets).collect();
     let clock = LidarClock::fit(&arrivals)?;
-    let mut cursor = clock.cursor();
-    let host = |arrival: &Arrival| {
-        let tangent = cursor.tangent(arrival.device, Span::ZERO);
-        tangent.map_or_else(|| clock.host(arrival.device), |tangent| tangent.at.host)
-    };
-    Some(arrivals.iter().map(host).collect())
+    Some(arrivals.iter().map(|a| clock.host(a.device)).collect())
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use drive::record::{Record, Wire};
 use firmware_sim::vlp16::{DATA_PORT, PacketBuilder};
 use lidar::{Decoder, Options};
 use protocol::vlp16::models::VLP_16;
-use scanner::{Alignment, AngleTable, ScanConfig, Survey, TiltSource};
+use scanner::{Accuracy, Alignment, AngleTable, ScanConfig, Survey, TiltSource};
 use units::{Host, Span, Stamp};
 
 /// 10 turns a second, degrees per nanosecond.
@@ -96,7 +96,7 @@ impl Workload {
             .map(|t| (t, (self.tilt_deg)(t)));
         let table = AngleTable::new(rows.collect()).map_err(StudyError::workload)?;
         survey
-            .solve(&config, &TiltSource::Table(table))
+            .solve(&config, &TiltSource::Table(table), Accuracy::Best)
             .map_err(StudyError::workload)
     }
 

@@ -6,7 +6,7 @@ use cloud::{Fields, Points, Sink, SinkError};
 use io::recording::Recording;
 use lidar::{Decoder, Options};
 use protocol::record::Wire;
-use scanner::{Alignment, Placer, ScanConfig, Survey, TiltSource};
+use scanner::{Accuracy, Alignment, Placer, ScanConfig, Survey, TiltSource};
 
 use crate::limits::Columns;
 use crate::prepare::Packets;
@@ -157,20 +157,16 @@ impl Work {
 
 fn aligned(packets: &Packets, tilt: &TiltSource) -> Alignment {
     let config = ScanConfig::default();
-    let mut survey = Survey::new(&config, Options::default()).expect("the usual gearing");
-    for record in packets.records() {
-        survey.observe(&record);
-    }
-    survey.solve(&config, tilt).expect("packets and angles")
+    let options = Options::default();
+    scanner::align(packets.records(), &config, options, tilt, Accuracy::Best)
+        .expect("packets and angles")
 }
 
 /// The product's own second pass.
 fn place(packets: &Packets, alignment: &Alignment, sink: &mut dyn Sink) {
-    let mut placer = Placer::new(alignment, Options::default(), sink);
-    for record in packets.records() {
-        placer.observe(&record).expect("a sink that takes all");
-    }
-    black_box(placer.finish().expect("a sink that takes all"));
+    let options = Options::default();
+    let placed = scanner::place(packets.records(), alignment, options, sink);
+    black_box(placed.expect("a sink that takes all"));
 }
 
 /// Both passes over a file.
@@ -181,7 +177,7 @@ fn from_file(path: &str, tilt: &TiltSource) -> usize {
     while let Some(record) = recording.next_record().expect("a readable file") {
         survey.observe(&record);
     }
-    let alignment = survey.solve(&config, tilt).expect("packets and angles");
+    let alignment = survey.solve(&config, tilt, Accuracy::Best).expect("packets and angles");
     let mut count = Count::default();
     let mut placer = Placer::new(&alignment, Options::default(), &mut count);
     let mut recording = Recording::open(path).expect("a recording");

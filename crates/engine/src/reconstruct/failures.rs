@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use scanner::{OutOfReach, ScanError};
+use scanner::{UnreachableTolerance, ScanError};
 
 use crate::failure::{Failure, Kind};
 
 /// The failure of a reconstruction, with what to do about it.
 #[must_use]
 pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
-    if let ScanError::OutOfReach(out) = error {
+    if let ScanError::UnreachableTolerance(out) = error {
         return out_of_reach(path, out);
     }
     let help = match error {
@@ -29,14 +29,14 @@ pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
             "give times as Unix seconds like the recording's, or as seconds since its first packet"
         }
         ScanError::NoBound => "leave --tolerance out, or use the angles of the log",
-        ScanError::OutOfReach(_) => "ask for less",
+        ScanError::UnreachableTolerance(_) => "ask for less",
         ScanError::Gearing(_) => "correct encoder_lines and gear in the configuration",
     };
     Failure::new(Kind::BadInput, format!("{}: {error}", path.display())).help(help)
 }
 
 /// No cloud is as accurate as was asked for: what would be.
-fn out_of_reach(path: &Path, out: &OutOfReach) -> Failure {
+fn out_of_reach(path: &Path, out: &UnreachableTolerance) -> Failure {
     let mut would = Vec::new();
     if let Some(speed) = out.speed_that_would_do() {
         would.push(format!("sweeps at {:.2} deg/s or slower", speed.0));

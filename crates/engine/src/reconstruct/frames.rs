@@ -9,7 +9,7 @@ use lidar::{
     Decoder, Duplicates, Echo, Firing, Frame, FrameCutter, Options, OrganisedFrame, Stats, UtcClock,
 };
 use protocol::record::{Record, Wire};
-use scanner::{Alignment, Placed};
+use scanner::{Alignment, PlacementCounts};
 use units::{Degrees, Host, Lidar, Span, Stamp};
 
 use super::replay::tilt_track;
@@ -45,7 +45,7 @@ pub struct FrameWriter<'a> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Written {
     /// Points, and returns that have no place.
-    pub placed: Placed,
+    pub placed: PlacementCounts,
     /// Points that were left out: the lidar's clock was not locked to UTC.
     pub without_utc: u64,
     /// Clouds.
@@ -63,7 +63,7 @@ struct Filling<'a> {
     cutter: FrameCutter,
     points: Points,
     grid: OrganisedFrame,
-    placed: Placed,
+    placed: PlacementCounts,
     without_utc: u64,
     /// Frames that have ended and are not written yet, with their rows.
     ended: Vec<(Frame, Points, u64)>,
@@ -120,7 +120,7 @@ impl<'a> FrameWriter<'a> {
                 cutter,
                 points: Points::new(plan.fields),
                 grid: OrganisedFrame::new(),
-                placed: Placed::default(),
+                placed: PlacementCounts::default(),
                 without_utc: 0,
                 ended: Vec::new(),
                 error: None,
@@ -236,7 +236,7 @@ impl Filling<'_> {
             return;
         }
         for seen in firing.points() {
-            match self.alignment.place_near(&seen, self.near) {
+            match self.alignment.place_received(&seen, self.near) {
                 Some(point) => self.keep(point),
                 None => self.placed.outside += 1,
             }
@@ -286,7 +286,7 @@ impl Filling<'_> {
                     let seen = grid.cell(layer, ring, column).filter(|seen| {
                         !(self.once && layer > 0 && seen.echo == Echo::LastAndStrongest)
                     });
-                    let placed = seen.and_then(|seen| alignment.place_near(seen, self.near));
+                    let placed = seen.and_then(|seen| alignment.place_received(seen, self.near));
                     match (seen, placed) {
                         (_, Some(_)) => self.placed.points += 1,
                         (Some(_), None) => self.placed.outside += 1,

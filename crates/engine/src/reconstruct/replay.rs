@@ -11,7 +11,7 @@ use protocol::record::{DriveLink, Record, Wire};
 use protocol::vlp16::DATA_LEN;
 use scanner::steps::SetClock;
 use scanner::trajectory::Method;
-use scanner::{Accuracy, Alignment, Placed, Placer, ScanConfig, ScanError, Survey, TiltSource};
+use scanner::{Accuracy, Alignment, PlacementCounts, Placer, ScanConfig, ScanError, Survey, TiltSource};
 use sim::Truth;
 use units::{Host, Span, Stamp};
 
@@ -112,7 +112,7 @@ fn survey(request: &Request<'_>) -> Result<Surveyed, Failure> {
     })?;
     let drive = survey.drive();
     let alignment = survey
-        .solve_to(&config, &request.tilt, request.accuracy)
+        .solve(&config, &request.tilt, request.accuracy)
         .map_err(cannot_scan)?;
     Ok(Surveyed {
         config,
@@ -201,7 +201,7 @@ fn place(
     surveyed: &Surveyed,
     sink: &mut dyn Sink,
     output: &Path,
-) -> Result<(Placed, Stats), Failure> {
+) -> Result<(PlacementCounts, Stats), Failure> {
     let mut pace = pacer(request.pace)?;
     let cannot_write = |error: SinkError| sink_failure(output, &error);
     sink.begin(&metadata(&surveyed.config, request))
@@ -258,7 +258,7 @@ pub fn frames(request: &Request<'_>, plan: &FramePlan) -> Result<Scan, Failure> 
 fn report(
     request: &Request<'_>,
     surveyed: &Surveyed,
-    placed: Placed,
+    placed: PlacementCounts,
     stats: &Stats,
     output: &Path,
 ) -> Result<Scan, Failure> {

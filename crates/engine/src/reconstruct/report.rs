@@ -1,6 +1,6 @@
 //! What commands say at the end: one JSON object for programs, a table for people.
 
-use scanner::Choice;
+use scanner::MethodChoice;
 use scanner::steps::{ClockStep, SetClock};
 use serde::{Deserialize, Serialize};
 
@@ -185,7 +185,7 @@ pub struct TriedMethod {
 impl ToleranceReport {
     /// The report on a choice.
     #[must_use]
-    pub fn new(choice: &Choice) -> Self {
+    pub fn new(choice: &MethodChoice) -> Self {
         let tried = choice.bounds.iter().map(|(method, bound)| TriedMethod {
             method: method.name(),
             bound_m: bound.0,

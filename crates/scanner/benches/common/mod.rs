@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use drive::record::{Record, Wire};
 use lidar::Options;
-use scanner::{Alignment, AngleTable, ScanConfig, Survey, TiltSource};
+use scanner::{Accuracy, Alignment, AngleTable, ScanConfig, TiltSource};
 use units::{Host, Stamp};
 
 /// Ethernet, IPv4 without options, UDP.
@@ -89,12 +89,8 @@ impl Recording {
     }
 
     fn aligned(&self, tilt: &TiltSource) -> Alignment {
-        let config = ScanConfig::default();
-        let mut survey = Survey::new(&config, Options::default()).unwrap();
-        for record in self.records() {
-            survey.observe(&record);
-        }
-        survey.solve(&config, tilt).unwrap()
+        let (config, options) = (ScanConfig::default(), Options::default());
+        scanner::align(self.records(), &config, options, tilt, Accuracy::Best).unwrap()
     }
 }
 

@@ -8,8 +8,8 @@ use core::marker::PhantomData;
 use units::{Host, Lidar, Span, Stamp};
 
 use super::Arrival;
-use super::cursor::{ClockCursor, Moment, Segment};
 use super::envelope::Envelope;
+use super::segment::{ClockSegment, Moment, OffsetLine};
 
 /// Maps a device's time to host time.
 ///
@@ -18,7 +18,7 @@ use super::envelope::Envelope;
 pub struct DeviceClock<C = Lidar> {
     origin_ns: i64,
     /// In the order in which they were recorded, never empty.
-    pieces: Vec<Piece>,
+    pieces: Vec<ClockPiece>,
     residual: Span,
     domain: PhantomData<fn() -> C>,
 }
@@ -36,7 +36,7 @@ pub(crate) struct Stretch<C = Lidar> {
 
 /// A stretch over which a device's clock went on evenly.
 #[derive(Clone, Debug)]
-pub(crate) struct Piece {
+pub(crate) struct ClockPiece {
     /// First and last arrival, device nanoseconds after the clock's origin.
     pub from_ns: f64,
     pub to_ns: f64,
@@ -47,26 +47,18 @@ pub(crate) struct Piece {
     /// How far the host's clock had been set forward by then.
     pub set_by: i64,
     /// Never empty.
-    pub lines: Vec<Line>,
+    pub lines: Vec<OffsetLine>,
     /// How far off it may be.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<ErrorCell>,
 }
 
 /// How far off the clock may be from an instant on until the next cell.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cell {
+pub(crate) struct ErrorCell {
     pub from_ns: f64,
     pub bound_ns: f64,
     /// Standard deviation of it.
     pub sd_ns: f64,
-}
-
-/// Offset over device time: `offset_ns + slope * (x - centre)`, with x in nanoseconds after the origin.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Line {
-    pub centre_ns: f64,
-    pub offset_ns: f64,
-    pub slope: f64,
 }
 
 /// A device time this far beyond a piece's arrivals may still be of it: packets that were lost at its end, firings of its last.
@@ -93,14 +85,14 @@ impl<C> DeviceClock<C> {
     #[must_use]
     pub(crate) fn through(device: Stamp<C>, moment: Moment) -> Self {
         let host = moment.host.as_nanos();
-        let line = Line {
+        let line = OffsetLine {
             centre_ns: 0.0,
             offset_ns: moment.rest_ns,
             slope: 0.0,
         };
         Self {
             origin_ns: device.as_nanos(),
-            pieces: vec![Piece {
+            pieces: vec![ClockPiece {
                 from_ns: 0.0,
                 to_ns: 0.0,
                 end_ns: device.as_nanos(),
@@ -121,12 +113,12 @@ impl<C> DeviceClock<C> {
         host_was_set: &[bool],
     ) -> Option<(Self, Vec<Span>)> {
         let origin_ns = stretches.first()?.first.as_nanos();
-        let mut pieces: Vec<Piece> = Vec::with_capacity(stretches.len());
+        let mut pieces: Vec<ClockPiece> = Vec::with_capacity(stretches.len());
         let mut late: Vec<i64> = Vec::new();
         let mut rises = Vec::new();
         let mut set_by = 0i64;
         for stretch in stretches {
-            let mut piece = Piece::fit(stretch, origin_ns)?;
+            let mut piece = ClockPiece::fit(stretch, origin_ns)?;
             late.extend(stretch.arrivals.iter().map(|arrival| {
                 let host = piece.host(arrival.device, origin_ns);
                 arrival.host.saturating_since(host).as_nanos()
@@ -184,12 +176,6 @@ impl<C> DeviceClock<C> {
             .moment(device, self.since_origin(device))
     }
 
-    /// Follows the clock through device times that mostly grow, without a search for each.
-    #[must_use]
-    pub const fn cursor(&self) -> ClockCursor<'_, C> {
-        ClockCursor::new(self)
-    }
-
     /// Median of how late packets came above the envelope: the link's typical delay beyond its smallest.
     #[must_use]
     pub fn residual(&self) -> Span {
@@ -224,7 +210,7 @@ impl<C> DeviceClock<C> {
         self.cell(device, near).map_or(0.0, |cell| cell.sd_ns)
     }
 
-    fn cell(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Option<&Cell> {
+    fn cell(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Option<&ErrorCell> {
         let x = self.since_origin(device);
         let cells = &self.piece(device, near)?.cells;
         let next = cells.partition_point(|cell| cell.from_ns <= x);
@@ -250,18 +236,18 @@ impl<C> DeviceClock<C> {
     }
 
     #[inline(always)]
-    pub(super) fn since_origin(&self, device: Stamp<C>) -> f64 {
+    pub(crate) fn since_origin(&self, device: Stamp<C>) -> f64 {
         device.as_nanos().saturating_sub(self.origin_ns) as f64
     }
 
     /// The piece that `device` falls into, the nearest where it falls into none.
-    fn piece(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Option<&Piece> {
+    fn piece(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Option<&ClockPiece> {
         if let [only] = self.pieces.as_slice() {
             return Some(only);
         }
         let x = self.since_origin(device);
-        let beyond = |piece: &Piece| (piece.from_ns - x).max(x - piece.to_ns).max(BEYOND_NS);
-        let apart = |piece: &Piece| {
+        let beyond = |piece: &ClockPiece| (piece.from_ns - x).max(x - piece.to_ns).max(BEYOND_NS);
+        let apart = |piece: &ClockPiece| {
             near.map_or(0, |near| {
                 let host = piece.segment(x).moment(device, x).host;
                 let recorded = host.saturating_add(Span::from_nanos(piece.set_by));
@@ -276,9 +262,9 @@ impl<C> DeviceClock<C> {
 
     /// The stretch that `device` falls into: between two lines' centres, or beyond all of them.
     #[inline(never)]
-    pub(super) fn segment(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Segment {
+    pub(crate) fn segment(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> ClockSegment {
         let Some(piece) = self.piece(device, near) else {
-            return Segment::NONE;
+            return ClockSegment::NONE;
         };
         let mut segment = piece.segment(self.since_origin(device));
         if self.is_cut() {
@@ -289,7 +275,7 @@ impl<C> DeviceClock<C> {
     }
 }
 
-impl Piece {
+impl ClockPiece {
     fn fit<C>(stretch: &Stretch<C>, origin_ns: i64) -> Option<Self> {
         let first = stretch.arrivals.first()?;
         let whole = first.host.as_nanos().wrapping_sub(first.device.as_nanos());
@@ -324,56 +310,20 @@ impl Piece {
     }
 
     /// The stretch between two lines' centres, or beyond all of them, that `x` falls into.
-    fn segment(&self, x: f64) -> Segment {
+    fn segment(&self, x: f64) -> ClockSegment {
         let next = self.lines.partition_point(|line| line.centre_ns <= x);
         let before = next.checked_sub(1).and_then(|i| self.lines.get(i)).copied();
         let after = self.lines.get(next).copied();
         let from_ns = before.map_or(f64::NEG_INFINITY, |line| line.centre_ns);
         let to_ns = after.map_or(f64::INFINITY, |line| line.centre_ns);
-        Segment {
+        ClockSegment {
             whole: self.whole,
             from_ns,
             to_ns,
-            first: before.or(after).unwrap_or(Line::NONE),
+            first: before.or(after).unwrap_or(OffsetLine::NONE),
             second: before.and(after),
             blend_ns: (from_ns, to_ns),
         }
-    }
-}
-
-impl Segment {
-    /// Where there is no clock.
-    const NONE: Self = Self {
-        whole: 0,
-        from_ns: f64::NEG_INFINITY,
-        to_ns: f64::INFINITY,
-        first: Line::NONE,
-        second: None,
-        blend_ns: (f64::NEG_INFINITY, f64::INFINITY),
-    };
-
-    /// One line, up to `to_ns`.
-    pub(super) const fn straight(first: Line, to_ns: f64, whole: i64) -> Self {
-        Self {
-            whole,
-            to_ns,
-            first,
-            ..Self::NONE
-        }
-    }
-}
-
-impl Line {
-    /// Where there is none.
-    const NONE: Self = Self {
-        centre_ns: 0.0,
-        offset_ns: 0.0,
-        slope: 0.0,
-    };
-
-    #[inline(always)]
-    pub fn at(self, x: f64) -> f64 {
-        self.offset_ns + self.slope * (x - self.centre_ns)
     }
 }
 

@@ -16,8 +16,8 @@
 //! of the line's two ends, and the spread there is how well the line is known. The exponent is measured by Hill's estimator
 //! (B. M. Hill, Annals of Statistics 3, 1975, pp. 1163-1174) from the lowest packets of the whole recording.
 
-use super::device::Line;
 use super::envelope::Point;
+use super::segment::OffsetLine;
 
 /// How delays are spread just above the least: the share below d is that of `depth_ns` times (d / depth)^exponent.
 #[derive(Clone, Copy, Debug)]
@@ -96,20 +96,20 @@ impl Ends {
 type Low = (f64, f64);
 
 /// A grid over how far the line's begin and end are below the hull's.
-struct Grid {
+struct LineGrid {
     begin: (f64, f64),
     end: (f64, f64),
 }
 
 /// Mean and deviation of the line's begin and end, and deviation of its middle.
-struct Spread {
+struct LinePosterior {
     begin: (f64, f64),
     end: (f64, f64),
     middle: f64,
 }
 
 /// Where the clock is by the lowest of a block's points, and how well that is known. `None` where there are too few.
-pub(super) fn line(points: &[Point], hull: Line, tail: Tail) -> Option<(Line, Ends)> {
+pub(super) fn line(points: &[Point], hull: OffsetLine, tail: Tail) -> Option<(OffsetLine, Ends)> {
     let (first, last) = (points.first()?.0, points.last()?.0);
     let length = last - first;
     if length <= 0.0 {
@@ -126,18 +126,18 @@ pub(super) fn line(points: &[Point], hull: Line, tail: Tail) -> Option<(Line, En
     low.select_nth_unstable_by(TENTH, |a, b| a.1.total_cmp(&b.1));
     let tenth = low.get(TENTH)?.1.max(LEAST_NS);
     let side = (-UP * tenth, DOWN * tenth);
-    let coarse = Grid {
+    let coarse = LineGrid {
         begin: side,
         end: side,
     }
     .spread(&low, tail)?;
-    let fine = Grid {
+    let fine = LineGrid {
         begin: coarse.begin_side(),
         end: coarse.end_side(),
     };
     // Where all of the likelihood is between two nodes the finer grid may miss it.
     let spread = fine.spread(&low, tail).unwrap_or(coarse);
-    let line = Line {
+    let line = OffsetLine {
         centre_ns: hull.centre_ns,
         offset_ns: hull.offset_ns - 0.5 * (spread.begin.0 + spread.end.0),
         slope: hull.slope - (spread.end.0 - spread.begin.0) / length,
@@ -150,13 +150,13 @@ pub(super) fn line(points: &[Point], hull: Line, tail: Tail) -> Option<(Line, En
     Some((line, ends))
 }
 
-impl Grid {
+impl LineGrid {
     fn node(side: (f64, f64), i: usize) -> f64 {
         side.0 + (side.1 - side.0) * i as f64 / (NODES - 1) as f64
     }
 
     /// Mean and deviations over the grid; `None` where no node is possible.
-    fn spread(&self, low: &[Low], tail: Tail) -> Option<Spread> {
+    fn spread(&self, low: &[Low], tail: Tail) -> Option<LinePosterior> {
         let mut nodes: Vec<(f64, f64, f64)> = Vec::with_capacity(NODES * NODES);
         for i in 0..NODES {
             for k in 0..NODES {
@@ -179,7 +179,7 @@ impl Grid {
         }
         let (begin, end) = (mean(&|b, _| b), mean(&|_, e| e));
         let deviation = |of: &dyn Fn(f64, f64) -> f64| mean(&|b, e| of(b, e).powi(2)).sqrt();
-        Some(Spread {
+        Some(LinePosterior {
             begin: (begin, deviation(&|b, _| b - begin)),
             end: (end, deviation(&|_, e| e - end)),
             middle: deviation(&|b, e| 0.5 * (b + e - begin - end)),
@@ -187,7 +187,7 @@ impl Grid {
     }
 }
 
-impl Spread {
+impl LinePosterior {
     fn begin_side(&self) -> (f64, f64) {
         Self::side(self.begin)
     }

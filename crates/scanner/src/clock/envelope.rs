@@ -5,8 +5,9 @@
 //! the least delay that is the clock to within a fraction of a microsecond. Where they do not, `endpoint` says how far below the hull the clock is.
 //! Left out: clocks that were set; whoever calls cuts there.
 
-use super::device::{Cell, Line};
+use super::device::ErrorCell;
 use super::endpoint::{self, Ends, Tail};
+use super::segment::OffsetLine;
 
 /// Length of a block: long enough to meet a prompt packet on a busy link, short against an oscillator's wander.
 pub(super) const BLOCK_NS: f64 = 30e9;
@@ -49,18 +50,18 @@ pub(super) type Point = (f64, f64);
 
 /// The clock under a recording's points.
 pub(super) struct Envelope {
-    pub lines: Vec<Line>,
-    pub cells: Vec<Cell>,
+    pub lines: Vec<OffsetLine>,
+    pub cells: Vec<ErrorCell>,
 }
 
 /// How delays are spread above the lines: this share is below the depth.
 #[derive(Clone, Copy)]
-struct Spread {
+struct LowDelays {
     share: f64,
     depth_ns: f64,
 }
 
-impl Spread {
+impl LowDelays {
     /// What the least of `count` delays stays below: with one stage of delay or two, and packets that come in bunches.
     fn least_of(self, count: usize) -> f64 {
         let part = MISSED / (self.share * count as f64);
@@ -69,9 +70,9 @@ impl Spread {
 }
 
 /// A block with its line.
-struct Block<'a> {
+struct EnvelopeBlock<'a> {
     points: &'a [Point],
-    line: Line,
+    line: OffsetLine,
     /// Standard deviation of the line at the block's begin, middle and end.
     ends: Ends,
 }
@@ -86,12 +87,12 @@ impl Envelope {
             };
         };
         let length_ns = last.0 - first.0;
-        let mut blocks: Vec<Block<'_>> = blocks(first.0, length_ns)
+        let mut blocks: Vec<EnvelopeBlock<'_>> = blocks(first.0, length_ns)
             .filter_map(|(from, to)| {
                 let low = points.partition_point(|p| p.0 < from);
                 let high = points.partition_point(|p| p.0 <= to);
                 let points = points.get(low..high)?;
-                Some(Block {
+                Some(EnvelopeBlock {
                     points,
                     line: line_below(points)?,
                     ends: Ends::default(),
@@ -108,9 +109,9 @@ impl Envelope {
 }
 
 /// Brings lines down to where the delays above them come to an end, where that matters; how the delays are spread.
-fn refine(blocks: &mut [Block<'_>]) -> Option<Spread> {
-    let low = |blocks: &[Block<'_>]| {
-        let mut late: Vec<f64> = blocks.iter().flat_map(Block::lateness).collect();
+fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
+    let low = |blocks: &[EnvelopeBlock<'_>]| {
+        let mut late: Vec<f64> = blocks.iter().flat_map(EnvelopeBlock::lateness).collect();
         lowest(&mut late)
     };
     let (depth_ns, count) = low(blocks)?;
@@ -121,14 +122,14 @@ fn refine(blocks: &mut [Block<'_>]) -> Option<Spread> {
         block.ends = Ends::all(depth_ns / own.max(1.0).sqrt());
     }
     let too_few = blocks.iter().any(|block| block.points.len() < FEWEST);
-    let spread = Spread {
+    let spread = LowDelays {
         share: count as f64 / all as f64,
         depth_ns,
     };
     if depth_ns < PROMPT_NS || too_few {
         return Some(spread);
     }
-    let hulls: Vec<Line> = blocks.iter().map(|block| block.line).collect();
+    let hulls: Vec<OffsetLine> = blocks.iter().map(|block| block.line).collect();
     let mut tail = Tail::of_two_stages(depth_ns);
     for _ in 0..ROUNDS {
         for (block, hull) in blocks.iter_mut().zip(&hulls) {
@@ -136,7 +137,7 @@ fn refine(blocks: &mut [Block<'_>]) -> Option<Spread> {
                 (block.line, block.ends) = (line, ends);
             }
         }
-        tail = tail.measured(blocks.iter().flat_map(Block::lateness));
+        tail = tail.measured(blocks.iter().flat_map(EnvelopeBlock::lateness));
     }
     Some(spread)
 }
@@ -153,7 +154,11 @@ fn lowest(late: &mut [f64]) -> Option<(f64, usize)> {
 
 /// How far off the clock may be, cell by cell. Two things tell: how well each line is known, and cells of which all packets are late,
 /// above which the clock may be.
-fn cells(points: &[Point], blocks: &[Block<'_>], spread: Option<Spread>) -> Vec<Cell> {
+fn cells(
+    points: &[Point],
+    blocks: &[EnvelopeBlock<'_>],
+    spread: Option<LowDelays>,
+) -> Vec<ErrorCell> {
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return Vec::new();
     };
@@ -190,14 +195,14 @@ fn cells(points: &[Point], blocks: &[Block<'_>], spread: Option<Spread>) -> Vec<
             let late_ns = near.unwrap_or_default().iter().copied();
             let late_ns = AT_EDGE * late_ns.fold(0.0, f64::max);
             if points.len() < 3 {
-                return Cell {
+                return ErrorCell {
                     from_ns,
                     bound_ns: UNKNOWN_NS,
                     sd_ns: EVEN * UNKNOWN_NS,
                 };
             }
             let line_ns = deviation(blocks, from_ns).max(deviation(blocks, to_ns));
-            Cell {
+            ErrorCell {
                 from_ns,
                 bound_ns: known(from_ns).max(known(to_ns)).max(late_ns),
                 sd_ns: line_ns.hypot(EVEN * wander_ns.max(late_ns)),
@@ -207,7 +212,7 @@ fn cells(points: &[Point], blocks: &[Block<'_>], spread: Option<Spread>) -> Vec<
 }
 
 /// How fast the rate changed between two neighbours.
-fn wander_per_s(pair: &[Block<'_>]) -> f64 {
+fn wander_per_s(pair: &[EnvelopeBlock<'_>]) -> f64 {
     let [a, b] = pair else {
         return 0.0;
     };
@@ -220,7 +225,10 @@ fn wander_per_s(pair: &[Block<'_>]) -> f64 {
 }
 
 /// The blocks whose centres are around `x`, and how much the second counts.
-fn around<'b, 'p>(blocks: &'b [Block<'p>], x: f64) -> Option<(&'b Block<'p>, &'b Block<'p>, f64)> {
+fn around<'b, 'p>(
+    blocks: &'b [EnvelopeBlock<'p>],
+    x: f64,
+) -> Option<(&'b EnvelopeBlock<'p>, &'b EnvelopeBlock<'p>, f64)> {
     let next = blocks.partition_point(|block| block.line.centre_ns <= x);
     let after = blocks.get(next).or(blocks.last())?;
     let before = blocks.get(next.saturating_sub(1)).unwrap_or(after);
@@ -233,19 +241,19 @@ fn around<'b, 'p>(blocks: &'b [Block<'p>], x: f64) -> Option<(&'b Block<'p>, &'b
     Some((before, after, weight))
 }
 
-fn blended(blocks: &[Block<'_>], x: f64) -> f64 {
+fn blended(blocks: &[EnvelopeBlock<'_>], x: f64) -> f64 {
     around(blocks, x).map_or(0.0, |(before, after, weight)| {
         before.line.at(x) * (1.0 - weight) + after.line.at(x) * weight
     })
 }
 
-fn deviation(blocks: &[Block<'_>], x: f64) -> f64 {
+fn deviation(blocks: &[EnvelopeBlock<'_>], x: f64) -> f64 {
     around(blocks, x).map_or(0.0, |(before, after, weight)| {
         before.deviation(x) * (1.0 - weight) + after.deviation(x) * weight
     })
 }
 
-impl Block<'_> {
+impl EnvelopeBlock<'_> {
     fn lateness(&self) -> impl Iterator<Item = f64> {
         self.points.iter().map(|p| p.1 - self.line.at(p.0))
     }
@@ -279,7 +287,7 @@ fn blocks(begin_ns: f64, length_ns: f64) -> impl Iterator<Item = (f64, f64)> {
 
 /// The line under all of `points` (sorted by x) that is closest to them in sum: the hull edge under their mean x, its slope
 /// held to what oscillators do.
-fn line_below(points: &[Point]) -> Option<Line> {
+fn line_below(points: &[Point]) -> Option<OffsetLine> {
     let (first, last) = (points.first()?, points.last()?);
     let centre = 0.5 * (first.0 + last.0);
     let mean = points.iter().map(|p| p.0 - centre).sum::<f64>() / points.len() as f64 + centre;
@@ -301,7 +309,7 @@ fn line_below(points: &[Point]) -> Option<Line> {
         .iter()
         .map(|p| p.1 - slope * (p.0 - centre))
         .fold(f64::INFINITY, f64::min);
-    Some(Line {
+    Some(OffsetLine {
         centre_ns: centre,
         offset_ns: offset,
         slope,

@@ -15,8 +15,8 @@ use core::marker::PhantomData;
 use units::{Lidar, Span, Stamp};
 
 use super::Arrival;
-use super::cursor::{Moment, Segment, Tangent};
-use super::device::{Line, span};
+use super::device::span;
+use super::segment::{ClockSegment, Moment, OffsetLine};
 
 /// How fast the offset may grow: the clocks drift apart no faster.
 const RATE: f64 = 100e-6;
@@ -37,13 +37,13 @@ const UNKNOWN_NS: f64 = 1e9;
 pub struct OnlineClock<C = Lidar> {
     origin_ns: i64,
     whole: i64,
-    state: Option<State>,
+    state: Option<OnlineState>,
     domain: PhantomData<fn() -> C>,
 }
 
 /// All in nanoseconds: x after the origin, y of offset.
 #[derive(Clone, Debug)]
-struct State {
+struct OnlineState {
     /// The packet that tells the clock.
     held: (f64, f64),
     /// Where the clock was when that was last found: it comes down from there.
@@ -84,7 +84,7 @@ impl<C> OnlineClock<C> {
         let anew = self.state.is_some();
         self.origin_ns = device;
         self.whole = host.wrapping_sub(device);
-        self.state = Some(State::new());
+        self.state = Some(OnlineState::new());
         anew
     }
 
@@ -92,20 +92,8 @@ impl<C> OnlineClock<C> {
     #[must_use]
     pub fn moment(&self, device: Stamp<C>) -> Option<Moment> {
         let x = self.since_origin(device);
-        let segment = self.state.as_ref()?.segment(x, self.whole);
-        Some(segment.moment(device, x))
-    }
-
-    /// The clock from `device` on for `length`. `None` before the first packet, and where it is no straight line there: ask it
-    /// instant by instant.
-    #[must_use]
-    pub fn tangent(&self, device: Stamp<C>, length: Span) -> Option<Tangent> {
-        let x = self.since_origin(device);
-        let segment = self.state.as_ref()?.segment(x, self.whole);
-        (x + (length.as_nanos() as f64) < segment.to_ns).then(|| Tangent {
-            at: segment.moment(device, x),
-            gain: segment.first.slope,
-        })
+        let line = self.state.as_ref()?.line(x);
+        Some(ClockSegment::straight(line, self.whole).moment(device, x))
     }
 
     /// About the median of how late packets come above the clock.
@@ -121,7 +109,11 @@ impl<C> OnlineClock<C> {
     /// packets from the first second on; until two such intervals are known it is a second.
     #[must_use]
     pub fn bound(&self) -> Span {
-        span(self.state.as_ref().map_or(UNKNOWN_NS, State::bound_ns))
+        span(
+            self.state
+                .as_ref()
+                .map_or(UNKNOWN_NS, OnlineState::bound_ns),
+        )
     }
 
     fn since_origin(&self, device: Stamp<C>) -> f64 {
@@ -134,7 +126,7 @@ impl<C> OnlineClock<C> {
     }
 }
 
-impl State {
+impl OnlineState {
     fn new() -> Self {
         Self {
             held: (0.0, 0.0),
@@ -194,33 +186,24 @@ impl State {
         coming_down.max(self.target(x))
     }
 
-    /// The straight stretch at `x`.
-    fn segment(&self, x: f64, whole: i64) -> Segment {
+    /// The line at `x`.
+    fn line(&self, x: f64) -> OffsetLine {
         let above = self.from.1 - self.target(self.from.0);
         let there = self.from.0 + (above / (CATCH_UP + RATE)).max(0.0);
-        let down = Line {
+        if x >= there {
+            return OffsetLine {
+                centre_ns: self.held.0,
+                offset_ns: self.held.1,
+                slope: RATE,
+            };
+        }
+        // Before it came down the clock ran evenly.
+        let slope = if x >= self.from.0 { -CATCH_UP } else { RATE };
+        OffsetLine {
             centre_ns: self.from.0,
             offset_ns: self.from.1,
-            slope: -CATCH_UP,
-        };
-        let grows = Line {
-            centre_ns: self.held.0,
-            offset_ns: self.held.1,
-            slope: RATE,
-        };
-        // Before it came down the clock ran evenly.
-        let level = Line {
-            slope: RATE,
-            ..down
-        };
-        let (line, to_ns) = if x >= there {
-            (grows, f64::INFINITY)
-        } else if x >= self.from.0 {
-            (down, there)
-        } else {
-            (level, self.from.0)
-        };
-        Segment::straight(line, to_ns, whole)
+            slope,
+        }
     }
 
     fn bound_ns(&self) -> f64 {

@@ -41,7 +41,7 @@ pub(crate) struct Jump {
 }
 
 /// What there is in a recording.
-pub(crate) struct Found {
+pub(crate) struct JumpReport {
     pub jumps: Vec<Jump>,
     /// Packets that came before they can have: damaged stamps.
     pub strays: Vec<usize>,
@@ -49,19 +49,19 @@ pub(crate) struct Found {
 }
 
 /// Looks through packets in the order in which they were recorded.
-pub(crate) fn find(arrivals: &[Arrival]) -> Found {
+pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
     let offsets = offsets(arrivals);
     let spacing_ns = spacing_ns(arrivals);
     let window = usize::try_from(WINDOW_NS / spacing_ns.max(100_000)).unwrap_or(LEVEL);
     let ahead = least_ahead(&offsets, window);
-    let mut search = Search {
+    let mut search = JumpSearch {
         arrivals,
         offsets: &offsets,
         window,
-        behind: Least::default(),
+        behind: SlidingMinimum::default(),
         since: 0,
     };
-    let mut found = Found {
+    let mut found = JumpReport {
         jumps: Vec::new(),
         strays: Vec::new(),
         spacing_ns,
@@ -72,11 +72,11 @@ pub(crate) fn find(arrivals: &[Arrival]) -> Found {
             continue;
         };
         match search.judge(at, before, *after) {
-            Verdict::Goes => search.behind.push(at, *offset, window),
-            Verdict::Stray => found.strays.push(at),
-            Verdict::Jumped(by) => {
+            PacketKind::Goes => search.behind.push(at, *offset, window),
+            PacketKind::Stray => found.strays.push(at),
+            PacketKind::Jumped(by) => {
                 found.jumps.push(Jump { at, by });
-                search.behind = Least::default();
+                search.behind = SlidingMinimum::default();
                 search.behind.push(at, *offset, window);
                 search.since = at;
             }
@@ -85,31 +85,31 @@ pub(crate) fn find(arrivals: &[Arrival]) -> Found {
     found
 }
 
-struct Search<'a> {
+struct JumpSearch<'a> {
     arrivals: &'a [Arrival],
     offsets: &'a [i64],
     window: usize,
-    behind: Least,
+    behind: SlidingMinimum,
     /// First packet since the last jump.
     since: usize,
 }
 
-enum Verdict {
+enum PacketKind {
     Goes,
     Stray,
     Jumped(Span),
 }
 
-impl Search<'_> {
-    fn judge(&self, at: usize, before: i64, after: i64) -> Verdict {
+impl JumpSearch<'_> {
+    fn judge(&self, at: usize, before: i64, after: i64) -> PacketKind {
         let rise = after.saturating_sub(before);
         let here = self.offsets.get(at).copied().unwrap_or(before);
         let early = here.saturating_sub(before) <= -LEAST_NS / 2;
         if rise >= LEAST_NS && self.is_sudden(at, rise) && self.stays(at) {
-            return Verdict::Jumped(Span::from_nanos(rise));
+            return PacketKind::Jumped(Span::from_nanos(rise));
         }
         if !early {
-            return Verdict::Goes;
+            return PacketKind::Goes;
         }
         // Nobody is early for nothing: another jump within the window changes nothing of this one.
         let fall = self
@@ -117,14 +117,14 @@ impl Search<'_> {
             .map_or(0, |least| least.saturating_sub(before));
         let next = self.least(at + 1, at + LOCAL);
         if next.is_none_or(|next| next.saturating_sub(before) > -LEAST_NS / 2) {
-            return Verdict::Stray;
+            return PacketKind::Stray;
         }
         // But those before may all have been late.
         let was_level = at - self.since >= self.window || self.is_level(self.since, at);
         if fall <= -LEAST_NS && (was_level || self.went_back(at)) {
-            return Verdict::Jumped(Span::from_nanos(fall));
+            return PacketKind::Jumped(Span::from_nanos(fall));
         }
-        Verdict::Goes
+        PacketKind::Goes
     }
 
     fn least(&self, from: usize, to: usize) -> Option<i64> {
@@ -161,7 +161,7 @@ impl Search<'_> {
     }
 }
 
-impl Found {
+impl JumpReport {
     /// Whether the lidar's clock did not keep its spacing about packet `at`.
     pub fn device_jumped(&self, arrivals: &[Arrival], at: usize) -> bool {
         let near = at.saturating_sub(NEAR).max(1)..at + NEAR;
@@ -231,12 +231,12 @@ fn spacing_ns(arrivals: &[Arrival]) -> i64 {
 
 /// The least of the last values.
 #[derive(Default)]
-struct Least {
+struct SlidingMinimum {
     /// Place and value, both growing.
     rising: VecDeque<(usize, i64)>,
 }
 
-impl Least {
+impl SlidingMinimum {
     fn push(&mut self, at: usize, value: i64, window: usize) {
         while self.rising.back().is_some_and(|last| last.1 >= value) {
             self.rising.pop_back();
@@ -258,7 +258,7 @@ impl Least {
 
 /// The least of each value and the ones after it within the window.
 fn least_ahead(values: &[i64], window: usize) -> Vec<i64> {
-    let mut least = Least::default();
+    let mut least = SlidingMinimum::default();
     let mut ahead: Vec<i64> = Vec::with_capacity(values.len());
     // Backwards, so that what is ahead has gone before.
     for (at, value) in values.iter().rev().enumerate() {

@@ -88,17 +88,17 @@ impl Recorded {
         for (_, entry) in entries {
             match entry {
                 Entry::Packet(packet) => {
-                    seen.seams.packet(packet.device.as_nanos(), packet.host);
+                    seen.monotonic.packet(packet.device.as_nanos(), packet.host);
                     seen.arrivals.push(packet);
                 }
                 Entry::Poll(request, answer) => {
                     let stamp = Stamp::from_nanos;
                     let sewn = (
-                        seen.seams.sew(stamp(request)),
-                        seen.seams.sew(stamp(answer)),
+                        seen.monotonic.to_monotonic(stamp(request)),
+                        seen.monotonic.to_monotonic(stamp(answer)),
                     );
                     seen.polls.push(sewn);
-                    seen.seams.sample();
+                    seen.monotonic.sample();
                 }
             }
         }
@@ -110,13 +110,13 @@ impl Recorded {
 #[derive(Default)]
 struct Seen {
     arrivals: Vec<Arrival>,
-    seams: Seams,
+    monotonic: ClockSteps,
     polls: Vec<(Stamp<Host>, Stamp<Host>)>,
 }
 
 impl Seen {
     fn timeline(&self) -> Timeline {
-        Timeline::new(&self.arrivals, &self.seams).unwrap()
+        Timeline::new(&self.arrivals, &self.monotonic).unwrap()
     }
 
     /// Greatest error of clock and polls against what was, in microseconds, a constant aside; how many polls are off by a round trip or
@@ -353,5 +353,5 @@ fn a_handful_of_packets() {
         let seen = recorded.stepped(&[]);
         assert_eq!(seen.timeline().steps, []);
     }
-    assert!(Timeline::new(&[], &Seams::default()).is_none());
+    assert!(Timeline::new(&[], &ClockSteps::default()).is_none());
 }

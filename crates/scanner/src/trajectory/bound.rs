@@ -5,7 +5,7 @@
 use units::{Host, Stamp};
 
 use super::choose::SweepFit;
-use super::pieces::Pieces;
+use super::pieces::PiecewiseCubic;
 use super::{AngleSample, Method, noise};
 
 /// Standard deviations that a bound holds.
@@ -13,7 +13,7 @@ const SURE: f64 = 3.0;
 
 /// Of a fit within a span: what it scatters, and the delay that all samples may share at the speed there, degrees.
 pub(super) fn of_fit(
-    pieces: &Pieces,
+    pieces: &PiecewiseCubic,
     (from, to): (Stamp<Host>, Stamp<Host>),
     fit: &SweepFit,
 ) -> f64 {

@@ -8,7 +8,7 @@
 use units::{Degrees, Host, Span, Stamp};
 
 use super::noise::{Noise, rates};
-use super::pieces::{Piece, Pieces};
+use super::pieces::{CubicPiece, PiecewiseCubic};
 use super::profile::Profile;
 use super::profile_fit::{self, Observed, ProfileFit, Servo};
 use super::{AngleSample, Method, Remark, spline};
@@ -70,7 +70,7 @@ pub(super) struct Candidates<'a> {
 /// One of them.
 struct Candidate {
     fit: SweepFit,
-    pieces: Pieces,
+    pieces: PiecewiseCubic,
     /// What is left in a row, degrees.
     strange_deg: f64,
     /// It is of few observations: a look at what a fit comes to.
@@ -107,7 +107,7 @@ impl<'a> Candidates<'a> {
     }
 
     /// The truest of them, with its pieces; of `method` alone where one is asked for. `None` where there is none.
-    pub(super) fn best(&self, method: Option<Method>) -> Option<(SweepFit, Pieces)> {
+    pub(super) fn best(&self, method: Option<Method>) -> Option<(SweepFit, PiecewiseCubic)> {
         let servo = |method: Method| match method {
             Method::Profile => Some(Servo::None),
             Method::ProfileServo => Some(Servo::Lag),
@@ -198,7 +198,7 @@ impl<'a> Candidates<'a> {
     fn candidate(&self, fit: ProfileFit, method: Method) -> Option<Candidate> {
         let end_s = self.observed.last()?.at_s;
         let pieces = pieces(&fit, self.origin, end_s)?;
-        let remarks = fit.held.any().then_some(Remark::Held(fit.held));
+        let remarks = fit.held.any().then_some(Remark::Regularised(fit.held));
         let mut candidate = self.judged(method, pieces)?;
         candidate.fit.profile = Some(fit.profile);
         candidate.fit.condition = Some(fit.condition);
@@ -261,7 +261,7 @@ impl<'a> Candidates<'a> {
     }
 
     /// What a curve's residuals say of it.
-    fn judged(&self, method: Method, pieces: Pieces) -> Option<Candidate> {
+    fn judged(&self, method: Method, pieces: PiecewiseCubic) -> Option<Candidate> {
         let inside = |host: Stamp<Host>| self.sweep.start <= host && host <= self.sweep.end;
         let off: Vec<(f64, f64, f64)> = self
             .samples
@@ -304,11 +304,11 @@ impl<'a> Candidates<'a> {
             remarks: Vec::new(),
         };
         // What is left in a row is an error of every point of the sweep.
-        let sd = |piece: &Piece| f64::hypot(piece.sd_deg, strange_deg);
+        let sd = |piece: &CubicPiece| f64::hypot(piece.sd_deg, strange_deg);
         let with_sd = pieces.as_slice().iter().map(|p| p.with_sd(sd(p))).collect();
         Some(Candidate {
             fit,
-            pieces: Pieces::new(with_sd, pieces.span().1)?,
+            pieces: PiecewiseCubic::new(with_sd, pieces.span().1)?,
             strange_deg,
             is_look: false,
         })
@@ -432,7 +432,7 @@ fn delay(off: &[(f64, f64, f64)]) -> (Span, Span) {
 }
 
 /// A profile as cubics from the origin until `end_s`: its corners, behind them steps that grow as the servo's answer decays.
-fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<Pieces> {
+fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<PiecewiseCubic> {
     let profile = &fit.profile;
     let mut at = vec![0.0, end_s];
     let corners = profile.corners_s();
@@ -476,9 +476,9 @@ fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<Pieces> {
                 [angle_deg, rate_deg_s * 1e-9]
             });
             let sd = fit.sd_deg(0.5 * (from_s + to_s));
-            Some(Piece::hermite(*a, ns, ends[0], ends[1]).with_sd(sd))
+            Some(CubicPiece::hermite(*a, ns, ends[0], ends[1]).with_sd(sd))
         }
         _ => None,
     });
-    Pieces::new(pieces.collect(), *stamps.last()?)
+    PiecewiseCubic::new(pieces.collect(), *stamps.last()?)
 }

@@ -7,10 +7,10 @@ use units::Span;
 
 use super::AngleSample;
 use super::noise::{Noise, rates, seconds};
-use super::pieces::{Piece, Pieces};
+use super::pieces::{CubicPiece, PiecewiseCubic};
 
 /// Each instant has the angle of the sample that is nearest to it. Samples are in strictly increasing time.
-pub(super) fn nearest(samples: &[AngleSample], noise: &Noise) -> Option<Pieces> {
+pub(super) fn nearest(samples: &[AngleSample], noise: &Noise) -> Option<PiecewiseCubic> {
     let rates = rates(samples);
     let mut from = samples.first()?.host;
     let mut pieces = Vec::with_capacity(samples.len());
@@ -27,38 +27,38 @@ pub(super) fn nearest(samples: &[AngleSample], noise: &Noise) -> Option<Pieces> 
         .map(Span::as_secs_f64);
         let reach = ((a * a - a * b + b * b) / 3.0).sqrt();
         let sd = f64::hypot(noise.sd_deg(sample, *rate), rate * reach);
-        pieces.push(Piece::line(from, sample.angle.0, 0.0).with_sd(sd));
+        pieces.push(CubicPiece::line(from, sample.angle.0, 0.0).with_sd(sd));
         from = until;
     }
-    Pieces::new(pieces, samples.last()?.host)
+    PiecewiseCubic::new(pieces, samples.last()?.host)
 }
 
 /// A straight line between neighbours. Samples are in strictly increasing time.
-pub(super) fn linear(samples: &[AngleSample], noise: &Noise) -> Option<Pieces> {
+pub(super) fn linear(samples: &[AngleSample], noise: &Noise) -> Option<PiecewiseCubic> {
     let rates = rates(samples);
     let bent = |i: usize| bend(samples, i) / 8.0;
     between(samples, noise, &rates, |a, b, [sa, sb], i| {
         let ns = b.host.saturating_since(a.host).as_nanos() as f64;
         // Mean over the line of the variances of both ends, and of a parabola's distance from its chord.
         let sd = f64::sqrt((sa * sa + sb * sb) / 3.0 + bent(i).powi(2) * (8.0 / 15.0));
-        Piece::line(a.host, a.angle.0, (b.angle.0 - a.angle.0) / ns).with_sd(sd)
+        CubicPiece::line(a.host, a.angle.0, (b.angle.0 - a.angle.0) / ns).with_sd(sd)
     })
 }
 
 /// Straight lines from sample to sample while they come in.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Growing {
+pub(crate) struct StreamingFit {
     last: [Option<AngleSample>; 2],
 }
 
-impl Growing {
+impl StreamingFit {
     /// The newest sample.
     pub(crate) const fn newest(&self) -> Option<&AngleSample> {
         self.last[1].as_ref()
     }
 
     /// The line to a sample from the one before it; `None` of the first, and of one that is not later.
-    pub(crate) fn add(&mut self, sample: AngleSample) -> Option<Piece> {
+    pub(crate) fn add(&mut self, sample: AngleSample) -> Option<CubicPiece> {
         let [before, last] = self.last;
         if last.is_some_and(|last| sample.host <= last.host) {
             return None;
@@ -73,13 +73,13 @@ impl Growing {
         let noise = Noise::EVEN;
         let [a, b] = [last, sample].map(|s| noise.sd_deg(&s, rate));
         let sd = f64::sqrt((a * a + b * b) / 3.0 + bent * bent * (8.0 / 15.0));
-        Some(Piece::line(last.host, last.angle.0, rate * 1e-9).with_sd(sd))
+        Some(CubicPiece::line(last.host, last.angle.0, rate * 1e-9).with_sd(sd))
     }
 }
 
 /// A cubic between neighbours whose speed at each sample is that of the parabola through it and its neighbours, and which never goes beyond them. Samples are in
 /// strictly increasing time.
-pub(super) fn hermite(samples: &[AngleSample], noise: &Noise) -> Option<Pieces> {
+pub(super) fn hermite(samples: &[AngleSample], noise: &Noise) -> Option<PiecewiseCubic> {
     let rates = rates(samples);
     let speeds = parabolas(samples);
     between(samples, noise, &rates, |a, b, [sa, sb], i| {
@@ -88,7 +88,7 @@ pub(super) fn hermite(samples: &[AngleSample], noise: &Noise) -> Option<Pieces> 
         // The mean gain of a cubic convolution on noise is 0.81 (57/70, Keys 1981, kernel with a = -1/2).
         let sd = f64::sqrt((sa * sa + sb * sb) / 2.0 * 57.0 / 70.0);
         let (from, to) = ([a.angle.0, speed(i)], [b.angle.0, speed(i + 1)]);
-        Piece::hermite(a.host, ns, from, to).with_sd(sd)
+        CubicPiece::hermite(a.host, ns, from, to).with_sd(sd)
     })
 }
 
@@ -96,10 +96,10 @@ fn between(
     samples: &[AngleSample],
     noise: &Noise,
     rates: &[f64],
-    piece: impl Fn(&AngleSample, &AngleSample, [f64; 2], usize) -> Piece,
-) -> Option<Pieces> {
+    piece: impl Fn(&AngleSample, &AngleSample, [f64; 2], usize) -> CubicPiece,
+) -> Option<PiecewiseCubic> {
     let (first, last) = (samples.first()?, samples.last()?);
-    let mut pieces: Vec<Piece> = samples
+    let mut pieces: Vec<CubicPiece> = samples
         .windows(2)
         .zip(rates.windows(2))
         .enumerate()
@@ -112,9 +112,11 @@ fn between(
         })
         .collect();
     if pieces.is_empty() {
-        pieces.push(Piece::line(first.host, first.angle.0, 0.0).with_sd(noise.sd_deg(first, 0.0)));
+        pieces.push(
+            CubicPiece::line(first.host, first.angle.0, 0.0).with_sd(noise.sd_deg(first, 0.0)),
+        );
     }
-    Pieces::new(pieces, last.host)
+    PiecewiseCubic::new(pieces, last.host)
 }
 
 /// By how much the speed changes around the stretch after sample `i`, times its length, degrees.

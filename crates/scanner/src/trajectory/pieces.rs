@@ -9,7 +9,7 @@ use crate::clock::Moment;
 
 /// A cubic from its start until the next one's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct CubicPiece {
     /// Its start, the origin of its polynomial.
     pub from: Stamp<Host>,
     /// Degrees, degrees per nanosecond, per square and per cube of it.
@@ -20,12 +20,12 @@ pub struct Piece {
 
 /// Cubics in strictly increasing time, and where the last one ends.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pieces {
-    pieces: Vec<Piece>,
+pub struct PiecewiseCubic {
+    pieces: Vec<CubicPiece>,
     end: Stamp<Host>,
 }
 
-impl Piece {
+impl CubicPiece {
     /// A straight line that passes `deg` at its start.
     #[must_use]
     pub const fn line(from: Stamp<Host>, deg: f64, deg_per_ns: f64) -> Self {
@@ -67,21 +67,21 @@ impl Piece {
 
     /// Degrees, `ns` after its start.
     #[inline(always)]
-    pub(super) fn at<V: Real>(&self, ns: V) -> V {
+    pub(crate) fn at<V: Real>(&self, ns: V) -> V {
         let [c0, c1, c2, c3] = self.deg;
         ((ns * c3 + c2) * ns + c1) * ns + c0
     }
 
     /// Degrees per nanosecond, `ns` after its start.
     #[inline(always)]
-    pub(super) fn rate(&self, ns: f64) -> f64 {
+    pub(crate) fn rate(&self, ns: f64) -> f64 {
         let [_, c1, c2, c3] = self.deg;
         c1 + ns * (2.0 * c2 + ns * (3.0 * c3))
     }
 
     /// Variance of the angle where it changes by `deg_per_ns` and the instant has a standard deviation, square radians.
     #[inline(always)]
-    pub(super) fn variance_rad2(&self, deg_per_ns: f64, clock_sd_ns: f64) -> f64 {
+    pub(crate) fn variance_rad2(&self, deg_per_ns: f64, clock_sd_ns: f64) -> f64 {
         let (own, by_clock) = (
             self.sd_deg.to_radians(),
             deg_per_ns.to_radians() * clock_sd_ns,
@@ -91,27 +91,27 @@ impl Piece {
 
     /// The coefficients about the instant `ns` after its start.
     #[inline(always)]
-    pub(super) fn about(&self, ns: f64) -> [f64; 4] {
+    pub(crate) fn about(&self, ns: f64) -> [f64; 4] {
         let [_, _, c2, c3] = self.deg;
         [self.at(ns), self.rate(ns), c2 + 3.0 * c3 * ns, c3]
     }
 
     /// Not exceeded by the speed on its first `length_ns`, degrees per nanosecond.
-    pub(super) fn fastest(&self, length_ns: f64) -> f64 {
+    pub(crate) fn fastest(&self, length_ns: f64) -> f64 {
         let [_, c1, c2, c3] = self.deg;
         c1.abs() + length_ns * (2.0 * c2.abs() + length_ns * 3.0 * c3.abs())
     }
 
-    pub(super) fn since(&self, at: Moment) -> f64 {
+    pub(crate) fn since(&self, at: Moment) -> f64 {
         at.host.saturating_since(self.from).as_nanos() as f64 + at.rest_ns
     }
 }
 
-impl Pieces {
+impl PiecewiseCubic {
     /// `pieces` until `end`. Of several that start at one instant the last is kept, and none that starts at the end or later
     /// but the very first. `None` without pieces.
     #[must_use]
-    pub fn new(mut pieces: Vec<Piece>, end: Stamp<Host>) -> Option<Self> {
+    pub fn new(mut pieces: Vec<CubicPiece>, end: Stamp<Host>) -> Option<Self> {
         pieces.sort_by_key(|piece| piece.from);
         let first = pieces.first()?.from;
         pieces.retain(|piece| piece.from < end || piece.from == first);
@@ -131,13 +131,13 @@ impl Pieces {
         (first, self.end)
     }
 
-    pub(super) fn as_slice(&self) -> &[Piece] {
+    pub(crate) fn as_slice(&self) -> &[CubicPiece] {
         &self.pieces
     }
 
     /// The piece that holds at an instant; `None` before the first and after the end, to the nanosecond.
     #[must_use]
-    pub fn piece(&self, at: Moment) -> Option<&Piece> {
+    pub fn piece(&self, at: Moment) -> Option<&CubicPiece> {
         let (first, end) = self.span();
         if at.host < first || end < at.host {
             return None;
@@ -168,7 +168,7 @@ impl Pieces {
             .flatten()
             .map(|piece| {
                 let ns = to.saturating_since(piece.from).as_nanos() as f64;
-                Piece {
+                CubicPiece {
                     from: to,
                     deg: piece.about(ns),
                     sd_deg: piece.sd_deg,
@@ -193,13 +193,13 @@ impl Pieces {
     }
 
     /// Takes away what ended before `host`.
-    pub(crate) fn forget_before(&mut self, host: Stamp<Host>) {
+    pub(crate) fn drop_before(&mut self, host: Stamp<Host>) {
         let past = self.pieces.partition_point(|piece| piece.from <= host);
         self.pieces.drain(..past.saturating_sub(1));
     }
 
     /// Goes on with `piece` until `end`; a piece that does not start later than the last one takes its place.
-    pub(crate) fn go_on(&mut self, piece: Piece, end: Stamp<Host>) {
+    pub(crate) fn append(&mut self, piece: CubicPiece, end: Stamp<Host>) {
         while self.pieces.len() > 1
             && self
                 .pieces

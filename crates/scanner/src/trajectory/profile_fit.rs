@@ -10,7 +10,7 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
-use super::held::{Held, Prior, SHORTEST_RAMP_S, priors};
+use super::prior::{Prior, RegularisedParameters, SHORTEST_RAMP_S, priors};
 use super::profile::{Gradient, Profile};
 
 /// One observation: seconds after the origin, angle and its standard deviation in degrees.
@@ -31,7 +31,7 @@ pub struct ProfileFit {
     /// Condition number of the fit, its columns scaled to one length, what holds parameters among them.
     pub condition: f64,
     /// Which parameters were held near what was commanded, as the samples do not tell them.
-    pub held: Held,
+    pub held: RegularisedParameters,
     /// Weighted sum of squares a degree of freedom: 1 where the samples are as good as they are taken to be.
     pub excess: f64,
     servo: Servo,
@@ -80,7 +80,7 @@ impl ProfileFit {
     /// Standard deviation of the angle at an instant, degrees, from the scatter of the samples.
     #[must_use]
     pub fn sd_deg(&self, at_s: f64) -> f64 {
-        let (_, row) = Shape::of(self).row(&self.profile, at_s);
+        let (_, row) = ProfileShape::of(self).row(&self.profile, at_s);
         // Columns come as many as there are parameters.
         let columns = self.covariance.column_iter().zip(row);
         let variance: f64 = columns
@@ -109,13 +109,13 @@ pub(super) fn fit(
         ..guess
     };
     let is_triangle = guess.braking_s() <= guess.ramp_up_s;
-    let first = solve(observed, guess, Shape { is_triangle, servo }, begin)?;
+    let first = solve(observed, guess, ProfileShape { is_triangle, servo }, begin)?;
     let cruises = first.profile.braking_s() - first.profile.ramp_up_s;
     match (is_triangle, cruises > 0.0) {
         (false, false) => solve(
             observed,
             first.profile,
-            Shape {
+            ProfileShape {
                 is_triangle: true,
                 servo,
             },
@@ -128,7 +128,7 @@ pub(super) fn fit(
 fn solve(
     observed: &[Observed],
     guess: Profile,
-    shape: Shape,
+    shape: ProfileShape,
     begin: Option<&Profile>,
 ) -> Option<ProfileFit> {
     if observed.len() < shape.len() {
@@ -139,21 +139,21 @@ fn solve(
         inside.count()
     };
     let [up, cruise, brake, rest] = guess.corners_s();
-    let held = Held {
+    let held = RegularisedParameters {
         ramp_up: within(up, cruise) < FEWEST_IN_RAMP,
         ramp_down: within(brake, rest) < FEWEST_IN_RAMP,
-        ..Held::default()
+        ..RegularisedParameters::default()
     };
     let free = Problem::new(observed, guess, shape, held)
         .beginning_at(begin.unwrap_or(&guess))
         .minimise();
     match free {
         Some(free) if free.condition < WORST_CONDITION => Some(free),
-        _ => Problem::new(observed, guess, shape, Held::ALL)
+        _ => Problem::new(observed, guess, shape, RegularisedParameters::ALL)
             .minimise()
             .map(|fit| {
                 let variances = fit.covariance.diagonal();
-                let held = Held::that_decided(&fit.priors, variances.as_slice());
+                let held = RegularisedParameters::that_decided(&fit.priors, variances.as_slice());
                 ProfileFit { held, ..fit }
             }),
     }
@@ -172,12 +172,12 @@ pub(super) fn look(observed: &[Observed], guess: Profile, servo: Servo) -> Optio
 
 /// Which parameters a profile has: a triangle's speed follows from its way and its ramps, and there may be no lag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Shape {
+struct ProfileShape {
     is_triangle: bool,
     servo: Servo,
 }
 
-impl Shape {
+impl ProfileShape {
     const fn of(fit: &ProfileFit) -> Self {
         Self {
             is_triangle: fit.is_triangle,
@@ -284,14 +284,19 @@ impl Shape {
 struct Problem<'a> {
     observed: &'a [Observed],
     guess: Profile,
-    shape: Shape,
-    held: Held,
+    shape: ProfileShape,
+    held: RegularisedParameters,
     profile: Profile,
     parameters: DVector<f64>,
 }
 
 impl<'a> Problem<'a> {
-    fn new(observed: &'a [Observed], guess: Profile, shape: Shape, held: Held) -> Self {
+    fn new(
+        observed: &'a [Observed],
+        guess: Profile,
+        shape: ProfileShape,
+        held: RegularisedParameters,
+    ) -> Self {
         Self {
             observed,
             guess,

@@ -6,13 +6,13 @@
 
 use units::{Host, Span, Stamp};
 
-use super::pieces::{Piece, Pieces};
+use super::pieces::{CubicPiece, PiecewiseCubic};
 use super::profile_fit::Observed;
 
 /// A spline that was fitted.
 #[derive(Clone, Debug)]
 pub(super) struct SplineFit {
-    pub pieces: Pieces,
+    pub pieces: PiecewiseCubic,
     /// Between knots.
     #[cfg(test)]
     pub spacing: Span,
@@ -155,7 +155,7 @@ impl Spline {
         self.squares / n / (left * left)
     }
 
-    fn pieces(&self, origin: Stamp<Host>) -> Option<Pieces> {
+    fn pieces(&self, origin: Stamp<Host>) -> Option<PiecewiseCubic> {
         let at = |k: usize| {
             origin.saturating_add(Span::from_secs_f64(self.from_s + k as f64 * self.spacing_s))
         };
@@ -173,9 +173,9 @@ impl Spline {
             let slopes = [[-0.5, 0.0, 0.5, 0.0], [0.0, -0.5, 0.0, 0.5]].map(|w| value(w) / ns);
             let [begin, end] = [0.0, 1.0].map(|x| value(basis(x)));
             let sd = (self.variance(k)? * excess).sqrt();
-            Some(Piece::hermite(from, ns, [begin, slopes[0]], [end, slopes[1]]).with_sd(sd))
+            Some(CubicPiece::hermite(from, ns, [begin, slopes[0]], [end, slopes[1]]).with_sd(sd))
         });
-        Pieces::new(pieces.collect::<Option<Vec<_>>>()?, at(stretches))
+        PiecewiseCubic::new(pieces.collect::<Option<Vec<_>>>()?, at(stretches))
     }
 
     /// Variance in the middle of stretch `k` where the samples are as good as they are taken to be.

@@ -385,7 +385,7 @@ fn degenerate_profiles_are_fitted_or_joined() {
     let servo = run.trajectory(Some(Method::Profile));
     assert!(matches!(
         servo.fits()[0].remarks[..],
-        [Remark::Held(Held {
+        [Remark::Regularised(RegularisedParameters {
             ramp_up: true,
             ramp_down: true,
             ..

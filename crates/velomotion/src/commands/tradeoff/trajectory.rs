@@ -7,9 +7,10 @@ use analysis::tradeoff::{
     Bench, Column, Effort, Findings, Row, Scale, SeededNoise, Study, StudyError, Trade, Value,
     Work, in_rounds,
 };
+use scanner::AngleSample;
 use scanner::clock::Moment;
 use scanner::sweeps::{Commanded, Sweep};
-use scanner::trajectory::{AngleSample, Method, Trajectory};
+use scanner::trajectory::{Method, Trajectory};
 use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
 
 /// The study.

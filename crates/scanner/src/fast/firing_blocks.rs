@@ -1,12 +1,10 @@
-//! Placing all points of a block together: the fast path.
+//! Places all points of a firing block together.
 //!
-//! The same as [`Alignment::place`] for every point, to a nanosecond and a nanometre: the clock is a straight line while a block
-//! fires, the angle a few of them, so both are looked up once and carried on from there in columns of 32 channels. Where
-//! that does not hold (the edge of a sweep, the ends of the angle's record, a kink of the clock) the points go one by one.
-//! Results depend on the block alone, not on what came before it. Left out: what any of it means.
-
-mod rows;
-mod spans;
+//! Equal to [`Alignment::place`] for every point within a nanosecond and a nanometre. While a block
+//! fires the clock is a straight line and the angle a cubic, so both are looked up once per block
+//! and extrapolated to its 32 channels. Where that does not hold (edges of a sweep, ends of the
+//! trajectory, kinks of the clock) the points are counts one by one. Results depend on the block
+//! alone, not on the blocks before it.
 
 use cloud::mount::Tilt;
 use cloud::{Fields, Points, Spare};
@@ -15,52 +13,49 @@ use fearless_simd::{Level, dispatch};
 use lidar::{FiringBlock, Layer};
 use units::{Degrees, Host, Span, Stamp};
 
-use self::rows::{Places, Rows};
-use self::spans::{SpanCursor, Within};
-use crate::clock::{ClockCursor, Tangent};
-use crate::lanes::load;
-use crate::scanner::{Alignment, Placed};
-use crate::trajectory::{Motion, TrajectoryCursor};
+use super::clock_cursor::{ClockCursor, Tangent};
+use super::compress::{CompressedRows, Destinations};
+use super::lanes::{BLOCK_ROWS, CHANNELS, load};
+use super::spans::{Coverage, SpanCursor};
+use super::trajectory_cursor::{BlockAngle, TrajectoryCursor};
+use crate::alignment::{Alignment, PlacementCounts};
 
-/// Channels of a block.
-const N: usize = 32;
-/// The most points that a block makes, both returns of a pair of them.
-const ROOM: usize = 2 * N;
-/// The most points that one packet makes: 12 blocks of 32 channels, and room to write beyond.
-pub(crate) const MOST_POINTS: usize = 12 * N + ROOM;
-/// What rounding may make of a time, twice over.
-const EDGE: Span = Span::from_nanos(2);
+/// Greatest number of points of one packet: 12 blocks of 32 channels, and rows written beyond them.
+pub(crate) const MAX_PACKET_POINTS: usize = 12 * CHANNELS + BLOCK_ROWS;
+/// Twice the rounding error of a time.
+const ROUNDING_MARGIN: Span = Span::from_nanos(2);
 
-/// Places firing blocks by an alignment. Its columns begin where lines of the cache do, so that no register's worth lies across two.
+/// Places firing blocks. Its columns are aligned to cache lines, so that no register spans two.
 #[repr(C, align(64))]
 pub(crate) struct FiringBlockPlacer<'a> {
-    /// How far the platform turns from the block's start until each channel fires.
-    ahead_rad: [f64; N],
-    /// Variance of the tilt at each channel, square radians, where it is wanted.
-    tilt_variance_rad2: [f64; N],
+    /// Tilt of each channel relative to the block's pose.
+    ahead_rad: [f64; CHANNELS],
+    /// Variance of the tilt at each channel, if points have the column `sd`.
+    tilt_variance_rad2: [f64; CHANNELS],
     alignment: &'a Alignment,
     clock: ClockCursor<'a>,
     trajectory: TrajectoryCursor<'a>,
     spans: SpanCursor<'a>,
-    /// About when what comes next arrived, as far as it matters.
-    near: Option<Stamp<Host>>,
-    /// The widest registers that the processor has. They change no result: the operations are the same in the same order.
+    /// Approximate receive time of the next blocks, if device times occur twice.
+    received: Option<Stamp<Host>>,
+    /// Widest registers of the processor. The width changes no result: operations and their order
+    /// are the same.
     level: Level,
 }
 
-/// When and how a block begins.
+/// Time and tilt at the beginning of a block.
 struct Pose {
     tangent: Tangent,
     angle: Degrees,
     tilt: Tilt,
-    /// Not before the last channel fires.
+    /// An instant not before the last channel fires.
     last: Stamp<Host>,
 }
 
-/// What becomes of a block.
-enum Verdict {
-    Place(Pose),
-    LeaveOut,
+/// How to place a block.
+enum Placement {
+    Together(Pose),
+    Outside,
     OneByOne,
 }
 
@@ -68,17 +63,17 @@ impl<'a> FiringBlockPlacer<'a> {
     pub(crate) fn new(alignment: &'a Alignment) -> Self {
         Self {
             alignment,
-            clock: alignment.clock.cursor(),
-            trajectory: alignment.trajectory.cursor(),
-            spans: SpanCursor::new(alignment.spans()),
-            near: None,
-            ahead_rad: [0.0; N],
-            tilt_variance_rad2: [0.0; N],
+            clock: ClockCursor::new(&alignment.clock),
+            trajectory: TrajectoryCursor::new(&alignment.trajectory),
+            spans: SpanCursor::new(&alignment.spans),
+            received: None,
+            ahead_rad: [0.0; CHANNELS],
+            tilt_variance_rad2: [0.0; CHANNELS],
             level: Level::new(),
         }
     }
 
-    /// The same with other registers.
+    /// A placer that uses the registers of `level`.
     #[cfg(test)]
     fn with_level(alignment: &'a Alignment, level: Level) -> Self {
         Self {
@@ -87,11 +82,11 @@ impl<'a> FiringBlockPlacer<'a> {
         }
     }
 
-    /// Tells about when what comes next arrived.
-    pub(crate) fn near(&mut self, host: Stamp<Host>) {
+    /// Sets the receive time of the next blocks.
+    pub(crate) fn received(&mut self, host: Stamp<Host>) {
         if self.alignment.clock.is_cut() {
-            self.near = Some(host);
-            self.clock.near(host);
+            self.received = Some(host);
+            self.clock.received(host);
         }
     }
 
@@ -100,9 +95,9 @@ impl<'a> FiringBlockPlacer<'a> {
         &mut self,
         block: &FiringBlock<'_>,
         batch: &mut Points,
-        placed: &mut Placed,
+        counts: &mut PlacementCounts,
     ) {
-        dispatch!(self.level, simd => self.place_by(simd, block, batch, placed));
+        dispatch!(self.level, simd => self.place_by(simd, block, batch, counts));
     }
 
     #[inline(always)]
@@ -111,18 +106,18 @@ impl<'a> FiringBlockPlacer<'a> {
         simd: S,
         block: &FiringBlock<'_>,
         batch: &mut Points,
-        placed: &mut Placed,
+        counts: &mut PlacementCounts,
     ) {
         let (first, second) = block.layers();
-        // A second return that is no point is like none.
+        // A second layer without points is the same as none.
         let second = second.filter(|second| second.kept() != 0);
         if first.kept() == 0 && second.is_none() {
             return;
         }
-        match self.judge(simd, block) {
-            Verdict::Place(pose) => {
+        match self.placement(simd, block) {
+            Placement::Together(pose) => {
                 if batch.fields().contains(Fields::SD) {
-                    self.weigh(block, &pose);
+                    self.find_tilt_variances(block, &pose);
                 }
                 let Some(mut rows) = batch.spare() else {
                     return;
@@ -132,40 +127,40 @@ impl<'a> FiringBlockPlacer<'a> {
                     Some(second) => self.fill(simd, block, [first, second], &pose, &mut rows),
                 };
                 batch.keep(points);
-                placed.points += points as u64;
+                counts.points += points as u64;
             }
-            Verdict::LeaveOut => {
+            Placement::Outside => {
                 let returns = first.kept().count_ones();
                 let second = second.map_or(0, |second| second.kept().count_ones());
-                placed.outside += u64::from(returns + second);
+                counts.outside += u64::from(returns + second);
             }
-            Verdict::OneByOne => one_by_one(self.alignment, self.near, block, batch, placed),
+            Placement::OneByOne => one_by_one(self.alignment, self.received, block, batch, counts),
         }
     }
 
-    /// Looks up time and angle of a firing block.
+    /// Looks up time and angle of a block.
     #[inline(always)]
-    fn judge<S: Simd>(&mut self, simd: S, block: &FiringBlock<'_>) -> Verdict {
+    fn placement<S: Simd>(&mut self, simd: S, block: &FiringBlock<'_>) -> Placement {
         let Some(tangent) = self.clock.tangent(block.start, block.length()) else {
-            return Verdict::OneByOne;
+            return Placement::OneByOne;
         };
         let start = tangent.at.host;
         let last = start
             .saturating_add(tangent.stretched(block.length()))
-            .saturating_add(EDGE);
+            .saturating_add(ROUNDING_MARGIN);
         match self.spans.within(start, last) {
-            Within::None => return Verdict::LeaveOut,
-            Within::Some => return Verdict::OneByOne,
-            Within::All => {}
+            Coverage::None => return Placement::Outside,
+            Coverage::Some => return Placement::OneByOne,
+            Coverage::All => {}
         }
         let delays_ns = block.delays_f64_ns();
         let motion = self
             .trajectory
             .follow(simd, &tangent, last, delays_ns, &mut self.ahead_rad);
         match motion {
-            Motion::Unknown => Verdict::LeaveOut,
-            Motion::MomentByMoment => Verdict::OneByOne,
-            Motion::Known(angle, tilt) => Verdict::Place(Pose {
+            BlockAngle::Unknown => Placement::Outside,
+            BlockAngle::OneByOne => Placement::OneByOne,
+            BlockAngle::Known(angle, tilt) => Placement::Together(Pose {
                 tangent,
                 angle,
                 tilt,
@@ -174,15 +169,15 @@ impl<'a> FiringBlockPlacer<'a> {
         }
     }
 
-    /// How well the tilt is known at each channel.
+    /// Finds the variance of the tilt at each channel.
     #[inline(never)]
-    fn weigh(&mut self, block: &FiringBlock<'_>, pose: &Pose) {
+    fn find_tilt_variances(&mut self, block: &FiringBlock<'_>, pose: &Pose) {
         let sd_ns = |after| {
             self.alignment
-                .clock_sd_ns(block.start + Span::from_nanos(after), self.near)
+                .clock_sd_ns(block.start + Span::from_nanos(after), self.received)
         };
-        let mut clock_sd_ns = [sd_ns(0); N];
-        // It changes from cell to cell, of which a recording has few.
+        let mut clock_sd_ns = [sd_ns(0); CHANNELS];
+        // It changes from cell to cell of the clock, of which a recording has few.
         if sd_ns(block.length().as_nanos()).to_bits() != clock_sd_ns[0].to_bits() {
             clock_sd_ns = block.delays_ns().map(sd_ns);
         }
@@ -195,9 +190,10 @@ impl<'a> FiringBlockPlacer<'a> {
         );
     }
 
-    /// Writes every column that is wanted, as many channels at a time as a register holds; how many points that makes.
+    /// Writes every column of the batch, as many channels at a time as a register holds, and
+    /// returns the number of points.
     ///
-    /// Of two layers both returns of a channel stand side by side, the first layer's first.
+    /// Both returns of a channel are adjacent, that of the first layer first.
     #[inline(always)]
     fn fill<S: Simd, const L: usize>(
         &self,
@@ -205,13 +201,13 @@ impl<'a> FiringBlockPlacer<'a> {
         block: &FiringBlock<'_>,
         layers: [&Layer<'_>; L],
         pose: &Pose,
-        to: &mut Spare<'_, ROOM>,
+        to: &mut Spare<'_, BLOCK_ROWS>,
     ) -> usize {
         let mount = &self.alignment.mount;
-        let kept = Rows::kept(layers);
-        for channel in (0..N).step_by(S::f64s::LEN) {
-            let of = |column: &[f64; N]| load(simd, column, channel);
-            let places: Places<S, L> = kept.places(simd, channel);
+        let kept = CompressedRows::kept(layers);
+        for channel in (0..CHANNELS).step_by(S::f64s::LEN) {
+            let of = |column: &[f64; CHANNELS]| load(simd, column, channel);
+            let destinations: Destinations<S, L> = kept.destinations(simd, channel);
             let (heading, ahead_rad) = (block.heading(of), of(&self.ahead_rad));
             let tilt = pose.tilt.ahead(ahead_rad);
             let [mut x_m, mut y_m, mut z_m] = [[ahead_rad; L]; 3];
@@ -219,21 +215,21 @@ impl<'a> FiringBlockPlacer<'a> {
                 let point = block.place(of(layers[layer].counts()), heading, of);
                 [x_m[layer], y_m[layer], z_m[layer]] = mount.place(point, tilt);
             }
-            places.put(to.x_m, x_m);
-            places.put(to.y_m, y_m);
-            places.put(to.z_m, z_m);
+            destinations.put(to.x_m, x_m);
+            destinations.put(to.y_m, y_m);
+            destinations.put(to.z_m, z_m);
             if let Some(tilt_deg) = &mut to.tilt_deg {
                 let degrees = ahead_rad * 1_f64.to_degrees() + pose.angle.0;
-                places.put(tilt_deg, [degrees; L]);
+                destinations.put(tilt_deg, [degrees; L]);
             }
             let delays_ns = of(block.delays_f64_ns());
             if let Some(time) = &mut to.time {
                 let nanos = pose.tangent.nanos(simd, delays_ns);
-                places.put_times(time, [nanos; L]);
+                destinations.put_times(time, [nanos; L]);
             }
             if let Some(device_time) = &mut to.device_time {
                 let nanos = Tangent::of_device(block.start).nanos(simd, delays_ns);
-                places.put_times(device_time, [nanos; L]);
+                destinations.put_times(device_time, [nanos; L]);
             }
             if let Some(sd_m) = &mut to.sd_m {
                 let tilt_variance = of(&self.tilt_variance_rad2);
@@ -246,7 +242,7 @@ impl<'a> FiringBlockPlacer<'a> {
                     let by_tilt = tilt_arm * tilt_variance;
                     *sd = (by_tilt + range_variance + head_arm * azimuth_variance).sqrt();
                 }
-                places.put(sd_m, sds);
+                destinations.put(sd_m, sds);
             }
         }
         if let Some(intensity) = &mut to.intensity {
@@ -278,18 +274,18 @@ impl<'a> FiringBlockPlacer<'a> {
 #[cold]
 fn one_by_one(
     alignment: &Alignment,
-    near: Option<Stamp<Host>>,
+    received: Option<Stamp<Host>>,
     block: &FiringBlock<'_>,
     batch: &mut Points,
-    placed: &mut Placed,
+    counts: &mut PlacementCounts,
 ) {
     for point in block.firings().flat_map(|firing| firing.points()) {
-        match alignment.place_near(&point, near) {
+        match alignment.place_received(&point, received) {
             Some(point) => {
-                placed.points += 1;
+                counts.points += 1;
                 batch.push(point);
             }
-            None => placed.outside += 1,
+            None => counts.outside += 1,
         }
     }
 }

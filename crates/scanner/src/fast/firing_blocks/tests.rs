@@ -10,9 +10,10 @@ use proptest::prelude::*;
 use units::{Lidar, Metres};
 
 use super::*;
+use crate::angles::AngleSample;
 use crate::clock::{Arrival, LidarClock};
-use crate::scanner::Placer;
-use crate::trajectory::{AngleSample, Method, Trajectory};
+use crate::placer::Placer;
+use crate::trajectory::{Method, Trajectory};
 
 /// A full hour, where the sensor's count of microseconds begins.
 const EPOCH: i64 = 472_222 * 3_600_000_000_000;
@@ -71,8 +72,12 @@ fn records(packets: &[(i64, Vec<u8>)]) -> impl Iterator<Item = Record<'_>> {
 }
 
 /// By the definition, one point after the other.
-fn slow(alignment: &Alignment, options: Options, packets: &[(i64, Vec<u8>)]) -> (Points, Placed) {
-    let (mut points, mut placed) = (Points::new(Fields::ALL), Placed::default());
+fn slow(
+    alignment: &Alignment,
+    options: Options,
+    packets: &[(i64, Vec<u8>)],
+) -> (Points, PlacementCounts) {
+    let (mut points, mut placed) = (Points::new(Fields::ALL), PlacementCounts::default());
     let mut decoder = Decoder::new(options);
     let mut each = |firing: &lidar::Firing<'_>| {
         for point in firing.points() {
@@ -92,7 +97,11 @@ fn slow(alignment: &Alignment, options: Options, packets: &[(i64, Vec<u8>)]) -> 
     (points, placed)
 }
 
-fn fast(alignment: &Alignment, options: Options, packets: &[(i64, Vec<u8>)]) -> (Points, Placed) {
+fn fast(
+    alignment: &Alignment,
+    options: Options,
+    packets: &[(i64, Vec<u8>)],
+) -> (Points, PlacementCounts) {
     let mut points = Points::new(Fields::ALL);
     let mut placer = Placer::new(alignment, options, &mut points);
     for record in records(packets) {
@@ -104,7 +113,7 @@ fn fast(alignment: &Alignment, options: Options, packets: &[(i64, Vec<u8>)]) -> 
 }
 
 /// The same points in the same order: places within a nanometre, times within a nanosecond, all else to the bit.
-fn assert_same(fast: &(Points, Placed), slow: &(Points, Placed)) {
+fn assert_same(fast: &(Points, PlacementCounts), slow: &(Points, PlacementCounts)) {
     assert_eq!(fast.1, slow.1);
     assert_eq!(fast.0.len(), slow.0.len());
     for (a, b) in fast.0.iter().zip(slow.0.iter()) {
@@ -238,12 +247,7 @@ proptest! {
             corrections: corrected.then(|| Arc::new(fitting)),
             ..Options::default()
         };
-        let alignment = Alignment::with_spans(
-            clock(seconds, &ppm),
-            trajectory,
-            Mount::new(Metres(0.06)),
-            spans,
-        );
+        let alignment = Alignment::new(clock(seconds, &ppm), trajectory, Mount::new(Metres(0.06)), 0.004, spans);
         let fast = fast(&alignment, options.clone(), &packets);
         assert_same(&fast, &slow(&alignment, options, &packets));
     }
@@ -259,9 +263,9 @@ proptest! {
         let packets = packets(product, dual, 40, &noise);
         let always = vec![(Stamp::from_nanos(i64::MIN), Stamp::from_nanos(i64::MAX))];
         let mount = Mount::new(Metres(0.06));
-        let alignment = Alignment::with_spans(clock(60, &[5, -20, 30, 0]), trajectory, mount, always);
+        let alignment = Alignment::new(clock(60, &[5, -20, 30, 0]), trajectory, mount, 0.004, always);
         let run = |mut placer: FiringBlockPlacer<'_>| {
-            let (mut points, mut placed) = (Points::new(Fields::ALL), Placed::default());
+            let (mut points, mut placed) = (Points::new(Fields::ALL), PlacementCounts::default());
             let mut decoder = Decoder::new(Options::default());
             for (ns, payload) in &packets {
                 decoder.firing_blocks(Stamp::from_nanos(EPOCH + ns), payload, &mut |block| {
@@ -297,7 +301,7 @@ proptest! {
         let packets = packets(PRODUCTS[0], dual, 40, &noise);
         let always = vec![(Stamp::from_nanos(i64::MIN), Stamp::from_nanos(i64::MAX))];
         let mount = Mount::new(Metres(0.06));
-        let alignment = Alignment::with_spans(clock(60, &[5, -20, 30, 0]), trajectory, mount, always);
+        let alignment = Alignment::new(clock(60, &[5, -20, 30, 0]), trajectory, mount, 0.004, always);
         let (whole, _) = fast(&alignment, Options::default(), &packets);
         let (part, _) = fast(&alignment, Options::default(), &packets[from..]);
         let first = part.device_time().first().copied();

@@ -1,21 +1,10 @@
-//! Where tilt angles come from: the drive's traffic in the log, nowhere, or a table that another rig wrote.
+//! A table of angles over time, measured by another rig.
 
 use units::{Degrees, Host, Span, Stamp};
 
+use super::AngleSample;
 use crate::clock::Arrival;
 use crate::error::ScanError;
-use crate::trajectory::AngleSample;
-
-/// Where tilt angles come from.
-#[derive(Clone, Debug, PartialEq)]
-pub enum TiltSource {
-    /// The drive's recorded traffic.
-    Log,
-    /// The platform stands still; the cloud is in the sensor's own frame, with no mount applied.
-    None,
-    /// Angles measured by something else.
-    Table(AngleTable),
-}
 
 /// Angles over time, as another rig wrote them.
 #[derive(Clone, Debug, PartialEq)]

@@ -25,7 +25,7 @@ const DENSE: usize = 8;
 
 /// Stamps of the drive's records as they come in.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Seams {
+pub(crate) struct ClockSteps {
     /// Recorded stamp of the last record.
     last: Option<Stamp<Host>>,
     /// Recorded less sewn time.
@@ -52,7 +52,7 @@ struct Pause {
     packets: u32,
 }
 
-impl Seams {
+impl ClockSteps {
     /// A packet of the lidar was recorded at `host`.
     pub fn packet(&mut self, device_ns: i64, host: Stamp<Host>) {
         self.packets = self.packets.saturating_add(1);
@@ -65,7 +65,7 @@ impl Seams {
     }
 
     /// A record of the drive was stamped `host`: the sewn stamp to pair it by.
-    pub fn sew(&mut self, host: Stamp<Host>) -> Stamp<Host> {
+    pub fn to_monotonic(&mut self, host: Stamp<Host>) -> Stamp<Host> {
         if let Some(last) = self.last {
             let length = host.saturating_since(last);
             let went = self.went_on(last, host);
@@ -159,16 +159,16 @@ fn packets(at: usize) -> u32 {
 
 /// From sewn stamps to the host's clock as it was at the recording's begin.
 #[derive(Clone, Debug)]
-pub(crate) struct HostLine {
+pub(crate) struct HostTimeline {
     shifts: Vec<(Stamp<Host>, Span)>,
     steps: Vec<(Stamp<Host>, Span)>,
 }
 
-impl HostLine {
+impl HostTimeline {
     /// Stamps as they were recorded.
-    pub fn new(seams: &Seams) -> Self {
+    pub fn new(monotonic: &ClockSteps) -> Self {
         Self {
-            shifts: seams.shifts.clone(),
+            shifts: monotonic.shifts.clone(),
             steps: Vec::new(),
         }
     }

@@ -1,25 +1,23 @@
-//! Which of the times that come belong to a sweep.
-//!
-//! Left out: where the sweeps come from.
+//! Looks up whether mostly increasing times fall within a sweep.
 
 use units::{Host, Span, Stamp};
 
-/// How much of a stretch of time lies within the spans.
+/// How much of an interval lies within the spans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Within {
+pub(super) enum Coverage {
     All,
-    /// Some of it, or perhaps none.
+    /// Possibly some of it.
     Some,
     None,
 }
 
-/// Follows spans through times that mostly grow.
+/// Follows spans through mostly increasing times.
 #[derive(Clone, Debug)]
 pub(super) struct SpanCursor<'a> {
     spans: &'a [(Stamp<Host>, Stamp<Host>)],
-    /// Stretch of time for which the last answer holds.
+    /// Interval for which the last answer holds.
     holds: (Stamp<Host>, Stamp<Host>),
-    answer: Within,
+    answer: Coverage,
 }
 
 impl<'a> SpanCursor<'a> {
@@ -27,12 +25,12 @@ impl<'a> SpanCursor<'a> {
         Self {
             spans,
             holds: (Stamp::from_nanos(0), Stamp::from_nanos(-1)),
-            answer: Within::None,
+            answer: Coverage::None,
         }
     }
 
     #[inline]
-    pub(super) fn within(&mut self, start: Stamp<Host>, end: Stamp<Host>) -> Within {
+    pub(super) fn within(&mut self, start: Stamp<Host>, end: Stamp<Host>) -> Coverage {
         if self.holds.0 <= start && end <= self.holds.1 {
             return self.answer;
         }
@@ -40,21 +38,21 @@ impl<'a> SpanCursor<'a> {
     }
 
     #[cold]
-    fn search(&mut self, start: Stamp<Host>, end: Stamp<Host>) -> Within {
+    fn search(&mut self, start: Stamp<Host>, end: Stamp<Host>) -> Coverage {
         let around = self
             .spans
             .iter()
             .find(|(from, to)| *from <= start && end <= *to);
         if let Some(span) = around {
-            (self.holds, self.answer) = (*span, Within::All);
-            return Within::All;
+            (self.holds, self.answer) = (*span, Coverage::All);
+            return Coverage::All;
         }
         if self
             .spans
             .iter()
             .any(|(from, to)| *from <= end && start <= *to)
         {
-            return Within::Some;
+            return Coverage::Some;
         }
         let ends_before = self
             .spans
@@ -75,7 +73,7 @@ impl<'a> SpanCursor<'a> {
                 from.saturating_add(-nearest)
             }),
         );
-        self.answer = Within::None;
-        Within::None
+        self.answer = Coverage::None;
+        Coverage::None
     }
 }

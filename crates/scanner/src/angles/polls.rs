@@ -10,28 +10,21 @@ use std::collections::VecDeque;
 use drive::ShaftSample;
 use units::{Gearing, Span};
 
-use crate::stream;
-use crate::trajectory::AngleSample;
+use super::{AngleSample, latched};
 
 /// Polls with a round trip above this quantile are slow.
 const QUICK_QUANTILE: f64 = 0.9;
 
-/// Angle samples of `samples`, in order of time. The gearing turns quadcounts into degrees.
-#[must_use]
-pub fn angle_samples(samples: &[ShaftSample], gearing: Gearing) -> Vec<AngleSample> {
-    with_clock(samples, gearing).0
-}
-
-/// The same, and the standard deviation of what all their instants are off by together, nanoseconds: 0 of polls, whose errors are each
-/// one's own.
-pub(crate) fn with_clock(samples: &[ShaftSample], gearing: Gearing) -> (Vec<AngleSample>, f64) {
-    let (latched, polls): (Vec<_>, Vec<_>) = samples
+/// Angle samples of `samples`, in order of time, and the standard deviation of the error of time
+/// that all of them share, nanoseconds; 0 for polls, whose errors are independent.
+pub(crate) fn with_shared_sd(samples: &[ShaftSample], gearing: Gearing) -> (Vec<AngleSample>, f64) {
+    let (at_sync, polls): (Vec<_>, Vec<_>) = samples
         .iter()
         .partition(|sample| sample.device_us.is_some());
     let mut angles: Vec<AngleSample> = polls.iter().map(|poll| sample(poll, gearing)).collect();
     let mut shared_ns = 0.0;
-    if !latched.is_empty() {
-        let (streamed, sd_ns) = stream::angle_samples(&latched, gearing);
+    if !at_sync.is_empty() {
+        let (streamed, sd_ns) = latched::angle_samples(&at_sync, gearing);
         angles.extend(streamed);
         angles.sort_by_key(|sample| sample.host);
         shared_ns = sd_ns;
@@ -53,7 +46,7 @@ fn without_slow(samples: &[AngleSample]) -> Vec<AngleSample> {
         let after = samples.get(i + 1..).unwrap_or_default();
         let quick_before = before.iter().rev().filter(|s| quick(s));
         let quick_after = after.iter().filter(|s| quick(s));
-        let hole = Hole::between(quick_before, quick_after);
+        let hole = PollGap::between(quick_before, quick_after);
         // At the ends of a recording there is nothing to replace a poll by.
         if hole.is_none_or(|hole| hole.line_error() > hole.poll_error(this, least)) {
             kept.push(*this);
@@ -74,18 +67,18 @@ pub(crate) fn sample(poll: &ShaftSample, gearing: Gearing) -> AngleSample {
 
 /// Tells slow polls while they come in: by the round trips of the last ones.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct QuickPolls {
+pub(crate) struct SlowPollFilter {
     trips: VecDeque<Span>,
 }
 
 /// So many round trips tell what is slow.
 const REMEMBERED: usize = 64;
 /// Without a sample for so long a slow one is better than none.
-const PATIENCE: Span = Span::from_millis(20);
+const MAX_POLL_GAP: Span = Span::from_millis(20);
 
-impl QuickPolls {
+impl SlowPollFilter {
     /// Whether to take a sample that comes after `newest`.
-    pub(crate) fn is_quick(&mut self, sample: &AngleSample, newest: Option<&AngleSample>) -> bool {
+    pub(crate) fn accepts(&mut self, sample: &AngleSample, newest: Option<&AngleSample>) -> bool {
         let trip = sample.bound + sample.bound;
         if self.trips.len() >= REMEMBERED {
             self.trips.pop_front();
@@ -95,18 +88,18 @@ impl QuickPolls {
         sorted.sort_unstable();
         let rank = (sorted.len() as f64 * QUICK_QUANTILE) as usize;
         sorted.get(rank).is_none_or(|limit| trip <= *limit)
-            || newest.is_none_or(|newest| sample.host.saturating_since(newest.host) > PATIENCE)
+            || newest.is_none_or(|newest| sample.host.saturating_since(newest.host) > MAX_POLL_GAP)
     }
 }
 
 /// The motion on both sides of a stretch without quick polls.
-struct Hole {
+struct PollGap {
     length: Span,
     speed_before: f64,
     speed_after: f64,
 }
 
-impl Hole {
+impl PollGap {
     fn between<'a>(
         mut before: impl Iterator<Item = &'a AngleSample>,
         mut after: impl Iterator<Item = &'a AngleSample>,
@@ -173,7 +166,7 @@ mod tests {
 
     #[test]
     fn a_sample_stands_in_the_middle_of_its_poll() {
-        let samples = angle_samples(&[poll(100, 50)], gearing());
+        let (samples, _) = with_shared_sd(&[poll(100, 50)], gearing());
         assert_eq!(samples[0].host.as_nanos(), 125_000);
         assert_eq!(samples[0].bound.as_nanos(), 25_000);
         assert_eq!(samples[0].angle.0, -0.003);
@@ -184,7 +177,7 @@ mod tests {
         let polls: Vec<_> = (0..100)
             .map(|i| poll(i * 1_000, if i % 20 == 10 { 5_000 } else { 500 + i }))
             .collect();
-        let samples = angle_samples(&polls, gearing());
+        let (samples, _) = with_shared_sd(&polls, gearing());
         assert!(samples.len() >= 90);
         assert!(samples.iter().all(|s| s.bound.as_nanos() < 1_000_000));
     }
@@ -200,7 +193,7 @@ mod tests {
         polls.push(at(40, poll(20_500, 3_000)));
         polls.push(at(100, poll(23_500, 8_000)));
         polls.extend((0..20).map(|i| at(200 + 33 * i as i32, poll(31_500 + i * 1_000, 500))));
-        let samples = angle_samples(&polls, gearing());
+        let (samples, _) = with_shared_sd(&polls, gearing());
         let kept = |angle: f64| samples.iter().any(|s| (s.angle.0 - angle).abs() < 1e-9);
         assert!(kept(0.06) && !kept(0.15), "{samples:?}");
     }
@@ -208,7 +201,7 @@ mod tests {
     #[test]
     fn polls_that_all_have_one_round_trip_are_all_kept() {
         let polls: Vec<_> = (0..10).map(|i| poll(i * 1_000, 500)).collect();
-        assert_eq!(angle_samples(&polls, gearing()).len(), 10);
-        assert!(angle_samples(&[], gearing()).is_empty());
+        assert_eq!(with_shared_sd(&polls, gearing()).0.len(), 10);
+        assert!(with_shared_sd(&[], gearing()).0.is_empty());
     }
 }

@@ -9,8 +9,8 @@
 use drive::ShaftSample;
 use units::{Drive, Gearing, Host, Span, Stamp};
 
+use super::AngleSample;
 use crate::clock::{Arrival, DeviceClock};
-use crate::trajectory::AngleSample;
 
 /// Fewer pairs than this tell no clock; they stand in the middle of SYNC and arrival, as polls do.
 const FEWEST: usize = 8;
@@ -23,7 +23,7 @@ const QUANTUM: Span = Span::from_micros(1);
 
 /// A sample with the drive's time, nanoseconds since its clock's run began.
 #[derive(Clone, Copy, Debug)]
-struct Latched {
+struct LatchedSample {
     sample: ShaftSample,
     device_ns: i64,
 }
@@ -35,7 +35,7 @@ pub(crate) fn angle_samples(stream: &[ShaftSample], gearing: Gearing) -> (Vec<An
     let mut square_ns2 = 0.0;
     for run in runs(stream) {
         let clock = (run.len() >= FEWEST)
-            .then(|| DriveClock::fit(&run))
+            .then(|| TwoSidedClock::fit(&run))
             .flatten();
         samples.extend(run.iter().map(|latched| {
             if let Some(clock) = &clock {
@@ -58,9 +58,9 @@ pub(crate) fn angle_samples(stream: &[ShaftSample], gearing: Gearing) -> (Vec<An
 }
 
 /// The samples cut where the drive's clock began anew, its wraps undone.
-fn runs(stream: &[ShaftSample]) -> Vec<Vec<Latched>> {
-    let mut runs: Vec<Vec<Latched>> = Vec::new();
-    let mut last: Option<(u32, Latched)> = None;
+fn runs(stream: &[ShaftSample]) -> Vec<Vec<LatchedSample>> {
+    let mut runs: Vec<Vec<LatchedSample>> = Vec::new();
+    let mut last: Option<(u32, LatchedSample)> = None;
     for sample in stream {
         let Some(device_us) = sample.device_us else {
             continue;
@@ -69,7 +69,7 @@ fn runs(stream: &[ShaftSample]) -> Vec<Vec<Latched>> {
             let host = sample.answer.saturating_since(before.sample.answer);
             Some(before.device_ns + went(before_us, device_us, host)?.as_nanos())
         });
-        let latched = Latched {
+        let latched = LatchedSample {
             sample: *sample,
             device_ns: went_on.unwrap_or(0),
         };
@@ -95,13 +95,13 @@ fn went(before_us: u32, after_us: u32, host: Span) -> Option<Span> {
 }
 
 /// The drive's clock, from both sides: from above the envelope is that of times counted backwards.
-struct DriveClock {
+struct TwoSidedClock {
     early: DeviceClock<Drive>,
     late: DeviceClock<Drive>,
 }
 
-impl DriveClock {
-    fn fit(run: &[Latched]) -> Option<Self> {
+impl TwoSidedClock {
+    fn fit(run: &[LatchedSample]) -> Option<Self> {
         let arrivals: Vec<Arrival<Drive>> = run
             .iter()
             .map(|latched| Arrival {
@@ -112,7 +112,7 @@ impl DriveClock {
         let late = DeviceClock::fit(&arrivals)?;
         // After frames were lost samples may for long be given the SYNC before their own: a whole beat early, which would tilt the
         // envelope. They, and those whose SYNC was held up as long, tell nothing of it.
-        let ahead = |latched: &Latched| {
+        let ahead = |latched: &LatchedSample| {
             let taken = late.host(Stamp::from_nanos(latched.device_ns));
             taken.saturating_since(latched.sample.request)
         };
@@ -146,7 +146,7 @@ impl DriveClock {
 }
 
 /// The usual time from one sample to the next.
-fn beat(run: &[Latched]) -> Span {
+fn beat(run: &[LatchedSample]) -> Span {
     let pairs = run.windows(2).filter_map(|pair| match pair {
         [a, b] => Some(b.device_ns.saturating_sub(a.device_ns)),
         _ => None,

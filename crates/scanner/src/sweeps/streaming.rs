@@ -5,8 +5,8 @@
 use units::{Degrees, Gearing, Host, Span, Stamp};
 
 use super::{END_TOLERANCE_DEG, MoveWatch, REST_QC};
+use crate::angles::AngleSample;
 use crate::config::SweepPlan;
-use crate::trajectory::AngleSample;
 
 /// Follows the samples of an axis while it sweeps: when sweeps begin and end, as far as it is known by then.
 #[derive(Clone, Debug)]

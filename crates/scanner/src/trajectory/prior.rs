@@ -10,7 +10,7 @@ use super::profile::Profile;
 
 /// What the samples do not tell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Held {
+pub struct RegularisedParameters {
     /// When the motion began.
     pub start: bool,
     /// The acceleration's duration.
@@ -25,7 +25,7 @@ pub struct Held {
 
 /// Of which part of the motion a parameter is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
+enum MotionParameter {
     Start,
     RampUp,
     RampDown,
@@ -36,7 +36,7 @@ enum Part {
 /// A parameter that is held: of what it is, its place among the parameters, how far it is off what was commanded, and how far it may be.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prior {
-    part: Part,
+    part: MotionParameter,
     pub place: usize,
     pub off: f64,
     pub sd: f64,
@@ -53,7 +53,7 @@ pub(super) const SHORTEST_RAMP_S: f64 = 1e-6;
 /// The samples tell a parameter if they leave it less than this of how far it may be anyway.
 const TOLD: f64 = 0.5;
 
-impl Held {
+impl RegularisedParameters {
     /// Everything.
     pub(super) const ALL: Self = Self {
         start: true,
@@ -87,48 +87,58 @@ impl Held {
         held
     }
 
-    const fn set(&mut self, part: Part) {
+    const fn set(&mut self, part: MotionParameter) {
         match part {
-            Part::Start => self.start = true,
-            Part::RampUp => self.ramp_up = true,
-            Part::RampDown => self.ramp_down = true,
-            Part::Way => self.way = true,
-            Part::Servo => self.servo = true,
+            MotionParameter::Start => self.start = true,
+            MotionParameter::RampUp => self.ramp_up = true,
+            MotionParameter::RampDown => self.ramp_down = true,
+            MotionParameter::Way => self.way = true,
+            MotionParameter::Servo => self.servo = true,
         }
     }
 
-    const fn has(self, part: Part) -> bool {
+    const fn has(self, part: MotionParameter) -> bool {
         match part {
-            Part::Start => self.start,
-            Part::RampUp => self.ramp_up,
-            Part::RampDown => self.ramp_down,
-            Part::Way => self.way,
-            Part::Servo => self.servo,
+            MotionParameter::Start => self.start,
+            MotionParameter::RampUp => self.ramp_up,
+            MotionParameter::RampDown => self.ramp_down,
+            MotionParameter::Way => self.way,
+            MotionParameter::Servo => self.servo,
         }
     }
 }
 
 /// What holds the parameters of `now` near those of `then`: start, ramps, beginning, way in this order, and those of the servo, which are at
 /// `servo`.
-pub(super) fn priors(now: &Profile, then: &Profile, held: Held, servo: Range<usize>) -> Vec<Prior> {
+pub(super) fn priors(
+    now: &Profile,
+    then: &Profile,
+    held: RegularisedParameters,
+    servo: Range<usize>,
+) -> Vec<Prior> {
     let ramp_sd = |s: f64| (SHARE * s).max(SHORTEST_RAMP_S);
     let inertia_s = |profile: &Profile| profile.inertia_s2.sqrt();
     let all = [
-        (Part::Start, 0, now.start_s - then.start_s, START_SD_S),
         (
-            Part::RampUp,
+            MotionParameter::Start,
+            0,
+            now.start_s - then.start_s,
+            START_SD_S,
+        ),
+        (
+            MotionParameter::RampUp,
             1,
             now.ramp_up_s - then.ramp_up_s,
             ramp_sd(then.ramp_up_s),
         ),
         (
-            Part::RampDown,
+            MotionParameter::RampDown,
             2,
             now.ramp_down_s - then.ramp_down_s,
             ramp_sd(then.ramp_down_s),
         ),
         (
-            Part::Way,
+            MotionParameter::Way,
             4,
             now.way_deg - then.way_deg,
             SHARE * then.way_deg.abs(),
@@ -137,7 +147,7 @@ pub(super) fn priors(now: &Profile, then: &Profile, held: Held, servo: Range<usi
     let times = [now.lag_s - then.lag_s, inertia_s(now) - inertia_s(then)];
     let times = times.into_iter().zip(servo);
     all.into_iter()
-        .chain(times.map(|(off, place)| (Part::Servo, place, off, SERVO_SD_S)))
+        .chain(times.map(|(off, place)| (MotionParameter::Servo, place, off, SERVO_SD_S)))
         .filter(|(part, ..)| held.has(*part))
         .map(|(part, place, off, sd)| Prior {
             part,

@@ -4,7 +4,7 @@
 //! samples is bounded by what it does around them and by how hard it can be accelerated; beyond that a lone sample is
 //! left out. Runs of wrong samples are not found here.
 
-use crate::trajectory::AngleSample;
+use super::AngleSample;
 
 /// Beside its neighbours by less is never implausible.
 const ALWAYS_DEG: f64 = 0.1;
@@ -12,7 +12,7 @@ const ALWAYS_DEG: f64 = 0.1;
 const HARDEST_DEG_S2: f64 = 20_000.0;
 
 /// Leaves out samples that cannot be, of samples in order of time; how many.
-pub(crate) fn leave_out(samples: &mut Vec<AngleSample>) -> u64 {
+pub(crate) fn discard(samples: &mut Vec<AngleSample>) -> u64 {
     let before = samples.len();
     let mut kept: Vec<AngleSample> = Vec::with_capacity(before);
     for (i, this) in samples.iter().enumerate() {
@@ -65,7 +65,7 @@ mod tests {
             let mut stream = samples((0..100).map(|i| -0.05625 * f64::from(i)), 1_000);
             stream[40].angle.0 += 0.0015 * f64::from(1 << bit);
             let clean = stream.clone();
-            assert_eq!(leave_out(&mut stream), 1, "bit {bit}");
+            assert_eq!(discard(&mut stream), 1, "bit {bit}");
             assert!(!stream.contains(&clean[40]));
         }
     }
@@ -89,14 +89,14 @@ mod tests {
                 (0..500).map(|i| angle(f64::from(i) * step_us as f64 * 1e-6)),
                 step_us,
             );
-            assert_eq!(leave_out(&mut moving), 0, "{step_us}");
+            assert_eq!(discard(&mut moving), 0, "{step_us}");
         }
     }
 
     #[test]
     fn a_jump_that_stays_is_no_flipped_bit() {
         let mut jumped = samples((0..50).map(|i| if i < 20 { 0.0 } else { 30.0 }), 1_000);
-        assert_eq!(leave_out(&mut jumped), 0);
-        assert_eq!(leave_out(&mut Vec::new()), 0);
+        assert_eq!(discard(&mut jumped), 0);
+        assert_eq!(discard(&mut Vec::new()), 0);
     }
 }

@@ -1,31 +1,30 @@
-//! Follows a trajectory through times that mostly grow: the angle at all channels of a block together.
-//!
-//! Left out: what the angles mean, and blocks at the ends of what is known, which are asked moment by moment.
+//! Evaluates a trajectory along mostly increasing times, at all channels of a block together.
 
 use cloud::mount::{MOST_AHEAD_RAD, Tilt};
 use fearless_simd::prelude::*;
 use units::{Degrees, Host, Span, Stamp};
 
-use super::pieces::{Piece, Pieces};
-use crate::clock::{Moment, Tangent};
-use crate::lanes::{load, store};
+use super::clock_cursor::Tangent;
+use super::lanes::{CHANNELS, load, store};
+use crate::clock::Moment;
+use crate::trajectory::{CubicPiece, Curve, Trajectory};
 
-/// Follows a trajectory through times that mostly grow.
+/// Follows a trajectory through mostly increasing times.
 #[derive(Clone, Debug)]
-pub struct TrajectoryCursor<'a> {
+pub(super) struct TrajectoryCursor<'a> {
     fixed: Option<(Degrees, Tilt)>,
-    pieces: &'a [Piece],
+    pieces: &'a [CubicPiece],
     end: Stamp<Host>,
     /// The first piece after the last start.
     next: usize,
     anchor: Anchor,
 }
 
-/// A stretch of time from whose start angles are counted, so that sine and cosine are computed once for many blocks. Where it
-/// begins and ends depends on the pieces alone.
+/// An interval with a reference angle at its start, whose sine and cosine serve many blocks. Its
+/// limits depend on the pieces alone.
 #[derive(Clone, Copy, Debug)]
 struct Anchor {
-    /// Place of the piece after its own.
+    /// Index of the piece after its own.
     next: usize,
     from: Stamp<Host>,
     /// Exclusive.
@@ -48,12 +47,12 @@ impl Anchor {
         self.next == next && self.from <= host && host < self.until
     }
 
-    /// The one that `host`, within a piece that goes until `end`, belongs to.
+    /// The anchor of `host` within `piece`, which ends at `end`.
     #[cold]
-    fn new(next: usize, piece: &Piece, end: Stamp<Host>, host: Stamp<Host>) -> Self {
+    fn new(next: usize, piece: &CubicPiece, end: Stamp<Host>, host: Stamp<Host>) -> Self {
         let whole_ns = end.saturating_since(piece.from).as_nanos().max(1);
         let fastest = piece.fastest(whole_ns as f64).to_radians();
-        // As a number held to the range of the integer, at a rate of 0 too.
+        // The cast saturates, also at a rate of 0.
         let length_ns = ((MOST_AHEAD_RAD / 2.0 / fastest) as i64).clamp(1, whole_ns);
         let part = host.saturating_since(piece.from).as_nanos() / length_ns;
         let ahead = Span::from_nanos(part * length_ns);
@@ -69,62 +68,60 @@ impl Anchor {
     }
 }
 
-/// The angle over some instants.
+/// The angle over the instants of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
-    /// There is none at any of them.
+pub(super) enum BlockAngle {
+    /// Unknown at all of them.
     Unknown,
-    /// Ask moment by moment: at some of them there may be none, or it goes farther than [`MOST_AHEAD_RAD`].
-    MomentByMoment,
-    /// From this it is counted.
+    /// Unknown at some of them, or farther from the reference than [`MOST_AHEAD_RAD`].
+    OneByOne,
+    /// Known at all of them, relative to this reference.
     Known(Degrees, Tilt),
 }
 
-/// What rounding may make of an instant, twice over.
-const EDGE: Span = Span::from_nanos(2);
+/// Twice the rounding error of an instant.
+const ROUNDING_MARGIN: Span = Span::from_nanos(2);
 
 impl<'a> TrajectoryCursor<'a> {
-    pub(super) fn fixed(angle: Degrees) -> Self {
+    pub(super) fn new(trajectory: &'a Trajectory) -> Self {
+        let (fixed, pieces, end) = match trajectory.curve() {
+            Curve::Fixed(angle) => (
+                Some((*angle, Tilt::new(*angle))),
+                [].as_slice(),
+                Stamp::from_nanos(0),
+            ),
+            Curve::Piecewise(pieces) => (None, pieces.as_slice(), pieces.span().1),
+        };
         Self {
-            fixed: Some((angle, Tilt::new(angle))),
-            pieces: &[],
-            end: Stamp::from_nanos(0),
+            fixed,
+            pieces,
+            end,
             next: 0,
             anchor: Anchor::NONE,
         }
     }
 
-    pub(super) fn of(pieces: &'a Pieces) -> Self {
-        Self {
-            fixed: None,
-            pieces: pieces.as_slice(),
-            end: pieces.span().1,
-            next: 0,
-            anchor: Anchor::NONE,
-        }
-    }
-
-    /// The angle at moments that are `delays_ns` after a tangent's start by the lidar's clock, none of them after `last`: some
-    /// angle, and in `ahead_rad` how far it was on from there at each.
+    /// The angles `delays_ns` of device time after a tangent's start, none of them after `last`: a
+    /// reference angle, and in `ahead_rad` the distance from it at each channel.
     #[inline(always)]
-    pub fn follow<S: Simd, const N: usize>(
+    pub(super) fn follow<S: Simd>(
         &mut self,
         simd: S,
         tangent: &Tangent,
         last: Stamp<Host>,
-        delays_ns: &[f64; N],
-        ahead_rad: &mut [f64; N],
-    ) -> Motion {
+        delays_ns: &[f64; CHANNELS],
+        ahead_rad: &mut [f64; CHANNELS],
+    ) -> BlockAngle {
         let at = tangent.at;
         if let Some((angle, tilt)) = self.fixed {
             ahead_rad.fill(0.0);
-            return Motion::Known(angle, tilt);
+            return BlockAngle::Known(angle, tilt);
         }
         self.seek(at);
         let (before, coming) = self.pieces.split_at_checked(self.next).unwrap_or_default();
         let Some(piece) = before
             .last()
-            .filter(|_| last.saturating_add(EDGE) < self.end)
+            .filter(|_| last.saturating_add(ROUNDING_MARGIN) < self.end)
         else {
             return self.at_the_ends(at, last, coming.first());
         };
@@ -137,10 +134,10 @@ impl<'a> TrajectoryCursor<'a> {
         let length_ns = last.saturating_since(at.host).as_nanos() as f64;
         let about = piece.about(piece.since(at));
         if fastest(&about, length_ns).to_radians() * length_ns > MOST_AHEAD_RAD / 2.0 {
-            return Motion::MomentByMoment;
+            return BlockAngle::OneByOne;
         }
-        carry_on(simd, &about, anchor.angle, stretch, delays_ns, ahead_rad);
-        if until <= last.saturating_add(EDGE)
+        evaluate(simd, &about, anchor.angle, stretch, delays_ns, ahead_rad);
+        if until <= last.saturating_add(ROUNDING_MARGIN)
             && !cross(
                 simd,
                 coming,
@@ -150,27 +147,27 @@ impl<'a> TrajectoryCursor<'a> {
                 ahead_rad,
             )
         {
-            return Motion::MomentByMoment;
+            return BlockAngle::OneByOne;
         }
-        Motion::Known(anchor.angle, anchor.tilt)
+        BlockAngle::Known(anchor.angle, anchor.tilt)
     }
 
-    /// Variances of the angles that [`TrajectoryCursor::follow`] last gave, square radians, where the clock has a standard deviation
-    /// at each ([`super::Trajectory::variance_rad2`]).
-    pub fn variances<const N: usize>(
+    /// Variances of the angles that [`TrajectoryCursor::follow`] last found, square radians, by the
+    /// clock's standard deviation at each ([`Trajectory::variance_rad2`]).
+    pub(super) fn variances(
         &self,
         tangent: &Tangent,
         last: Stamp<Host>,
-        delays_ns: &[f64; N],
-        clock_sd_ns: &[f64; N],
-        variance_rad2: &mut [f64; N],
+        delays_ns: &[f64; CHANNELS],
+        clock_sd_ns: &[f64; CHANNELS],
+        variance_rad2: &mut [f64; CHANNELS],
     ) {
         variance_rad2.fill(0.0);
         let (before, coming) = self.pieces.split_at_checked(self.next).unwrap_or_default();
         let here = before.last().into_iter();
         let soon = coming
             .iter()
-            .take_while(|piece| piece.from <= last.saturating_add(EDGE));
+            .take_while(|piece| piece.from <= last.saturating_add(ROUNDING_MARGIN));
         let (at, stretch) = (tangent.at, 1.0 + tangent.gain);
         for (i, piece) in here.chain(soon).enumerate() {
             let since_ns = piece.since(at);
@@ -187,15 +184,21 @@ impl<'a> TrajectoryCursor<'a> {
         }
     }
 
-    /// Whether all of a block is outside of what is known.
+    /// Whether all of a block is outside the trajectory.
     #[cold]
-    fn at_the_ends(&self, at: Moment, last: Stamp<Host>, coming: Option<&Piece>) -> Motion {
-        let is_early =
-            coming.is_some_and(|first| self.next == 0 && last.saturating_add(EDGE) < first.from);
+    fn at_the_ends(
+        &self,
+        at: Moment,
+        last: Stamp<Host>,
+        coming: Option<&CubicPiece>,
+    ) -> BlockAngle {
+        let is_early = coming.is_some_and(|first| {
+            self.next == 0 && last.saturating_add(ROUNDING_MARGIN) < first.from
+        });
         if is_early || self.end < at.host || self.pieces.is_empty() {
-            Motion::Unknown
+            BlockAngle::Unknown
         } else {
-            Motion::MomentByMoment
+            BlockAngle::OneByOne
         }
     }
 
@@ -220,25 +223,25 @@ impl<'a> TrajectoryCursor<'a> {
     }
 }
 
-/// Not exceeded by the speed over `length_ns`.
+/// An upper bound of the speed over `length_ns`.
 #[inline(always)]
 fn fastest(about: &[f64; 4], length_ns: f64) -> f64 {
     let [_, c1, c2, c3] = about;
     c1.abs() + length_ns * (2.0 * c2.abs() + length_ns * 3.0 * c3.abs())
 }
 
-/// The polynomial `about` a block's start at each delay, counted from `angle`.
+/// Evaluates the polynomial `about` a block's start at each delay, relative to `angle`.
 #[inline(always)]
-fn carry_on<S: Simd, const N: usize>(
+fn evaluate<S: Simd>(
     simd: S,
     about: &[f64; 4],
     angle: Degrees,
     stretch: f64,
-    delays_ns: &[f64; N],
-    ahead_rad: &mut [f64; N],
+    delays_ns: &[f64; CHANNELS],
+    ahead_rad: &mut [f64; CHANNELS],
 ) {
     let [c0, c1, c2, c3] = in_radians(about, angle, stretch);
-    for at in (0..N).step_by(S::f64s::LEN) {
+    for at in (0..CHANNELS).step_by(S::f64s::LEN) {
         let delay = load(simd, delays_ns, at);
         let cubic = ((delay * c3 + c2) * delay + c1) * delay + c0;
         store(cubic, ahead_rad, at);
@@ -255,31 +258,32 @@ fn in_radians([c0, c1, c2, c3]: &[f64; 4], angle: Degrees, stretch: f64) -> [f64
     ]
 }
 
-/// A block that reaches into the next pieces.
+/// The times of a block that extends into the next pieces.
 struct Crossing {
     at: Moment,
     last: Stamp<Host>,
     stretch: f64,
 }
 
-/// Takes the pieces that begin within a block for the channels that fire in them; whether all stay near the anchor.
+/// Evaluates the pieces that begin within a block at the channels that fire in them. Returns whether
+/// all angles are near the anchor.
 #[inline(always)]
-fn cross<S: Simd, const N: usize>(
+fn cross<S: Simd>(
     simd: S,
-    coming: &[Piece],
+    coming: &[CubicPiece],
     anchor: &Anchor,
     block: &Crossing,
-    delays_ns: &[f64; N],
-    ahead_rad: &mut [f64; N],
+    delays_ns: &[f64; CHANNELS],
+    ahead_rad: &mut [f64; CHANNELS],
 ) -> bool {
     let mut near = S::mask64s::splat(simd, true);
     for piece in coming {
-        if piece.from > block.last.saturating_add(EDGE) {
+        if piece.from > block.last.saturating_add(ROUNDING_MARGIN) {
             break;
         }
         let passed_ns =
             piece.from.saturating_since(block.at.host).as_nanos() as f64 - block.at.rest_ns;
-        for at in (0..N).step_by(S::f64s::LEN) {
+        for at in (0..CHANNELS).step_by(S::f64s::LEN) {
             let ns = load(simd, delays_ns, at) * block.stretch + -passed_ns;
             let there = (piece.at(ns) + -anchor.angle.0) * 1_f64.to_radians();
             let ahead = ns.simd_ge(0.0).select(there, load(simd, ahead_rad, at));

@@ -1,0 +1,200 @@
+//! First pass over the records: arrival times of lidar packets, shaft samples and acknowledged
+//! writes of the drive.
+
+use drive::objects::Address;
+use drive::record::{Direction, DriveLink, Record, Wire};
+use drive::{Listener, Observation, ShaftSample};
+use lidar::{Options, Timekeeper};
+use units::{Gearing, Host, Span, Stamp};
+
+use crate::clock::Arrival;
+use crate::config::ScanConfig;
+use crate::error::ScanError;
+use crate::steps::{ClockStep, ClockSteps, HostTimeline, Timeline};
+use crate::sweeps::MoveWatch;
+
+/// First pass: collects what the records show about time and tilt.
+pub struct Survey {
+    gearing: Gearing,
+    reader: RecordReader,
+    arrivals: Vec<Arrival>,
+    samples: Vec<ShaftSample>,
+    writes: Vec<AcknowledgedWrite>,
+    clock_steps: ClockSteps,
+    link: Option<DriveLink>,
+}
+
+/// What the drive's records hold, with all stamps on one host clock.
+pub(crate) struct ShaftRecords {
+    pub gearing: Gearing,
+    pub samples: Vec<ShaftSample>,
+    pub moves: MoveWatch,
+}
+
+impl Survey {
+    /// A survey of a log written with `config`.
+    ///
+    /// # Errors
+    /// [`ScanError::Gearing`] if a number of the configured gearing is zero.
+    pub fn new(config: &ScanConfig, options: Options) -> Result<Self, ScanError> {
+        Ok(Self {
+            gearing: config.axis.gearing()?,
+            reader: RecordReader::new(config, options),
+            arrivals: Vec::new(),
+            samples: Vec::new(),
+            writes: Vec::new(),
+            clock_steps: ClockSteps::default(),
+            link: None,
+        })
+    }
+
+    /// Takes one record.
+    pub fn observe(&mut self, record: &Record<'_>) {
+        match record.wire {
+            Wire::Lidar { payload, .. } => {
+                if let Some(arrival) = self.reader.packet(record.host, payload) {
+                    self.clock_steps
+                        .packet(arrival.device.as_nanos(), record.host);
+                    self.arrivals.push(arrival);
+                }
+            }
+            Wire::Drive {
+                link,
+                direction,
+                frame,
+            } => {
+                self.link = Some(link);
+                let host = self.clock_steps.to_monotonic(record.host);
+                let frame = DriveFrame {
+                    link,
+                    direction,
+                    frame,
+                };
+                self.reader.frame(host, frame, &mut |event| match event {
+                    DriveEvent::Sample(sample) => {
+                        self.samples.push(sample);
+                        self.clock_steps.sample();
+                    }
+                    DriveEvent::Write(write) => self.writes.push(write),
+                });
+            }
+        }
+    }
+
+    /// Steps of the clocks that the records show; empty without packets of a lidar.
+    #[must_use]
+    pub fn steps(&self) -> Vec<ClockStep> {
+        self.timeline()
+            .map_or(Vec::new(), |timeline| timeline.steps)
+    }
+
+    /// Link to the drive and number of shaft samples; `None` without traffic of a drive.
+    #[must_use]
+    pub fn drive(&self) -> Option<(DriveLink, u64)> {
+        self.link.map(|link| (link, self.samples.len() as u64))
+    }
+
+    pub(crate) fn timeline(&self) -> Option<Timeline> {
+        Timeline::new(&self.arrivals, &self.clock_steps)
+    }
+
+    /// The drive's records, on the host clock as it was at the beginning.
+    pub(crate) fn into_shaft_records(mut self, timeline: &HostTimeline) -> ShaftRecords {
+        for sample in &mut self.samples {
+            sample.request = timeline.host(sample.request);
+            sample.answer = timeline.host(sample.answer);
+        }
+        let mut moves = MoveWatch::new(self.gearing);
+        for write in self.writes {
+            moves.wrote(write.address, write.value, timeline.host(write.request));
+        }
+        ShaftRecords {
+            gearing: self.gearing,
+            samples: self.samples,
+            moves,
+        }
+    }
+}
+
+/// Reads times and angles from records, for the first pass and for the live cloud.
+pub(crate) struct RecordReader {
+    timekeeper: Timekeeper,
+    listener: Listener,
+    request_transmission_time: Span,
+}
+
+/// One frame to or from the drive.
+#[derive(Clone, Copy)]
+pub(crate) struct DriveFrame<'a> {
+    pub link: DriveLink,
+    pub direction: Direction,
+    pub frame: &'a [u8],
+}
+
+/// What a frame of the drive completes.
+pub(crate) enum DriveEvent {
+    Sample(ShaftSample),
+    Write(AcknowledgedWrite),
+}
+
+/// An object written to the drive, with the time of the request.
+pub(crate) struct AcknowledgedWrite {
+    pub address: Address,
+    pub value: u32,
+    pub request: Stamp<Host>,
+}
+
+impl RecordReader {
+    pub(crate) fn new(config: &ScanConfig, options: Options) -> Self {
+        Self {
+            timekeeper: Timekeeper::new(options),
+            listener: Listener::new(config.axis.node),
+            request_transmission_time: config.request_transmission_time(),
+        }
+    }
+
+    /// The arrival of a lidar packet; `None` for other datagrams.
+    pub(crate) fn packet(&mut self, host: Stamp<Host>, payload: &[u8]) -> Option<Arrival> {
+        let timing = self.timekeeper.packet(host, payload)?;
+        Some(Arrival {
+            device: timing.first_firing,
+            host: host.saturating_add(-timing.fill),
+        })
+    }
+
+    /// Passes on what a frame stamped `host` completes.
+    pub(crate) fn frame(
+        &mut self,
+        host: Stamp<Host>,
+        frame: DriveFrame<'_>,
+        emit: &mut impl FnMut(DriveEvent),
+    ) {
+        let DriveFrame {
+            link,
+            direction,
+            frame,
+        } = frame;
+        // The drive takes the position after it has the whole request.
+        let transmission = self.request_transmission_time;
+        self.listener
+            .observe(link, direction, frame, host, &mut |seen| match seen {
+                Observation::Sample(sample) => emit(DriveEvent::Sample(ShaftSample {
+                    request: sample.answer.min(sample.request + transmission),
+                    ..sample
+                })),
+                Observation::Wrote {
+                    address,
+                    value,
+                    request,
+                    ..
+                } => {
+                    emit(DriveEvent::Write(AcknowledgedWrite {
+                        address,
+                        value,
+                        request,
+                    }));
+                }
+                _ => {}
+            });
+    }
+}
