@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use scanner::{UnreachableTolerance, ScanError};
+use scanner::{ScanError, UnreachableTolerance};
 
 use crate::failure::{Failure, Kind};
 

@@ -11,7 +11,9 @@ use protocol::record::{DriveLink, Record, Wire};
 use protocol::vlp16::DATA_LEN;
 use scanner::steps::SetClock;
 use scanner::trajectory::Method;
-use scanner::{Accuracy, Alignment, PlacementCounts, Placer, ScanConfig, ScanError, Survey, TiltSource};
+use scanner::{
+    Accuracy, Alignment, PlacementCounts, Placer, ScanConfig, ScanError, Survey, TiltSource,
+};
 use sim::Truth;
 use units::{Host, Span, Stamp};
 
