@@ -18,7 +18,7 @@ use engine::devices::drive_port as ports;
 use engine::devices::drive_session::Session;
 use engine::devices::profile as devices;
 use io::can::{CanPort, Slcan, SocketCan};
-use io::port::{Port, Recorder, SerialPort};
+use io::port::{Port, RecordingPort, SerialPort};
 use protocol::canopen::sdo::SdoClient;
 use protocol::canopen::slcan::Bitrate;
 use protocol::canopen::{CanFrame, Channel, CobId, NodeId, PdoNumber};
@@ -119,7 +119,7 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
     let opened = ports::open(&device(kind), drive.port.as_ref()).unwrap();
     // As in a log: what was sent and received is what counts, not what the client made of it.
     let heard = RefCell::new(Heard::new(&axis));
-    let port = Recorder::new(opened.port, opened.link, |record: &Record<'_>| {
+    let port = RecordingPort::new(opened.port, opened.link, |record: &Record<'_>| {
         heard.borrow_mut().hear(record);
     });
     let client = Client::with_link(axis, opened.link);

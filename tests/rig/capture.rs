@@ -26,7 +26,7 @@ use engine::reconstruct::replay::{self, Request};
 use engine::reconstruct::report::Scan;
 use engine::reconstruct::source::Source;
 use io::can::Slcan;
-use io::port::{Port, Recorder};
+use io::port::{Port, RecordingPort};
 use protocol::canopen::slcan::Bitrate;
 use protocol::epos2::DeviceError;
 use protocol::epos2::message::WriteObject;
@@ -131,7 +131,7 @@ impl Captured {
             Attached::Slcan => Box::new(BusLine(Slcan::open(hurt, Bitrate::Kbit1000).unwrap())),
             Attached::Usb | Attached::Rs232 | Attached::Can => Box::new(hurt),
         };
-        let recorder = Recorder::new(line, link, move |record: &Record<'_>| {
+        let recorder = RecordingPort::new(line, link, move |record: &Record<'_>| {
             if let Wire::Drive {
                 link,
                 direction,

@@ -15,7 +15,7 @@ use engine::devices::profile as devices;
 use io::can::{CanPort as _, SocketCan};
 use io::files::Overwrite;
 use io::log::{LogConfig, LogWriter};
-use io::port::Recorder;
+use io::port::RecordingPort;
 use protocol::record::{DriveLink, Record, Wire};
 use units::{DegPerS, DegPerS2, Degrees, Span};
 
@@ -86,7 +86,7 @@ pub fn sweep(out: &Path) {
         samples: Vec::new(),
     });
     let line = BusLine(SocketCan::open(BUS).unwrap());
-    let port = Recorder::new(line, DriveLink::Can, |record: &Record<'_>| {
+    let port = RecordingPort::new(line, DriveLink::Can, |record: &Record<'_>| {
         heard.borrow_mut().hear(record);
     });
     let client = Client::with_link(axis, DriveLink::Can);

@@ -1,12 +1,12 @@
-//! Three sensors at the dual-return rate on loopback, received and recorded as `capture` does it:
-//! what is lost, what it costs.
+//! Loss and cost of receiving and recording three sensors at the dual-return rate on loopback, as
+//! `capture` does.
 //!
 //! `cargo bench -p io --bench live_udp -- --seconds 60 [--log FILE]`
 //!
 //! The sensors are a process of their own that sends 1206 bytes every 663.552 us (12 sequences of
 //! 55.296 us, VLP-16 user manual 63-9243, 9.3.2) and 512 bytes every 6.8 ms for each, numbered,
-//! from 127.0.0.2 to 127.0.0.4. The log is read back in the end. Fails where anything is lost. The
-//! content of the packets is not a scene's: nothing here decodes them.
+//! from 127.0.0.2 to 127.0.0.4. The log is read back at the end. The bench fails on any loss.
+//! Packets have no meaningful content.
 
 use std::error::Error;
 use std::io::{BufRead, BufReader, Write};
@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 
 use io::clock;
 use io::files::Overwrite;
-use io::log::{LogConfig, LogWriter, Recorder};
+use io::log::{LogConfig, LogRecorder, LogWriter};
 use io::recording::{DatagramKind, Recording};
 use io::udp::{ListenConfig, Listener};
 use nix::time::{ClockId, clock_gettime};
@@ -31,10 +31,10 @@ const SENSORS: u8 = 3;
 const FIRST_ADDRESS: u8 = 2;
 const DATA_PERIOD: Duration = Duration::from_nanos(663_552);
 const POSITION_PERIOD: Duration = Duration::from_micros(6_800);
-/// Where the bench's own number stands: in the first block's channels, and in front of a position
-/// packet's time.
+/// Offset of the packet's number: in the first block's channels, and before the time of a position
+/// packet.
 const NUMBER_AT: usize = 4;
-/// What may still be under way when the sensors have ended.
+/// Time for the last packets after the sensors ended.
 const GRACE: Duration = Duration::from_millis(300);
 
 fn main() -> ExitCode {
@@ -78,7 +78,7 @@ impl Arguments {
                 "--seconds" => seconds = next()?.parse()?,
                 "--log" => log = Some(PathBuf::from(next()?)),
                 "--send" => ports = Some((next()?.parse()?, next()?.parse()?)),
-                "--bench" => {} // cargo's own
+                "--bench" => {} // passed by cargo
                 _ => return Err(format!("{word}: expected --seconds N or --log FILE").into()),
             }
         }
@@ -93,7 +93,7 @@ impl Arguments {
     }
 }
 
-/// The sensors: each packet at its time, late ones at once.
+/// Sends each packet at its time, and late ones at once.
 fn send(data: u16, position: u16, seconds: u64) -> Result<(), Box<dyn Error>> {
     let mut payload = vec![0x55; DATA_LEN];
     for block in payload.chunks_exact_mut(BLOCK_LEN) {
@@ -106,7 +106,7 @@ fn send(data: u16, position: u16, seconds: u64) -> Result<(), Box<dyn Error>> {
             "127.0.0.1".replace(".1", &format!(".{}", FIRST_ADDRESS + sensor)),
             0,
         ))?;
-        // Three sensors are not in step.
+        // The sensors are out of phase.
         let phase = DATA_PERIOD * u32::from(sensor) / u32::from(SENSORS);
         let stream = |socket, port, period, payload| Stream {
             socket,
@@ -181,7 +181,7 @@ fn number(payload: &[u8]) -> u64 {
     bytes.map_or(0, |&bytes| u64::from_le_bytes(bytes))
 }
 
-/// What the numbers of one stream of packets tell.
+/// Statistics of the numbers of one stream.
 #[derive(Clone, Copy, Default)]
 struct Heard {
     packets: u64,
@@ -213,7 +213,7 @@ fn receive(seconds: u64, log: Option<PathBuf>) -> Result<(), Box<dyn Error>> {
         return Err("two sockets were to be bound".into());
     };
     let writer = LogWriter::create(&path, &LogConfig::default(), Overwrite::Replace)?;
-    let recorder = Recorder::start(writer)?;
+    let recorder = LogRecorder::start(writer)?;
     let handle = recorder.handle();
 
     let stop = Arc::new(AtomicBool::new(false));
@@ -308,7 +308,8 @@ fn receive(seconds: u64, log: Option<PathBuf>) -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// Starts the sensors; a thread waits for them, says stop, and tells how many packets they sent.
+/// Starts the sensors. A thread waits for them, sets the stop flag and returns the number of
+/// packets sent.
 fn sensors(
     data: u16,
     position: u16,
@@ -333,7 +334,7 @@ fn sensors(
     }))
 }
 
-/// The lidar's packets in the log.
+/// Counts the lidar's packets in the log.
 fn read_back(path: &PathBuf, seconds: u64) -> Result<u64, Box<dyn Error>> {
     let begin = Instant::now();
     let mut recording = Recording::open(path)?;

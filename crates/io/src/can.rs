@@ -1,12 +1,10 @@
-//! The drive's CAN bus: frames out and in, each with the host time at which it passed.
+//! The drive's CAN bus: frames sent and received, each with its host time.
 //!
-//! Two ways to a bus: an interface of the kernel ([`SocketCan`]), and an adapter on a serial port
-//! that speaks SLCAN ([`Slcan`]). Nothing here knows CANopen. Recording is a wrapper
-//! ([`Recorder`]), never a flag inside. Interfaces are found and used, not set up: that takes the
-//! administrator's rights, and errors say the command.
+//! A bus is reached through an interface of the kernel ([`SocketCan`]) or an SLCAN adapter on a
+//! serial port ([`Slcan`]). Configuring an interface needs administrator rights, so errors name the
+//! command instead.
 
 mod interfaces;
-mod recorder;
 mod slcan;
 mod socket;
 
@@ -15,38 +13,37 @@ use std::io;
 use protocol::canopen::CanFrame;
 use units::{Host, Span, Stamp};
 
-pub use interfaces::{Interface, interfaces};
-pub use recorder::Recorder;
+pub use interfaces::{CanInterface, interfaces};
 pub use slcan::Slcan;
 pub use socket::SocketCan;
 
 use crate::port::PortError;
 
-/// A way to a CAN bus.
+/// A CAN bus.
 pub trait CanPort {
-    /// Sends a frame; the time just before it was handed to the system. Whether it reached the bus
-    /// shows only in what comes back.
+    /// Sends a frame and returns the time just before the system call. Success does not mean that
+    /// the frame reached the bus.
     ///
     /// # Errors
     /// [`CanError`].
     fn write_frame(&mut self, frame: &CanFrame) -> Result<Stamp<Host>, CanError>;
 
-    /// The next frame from the bus, and when it came; `None` if none comes within `timeout` (a span
-    /// of zero or less: if none is there). Frames sent here do not come back.
+    /// The next frame from the bus and its time; `None` if none arrives within `timeout` (zero or
+    /// less: if none is waiting). Own frames are not returned.
     ///
     /// # Errors
-    /// [`CanError`]. After [`CanError::NotSent`] the port goes on.
+    /// [`CanError`]. After [`CanError::NotSent`] the port remains usable.
     fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError>;
 
-    /// Frames of the bus that are known to have been lost between it and this program, at least so
-    /// many. A loss shows with what is read after it, if at all.
+    /// Lower bound of the frames lost between the bus and this program. A loss is reported with a
+    /// later frame, if at all.
     fn dropped(&self) -> u64;
 
-    /// What the bus is called: the interface's name, or `SLCAN`.
+    /// Name of the interface, or `SLCAN`.
     fn name(&self) -> &str;
 
-    /// The time by which whoever uses this port keeps deadlines: it never steps
-    /// ([`crate::clock::steady`]). Ports of a virtual world have their own.
+    /// The clock for deadlines on this port, which never steps ([`crate::clock::steady`]).
+    /// Simulated ports have their own.
     fn now(&self) -> Stamp<Host> {
         crate::clock::steady()
     }
@@ -74,87 +71,87 @@ impl<P: CanPort + ?Sized> CanPort for Box<P> {
     }
 }
 
-/// Why a bus could not be reached or used.
+/// Failure to open or use a bus.
 #[derive(Debug, thiserror::Error)]
 pub enum CanError {
-    /// The kernel was built without CAN, or its module is not loaded.
+    /// The kernel has no CAN support, or its module is not loaded.
     #[error(
         "CAN interface {interface}: this kernel has no CAN; load it with `sudo modprobe can_raw`, or use an SLCAN adapter on a serial port, which needs none"
     )]
     NoCan {
-        /// The interface asked for.
+        /// The requested interface.
         interface: String,
     },
-    /// There is no such interface.
+    /// No such interface exists.
     #[error(
         "CAN interface {interface}: no such interface, expected one of: {}",
         list(known)
     )]
     NoInterface {
-        /// The interface asked for.
+        /// The requested interface.
         interface: String,
-        /// The CAN interfaces there are.
+        /// The existing CAN interfaces.
         known: Vec<String>,
     },
-    /// It is an interface, but of another kind of network.
+    /// The interface is of another kind of network.
     #[error(
         "CAN interface {interface}: not a CAN interface, expected one of: {}",
         list(known)
     )]
     NotCan {
-        /// The interface asked for.
+        /// The requested interface.
         interface: String,
-        /// The CAN interfaces there are.
+        /// The existing CAN interfaces.
         known: Vec<String>,
     },
-    /// The interface is down: never set up, or taken down while in use.
+    /// The interface is down.
     #[error("CAN interface {interface}: it is down; bring it up with `{command}`")]
     Down {
         /// The interface.
         interface: String,
-        /// What brings it up.
+        /// Command that brings it up.
         command: String,
     },
-    /// The interface went away while in use.
+    /// The interface disappeared while in use.
     #[error("CAN interface {interface}: disconnected")]
     Disconnected {
         /// The interface.
         interface: String,
     },
-    /// The interface's queue stays full: no other node acknowledges what is sent.
+    /// The interface's queue stays full: no other node acknowledges frames.
     #[error(
-        "CAN interface {interface}: expected to send a frame, got rid of none in 0.5 s: is the drive on, the bus terminated, the bit rate right?"
+        "CAN interface {interface}: sent no frame in 0.5 s: is the drive on, the bus terminated, the bit rate right?"
     )]
     WriteTimeout {
         /// The interface.
         interface: String,
     },
-    /// An SLCAN adapter refused a command when it was opened.
+    /// An SLCAN adapter refused a command while opening.
     #[error("SLCAN adapter: refused {command}, expected CR")]
     Refused {
         /// The command.
         command: String,
     },
-    /// An SLCAN adapter did not take a frame: its buffer is full or its channel was closed.
-    #[error("SLCAN adapter: a frame was refused and is lost")]
+    /// An SLCAN adapter refused a frame: its buffer is full or its channel was closed.
+    #[error("SLCAN adapter: refused a frame, which is lost")]
     NotSent,
     /// The adapter's serial port.
     #[error(transparent)]
     Port(#[from] PortError),
-    /// The system refused for another reason.
+    /// Another system call failed.
     #[error("CAN interface {interface}: cannot {action}: {source}")]
     Io {
         /// The interface.
         interface: String,
         /// `open`, `read` or `write`.
         action: &'static str,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
 }
 
 impl From<CanError> for PortError {
-    /// For whoever treats a bus as a port: the port is the interface.
+    /// For a bus that is used as a port: the port is the interface.
     fn from(error: CanError) -> Self {
         let io = |port: &str, action, kind, what: String| Self::Io {
             port: port.to_owned(),
@@ -176,7 +173,7 @@ impl From<CanError> for PortError {
                 &interface,
                 "write",
                 io::ErrorKind::TimedOut,
-                "got rid of no frame in 0.5 s: is the drive on, the bus terminated, the bit rate right?"
+                "sent no frame in 0.5 s: is the drive on, the bus terminated, the bit rate right?"
                     .to_owned(),
             ),
             CanError::Io {
@@ -212,11 +209,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_bus_as_a_port_keeps_its_name_and_what_to_do() {
+    fn port_errors_keep_the_interface_and_the_advice() {
         let interface = || "can0".to_owned();
         let command = "sudo ip link set can0 up".to_owned();
         let denied = io::Error::from(io::ErrorKind::PermissionDenied);
-        for (error, said) in [
+        for (error, expected) in [
             (
                 CanError::Down {
                     interface: interface(),
@@ -234,7 +231,7 @@ mod tests {
                 CanError::WriteTimeout {
                     interface: interface(),
                 },
-                "port can0: cannot write: got rid of no frame in 0.5 s: is the drive on, the bus terminated, the bit rate right?",
+                "port can0: cannot write: sent no frame in 0.5 s: is the drive on, the bus terminated, the bit rate right?",
             ),
             (
                 CanError::Io {
@@ -258,7 +255,7 @@ mod tests {
                 "port /dev/ttyACM0: in use by another program",
             ),
         ] {
-            assert_eq!(PortError::from(error).to_string(), said);
+            assert_eq!(PortError::from(error).to_string(), expected);
         }
     }
 }

@@ -1,14 +1,13 @@
-//! The host's clock, read in one place. Two ways and what tells a sleep: [`now`] is the system's
-//! time, which the kernel's stamps are of too and whose steps show in the log; [`steady`] never
-//! steps, and is what deadlines are kept by. No steering.
+//! The host's clocks. [`now`] is the system time, like the kernel's receive times; it may step.
+//! [`steady`] never steps and is for deadlines. [`suspended`] is the time that the machine slept.
 
 use std::sync::OnceLock;
 use std::time::{Instant, SystemTime};
 
 use units::{Host, Span, Stamp};
 
-/// Nanoseconds of `CLOCK_REALTIME` now; held at the ends of the range of `i64` nanoseconds (years
-/// 1677 and 2262).
+/// The system time (`CLOCK_REALTIME`), limited to the range of `i64` nanoseconds (years 1677 to
+/// 2262).
 #[must_use]
 pub fn now() -> Stamp<Host> {
     let ns = match SystemTime::now().duration_since(SystemTime::UNIX_EPOCH) {
@@ -18,11 +17,9 @@ pub fn now() -> Stamp<Host> {
     Stamp::from_nanos(ns)
 }
 
-/// The system's time when this was first called, carried on by the monotonic clock: a step of the
-/// system time does not move it.
+/// The system time at the first call, continued by the monotonic clock.
 ///
-/// For deadlines and spans. Once the system time has stepped it is not the time of the log's
-/// records.
+/// Steps of the system time do not move it, so it may differ from the times of the log's records.
 #[must_use]
 pub fn steady() -> Stamp<Host> {
     static BEGIN: OnceLock<(Instant, Stamp<Host>)> = OnceLock::new();
@@ -31,8 +28,8 @@ pub fn steady() -> Stamp<Host> {
     stamp.saturating_add(Span::from_nanos(since))
 }
 
-/// How long this machine has slept since it was started: what `CLOCK_BOOTTIME` is ahead of
-/// `CLOCK_MONOTONIC`. Zero where the system does not tell.
+/// Time that the machine was suspended since boot: `CLOCK_BOOTTIME` less `CLOCK_MONOTONIC`. Zero if
+/// the system has no such clocks.
 #[must_use]
 pub fn suspended() -> Span {
     use nix::time::{ClockId, clock_gettime};
@@ -42,7 +39,7 @@ pub fn suspended() -> Span {
             .checked_mul(1_000_000_000)?
             .checked_add(time.tv_nsec())
     };
-    // In this order, so that what passes between the two readings counts for less than nothing.
+    // In this order, time between the two readings makes the result smaller, never larger.
     let both = read(ClockId::CLOCK_BOOTTIME).zip(read(ClockId::CLOCK_MONOTONIC));
     Span::from_nanos(both.map_or(0, |(boot, monotonic)| boot.saturating_sub(monotonic).max(0)))
 }
@@ -52,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_agrees_with_the_system_calls_of_another_library() {
+    fn system_time_agrees_with_clock_gettime() {
         use nix::time::{ClockId, clock_gettime};
         let before = now();
         let time = clock_gettime(ClockId::CLOCK_REALTIME).unwrap();
@@ -62,18 +59,21 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_that_is_awake_has_not_slept_in_between() {
+    fn a_running_machine_is_not_suspended() {
         let (first, second) = (suspended(), suspended());
         let between = (second - first).as_nanos().abs();
         assert!(between < 1_000_000_000, "{between} ns");
     }
 
     #[test]
-    fn the_steady_clock_goes_with_the_monotonic_one() {
+    fn the_steady_clock_follows_the_monotonic_clock() {
         let (begin, first) = (Instant::now(), steady());
         let second = steady();
         let elapsed = i64::try_from(begin.elapsed().as_nanos()).unwrap();
-        let went = (second - first).as_nanos();
-        assert!((0..=elapsed).contains(&went), "{went} of {elapsed} ns");
+        let advanced = (second - first).as_nanos();
+        assert!(
+            (0..=elapsed).contains(&advanced),
+            "{advanced} of {elapsed} ns"
+        );
     }
 }

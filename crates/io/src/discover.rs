@@ -1,29 +1,28 @@
-//! What is plugged in: serial ports, and EPOS2 units on USB with or without a serial port to them.
+//! Discovery of connected devices: serial ports, and EPOS2 units on USB.
 //!
-//! Linux's `ftdi_sio` driver does not know the EPOS2's product number, so that a unit can be on the
-//! bus and still have no port; only sysfs shows that. Whether a device answers is not tried, and
-//! the network is not searched.
+//! Linux's `ftdi_sio` driver does not know the EPOS2's product number. A unit may therefore be on
+//! the bus without a serial port, which only sysfs shows. Devices are not opened.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serialport::SerialPortType;
 
-/// USB vendor of the EPOS2 (FTDI's).
+/// USB vendor of the EPOS2 (FTDI).
 pub const EPOS2_VENDOR: u16 = 0x0403;
 /// USB product of the EPOS2.
 pub const EPOS2_PRODUCT: u16 = 0xA8B0;
 
-/// What the bus says about a USB device.
+/// Descriptor of a USB device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UsbIdentity {
     /// Vendor number.
     pub vendor: u16,
     /// Product number.
     pub product: u16,
-    /// Product name, where the device tells one.
+    /// Product name, if the device has one.
     pub name: Option<String>,
-    /// Serial number, where the device tells one.
+    /// Serial number, if the device has one.
     pub serial_number: Option<String>,
 }
 
@@ -32,33 +31,33 @@ pub struct UsbIdentity {
 pub struct SerialPortFound {
     /// Its path.
     pub path: PathBuf,
-    /// The USB device behind it, if one is.
+    /// Its USB device, if it is one.
     pub usb: Option<UsbIdentity>,
 }
 
 /// An EPOS2 on USB.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Epos2Found {
-    /// What it says about itself.
+    /// Its descriptor.
     pub usb: UsbIdentity,
-    /// Its place on the bus, such as `1-4.2`.
+    /// Position on the bus, such as `1-4.2`.
     pub bus_place: String,
-    /// Its serial port; `None`: no driver has taken it.
+    /// Its serial port; `None` without a driver.
     pub port: Option<PathBuf>,
 }
 
-/// What was found. Lists are in order of their names.
+/// Connected devices, in order of their names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
-    /// Serial ports, whatever is behind them.
+    /// Serial ports of any device.
     pub serial_ports: Vec<SerialPortFound>,
     /// EPOS2 units on USB.
     pub epos2: Vec<Epos2Found>,
-    /// What could not be looked at, and why.
+    /// Failed lookups, with the reason.
     pub problems: Vec<String>,
 }
 
-/// Looks at this machine.
+/// Lists the devices of this machine.
 #[must_use]
 pub fn discover() -> Findings {
     let mut findings = Findings::default();
@@ -74,7 +73,7 @@ pub fn discover() -> Findings {
 }
 
 fn serial_ports() -> std::io::Result<Vec<SerialPortFound>> {
-    // serialport (4.10) panics where this folder cannot be read.
+    // serialport (4.10) panics if this directory is unreadable.
     fs::read_dir("/sys/class/tty")?;
     let mut ports: Vec<_> = serialport::available_ports()?
         .into_iter()
@@ -100,8 +99,8 @@ fn serial_port(found: serialport::SerialPortInfo) -> SerialPortFound {
     }
 }
 
-/// The EPOS2 units under sysfs's list of USB devices. No such list (no USB on this machine, a
-/// container): none.
+/// The EPOS2 units in sysfs's list of USB devices; none if the machine has no such list
+/// (containers).
 fn find_epos2(devices: &Path) -> std::io::Result<Vec<Epos2Found>> {
     let mut units = Vec::new();
     let entries = match fs::read_dir(devices) {
@@ -113,7 +112,7 @@ fn find_epos2(devices: &Path) -> std::io::Result<Vec<Epos2Found>> {
         let device = entry?.path();
         let number = |file| u16::from_str_radix(&attribute(&device, file)?, 16).ok();
         let (Some(vendor), Some(product)) = (number("idVendor"), number("idProduct")) else {
-            continue; // an interface or a hub's port, not a device
+            continue; // an interface or a port of a hub
         };
         if (vendor, product) != (EPOS2_VENDOR, EPOS2_PRODUCT) {
             continue;
@@ -155,7 +154,7 @@ fn port_of(device: &Path, bus_place: &str) -> Option<PathBuf> {
     None
 }
 
-/// The names in a folder, in order; none if it cannot be read.
+/// The sorted names in a directory; none if it is unreadable.
 fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
         .into_iter()
@@ -166,7 +165,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A line of sysfs.
+/// Content of a sysfs file.
 fn attribute(device: &Path, file: &str) -> Option<String> {
     let text = fs::read_to_string(device.join(file)).ok()?;
     let text = text.trim();
@@ -219,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_without_usb_has_none() {
+    fn machines_without_usb_have_no_units() {
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(find_epos2(&folder.path().join("missing")).unwrap(), []);
     }

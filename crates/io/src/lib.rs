@@ -1,10 +1,31 @@
-//! Everything that touches the machine: recordings and logs, the lidar's socket, the drive's port,
-//! files, the clock.
+//! Input and output: recordings and logs, the lidar's sockets, the drive's ports, files and clocks.
 //!
-//! What passes here is bytes with the host time at which they passed
-//! ([`protocol::record::Record`]); what they mean is decided elsewhere. Nothing here decodes a
-//! lidar packet, speaks to a drive or knows a scan. Signals, arguments and printing belong to the
-//! binary.
+//! Every packet and frame is a [`protocol::record::Record`]: bytes with the host time at which they
+//! were sent or received. This crate does not interpret them.
+//!
+//! ```
+//! use io::log::{LogConfig, LogWriter};
+//! use io::recording::Recording;
+//! use protocol::record::{Record, Wire};
+//! use units::Stamp;
+//!
+//! // A log of one data packet, and the recording that it is.
+//! let mut payload = [0; 1206];
+//! for block in payload.chunks_exact_mut(100) {
+//!     block[..2].copy_from_slice(&[0xFF, 0xEE]);
+//! }
+//! let record = Record {
+//!     host: Stamp::from_nanos(1_700_000_000_000_000_000),
+//!     wire: Wire::Lidar { source: [192, 168, 1, 201], port: 2368, payload: &payload },
+//! };
+//! let mut writer = LogWriter::new(Vec::new(), &LogConfig::default())?;
+//! writer.write(&record)?;
+//! let (_, log) = writer.finish()?;
+//!
+//! let mut recording = Recording::new(log.as_slice(), "example")?;
+//! assert_eq!(recording.next_record()?, Some(record));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod ancillary;
 pub mod can;

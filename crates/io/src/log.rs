@@ -1,9 +1,8 @@
-//! The raw log: every byte in or out of either device with its host time, in one pcapng file that
+//! The raw log: every byte to and from both devices with its host time, in one pcapng file that
 //! Wireshark reads.
 //!
-//! [`LogWriter`] turns records into blocks; [`Recorder`] takes records from any thread, puts them
-//! in order and keeps the file fresh. Reading is [`crate::recording`]'s part. Nothing is decoded
-//! here and nothing left out.
+//! [`LogWriter`] encodes records; [`LogRecorder`] takes them from any thread, sorts them by time
+//! and flushes the file. [`crate::recording`] reads logs.
 
 mod block;
 mod datagram;
@@ -12,5 +11,5 @@ mod recorder;
 mod writer;
 
 pub use owned::OwnedRecord;
-pub use recorder::{Recorder, RecorderCounts, RecorderHandle};
+pub use recorder::{LogRecorder, RecorderCounts, RecorderHandle};
 pub use writer::{LogConfig, LogCounts, LogError, LogWriter};

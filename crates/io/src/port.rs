@@ -1,7 +1,6 @@
-//! The drive's port: bytes out and in, each with the host time at which it passed.
+//! The drive's port: bytes sent and received, with their host times.
 //!
-//! A port knows no frames of the drive and no commands. Recording is a wrapper ([`Recorder`]),
-//! never a flag inside.
+//! A port does not interpret bytes. [`RecordingPort`] is a wrapper that records them.
 
 mod delimit;
 mod pty;
@@ -14,20 +13,19 @@ use std::io;
 use units::{Host, Span, Stamp};
 
 pub use pty::Pty;
-pub use recorder::Recorder;
+pub use recorder::RecordingPort;
 pub use serial::{LatencyTimer, SerialPort};
 
-/// A byte pipe to a device.
+/// A byte stream to a device.
 pub trait Port {
-    /// Writes all of `frame`; the time just before the first byte was handed to the system.
+    /// Writes all of `frame` and returns the time just before the first system call.
     ///
     /// # Errors
     /// [`PortError::Disconnected`], [`PortError::WriteTimeout`], [`PortError::Io`].
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError>;
 
-    /// Reads what has come, waiting for the first byte up to `timeout` (a span of zero or less: not
-    /// at all): the number of bytes and the time just after they were read, or `None` if nothing
-    /// came.
+    /// Reads the bytes that arrived, waiting for the first one up to `timeout` (zero or less: not
+    /// at all). Returns their number and the time just after the read, or `None`.
     ///
     /// # Errors
     /// [`PortError::Disconnected`], [`PortError::Io`].
@@ -37,8 +35,8 @@ pub trait Port {
         timeout: Span,
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError>;
 
-    /// The time by which whoever uses this port keeps deadlines: it never steps
-    /// ([`crate::clock::steady`]). Ports of a virtual world have their own.
+    /// The clock for deadlines on this port, which never steps ([`crate::clock::steady`]).
+    /// Simulated ports have their own.
     fn now(&self) -> Stamp<Host> {
         crate::clock::steady()
     }
@@ -69,64 +67,63 @@ macro_rules! forward {
 forward!(Box<P>);
 forward!(&mut P);
 
-/// Why a port could not be opened or used.
+/// Failure to open or use a port.
 #[derive(Debug, thiserror::Error)]
 pub enum PortError {
-    /// There is no such device.
+    /// No such device exists.
     #[error("port {port}: no such device")]
     NotFound {
         /// The port's path.
         port: String,
     },
-    /// This user may not open it.
+    /// The user has no permission to open it.
     #[error("port {port}: permission denied")]
     Permission {
         /// The port's path.
         port: String,
     },
-    /// Another program has it.
+    /// Another program uses it.
     #[error("port {port}: in use by another program")]
     Busy {
         /// The port's path.
         port: String,
     },
-    /// It is there, but is no serial port or does not take the settings.
+    /// The device is no serial port or refuses the settings.
     #[error("port {port}: expected a serial port at {baud} baud, got: {reason}")]
     Unsuitable {
         /// The port's path.
         port: String,
-        /// The speed asked for.
+        /// The requested baud rate.
         baud: u32,
-        /// The system's words.
+        /// The system's message.
         reason: String,
     },
-    /// The device went away: unplugged, switched off, or the other side of a pseudo-terminal
-    /// closed.
+    /// The device is gone: unplugged, switched off, or the other side of a pseudo-terminal closed.
     #[error("port {port}: disconnected ({reason})")]
     Disconnected {
         /// The port's path.
         port: String,
-        /// The system's words.
+        /// The system's message.
         reason: String,
     },
-    /// The device takes no bytes.
-    #[error("port {port}: expected to write {expected} bytes, got rid of {got} in 0.5 s")]
+    /// The device accepts no bytes.
+    #[error("port {port}: expected to write {expected} bytes, wrote {got} in 0.5 s")]
     WriteTimeout {
         /// The port's path.
         port: String,
         /// Bytes of the frame.
         expected: usize,
-        /// Bytes that went out.
+        /// Bytes written.
         got: usize,
     },
-    /// The system refused for another reason.
+    /// Another system call failed.
     #[error("port {port}: cannot {action}: {source}")]
     Io {
         /// The port's path.
         port: String,
         /// `open`, `read` or `write`.
         action: &'static str,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
 }

@@ -1,13 +1,13 @@
-//! Recordings read back: pcap and pcapng into [`Record`]s in file order, with bounded memory.
+//! Reading of recordings: pcap and pcapng into [`Record`]s in file order, with bounded memory.
 //!
-//! Whatever can be read is yielded. A packet that makes no sense is counted and passed over; damage
-//! in the middle of a pcapng file is counted and reading goes on at the next sound block; a file
-//! cut off in mid-record yields everything before the cut and then says where it was cut ([`End`]).
-//! Only a file that is no recording at all, or that the system cannot read, is an error.
+//! Reading recovers what it can. Malformed packets are counted and skipped. Damage within a pcapng
+//! file is counted, and reading continues at the next valid block. A truncated file yields all
+//! records before its end and reports the position ([`End`]). The only errors are files that are no
+//! recordings and failed system calls.
 //!
-//! The lidar's datagrams are known by their content ([`DatagramKind`]), on any port and from any
-//! address; what else shared the wire is counted. Not here: what the packets say, checksums, and
-//! more than one sensor's worth of meaning ([`Sensors`] tells them apart).
+//! Datagrams of a lidar are recognised by content ([`DatagramKind`]), on any port and from any
+//! address; other packets are counted. Checksums are not verified. [`Sensors`] distinguishes
+//! several sensors.
 
 mod classify;
 mod counts;
@@ -35,8 +35,9 @@ pub use counts::{Counts, Malformed};
 pub use error::{End, Fault, RecordingError};
 pub use input::{Input, SPOOL_LIMIT};
 pub use lidar::DatagramKind;
-pub use pace::{Gap, PaceError, Paced, Pacer, SteadyTimer, Timer, Turn};
-pub use sensors::{Sensor, Sensors, sensors, source_of};
+pub use pace::{Gap, PaceError, Pacer, Wait};
+
+pub use sensors::{Sensor, Sensors};
 
 use link::LinkType;
 pub(crate) use link::{RS232_NAME, USB_NAME};
@@ -48,7 +49,7 @@ use window::Window;
 pub enum Format {
     /// Classic pcap.
     Pcap {
-        /// Stamps count nanoseconds, not microseconds.
+        /// Time stamps in nanoseconds instead of microseconds.
         nanoseconds: bool,
         /// Headers are big-endian.
         big_endian: bool,
@@ -57,62 +58,62 @@ pub enum Format {
     PcapNg,
 }
 
-/// A recording being read, front to back. For a second pass open it again.
+/// A recording, read from front to back. Open it again for another pass.
 #[derive(Debug)]
 pub struct Recording<R = File> {
     window: Window<R>,
     path: PathBuf,
-    dialect: Dialect,
+    format_state: FormatState,
     metadata: Option<String>,
     counts: Counts,
-    /// Bytes of the record last handed out, still at the front of the window.
-    held: usize,
+    /// Length of the record returned last, which is still at the front of the window.
+    consumed: usize,
     end: Option<End>,
-    /// A CAN frame shorter than `struct can_frame`, filled up with zeros.
+    /// A CAN frame, padded to `struct can_frame` with zeros.
     can_frame: [u8; link::CAN_FRAME_LEN],
     reassembler: Reassembler,
     keep_foreign: bool,
 }
 
 #[derive(Debug)]
-enum Dialect {
+enum FormatState {
     Pcap(pcap::Header),
     PcapNg(pcapng::Section),
 }
 
-/// What the next bytes of the file are, as far as the file format tells.
+/// Content of the next bytes by the file format.
 #[derive(Debug)]
-enum Step {
+enum FileItem {
     /// A packet; `data` counts from the front of the window.
-    Packet(Packet),
-    /// A packet whose frame in the file is sound but which cannot be used.
+    Packet(CapturedPacket),
+    /// An unusable packet with a valid frame.
     Malformed { length: usize, fault: Fault },
-    /// Bytes that are no record; the window is behind them already.
+    /// Damaged bytes, which the window has passed.
     Damaged {
         offset: u64,
         bytes: u64,
         fault: Fault,
     },
-    /// Not a packet.
+    /// A block without a packet.
     Skip { length: usize },
-    /// Nothing more.
+    /// End of the recording.
     End(End),
 }
 
 #[derive(Debug)]
-struct Packet {
+struct CapturedPacket {
     host: Stamp<Host>,
-    /// Bytes of the whole record in the file.
+    /// Length of the record in the file.
     length: usize,
     data: Range<usize>,
     link: LinkType,
     direction: Option<Direction>,
-    /// Bytes it had on the wire.
+    /// Length on the wire.
     original: u32,
 }
 
-/// What `next_record` found, in positions rather than borrows.
-struct Found {
+/// A record by the positions of its bytes.
+struct FoundRecord {
     host: Stamp<Host>,
     wire: FoundWire,
 }
@@ -122,7 +123,7 @@ enum FoundWire {
         source: [u8; 4],
         port: u16,
         payload: Range<usize>,
-        place: Place,
+        location: PayloadLocation,
     },
     Serial {
         link: DriveLink,
@@ -134,17 +135,17 @@ enum FoundWire {
     },
 }
 
-/// Where the bytes of a datagram are.
+/// Location of a datagram's bytes.
 #[derive(Clone, Copy)]
-enum Place {
+enum PayloadLocation {
     Window,
     /// Reassembled from fragments.
     Reassembler,
 }
 
 impl Recording<File> {
-    /// Opens a recording and reads its header. `-` is the standard input; that, and a pipe by its
-    /// name, can be read once only: see [`Input`] for more passes.
+    /// Opens a recording and reads its header. `-` is standard input. Standard input and pipes can
+    /// be read once; [`Input`] allows more passes.
     ///
     /// # Errors
     /// [`RecordingError`]: the file is missing or unreadable, empty, too short for a header, of
@@ -156,7 +157,7 @@ impl Recording<File> {
 }
 
 impl<R: Read> Recording<R> {
-    /// Reads a recording from any source of bytes; `name` is what errors call it.
+    /// Reads a recording from any reader; errors call it `name`.
     ///
     /// # Errors
     /// As [`Recording::open`].
@@ -173,22 +174,22 @@ impl<R: Read> Recording<R> {
             return Err(RecordingError::Empty { path });
         }
         let mut metadata = None;
-        let dialect = if pcapng::is_section_header(start) {
+        let format_state = if pcapng::is_section_header(start) {
             let mut section = pcapng::Section::default();
             metadata = section.open(&mut window, &path)?;
-            Dialect::PcapNg(section)
+            FormatState::PcapNg(section)
         } else {
             let header = pcap::Header::parse(start, &path)?;
             window.consume(pcap::HEADER_LEN);
-            Dialect::Pcap(header)
+            FormatState::Pcap(header)
         };
         Ok(Self {
             window,
             path,
-            dialect,
+            format_state,
             metadata,
             counts: Counts::default(),
-            held: 0,
+            consumed: 0,
             end: None,
             can_frame: [0; link::CAN_FRAME_LEN],
             reassembler: Reassembler::default(),
@@ -196,35 +197,35 @@ impl<R: Read> Recording<R> {
         })
     }
 
-    /// Yields every UDP datagram, a lidar's or not. They are counted as before.
+    /// Yields foreign UDP datagrams as well. Counts do not change.
     #[must_use]
     pub fn keep_foreign(mut self) -> Self {
         self.keep_foreign = true;
         self
     }
 
-    /// What kind of file this is.
+    /// The file format.
     #[must_use]
     pub fn format(&self) -> Format {
-        match &self.dialect {
-            Dialect::Pcap(header) => header.format(),
-            Dialect::PcapNg(_) => Format::PcapNg,
+        match &self.format_state {
+            FormatState::Pcap(header) => header.format(),
+            FormatState::PcapNg(_) => Format::PcapNg,
         }
     }
 
-    /// The comment of the first section: our own logs carry the configuration there, as TOML.
+    /// The comment of the first section, which holds the configuration of our logs as TOML.
     #[must_use]
     pub fn metadata(&self) -> Option<&str> {
         self.metadata.as_deref()
     }
 
-    /// What has been read so far.
+    /// Numbers of packets so far.
     #[must_use]
     pub fn counts(&self) -> &Counts {
         &self.counts
     }
 
-    /// How the file ended, once [`Recording::next_record`] has said that there is no more.
+    /// The end of the file, once [`Recording::next_record`] returned `None`.
     #[must_use]
     pub fn end(&self) -> Option<&End> {
         self.end.as_ref()
@@ -233,7 +234,7 @@ impl<R: Read> Recording<R> {
     /// The next record of the lidar's or the drive's traffic, or `None` after the last.
     ///
     /// # Errors
-    /// [`RecordingError::Read`] where the system cannot read the file; no content is an error.
+    /// [`RecordingError::Read`] if a system call fails. No content of the file is an error.
     pub fn next_record(&mut self) -> Result<Option<Record<'_>>, RecordingError> {
         let Some(found) = self.advance()? else {
             return Ok(None);
@@ -244,13 +245,13 @@ impl<R: Read> Recording<R> {
                 source,
                 port,
                 payload,
-                place,
+                location,
             } => Wire::Lidar {
                 source,
                 port,
-                payload: match place {
-                    Place::Window => bytes.get(payload),
-                    Place::Reassembler => self.reassembler.datagram().get(payload),
+                payload: match location {
+                    PayloadLocation::Window => bytes.get(payload),
+                    PayloadLocation::Reassembler => self.reassembler.datagram().get(payload),
                 }
                 .unwrap_or_default(),
             },
@@ -275,32 +276,32 @@ impl<R: Read> Recording<R> {
         }))
     }
 
-    /// Goes to the next usable packet.
-    fn advance(&mut self) -> Result<Option<Found>, RecordingError> {
+    /// Advances to the next usable packet.
+    fn advance(&mut self) -> Result<Option<FoundRecord>, RecordingError> {
         loop {
             if self.end.is_some() {
                 return Ok(None);
             }
-            self.window.consume(std::mem::take(&mut self.held));
-            let step = match &mut self.dialect {
-                Dialect::Pcap(header) => header.step(&mut self.window),
-                Dialect::PcapNg(section) => section.step(&mut self.window),
+            self.window.consume(std::mem::take(&mut self.consumed));
+            let item = match &mut self.format_state {
+                FormatState::Pcap(header) => header.step(&mut self.window),
+                FormatState::PcapNg(section) => section.step(&mut self.window),
             };
             let offset = self.window.offset();
-            let step = step.map_err(|source| RecordingError::Read {
+            let item = item.map_err(|source| RecordingError::Read {
                 path: self.path.clone(),
                 offset,
                 source,
             })?;
-            match step {
-                Step::End(end) => self.end = Some(end),
-                Step::Skip { length } => self.held = length,
-                Step::Malformed { length, fault } => {
-                    self.held = length;
+            match item {
+                FileItem::End(end) => self.end = Some(end),
+                FileItem::Skip { length } => self.consumed = length,
+                FileItem::Malformed { length, fault } => {
+                    self.consumed = length;
                     self.counts.packet();
                     self.counts.malformed(offset, fault);
                 }
-                Step::Damaged {
+                FileItem::Damaged {
                     offset,
                     bytes,
                     fault,
@@ -310,8 +311,8 @@ impl<R: Read> Recording<R> {
                     self.counts.damaged += 1;
                     self.counts.damaged_bytes += bytes;
                 }
-                Step::Packet(packet) => {
-                    self.held = packet.length;
+                FileItem::Packet(packet) => {
+                    self.consumed = packet.length;
                     self.counts.packet();
                     if let Some(found) = self.classify(&packet, offset) {
                         return Ok(Some(found));

@@ -1,4 +1,5 @@
-//! The lidar's datagrams with kernel receive times, and a count of the datagrams the kernel dropped.
+//! The lidar's datagrams with kernel receive times, and a count of the datagrams the kernel
+//! dropped.
 //!
 //! The kernel takes the time when a packet leaves the network stack. A time read by the program can
 //! be many milliseconds late on a busy machine. IPv4 only, like the lidars of this family.

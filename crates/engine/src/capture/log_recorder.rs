@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use io::files::Overwrite;
-use io::log::{LogConfig, LogError, LogWriter, Recorder, RecorderCounts, RecorderHandle};
+use io::log::{LogConfig, LogError, LogRecorder, LogWriter, RecorderCounts, RecorderHandle};
 use io::udp::ListenCounts;
 use protocol::record::DriveLink;
 use scanner::ScanConfig;
@@ -14,7 +14,7 @@ use crate::failure::{Failure, Kind};
 
 /// A recording under way.
 pub struct Recording {
-    log: Recorder,
+    log: LogRecorder,
     hearing: Arc<LidarReceiver>,
     /// What was heard before it began.
     before: ListenCounts,
@@ -54,7 +54,7 @@ impl Recording {
         };
         let writer =
             LogWriter::create(path, &head, Overwrite::Refuse).map_err(|e| log_failure(&e))?;
-        let log = Recorder::to_disk(writer).map_err(|e| log_failure(&e))?;
+        let log = LogRecorder::to_disk(writer).map_err(|e| log_failure(&e))?;
         let packets_before = hearing.packets();
         let before = hearing.record_to(Some(log.handle()))?;
         Ok(Self {

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use drive::{Client, Event, Progress, ShaftSample};
-use io::port::{Port, Recorder};
+use io::port::{Port, RecordingPort};
 use io::udp::ListenConfig;
 use protocol::record::{DriveLink, Record};
 use scanner::{ScanConfig, TiltSource};
@@ -135,7 +135,7 @@ pub fn record(job: Job<'_>, told: &mut dyn FnMut(CaptureEvent<'_>)) -> Result<En
     }
     told(CaptureEvent::Begins);
     let (log, onlooker) = (recording.handle(), job.onlooker);
-    let port = Recorder::new(job.port, job.link, move |record| {
+    let port = RecordingPort::new(job.port, job.link, move |record| {
         log.record(record);
         onlooker(record);
     });

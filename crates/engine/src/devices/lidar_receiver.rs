@@ -235,7 +235,7 @@ pub fn lidar_failure(error: &UdpError) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use io::log::{LogConfig, LogWriter, Recorder};
+    use io::log::{LogConfig, LogRecorder, LogWriter};
     use io::udp::ListenConfig;
     use std::net::{Ipv4Addr, UdpSocket};
 
@@ -263,7 +263,7 @@ mod tests {
         send(3);
         // On loopback a datagram is in the receiver's queue when it is sent.
         let writer = LogWriter::new(Vec::new(), &LogConfig::default()).unwrap();
-        let log = Recorder::start(writer).unwrap();
+        let log = LogRecorder::start(writer).unwrap();
         let before = hearing.record_to(Some(log.handle())).unwrap();
         assert_eq!(before.data, 3);
         send(5);

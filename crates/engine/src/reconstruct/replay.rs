@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use analysis::truth::Comparison;
 use cloud::{Metadata, Sink, SinkError, TiltTrack};
-use io::recording::{Gap, Pacer, Turn};
+use io::recording::{Gap, Pacer, Wait};
 use lidar::{Options, Stats, UtcClock};
 use protocol::record::{DriveLink, Record, Wire};
 use protocol::vlp16::DATA_LEN;
@@ -345,7 +345,7 @@ fn pacer(factor: Option<f64>) -> Result<Option<Pacer>, Failure> {
 
 /// Waits until a record is due. What is not waited for is said.
 fn wait(pace: &mut Pacer, record: &Record<'_>, interrupt: &AtomicBool) {
-    if let Turn::Anew(gap) = pace.wait(record.host, interrupt) {
+    if let Wait::Restarted(gap) = pace.wait(record.host, interrupt) {
         let (what, span) = match gap {
             Gap::Silence(span) => ("not waited for: the recording is silent for", span),
             Gap::Backwards(span) => ("the recording's time goes back by", span),

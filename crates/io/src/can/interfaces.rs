@@ -1,44 +1,44 @@
-//! Which CAN interfaces the kernel has, by what sysfs says of them.
+//! The kernel's CAN interfaces, from sysfs.
 
 use std::fs;
 use std::path::Path;
 
-/// `ARPHRD_CAN` of the kernel's `if_arp.h`: what sysfs gives as the type of a CAN interface.
+/// Type of a CAN interface in sysfs: `ARPHRD_CAN` of the kernel's `if_arp.h`.
 const CAN: &str = "280";
 /// `IFF_UP` of the kernel's `if.h`.
 const UP: u32 = 1;
 
 /// A CAN interface of the kernel.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Interface {
+pub struct CanInterface {
     /// Its name, such as `can0`.
     pub name: String,
-    /// It is up.
+    /// Whether it is up.
     pub up: bool,
 }
 
-impl Interface {
-    /// The command that brings the interface up, for a person with the administrator's rights.
+impl CanInterface {
+    /// The command that brings the interface up, as administrator.
     #[must_use]
     pub fn up_command(&self) -> String {
         up_command(&self.name)
     }
 }
 
-/// The CAN interfaces there are, in the order of their names.
+/// The CAN interfaces in order of their names.
 #[must_use]
-pub fn interfaces() -> Vec<Interface> {
+pub fn interfaces() -> Vec<CanInterface> {
     interfaces_in(Path::new("/sys"))
 }
 
-fn interfaces_in(sysfs: &Path) -> Vec<Interface> {
+fn interfaces_in(sysfs: &Path) -> Vec<CanInterface> {
     let Ok(entries) = fs::read_dir(sysfs.join("class/net")) else {
         return Vec::new();
     };
     let mut found: Vec<_> = entries
         .flatten()
         .filter(|entry| read(&entry.path().join("type")).is_some_and(|kind| kind == CAN))
-        .map(|entry| Interface {
+        .map(|entry| CanInterface {
             name: entry.file_name().to_string_lossy().into_owned(),
             up: is_up(&entry.path()),
         })
@@ -57,7 +57,7 @@ fn read(file: &Path) -> Option<String> {
     Some(fs::read_to_string(file).ok()?.trim().to_owned())
 }
 
-/// A virtual bus has no bit rate; the EPOS2 has 1 Mbit/s from the factory.
+/// A virtual bus has no bit rate; the EPOS2's factory setting is 1 Mbit/s.
 pub(super) fn up_command(name: &str) -> String {
     if name.starts_with("vcan") {
         format!("sudo ip link set {name} up")
@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn can_interfaces_are_told_from_others() {
+    fn other_interfaces_are_ignored() {
         let sysfs = tempfile::tempdir().unwrap();
         for (name, kind, flags) in [
             ("vcan0", "280\n", "0xc1\n"),
@@ -84,7 +84,7 @@ mod tests {
             fs::write(folder.join("flags"), flags).unwrap();
         }
         let found = interfaces_in(sysfs.path());
-        let [can0, vcan0] = [("can0", false), ("vcan0", true)].map(|(name, up)| Interface {
+        let [can0, vcan0] = [("can0", false), ("vcan0", true)].map(|(name, up)| CanInterface {
             name: name.to_owned(),
             up,
         });

@@ -1,8 +1,7 @@
-//! A CAN bus behind an adapter on a serial port that speaks SLCAN (CANUSB, CANable and the like).
+//! A CAN bus behind an SLCAN adapter on a serial port (CANUSB, CANable and others).
 //!
-//! Adapters differ in what they answer; those that answer nothing are taken at their silence. A
-//! received frame's time is that of the read which brought its line: an adapter's own time stamps
-//! are milliseconds, and stay switched off.
+//! Some adapters answer commands and some do not; both work. A received frame has the time of the
+//! read that completed its line. The adapter's own time stamps, in milliseconds, stay disabled.
 
 use std::collections::VecDeque;
 
@@ -13,17 +12,15 @@ use units::{Host, Span, Stamp};
 use super::{CanError, CanPort};
 use crate::port::Port;
 
-/// How long an adapter is given to answer a command.
+/// Time that an adapter has to answer a command.
 const ANSWER_TIMEOUT: Span = Span::from_millis(200);
-/// After closing: how long nothing comes until what was under way is taken to be over, and how long
-/// that may take.
+/// After the close command: silence that ends the draining of earlier traffic, and its longest
+/// duration.
 const QUIET: Span = Span::from_millis(50);
 const DRAIN_TIMEOUT: Span = Span::from_millis(300);
-/// How often an adapter that answers is asked whether frames were lost in it. An answer that does
-/// not come is not missed.
+/// Interval at which an answering adapter is queried for lost frames. A missing answer is no error.
 const STATUS_PERIOD: Span = Span::from_secs(1);
-/// What tells of lost frames in its answer (CANUSB manual, command F): bit 0, its receive queue was
-/// full; bit 3, its controller was overrun.
+/// Flags of lost frames (CANUSB manual, command F): bit 0, receive queue full; bit 3, data overrun.
 const LOST: u8 = 1 << 0 | 1 << 3;
 
 /// An open channel of an adapter. Dropping it closes the channel.
@@ -31,31 +28,31 @@ const LOST: u8 = 1 << 0 | 1 << 3;
 pub struct Slcan<P: Port> {
     port: P,
     decoder: ReplyDecoder,
-    /// Decoded and not looked at.
+    /// Decoded, but not yet processed.
     replies: VecDeque<(Reply, Stamp<Host>)>,
-    /// Not fetched: frames, and frames that the adapter refused.
-    waiting: VecDeque<Result<(CanFrame, Stamp<Host>), CanError>>,
+    /// Received frames and refusals that the caller has not read.
+    received: VecDeque<Result<(CanFrame, Stamp<Host>), CanError>>,
     answers: bool,
-    /// Frames sent whose answer has not come; without meaning where the adapter does not answer.
+    /// Sent frames without an answer so far; meaningless if the adapter does not answer.
     unanswered: u32,
     noise: u64,
     status: Status,
     dropped: u64,
 }
 
-/// The question for the status flags.
+/// The query for the status flags.
 #[derive(Debug, Default)]
 struct Status {
-    /// When it is due; `None`: never.
+    /// Time of the next query; `None`: never.
     next: Option<Stamp<Host>>,
-    /// Asked: frames sent before it whose answers come first.
-    behind: Option<u32>,
+    /// While a query is pending: answers to earlier frames that precede its answer.
+    answers_before: Option<u32>,
 }
 
 impl<P: Port> Slcan<P> {
     /// Opens the adapter's channel: closes it, as another program may have left it open, sets the
-    /// bit rate (an EPOS2 has 1 Mbit/s from the factory) and opens it. Takes 50 ms with an adapter
-    /// that answers, half a second with one that does not.
+    /// bit rate (the EPOS2's factory setting is 1 Mbit/s) and opens it. This takes 50 ms with an
+    /// adapter that answers and half a second with one that does not.
     ///
     /// # Errors
     /// [`CanError::Refused`], [`CanError::Port`].
@@ -64,22 +61,21 @@ impl<P: Port> Slcan<P> {
             port,
             decoder: ReplyDecoder::new(),
             replies: VecDeque::new(),
-            waiting: VecDeque::new(),
+            received: VecDeque::new(),
             answers: false,
             unanswered: 0,
             noise: 0,
             status: Status::default(),
             dropped: 0,
         };
-        // A line that was begun must not swallow the command. An adapter may refuse to close what
-        // is closed.
+        // The empty line ends a partial one. An adapter may refuse to close a closed channel.
         channel.send(&Command::Empty)?;
         channel.send(&Command::Close)?;
         channel.drain()?;
         channel.command(&Command::Bitrate(bitrate))?;
-        // From before, if the channel was open against its will.
+        // Frames that arrived before the channel was closed.
         channel.replies.clear();
-        channel.waiting.clear();
+        channel.received.clear();
         channel.command(&Command::Open)?;
         if channel.answers {
             channel.status.next = Some(channel.port.now().saturating_add(STATUS_PERIOD));
@@ -87,14 +83,13 @@ impl<P: Port> Slcan<P> {
         Ok(channel)
     }
 
-    /// Whether the adapter answers commands. One that does not cannot say that it refuses a frame.
+    /// Whether the adapter answers commands. One that does not cannot report a refused frame.
     #[must_use]
     pub const fn answers(&self) -> bool {
         self.answers
     }
 
-    /// Lines so far that were neither frames nor answers: a sign of a wrong baud rate or of lost
-    /// bytes.
+    /// Lines that were neither frames nor answers: a sign of a wrong baud rate or lost bytes.
     #[must_use]
     pub const fn noise(&self) -> u64 {
         self.noise
@@ -109,14 +104,14 @@ impl<P: Port> Slcan<P> {
         self.port.now().saturating_since(begin)
     }
 
-    /// Whether the adapter is to be asked for its status now; it is noted as asked.
+    /// Whether a status query is due; schedules the next one.
     fn is_status_due(&mut self) -> bool {
         let now = self.port.now();
         let due = self.status.next.is_some_and(|next| next <= now);
         if due {
             self.status = Status {
                 next: Some(now.saturating_add(STATUS_PERIOD)),
-                behind: Some(self.unanswered),
+                answers_before: Some(self.unanswered),
             };
         }
         due
@@ -128,7 +123,7 @@ impl<P: Port> Slcan<P> {
         Ok(self.port.write_frame(&line)?)
     }
 
-    /// Waits until the adapter has said what it had to say to the close command, and forgets it.
+    /// Discards the adapter's output up to a silence after the close command.
     fn drain(&mut self) -> Result<(), CanError> {
         let begin = self.port.now();
         while self.since(begin) < DRAIN_TIMEOUT && self.receive(QUIET)? {
@@ -141,7 +136,7 @@ impl<P: Port> Slcan<P> {
         Ok(())
     }
 
-    /// Sends a command and waits for its answer; some adapters give none.
+    /// Sends a command and waits for the answer, which some adapters omit.
     fn command(&mut self, command: &Command) -> Result<(), CanError> {
         self.send(command)?;
         let begin = self.port.now();
@@ -159,16 +154,15 @@ impl<P: Port> Slcan<P> {
                             command: name(command),
                         });
                     }
-                    // What is not an answer must not be lost: a node may speak as soon as the
-                    // channel is open.
-                    reply => self.take(reply, host),
+                    // A node may send frames as soon as the channel is open.
+                    reply => self.process(reply, host),
                 }
             }
         }
         Ok(())
     }
 
-    /// Reads the port once; whether it brought anything within `timeout`.
+    /// Reads the port once; returns whether bytes arrived within `timeout`.
     fn receive(&mut self, timeout: Span) -> Result<bool, CanError> {
         let mut buffer = [0; 512];
         let Some((length, host)) = self.port.read(&mut buffer, timeout)? else {
@@ -184,34 +178,36 @@ impl<P: Port> Slcan<P> {
         Ok(true)
     }
 
-    /// What a reply means on an open channel.
-    fn take(&mut self, reply: Reply, host: Stamp<Host>) {
+    /// Processes a reply on an open channel.
+    fn process(&mut self, reply: Reply, host: Stamp<Host>) {
         match reply {
-            Reply::Received { frame, .. } => self.waiting.push_back(Ok((frame, host))),
+            Reply::Received { frame, .. } => self.received.push_back(Ok((frame, host))),
             Reply::Done | Reply::Sent | Reply::SentExtended => self.frame_answered(),
-            // Flags are cleared by reading them, so each set one is another loss. They do not say
-            // of how many frames.
+            // Reading clears the flags, so each set flag is a new loss, of an unknown number of
+            // frames.
             Reply::Status(flags) => {
-                self.status.behind = None;
+                self.status.answers_before = None;
                 self.dropped += u64::from(flags & LOST != 0);
             }
-            // An adapter without status flags is not asked again.
-            Reply::Refused if self.status.behind == Some(0) => self.status = Status::default(),
+            // An adapter without status flags is not queried again.
+            Reply::Refused if self.status.answers_before == Some(0) => {
+                self.status = Status::default()
+            }
             Reply::Refused if self.answers && self.unanswered > 0 => {
                 self.frame_answered();
-                self.waiting.push_back(Err(CanError::NotSent));
+                self.received.push_back(Err(CanError::NotSent));
             }
             Reply::Refused | Reply::Unknown(_) => self.noise += 1,
-            // Answers to questions that were not asked.
+            // Answers to commands that are never sent.
             Reply::Version(_) | Reply::SerialNumber(_) => {}
         }
     }
 
-    /// Answers come in the order of what was sent.
+    /// Counts the answer to the oldest frame: answers arrive in the order of frames.
     fn frame_answered(&mut self) {
         self.unanswered = self.unanswered.saturating_sub(1);
-        if let Some(behind) = &mut self.status.behind {
-            *behind = behind.saturating_sub(1);
+        if let Some(answers_before) = &mut self.status.answers_before {
+            *answers_before = answers_before.saturating_sub(1);
         }
     }
 }
@@ -221,7 +217,7 @@ impl<P: Port> CanPort for Slcan<P> {
         let host = self.send(&Command::Transmit(*frame))?;
         self.unanswered = self.unanswered.saturating_add(1);
         if self.is_status_due() {
-            // A port that fails will say so with the next frame: this one is on its way.
+            // This frame is sent; a failing port reports the error with the next one.
             drop(self.send(&Command::Status));
         }
         Ok(host)
@@ -232,21 +228,21 @@ impl<P: Port> CanPort for Slcan<P> {
         let mut left = timeout;
         loop {
             while let Some((reply, host)) = self.replies.pop_front() {
-                self.take(reply, host);
+                self.process(reply, host);
             }
-            if let Some(waiting) = self.waiting.pop_front() {
-                return waiting.map(Some);
+            if let Some(received) = self.received.pop_front() {
+                return received.map(Some);
             }
-            // What came held no frame: the rest of the time, and no more once it is over.
-            let over = left <= Span::ZERO && left != timeout;
-            if over || !self.receive(left)? {
+            // The bytes held no frame: continue for the rest of the time.
+            let is_over = left <= Span::ZERO && left != timeout;
+            if is_over || !self.receive(left)? {
                 return Ok(None);
             }
             left = timeout - self.since(begin);
         }
     }
 
-    /// How often the adapter said that it had lost frames: at least so many.
+    /// Number of losses that the adapter reported, a lower bound of frames.
     fn dropped(&self) -> u64 {
         self.dropped
     }
@@ -262,12 +258,12 @@ impl<P: Port> CanPort for Slcan<P> {
 
 impl<P: Port> Drop for Slcan<P> {
     fn drop(&mut self) {
-        // The port may be gone; there is nobody to tell.
+        // The port may be disconnected, which is no error here.
         drop(self.send(&Command::Close));
     }
 }
 
-/// The command as it stands in its line.
+/// The command as sent.
 fn name(command: &Command) -> String {
     let mut line = Line::new();
     command.encode(&mut line);

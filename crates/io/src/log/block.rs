@@ -1,13 +1,12 @@
-//! pcapng blocks as bytes (draft-ietf-opsawg-pcapng), little-endian, appended to a buffer. Only the
-//! three block types that a log has. And the older pcap (draft-ietf-opsawg-pcap), with
-//! microseconds, which everything reads.
+//! Encoding of the pcapng blocks that a log uses (draft-ietf-opsawg-pcapng), little-endian, and of
+//! classic pcap with microseconds (draft-ietf-opsawg-pcap).
 
 use byteorder::{ByteOrder, LittleEndian};
 use protocol::record::Direction;
 
 /// Link types as registered at tcpdump.org.
 pub(super) const LINKTYPE_ETHERNET: u16 = 1;
-/// Reserved for private use: one serial frame of the drive a packet.
+/// Private use: one serial frame of the drive per packet.
 pub(super) const LINKTYPE_USER0: u16 = 147;
 /// A `struct can_frame` with a big-endian id.
 pub(super) const LINKTYPE_CAN_SOCKETCAN: u16 = 227;
@@ -25,11 +24,10 @@ const IF_TSRESOL: u16 = 9;
 const EPB_FLAGS: u16 = 2;
 const OPT_END: u16 = 0;
 
-/// Bytes an option's value may have.
+/// Longest value of an option, in bytes.
 pub(super) const MAX_OPTION_LEN: usize = u16::MAX as usize;
 
-/// A section header with a comment. The section's length is left open (-1), as it is not known in
-/// advance.
+/// A section header with a comment. The section length is -1 (unspecified).
 pub(super) fn section_header(out: &mut Vec<u8>, comment: &str) {
     block(out, SECTION_HEADER, |out| {
         put_u32(out, BYTE_ORDER_MAGIC);
@@ -44,7 +42,7 @@ pub(super) fn section_header(out: &mut Vec<u8>, comment: &str) {
     });
 }
 
-/// An interface whose packets carry nanoseconds.
+/// An interface with a resolution of nanoseconds.
 pub(super) fn interface(out: &mut Vec<u8>, link: u16, name: &str, description: &str) {
     block(out, INTERFACE_DESCRIPTION, |out| {
         put_u16(out, link);
@@ -57,7 +55,7 @@ pub(super) fn interface(out: &mut Vec<u8>, link: u16, name: &str, description: &
     });
 }
 
-/// A packet in two parts (rebuilt headers, payload) at `time_ns` nanoseconds since 1970.
+/// A packet in two parts (headers, payload) at `time_ns` nanoseconds since 1970.
 pub(super) fn packet(
     out: &mut Vec<u8>,
     interface: u32,
@@ -69,8 +67,7 @@ pub(super) fn packet(
         put_u32(out, interface);
         put_u32(out, (time_ns >> 32) as u32);
         put_u32(out, time_ns as u32);
-        // The writer refuses payloads beyond what UDP or a frame can have, so that this does not
-        // cut.
+        // The writer refuses payloads over 64 KiB, so this does not truncate.
         let length = parts.iter().map(|part| part.len()).sum::<usize>() as u32;
         put_u32(out, length);
         put_u32(out, length);
@@ -87,7 +84,7 @@ pub(super) fn packet(
     });
 }
 
-/// The head of a plain pcap file of Ethernet packets.
+/// The header of a pcap file of Ethernet packets.
 pub(super) fn pcap_header(out: &mut Vec<u8>) {
     put_u32(out, 0xA1B2_C3D4);
     put_u16(out, 2); // version 2.4
@@ -98,10 +95,10 @@ pub(super) fn pcap_header(out: &mut Vec<u8>) {
     put_u32(out, LINKTYPE_ETHERNET.into());
 }
 
-/// A packet of a plain pcap file.
+/// A packet of a pcap file.
 pub(super) fn pcap_record(out: &mut Vec<u8>, time_ns: u64, parts: [&[u8]; 2]) {
     let length = parts.iter().map(|part| part.len()).sum::<usize>() as u32;
-    // Seconds are 32 bits there: until 2106.
+    // 32 bits of seconds last until 2106.
     put_u32(out, (time_ns / 1_000_000_000) as u32);
     put_u32(out, (time_ns % 1_000_000_000 / 1_000) as u32);
     put_u32(out, length);
@@ -154,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_interface_description_to_the_byte() {
+    fn interface_descriptions_are_encoded_exactly() {
         // draft-ietf-opsawg-pcapng, section 4.2
         let mut out = Vec::new();
         interface(&mut out, LINKTYPE_CAN_SOCKETCAN, "can", "EPOS2");
@@ -172,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_packet_to_the_byte() {
+    fn packets_are_encoded_exactly() {
         // draft-ietf-opsawg-pcapng, section 4.3
         let mut out = Vec::new();
         packet(

@@ -1,13 +1,12 @@
-//! Ethernet, IPv4 and UDP headers around a payload whose own headers the socket did not give. What
-//! the socket does not tell is filled in as a VLP-16 sends it from the factory: broadcast, source
-//! port equal to the destination port.
+//! Ethernet, IPv4 and UDP headers for a payload from a socket. Unknown fields are those of a
+//! VLP-16's factory setting: broadcast, source port equal to the destination port.
 
 use etherparse::{EtherType, Ethernet2Header, IpFragOffset, IpNumber, Ipv4Header, UdpHeader};
 
-/// Bytes a UDP payload over IPv4 may have: 65535 less both headers.
+/// Longest UDP payload over IPv4: 65535 bytes less both headers.
 pub(super) const MAX_PAYLOAD_LEN: usize = 65_535 - 20 - 8;
 
-/// Velodyne's own prefix, and zeros for the number that is not known.
+/// Velodyne's prefix, and zeros for the unknown device number.
 const LIDAR_MAC: [u8; 6] = [0x60, 0x76, 0x88, 0, 0, 0];
 const BROADCAST_MAC: [u8; 6] = [0xFF; 6];
 const BROADCAST: [u8; 4] = [255; 4];
@@ -51,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_and_checksums_are_right() {
+    fn lengths_and_checksums_are_correct() {
         for length in [0, 1, 512, 1206, MAX_PAYLOAD_LEN] {
             let payload: Vec<u8> = (0..length).map(|i| (i * 7) as u8).collect();
             let h = headers([192, 168, 1, 201], 2368, &payload).unwrap();
@@ -69,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_payload_beyond_ipv4_is_refused() {
+    fn oversized_payloads_are_refused() {
         assert!(headers([0; 4], 1, &vec![0; MAX_PAYLOAD_LEN + 1]).is_none());
     }
 }

@@ -1,9 +1,9 @@
-//! A record that owns its bytes, to pass between threads.
+//! A record that owns its bytes, for passing between threads.
 
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Stamp};
 
-/// [`Record`] with its own copy of the bytes.
+/// A [`Record`] with its own copy of the bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OwnedRecord {
     host: Stamp<Host>,
@@ -24,7 +24,7 @@ enum Kind {
 }
 
 impl OwnedRecord {
-    /// The record, borrowed.
+    /// Borrows the record.
     #[must_use]
     pub fn as_record(&self) -> Record<'_> {
         let wire = match self.kind {
@@ -45,7 +45,7 @@ impl OwnedRecord {
         }
     }
 
-    /// The record's time.
+    /// The record's host time.
     #[must_use]
     pub fn host(&self) -> Stamp<Host> {
         self.host

@@ -1,10 +1,9 @@
-//! The recording thread: records in from any thread, a file in time order out.
+//! The recording thread: takes records from any thread and writes them in order of time.
 //!
-//! Records of the two devices reach the thread in nearly the order of their host times; they are
-//! held for 0.2 to 0.4 s and written in that order, so that at most the last half second is lost
-//! when the process is killed. A sender never waits for the disk: when the queue is full the record
-//! is dropped and counted, for the motor must not wait. A log on a disk is durable once it is
-//! finished: what is made of it is told as whole, also after a power cut.
+//! Records of the two devices arrive nearly in order of time. The thread holds them for 0.2 to 0.4
+//! s and writes them sorted, so a killed process loses at most the last half second. A sender never
+//! waits for the disk, since it may control the motor: when the queue is full, the record is
+//! dropped and counted. A finished log is synced to disk.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -23,30 +22,28 @@ use super::owned::OwnedRecord;
 use super::writer::{LogCounts, LogError, LogWriter};
 use crate::files;
 
-/// How long a record is held at least, for an earlier one to overtake it; also how often the file
-/// is flushed.
+/// Shortest time that a record is held for sorting, and the interval of flushes.
 const HOLD: Duration = Duration::from_millis(200);
-/// Records that may wait for the disk: 40 s of a VLP-16 in dual return and a drive polled at 300
-/// Hz, some 80 MB.
+/// Capacity of the queue: 40 s of a VLP-16 in dual return and a drive polled at 300 Hz, 80 MB.
 const QUEUE_LEN: usize = 65_536;
-/// How often it is looked whether everything is saved.
-const SAVING: Duration = Duration::from_millis(2);
+/// Interval at which [`LogRecorder::finish_while`] polls the thread.
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 enum Message {
     Record(OwnedRecord),
     Finish,
 }
 
-/// What a recorder did.
+/// Numbers of records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RecorderCounts {
-    /// What is in the file.
+    /// Content of the file.
     pub log: LogCounts,
-    /// Records lost because the disk could not follow.
+    /// Records dropped because the disk was too slow.
     pub dropped: u64,
-    /// Records that could not be written as they were (too long, before 1970).
+    /// Records that the format cannot hold (too long, before 1970).
     pub refused: u64,
-    /// Records that came too late to be put in order; written where they came.
+    /// Records that arrived too late for sorting; written in order of arrival.
     pub out_of_order: u64,
 }
 
@@ -56,15 +53,14 @@ struct Shared {
     failed: AtomicBool,
 }
 
-/// The owner's side of a recording thread. End it with [`Recorder::finish`]: merely dropped, it may
-/// lose what it holds.
+/// A running recording thread. End it with [`LogRecorder::finish`]; dropping it may lose records.
 #[derive(Debug)]
-pub struct Recorder {
+pub struct LogRecorder {
     handle: RecorderHandle,
     thread: JoinHandle<Result<RecorderCounts, LogError>>,
 }
 
-/// A sender of records; clone one for each thread.
+/// A sender of records; clone it for each thread.
 #[derive(Clone, Debug)]
 pub struct RecorderHandle {
     queue: SyncSender<Message>,
@@ -72,8 +68,8 @@ pub struct RecorderHandle {
 }
 
 impl RecorderHandle {
-    /// Hands a record over without waiting. If the queue is full the record is counted as dropped;
-    /// if the log failed, [`Recorder::failed`] says so.
+    /// Queues a record without waiting. A full queue drops and counts it; [`LogRecorder::failed`]
+    /// reports a failed log.
     pub fn record(&self, record: &Record<'_>) {
         match self
             .queue
@@ -87,20 +83,19 @@ impl RecorderHandle {
     }
 }
 
-impl Recorder {
-    /// Starts the thread on a file whose head is written; [`Recorder::finish`] returns when the
-    /// disk has it all.
+impl LogRecorder {
+    /// Starts the thread on a file with a written header. [`LogRecorder::finish`] syncs it to disk.
     ///
     /// # Errors
-    /// [`LogError::Thread`] where the system gives no thread.
+    /// [`LogError::Thread`] if the system refuses a thread.
     pub fn to_disk(writer: LogWriter<File>) -> Result<Self, LogError> {
         Self::with_end(writer, files::sync)
     }
 
-    /// Starts the thread on a log whose head is written, in anything that takes bytes.
+    /// Starts the thread on any writer with a written header.
     ///
     /// # Errors
-    /// [`LogError::Thread`] where the system gives no thread.
+    /// [`LogError::Thread`] if the system refuses a thread.
     pub fn start<W: Write + Send + 'static>(writer: LogWriter<W>) -> Result<Self, LogError> {
         Self::with_end(writer, |_| Ok(()))
     }
@@ -111,110 +106,108 @@ impl Recorder {
     ) -> Result<Self, LogError> {
         let (queue, inbox) = sync_channel(QUEUE_LEN);
         let shared = Arc::new(Shared::default());
-        let theirs = Arc::clone(&shared);
+        let thread_shared = Arc::clone(&shared);
         let thread = thread::Builder::new()
             .name("log".to_owned())
             .spawn(move || {
-                let done = Order::new(writer).run(&inbox, end);
-                theirs.failed.store(done.is_err(), Ordering::Release);
+                let done = Sorter::new(writer).run(&inbox, end);
+                thread_shared.failed.store(done.is_err(), Ordering::Release);
                 done
             })
-            .map_err(|e| LogError::Thread(format!("could not be started: {e}")))?;
+            .map_err(|e| LogError::Thread(format!("cannot start: {e}")))?;
         Ok(Self {
             handle: RecorderHandle { queue, shared },
             thread,
         })
     }
 
-    /// A sender of records.
+    /// Returns a sender of records.
     #[must_use]
     pub fn handle(&self) -> RecorderHandle {
         self.handle.clone()
     }
 
-    /// Whether the log cannot be written any more; [`Recorder::finish`] then tells why.
+    /// Whether writing failed; [`LogRecorder::finish`] returns the error.
     #[must_use]
     pub fn failed(&self) -> bool {
         self.handle.shared.failed.load(Ordering::Acquire)
     }
 
-    /// Writes what is held, flushes and stops the thread, even if senders are still around.
+    /// Writes all records, flushes and stops the thread. Remaining senders become ineffective.
     ///
     /// # Errors
-    /// [`LogError::Write`] if a write failed, now or earlier; [`LogError::Thread`] if the thread
-    /// died.
+    /// [`LogError::Write`] if a write failed; [`LogError::Thread`] if the thread panicked.
     pub fn finish(self) -> Result<RecorderCounts, LogError> {
         self.finish_while(|| {})
     }
 
-    /// The same, with `waiting` called every few milliseconds until the disk has everything.
+    /// As [`LogRecorder::finish`], calling `waiting` every few milliseconds meanwhile.
     ///
     /// # Errors
-    /// As [`Recorder::finish`].
+    /// As [`LogRecorder::finish`].
     pub fn finish_while(self, mut waiting: impl FnMut()) -> Result<RecorderCounts, LogError> {
-        let mut told = false;
+        let mut is_requested = false;
         while !self.thread.is_finished() {
-            // A full queue takes it later. A thread that has ended on an error no longer listens;
-            // its result says so.
-            told = told || self.handle.queue.try_send(Message::Finish).is_ok();
+            // A full queue takes the message later. A thread that failed no longer reads it.
+            is_requested = is_requested || self.handle.queue.try_send(Message::Finish).is_ok();
             waiting();
-            thread::sleep(SAVING);
+            thread::sleep(POLL_INTERVAL);
         }
         match self.thread.join() {
             Ok(done) => done.map(|counts| RecorderCounts {
                 dropped: self.handle.shared.dropped.load(Ordering::Relaxed),
                 ..counts
             }),
-            Err(_) => Err(LogError::Thread("died".to_owned())),
+            Err(_) => Err(LogError::Thread("panicked".to_owned())),
         }
     }
 }
 
-/// A record in the heap: by time, then by arrival.
+/// A held record, ordered by time, then by arrival.
 #[derive(Debug)]
-struct Held {
+struct HeldRecord {
     key: (Stamp<Host>, u64),
     record: OwnedRecord,
 }
 
-impl PartialEq for Held {
+impl PartialEq for HeldRecord {
     fn eq(&self, other: &Self) -> bool {
         self.key == other.key
     }
 }
-impl Eq for Held {}
-impl PartialOrd for Held {
+impl Eq for HeldRecord {}
+impl PartialOrd for HeldRecord {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
-impl Ord for Held {
+impl Ord for HeldRecord {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.key.cmp(&other.key)
     }
 }
 
-/// The thread's state. Time is cut into turns of [`HOLD`]: at the end of each, everything up to the
-/// latest record of the turn before is written, so that whatever clock steps do, no record is held
-/// for more than two turns.
-struct Order<W> {
+/// State of the thread. At the end of each period of [`HOLD`], all records up to the latest one of
+/// the period before are written. So no record is held for more than two periods, whatever steps
+/// the clock makes.
+struct Sorter<W> {
     writer: LogWriter<W>,
-    held: BinaryHeap<Reverse<Held>>,
+    held: BinaryHeap<Reverse<HeldRecord>>,
     arrivals: u64,
-    latest_this_turn: Option<Stamp<Host>>,
-    latest_last_turn: Option<Stamp<Host>>,
+    latest_this_period: Option<Stamp<Host>>,
+    latest_last_period: Option<Stamp<Host>>,
     last_written: Option<Stamp<Host>>,
     counts: RecorderCounts,
 }
 
-impl<W: Write> Order<W> {
+impl<W: Write> Sorter<W> {
     fn new(writer: LogWriter<W>) -> Self {
         Self {
             writer,
             held: BinaryHeap::new(),
             arrivals: 0,
-            latest_this_turn: None,
-            latest_last_turn: None,
+            latest_this_period: None,
+            latest_last_period: None,
             last_written: None,
             counts: RecorderCounts::default(),
         }
@@ -225,17 +218,17 @@ impl<W: Write> Order<W> {
         inbox: &Receiver<Message>,
         end: impl FnOnce(&W) -> io::Result<()>,
     ) -> Result<RecorderCounts, LogError> {
-        let mut turn_ends = Instant::now() + HOLD;
+        let mut period_ends = Instant::now() + HOLD;
         loop {
-            let wait = turn_ends.saturating_duration_since(Instant::now());
+            let wait = period_ends.saturating_duration_since(Instant::now());
             match inbox.recv_timeout(wait) {
                 Ok(Message::Record(record)) => self.hold(record),
                 Ok(Message::Finish) | Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) => {}
             }
-            if Instant::now() >= turn_ends {
-                self.end_turn()?;
-                turn_ends = Instant::now() + HOLD;
+            if Instant::now() >= period_ends {
+                self.end_period()?;
+                period_ends = Instant::now() + HOLD;
             }
         }
         self.write_held(None)?;
@@ -249,23 +242,23 @@ impl<W: Write> Order<W> {
 
     fn hold(&mut self, record: OwnedRecord) {
         let host = record.host();
-        self.latest_this_turn = self.latest_this_turn.max(Some(host));
-        self.held.push(Reverse(Held {
+        self.latest_this_period = self.latest_this_period.max(Some(host));
+        self.held.push(Reverse(HeldRecord {
             key: (host, self.arrivals),
             record,
         }));
         self.arrivals += 1;
     }
 
-    fn end_turn(&mut self) -> Result<(), LogError> {
-        if let Some(limit) = self.latest_last_turn {
+    fn end_period(&mut self) -> Result<(), LogError> {
+        if let Some(limit) = self.latest_last_period {
             self.write_held(Some(limit))?;
         }
-        self.latest_last_turn = self.latest_this_turn.take();
+        self.latest_last_period = self.latest_this_period.take();
         self.writer.flush()
     }
 
-    /// Writes the held records up to `limit`, or all.
+    /// Writes the held records up to `limit`, or all of them.
     fn write_held(&mut self, limit: Option<Stamp<Host>>) -> Result<(), LogError> {
         while let Some(Reverse(first)) = self.held.peek() {
             if limit.is_some_and(|limit| first.key.0 > limit) {

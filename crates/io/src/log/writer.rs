@@ -1,5 +1,4 @@
-//! Records into a pcapng file, in the order they come. Buffering is here so that a flush is one
-//! write.
+//! Writes records to a pcapng file in the given order, buffered so that a flush is one write.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
@@ -12,54 +11,54 @@ use super::{block, datagram};
 use crate::files::{Overwrite, sync_folder};
 use crate::recording::{RS232_NAME, USB_NAME};
 
-/// Bytes gathered before a write.
+/// Bytes buffered before a write.
 const BUFFER_LEN: usize = 64 * 1024;
-/// Bytes a drive frame may have; a USB frame has at most 1028.
+/// Longest frame of the drive in bytes; a USB frame has at most 1028.
 const MAX_FRAME_LEN: usize = 65_535;
 
-/// What stands at the head of a log.
+/// Header of a log.
 #[derive(Clone, Debug, Default)]
 pub struct LogConfig {
-    /// The configuration as TOML, for the section's comment; at most 65,535 bytes.
+    /// The configuration as TOML, in the section's comment; at most 65,535 bytes.
     pub metadata: String,
-    /// How the drive is attached. `None`: said when its first frame comes.
+    /// Link of the drive. `None`: described with its first frame.
     pub drive: Option<DriveLink>,
 }
 
-/// Why a log could not be written.
+/// Failure to write a log.
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
-    /// The name is taken and may not be replaced.
+    /// The file exists and must not be replaced.
     #[error("log {}: the file exists already", path.display())]
     Exists {
-        /// The file in the way.
+        /// The existing file.
         path: PathBuf,
     },
-    /// The system does not make the file.
+    /// The file cannot be created.
     #[error("log {}: cannot create: {source}", path.display())]
     Create {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
-    /// The system does not take more bytes (disk full, device gone).
+    /// A write failed (disk full, device disconnected).
     #[error("log: cannot write after byte {offset}: {source}")]
     Write {
-        /// Bytes that were surely written.
+        /// Bytes written before.
         offset: u64,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
-    /// An earlier write failed; what follows would not be readable.
-    #[error("log: nothing was written after byte {offset}, since writing there failed: {source}")]
+    /// An earlier write failed; later records would be unreadable.
+    #[error("log: stopped at byte {offset}, where a write failed: {source}")]
     Failed {
-        /// Bytes that were surely written.
+        /// Bytes written before.
         offset: u64,
-        /// The system's reason then.
+        /// The system's error of that write.
         source: io::Error,
     },
-    /// The configuration does not fit the comment.
+    /// The configuration exceeds the comment.
     #[error("log: configuration: expected at most {expected} bytes, got {got}")]
     Metadata {
         /// Bytes that fit.
@@ -67,7 +66,7 @@ pub enum LogError {
         /// Bytes it has.
         got: usize,
     },
-    /// A payload or frame that cannot have been on the wire.
+    /// A payload or frame exceeds what the wire can carry.
     #[error("log: {layer}: expected at most {expected} bytes, got {got}")]
     TooLong {
         /// `UDP payload` or `drive frame`.
@@ -77,18 +76,18 @@ pub enum LogError {
         /// Bytes it has.
         got: usize,
     },
-    /// A host time before 1970, which the format cannot say.
+    /// A host time before 1970, which the format cannot represent.
     #[error("log: host time: expected 1970 or later, got {} ns", got.as_nanos())]
     Time {
         /// The record's time.
         got: Stamp<Host>,
     },
-    /// The recorder's thread could not be started or died.
+    /// The recording thread cannot start, or panicked.
     #[error("log: the recording thread {0}")]
     Thread(String),
 }
 
-/// What was written.
+/// Numbers of written records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LogCounts {
     /// Datagrams of the lidar.
@@ -101,44 +100,42 @@ pub struct LogCounts {
 
 /// A log being written.
 ///
-/// Bytes wait in memory until [`LogWriter::flush`], [`LogWriter::finish`] or 64 KiB of them. After
-/// a failed write nothing more is written: the file then ends in a record that may be cut, which a
-/// reader knows how to take.
+/// Bytes are buffered until [`LogWriter::flush`], [`LogWriter::finish`] or 64 KiB. After a failed
+/// write nothing more is written: the file then ends in a partial record, which readers accept.
 #[derive(Debug)]
 pub struct LogWriter<W> {
     out: W,
-    form: Form,
+    format: LogFormat,
     buffer: Vec<u8>,
     drives: Vec<DriveLink>,
     counts: LogCounts,
-    /// Why a write failed.
+    /// Error of a failed write.
     failed: Option<io::Error>,
 }
 
-/// How records are written.
+/// File format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Form {
-    /// pcapng with everything in it.
+enum LogFormat {
+    /// pcapng with all records.
     Log,
-    /// Plain pcap, the lidar's datagrams alone: what programs of libpcap read, which take one type
-    /// of link a file.
+    /// Classic pcap with the lidar's datagrams only, since it has one link type per file.
     Pcap,
 }
 
 impl LogWriter<File> {
-    /// Makes a plain pcap file, for programs that read nothing else. It holds the lidar's
-    /// datagrams; frames of the drive are left out.
+    /// Creates a classic pcap file, for programs that do not read pcapng. It holds the lidar's
+    /// datagrams and skips frames of the drive.
     ///
     /// # Errors
     /// [`LogError::Exists`], [`LogError::Create`], [`LogError::Write`].
     pub fn create_pcap(path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Self, LogError> {
-        let mut writer = Self::empty(new_file(path.as_ref(), overwrite)?, Form::Pcap);
+        let mut writer = Self::empty(new_file(path.as_ref(), overwrite)?, LogFormat::Pcap);
         block::pcap_header(&mut writer.buffer);
         writer.flush()?;
         Ok(writer)
     }
 
-    /// Makes a log file and writes its head.
+    /// Creates a log file and writes its header.
     ///
     /// # Errors
     /// [`LogError::Exists`], [`LogError::Create`], [`LogError::Metadata`], [`LogError::Write`].
@@ -148,7 +145,7 @@ impl LogWriter<File> {
         overwrite: Overwrite,
     ) -> Result<Self, LogError> {
         let path = path.as_ref();
-        // Before an older log is emptied for it.
+        // Checked before an existing log is truncated.
         check_metadata(config)?;
         let writer = Self::new(new_file(path, overwrite)?, config)?;
         sync_folder(path);
@@ -175,13 +172,13 @@ fn new_file(path: &Path, overwrite: Overwrite) -> Result<File, LogError> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Writes a log to any sink of bytes; the head is written at once.
+    /// Starts a log on any writer and writes the header.
     ///
     /// # Errors
     /// [`LogError::Metadata`], [`LogError::Write`].
     pub fn new(out: W, config: &LogConfig) -> Result<Self, LogError> {
         check_metadata(config)?;
-        let mut writer = Self::empty(out, Form::Log);
+        let mut writer = Self::empty(out, LogFormat::Log);
         block::section_header(&mut writer.buffer, &config.metadata);
         block::interface(
             &mut writer.buffer,
@@ -196,10 +193,10 @@ impl<W: Write> LogWriter<W> {
         Ok(writer)
     }
 
-    fn empty(out: W, form: Form) -> Self {
+    fn empty(out: W, format: LogFormat) -> Self {
         Self {
             out,
-            form,
+            format,
             buffer: Vec::with_capacity(BUFFER_LEN + 4096),
             drives: Vec::new(),
             counts: LogCounts::default(),
@@ -210,10 +207,10 @@ impl<W: Write> LogWriter<W> {
     /// Appends a record.
     ///
     /// # Errors
-    /// [`LogError::TooLong`] and [`LogError::Time`] leave the log as it was, fit for further
-    /// records; [`LogError::Write`] ends it.
+    /// [`LogError::TooLong`] and [`LogError::Time`] leave the log intact and usable;
+    /// [`LogError::Write`] ends it.
     pub fn write(&mut self, record: &Record<'_>) -> Result<(), LogError> {
-        self.check_sound()?;
+        self.check_earlier_writes()?;
         let time_ns = u64::try_from(record.host.as_nanos())
             .map_err(|_| LogError::Time { got: record.host })?;
         match record.wire {
@@ -229,15 +226,15 @@ impl<W: Write> LogWriter<W> {
                         got: payload.len(),
                     })?;
                 let parts = [&headers[..], payload];
-                match self.form {
-                    Form::Log => {
+                match self.format {
+                    LogFormat::Log => {
                         block::packet(&mut self.buffer, 0, time_ns, Direction::FromDevice, parts);
                     }
-                    Form::Pcap => block::pcap_record(&mut self.buffer, time_ns, parts),
+                    LogFormat::Pcap => block::pcap_record(&mut self.buffer, time_ns, parts),
                 }
                 self.counts.lidar += 1;
             }
-            Wire::Drive { .. } if self.form == Form::Pcap => {}
+            Wire::Drive { .. } if self.format == LogFormat::Pcap => {}
             Wire::Drive {
                 link,
                 direction,
@@ -267,28 +264,28 @@ impl<W: Write> LogWriter<W> {
         Ok(())
     }
 
-    /// Whether all writes so far went well.
-    fn check_sound(&self) -> Result<(), LogError> {
+    /// Fails if an earlier write failed.
+    fn check_earlier_writes(&self) -> Result<(), LogError> {
         self.failed.as_ref().map_or(Ok(()), |source| {
             Err(LogError::Failed {
                 offset: self.counts.bytes,
-                source: same(source),
+                source: copy_of(source),
             })
         })
     }
 
-    /// Hands all bytes to the system, so that they survive this process.
+    /// Passes all bytes to the system, so that they survive this process.
     ///
     /// # Errors
-    /// [`LogError::Write`]; [`LogError::Failed`] with the same reason ever after.
+    /// [`LogError::Write`]; [`LogError::Failed`] with the same error from then on.
     pub fn flush(&mut self) -> Result<(), LogError> {
-        self.check_sound()?;
+        self.check_earlier_writes()?;
         let written = self
             .out
             .write_all(&self.buffer)
             .and_then(|()| self.out.flush());
         if let Err(source) = written {
-            self.failed = Some(same(&source));
+            self.failed = Some(copy_of(&source));
             return Err(LogError::Write {
                 offset: self.counts.bytes,
                 source,
@@ -299,7 +296,7 @@ impl<W: Write> LogWriter<W> {
         Ok(())
     }
 
-    /// Flushes; what was written, and the sink.
+    /// Flushes and returns the numbers of records and the writer.
     ///
     /// # Errors
     /// As [`LogWriter::flush`].
@@ -308,7 +305,7 @@ impl<W: Write> LogWriter<W> {
         Ok((self.counts, self.out))
     }
 
-    /// The number of the interface of the drive's link, described first if it is new.
+    /// Interface number of the drive's link; writes its description at first use.
     fn drive_interface(&mut self, link: DriveLink) -> u32 {
         let at = self.drives.iter().position(|&known| known == link);
         let at = at.unwrap_or_else(|| {
@@ -321,13 +318,13 @@ impl<W: Write> LogWriter<W> {
             self.drives.push(link);
             self.drives.len() - 1
         });
-        // Three links at most, behind the lidar's interface 0.
+        // At most three links, after the lidar's interface 0.
         at as u32 + 1
     }
 }
 
-/// The same error once more.
-fn same(error: &io::Error) -> io::Error {
+/// A copy of an error.
+fn copy_of(error: &io::Error) -> io::Error {
     match error.raw_os_error() {
         Some(code) => io::Error::from_raw_os_error(code),
         None => io::Error::new(error.kind(), error.to_string()),

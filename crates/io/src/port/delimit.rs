@@ -1,33 +1,32 @@
-//! Where EPOS2 USB frames start and end in a stream of bytes: for the log, which keeps raw bytes
-//! and loses none.
+//! Boundaries of EPOS2 USB frames in a byte stream, for the log, which keeps every raw byte.
 //!
-//! The frames are those of [`UsbDecoder`]; what they say is thrown away here, and a frame with a
-//! wrong CRC is a frame like any other, as it was on the wire.
+//! Frames are found by [`UsbDecoder`]; their content is ignored, and a frame with a wrong CRC
+//! counts as a frame.
 
 use protocol::epos2::FrameError;
 use protocol::epos2::usb::{DLE, UsbDecoder};
 
-/// A run of bytes that belongs together.
+/// A run of bytes that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Piece {
-    /// A frame from its `90 02` to its last CRC byte, stuffing included.
+    /// A frame from `90 02` to its last CRC byte, stuffing included.
     Frame(usize),
-    /// Bytes that belong to no frame, or to one that was broken off.
+    /// Bytes outside frames, or of an aborted frame.
     Noise(usize),
 }
 
-/// The pieces of a stream, by their lengths; every byte pushed is in exactly one piece.
+/// Splits a stream into pieces by length; every byte is in exactly one piece.
 #[derive(Debug, Default)]
 pub(super) struct Delimiter {
     decoder: UsbDecoder,
-    /// Bytes since the end of the last piece, and the last of them.
+    /// Bytes since the end of the last piece, and the last byte.
     open: usize,
     last: u8,
 }
 
 impl Delimiter {
-    /// Takes a byte; a piece that ends with it, or (noise) two bytes before it where a frame
-    /// starts.
+    /// Adds a byte. Returns the piece that ends with it, or noise that ends two bytes before it,
+    /// where a frame starts.
     pub(super) fn push(&mut self, byte: u8) -> Option<Piece> {
         self.open += 1;
         self.last = byte;
@@ -36,13 +35,13 @@ impl Delimiter {
             None if !within && self.decoder.is_within_frame() => self.start(),
             None => None,
             Some(Ok(_) | Err(FrameError::Crc { .. })) => Some(Piece::Frame(self.take())),
-            // The sync pair of a new frame inside another.
+            // The sync pair of a new frame inside another frame.
             Some(Err(_)) if self.decoder.is_within_frame() => self.start(),
             Some(Err(_)) => Some(Piece::Noise(self.take())),
         }
     }
 
-    /// Whether the bytes of the open piece may still become a frame.
+    /// Whether the open piece may still become a frame.
     pub(super) fn in_frame(&self) -> bool {
         self.decoder.is_within_frame() || (self.open > 0 && self.last == DLE)
     }
@@ -60,7 +59,7 @@ impl Delimiter {
         std::mem::take(&mut self.open)
     }
 
-    /// A sync pair was seen: what was open before it is noise.
+    /// Starts a frame at a sync pair; the bytes before it are noise.
     fn start(&mut self) -> Option<Piece> {
         let before = self.open.saturating_sub(2);
         self.open = 2;
@@ -98,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_around_frames_is_kept_apart() {
+    fn noise_around_frames_is_separate() {
         let stream = [&[0x11, 0x90][..], &ANSWER, &[0x90, 0x33]].concat();
         assert_eq!(
             pieces(&stream),
@@ -107,19 +106,19 @@ mod tests {
     }
 
     #[test]
-    fn a_start_inside_a_frame_breaks_it_off() {
+    fn a_sync_pair_inside_a_frame_aborts_it() {
         let stream = [&ANSWER[..9], &ANSWER].concat();
         assert_eq!(pieces(&stream), [Piece::Noise(9), Piece::Frame(14)]);
     }
 
     #[test]
-    fn a_single_90_breaks_a_frame() {
+    fn a_single_dle_aborts_a_frame() {
         let stream = [&ANSWER[..8], &[0x90, 0x05], &ANSWER].concat();
         assert_eq!(pieces(&stream), [Piece::Noise(10), Piece::Frame(14)]);
     }
 
     #[test]
-    fn a_frame_may_end_in_a_doubled_90() {
+    fn frames_may_end_in_a_stuffed_dle() {
         let mut stream = ANSWER.to_vec();
         stream.pop();
         stream.extend([0x90, 0x90]);
@@ -128,14 +127,14 @@ mod tests {
     }
 
     #[test]
-    fn a_data_pair_90_90_02_is_no_start() {
+    fn stuffed_data_is_no_sync_pair() {
         let frame = [0x90, 0x02, 0x00, 0x01, 0x90, 0x90, 0x02, 0xAA, 0xBB];
         assert_eq!(pieces(&frame), [Piece::Frame(9)]);
     }
 
     proptest::proptest! {
         #[test]
-        fn no_byte_is_lost_or_counted_twice(bytes in proptest::collection::vec(
+        fn every_byte_is_in_one_piece(bytes in proptest::collection::vec(
             proptest::prop_oneof![
                 proptest::prelude::Just(0x90_u8), proptest::prelude::Just(2), proptest::prelude::any::<u8>()
             ], 0..200)) {

@@ -1,6 +1,5 @@
-//! The device's side of a pseudo-terminal: what the software drive stands behind. The other side is
-//! a serial port by path, for this program or another. No baud rate is imitated: bytes pass at
-//! memory speed.
+//! The device side of a pseudo-terminal, for the software drive. The other side is a serial port by
+//! path. Bytes pass without the delay of a baud rate.
 
 use std::io;
 use std::os::fd::{AsFd, OwnedFd};
@@ -19,24 +18,24 @@ use super::wait::{duration, wait};
 use super::{Port, PortError};
 use crate::clock;
 
-/// As long as a real port may take for a frame.
+/// The timeout of a real port for a frame.
 const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// A pseudo-terminal in raw mode, seen from the device. Dropping it unplugs the device.
 #[derive(Debug)]
 pub struct Pty {
     device: OwnedFd,
-    /// Held open so that the device does not see a hang-up whenever no client has the port open.
+    /// Kept open, so that the device sees no hang-up while no client has the port open.
     _client: OwnedFd,
     path: PathBuf,
     name: String,
 }
 
 impl Pty {
-    /// Makes a pseudo-terminal.
+    /// Opens a pseudo-terminal.
     ///
     /// # Errors
-    /// [`PortError::Io`] where the system has none to give.
+    /// [`PortError::Io`] if the system has none left.
     pub fn open() -> Result<Self, PortError> {
         Self::try_open().map_err(|e| PortError::Io {
             port: "pseudo-terminal".to_owned(),
@@ -94,7 +93,7 @@ impl Port for Pty {
             match unistd::write(&self.device, rest) {
                 Ok(n) => written += n,
                 Err(Errno::EINTR) => {}
-                // The client's input queue is full; nobody reads.
+                // The client's input queue is full.
                 Err(Errno::EAGAIN) => {
                     let left = deadline.saturating_duration_since(Instant::now());
                     if left.is_zero() {

@@ -1,9 +1,9 @@
-//! A port that records: every frame written and every byte received goes to a sink as a record,
-//! none is lost.
+//! A port that records: every frame written and every byte received is passed to a sink as a
+//! record.
 //!
-//! On USB the received bytes are cut at frame boundaries, one whole frame a record, and bytes
-//! outside frames become records of their own. RS232 is a dialogue of single bytes and frames;
-//! there a record is what one read gave.
+//! On USB, received bytes are split into one record per frame, and bytes outside frames get records
+//! of their own. RS232 alternates single bytes and frames, so a record there holds the bytes of one
+//! read.
 
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Span, Stamp};
@@ -11,25 +11,25 @@ use units::{Host, Span, Stamp};
 use super::delimit::{Delimiter, Piece};
 use super::{Port, PortError};
 
-/// A frame that has not gone on for this long will not: the EPOS2's own frame timeout.
+/// Silence that ends an incomplete frame: the EPOS2's frame timeout.
 const FRAME_TIMEOUT: Span = Span::from_millis(500);
 
 /// A recording wrapper around a port.
 ///
-/// The sink gets each record once, in the order in which the bytes passed; the host time of a
-/// received frame is that of the read which completed it.
-pub struct Recorder<P, S: FnMut(&Record<'_>)> {
+/// The sink gets each record once, in order. The host time of a received frame is that of the read
+/// that completed it.
+pub struct RecordingPort<P, S: FnMut(&Record<'_>)> {
     port: P,
     link: DriveLink,
     sink: S,
     delimiter: Delimiter,
-    /// Received bytes that are in no record yet, and when the last of them came.
+    /// Received bytes that are in no record yet, and the time of the last one.
     pending: Vec<u8>,
     last: Option<Stamp<Host>>,
 }
 
-impl<P: Port, S: FnMut(&Record<'_>)> Recorder<P, S> {
-    /// Wraps `port`, to which a drive is attached by `link`.
+impl<P: Port, S: FnMut(&Record<'_>)> RecordingPort<P, S> {
+    /// Wraps `port`, the `link` of a drive.
     pub fn new(port: P, link: DriveLink, sink: S) -> Self {
         Self {
             port,
@@ -42,14 +42,13 @@ impl<P: Port, S: FnMut(&Record<'_>)> Recorder<P, S> {
     }
 }
 
-impl<P, S: FnMut(&Record<'_>)> Recorder<P, S> {
-    /// The port inside.
+impl<P, S: FnMut(&Record<'_>)> RecordingPort<P, S> {
+    /// The wrapped port.
     pub fn port(&self) -> &P {
         &self.port
     }
 
-    /// Records the bytes of a frame that has not been completed. Done by itself when the recorder
-    /// is dropped.
+    /// Records the bytes of an incomplete frame. Dropping the port does the same.
     pub fn flush(&mut self) {
         let piece = self.delimiter.flush();
         if let (Some(piece), Some(host)) = (piece, self.last) {
@@ -81,7 +80,7 @@ impl<P, S: FnMut(&Record<'_>)> Recorder<P, S> {
         }
     }
 
-    /// Gives the sink the first of the pending bytes.
+    /// Passes the first pending bytes to the sink.
     fn emit(&mut self, piece: Piece, host: Stamp<Host>) {
         let (Piece::Frame(length) | Piece::Noise(length)) = piece;
         let length = length.min(self.pending.len());
@@ -102,7 +101,7 @@ impl<P, S: FnMut(&Record<'_>)> Recorder<P, S> {
     }
 }
 
-impl<P: Port, S: FnMut(&Record<'_>)> Port for Recorder<P, S> {
+impl<P: Port, S: FnMut(&Record<'_>)> Port for RecordingPort<P, S> {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
         let host = self.port.write_frame(frame)?;
         let record = self.record(host, Direction::ToDevice, frame);
@@ -127,7 +126,7 @@ impl<P: Port, S: FnMut(&Record<'_>)> Port for Recorder<P, S> {
     }
 }
 
-impl<P, S: FnMut(&Record<'_>)> Drop for Recorder<P, S> {
+impl<P, S: FnMut(&Record<'_>)> Drop for RecordingPort<P, S> {
     fn drop(&mut self) {
         self.flush();
     }

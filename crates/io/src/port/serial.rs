@@ -1,8 +1,7 @@
-//! A serial port by path and speed, through the `serialport` crate: exclusive, raw, 8N1.
+//! A serial port through the `serialport` crate: exclusive, raw, 8N1.
 //!
-//! That crate's read waits with `ppoll` on Linux, so timeouts below a millisecond hold; `poll`,
-//! which it uses elsewhere, would round them down to none. Modem lines, parity and flow control are
-//! left alone: no EPOS2 uses them.
+//! On Linux the crate waits with `ppoll`, so timeouts below a millisecond hold. The EPOS2 uses no
+//! modem lines, parity or flow control.
 
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
@@ -18,16 +17,16 @@ use crate::clock;
 
 const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// How long a USB serial adapter gathers bytes before it hands them on, ms (FTDI; 16 from the
-/// factory).
+/// Latency timer of a USB serial adapter: the time for which it buffers received bytes (FTDI,
+/// factory setting 16 ms).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LatencyTimer {
-    /// The port has none (no FTDI adapter) or does not tell.
+    /// The port has none (no FTDI adapter) or does not report it.
     Unknown,
-    /// It is 1 ms, as wanted.
+    /// It is at most 1 ms.
     Low,
-    /// It could not be set to 1 ms (the file in sysfs belongs to root): each answer of the drive is
-    /// late by up to this.
+    /// It cannot be set to 1 ms (the sysfs file belongs to root): each answer of the drive is
+    /// delayed by up to this time.
     High {
         /// Milliseconds.
         ms: u32,
@@ -44,8 +43,8 @@ pub struct SerialPort {
 }
 
 impl SerialPort {
-    /// Opens a port for this program alone, throws away what was waiting in it, and sets the
-    /// adapter's latency timer to 1 ms where there is one and this user may.
+    /// Opens a port exclusively, discards waiting input, and sets the adapter's latency timer to 1
+    /// ms if it has one and the user may.
     ///
     /// # Errors
     /// [`PortError`]: not found, permission, busy, unsuitable.
@@ -56,7 +55,7 @@ impl SerialPort {
             .exclusive(true)
             .open_native()
             .map_err(|e| open_error(path, baud, &e))?;
-        // What an earlier client left unread is no answer to this one.
+        // Input that an earlier client left unread.
         tty.clear(ClearBuffer::All)
             .map_err(|e| open_error(path, baud, &e))?;
         Ok(Self {
@@ -73,7 +72,7 @@ impl SerialPort {
         &self.name
     }
 
-    /// What became of the adapter's latency timer.
+    /// State of the adapter's latency timer.
     #[must_use]
     pub fn latency_timer(&self) -> LatencyTimer {
         self.latency
@@ -154,7 +153,7 @@ impl Port for SerialPort {
                 Err(e) if matches!(e.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock) => {
                     return Ok(None);
                 }
-                // A signal came (Ctrl-C): what is left of the time.
+                // A signal interrupted the read: continue for the rest of the time.
                 Err(e) if e.kind() == ErrorKind::Interrupted => {
                     if let Some(deadline) = deadline {
                         self.set_timeout(deadline.saturating_duration_since(Instant::now()));
@@ -171,7 +170,7 @@ fn open_error(path: &Path, baud: u32, error: &serialport::Error) -> PortError {
     match error.kind {
         serialport::ErrorKind::Io(ErrorKind::NotFound) => PortError::NotFound { port },
         serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => PortError::Permission { port },
-        // serialport says "no device" for EBUSY and for a lock held by another program.
+        // serialport reports "no device" for EBUSY and for a lock of another program.
         serialport::ErrorKind::NoDevice => PortError::Busy { port },
         serialport::ErrorKind::Io(kind) => PortError::Io {
             port,
@@ -188,7 +187,7 @@ fn open_error(path: &Path, baud: u32, error: &serialport::Error) -> PortError {
     }
 }
 
-/// Asks the adapter behind a port for 1 ms.
+/// Sets the latency timer of a port's adapter to 1 ms.
 fn set_low_latency(path: &Path) -> LatencyTimer {
     let Some(file) = latency_file(Path::new("/sys"), path) else {
         return LatencyTimer::Unknown;
@@ -196,8 +195,7 @@ fn set_low_latency(path: &Path) -> LatencyTimer {
     set_latency(&file)
 }
 
-/// Where sysfs keeps the latency timer of a port, by the port's real name (`/dev/serial/by-id/...`
-/// is a link).
+/// The sysfs file of a port's latency timer; `/dev/serial/by-id/...` is a link to the port.
 fn latency_file(sysfs: &Path, port: &Path) -> Option<PathBuf> {
     let real = port.canonicalize().ok()?;
     let file = sysfs
@@ -212,7 +210,7 @@ fn set_latency(file: &Path) -> LatencyTimer {
     match current() {
         None => return LatencyTimer::Unknown,
         Some(0 | 1) => return LatencyTimer::Low,
-        // Not allowed: read back below what it is.
+        // Without permission the value stays, which is read back below.
         Some(_) => drop(fs::write(file, "1")),
     }
     match current() {

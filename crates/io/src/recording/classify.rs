@@ -1,26 +1,26 @@
-//! One packet of a recording: what it carries, how it is counted, and whether it is given on. How
-//! packets are framed and taken apart is told elsewhere.
+//! Classification and counting of a recording's packets.
 
 use std::ops::Range;
 
 use super::link::{self, Content};
 use super::reassembly::Fragment;
-use super::{DatagramKind, Fault, Found, FoundWire, Packet, Place, Recording};
+use super::{
+    CapturedPacket, DatagramKind, Fault, FoundRecord, FoundWire, PayloadLocation, Recording,
+};
 
 impl<R> Recording<R> {
-    /// Looks inside a packet and counts it.
-    pub(super) fn classify(&mut self, packet: &Packet, offset: u64) -> Option<Found> {
+    /// Parses a packet and counts it.
+    pub(super) fn classify(&mut self, packet: &CapturedPacket, offset: u64) -> Option<FoundRecord> {
         let data = self.window.bytes().get(packet.data.clone());
         let data = data.unwrap_or_default();
-        let content = match link::look_inside(packet.link, packet.direction, data) {
-            // A capture that kept the whole datagram and lost only what was behind it is as good as
-            // any.
+        let content = match link::parse(packet.link, packet.direction, data) {
+            // A capture with a complete datagram is valid even if it lost the bytes after it.
             Ok(content @ Content::Datagram { .. }) => Ok(content),
             _ if (data.len() as u64) < u64::from(packet.original) => Err(Fault::Snapped {
                 captured: data.len() as u32,
                 original: packet.original,
             }),
-            looked => looked,
+            result => result,
         };
         let wire = match content {
             Ok(Content::Datagram {
@@ -31,7 +31,7 @@ impl<R> Recording<R> {
                 let start = packet.data.start;
                 let payload =
                     start.saturating_add(payload.start)..start.saturating_add(payload.end);
-                self.datagram(source, port, payload, Place::Window)?
+                self.datagram(source, port, payload, PayloadLocation::Window)?
             }
             Ok(Content::Fragment(fragment)) => self.fragment(packet, &fragment, offset)?,
             Ok(Content::Serial { link, direction }) => {
@@ -60,23 +60,23 @@ impl<R> Recording<R> {
                 return None;
             }
         };
-        Some(Found {
+        Some(FoundRecord {
             host: packet.host,
             wire,
         })
     }
 
-    /// Counts a datagram by what it is; `None` if nobody wants it.
+    /// Counts a datagram; `None` if it is not wanted.
     fn datagram(
         &mut self,
         source: [u8; 4],
         port: u16,
         payload: Range<usize>,
-        place: Place,
+        location: PayloadLocation,
     ) -> Option<FoundWire> {
-        let bytes = match place {
-            Place::Window => self.window.bytes().get(payload.clone()),
-            Place::Reassembler => self.reassembler.datagram().get(payload.clone()),
+        let bytes = match location {
+            PayloadLocation::Window => self.window.bytes().get(payload.clone()),
+            PayloadLocation::Reassembler => self.reassembler.datagram().get(payload.clone()),
         };
         let bytes = bytes.unwrap_or_default();
         if DatagramKind::of(bytes).is_lidar() {
@@ -91,23 +91,31 @@ impl<R> Recording<R> {
             source,
             port,
             payload,
-            place,
+            location,
         })
     }
 
-    /// Takes a part of a datagram; the whole, if it was the last.
-    fn fragment(&mut self, packet: &Packet, fragment: &Fragment, offset: u64) -> Option<FoundWire> {
+    /// Adds a fragment; returns the datagram if the fragment completes it.
+    fn fragment(
+        &mut self,
+        packet: &CapturedPacket,
+        fragment: &Fragment,
+        offset: u64,
+    ) -> Option<FoundWire> {
         let data = self.window.bytes().get(packet.data.clone())?;
         let bytes = data.get(fragment.payload.clone())?;
-        let Some(parts) = self.reassembler.add(packet.host, fragment, bytes) else {
+        let Some(fragments) = self.reassembler.add(packet.host, fragment, bytes) else {
             self.counts.fragments += 1;
             return None;
         };
-        self.counts.reassembled(parts);
+        self.counts.reassembled(fragments);
         match link::udp(self.reassembler.datagram()) {
-            Ok((port, payload)) => {
-                self.datagram(fragment.id.source, port, payload, Place::Reassembler)
-            }
+            Ok((port, payload)) => self.datagram(
+                fragment.id.source,
+                port,
+                payload,
+                PayloadLocation::Reassembler,
+            ),
             Err(fault) => {
                 self.counts.malformed(offset, fault);
                 None

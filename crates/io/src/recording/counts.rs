@@ -1,4 +1,4 @@
-//! What a recording holds, by number. Meaning (which port is the lidar's) is the reader's to add.
+//! Numbers of packets in a recording, by kind.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -7,54 +7,52 @@ use protocol::record::Direction;
 
 use super::Fault;
 
-/// Distinct pairs of port and size that are told apart; a stranger's recording must not fill the
-/// memory.
+/// Limit of distinct pairs of port and size, which bounds memory.
 const MAX_KINDS: usize = 1024;
 
-/// The first packet that could not be used.
+/// The first unusable packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Malformed {
-    /// Where its record starts in the file, in bytes.
+    /// Offset of its record in the file, in bytes.
     pub offset: u64,
-    /// What is wrong with it.
+    /// Its fault.
     pub fault: Fault,
 }
 
 /// Numbers of packets by kind. `records` is the sum of `datagrams`, `more_datagrams`, `to_drive`,
-/// `from_drive`, `other`, `fragments`, `joined` and `malformed`; the rest tells more of these.
+/// `from_drive`, `other`, `fragments`, `joined` and `malformed`; the other fields detail these.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Packets in the file, of whatever kind; a damaged stretch is one.
+    /// Packets in the file; a damaged stretch counts as one.
     pub records: u64,
     /// The lidar's datagrams ([`DatagramKind::is_lidar`](super::DatagramKind::is_lidar)) by
     /// destination port and payload size in bytes; the first 1024 such pairs.
     pub datagrams: BTreeMap<(u16, usize), u64>,
-    /// The lidar's datagrams beyond those pairs.
+    /// Further datagrams of the lidar.
     pub more_datagrams: u64,
     /// Frames from the host to the drive.
     pub to_drive: u64,
     /// Frames from the drive to the host.
     pub from_drive: u64,
-    /// Sound packets that are neither the lidar's nor the drive's.
+    /// Intact packets of other devices.
     pub other: u64,
     /// Of `other`: UDP, by destination port and payload size in bytes; the first 1024 such pairs.
     pub foreign: BTreeMap<(u16, usize), u64>,
-    /// Fragments of IP packets that were not put together.
+    /// IP fragments that were not reassembled.
     pub fragments: u64,
-    /// Fragments of datagrams that were put together, the last of each excepted: that one counts as
-    /// the datagram.
+    /// Fragments of reassembled datagrams, except the last of each, which counts as the datagram.
     pub joined: u64,
-    /// Datagrams that were put together of fragments, whatever they were then counted as.
+    /// Reassembled datagrams of any kind.
     pub reassembled: u64,
-    /// Packets that could not be used.
+    /// Unusable packets.
     pub malformed: u64,
-    /// The first of those.
+    /// The first unusable packet.
     pub first_malformed: Option<Malformed>,
-    /// Of `malformed`: packets of which the capture kept too little (snap length).
+    /// Of `malformed`: truncated packets (snap length).
     pub snapped: u64,
     /// Of `malformed`: packets without a time (pcapng simple packet blocks).
     pub timeless: u64,
-    /// Of `malformed`: stretches of the file that are no records; reading went on behind them.
+    /// Of `malformed`: damaged stretches of the file, after which reading continued.
     pub damaged: u64,
     /// Bytes in those stretches.
     pub damaged_bytes: u64,
@@ -66,19 +64,19 @@ impl Counts {
     }
 
     pub(super) fn lidar(&mut self, port: u16, size: usize) {
-        if !tally(&mut self.datagrams, port, size) {
+        if !count_pair(&mut self.datagrams, port, size) {
             self.more_datagrams += 1;
         }
     }
 
     pub(super) fn foreign(&mut self, port: u16, size: usize) {
         self.other += 1;
-        tally(&mut self.foreign, port, size);
+        count_pair(&mut self.foreign, port, size);
     }
 
-    /// The last of `parts` fragments came; the others were taken for lone ones before.
-    pub(super) fn reassembled(&mut self, parts: u64) {
-        let before = parts.saturating_sub(1);
+    /// Counts the completion of a datagram; its earlier fragments were counted as not reassembled.
+    pub(super) fn reassembled(&mut self, fragments: u64) {
+        let before = fragments.saturating_sub(1);
         self.fragments = self.fragments.saturating_sub(before);
         self.joined += before;
         self.reassembled += 1;
@@ -104,8 +102,8 @@ impl Counts {
     }
 }
 
-/// Whether there was room to count it.
-fn tally(kinds: &mut BTreeMap<(u16, usize), u64>, port: u16, size: usize) -> bool {
+/// Counts a pair; returns false beyond the limit.
+fn count_pair(kinds: &mut BTreeMap<(u16, usize), u64>, port: u16, size: usize) -> bool {
     let room = kinds.len() < MAX_KINDS;
     match kinds.entry((port, size)) {
         Entry::Occupied(mut n) => *n.get_mut() += 1,
@@ -122,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn kinds_beyond_the_limit_are_still_counted() {
+    fn pairs_beyond_the_limit_are_counted() {
         let mut counts = Counts::default();
         for port in 0..2000 {
             counts.lidar(port, 7);

@@ -1,31 +1,31 @@
-//! What can be wrong with a recording: with the file, with its end, with one packet.
+//! Faults of a recording: of the file, of its end, of one packet.
 
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// A file that cannot be read as a recording.
+/// A file that is no readable recording.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The system does not open it.
+    /// The file cannot be opened.
     #[error("{}: cannot open: {source}", path.display())]
     Open {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
-    /// The system does not read it further.
+    /// A read failed.
     #[error("{}: cannot read at byte {offset}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// Bytes from the start of the file.
         offset: u64,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
-    /// No bytes at all.
+    /// The file is empty.
     #[error("{}: expected a pcap or pcapng recording, got an empty file", path.display())]
     Empty {
         /// The file.
@@ -41,46 +41,45 @@ pub enum RecordingError {
         /// Bytes in the file.
         got: u64,
     },
-    /// Something else than a recording.
+    /// The file is no recording.
     #[error("{}: expected pcap or pcapng, got {got}", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
-        /// What its first bytes look like.
+        /// Description of its first bytes.
         got: String,
     },
-    /// A recording of something else than Ethernet, IP or CAN.
+    /// A recording of unsupported packets.
     #[error("{}: at byte {offset}: expected link type Ethernet (1), Linux cooked (113, 276), raw IP (101, 228, 229) or SocketCAN (227), got {got}", path.display())]
     Link {
         /// The file.
         path: PathBuf,
-        /// Where the link type stands.
+        /// Offset of the link type.
         offset: u64,
         /// The link type, as registered at tcpdump.org.
         got: u32,
     },
 }
 
-/// How a recording ended.
+/// End of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum End {
-    /// After a whole record.
+    /// After a complete record.
     Complete,
-    /// In mid-record: the program or the machine that wrote it was stopped, or the file was not
-    /// copied whole.
+    /// Within a record: the writer was stopped, or the file was copied incompletely.
     Truncated {
-        /// Where the incomplete record starts, in bytes from the start of the file.
+        /// Offset of the incomplete record in the file.
         offset: u64,
-        /// Bytes the record has, as far as can be told.
+        /// Known length of the record in bytes.
         expected: u64,
-        /// Bytes of it that are there.
+        /// Bytes present.
         got: u64,
     },
-    /// Before a record whose length cannot be true; nothing sound was found behind it.
+    /// Before a record with an impossible length and no valid record after it.
     Unreadable {
-        /// Where that record starts, in bytes from the start of the file.
+        /// Offset of that record in the file.
         offset: u64,
-        /// What is wrong with it.
+        /// Its fault.
         fault: Fault,
     },
 }
@@ -95,7 +94,7 @@ impl fmt::Display for End {
                 got,
             } => write!(
                 f,
-                "cut off in mid-record at byte {offset}: expected {expected} bytes, got {got}"
+                "cut off within a record at byte {offset}: expected {expected} bytes, got {got}"
             ),
             Self::Unreadable { offset, fault } => {
                 write!(f, "unreadable from byte {offset} on: {fault}")
@@ -104,10 +103,10 @@ impl fmt::Display for End {
     }
 }
 
-/// Why a packet cannot be used.
+/// Reason why a packet is unusable.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Fault {
-    /// The capture kept only the start of the packet (snap length).
+    /// The capture truncated the packet (snap length).
     #[error("the capture kept {captured} bytes of {original}")]
     Snapped {
         /// Bytes in the file.
@@ -115,45 +114,45 @@ pub enum Fault {
         /// Bytes on the wire.
         original: u32,
     },
-    /// A layer says it is longer than the packet.
+    /// A layer is longer than the packet.
     #[error("{layer} at byte {offset} of the packet: expected {expected} bytes, got {got}")]
     Short {
         /// Which header or payload.
         layer: String,
         /// Bytes from the start of the packet.
         offset: usize,
-        /// Bytes it should have.
+        /// Expected bytes.
         expected: usize,
-        /// Bytes there are.
+        /// Bytes present.
         got: usize,
     },
-    /// A header contradicts itself.
+    /// An inconsistent header.
     #[error("{0}")]
     Header(String),
-    /// A length that no record can have.
+    /// An impossible record length.
     #[error("record length: expected {expected}, got {got}")]
     Length {
-        /// What would be possible.
+        /// Possible lengths.
         expected: &'static str,
-        /// What is written there.
+        /// The value found.
         got: u64,
     },
-    /// The two lengths around a pcapng block differ.
-    #[error("block length: {front} in front, {back} behind")]
+    /// The two lengths of a pcapng block differ.
+    #[error("block length: {front} at the start, {back} at the end")]
     Lengths {
-        /// In front of the block.
+        /// At the start of the block.
         front: u32,
-        /// Behind it.
+        /// At its end.
         back: u32,
     },
-    /// A pcapng block whose parts do not fit in it.
-    #[error("a block of type {kind:#x} whose content does not fit its length")]
+    /// A pcapng block whose content exceeds its length.
+    #[error("block of type {kind:#x}: its content exceeds its length")]
     Block {
         /// The block type.
         kind: u32,
     },
-    /// A packet of an interface that was not described.
-    #[error("interface {got}, where {described} are described")]
+    /// A packet of an undescribed interface.
+    #[error("interface {got} of {described} described ones")]
     Interface {
         /// The packet's interface number.
         got: u32,
@@ -163,15 +162,15 @@ pub enum Fault {
     /// A packet without a time.
     #[error("a pcapng simple packet block, which has no time")]
     Timeless,
-    /// A record that would reach beyond the end of the file, though sound ones follow within it.
-    #[error("record length: {expected} bytes, where the file has {got} more")]
+    /// A record that exceeds the file although valid records follow.
+    #[error("record length: {expected} bytes, but the file has {got} more")]
     Cut {
-        /// Bytes the record claims to have.
+        /// Length of the record.
         expected: u64,
-        /// Bytes to the end of the file.
+        /// Bytes up to the end of the file.
         got: u64,
     },
-    /// A frame of the drive of which the direction is not recorded.
+    /// A frame of the drive without a recorded direction.
     #[error("a frame of the drive without a direction")]
     Undirected,
 }

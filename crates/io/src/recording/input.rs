@@ -1,7 +1,7 @@
-//! Where a recording comes from: a file, a pipe by its name, or the standard input (`-`).
+//! Source of a recording: a file, a named pipe, or standard input (`-`).
 //!
-//! A pipe gives its bytes once. For more passes over it [`Input`] keeps a copy in a temporary file,
-//! up to a limit, and removes it in the end. A file is read where it lies.
+//! A pipe can be read once. For several passes [`Input`] copies it to a temporary file, up to a
+//! limit.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -13,33 +13,33 @@ use tempfile::{Builder, NamedTempFile};
 use super::{Recording, RecordingError};
 use crate::files::scratch_folder;
 
-/// Bytes kept of a pipe where nothing else is said: some hours of a sensor.
+/// Default limit of a pipe's copy in bytes: five hours of a VLP-16 in single return (750 packets of
+/// 1.2 kB per second).
 pub const SPOOL_LIMIT: u64 = 16 << 30;
-/// The standard input's name as an argument.
+/// Standard input as an argument.
 const STDIN: &str = "-";
-/// And as a file.
+/// Standard input as a file.
 const DEV_STDIN: &str = "/dev/stdin";
-/// Copied at a time, in bytes.
+/// Bytes copied at a time.
 const CHUNK_LEN: usize = 256 << 10;
 
-/// A recording that can be read any number of times.
+/// A recording for any number of passes.
 #[derive(Debug)]
 pub struct Input {
-    /// What errors call it.
+    /// Name for errors.
     name: PathBuf,
-    /// What is opened for a pass, unless there is a copy.
+    /// File to open for a pass without a copy.
     path: PathBuf,
     copy: Option<NamedTempFile>,
 }
 
 impl Input {
-    /// Takes a file as it is. Anything that can be read only once is read now, to its end, into a
-    /// temporary file of at most `limit` bytes: in `$TMPDIR`, or else in `/var/tmp`, which unlike
-    /// `/tmp` is no memory.
+    /// Opens a file. A pipe is copied to its end into a temporary file of at most `limit` bytes, in
+    /// [`crate::files::scratch_folder`].
     ///
     /// # Errors
-    /// [`RecordingError::Open`]; [`RecordingError::Read`] where the pipe cannot be read or copied,
-    /// or holds more than `limit` bytes.
+    /// [`RecordingError::Open`]; [`RecordingError::Read`] if the pipe cannot be read or copied, or
+    /// exceeds `limit` bytes.
     pub fn open(path: impl AsRef<Path>, limit: u64) -> Result<Self, RecordingError> {
         let name = path.as_ref();
         let file = open(name)?;
@@ -47,9 +47,9 @@ impl Input {
             Some(STDIN) => Path::new(DEV_STDIN),
             _ => name,
         };
-        let lies_still = |metadata: std::fs::Metadata| metadata.is_file() || metadata.is_dir();
-        let again = file.metadata().is_ok_and(lies_still);
-        let copy = if again {
+        let is_rereadable = |metadata: std::fs::Metadata| metadata.is_file() || metadata.is_dir();
+        let is_rereadable = file.metadata().is_ok_and(is_rereadable);
+        let copy = if is_rereadable {
             None
         } else {
             Some(copy(name, file, &scratch_folder(), limit)?)
@@ -61,7 +61,7 @@ impl Input {
         })
     }
 
-    /// A pass over it from the start, independent of others.
+    /// Starts an independent pass.
     ///
     /// # Errors
     /// As [`Recording::open`].
@@ -77,14 +77,13 @@ impl Input {
         Recording::new(file, &self.name)
     }
 
-    /// Whether a copy is kept.
-    #[must_use]
-    pub fn is_copied(&self) -> bool {
+    #[cfg(test)]
+    fn is_copied(&self) -> bool {
         self.copy.is_some()
     }
 }
 
-/// A file, or the standard input.
+/// Opens a file or standard input.
 pub(super) fn open(path: &Path) -> Result<File, RecordingError> {
     let file = if path.to_str() == Some(STDIN) {
         io::stdin().as_fd().try_clone_to_owned().map(File::from)
@@ -97,7 +96,7 @@ pub(super) fn open(path: &Path) -> Result<File, RecordingError> {
     })
 }
 
-/// All that `from` gives, in a temporary file.
+/// Copies a stream to a temporary file.
 fn copy(
     name: &Path,
     mut from: impl Read,
@@ -113,7 +112,16 @@ fn copy(
     let mut file = Builder::new()
         .prefix("velomotion-")
         .tempfile_in(folder)
-        .map_err(|e| failed(0, said("no temporary file for a second pass", folder, &e)))?;
+        .map_err(|e| {
+            failed(
+                0,
+                context(
+                    "cannot create a temporary file for a second pass",
+                    folder,
+                    &e,
+                ),
+            )
+        })?;
     let mut chunk = vec![0; CHUNK_LEN];
     loop {
         let n = match from.read(&mut chunk) {
@@ -124,7 +132,7 @@ fn copy(
         };
         if offset + n as u64 > limit {
             let what = format!(
-                "a pipe is kept for a second pass up to {limit} bytes, and this one holds more: write it to a file first"
+                "the pipe exceeds the {limit} bytes that are kept for a second pass: write it to a file first"
             );
             return Err(failed(
                 limit,
@@ -132,12 +140,12 @@ fn copy(
             ));
         }
         file.write_all(chunk.get(..n).unwrap_or_default())
-            .map_err(|e| failed(offset, said("cannot keep a copy", folder, &e)))?;
+            .map_err(|e| failed(offset, context("cannot keep a copy", folder, &e)))?;
         offset += n as u64;
     }
 }
 
-fn said(what: &str, folder: &Path, error: &io::Error) -> io::Error {
+fn context(what: &str, folder: &Path, error: &io::Error) -> io::Error {
     io::Error::new(
         error.kind(),
         format!("{what} in {}: {error}", folder.display()),
@@ -163,13 +171,13 @@ mod tests {
         let error = copy(name, bytes.as_slice(), folder.path(), 599_999).unwrap_err();
         assert!(error.to_string().contains("599999 bytes"), "{error}");
         let left = std::fs::read_dir(folder.path()).unwrap().count();
-        assert_eq!(left, 0, "nothing is left behind");
+        assert_eq!(left, 0, "no file remains");
         let nowhere = copy(name, bytes.as_slice(), Path::new("/nonexistent"), 1).unwrap_err();
         assert!(nowhere.to_string().contains("/nonexistent"), "{nowhere}");
     }
 
     #[test]
-    fn a_file_is_read_where_it_lies_and_a_fifo_is_copied() {
+    fn fifos_are_copied_and_files_are_not() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file.pcap");
         let header = [
@@ -201,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fifo_is_read_in_one_pass_without_a_copy() {
+    fn a_single_pass_needs_no_copy() {
         let folder = tempfile::tempdir().unwrap();
         let fifo = folder.path().join("fifo");
         nix::unistd::mkfifo(&fifo, nix::sys::stat::Mode::S_IRWXU).unwrap();

@@ -1,37 +1,35 @@
-//! Whose datagram is it: told by what is in it, since ports and addresses are whatever somebody has
-//! set.
+//! Classification of datagrams by content, since ports and addresses are configurable.
 //!
-//! Deliberately shallow: what the packet says is the decoder's matter, and so is what exactly is
-//! wrong with a damaged one.
+//! The check is shallow: the decoder interprets packets and reports what is wrong with damaged
+//! ones.
 
 use protocol::vlp16::{BLOCK_LEN, BLOCKS, DATA_LEN, POSITION_LEN};
 
 /// A block's flag (VLP-16 user manual 63-9243, 9.3.2).
 const FLAG: [u8; 2] = [0xFF, 0xEE];
-/// Flags that make 1206 bytes a lidar's packet though others are wrong: one may stand in anybody's
-/// packet by chance.
+/// Number of flags that make 1206 bytes a damaged lidar packet; a single one may occur by chance.
 const FLAGS_OF_A_LIDAR: usize = 2;
-/// State of the pulse-per-second input, 0 to 3 (manual 9.3.3).
+/// Offset of the pulse-per-second state, 0 to 3 (manual 9.3.3).
 const PPS_AT: usize = 202;
-/// Where the NMEA sentence begins.
+/// Offset of the NMEA sentence.
 const NMEA_AT: usize = 206;
 
-/// What a UDP payload is, judged by its content alone.
+/// Kind of a UDP payload, by its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DatagramKind {
-    /// A data packet: 1206 bytes, `FF EE` in front of all twelve blocks.
+    /// A data packet: 1206 bytes, `FF EE` before each of the twelve blocks.
     Data,
-    /// A position packet: 512 bytes, a known PPS state, a sentence or none where one belongs.
+    /// A position packet: 512 bytes, a known PPS state, and an NMEA sentence or none at its offset.
     Position,
-    /// A lidar's, but not as the manual has it: another length behind `FF EE`, some flags wrong (a
-    /// damaged packet, or a larger model). For the decoder to say what is wrong.
+    /// A lidar packet that violates the manual: another length after `FF EE`, or wrong flags (a
+    /// damaged packet, or a larger model).
     Damaged,
-    /// Something else that shared the wire.
+    /// Other traffic on the network.
     Foreign,
 }
 
 impl DatagramKind {
-    /// Judges a UDP payload.
+    /// Classifies a UDP payload.
     #[must_use]
     pub fn of(payload: &[u8]) -> Self {
         match payload.len() {
@@ -49,15 +47,15 @@ impl DatagramKind {
         }
     }
 
-    /// Whether it came from a lidar.
+    /// Whether a lidar sent it.
     #[must_use]
     pub fn is_lidar(self) -> bool {
         self != Self::Foreign
     }
 }
 
-/// 512 bytes that can be a position packet: the rest is not promised to be zero, and real sensors
-/// do fill it.
+/// Whether 512 bytes can be a position packet. Its reserved bytes may hold anything: real sensors
+/// fill them.
 fn position(payload: &[u8]) -> bool {
     let pps = payload.get(PPS_AT).is_some_and(|&state| state <= 3);
     let nmea = payload.get(NMEA_AT);
@@ -69,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn content_decides() {
+    fn payloads_are_classified_by_content() {
         let mut data = vec![0; 1206];
         for block in data.chunks_exact_mut(100) {
             block[..2].copy_from_slice(&[0xFF, 0xEE]);

@@ -1,5 +1,5 @@
-//! From a captured packet to what it carries: link, network and transport headers by etherparse,
-//! CAN frames by hand.
+//! Parsing of captured packets: link, network and transport headers by etherparse, CAN frames by
+//! hand.
 
 use std::net::Ipv6Addr;
 use std::ops::Range;
@@ -16,33 +16,33 @@ use super::Fault;
 use super::reassembly::{DatagramId, Fragment};
 use super::sensors::source_of;
 
-/// Bytes of a `struct can_frame`: id (big-endian), length, three reserved, eight of data.
+/// Bytes of a `struct can_frame`: identifier (big-endian), length, three reserved, eight of data.
 pub(super) const CAN_FRAME_LEN: usize = 16;
 
-/// `if_name` of the drive's interface in our logs, by how the drive is attached.
+/// `if_name` of the drive's interface in our logs, over USB.
 pub(crate) const USB_NAME: &str = "epos2-usb";
-/// As [`USB_NAME`], for RS232.
+/// `if_name` of the drive's interface in our logs, over RS232.
 pub(crate) const RS232_NAME: &str = "epos2-rs232";
 
-/// Link types as registered at tcpdump.org that carry something for us.
+/// Supported link types, as registered at tcpdump.org.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LinkType {
     Ethernet,
-    /// Linux cooked, version 1: the protocol in bytes 14 and 15 of 16.
+    /// Linux cooked, version 1: 16 bytes with the protocol in bytes 14 and 15.
     Cooked1,
-    /// Linux cooked, version 2: the protocol in the first two bytes of 20.
+    /// Linux cooked, version 2: 20 bytes with the protocol in bytes 0 and 1.
     Cooked2,
-    /// Starts with the IP header, of either version.
+    /// Raw IP of either version.
     Ip,
     Can,
-    /// Our own: the drive's serial frames.
+    /// Serial frames of the drive (private use).
     Serial(DriveLink),
-    /// Anything else.
+    /// Any other type.
     Unused,
 }
 
 impl LinkType {
-    /// The link type of a registered number; `name` is the interface's, which tells our use of
+    /// The link type of a registered number. The interface's `name` identifies our use of
     /// LINKTYPE_USER0.
     pub(super) fn from_number(number: u32, name: Option<&str>) -> Option<Self> {
         Some(match number {
@@ -61,7 +61,7 @@ impl LinkType {
     }
 }
 
-/// What a packet carries.
+/// Content of a packet.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Content {
     /// UDP; `payload` counts from the start of the packet.
@@ -79,24 +79,24 @@ pub(super) enum Content {
         direction: Direction,
         frame: [u8; CAN_FRAME_LEN],
     },
-    /// A part of a UDP datagram.
+    /// A fragment of a UDP datagram.
     Fragment(Fragment),
-    /// A part of another IP packet.
+    /// A fragment of another IP packet.
     OtherFragment,
     Other,
 }
 
-/// Looks inside a packet of a link type.
-pub(super) fn look_inside(
+/// Parses a packet of a link type.
+pub(super) fn parse(
     link: LinkType,
     direction: Option<Direction>,
     data: &[u8],
 ) -> Result<Content, Fault> {
     let network = match link {
-        LinkType::Ethernet => behind(data, "Ethernet header", 12, 14)?,
-        LinkType::Cooked1 => behind(data, "Linux cooked header", 14, 16)?,
-        LinkType::Cooked2 => behind(data, "Linux cooked header", 0, 20)?,
-        LinkType::Ip => bare(data)?,
+        LinkType::Ethernet => after_header(data, "Ethernet header", 12, 14)?,
+        LinkType::Cooked1 => after_header(data, "Linux cooked header", 14, 16)?,
+        LinkType::Cooked2 => after_header(data, "Linux cooked header", 0, 20)?,
+        LinkType::Ip => raw_ip(data)?,
         LinkType::Can => return can(data, direction),
         LinkType::Serial(link) => {
             let direction = direction.ok_or(Fault::Undirected)?;
@@ -113,20 +113,22 @@ pub(super) fn look_inside(
     }
 }
 
-/// What follows the link's own header. VLAN tags are still in front of it.
+/// The packet after the link header, with its VLAN tags.
 struct Network<'a> {
     kind: EtherType,
     packet: &'a [u8],
 }
 
-/// Behind a header of `header_len` bytes with the EtherType at `at`.
-fn behind<'a>(
+/// The packet after a header of `header_len` bytes with the EtherType at `type_offset`.
+fn after_header<'a>(
     data: &'a [u8],
     layer: &'static str,
-    at: usize,
+    type_offset: usize,
     header_len: usize,
 ) -> Result<Network<'a>, Fault> {
-    let kind = data.get(at..).and_then(|bytes| bytes.first_chunk());
+    let kind = data
+        .get(type_offset..)
+        .and_then(|bytes| bytes.first_chunk());
     match (kind, data.get(header_len..)) {
         (Some(&kind), Some(packet)) => Ok(Network {
             kind: EtherType(u16::from_be_bytes(kind)),
@@ -136,8 +138,8 @@ fn behind<'a>(
     }
 }
 
-/// An IP packet with nothing in front: its first four bits tell the version.
-fn bare(packet: &[u8]) -> Result<Network<'_>, Fault> {
+/// A raw IP packet, whose first four bits are the version.
+fn raw_ip(packet: &[u8]) -> Result<Network<'_>, Fault> {
     let first = packet
         .first()
         .ok_or_else(|| short("IP header", 20, packet))?;
@@ -162,7 +164,7 @@ fn short(layer: &str, expected: usize, data: &[u8]) -> Fault {
     }
 }
 
-/// What a packet that etherparse has taken apart carries.
+/// The content of a packet parsed by etherparse.
 fn content(sliced: &SlicedPacket<'_>, data: &[u8]) -> Content {
     let source = match &sliced.net {
         Some(NetSlice::Ipv4(ip)) if ip.is_payload_fragmented() => return fragment(ip, data),
@@ -204,15 +206,15 @@ pub(super) fn udp(datagram: &[u8]) -> Result<(u16, Range<usize>), Fault> {
     Ok((udp.destination_port(), within(datagram, udp.payload())))
 }
 
-/// Where a part lies in the whole it was sliced from.
+/// The range of a part within the slice that it comes from.
 fn within(whole: &[u8], part: &[u8]) -> Range<usize> {
     let start = (part.as_ptr() as usize).saturating_sub(whole.as_ptr() as usize);
     start..start.saturating_add(part.len())
 }
 
-/// A datagram whose IP header claims more than there is while its UDP length is all there: VLP-16
-/// firmware of 2014 gives its position packets the IP length of a data packet. A packet that was
-/// cut short does not pass: its UDP length is missing bytes too.
+/// A datagram whose IP length is too large and whose UDP length is correct: VLP-16 firmware of 2014
+/// sends position packets with the IP length of a data packet. A truncated packet does not qualify,
+/// since its UDP length is too large as well.
 fn by_udp_length(network: &Network<'_>, data: &[u8]) -> Option<Content> {
     let lax = LaxSlicedPacket::from_ether_type(network.kind, network.packet);
     match (&lax.net, &lax.transport) {
@@ -229,14 +231,14 @@ fn by_udp_length(network: &Network<'_>, data: &[u8]) -> Option<Content> {
     }
 }
 
-/// A classic CAN frame, filled up to the full structure.
+/// A classic CAN frame, padded to the full structure.
 fn can(data: &[u8], direction: Option<Direction>) -> Result<Content, Fault> {
     let Some((head, _)) = data.split_first_chunk::<8>() else {
         return Err(short("CAN frame", 8, data));
     };
     let [id @ .., length, _, _, _] = *head;
     if length > 8 {
-        // CAN FD: not the drive's.
+        // CAN FD, which the drive does not use.
         return Ok(Content::Other);
     }
     let used = 8 + usize::from(length);
@@ -251,9 +253,9 @@ fn can(data: &[u8], direction: Option<Direction>) -> Result<Content, Fault> {
     })
 }
 
-/// Which way a CANopen message goes, where the recording does not say (candump, Wireshark): by its
-/// function code (CiA 301, predefined connection set), seen from the drive: NMT, SYNC, time,
-/// RPDO1-4 and SDO requests come to it.
+/// Direction of a CANopen message in a recording without directions (candump, Wireshark), by its
+/// function code (CiA 301, predefined connection set): NMT, SYNC, TIME, RPDO1-4 and SDO requests go
+/// to the drive.
 fn direction_of_can(id: u32) -> Direction {
     match id & 0x780 {
         0x080 if id & 0x7F != 0 => Direction::FromDevice,
@@ -284,7 +286,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn canopen_messages_without_a_recorded_direction_go_where_their_function_code_says() {
+    fn the_direction_of_can_messages_follows_from_the_function_code() {
         use Direction::{FromDevice, ToDevice};
         for (id, expected) in [
             (0x000, ToDevice),   // NMT
@@ -301,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_can_frame_is_filled_up_and_an_impossible_one_refused() {
+    fn short_can_frames_are_padded_and_invalid_ones_refused() {
         let head = [0, 0, 6, 1, 2, 0, 0, 0];
         let frame = [&head[..], &[0xAA, 0xBB]].concat();
         let Ok(Content::Can { frame, direction }) = can(&frame, None) else {
@@ -331,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn user0_is_ours_by_name_only() {
+    fn user0_is_recognised_by_interface_name() {
         assert_eq!(
             LinkType::from_number(147, Some(USB_NAME)),
             Some(LinkType::Serial(DriveLink::Usb))

@@ -1,6 +1,5 @@
-//! Classic pcap: a 24-byte header, then records. Microseconds or nanoseconds, either byte order,
-//! and the "modified" records of old Linux kernels. Nothing in a record marks its start, so a wrong
-//! length is the end of the reading.
+//! Classic pcap: a 24-byte header, then records, in microseconds or nanoseconds and either byte
+//! order. Nothing marks the start of a record, so a wrong length ends the reading.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -11,18 +10,18 @@ use units::Stamp;
 use super::error::{End, Fault, RecordingError};
 use super::link::LinkType;
 use super::window::Window;
-use super::{Format, Packet, Step};
+use super::{CapturedPacket, FileItem, Format};
 
 /// Bytes of the file header.
 pub(super) const HEADER_LEN: usize = 24;
 /// Bytes of a record header.
 const RECORD_HEADER_LEN: usize = 16;
 
-/// The longest record believed. libpcap's own limit is 256 KiB; USB captures go to 128 MiB, but
-/// carry no lidar.
+/// Longest valid record. libpcap's limit is 256 KiB; USB captures reach 128 MiB, but carry no
+/// lidar.
 const MAX_PACKET_LEN: u32 = 1 << 20;
 
-/// The facts of the file header.
+/// The file header.
 #[derive(Debug)]
 pub(super) struct Header {
     link: LinkType,
@@ -70,14 +69,14 @@ impl Header {
     }
 
     /// Reads the next record into the window.
-    pub(super) fn step<R: Read>(&self, window: &mut Window<R>) -> io::Result<Step> {
+    pub(super) fn step<R: Read>(&self, window: &mut Window<R>) -> io::Result<FileItem> {
         let offset = window.offset();
         let bytes = window.fill(RECORD_HEADER_LEN)?;
         if bytes.is_empty() {
-            return Ok(Step::End(End::Complete));
+            return Ok(FileItem::End(End::Complete));
         }
         let truncated = |expected: usize, got: usize| {
-            Step::End(End::Truncated {
+            FileItem::End(End::Truncated {
                 offset,
                 expected: expected as u64,
                 got: got as u64,
@@ -93,7 +92,7 @@ impl Header {
                 expected: "at most 1048576",
                 got: captured.into(),
             };
-            return Ok(Step::End(End::Unreadable { offset, fault }));
+            return Ok(FileItem::End(End::Unreadable { offset, fault }));
         }
         let length = RECORD_HEADER_LEN + captured as usize;
         let bytes = window.fill(length)?;
@@ -109,7 +108,7 @@ impl Header {
         };
         let fraction_ns = if self.nanoseconds { 1 } else { 1_000 };
         let ns = i64::from(frame.ts_sec) * 1_000_000_000 + i64::from(frame.ts_usec) * fraction_ns;
-        Ok(Step::Packet(Packet {
+        Ok(FileItem::Packet(CapturedPacket {
             host: Stamp::from_nanos(ns),
             length,
             data: RECORD_HEADER_LEN..length,
@@ -120,12 +119,12 @@ impl Header {
     }
 }
 
-/// The link type without the flags that share its field (length of the frame check sequence).
+/// The link type without the flags in its field (length of the frame check sequence).
 fn link_number(header: &PcapHeader) -> u32 {
     u32::from_ne_bytes(header.network.0.to_ne_bytes()) & 0xFFFF
 }
 
-/// What the first bytes of a file look like, for a person who opened the wrong one.
+/// Describes the first bytes of a file that is no recording.
 fn describe(start: &[u8]) -> String {
     let known: [(&[u8], &str); 10] = [
         (b"\x1F\x8B", "gzip (unpack it first)"),

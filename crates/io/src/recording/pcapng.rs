@@ -1,6 +1,6 @@
-//! pcapng: sections of blocks, each framed by its length in front and behind, so that a block whose
-//! inside is wrong can be passed over. Only section headers, interface descriptions and packets are
-//! looked into. Where the framing itself is wrong, reading goes on at the next block that is sound.
+//! pcapng: sections of blocks with their length at the start and the end, so that blocks with
+//! invalid content can be skipped. Only section headers, interface descriptions and enhanced packet
+//! blocks are parsed. After invalid framing, reading continues at the next valid block.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -18,36 +18,35 @@ use super::error::{End, Fault, RecordingError};
 use super::link::LinkType;
 use super::resync::resync;
 use super::window::Window;
-use super::{Packet, Step};
+use super::{CapturedPacket, FileItem};
 
-/// The longest block believed; Wireshark's limit.
+/// Longest valid block (Wireshark's limit).
 const MAX_BLOCK_LEN: u32 = 16 << 20;
-/// Type and two lengths.
+/// Bytes of type and two lengths.
 pub(super) const FRAMING_LEN: u32 = 12;
-/// Reads the same in both byte orders.
+/// Block type of a section header, the same in both byte orders.
 pub(super) const SECTION_HEADER: u32 = SHB_MAGIC;
-/// Byte-order magic of a section in this machine-independent order (draft-ietf-opsawg-pcapng,
-/// section 4.1).
+/// Byte-order magic of a section (draft-ietf-opsawg-pcapng, section 4.1).
 pub(super) const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
-/// Packet data in an enhanced packet block starts behind type, length, interface, two halves of the
-/// time, two lengths.
+/// CapturedOffset of the packet data in an enhanced packet block: type, length, interface, two
+/// halves of the time, two lengths.
 pub(super) const PACKET_DATA_OFFSET: usize = 28;
-/// Option codes of the draft that pcap-parser does not name for this block.
+/// Option code of `epb_flags`, which pcap-parser does not name.
 const EPB_FLAGS: OptionCode = OptionCode(2);
 
-/// Interfaces beyond these are not kept: their packets count as malformed.
+/// Limit of interfaces; packets of further ones count as malformed.
 const MAX_INTERFACES: usize = 4096;
 
-/// The section being read.
+/// The current section.
 #[derive(Debug, Default)]
 pub(super) struct Section {
     big_endian: bool,
-    interfaces: Vec<Interface>,
+    interfaces: Vec<CaptureInterface>,
 }
 
 #[derive(Debug)]
-struct Interface {
-    /// `None`: a link type that carries nothing for us.
+struct CaptureInterface {
+    /// `None` for an unsupported link type.
     link: Option<LinkType>,
     /// `if_tsresol`: bit 7 set: 2^-n s, else 10^-n s.
     resolution: u8,
@@ -55,20 +54,20 @@ struct Interface {
     offset_s: i64,
 }
 
-/// What cannot be understood, in the place of its number.
-const UNKNOWN: Interface = Interface {
+/// Placeholder of an invalid description.
+const UNKNOWN: CaptureInterface = CaptureInterface {
     link: None,
     resolution: 6,
     offset_s: 0,
 };
 
-/// Whether a file that starts so is pcapng. The block type reads the same in both byte orders.
+/// Whether the first bytes are those of pcapng.
 pub(super) fn is_section_header(start: &[u8]) -> bool {
     start.starts_with(&SHB_MAGIC.to_le_bytes())
 }
 
 impl Section {
-    /// Reads the first section header; its comment.
+    /// Reads the first section header and returns its comment.
     pub(super) fn open<R: Read>(
         &mut self,
         window: &mut Window<R>,
@@ -90,7 +89,7 @@ impl Section {
                 got,
             }),
             Ok(Err(End::Unreadable { fault, .. })) => Err(foreign(format!(
-                "the start of a pcapng section, but: {fault}"
+                "an invalid pcapng section header: {fault}"
             ))),
             Ok(Err(End::Complete)) => Err(RecordingError::Empty {
                 path: path.to_owned(),
@@ -100,7 +99,7 @@ impl Section {
                 let Ok((_, header)) = parse_sectionheaderblock(block) else {
                     let fault = Fault::Block { kind: SHB_MAGIC };
                     return Err(foreign(format!(
-                        "the start of a pcapng section, but: {fault}"
+                        "an invalid pcapng section header: {fault}"
                     )));
                 };
                 let comment = option(&header.options, OptionCode::Comment)
@@ -113,39 +112,39 @@ impl Section {
     }
 
     /// Reads the next block into the window.
-    pub(super) fn step<R: Read>(&mut self, window: &mut Window<R>) -> io::Result<Step> {
+    pub(super) fn step<R: Read>(&mut self, window: &mut Window<R>) -> io::Result<FileItem> {
         let (kind, length) = match self.frame(window)? {
             Ok(framed) => framed,
-            Err(End::Complete) => return Ok(Step::End(End::Complete)),
-            Err(end) => return self.go_on_behind(window, end),
+            Err(End::Complete) => return Ok(FileItem::End(End::Complete)),
+            Err(end) => return self.skip_damage(window, end),
         };
         let block = window.bytes().get(..length).unwrap_or_default();
         Ok(match kind {
             SHB_MAGIC => {
                 self.interfaces.clear();
-                Step::Skip { length }
+                FileItem::Skip { length }
             }
             IDB_MAGIC => {
                 self.describe(block);
-                Step::Skip { length }
+                FileItem::Skip { length }
             }
             EPB_MAGIC => match self.packet(block) {
-                Ok(packet) => Step::Packet(packet),
-                Err(fault) => Step::Malformed { length, fault },
+                Ok(packet) => FileItem::Packet(packet),
+                Err(fault) => FileItem::Malformed { length, fault },
             },
-            SPB_MAGIC => Step::Malformed {
+            SPB_MAGIC => FileItem::Malformed {
                 length,
                 fault: Fault::Timeless,
             },
-            _ => Step::Skip { length },
+            _ => FileItem::Skip { length },
         })
     }
 
-    /// Where no block can be framed: to the next that can. A file that was merely cut off has none,
-    /// and ends as `end` says.
-    fn go_on_behind<R: Read>(&mut self, window: &mut Window<R>, end: End) -> io::Result<Step> {
+    /// Skips to the next valid block after invalid framing. A truncated file has none and ends with
+    /// `end`.
+    fn skip_damage<R: Read>(&mut self, window: &mut Window<R>, end: End) -> io::Result<FileItem> {
         let (offset, fault) = match &end {
-            End::Complete => return Ok(Step::End(end)),
+            End::Complete => return Ok(FileItem::End(end)),
             &End::Truncated {
                 offset,
                 expected,
@@ -153,29 +152,29 @@ impl Section {
             } => (offset, Fault::Cut { expected, got }),
             End::Unreadable { offset, fault } => (*offset, fault.clone()),
         };
-        // A damaged description keeps its number, so that those behind it keep theirs; a damaged
-        // section is a section.
+        // A damaged description keeps its number, so that later ones keep theirs. A damaged section
+        // header still starts a section.
         match words(window.bytes()).map(|[kind, _, _]| self.u32(kind)) {
-            Some(IDB_MAGIC) => self.keep(UNKNOWN),
+            Some(IDB_MAGIC) => self.push_interface(UNKNOWN),
             Some(SHB_MAGIC) => self.interfaces.clear(),
             _ => {}
         }
         let Some(found) = resync(window, self.big_endian)? else {
-            return Ok(Step::End(end));
+            return Ok(FileItem::End(end));
         };
         if found.big_endian != self.big_endian {
-            // The header of a section in the other byte order was among what is damaged.
+            // The damage includes the header of a section in the other byte order.
             self.big_endian = found.big_endian;
             self.interfaces.clear();
         }
-        Ok(Step::Damaged {
+        Ok(FileItem::Damaged {
             offset,
             bytes: found.skipped,
             fault,
         })
     }
 
-    /// Brings the next whole block into the window: its type and length, or why there is none.
+    /// Reads the next block into the window and returns its type and length, or the end.
     fn frame<R: Read>(&mut self, window: &mut Window<R>) -> io::Result<Result<(u32, usize), End>> {
         let offset = window.offset();
         let truncated = |expected: u32, got: usize| {
@@ -194,14 +193,13 @@ impl Section {
             return truncated(FRAMING_LEN, start.len());
         };
         if kind == SHB_MAGIC.to_le_bytes() {
-            // A section header tells the byte order of everything up to the next one, itself
-            // included.
+            // A section header sets the byte order from itself up to the next one.
             self.big_endian = match third {
                 magic if magic == BYTE_ORDER_MAGIC.to_le_bytes() => false,
                 magic if magic == BYTE_ORDER_MAGIC.to_be_bytes() => true,
                 magic => {
                     return unreadable(Fault::Header(format!(
-                        "byte-order magic: expected 1A 2B 3C 4D either way round, got {magic:02X?}"
+                        "byte-order magic: expected 1A 2B 3C 4D in either order, got {magic:02X?}"
                     )));
                 }
             };
@@ -231,22 +229,21 @@ impl Section {
         } else {
             parse_interfacedescriptionblock_le
         };
-        // An interface that cannot be understood keeps its number, so that those behind it keep
-        // theirs.
+        // An invalid description keeps its number, so that later ones keep theirs.
         let interface = match parse(block) {
             Ok((_, described)) => self.interface(&described),
             Err(_) => UNKNOWN,
         };
-        self.keep(interface);
+        self.push_interface(interface);
     }
 
-    fn keep(&mut self, interface: Interface) {
+    fn push_interface(&mut self, interface: CaptureInterface) {
         if self.interfaces.len() < MAX_INTERFACES {
             self.interfaces.push(interface);
         }
     }
 
-    fn interface(&self, described: &InterfaceDescriptionBlock<'_>) -> Interface {
+    fn interface(&self, described: &InterfaceDescriptionBlock<'_>) -> CaptureInterface {
         let name = option(&described.options, OptionCode::IfName)
             .and_then(|bytes| std::str::from_utf8(bytes).ok());
         let resolution =
@@ -260,7 +257,7 @@ impl Section {
                     i64::from_le_bytes(bytes)
                 }
             });
-        Interface {
+        CaptureInterface {
             link: u32::try_from(described.linktype.0)
                 .ok()
                 .and_then(|number| LinkType::from_number(number, name)),
@@ -269,7 +266,7 @@ impl Section {
         }
     }
 
-    fn packet(&self, block: &[u8]) -> Result<Packet, Fault> {
+    fn packet(&self, block: &[u8]) -> Result<CapturedPacket, Fault> {
         let parse = match self.big_endian {
             true => parse_enhancedpacketblock_be,
             false => parse_enhancedpacketblock_le,
@@ -283,7 +280,7 @@ impl Section {
                 described: self.interfaces.len(),
             })?;
         let ticks = (u64::from(packet.ts_high) << 32) | u64::from(packet.ts_low);
-        Ok(Packet {
+        Ok(CapturedPacket {
             host: interface.time(ticks),
             length: block.len(),
             data: PACKET_DATA_OFFSET..PACKET_DATA_OFFSET.saturating_add(packet.caplen as usize),
@@ -312,20 +309,20 @@ impl Section {
     }
 }
 
-impl Interface {
-    /// The packet's time, held at the ends of the range of `i64` nanoseconds.
-    fn time(&self, units: u64) -> Stamp<Host> {
-        let units = u128::from(units);
+impl CaptureInterface {
+    /// The packet's time, limited to the range of `i64` nanoseconds.
+    fn time(&self, ticks: u64) -> Stamp<Host> {
+        let ticks = u128::from(ticks);
         let exponent = u32::from(self.resolution & 0x7F);
         let ns = if self.resolution & 0x80 != 0 {
-            (units * 1_000_000_000) >> exponent
+            (ticks * 1_000_000_000) >> exponent
         } else if exponent <= 9 {
-            units * 10_u128.pow(9 - exponent)
+            ticks * 10_u128.pow(9 - exponent)
         } else {
-            // Beyond 10^38 per second no 64-bit count reaches a nanosecond.
+            // Above 10^38 ticks per second a 64-bit count stays below a nanosecond.
             10_u128
                 .checked_pow(exponent - 9)
-                .map_or(0, |divisor| units / divisor)
+                .map_or(0, |divisor| ticks / divisor)
         };
         // At most 2^64 * 10^9, far inside i128.
         let ns = ns as i128 + i128::from(self.offset_s) * 1_000_000_000;

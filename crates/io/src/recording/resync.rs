@@ -1,10 +1,8 @@
-//! Behind a damaged pcapng block: where the next sound one begins. A block is known by its type and
-//! by the length that stands in front and behind; in one that we look into, its parts must fit that
-//! length too.
+//! Search for the next valid pcapng block after damage. A block is recognised by its type and by
+//! equal lengths at its start and end; in parsed blocks the content must fit the length.
 //!
-//! Deliberately not for classic pcap, where nothing marks the start of a record. Bounded: blocks of
-//! up to 128 KiB are recognised (a packet has 64 KiB at most), each byte is looked at once, and no
-//! more is held than for reading.
+//! Blocks of up to 128 KiB are recognised (a packet has at most 64 KiB), and each byte is examined
+//! once. Classic pcap has no such marks.
 
 use std::io::{self, Read};
 
@@ -12,45 +10,44 @@ use super::pcapng::{BYTE_ORDER_MAGIC, FRAMING_LEN, PACKET_DATA_OFFSET, SECTION_H
 use super::window::Window;
 use pcap_parser::pcapng::{EPB_MAGIC, IDB_MAGIC, SPB_MAGIC};
 
-/// The longest block that is recognised.
+/// Longest block that is recognised.
 const MAX_LEN: usize = 128 << 10;
-/// Blocks in a row that leave no doubt.
+/// Consecutive valid blocks that count as certain.
 const CHAIN_LEN: usize = 3;
-/// Name resolution, interface statistics, systemd's journal, decryption secrets, the two custom
-/// blocks: only their frame is looked at.
+/// Blocks of which only the framing is checked: name resolution, interface statistics, systemd
+/// journal, decryption secrets, the two custom blocks.
 const OTHERS: [u32; 6] = [4, 5, 9, 10, 0x0BAD, 0x4000_0BAD];
 
-/// Where reading can go on.
+/// A valid block after damage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Sound {
-    /// Bytes passed over.
+pub(super) struct ValidBlock {
+    /// Bytes skipped.
     pub(super) skipped: u64,
-    /// The byte order of the block found.
+    /// Byte order of the block.
     pub(super) big_endian: bool,
 }
 
-/// Moves the window to the next sound block behind its first byte; `None`: there is none up to the
-/// end of the stream.
+/// Moves the window to the next valid block after its first byte; `None` if the stream has none.
 pub(super) fn resync<R: Read>(
     window: &mut Window<R>,
     big_endian: bool,
-) -> io::Result<Option<Sound>> {
+) -> io::Result<Option<ValidBlock>> {
     let mut skipped = 0;
     let mut from = 1;
     loop {
         let bytes = window.fill(MAX_LEN * 2)?;
-        // Not more, though there may be: what is found must not depend on how the bytes came.
+        // A fixed length, so that the result does not depend on how the reader delivers bytes.
         let bytes = bytes.get(..MAX_LEN * 2).unwrap_or(bytes);
         let ended = bytes.len() < MAX_LEN * 2;
         let to = if ended { bytes.len() } else { MAX_LEN };
         for at in from..to {
             let rest = bytes.get(at..).unwrap_or_default();
-            if sound(rest, false).is_none() && sound(rest, true).is_none() {
+            if valid_len(rest, false).is_none() && valid_len(rest, true).is_none() {
                 continue;
             }
             let (at, big_endian) = likeliest(bytes, at, big_endian);
             window.consume(at);
-            return Ok(Some(Sound {
+            return Ok(Some(ValidBlock {
                 skipped: skipped + at as u64,
                 big_endian,
             }));
@@ -64,11 +61,10 @@ pub(super) fn resync<R: Read>(
     }
 }
 
-/// Of what looks like a block within the three bytes behind `first`: where one begins, and its byte
-/// order.
+/// The most likely start of a block within three bytes after `first`, and its byte order.
 ///
-/// Seen three bytes too early or too late, a block among zeros looks like one of the other byte
-/// order. What comes behind it then does not; if it does, the order that was good so far is kept.
+/// Shifted by up to three bytes, a block among zeros resembles one of the other byte order, but the
+/// blocks after it do not. Otherwise the current order is kept.
 fn likeliest(bytes: &[u8], first: usize, big_endian: bool) -> (usize, bool) {
     let mut best = (0, first, big_endian);
     for order in [big_endian, !big_endian] {
@@ -82,13 +78,13 @@ fn likeliest(bytes: &[u8], first: usize, big_endian: bool) -> (usize, bool) {
     (best.1, best.2)
 }
 
-/// Sound blocks in a row, up to [`CHAIN_LEN`]; the end of what is known is as good as any.
+/// Number of consecutive valid blocks, up to [`CHAIN_LEN`]; the end of the bytes counts as valid.
 fn chain(mut bytes: &[u8], big_endian: bool) -> usize {
     for blocks in 0..CHAIN_LEN {
         if bytes.is_empty() && blocks > 0 {
             break;
         }
-        let next = sound(bytes, big_endian).and_then(|length| bytes.get(length..));
+        let next = valid_len(bytes, big_endian).and_then(|length| bytes.get(length..));
         match next {
             Some(next) => bytes = next,
             None => return blocks,
@@ -97,8 +93,8 @@ fn chain(mut bytes: &[u8], big_endian: bool) -> usize {
     CHAIN_LEN
 }
 
-/// The length of the sound block of this byte order that begins here.
-fn sound(bytes: &[u8], big_endian: bool) -> Option<usize> {
+/// The length of the valid block of this byte order at the start of `bytes`.
+fn valid_len(bytes: &[u8], big_endian: bool) -> Option<usize> {
     let word = |at: usize| word(bytes, at, big_endian);
     let kind = word(0)?;
     let front = word(4)?;

@@ -1,69 +1,49 @@
-//! Which sensors there are in a recording, or on a socket: told apart by the address they send from
-//! and, where one address sends data to several ports (a relay, a simulator), by that port too.
+//! The sensors of a recording or socket, distinguished by source address and by the port of their
+//! data packets (a relay or simulator sends for several sensors).
 //!
-//! A position packet goes with the data of its address: with all of it, where a relay hides several
-//! sensors behind one. Nothing is decoded.
+//! A position packet belongs to all sensors of its source address.
 
 use std::net::{IpAddr, Ipv4Addr};
-use std::path::Path;
 
 use protocol::record::{Record, Wire};
 use units::{Host, Stamp};
 
-use super::{DatagramKind, Recording, RecordingError};
+use super::DatagramKind;
 
-/// Sensors told apart; a stranger's recording must not fill the memory.
+/// Limit of sensors, which bounds memory.
 const MAX_SENSORS: usize = 256;
 
 /// One sensor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sensor {
-    /// What its records carry as source: see [`source_of`].
+    /// Source address of its records; a hash for an IPv6 address.
     pub source: [u8; 4],
-    /// UDP port its data packets go to; `None` where only position packets were seen.
+    /// UDP port of its data packets; `None` if only position packets were seen.
     pub data_port: Option<u16>,
     /// Data packets.
     pub data: u64,
-    /// Packets with a lidar's marks that are not sound, sent to the data port.
+    /// Damaged packets to the data port.
     pub damaged: u64,
     /// Position packets from this address.
     pub position: u64,
     /// Host time of the first packet.
     pub first: Stamp<Host>,
-    /// Host time of the last packet, in the order in which they came.
+    /// Host time of the last packet, in order of arrival.
     pub last: Stamp<Host>,
 }
 
-impl Sensor {
-    /// Whether a record is this sensor's: from its address and, unless it is a position packet, to
-    /// its data port.
-    #[must_use]
-    pub fn sent(&self, record: &Record<'_>) -> bool {
-        let Wire::Lidar {
-            source,
-            port,
-            payload,
-        } = record.wire
-        else {
-            return false;
-        };
-        source == self.source
-            && (self.data_port == Some(port) || DatagramKind::of(payload) == DatagramKind::Position)
-    }
-}
-
-/// Counts records by sensor; feed it every record of a pass.
+/// Counts records by sensor.
 #[derive(Clone, Debug, Default)]
 pub struct Sensors {
-    /// By first appearance; `data_port` is `None` for what has sent position packets only.
+    /// In order of appearance; `data_port` is `None` for position packets.
     seen: Vec<Sensor>,
-    /// Where the last record was found: packets of one sensor come in a row.
+    /// Index of the last record's sensor: packets of one sensor arrive in a row.
     last: usize,
     more: u64,
 }
 
 impl Sensors {
-    /// Takes a record, and says whether it is a lidar's; the drive's and others' are passed over.
+    /// Counts a record; returns whether it is a lidar's.
     pub fn observe(&mut self, record: &Record<'_>) -> bool {
         let Wire::Lidar {
             source,
@@ -144,34 +124,19 @@ impl Sensors {
         list
     }
 
-    /// Packets of lidars beyond the 256 that are told apart.
+    /// Packets of lidars beyond the limit of 256.
     #[must_use]
     pub fn more(&self) -> u64 {
         self.more
     }
 }
 
-/// The sensors of a recording, in one pass over it.
+/// The source of a record for an address.
 ///
-/// # Errors
-/// As [`Recording::open`] and [`Recording::next_record`].
-pub fn sensors(path: impl AsRef<Path>) -> Result<Vec<Sensor>, RecordingError> {
-    let mut recording = Recording::open(path)?;
-    let mut sensors = Sensors::default();
-    while let Some(record) = recording.next_record()? {
-        sensors.observe(&record);
-    }
-    Ok(sensors.list())
-}
-
-/// What a record carries as source for an address.
-///
-/// A lidar of this family speaks IPv4 only, so that its address stands there as it is. For data
-/// that somebody relays over IPv6 it is the IPv4 address that it maps (`::ffff:a.b.c.d`), or else a
-/// stand-in that differs from sensor to sensor: 28 bits of the address's FNV-1a hash within
-/// 240.0.0.0/4, which RFC 1112 reserves and no host has.
-#[must_use]
-pub fn source_of(address: IpAddr) -> [u8; 4] {
+/// Lidars of this family use IPv4. A mapped IPv6 address (`::ffff:a.b.c.d`) gives its IPv4 address.
+/// Other IPv6 addresses, of relays, give 28 bits of their FNV-1a hash within 240.0.0.0/4, which RFC
+/// 1112 reserves.
+pub(super) fn source_of(address: IpAddr) -> [u8; 4] {
     let v6 = match address {
         IpAddr::V4(v4) => return v4.octets(),
         IpAddr::V6(v6) => v6,
@@ -211,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn sensors_are_told_apart_by_source_and_data_port() {
+    fn sensors_are_distinguished_by_source_and_data_port() {
         let (a, b, c) = ([10, 0, 0, 1], [10, 0, 0, 2], [10, 0, 0, 3]);
         let data = data();
         let mut sensors = Sensors::default();
@@ -241,23 +206,10 @@ mod tests {
                 sensor(c, None, [0, 0, 1], 5, 5),
             ]
         );
-        let record = |source, port, payload| Record {
-            host: Stamp::from_nanos(0),
-            wire: Wire::Lidar {
-                source,
-                port,
-                payload,
-            },
-        };
-        assert!(list[0].sent(&record(a, 2368, &data)));
-        assert!(list[0].sent(&record(a, 8308, &[0; 512])));
-        assert!(!list[0].sent(&record(b, 2368, &data)));
-        assert!(!list[1].sent(&record(b, 2369, &data)));
-        assert!(list[2].sent(&record(b, 2369, &data)));
     }
 
     #[test]
-    fn a_flood_of_sources_is_bounded() {
+    fn the_number_of_sensors_is_bounded() {
         let mut sensors = Sensors::default();
         for n in 0..1000_u16 {
             let [hi, lo] = n.to_be_bytes();
@@ -268,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn ipv6_gets_a_stand_in_that_nobody_has() {
+    fn ipv6_sources_are_reserved_addresses() {
         let of = |text: &str| source_of(text.parse().unwrap());
         assert_eq!(of("192.168.1.201"), [192, 168, 1, 201]);
         assert_eq!(of("::ffff:192.168.1.201"), [192, 168, 1, 201]);

@@ -10,8 +10,8 @@ use crate::log::{LogConfig, LogWriter, OwnedRecord};
 
 const SOURCE: [u8; 4] = [192, 168, 1, 201];
 
-/// An IPv4 packet with UDP in it, written without etherparse and without checksums, which
-/// recordings often lack.
+/// An IPv4 packet with UDP, encoded without etherparse and without checksums, which recordings
+/// often lack.
 fn ip(port: u16, payload: &[u8]) -> Vec<u8> {
     let udp_len = (payload.len() + 8) as u16;
     let mut out = vec![0x45, 0];
@@ -46,7 +46,7 @@ fn put(out: &mut Vec<u8>, value: u32, big_endian: bool) {
     });
 }
 
-/// A pcap file; records are (seconds, fraction, original length or that of the data, data).
+/// A pcap file; records are (seconds, fraction, original length if it differs, data).
 fn pcap(magic: u32, big: bool, link: u32, records: &[(u32, u32, Option<u32>, &[u8])]) -> Vec<u8> {
     let mut out = Vec::new();
     put(&mut out, magic, big);
@@ -116,8 +116,7 @@ fn packet(big: bool, interface: u32, time: u64, data: &[u8], flags: Option<u32>)
     block(6, big, &body)
 }
 
-/// A data packet as far as it is known by: `FF EE` in front of each block, and the blocks filled
-/// with something.
+/// A data packet with block flags and arbitrary content.
 fn data_packet(fill: u8) -> Vec<u8> {
     let mut data = vec![fill; DATA_LEN];
     for block in data.chunks_exact_mut(100) {
@@ -126,7 +125,7 @@ fn data_packet(fill: u8) -> Vec<u8> {
     data
 }
 
-/// Everything in a recording, foreign datagrams included, how it ended, and the counts.
+/// All records, foreign ones included, with the end and the counts.
 fn read(bytes: &[u8]) -> (Vec<OwnedRecord>, End, Counts) {
     let mut recording = Recording::new(bytes, "test").unwrap().keep_foreign();
     let mut records = Vec::new();
@@ -189,7 +188,7 @@ fn pcap_in_micro_and_nanoseconds_and_both_byte_orders() {
 }
 
 #[test]
-fn every_way_to_wrap_an_ip_packet() {
+fn all_link_headers_are_supported() {
     let ip = ip(8308, b"$GPRMC");
     let tag = [0x81, 0x00, 0x00, 0x05];
     let double_tag = [0x88, 0xA8, 0, 7, 0x81, 0x00, 0x00, 0x05];
@@ -217,7 +216,7 @@ fn every_way_to_wrap_an_ip_packet() {
 }
 
 #[test]
-fn what_is_not_a_datagram_is_counted_by_kind() {
+fn other_packets_are_counted_by_kind() {
     let good = ethernet(&[], &ip(2368, b"good"));
     let arp = {
         let mut frame = ethernet(&[], &[0; 28]);
@@ -230,7 +229,7 @@ fn what_is_not_a_datagram_is_counted_by_kind() {
     let mut last_fragment = ethernet(&[], &ip(2368, b"part"));
     last_fragment[20..22].copy_from_slice(&[0, 9]);
     let mut lies = ethernet(&[], &ip(2368, b"lies"));
-    lies[39] += 1; // UDP length beyond the packet
+    lies[39] += 1; // UDP length exceeds the packet
     let mut lldp = good.clone();
     lldp[12..14].copy_from_slice(&[0x88, 0xCC]);
     let file = pcap(
@@ -242,7 +241,7 @@ fn what_is_not_a_datagram_is_counted_by_kind() {
             (2, 0, None, &first_fragment),
             (3, 0, None, &last_fragment),
             (4, 0, None, &lldp),
-            (5, 0, Some(1248), &good[..44]), // cut by a snap length
+            (5, 0, Some(1248), &good[..44]), // truncated by a snap length
             (6, 0, None, &lies),
             (7, 0, None, &good[..20]),
             (8, 0, None, &[]),
@@ -272,7 +271,7 @@ fn what_is_not_a_datagram_is_counted_by_kind() {
 }
 
 #[test]
-fn a_short_layer_is_named_with_what_it_lacks() {
+fn faults_name_the_short_layer() {
     let mut lies = ethernet(&[], &ip(2368, b"lies"));
     lies[39] += 1;
     let (_, _, counts) = read(&pcap(0xA1B2_C3D4, false, 1, &[(6, 0, None, &lies)]));
@@ -299,7 +298,7 @@ fn pcapng_times_in_every_resolution_and_both_byte_orders() {
         for (resolution, units) in [
             (None, second as u64 * 1_000_000 + 5),
             (Some(9), second as u64 * 1_000_000_000 + 5_000),
-            (Some(10), second as u64 * 10_000_000_000 + 50_009), // the tenth of a nanosecond is dropped
+            (Some(10), second as u64 * 10_000_000_000 + 50_009), // drops 0.1 ns
             (Some(0x80 | 20), ((second as u64) << 20) + 6),      // 6 / 2^20 s = 5722.0 ns
         ] {
             let options: Vec<(u16, Vec<u8>)> = resolution.iter().map(|&r| (9, vec![r])).collect();
@@ -336,7 +335,7 @@ fn pcapng_times_in_every_resolution_and_both_byte_orders() {
 }
 
 #[test]
-fn absurd_time_resolutions_are_held_not_wrapped() {
+fn extreme_time_resolutions_do_not_wrap() {
     let data = ethernet(&[], &ip(2368, b"x"));
     for (resolution, expected) in [(0, i64::MAX), (127, 0), (0xFF, 0)] {
         let file = [
@@ -350,7 +349,7 @@ fn absurd_time_resolutions_are_held_not_wrapped() {
 }
 
 #[test]
-fn pcapng_sections_start_anew_and_other_blocks_are_passed_over() {
+fn pcapng_sections_reset_interfaces_and_other_blocks_are_skipped() {
     let data = ethernet(&[], &ip(2368, b"x"));
     let can = [0, 0, 6, 1, 8, 0, 0, 0, 0x40, 0x41, 0x60, 0, 0, 0, 0, 0];
     let file = [
@@ -360,8 +359,8 @@ fn pcapng_sections_start_anew_and_other_blocks_are_passed_over() {
         packet(false, 0, 1, &data, None),
         packet(false, 1, 2, &data, None), // no such interface
         block(3, false, &[1, 0, 0, 0, 0xAA, 0, 0, 0]), // simple packet
-        block(0x7777, false, &[1; 400]),  // of a kind that is not known
-        block(6, false, &[0xFF; 40]),     // lengths beyond the block
+        block(0x7777, false, &[1; 400]),  // of an unknown type
+        block(6, false, &[0xFF; 40]),     // lengths exceed the block
         section(true),                    // the other byte order
         interface(true, 227, &[]),
         interface(true, 1, &[]),
@@ -409,7 +408,7 @@ fn a_can_recording_in_classic_pcap() {
 }
 
 #[test]
-fn a_wrong_length_ends_the_reading_and_says_where() {
+fn a_wrong_length_ends_the_reading_with_its_offset() {
     let data = ethernet(&[], &ip(2368, b"x"));
     let mut file = pcap(0xA1B2_C3D4, false, 1, &[(1, 0, None, &data)]);
     let offset = file.len() as u64;
@@ -434,7 +433,7 @@ fn a_wrong_length_ends_the_reading_and_says_where() {
 }
 
 #[test]
-fn files_that_are_no_recordings_say_what_they_are() {
+fn other_files_are_described() {
     let folder = tempfile::tempdir().unwrap();
     let missing = Recording::open(folder.path().join("missing.pcap")).unwrap_err();
     assert!(matches!(missing, RecordingError::Open { .. }), "{missing}");
@@ -463,7 +462,7 @@ fn files_that_are_no_recordings_say_what_they_are() {
     assert!(open(&wrong_order).contains("byte-order magic"));
 }
 
-/// The folder of real recordings, or a printed reason to skip.
+/// Path of a real recording, or a printed reason to skip.
 fn real(name: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("VELOMOTION_RECORDINGS").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings"),
@@ -478,11 +477,11 @@ fn real(name: &str) -> Option<PathBuf> {
 }
 
 #[test]
-fn real_recordings_hold_what_is_known_of_them() {
+fn real_recordings_have_their_known_content() {
     for (name, data, position) in [
         ("vlp16-strongest-gps.pcap", 293, 57),
         ("vlp16-dual.pcap", 603, 0),
-        // Their IP length is that of a data packet, their UDP length true.
+        // Their IP length is that of a data packet, their UDP length is correct.
         ("vlp16-2014-no-factory-bytes.pcap", 1902, 367),
         ("vlp16-fov-limited-malformed.pcap", 41, 36),
     ] {
@@ -503,7 +502,7 @@ fn real_recordings_hold_what_is_known_of_them() {
             assert_eq!(records, data + position, "{name}");
             let end = recording.end().cloned().unwrap();
             if name.contains("malformed") {
-                // Cut off in its last record, 554 bytes and 16 of header, of which 258 are there.
+                // Truncated in its last record: 258 of 554 bytes and 16 of header.
                 let expected = End::Truncated {
                     offset: 72_426,
                     expected: 570,
@@ -518,7 +517,7 @@ fn real_recordings_hold_what_is_known_of_them() {
     }
 }
 
-/// A reader that makes up a long pcap file as it goes.
+/// A reader that generates a long pcap file.
 struct Endless {
     record: Vec<u8>,
     left: usize,
@@ -539,7 +538,7 @@ impl Read for Endless {
 }
 
 #[test]
-fn a_long_recording_does_not_grow_in_memory() {
+fn memory_does_not_grow_with_the_recording() {
     let data = ethernet(&[], &ip(2368, &data_packet(7)));
     let file = pcap(0xA1B2_C3D4, false, 1, &[(1, 0, None, &data)]);
     let records = 100_000;
@@ -560,7 +559,7 @@ fn a_long_recording_does_not_grow_in_memory() {
 }
 
 #[test]
-fn our_own_log_reads_back_with_its_configuration() {
+fn logs_round_trip_with_their_configuration() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.pcapng");
     let config = LogConfig {

@@ -1,8 +1,8 @@
-//! A movable window over a stream of bytes: as much as one record needs, no more.
+//! A sliding window over a byte stream, as long as one record needs.
 
 use std::io::{self, Read};
 
-/// Read ahead: a few hundred packets.
+/// Read-ahead of some two hundred packets.
 const INITIAL_LEN: usize = 256 * 1024;
 
 /// Bytes of a stream from `offset` on.
@@ -12,7 +12,7 @@ pub(super) struct Window<R> {
     start: usize,
     end: usize,
     offset: u64,
-    /// The reader has said that there is no more; it is not asked again.
+    /// The reader reached its end and is not read again.
     ended: bool,
 }
 
@@ -26,7 +26,7 @@ impl<R> std::fmt::Debug for Window<R> {
 }
 
 impl<R> Window<R> {
-    /// Where the window starts in the stream.
+    /// Offset of the window in the stream.
     pub(super) fn offset(&self) -> u64 {
         self.offset
     }
@@ -36,13 +36,13 @@ impl<R> Window<R> {
         self.buffer.get(self.start..self.end).unwrap_or_default()
     }
 
-    /// Bytes of memory it takes.
+    /// Bytes of memory in use.
     #[cfg(test)]
     pub(super) fn capacity(&self) -> usize {
         self.buffer.len()
     }
 
-    /// Moves the window on; beyond its end only as far as it goes.
+    /// Advances the window, at most to its end.
     pub(super) fn consume(&mut self, bytes: usize) {
         let bytes = bytes.min(self.end - self.start);
         self.start += bytes;
@@ -62,18 +62,17 @@ impl<R: Read> Window<R> {
         }
     }
 
-    /// Reads until `wanted` bytes are in the window or the stream ends; the window, which may hold
-    /// more.
+    /// Reads until the window has `wanted` bytes or the stream ends. Returns the window, which may
+    /// be longer.
     pub(super) fn fill(&mut self, wanted: usize) -> io::Result<&[u8]> {
-        // Moved only where the rest of the buffer is too short, so that a slow reader does not cost
-        // a move a byte.
+        // Bytes move only if the rest of the buffer is too short, not for every read of a slow
+        // stream.
         let short = self.end - self.start < wanted && !self.ended;
         if short && self.buffer.len() - self.start < wanted {
             self.buffer.copy_within(self.start..self.end, 0);
             self.end -= self.start;
             self.start = 0;
-            // Twice, so that moving what is left costs no more than reading it did, however often
-            // so much is asked for.
+            // Twice the length bounds the cost of moves by that of reads.
             let room = wanted.saturating_mul(2);
             if self.buffer.len() < room {
                 self.buffer.resize(room, 0);
@@ -98,7 +97,7 @@ impl<R: Read> Window<R> {
 mod tests {
     use super::*;
 
-    /// Yields one byte a read, as a slow pipe does.
+    /// Yields one byte per read, like a slow pipe.
     struct Dribble(Vec<u8>);
 
     impl Read for Dribble {
@@ -112,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn it_moves_grows_and_ends() {
+    fn the_window_moves_grows_and_ends() {
         let mut window = Window::new(Dribble((0..=9).collect()));
         assert_eq!(window.fill(4).unwrap(), [0, 1, 2, 3]);
         window.consume(3);
@@ -124,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_beyond_the_initial_size_fits() {
+    fn records_may_exceed_the_initial_size() {
         let long = vec![7; INITIAL_LEN * 2 + 5];
         let mut window = Window::new(long.as_slice());
         window.fill(10).unwrap();

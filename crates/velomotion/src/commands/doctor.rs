@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use io::can::Interface;
+use io::can::CanInterface;
 use io::discover::{Epos2Found, Findings, discover};
 use serde::Serialize;
 
@@ -136,7 +136,7 @@ fn epos2(unit: &Epos2Found, read: Sysfs<'_>) -> Finding {
     }
 }
 
-fn can_interfaces(interfaces: &[Interface]) -> Vec<Finding> {
+fn can_interfaces(interfaces: &[CanInterface]) -> Vec<Finding> {
     interfaces
         .iter()
         .map(|interface| {
@@ -151,7 +151,7 @@ fn can_interfaces(interfaces: &[Interface]) -> Vec<Finding> {
         .collect()
 }
 
-fn profiles(config: &Config, interfaces: &[Interface]) -> Vec<Finding> {
+fn profiles(config: &Config, interfaces: &[CanInterface]) -> Vec<Finding> {
     let named = config.device.default.as_deref().unwrap_or("auto");
     let mut findings = vec![finding("device without --device", Verdict::Ok, named)];
     for (name, device) in &config.device.profiles {
@@ -181,7 +181,7 @@ fn profiles(config: &Config, interfaces: &[Interface]) -> Vec<Finding> {
 }
 
 /// An interface that is down has a finding of its own.
-fn can_profile(what: String, name: &str, interfaces: &[Interface]) -> Finding {
+fn can_profile(what: String, name: &str, interfaces: &[CanInterface]) -> Finding {
     if interfaces.iter().any(|interface| interface.name == name) {
         return finding(what, Verdict::Ok, format!("CAN interface {name}"));
     }
@@ -280,7 +280,7 @@ mod tests {
 
     #[test]
     fn a_can_interface_that_is_down_gets_the_ip_command() {
-        let interfaces = [("can0", false), ("vcan0", true)].map(|(name, up)| Interface {
+        let interfaces = [("can0", false), ("vcan0", true)].map(|(name, up)| CanInterface {
             name: name.to_owned(),
             up,
         });
@@ -292,7 +292,7 @@ mod tests {
 
     #[test]
     fn a_profile_whose_can_interface_is_not_there_is_a_problem() {
-        let there = [Interface {
+        let there = [CanInterface {
             name: "can0".to_owned(),
             up: true,
         }];

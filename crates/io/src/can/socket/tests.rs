@@ -1,6 +1,5 @@
-//! On a kernel with CAN and an interface `vcan0` that is up, these send frames; elsewhere they say
-//! why they do not, and fail for it where `VELOMOTION_VCAN_INSIDE` is set in the environment, as a
-//! run in a machine made for them does.
+//! Tests that need an interface `vcan0` that is up. Without one they print the reason and return,
+//! or fail if `VELOMOTION_VCAN_INSIDE` is set, as in the virtual machine with CAN.
 
 use protocol::canopen::{CobId, ExtendedId};
 use socketcan::Frame as _;
@@ -9,7 +8,7 @@ use super::*;
 
 const BUS: &str = "vcan0";
 
-/// Says why a test does nothing on this machine.
+/// Reports why a test is skipped.
 fn skip(reason: &str) {
     assert!(
         std::env::var_os("VELOMOTION_VCAN_INSIDE").is_none(),
@@ -18,7 +17,7 @@ fn skip(reason: &str) {
     eprintln!("skipped: {reason}");
 }
 
-/// Two ports on the bus; `None`, after saying why, where the machine has no such bus.
+/// Two ports on the bus; `None` with a reason if the machine has none.
 fn pair() -> Option<(SocketCan, SocketCan)> {
     match (SocketCan::open(BUS), SocketCan::open(BUS)) {
         (Ok(one), Ok(other)) => Some((one, other)),
@@ -57,7 +56,7 @@ fn as_received(frame: &socketcan::CanFrame) -> [u8; SOCKETCAN_LEN] {
 }
 
 #[test]
-fn frames_become_the_kernels_and_back() {
+fn frames_convert_to_the_kernel_and_back() {
     for frame in frames() {
         let kernel = to_kernel(&frame).unwrap();
         assert_eq!(from_kernel(as_received(&kernel)), Some(frame));
@@ -72,20 +71,20 @@ fn frames_become_the_kernels_and_back() {
 }
 
 #[test]
-fn frames_pass_between_two_ports_with_the_kernels_time() {
+fn frames_pass_between_two_ports_with_kernel_times() {
     let Some((mut one, mut other)) = pair() else {
         return;
     };
     assert_eq!(one.name(), BUS);
     for frame in frames() {
         let sent = one.write_frame(&frame).unwrap();
-        // The kernel took its time when the frame passed, not when it is read.
+        // The time is that of the transfer, not of the read.
         thread::sleep(Duration::from_millis(5));
         let before_read = clock::now();
         let (got, host) = other.read(Span::from_secs(5)).unwrap().unwrap();
         assert_eq!(got, frame);
         assert!(sent <= host && host < before_read, "{sent:?} {host:?}");
-        // Nobody hears himself.
+        // Own frames are not received.
         assert_eq!(one.read(Span::ZERO).unwrap(), None);
     }
 }
@@ -105,13 +104,13 @@ fn timeouts_hold_below_and_above_a_millisecond() {
 }
 
 #[test]
-fn what_is_no_interface_says_why() {
+fn open_errors_name_the_reason() {
     let error = SocketCan::open("nocan7").unwrap_err();
     assert!(
         matches!(error, CanError::NoCan { .. } | CanError::NoInterface { .. }),
         "{error}"
     );
-    // Every machine has a loopback, and it is no CAN interface.
+    // The loopback interface is no CAN interface.
     let error = SocketCan::open("lo").unwrap_err();
     assert!(
         matches!(error, CanError::NoCan { .. } | CanError::NotCan { .. }),
@@ -119,10 +118,9 @@ fn what_is_no_interface_says_why() {
     );
 }
 
-/// Takes an interface of its own, since it takes it down; adding one needs the administrator's
-/// rights.
+/// Uses an interface of its own, which it takes down; adding one needs administrator rights.
 #[test]
-fn an_interface_that_is_down_says_how_to_bring_it_up() {
+fn errors_of_interfaces_that_are_down_name_the_command() {
     const OWN: &str = "vcan7";
     let ip = |arguments: &str| {
         std::process::Command::new("ip")
@@ -154,14 +152,14 @@ fn an_interface_that_is_down_says_how_to_bring_it_up() {
     for (list, up) in [(listed_down, false), (listed_up, true)] {
         let name = OWN.to_owned();
         assert!(
-            list.contains(&crate::can::Interface { name, up }),
+            list.contains(&crate::can::CanInterface { name, up }),
             "{list:?}"
         );
     }
 }
 
-/// A socket that nobody reads holds so many frames; the kernel drops the others, and says how many
-/// with the next one that it keeps.
+/// An unread socket buffers a number of frames. The kernel drops further ones and reports their
+/// number with the next frame.
 #[test]
 fn dropped_frames_are_counted() {
     const SENT: u64 = 20_000;

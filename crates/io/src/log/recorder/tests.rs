@@ -29,11 +29,11 @@ fn times(path: &std::path::Path) -> (Vec<i64>, End) {
 }
 
 #[test]
-fn records_of_many_threads_come_out_in_time_order() {
+fn records_of_many_threads_are_sorted_by_time() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.pcapng");
     let writer = LogWriter::create(&path, &LogConfig::default(), Overwrite::Refuse).unwrap();
-    let recorder = Recorder::start(writer).unwrap();
+    let recorder = LogRecorder::start(writer).unwrap();
     let threads: Vec<_> = (0..4)
         .map(|t| {
             let handle = recorder.handle();
@@ -55,14 +55,14 @@ fn records_of_many_threads_come_out_in_time_order() {
     let (times, end) = times(&path);
     assert_eq!(times, (0..2000).collect::<Vec<_>>());
     assert_eq!(end, End::Complete);
-    kept.record(&record(1, b"after the end")); // goes nowhere, and does not panic
+    kept.record(&record(1, b"after the end")); // is ignored
 }
 
 #[test]
-fn records_of_one_time_keep_the_order_of_their_arrival() {
+fn records_of_equal_time_keep_their_order() {
     let sink = SharedSink::default();
     let writer = LogWriter::new(sink.clone(), &LogConfig::default()).unwrap();
-    let recorder = Recorder::start(writer).unwrap();
+    let recorder = LogRecorder::start(writer).unwrap();
     for n in 0..100 {
         recorder.handle().record(&record(7, &[n]));
     }
@@ -85,18 +85,17 @@ fn records_of_one_time_keep_the_order_of_their_arrival() {
 }
 
 #[test]
-fn what_is_a_second_old_is_in_the_file_while_it_grows() {
+fn records_are_in_the_file_within_a_second() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.pcapng");
     let writer = LogWriter::create(&path, &LogConfig::default(), Overwrite::Refuse).unwrap();
-    let recorder = Recorder::start(writer).unwrap();
-    // The latest time comes first and nothing after it: neither clock steps nor silence may hold a
-    // record back.
+    let recorder = LogRecorder::start(writer).unwrap();
+    // The latest time arrives first and no record after it: neither clock steps nor silence delay a
+    // record.
     for ns in [1_000_000_000_000, 5, 3, 4] {
         recorder.handle().record(&record(ns, b"x"));
     }
-    // As a reader finds it after kill -9: nothing has been finished. Two turns are 0.4 s; the rest
-    // is for a busy machine.
+    // The file as after kill -9. Two periods take 0.4 s; the rest is for a busy machine.
     let deadline = Instant::now() + Duration::from_secs(3);
     let (mut seen, mut end) = times(&path);
     while seen.len() < 4 && Instant::now() < deadline {
@@ -112,10 +111,10 @@ fn what_is_a_second_old_is_in_the_file_while_it_grows() {
 }
 
 #[test]
-fn what_cannot_be_written_is_counted_and_the_rest_is_kept() {
+fn invalid_records_are_counted_and_skipped() {
     let sink = SharedSink::default();
     let writer = LogWriter::new(sink.clone(), &LogConfig::default()).unwrap();
-    let recorder = Recorder::start(writer).unwrap();
+    let recorder = LogRecorder::start(writer).unwrap();
     recorder.handle().record(&record(-5, b"before 1970"));
     recorder.handle().record(&record(5, b"sound"));
     let counts = recorder.finish().unwrap();
@@ -136,7 +135,7 @@ impl Write for SharedSink {
     }
 }
 
-/// Takes the head of a log and then no more.
+/// Accepts the header of a log and fails afterwards.
 #[derive(Debug)]
 struct FullDisk {
     writes: usize,
@@ -157,9 +156,9 @@ impl Write for FullDisk {
 }
 
 #[test]
-fn a_failed_write_is_reported_while_it_runs_and_at_the_end() {
+fn failed_writes_are_reported_at_once_and_at_the_end() {
     let writer = LogWriter::new(FullDisk { writes: 0 }, &LogConfig::default()).unwrap();
-    let recorder = Recorder::start(writer).unwrap();
+    let recorder = LogRecorder::start(writer).unwrap();
     assert!(!recorder.failed());
     let handle = recorder.handle();
     let deadline = Instant::now() + Duration::from_secs(10);
@@ -176,7 +175,7 @@ fn a_failed_write_is_reported_while_it_runs_and_at_the_end() {
     assert_eq!(source.kind(), io::ErrorKind::StorageFull);
 }
 
-/// A disk that takes nothing until it is let go.
+/// A disk that blocks until it is released.
 #[derive(Debug)]
 struct StuckDisk {
     open: Arc<AtomicBool>,
@@ -200,7 +199,7 @@ impl Write for StuckDisk {
 }
 
 #[test]
-fn a_stuck_disk_does_not_hold_the_senders_up_and_losses_are_counted() {
+fn a_blocked_disk_does_not_block_senders() {
     let open = Arc::new(AtomicBool::new(false));
     let waiting = Arc::new(AtomicBool::new(false));
     let disk = StuckDisk {
@@ -209,7 +208,7 @@ fn a_stuck_disk_does_not_hold_the_senders_up_and_losses_are_counted() {
         first: true,
     };
     let writer = LogWriter::new(disk, &LogConfig::default()).unwrap();
-    let recorder = Recorder::start(writer).unwrap();
+    let recorder = LogRecorder::start(writer).unwrap();
     let handle = recorder.handle();
     handle.record(&record(0, b"x"));
     while !waiting.load(Ordering::Acquire) {

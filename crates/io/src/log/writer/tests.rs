@@ -27,7 +27,7 @@ fn drive(ns: i64, direction: Direction, frame: &[u8]) -> Record<'_> {
     }
 }
 
-/// Twenty thousand records of both devices, as a sweep gives them.
+/// Twenty thousand records of both devices, like a sweep.
 fn a_sweep() -> Vec<OwnedRecord> {
     let start = 1_763_000_000_123_456_789;
     (0..20_000_i64)
@@ -45,7 +45,7 @@ fn a_sweep() -> Vec<OwnedRecord> {
 }
 
 #[test]
-fn twenty_thousand_records_come_back_as_they_were() {
+fn twenty_thousand_records_round_trip() {
     let records = a_sweep();
     let config = LogConfig {
         metadata: "speed_deg_s = 56.25".to_owned(),
@@ -78,7 +78,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
-    fn any_records_come_back_as_they_were(
+    fn any_records_round_trip(
         records in prop::collection::vec(
             (0..=i64::MAX, any::<[u8; 4]>(), any::<u16>(), 0..4_u8, any::<bool>(), prop::collection::vec(any::<u8>(), 0..100)),
             0..20,
@@ -142,7 +142,7 @@ fn an_existing_log_is_refused_or_replaced() {
 }
 
 #[test]
-fn impossible_records_are_refused_and_the_log_goes_on() {
+fn invalid_records_are_refused_and_the_log_continues() {
     let mut writer = LogWriter::new(Vec::new(), &LogConfig::default()).unwrap();
     let long = vec![0; 65_536];
     assert!(matches!(
@@ -175,7 +175,7 @@ fn impossible_records_are_refused_and_the_log_goes_on() {
     assert_eq!(recording.end(), Some(&End::Complete));
 }
 
-/// A disk with room for so many bytes.
+/// A disk with a limited capacity in bytes.
 #[derive(Debug)]
 struct SmallDisk {
     bytes: Vec<u8>,
@@ -198,7 +198,7 @@ impl Write for SmallDisk {
 }
 
 #[test]
-fn a_full_disk_is_said_once_and_the_rest_of_the_log_is_readable() {
+fn the_log_before_a_full_disk_is_readable() {
     let disk = SmallDisk {
         bytes: Vec::new(),
         room: 200_000,
@@ -218,7 +218,7 @@ fn a_full_disk_is_said_once_and_the_rest_of_the_log_is_readable() {
         writer.write(&lidar(1, &payload)),
         Err(LogError::Failed { .. })
     ));
-    // What is said last says why, too.
+    // The last error names the reason as well.
     let last = writer.flush().unwrap_err();
     assert!(matches!(&last, LogError::Failed { offset: at, .. } if *at == offset));
     assert!(last.to_string().contains(&first.to_string()), "{last}");
@@ -238,7 +238,7 @@ fn a_full_disk_is_said_once_and_the_rest_of_the_log_is_readable() {
 }
 
 #[test]
-fn wireshark_reads_a_log_without_complaint() {
+fn wireshark_reads_logs_without_warnings() {
     if Command::new("tshark").arg("--version").output().is_err() {
         eprintln!("skipped: tshark is not installed");
         return;

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use crate::log::OwnedRecord;
 
-/// A port that plays back what it was given: chunks with the times at which they come.
+/// A port that plays back chunks at their times.
 struct Script {
     chunks: VecDeque<(i64, Vec<u8>)>,
 }
@@ -29,7 +29,7 @@ impl Port for Script {
 
 fn play(link: DriveLink, chunks: Vec<(i64, Vec<u8>)>) -> Vec<(i64, Vec<u8>)> {
     let mut seen = Vec::new();
-    let mut port = Recorder::new(
+    let mut port = RecordingPort::new(
         Script {
             chunks: chunks.into(),
         },
@@ -54,7 +54,7 @@ fn play(link: DriveLink, chunks: Vec<(i64, Vec<u8>)>) -> Vec<(i64, Vec<u8>)> {
 const ANSWER: [u8; 14] = [0x90, 2, 0, 4, 0, 0, 0, 0, 0x37, 2, 0, 0, 0x68, 0];
 
 #[test]
-fn a_frame_in_pieces_is_one_record_with_the_time_of_its_last_piece() {
+fn a_frame_in_pieces_is_one_record_with_its_last_time() {
     let chunks = vec![
         (10, vec![0x55]),
         (20, ANSWER[..1].to_vec()),
@@ -68,13 +68,13 @@ fn a_frame_in_pieces_is_one_record_with_the_time_of_its_last_piece() {
             (10, vec![0x55]),
             (40, ANSWER.to_vec()),
             (40, ANSWER.to_vec()),
-            (50, ANSWER[..3].to_vec()), // what was left when it was dropped
+            (50, ANSWER[..3].to_vec()), // pending when the port is dropped
         ]
     );
 }
 
 #[test]
-fn a_frame_that_stops_is_recorded_when_the_next_bytes_come() {
+fn an_incomplete_frame_is_recorded_with_the_next_bytes() {
     let half_a_second = 500_000_000;
     let chunks = vec![
         (10, ANSWER[..8].to_vec()),
@@ -90,18 +90,18 @@ fn a_frame_that_stops_is_recorded_when_the_next_bytes_come() {
 }
 
 #[test]
-fn rs232_bytes_are_recorded_as_they_come() {
+fn rs232_bytes_are_recorded_by_read() {
     let chunks = vec![(1, b"O".to_vec()), (2, vec![0x90, 2, 3]), (3, vec![0])];
     assert_eq!(play(DriveLink::Rs232, chunks.clone()), chunks);
 }
 
 #[test]
-fn written_frames_are_recorded_with_the_ports_time() {
+fn written_frames_are_recorded_with_their_time() {
     let mut seen = Vec::new();
     let script = Script {
         chunks: VecDeque::new(),
     };
-    let mut port = Recorder::new(script, DriveLink::Usb, |record| {
+    let mut port = RecordingPort::new(script, DriveLink::Usb, |record| {
         seen.push(OwnedRecord::from(record));
     });
     let host = port.write_frame(&ANSWER).unwrap();
@@ -120,7 +120,7 @@ fn written_frames_are_recorded_with_the_ports_time() {
 
 proptest! {
     #[test]
-    fn no_byte_is_lost_and_times_do_not_run_back(
+    fn every_byte_is_recorded_in_order_of_time(
         chunks in prop::collection::vec(
             (0..400_000_000_i64, prop::collection::vec(prop_oneof![Just(0x90_u8), Just(2), Just(0), any::<u8>()], 0..40)),
             0..20,

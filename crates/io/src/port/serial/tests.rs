@@ -1,5 +1,5 @@
 use super::*;
-use crate::port::{Pty, Recorder};
+use crate::port::{Pty, RecordingPort};
 
 use std::thread;
 
@@ -23,9 +23,9 @@ fn read_all(port: &mut impl Port, wanted: usize) -> Vec<u8> {
 }
 
 #[test]
-fn every_byte_passes_unchanged_both_ways() {
+fn all_byte_values_pass_both_ways() {
     let (mut pty, mut port) = pair();
-    // All 256, so with ^C, ^D, XON, XOFF, CR and LF: raw on both sides.
+    // All 256 values, including ^C, ^D, XON, XOFF, CR and LF.
     let all: Vec<u8> = (0..=255).collect();
     let before = clock::now();
     let wrote = port.write_frame(&all).unwrap();
@@ -59,7 +59,7 @@ fn timeouts_hold_below_and_above_a_millisecond() {
 }
 
 #[test]
-fn a_read_gives_the_time_after_the_bytes_came() {
+fn a_read_returns_the_time_after_the_bytes() {
     let (mut pty, mut port) = pair();
     let answering = thread::spawn(move || {
         thread::sleep(Duration::from_millis(30));
@@ -89,12 +89,12 @@ fn an_unplugged_device_is_disconnected_on_read_and_write() {
 }
 
 #[test]
-fn a_port_is_for_one_program_and_can_be_opened_again() {
+fn ports_are_exclusive_and_can_be_reopened() {
     let (mut pty, mut port) = pair();
     let error = SerialPort::open(pty.path(), 1_000_000).unwrap_err();
     assert!(matches!(error, PortError::Busy { .. }), "{error}");
     pty.write_frame(b"left unread").unwrap();
-    // So that the bytes are in the queue of the client, not on their way there.
+    // Time for the bytes to reach the queue of the client.
     let first = read_all(&mut port, 1);
     assert!(b"left unread".starts_with(&first));
     pty.write_frame(b"left unread too").unwrap();
@@ -105,7 +105,7 @@ fn a_port_is_for_one_program_and_can_be_opened_again() {
 }
 
 #[test]
-fn a_client_that_does_not_read_stops_the_device_with_an_error() {
+fn a_client_that_does_not_read_is_a_write_timeout() {
     let (mut pty, _port) = pair();
     let block = [0x55; 1024];
     let error = (0..1000)
@@ -118,7 +118,7 @@ fn a_client_that_does_not_read_stops_the_device_with_an_error() {
 }
 
 #[test]
-fn what_is_no_port_says_why() {
+fn open_errors_name_the_reason() {
     let folder = tempfile::tempdir().unwrap();
     let missing = SerialPort::open(folder.path().join("ttyUSB7"), 115_200).unwrap_err();
     assert!(matches!(missing, PortError::NotFound { .. }), "{missing}");
@@ -132,7 +132,7 @@ fn what_is_no_port_says_why() {
 }
 
 #[test]
-fn the_latency_timer_is_set_where_there_is_one() {
+fn the_latency_timer_is_set_if_present() {
     let sysfs = tempfile::tempdir().unwrap();
     let dev = tempfile::tempdir().unwrap();
     let port = dev.path().join("ttyUSB0");
@@ -146,17 +146,17 @@ fn the_latency_timer_is_set_where_there_is_one() {
     let file = latency_file(sysfs.path(), &by_id).unwrap();
     assert_eq!(set_latency(&file), LatencyTimer::Low);
     assert_eq!(fs::read_to_string(&file).unwrap(), "1");
-    // A folder in its place cannot be read, let alone written.
+    // A directory in its place is neither readable nor writable.
     assert_eq!(set_latency(&device), LatencyTimer::Unknown);
 }
 
 #[test]
-fn a_recorder_around_a_port_keeps_frames_whole() {
+fn a_recording_port_keeps_frames_whole() {
     let (mut pty, port) = pair();
     let answer = [0x90, 2, 0, 4, 0, 0, 0, 0, 0x37, 2, 0, 0, 0x68, 0];
     let mut seen = Vec::new();
     {
-        let mut port = Recorder::new(port, protocol::record::DriveLink::Usb, |record| {
+        let mut port = RecordingPort::new(port, protocol::record::DriveLink::Usb, |record| {
             seen.push(crate::log::OwnedRecord::from(record));
         });
         port.write_frame(b"question").unwrap();

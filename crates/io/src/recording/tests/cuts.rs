@@ -1,10 +1,10 @@
-//! Files that end anywhere, and bytes that are no file.
+//! Truncated files and random bytes.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// Where records end in a file, so that a cut elsewhere is within one.
+/// Reads a file truncated at each byte; `ends` are the ends of its records.
 fn cut_everywhere(file: &[u8], ends: &[usize]) {
     let whole = read(file).0;
     let header_end = ends[0];
@@ -14,7 +14,7 @@ fn cut_everywhere(file: &[u8], ends: &[usize]) {
             match got {
                 Err(RecordingError::Empty { .. }) => assert_eq!(cut, 0),
                 Err(RecordingError::Short { got, .. }) => assert_eq!(got, cut as u64),
-                // Fewer bytes than a magic number has.
+                // Fewer bytes than a magic number.
                 other => panic!("cut at {cut}: {other:?}"),
             }
             continue;
@@ -41,7 +41,7 @@ fn cut_everywhere(file: &[u8], ends: &[usize]) {
 }
 
 #[test]
-fn a_pcap_cut_at_any_byte_keeps_what_was_whole() {
+fn a_truncated_pcap_keeps_complete_records() {
     let data = ethernet(&[], &ip(2368, b"firing"));
     let records: Vec<(u32, u32, Option<u32>, &[u8])> =
         (0..4).map(|s| (s, 0, None, data.as_slice())).collect();
@@ -53,7 +53,7 @@ fn a_pcap_cut_at_any_byte_keeps_what_was_whole() {
 }
 
 #[test]
-fn a_pcapng_cut_at_any_byte_keeps_what_was_whole() {
+fn a_truncated_pcapng_keeps_complete_records() {
     let data = ethernet(&[], &ip(2368, b"firing"));
     for big in [false, true] {
         let mut file = Vec::new();
@@ -72,8 +72,8 @@ fn a_pcapng_cut_at_any_byte_keeps_what_was_whole() {
     }
 }
 
-/// Small sound files of every format, to be damaged.
-fn sound_files() -> Vec<Vec<u8>> {
+/// Small valid files of every format.
+fn valid_files() -> Vec<Vec<u8>> {
     let data = ethernet(&[0x81, 0, 0, 5], &ip(2368, b"firing"));
     let can = [0, 0, 6, 1, 2, 0, 0, 0, 0x40, 0x41];
     let mut files = vec![
@@ -125,7 +125,7 @@ fn sound_files() -> Vec<Vec<u8>> {
     files
 }
 
-/// Reads whatever it is to its end, at once and as a pipe gives it.
+/// Reads bytes to their end, at once and in pieces.
 fn exhaust(bytes: &[u8]) -> u64 {
     let pieces = exhaust_from(Pieces(bytes));
     let whole = exhaust_from(bytes);
@@ -133,7 +133,7 @@ fn exhaust(bytes: &[u8]) -> u64 {
     whole.map_or(0, |(counts, _)| counts.records)
 }
 
-/// Gives a few bytes at a time.
+/// Returns a few bytes per read, like a pipe.
 struct Pieces<'a>(&'a [u8]);
 
 impl Read for Pieces<'_> {
@@ -156,8 +156,8 @@ fn exhaust_from(reader: impl Read) -> Option<(Counts, End)> {
 }
 
 #[test]
-fn the_sound_files_are_sound() {
-    for (n, file) in sound_files().iter().enumerate() {
+fn the_valid_files_have_records() {
+    for (n, file) in valid_files().iter().enumerate() {
         assert!(exhaust(file) > 0, "file {n}");
     }
 }
@@ -166,21 +166,21 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+    fn random_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         exhaust(&bytes);
-        for file in sound_files() {
-            // Behind a header that is believed.
+        for file in valid_files() {
+            // After a valid header.
             exhaust(&[&file[..24.min(file.len())], &bytes].concat());
         }
     }
 
     #[test]
-    fn no_damage_makes_it_panic(
+    fn damaged_files_do_not_panic(
         n in any::<prop::sample::Index>(),
         damage in prop::collection::vec((any::<prop::sample::Index>(), prop_oneof![Just(0_u8), Just(0xFF), any::<u8>()]), 1..12),
         cut in any::<prop::sample::Index>(),
     ) {
-        let files = sound_files();
+        let files = valid_files();
         let mut file = files[n.index(files.len())].clone();
         for (at, value) in damage {
             let at = at.index(file.len());

@@ -1,10 +1,10 @@
-//! Damage in the middle of pcapng files, and the memory that reading takes whatever a file claims.
+//! Damage within pcapng files, and memory use of hostile files.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// A file of `n` data packets in ten sections' worth of blocks; where each block starts.
+/// A file of `n` data packets, and the start of each block.
 fn sound(big: bool, n: u8) -> (Vec<u8>, Vec<usize>) {
     let mut file = section(big);
     let mut starts = vec![0, file.len()];
@@ -30,8 +30,8 @@ fn one_damaged_block_costs_one_packet() {
         let (file, starts) = sound(big, 6);
         let start = starts[4]; // packet 2
         let length = starts[5] - start;
-        // Its length in front: too small, odd, larger than the block, than the file, than anything;
-        // and that behind.
+        // First the length at the start: too small, odd, larger than the block, the file, or the
+        // limit. Then the length at the end.
         let fields = [12_u32, 15, 64, 2_000, 1 << 20, 15 << 20, u32::MAX];
         let damages = fields
             .iter()
@@ -57,18 +57,18 @@ fn one_damaged_block_costs_one_packet() {
 }
 
 #[test]
-fn bytes_that_are_missing_or_too_many() {
+fn missing_and_surplus_bytes_are_skipped() {
     for big in [false, true] {
         let (file, starts) = sound(big, 6);
         let (cut, next) = (starts[4] + 700, starts[6]);
-        // From within packet 2 into packet 3, by a number that is no multiple of four.
+        // A gap from packet 2 into packet 3 that is no multiple of four.
         let missing = [&file[..cut], &file[next - 333..]].concat();
         let (records, end, counts) = read(&missing);
         assert!(records == expected(6, &[2, 3]));
         assert_eq!((end, counts.damaged), (End::Complete, 1));
         assert_eq!(counts.damaged_bytes, 700 + 333);
 
-        // A hole of zeros, larger than what is looked at in one go, as a file system leaves it.
+        // A hole of zeros, as a file system leaves it, larger than one search window.
         for hole in [1, 5, 4096, 1_000_001] {
             let holed = [&file[..starts[4]], &vec![0; hole], &file[starts[4]..]].concat();
             let (records, end, counts) = read(&holed);
@@ -116,7 +116,7 @@ fn a_damaged_section_header_in_the_other_byte_order() {
 }
 
 #[test]
-fn damage_with_nothing_sound_behind_it_ends_the_reading() {
+fn damage_without_later_valid_blocks_ends_the_reading() {
     let (file, starts) = sound(false, 3);
     let garbage = [&file[..starts[4]], &[0xA5; 300_000]].concat();
     let (records, end, counts) = read(&garbage);
@@ -128,7 +128,7 @@ fn damage_with_nothing_sound_behind_it_ends_the_reading() {
     assert_eq!((counts.malformed, counts.damaged), (0, 0));
 }
 
-/// Gives the same bytes again and again, up to a number of bytes in all.
+/// Repeats the same bytes up to a total length.
 struct Repeat {
     head: Vec<u8>,
     body: Vec<u8>,
@@ -152,12 +152,12 @@ impl Read for Repeat {
 }
 
 #[test]
-fn four_hundred_megabytes_of_pcapng_take_a_quarter_of_one() {
+fn four_hundred_megabytes_take_256_kib_of_memory() {
     let head = [section(false), interface(false, 1, &[(9, &[9])])].concat();
     let data = ethernet(&[], &ip(2368, &data_packet(7)));
     let body = [
         packet(false, 0, 5, &data, Some(1)),
-        packet(false, 0, 6, &ethernet(&[], &ip_part_of_nothing()), Some(1)),
+        packet(false, 0, 6, &ethernet(&[], &unmatched_fragment()), Some(1)),
     ]
     .concat();
     let len = head.len() as u64 + body.len() as u64 * 310_000;
@@ -179,17 +179,17 @@ fn four_hundred_megabytes_of_pcapng_take_a_quarter_of_one() {
     assert_eq!(recording.window.capacity(), 256 << 10);
 }
 
-/// The first of two fragments, of which the second never comes.
-fn ip_part_of_nothing() -> Vec<u8> {
+/// The first of two fragments, without the second.
+fn unmatched_fragment() -> Vec<u8> {
     let mut packet = ip(2368, b"part");
     packet[6] = 0x20;
     packet
 }
 
-/// As a hostile file: every other block claims to be as long as is believed, and few bytes follow.
-/// Were they moved or looked at again for each, this would take hours.
+/// A hostile file: every other block claims the longest valid length, and few bytes follow. Moving
+/// or examining them again for each block would take hours.
 #[test]
-fn lengths_that_lie_cost_neither_memory_nor_time() {
+fn false_lengths_cost_neither_memory_nor_time() {
     let mut body = Vec::new();
     for value in [6, 16 << 20] {
         put(&mut body, value, false);
@@ -222,10 +222,9 @@ fn lengths_that_lie_cost_neither_memory_nor_time() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Whatever happens to one block, those that begin behind the damage and its neighbours in
-    /// front are read.
+    /// All blocks outside a damaged one are read.
     #[test]
-    fn damage_stays_where_it_is(
+    fn damage_does_not_spread(
         big in any::<bool>(),
         which in 1_usize..7,
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..60),

@@ -1,8 +1,8 @@
-//! Every way to write the same packet down, each made by hand here, and each damaged.
+//! Variants of recording formats, encoded by hand, intact and damaged.
 
 use super::*;
 
-/// 2^-n or 10^-n s, as `if_tsresol` has it.
+/// Value of `if_tsresol` for nanoseconds.
 const NANOSECONDS: &[u8] = &[9];
 
 fn block_of(big: bool, kind: u32, words: &[u32], data: &[u8]) -> Vec<u8> {
@@ -15,7 +15,7 @@ fn block_of(big: bool, kind: u32, words: &[u32], data: &[u8]) -> Vec<u8> {
     block(kind, big, &body)
 }
 
-/// An IPv6 packet around `payload`, with what its first header is.
+/// An IPv6 packet with its next header and payload.
 fn ip6(source: [u8; 16], next: u8, payload: &[u8]) -> Vec<u8> {
     let mut out = vec![0x60, 0, 0, 0];
     out.extend((payload.len() as u16).to_be_bytes());
@@ -56,7 +56,7 @@ fn one(link: u32, data: &[u8]) -> (Vec<OwnedRecord>, End, Counts) {
 const SECOND_NS: i64 = 1_000_000_000;
 
 #[test]
-fn a_lidar_is_known_by_content_on_any_port_and_everything_else_is_other() {
+fn lidars_are_recognised_by_content_on_any_port() {
     let position = [0; 512];
     let packets = [
         ethernet(&[], &ip(2368, &data_packet(1))),
@@ -83,7 +83,7 @@ fn a_lidar_is_known_by_content_on_any_port_and_everything_else_is_other() {
             datagram(0, 2368, &data_packet(1)),
             datagram(SECOND_NS, 53, &data_packet(2)),
             datagram(2 * SECOND_NS, 60_000, &position),
-            // For the decoder to say that it is damaged.
+            // Damaged, which the decoder reports.
             datagram(6 * SECOND_NS, 2368, &data_packet(3)[..500]),
         ]
     );
@@ -102,7 +102,7 @@ fn ipv6_on_every_link() {
     let packet = ip6(source, 17, &udp(2368, b"firing"));
     let tags = [0x88, 0xA8, 0, 7, 0x81, 0x00, 0x00, 0x05];
     let on_ethernet = |tags: &[u8]| [&[0xFF; 12][..], tags, &[0x86, 0xDD], &packet].concat();
-    let stand_in = source_of(std::net::Ipv6Addr::from(source).into());
+    let stand_in = sensors::source_of(std::net::Ipv6Addr::from(source).into());
     let expected = OwnedRecord::from(&Record {
         host: Stamp::from_nanos(SECOND_NS),
         wire: Wire::Lidar {
@@ -126,7 +126,7 @@ fn ipv6_on_every_link() {
             std::slice::from_ref(&expected),
             "link {link}: {counts:?}"
         );
-        // Cut anywhere it is malformed, or nothing of ours; with the place in the packet.
+        // Truncated anywhere it is malformed, with the offset in the packet.
         for cut in 0..data.len() {
             let (records, end, counts) = one(link, &data[..cut]);
             assert_eq!(
@@ -155,7 +155,7 @@ fn ipv6_on_every_link() {
 }
 
 #[test]
-fn every_ipv4_link_cut_anywhere_is_malformed() {
+fn truncated_ipv4_packets_are_malformed_on_every_link() {
     let ip = ip(2368, b"firing");
     let tags = [0x88, 0xA8, 0, 7, 0x81, 0x00, 0x00, 0x05];
     for (link, data) in [
@@ -163,7 +163,7 @@ fn every_ipv4_link_cut_anywhere_is_malformed() {
         (1, ethernet(&tags[4..], &ip)),
         (1, ethernet(&tags, &ip)),
         (113, [&[0; 14][..], &[8, 0], &ip].concat()),
-        (113, [&[0; 14][..], &[0x81, 0, 0, 5, 8, 0], &ip].concat()), // a tag behind the cooked header
+        (113, [&[0; 14][..], &[0x81, 0, 0, 5, 8, 0], &ip].concat()), // a tag after the cooked header
         (276, [&[8, 0][..], &[0; 18], &ip].concat()),
         (101, ip.clone()),
         (228, ip.clone()),
@@ -183,7 +183,7 @@ fn every_ipv4_link_cut_anywhere_is_malformed() {
 }
 
 #[test]
-fn an_untrue_ip_length_does_not_matter_where_the_udp_length_is_true() {
+fn a_wrong_ip_length_is_ignored_if_the_udp_length_is_correct() {
     // VLP-16 firmware of 2014.
     let mut packet = ip(8308, &[0; 512]);
     packet[2..4].copy_from_slice(&1234_u16.to_be_bytes());
@@ -203,7 +203,7 @@ fn an_untrue_ip_length_does_not_matter_where_the_udp_length_is_true() {
 }
 
 #[test]
-fn fragments_are_put_together_and_what_cannot_be_is_reported() {
+fn fragments_are_reassembled_and_faults_reported() {
     let whole = udp(2368, &data_packet(9));
     let parts = |id| {
         [
@@ -232,7 +232,7 @@ fn fragments_are_put_together_and_what_cannot_be_is_reported() {
             datagram(SECOND_NS + 5_000, 2368, &data_packet(9)),
             datagram(SECOND_NS + 6_000, 2368, &data_packet(9)),
         ],
-        "each with the time of the part that completed it"
+        "each with the time of its last fragment"
     );
     assert_eq!(end, End::Complete);
     assert_eq!(counts.records, 9);
@@ -250,7 +250,7 @@ fn fragments_are_put_together_and_what_cannot_be_is_reported() {
 }
 
 #[test]
-fn a_capture_that_kept_the_whole_datagram_is_as_good_as_any() {
+fn captures_with_complete_datagrams_are_valid() {
     let data = ethernet(&[], &ip(2368, b"firing"));
     let file = pcap(
         0xA1B2_C3D4,
@@ -282,11 +282,11 @@ fn pcapng_of_several_sections_interfaces_and_packet_blocks() {
             section(one),
             interface(one, 1, &[(9, NANOSECONDS)]),
             interface(one, 113, &[(14, &offset(one))]),
-            interface(one, 195, &[]), // IEEE 802.15.4: nobody's
+            interface(one, 195, &[]), // IEEE 802.15.4, unsupported
             packet(one, 0, 7, &data, None),
             packet(one, 1, 200_000_000, &cooked, None),
-            oversized,                        // longer than its block
-            packet(one, 9, 0, &cooked, None), // of no interface
+            oversized,                        // exceeds its block
+            packet(one, 9, 0, &cooked, None), // of an undescribed interface
             packet(one, 2, 8, &data, None),
             block_of(one, 3, &[data.len() as u32], &data),
             block(5, one, &[0; 12]),
@@ -317,7 +317,7 @@ fn pcapng_of_several_sections_interfaces_and_packet_blocks() {
 }
 
 #[test]
-fn a_file_of_simple_packets_says_what_it_lacks() {
+fn simple_packet_blocks_count_as_timeless() {
     let data = ethernet(&[], &ip(2368, &data_packet(1)));
     let file = [
         section(false),
@@ -356,11 +356,14 @@ fn several_sensors_in_one_file() {
         .zip(&packets)
         .map(|(s, p)| (s, 0, None, p.as_slice()))
         .collect();
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("two.pcap");
-    std::fs::write(&path, pcap(0xA1B2_C3D4, false, 1, &records)).unwrap();
-    let list = sensors(&path).unwrap();
-    let said: Vec<_> = list
+    let file = pcap(0xA1B2_C3D4, false, 1, &records);
+    let mut recording = Recording::new(file.as_slice(), "two").unwrap();
+    let mut sensors = Sensors::default();
+    while let Some(record) = recording.next_record().unwrap() {
+        sensors.observe(&record);
+    }
+    let found: Vec<_> = sensors
+        .list()
         .iter()
         .map(|s| {
             (
@@ -374,46 +377,10 @@ fn several_sensors_in_one_file() {
         })
         .collect();
     assert_eq!(
-        said,
+        found,
         [
             (201, Some(2368), 1, 1, 0, 2 * SECOND_NS),
             (202, Some(2368), 2, 0, SECOND_NS, 3 * SECOND_NS),
         ]
     );
-}
-
-#[test]
-fn paced_records_are_those_of_the_recording() {
-    let file = pcap(
-        0xA1B2_C3D4,
-        false,
-        1,
-        &[
-            (1, 0, None, &ethernet(&[], &ip(2368, &data_packet(1)))),
-            (1, 1_000, None, &ethernet(&[], &ip(2368, &data_packet(2)))),
-            (900, 0, None, &ethernet(&[], &ip(2368, &data_packet(3)))),
-        ],
-    );
-    let recording = Recording::new(file.as_slice(), "").unwrap();
-    let pacer = Pacer::new(1.0, units::Span::from_secs(5)).unwrap();
-    let mut paced = Paced::new(recording, pacer);
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    let mut got = Vec::new();
-    while let Some((record, gap)) = paced.next_record(&stop).unwrap() {
-        got.push((OwnedRecord::from(&record), gap));
-    }
-    let silence = Gap::Silence(units::Span::from_millis(898_999));
-    assert_eq!(
-        got,
-        [
-            (datagram(SECOND_NS, 2368, &data_packet(1)), None),
-            (datagram(SECOND_NS + 1_000_000, 2368, &data_packet(2)), None),
-            (
-                datagram(900 * SECOND_NS, 2368, &data_packet(3)),
-                Some(silence)
-            ),
-        ]
-    );
-    assert_eq!(paced.recording().end(), Some(&End::Complete));
-    assert_eq!(paced.pacer().skipped(), units::Span::from_millis(898_999));
 }

@@ -196,8 +196,8 @@ fn datagrams_of_several_ports_are_delivered_in_order_of_time() {
     let mut listener = Listener::bind(&local(4 << 20)).unwrap();
     let [data, position] = [0, 1].map(|n: usize| listener.sockets()[n].address());
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
-    // Several batches, most of them of one port; the longest datagram and an empty
-    // one are among them.
+    // Several batches, most of them of one port; the longest datagram and an empty one are among
+    // them.
     let mut sent = Vec::new();
     for n in 0..600_usize {
         let to = if n % 10 == 0 { position } else { data };
