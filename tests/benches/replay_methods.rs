@@ -112,7 +112,7 @@ fn replayed(log: &Path, accuracy: Accuracy, cloud: &Path) -> (u64, &'static str)
         recording: &Source::open(log, None).unwrap(),
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: engine::reconstruct::replay::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeReference::Host,
         accuracy,
         pace: None,
         truth: None,

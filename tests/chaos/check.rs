@@ -147,7 +147,7 @@ fn points_of(log: &Path) -> Option<u64> {
         recording: &Source::open(log, None).ok()?,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: engine::reconstruct::replay::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeReference::Host,
         accuracy: Accuracy::Best,
         pace: None,
         truth: None,

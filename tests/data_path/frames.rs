@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use engine::reconstruct::frames::FramePlan;
-use engine::reconstruct::replay::TimeOf;
+use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::replay::{self, Request};
 use engine::reconstruct::report::Scan;
 use engine::reconstruct::source::Source;
@@ -17,7 +17,7 @@ fn frames(log: &Path, output: &Path, organised: bool) -> Scan {
         recording: &Source::open(log, None).unwrap(),
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: TimeOf::Host,
+        time: TimeReference::Host,
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,

@@ -52,7 +52,7 @@ fn scan(log: &Path, sensor: Option<&str>) -> Result<Scan, Failure> {
         recording: &Source::open(log, sensor).unwrap(),
         tilt: TiltSource::None,
         options: lidar::Options::default(),
-        time: engine::reconstruct::replay::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeReference::Host,
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,

@@ -132,7 +132,7 @@ fn scan(log: &Path) -> (Scan, Points) {
         recording: &Source::open(log, None).unwrap(),
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: engine::reconstruct::replay::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeReference::Host,
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,

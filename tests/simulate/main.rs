@@ -138,7 +138,7 @@ fn replayed(log: &Path, tilt: TiltSource) -> (Scan, Points) {
         recording: &Source::open(log, None).unwrap(),
         tilt,
         options: lidar::Options::default(),
-        time: engine::reconstruct::replay::TimeOf::Host,
+        time: engine::reconstruct::replay::TimeReference::Host,
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,

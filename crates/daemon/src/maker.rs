@@ -25,7 +25,7 @@ use crate::thumbnail;
 use engine::capture::run as job;
 use engine::failure::{Failure, Kind};
 use engine::output::{Buffered, Target, file_failure};
-use engine::reconstruct::replay::TimeOf;
+use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::replay::{self, Request};
 use engine::reconstruct::report::Scan;
 use engine::reconstruct::source::Source;
@@ -219,7 +219,7 @@ fn cloud(shared: &Shared, making: &Making, room: &Arc<Room>) -> Result<Scan, Fai
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: TimeOf::Host,
+        time: TimeReference::Host,
         accuracy: making.accuracy,
         pace: None,
         truth: making.truth.as_ref(),

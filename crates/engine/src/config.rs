@@ -1,7 +1,7 @@
-//! The configuration file: which devices there are and how the scanner is built.
+//! The configuration file: devices and geometry of the scanner.
 //!
-//! Values of the command line win over the file, the file over what is built in. A key that is not known is an error with
-//! its line: a misspelt limit must not pass for none.
+//! Command-line values override the file, the file overrides the defaults. An unknown key is an
+//! error with its line: a misspelt limit must not pass as no limit.
 
 mod axis;
 pub mod daemon;
@@ -24,11 +24,11 @@ use crate::failure::{Failure, Kind};
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// `device = "NAME"`, or a `[device.NAME]` table each and `[device] default = "NAME"`.
+    /// `device = "NAME"`, or one `[device.NAME]` table per device and `[device] default = "NAME"`.
     pub device: Devices,
-    /// How the lidar sits on the tilt axis.
+    /// Position of the lidar on the tilt axis.
     pub mount: MountConfig,
-    /// How well the lidar measures; software devices say it themselves.
+    /// Accuracy of the lidar; simulated devices state their own.
     pub lidar: LidarConfig,
     /// The tilt axis.
     pub axis: Axis,
@@ -36,10 +36,10 @@ pub struct Config {
     pub daemon: DaemonConfig,
 }
 
-/// Reads the configuration: `file` if given, else the first there is of the usual places, else what is built in.
+/// Reads `file`, else the first existing default file, else returns the defaults.
 ///
 /// # Errors
-/// Where a file was named and cannot be read, or any that is read cannot be understood.
+/// An unreadable or invalid file.
 pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
     let Some(path) = file.map(Path::to_owned).or_else(usual_place) else {
         return Ok(Config::default());
@@ -73,7 +73,7 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
 }
 
 impl Config {
-    /// Refuses numbers that no scanner has (TOML knows nan and inf).
+    /// Refuses impossible numbers (TOML allows nan and inf).
     fn check(&self) -> Result<(), String> {
         between("mount.d_m", self.mount.d_m, -10.0, 10.0)?;
         between("lidar.range_sd_m", self.lidar.range_sd_m, 0.0, 10.0)?;
@@ -83,7 +83,7 @@ impl Config {
     }
 }
 
-/// Refuses a number that is not from `low` to `high`. Not a number is not within either.
+/// Refuses a number outside `low..=high`, NaN included.
 fn between(name: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
     match (low..=high).contains(&value) {
         true => Ok(()),
@@ -93,7 +93,7 @@ fn between(name: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
     }
 }
 
-/// Refuses a number that is not above 0, or above `high`. Directions are no business of these: a sign is a mistake.
+/// Refuses a number that is not above 0 or exceeds `high`: these quantities have no sign.
 fn positive(name: &str, value: f64, high: f64) -> Result<(), String> {
     match value > 0.0 && value <= high {
         true => Ok(()),

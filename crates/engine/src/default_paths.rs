@@ -1,9 +1,9 @@
-//! Names of files that nobody named.
+//! Default names of output files.
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The cloud of a capture begun at `start`: the date and, for software devices, that it is simulated.
+/// Default cloud of a capture: date, and `simulated` for simulated devices.
 #[must_use]
 pub fn cloud(start: SystemTime, simulated: bool) -> PathBuf {
     let time = humantime::format_rfc3339_seconds(start)
@@ -13,7 +13,8 @@ pub fn cloud(start: SystemTime, simulated: bool) -> PathBuf {
     PathBuf::from(format!("velomotion{what}-{time}.ply"))
 }
 
-/// The log that belongs to a cloud: beside it, the same name. `-` (stdout) has no place of its own.
+/// Default log of a cloud: the same name with `.pcapng`. A cloud on stdout gets a log in the
+/// working directory.
 #[must_use]
 pub fn log_of(cloud: &Path, start: SystemTime, simulated: bool) -> PathBuf {
     if cloud == Path::new("-") {
@@ -22,7 +23,7 @@ pub fn log_of(cloud: &Path, start: SystemTime, simulated: bool) -> PathBuf {
     cloud.with_extension("pcapng")
 }
 
-/// The cloud of a recording, in the working directory.
+/// Default cloud of a recording, in the working directory.
 #[must_use]
 pub fn cloud_of(recording: &Path) -> PathBuf {
     if recording == Path::new("-") {

@@ -1,28 +1,28 @@
-//! How a command fails: what to say, what to do next, and the exit code. Printed once, in `main`.
+//! Failures: kind, message, and what to do next. Clients of the engine print them.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// What kind of failure it is: decides the exit code.
+/// Kind of a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
-    /// The command line asks for something that cannot be (2).
+    /// The request is invalid.
     Usage,
-    /// A file is missing, or not what it should be (3).
+    /// A file is missing or invalid.
     BadInput,
-    /// No device (4).
+    /// A device is absent.
     NoDevice,
-    /// A device that reports a fault, or does not answer (5).
+    /// A device reports a fault or does not answer.
     DeviceFault,
-    /// Not all could be done; what was captured is saved (6).
+    /// The result is incomplete; what was captured is saved.
     Incomplete,
-    /// Stopped by the user; what was captured is saved (130).
+    /// The user stopped the work; what was captured is saved.
     Interrupted,
 }
 
 impl Kind {
-    /// The process's exit code.
+    /// Exit code of the process.
     #[must_use]
     pub const fn exit_code(self) -> u8 {
         match self {
@@ -36,13 +36,13 @@ impl Kind {
     }
 }
 
-/// A failed command. As JSON: error, help, kind.
+/// A failure. Its JSON keys are `error`, `help` and `kind`.
 #[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
 #[error("{message}")]
 pub struct Failure {
-    /// Decides the exit code.
+    /// Kind, which determines the exit code.
     pub kind: Kind,
-    /// What happened, where, what was expected and what was there.
+    /// What is wrong, where, what was expected and found.
     #[serde(rename = "error")]
     pub message: String,
     /// What to do next.
@@ -50,7 +50,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// A failure that says `message`.
+    /// Creates a failure without help.
     #[must_use]
     pub fn new(kind: Kind, message: impl Into<String>) -> Self {
         Self {

@@ -1,7 +1,7 @@
-//! The engine: what the command line, the daemon and the ROS 2 node have in common.
+//! The engine shared by the command line, the daemon and the ROS 2 node.
 //!
-//! `devices` opens drive and lidar, `capture` plans and records a scan, `reconstruct` makes a cloud of a log or recording.
-//! The engine parses no arguments and prints nothing: its clients do.
+//! `devices` opens the drive and the lidar, `capture` plans and records a scan, `reconstruct` makes
+//! a cloud of a log or recording. The engine parses no arguments and prints nothing.
 
 pub mod capture;
 pub mod config;

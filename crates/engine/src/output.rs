@@ -1,4 +1,4 @@
-//! Where a cloud goes: a file that takes its name when it is complete, or stdout.
+//! Destination of a cloud: stdout, or a file that gets its name when it is complete.
 
 mod companion;
 mod file;
@@ -20,7 +20,7 @@ use crate::failure::{Failure, Kind};
 pub use self::file::{Buffered, Shared};
 pub use self::texts::{make_folder, write_text};
 
-/// A cloud's destination, checked and opened before anything is measured.
+/// A cloud's destination, opened before anything is measured.
 pub struct Target {
     path: PathBuf,
     file: Option<Shared>,
@@ -28,11 +28,12 @@ pub struct Target {
 }
 
 impl Target {
-    /// Opens `path` for a cloud with the columns `fields`: the format by its extension, `-` for PLY on stdout.
+    /// Opens `path` with the columns `fields`. The extension selects the format; `-` is PLY on
+    /// stdout.
     ///
     /// # Errors
-    /// [`Kind::Usage`] where the extension names no format or the file exists and `force` is not set; [`Kind::BadInput`] where it
-    /// cannot be made.
+    /// [`Kind::Usage`] for an unknown extension or an existing file without `force`;
+    /// [`Kind::BadInput`] if the file cannot be created.
     pub fn open(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
         if path == Path::new("-") {
             let scratch = ::io::files::scratch().map_err(|error| {
@@ -55,7 +56,7 @@ impl Target {
         })
     }
 
-    /// Opens `path` for an organised cloud of so many rows with the columns `fields`: a PCD.
+    /// Opens `path` for an organised PCD of `rows` rows with the columns `fields`.
     ///
     /// # Errors
     /// As [`Target::open`].
@@ -65,7 +66,7 @@ impl Target {
         })
     }
 
-    /// Opens `path` for the clouds of many turns of the lidar in one file: an MCAP.
+    /// Opens `path` for an MCAP with one cloud per revolution.
     ///
     /// # Errors
     /// As [`Target::open`].
@@ -76,7 +77,7 @@ impl Target {
         })
     }
 
-    /// Opens `path` for what a `writer` makes of a cloud.
+    /// Opens `path` for the sink that `writer` creates.
     ///
     /// # Errors
     /// As [`Target::open`].
@@ -99,13 +100,13 @@ impl Target {
         &mut *self.sink
     }
 
-    /// The name as the user gave it.
+    /// Path as the user wrote it.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether the cloud goes to stdout, where nothing else may go then.
+    /// Whether the cloud goes to stdout.
     #[must_use]
     pub fn is_stdout(&self) -> bool {
         self.file.is_none()
@@ -114,7 +115,7 @@ impl Target {
     /// Completes the file and gives it its name.
     ///
     /// # Errors
-    /// What the sink or the file system reports; an older file of that name is then as it was.
+    /// Errors of the sink or the file system; an older file of that name remains unchanged.
     pub fn commit(mut self) -> Result<(), Failure> {
         self.sink
             .finish()
@@ -133,7 +134,7 @@ impl Target {
     }
 }
 
-/// Refuses a name that is taken, before anything is opened.
+/// Refuses an existing file, before anything is opened.
 ///
 /// # Errors
 /// [`Kind::Usage`].
@@ -145,10 +146,10 @@ pub fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses `-` for a log: it is a file, read again to make the cloud.
+/// Refuses `-` for a log, which must be a file. `with` names the option.
 ///
 /// # Errors
-/// [`Kind::Usage`] that says `with` what to name one.
+/// [`Kind::Usage`].
 pub fn log_is_file(log: &Path, with: &str) -> Result<(), Failure> {
     if log == Path::new("-") {
         return Err(Failure::new(
@@ -160,7 +161,7 @@ pub fn log_is_file(log: &Path, with: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses to write a cloud over the log or recording that it is made of.
+/// Refuses a cloud that would overwrite its own recording.
 ///
 /// # Errors
 /// [`Kind::Usage`].
@@ -178,7 +179,7 @@ pub fn two_files(log: &Path, cloud: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses to write over what is read.
+/// Refuses an output that would overwrite its input.
 ///
 /// # Errors
 /// [`Kind::Usage`].
@@ -196,7 +197,7 @@ pub fn not_over(input: &Path, output: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether two names are one file, there or not.
+/// Whether two paths name the same file, existing or not.
 fn same_file(a: &Path, b: &Path) -> bool {
     let place = |path: &Path| {
         let folder = match path.parent() {
@@ -212,7 +213,7 @@ fn same_file(a: &Path, b: &Path) -> bool {
     place(a) == place(b)
 }
 
-/// Refuses a cloud and a JSON object on one stdout.
+/// Refuses a cloud and a JSON object on the same stdout.
 ///
 /// # Errors
 /// [`Kind::Usage`].
@@ -226,17 +227,18 @@ pub fn one_for_stdout(cloud: Option<&Path>, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// An older file of a name, put aside until the new one is worth more.
+/// An older file, renamed until its replacement is complete.
 pub struct Aside {
     path: PathBuf,
     aside: Option<PathBuf>,
 }
 
 impl Aside {
-    /// Puts `path` aside if it is there. Dropped without [`Aside::replaced`], it is put back.
+    /// Renames `path` if it exists. Dropping the guard restores it, unless [`Aside::replaced`] was
+    /// called.
     ///
     /// # Errors
-    /// [`Kind::BadInput`] where it cannot be renamed.
+    /// [`Kind::BadInput`] if it cannot be renamed.
     pub fn put(path: &Path) -> Result<Self, Failure> {
         let mut aside = None;
         if path.is_file() {
@@ -257,10 +259,10 @@ impl Aside {
         })
     }
 
-    /// The new file is there: the older one goes.
+    /// Removes the older file: its replacement is complete.
     pub fn replaced(mut self) {
         if let Some(aside) = self.aside.take() {
-            // What cannot be removed stays, which loses nothing.
+            // A file that cannot be removed stays.
             let _ = std::fs::remove_file(aside);
         }
     }
@@ -274,7 +276,7 @@ impl Drop for Aside {
     }
 }
 
-/// `--force` or not.
+/// Overwrite policy for `--force`.
 #[must_use]
 pub fn overwrite(force: bool) -> Overwrite {
     if force {
@@ -284,7 +286,7 @@ pub fn overwrite(force: bool) -> Overwrite {
     }
 }
 
-/// A file that cannot be made, with what to do about it.
+/// The failure for a file error.
 #[must_use]
 pub fn file_failure(error: &FileError) -> Failure {
     let (kind, help) = match error {
@@ -302,7 +304,7 @@ pub fn file_failure(error: &FileError) -> Failure {
     Failure::new(kind, error.to_string()).help(help)
 }
 
-/// A cloud that cannot be written, with what to do about it.
+/// The failure for a sink error.
 #[must_use]
 pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
     if let SinkError::Write { source, .. } = error

@@ -123,8 +123,8 @@ pub struct Replay {
     #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1")]
     pub realtime: Option<f64>,
     /// Whose clock the points' times are of: the recording host's, or UTC by the lidar's satellite receiver
-    #[arg(long, value_enum, default_value_t = TimeOf::Host)]
-    pub time: TimeOf,
+    #[arg(long, value_enum, default_value_t = TimeReference::Host)]
+    pub time: TimeReference,
     /// Make a cloud of each turn of the lidar, cut at this azimuth; -o NAME.ply gives NAME-00000.ply and so on, NAME.mcap one file
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = azimuth)]
     pub frames: Option<f64>,
@@ -219,7 +219,7 @@ pub struct Lidar {
 
 /// Whose clock times are of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum TimeOf {
+pub enum TimeReference {
     /// The recording host's
     #[default]
     Host,
@@ -250,11 +250,11 @@ pub enum Equal {
     Twice,
 }
 
-impl From<TimeOf> for replay::TimeOf {
-    fn from(time: TimeOf) -> Self {
+impl From<TimeReference> for replay::TimeReference {
+    fn from(time: TimeReference) -> Self {
         match time {
-            TimeOf::Host => Self::Host,
-            TimeOf::Utc => Self::Utc,
+            TimeReference::Host => Self::Host,
+            TimeReference::Utc => Self::Utc,
         }
     }
 }

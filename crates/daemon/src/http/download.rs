@@ -27,7 +27,7 @@ use crate::room::{self, Room, Roomy};
 use crate::scans::{LOG, THUMBNAIL};
 use engine::failure::{Failure, Kind};
 use engine::output::Buffered;
-use engine::reconstruct::replay::TimeOf;
+use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::replay::{self, Request};
 use engine::reconstruct::source::Source;
 
@@ -149,7 +149,7 @@ fn make(
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: TimeOf::Host,
+        time: TimeReference::Host,
         accuracy,
         pace: None,
         truth: None,

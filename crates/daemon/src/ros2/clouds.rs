@@ -17,7 +17,7 @@ use crate::shared::Shared;
 use engine::config::ros2::Ros2;
 use engine::failure::Failure;
 use engine::output::sink_failure;
-use engine::reconstruct::replay::TimeOf;
+use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::replay::{self, Request};
 use engine::reconstruct::source::Source;
 
@@ -69,7 +69,7 @@ fn send(
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: TimeOf::Host,
+        time: TimeReference::Host,
         accuracy: asked
             .and_then(|asked| asked.accuracy().ok())
             .unwrap_or(Accuracy::Best),

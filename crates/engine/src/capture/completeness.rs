@@ -66,15 +66,15 @@ pub fn missing(scan: &Scan) -> Option<Failure> {
     if let Some(truncated) = &scan.contents.truncated {
         said.push(format!("the log is not whole ({truncated})"));
     }
-    said.extend(scan.short.iter().cloned());
+    said.extend(scan.incomplete_sweeps.iter().cloned());
     if lost > 0 {
         let of = lost.saturating_add(scan.contents.packets.data);
         said.push(format!("{lost} of {of} lidar packets are missing"));
     }
-    if scan.unheard_s > UNHEARD_S {
+    if scan.lidar_gap_s > UNHEARD_S {
         said.push(format!(
             "nothing was heard of the lidar in the last {:.2} s of the sweep",
-            scan.unheard_s
+            scan.lidar_gap_s
         ));
     }
     (!said.is_empty()).then(|| {

@@ -1,4 +1,4 @@
-//! The moves of a capture: what is asked of the axis, checked before a device is touched, and how it is then run.
+//! The moves of a capture: planned, then run.
 
 use drive::{AxisConfig, Command, Event, Plan};
 use io::port::Port;
@@ -7,7 +7,7 @@ use units::{DegPerS, DegPerS2, Degrees};
 use crate::devices::drive_session::{Session, SessionError};
 use crate::failure::{Failure, Kind};
 
-/// What was asked for.
+/// Requested sweeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepRequest {
     /// Angle where sweeps start.
@@ -18,50 +18,54 @@ pub struct SweepRequest {
     pub speed: DegPerS,
     /// Acceleration.
     pub acceleration: DegPerS2,
-    /// How many sweeps.
+    /// Number of sweeps.
     pub sweeps: u32,
-    /// Whether the way back is a sweep too.
+    /// Whether the return move is a sweep too.
     pub both_ways: bool,
 }
 
 /// One move of a capture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// As the drive will run it.
+    /// Motion as the drive will run it.
     pub plan: Plan,
-    /// Whether the lidar's returns during it become points.
+    /// Whether returns during the move become points.
     pub sweep: bool,
 }
 
-/// The moves that fulfil a wish, from an axis that stands at `home`.
+/// Plans the moves from an axis at `home`.
 ///
 /// # Errors
-/// [`Kind::Usage`] for speeds, accelerations and angles that this axis cannot do.
-pub fn steps(wish: &SweepRequest, axis: &AxisConfig, home: Degrees) -> Result<Vec<Step>, Failure> {
+/// [`Kind::Usage`] for speeds, accelerations and angles outside the axis's limits.
+pub fn steps(
+    request: &SweepRequest,
+    axis: &AxisConfig,
+    home: Degrees,
+) -> Result<Vec<Step>, Failure> {
     let refuse =
         |error: drive::DriveError| Failure::new(Kind::Usage, error.to_string()).help(error.help());
     let plan = |from, to| {
-        axis.plan(from, to, wish.speed, wish.acceleration)
+        axis.plan(from, to, request.speed, request.acceleration)
             .map_err(refuse)
     };
-    // Both ends are checked before anything else, whatever the order of the moves.
-    plan(wish.to, wish.from)?;
-    let there = plan(wish.from, wish.to)?;
-    if there.from == there.to {
+    // Both ends are checked first, whatever the order of the moves.
+    plan(request.to, request.from)?;
+    let first = plan(request.from, request.to)?;
+    if first.from == first.to {
         return Err(Failure::new(
             Kind::Usage,
             format!(
-                "a sweep from {} to {} deg goes nowhere",
-                wish.from.0, wish.to.0
+                "a sweep from {} to {} deg has no length",
+                request.from.0, request.to.0
             ),
         )
         .help("choose two different angles with --from and --to"));
     }
     let mut steps = Vec::new();
-    let mut at = home;
-    let mut ends = (wish.from, wish.to);
-    for _ in 0..wish.sweeps {
-        let approach = plan(at, ends.0)?;
+    let mut position = home;
+    let mut ends = (request.from, request.to);
+    for _ in 0..request.sweeps {
+        let approach = plan(position, ends.0)?;
         if approach.from != approach.to {
             steps.push(Step {
                 plan: approach,
@@ -72,36 +76,38 @@ pub fn steps(wish: &SweepRequest, axis: &AxisConfig, home: Degrees) -> Result<Ve
             plan: plan(ends.0, ends.1)?,
             sweep: true,
         });
-        at = ends.1;
-        if wish.both_ways {
+        position = ends.1;
+        if request.both_ways {
             ends = (ends.1, ends.0);
         }
     }
     Ok(steps)
 }
 
-/// What a watcher of the motion is told.
-pub enum Told<'a> {
+/// Progress of the moves.
+pub enum MoveProgress<'a> {
     /// A step begins.
     Step(&'a Step),
-    /// The client's own words.
+    /// An event of the drive client.
     Event(&'a Event),
 }
 
-/// Connects, homes, makes every step, and leaves the axis disabled with its brake set.
+/// Connects, homes, runs every move, then disables the axis and sets its brake.
 ///
 /// # Errors
-/// [`SessionError`]; the axis has been stopped unless the error says that it could not be.
+/// [`SessionError`]. The axis has been stopped unless the error reports otherwise.
 pub fn run<P: Port>(
     session: &mut Session<P>,
     steps: &[Step],
-    told: &mut dyn FnMut(Told<'_>),
+    on_progress: &mut dyn FnMut(MoveProgress<'_>),
 ) -> Result<(), SessionError> {
     for command in [Command::Connect, Command::Home] {
-        session.run(command, &mut |event| told(Told::Event(event)))?;
+        session.run(command, &mut |event| {
+            on_progress(MoveProgress::Event(event))
+        })?;
     }
     for step in steps {
-        told(Told::Step(step));
+        on_progress(MoveProgress::Step(step));
         let to = drive::Move {
             to: step.plan.to,
             speed: step.plan.speed,
@@ -112,9 +118,13 @@ pub fn run<P: Port>(
         } else {
             Command::Goto(to)
         };
-        session.run(command, &mut |event| told(Told::Event(event)))?;
+        session.run(command, &mut |event| {
+            on_progress(MoveProgress::Event(event))
+        })?;
     }
-    session.run(Command::Brake, &mut |event| told(Told::Event(event)))?;
+    session.run(Command::Brake, &mut |event| {
+        on_progress(MoveProgress::Event(event))
+    })?;
     Ok(())
 }
 
@@ -122,7 +132,7 @@ pub fn run<P: Port>(
 mod tests {
     use super::*;
 
-    fn wish() -> SweepRequest {
+    fn request() -> SweepRequest {
         SweepRequest {
             from: Degrees(0.0),
             to: Degrees(-45.0),
@@ -137,8 +147,8 @@ mod tests {
         crate::devices::profile::axis(&crate::config::Axis::default()).unwrap()
     }
 
-    fn ways(wish: SweepRequest, home: f64) -> Vec<(f64, f64, bool)> {
-        steps(&wish, &axis(), Degrees(home))
+    fn ways(request: SweepRequest, home: f64) -> Vec<(f64, f64, bool)> {
+        steps(&request, &axis(), Degrees(home))
             .unwrap()
             .iter()
             .map(|s| (s.plan.from.0, s.plan.to.0, s.sweep))
@@ -147,32 +157,32 @@ mod tests {
 
     #[test]
     fn one_sweep_from_home_is_one_move() {
-        assert_eq!(ways(wish(), 0.0), [(0.0, -45.0, true)]);
+        assert_eq!(ways(request(), 0.0), [(0.0, -45.0, true)]);
     }
 
     #[test]
     fn sweeps_one_way_go_back_in_between() {
-        let wish = SweepRequest {
+        let request = SweepRequest {
             sweeps: 2,
-            ..wish()
+            ..request()
         };
         assert_eq!(
-            ways(wish, 0.0),
+            ways(request, 0.0),
             [(0.0, -45.0, true), (-45.0, 0.0, false), (0.0, -45.0, true)]
         );
     }
 
     #[test]
     fn both_ways_every_move_is_a_sweep_once_there() {
-        let wish = SweepRequest {
+        let request = SweepRequest {
             sweeps: 3,
             both_ways: true,
             from: Degrees(-45.0),
             to: Degrees(-15.0),
-            ..wish()
+            ..request()
         };
         assert_eq!(
-            ways(wish, 0.0),
+            ways(request, 0.0),
             [
                 (0.0, -45.0, false),
                 (-45.0, -15.0, true),
@@ -184,7 +194,7 @@ mod tests {
 
     #[test]
     fn the_papers_scan_takes_0_9_seconds_with_the_drives_factory_ramps() {
-        let steps = steps(&wish(), &axis(), Degrees(0.0)).unwrap();
+        let steps = steps(&request(), &axis(), Degrees(0.0)).unwrap();
         let plan = steps[0].plan;
         assert_eq!(plan.speed.0, 1125);
         assert!((plan.duration.as_secs_f64() - (0.8 + 56.25 / 500.0)).abs() < 1e-6);
@@ -195,37 +205,37 @@ mod tests {
         let tries = [
             SweepRequest {
                 to: Degrees(-45.1),
-                ..wish()
+                ..request()
             },
             SweepRequest {
                 from: Degrees(0.1),
-                ..wish()
+                ..request()
             },
             SweepRequest {
                 speed: DegPerS(0.0),
-                ..wish()
+                ..request()
             },
             SweepRequest {
                 speed: DegPerS(100.0),
-                ..wish()
+                ..request()
             },
             SweepRequest {
                 speed: DegPerS(f64::NAN),
-                ..wish()
+                ..request()
             },
             SweepRequest {
                 acceleration: DegPerS2(-1.0),
-                ..wish()
+                ..request()
             },
             SweepRequest {
                 to: Degrees(0.0),
-                ..wish()
+                ..request()
             },
         ];
-        for wish in tries {
-            let failure = steps(&wish, &axis(), Degrees(0.0)).unwrap_err();
-            assert_eq!(failure.kind, Kind::Usage, "{wish:?}");
-            assert!(failure.help.is_some(), "{wish:?}");
+        for request in tries {
+            let failure = steps(&request, &axis(), Degrees(0.0)).unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage, "{request:?}");
+            assert!(failure.help.is_some(), "{request:?}");
         }
     }
 }

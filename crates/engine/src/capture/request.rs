@@ -1,4 +1,4 @@
-//! Everything about a capture that is decided before a device is touched.
+//! Planning of a capture, before a device is opened.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::devices::profile as devices;
 use crate::devices::simulated;
 use crate::failure::{Failure, Kind};
 
-/// A capture as it is asked for. What is left out is the axis's or the device's own.
+/// A requested capture. Absent values default to those of the axis or the device.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CaptureRequest {
@@ -21,34 +21,34 @@ pub struct CaptureRequest {
     /// Angle where the sweep starts, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from_deg: Option<f64>,
-    /// Angle where it ends, degrees.
+    /// Angle where the sweep ends, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to_deg: Option<f64>,
     /// Acceleration, degrees per second squared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accel_deg_s2: Option<f64>,
-    /// How many sweeps; both ways 2, else 1.
+    /// Number of sweeps; 2 if `both_ways`, else 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sweeps: Option<u32>,
-    /// Whether the way back is a sweep too.
+    /// Whether the return move is a sweep too.
     #[serde(default)]
     pub both_ways: bool,
-    /// How far off points may be at a distance, such as `2mm@20m`.
+    /// Tolerated point error at a distance, such as `2mm@20m`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<String>,
-    /// What the scan is to be called, where it is kept by name.
+    /// Name of the scan, if it is stored by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
 }
 
-/// Most sweeps of one capture.
-pub const MOST_SWEEPS: u32 = 10_000;
+/// Upper limit of the sweeps per capture.
+pub const MAX_SWEEPS: u32 = 10_000;
 
 impl CaptureRequest {
-    /// How accurate the cloud is to be.
+    /// Requested accuracy of the cloud.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for a tolerance that cannot be read.
+    /// [`Kind::Usage`] for an invalid tolerance.
     pub fn accuracy(&self) -> Result<Accuracy, Failure> {
         let Some(text) = &self.tolerance else {
             return Ok(Accuracy::Best);
@@ -60,13 +60,13 @@ impl CaptureRequest {
         })
     }
 
-    /// The same with every default of this axis and device put in.
-    fn wish(&self, config: &Config, device: &Device) -> Result<SweepRequest, Failure> {
+    /// The sweeps with the defaults of this axis and device filled in.
+    fn sweep_request(&self, config: &Config, device: &Device) -> Result<SweepRequest, Failure> {
         let sweeps = self.sweeps.unwrap_or(if self.both_ways { 2 } else { 1 });
-        if !(1..=MOST_SWEEPS).contains(&sweeps) {
+        if !(1..=MAX_SWEEPS).contains(&sweeps) {
             return Err(Failure::new(
                 Kind::Usage,
-                format!("sweeps: expected 1 to {MOST_SWEEPS}, got {sweeps}"),
+                format!("sweeps: expected 1 to {MAX_SWEEPS}, got {sweeps}"),
             )
             .help("make several captures"));
         }
@@ -81,58 +81,59 @@ impl CaptureRequest {
     }
 }
 
-/// A capture, decided.
+/// A checked capture: moves, files, metadata.
 pub struct CapturePlan {
     /// Name of the device's profile.
     pub name: String,
     /// The device.
     pub device: Device,
-    /// The axis as its client knows it.
+    /// Axis configuration of the drive client.
     pub axis: drive::AxisConfig,
     /// The moves.
     pub steps: Vec<Step>,
-    /// What the log carries.
+    /// Configuration stored in the log.
     pub scan: ScanConfig,
-    /// How accurate the cloud is to be.
+    /// Requested accuracy of the cloud.
     pub accuracy: Accuracy,
-    /// Where the cloud goes.
+    /// Path of the cloud.
     pub cloud: PathBuf,
-    /// Where the log goes.
+    /// Path of the log.
     pub log: PathBuf,
-    /// Whether files that exist are overwritten.
+    /// Whether existing files are overwritten.
     pub force: bool,
 }
 
 impl CapturePlan {
-    /// Checks what was asked for against the axis, and plans the moves of a capture into these files.
+    /// Checks the request against the axis and plans the moves.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for what this axis cannot do, [`Kind::BadInput`] for a wrong configuration.
+    /// [`Kind::Usage`] for a request outside the axis's limits, [`Kind::BadInput`] for an invalid
+    /// configuration.
     pub fn of(
-        asked: &CaptureRequest,
+        request: &CaptureRequest,
         config: &Config,
         (name, device): (&str, &Device),
         cloud: PathBuf,
         log: PathBuf,
     ) -> Result<Self, Failure> {
         let axis = devices::axis(&config.axis)?;
-        let wish = asked.wish(config, device)?;
-        let steps = motion::steps(&wish, &axis, Degrees(config.axis.homing.to_deg))?;
+        let sweep_request = request.sweep_request(config, device)?;
+        let steps = motion::steps(&sweep_request, &axis, Degrees(config.axis.homing.to_deg))?;
         let simulated = devices::simulated(device);
         Ok(Self {
-            scan: scan_config(config, name, simulated, &wish, &steps),
+            scan: scan_config(config, name, simulated, &sweep_request, &steps),
             name: name.to_owned(),
             device: device.clone(),
             axis,
             steps,
-            accuracy: asked.accuracy()?,
+            accuracy: request.accuracy()?,
             cloud,
             log,
             force: false,
         })
     }
 
-    /// What is about to happen, as the drive will do it.
+    /// Description of the first sweep as the drive will run it.
     #[must_use]
     pub fn headline(&self) -> Vec<String> {
         let mut lines = Vec::new();
@@ -167,13 +168,13 @@ impl CapturePlan {
     }
 }
 
-/// What the log carries: speeds and accelerations as they are commanded, in whole rpm.
+/// Configuration stored in the log: speeds and accelerations as commanded, in whole rpm.
 #[must_use]
 pub fn scan_config(
     config: &Config,
     device: &str,
     simulated: bool,
-    wish: &SweepRequest,
+    sweep_request: &SweepRequest,
     steps: &[Step],
 ) -> ScanConfig {
     let sweep = steps.iter().find(|step| step.sweep).map(|step| SweepPlan {
@@ -181,8 +182,8 @@ pub fn scan_config(
         to_deg: step.plan.to.0,
         cruise_deg_s: step.plan.cruise.0,
         accel_deg_s2: step.plan.cruise.0 / step.plan.ramp.as_secs_f64(),
-        sweeps: wish.sweeps,
-        both_ways: wish.both_ways,
+        sweeps: sweep_request.sweeps,
+        both_ways: sweep_request.both_ways,
     });
     ScanConfig {
         device: device.to_owned(),
@@ -198,7 +199,7 @@ pub fn scan_config(
     }
 }
 
-/// A number without the noise of its last bits.
+/// Rounds away floating-point noise.
 fn trim(x: f64) -> f64 {
     (x * 1e6).round() / 1e6 + 0.0
 }

@@ -19,14 +19,14 @@ use units::{Degrees, Host, Stamp};
 
 use crate::capture::completeness::{self as wholeness, Watch};
 use crate::capture::log_recorder::{Recorded, Recording};
-use crate::capture::moves::{self as motion, Step, Told};
+use crate::capture::moves::{self as motion, MoveProgress, Step};
 use crate::capture::request::CapturePlan;
 use crate::devices::drive_session::{Session, SessionError};
 use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::listen_config;
 use crate::failure::{Failure, Kind};
 use crate::output::Target;
-use crate::reconstruct::replay::{self, Request, TimeOf};
+use crate::reconstruct::replay::{self, Request, TimeReference};
 use crate::reconstruct::report::{Reception, Scan};
 use crate::reconstruct::source::Source;
 
@@ -150,19 +150,19 @@ pub fn record(job: Job<'_>, told: &mut dyn FnMut(CaptureEvent<'_>)) -> Result<En
             interrupt.store(true, Ordering::Relaxed);
         }
         match what {
-            Told::Step(step) => {
+            MoveProgress::Step(step) => {
                 told(CaptureEvent::Move { number, step });
                 number += 1;
             }
-            Told::Event(Event::Sample(ShaftSample {
+            MoveProgress::Event(Event::Sample(ShaftSample {
                 answer, position, ..
             })) => told(CaptureEvent::Moved {
                 at: *answer,
                 angle: gearing.angle(*position),
                 packets: recording.packets(),
             }),
-            Told::Event(Event::Progress(step)) => told(CaptureEvent::Progress(step)),
-            Told::Event(event) => tracing::debug!(?event),
+            MoveProgress::Event(Event::Progress(step)) => told(CaptureEvent::Progress(step)),
+            MoveProgress::Event(event) => tracing::debug!(?event),
         }
     });
     told(CaptureEvent::Over);
@@ -246,7 +246,7 @@ pub fn cloud(
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
-        time: TimeOf::Host,
+        time: TimeReference::Host,
         accuracy: setup.accuracy,
         pace: None,
         truth,

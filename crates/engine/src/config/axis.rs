@@ -1,4 +1,4 @@
-//! `[axis]`: encoder, gear, limits, and how the axis finds its angle.
+//! `[axis]`: encoder, gear, limits, homing.
 
 use scanner::config::AxisConfig;
 use serde::Deserialize;
@@ -13,7 +13,7 @@ pub struct Axis {
     pub node: u8,
     /// Lines of the encoder on the motor shaft.
     pub encoder_lines: u32,
-    /// Motor turns and axis turns.
+    /// Motor revolutions and axis revolutions.
     pub gear: [u32; 2],
     /// Smallest tilt angle allowed, degrees.
     pub min_deg: f64,
@@ -25,42 +25,43 @@ pub struct Axis {
     pub max_accel_deg_s2: f64,
     /// Deceleration of a quick stop (Ctrl-C, limit switch, fault), degrees per second squared.
     pub quick_stop_deg_s2: f64,
-    /// Digital output of the drive (1..=5) that opens the brake; absent without brake. From the factory no output is one.
+    /// Digital output of the drive (1..=5) that opens the brake; absent without a brake. The
+    /// factory setting assigns no output.
     pub brake_output: Option<u8>,
-    /// The limit switches; without the table they are where the factory expects them.
+    /// Limit switches; the factory's inputs without the table.
     pub limit_switches: LimitSwitches,
-    /// How the axis finds its angle after power-on.
+    /// Homing.
     pub homing: Homing,
 }
 
-/// The limit switches' digital inputs (1..=9). In a table that is there, a switch that is left out does not exist.
+/// Digital inputs of the limit switches (1..=9). A switch omitted from the table does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LimitSwitches {
-    /// Input of the switch at the lower end.
+    /// Input of the lower limit switch.
     #[serde(default)]
     pub negative: Option<u8>,
-    /// Input of the switch at the upper end.
+    /// Input of the upper limit switch.
     #[serde(default)]
     pub positive: Option<u8>,
-    /// Whether the inputs are low while a switch is pressed, so that a broken wire stops the axis too.
+    /// Whether a pressed switch pulls its input low, so that a broken wire stops the axis too.
     #[serde(default)]
     pub normally_closed: bool,
 }
 
-/// How the axis finds its angle.
+/// Homing of the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Homing {
     /// Homing method (object 6098).
     pub method: i8,
-    /// Tilt angle at the place that homing finds, degrees.
+    /// Tilt angle of the position that homing finds, degrees.
     pub at_deg: f64,
-    /// Tilt angle to go to from there, degrees.
+    /// Tilt angle to move to afterwards, degrees.
     pub to_deg: f64,
     /// Speed towards the switch, degrees per second.
     pub speed_deg_s: f64,
-    /// Speed over its edge, degrees per second.
+    /// Speed when leaving the switch, degrees per second.
     pub edge_speed_deg_s: f64,
 }
 
@@ -84,7 +85,7 @@ impl Default for Axis {
 }
 
 impl Default for LimitSwitches {
-    /// The factory's choice: inputs 6 and 5, high when pressed (2070, 2071).
+    /// Factory setting: inputs 6 and 5, high when pressed (objects 2070, 2071).
     fn default() -> Self {
         Self {
             negative: Some(6),
@@ -107,7 +108,7 @@ impl Default for Homing {
 }
 
 impl Axis {
-    /// The part of it that a log carries.
+    /// The part stored in a log.
     #[must_use]
     pub fn scan(&self) -> AxisConfig {
         AxisConfig {
@@ -116,7 +117,7 @@ impl Axis {
             gear: self.gear,
         }
     }
-    /// Refuses numbers that no axis has.
+    /// Refuses impossible numbers.
     pub(super) fn check(&self) -> Result<(), String> {
         let Self { homing, .. } = self;
         for (name, value) in [

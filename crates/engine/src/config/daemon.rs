@@ -1,4 +1,4 @@
-//! `[daemon]` of the configuration: where it listens, who may ask, where scans go and how many are kept.
+//! `[daemon]`: listening address, access, storage of scans.
 
 use std::fmt;
 use std::hint::black_box;
@@ -11,32 +11,32 @@ use super::origin::Origin;
 use super::ros2::Ros2;
 use crate::failure::{Failure, Kind};
 
-/// Port that is used unless another is named.
+/// Default port.
 const PORT: u16 = 8016;
 /// Shortest token, bytes.
 pub const TOKEN_BYTES: usize = 16;
 /// Longest token, bytes.
 const TOKEN_MOST: usize = 256;
 
-/// `[daemon]`.
+/// The `[daemon]` table.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DaemonConfig {
     /// Address and port.
     pub listen: SocketAddr,
-    /// What every request over TCP must bring.
+    /// Token required in every request over TCP.
     pub token: Option<Token>,
-    /// Origins of pages that may ask for changes beside the daemon's own: what a proxy with TLS in front of it is called.
+    /// Further origins whose pages may send changes, such as a TLS proxy in front of the daemon.
     pub origins: Vec<Origin>,
     /// Folder of the scans.
     pub scans: Option<PathBuf>,
-    /// How many scans are kept.
+    /// Number of scans to keep.
     pub keep_scans: u64,
-    /// How many bytes of them.
+    /// Total size of the scans to keep, bytes.
     pub keep_bytes: u64,
-    /// Bytes of the disk that are left free.
+    /// Disk space to leave free, bytes.
     pub reserve_bytes: u64,
-    /// `[daemon.ros2]`; without it nothing is sent to ROS 2.
+    /// `[daemon.ros2]`; without it ROS 2 gets nothing.
     pub ros2: Option<Ros2>,
 }
 
@@ -55,7 +55,7 @@ impl Default for DaemonConfig {
     }
 }
 
-/// A secret. It is not printed, and comparing it takes as long whatever is wrong with the other.
+/// A secret. It is never printed, and comparing it takes constant time.
 #[derive(Clone, PartialEq, Deserialize)]
 #[serde(try_from = "String")]
 pub struct Token(String);
@@ -83,14 +83,14 @@ impl fmt::Debug for Token {
 }
 
 impl Token {
-    /// Whether `given` is it, in a time that depends on the length of `given` alone.
+    /// Compares in a time that depends only on the length of `given`.
     #[must_use]
     pub fn is(&self, given: &[u8]) -> bool {
         equal(self.0.as_bytes(), given)
     }
 }
 
-/// Whether two secrets are equal, in a time that depends on the length of the second alone.
+/// Compares two secrets in a time that depends only on the length of the second.
 #[must_use]
 pub fn equal(secret: &[u8], given: &[u8]) -> bool {
     let mut different = secret.len() ^ given.len();
@@ -102,7 +102,7 @@ pub fn equal(secret: &[u8], given: &[u8]) -> bool {
 }
 
 impl DaemonConfig {
-    /// Refuses to listen to others without a token.
+    /// Refuses to listen beyond this machine without a token.
     ///
     /// # Errors
     /// [`Kind::Usage`].
@@ -120,10 +120,10 @@ impl DaemonConfig {
         ))
     }
 
-    /// The folder of the scans.
+    /// Folder of the scans.
     ///
     /// # Errors
-    /// [`Kind::Usage`] where none is named and there is no place of the user's own.
+    /// [`Kind::Usage`] if none is configured and the environment gives no default.
     pub fn folder(&self) -> Result<PathBuf, Failure> {
         let var = |name| std::env::var_os(name).map(PathBuf::from);
         let service = || var("STATE_DIRECTORY").map(|state| state.join("scans"));

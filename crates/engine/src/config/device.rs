@@ -1,4 +1,4 @@
-//! `[device]`: which devices there are and how each is attached.
+//! `[device]`: device profiles.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -13,45 +13,46 @@ use super::positive;
 /// The devices of a configuration.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Devices {
-    /// What is used without `--device`.
+    /// Profile used without `--device`.
     pub default: Option<String>,
     /// Profiles by name.
     pub profiles: BTreeMap<String, Device>,
 }
 
-/// One `[device.NAME]`.
+/// One `[device.NAME]` table.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Device {
-    /// How the drive is attached.
+    /// Connection of the drive.
     pub kind: DeviceKind,
-    /// Path of the drive's serial port, or the SLCAN adapter's. None with kind `usb`: the EPOS2 that is found on USB.
+    /// Serial port of the drive or the SLCAN adapter. Without it, kind `usb` searches for an EPOS2
+    /// on USB.
     pub port: Option<PathBuf>,
-    /// Name of the CAN interface of a drive of kind `can`.
+    /// CAN interface of a drive of kind `can`.
     pub interface: Option<String>,
-    /// Speed of the serial port, where it is not the factory's.
+    /// Baud rate of the serial port; the factory's without it.
     pub baud: Option<u32>,
-    /// Local address on which the lidar's packets arrive.
+    /// Local address that receives the lidar's packets.
     #[serde(default = "any_address")]
     pub lidar: Ipv4Addr,
-    /// Multicast group that the lidar sends to; none where it sends to this machine alone or to all.
+    /// Multicast group of the lidar, if any.
     pub lidar_group: Option<Ipv4Addr>,
-    /// The lidar's own address, where others send to the same ports; none: whoever sends.
+    /// Address of the lidar; any sender is accepted without it.
     pub lidar_source: Option<Ipv4Addr>,
-    /// UDP port of the lidar's data packets, where it is not the factory's.
+    /// UDP port of data packets; the factory's without it.
     pub data_port: Option<u16>,
-    /// UDP port of its position packets, where it is not the factory's.
+    /// UDP port of position packets; the factory's without it.
     pub position_port: Option<u16>,
     /// Acceleration used without `--accel`, degrees per second squared.
     #[serde(default = "gentle")]
     pub accel_deg_s2: f64,
 }
 
-/// How the drive is attached.
+/// Connection of the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DeviceKind {
-    /// Software EPOS2 and software VLP-16.
+    /// Simulated EPOS2 and VLP-16.
     Sim,
     /// EPOS2 on USB.
     Usb,
@@ -59,12 +60,13 @@ pub enum DeviceKind {
     Rs232,
     /// EPOS2 on CAN, behind an SLCAN adapter on a serial port.
     Slcan,
-    /// EPOS2 on CAN, on an interface of the kernel.
+    /// EPOS2 on CAN, on a kernel interface.
     Can,
 }
 
 impl Device {
-    /// The built-in simulator: a head so light that it takes 45 degrees at 56.25 deg/s in 0.81 s.
+    /// The built-in simulator, with a head light enough to sweep 45 degrees at 56.25 deg/s in 0.81
+    /// s.
     #[must_use]
     pub fn simulator() -> Self {
         Self {
@@ -81,7 +83,7 @@ impl Device {
         }
     }
 
-    /// The EPOS2 that is found on USB, whatever port the system gives it.
+    /// The EPOS2 found on USB, on any port.
     #[must_use]
     pub fn found() -> Self {
         Self {
@@ -92,7 +94,7 @@ impl Device {
         }
     }
 
-    /// Whether its drive is looked for on USB.
+    /// Whether the drive is searched for on USB.
     #[must_use]
     pub fn is_looked_for(&self) -> bool {
         self.kind == DeviceKind::Usb && self.port.is_none()
@@ -103,7 +105,7 @@ fn any_address() -> Ipv4Addr {
     Ipv4Addr::UNSPECIFIED
 }
 
-/// The drive's factory setting behind 120:1, 10,000 rpm/s.
+/// Factory setting of the drive behind a 120:1 gear: 10,000 rpm/s.
 fn gentle() -> f64 {
     500.0
 }
@@ -139,7 +141,7 @@ impl<'de> Deserialize<'de> for Devices {
 }
 
 impl Device {
-    /// Refuses keys that do not go together and values that no device has.
+    /// Refuses inconsistent keys and impossible values.
     pub(super) fn check(&self, name: &str) -> Result<(), String> {
         let accel = format!("device.{name}.accel_deg_s2");
         positive(&accel, self.accel_deg_s2, 1e9)?;
@@ -153,7 +155,7 @@ impl Device {
             .map_err(|what| format!("device.{name}.{what}"))
     }
 
-    /// The key and what is wrong with it.
+    /// Checks the lidar's keys.
     fn check_lidar(&self) -> Result<(), String> {
         let ports = [
             ("data_port", self.data_port),

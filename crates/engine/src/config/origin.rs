@@ -1,4 +1,4 @@
-//! Where a page in a browser comes from: scheme, host and port together (RFC 6454), as the header `Origin` says it.
+//! Origin of a web page: scheme, host and port (RFC 6454), as in the header `Origin`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -10,13 +10,14 @@ use serde::Deserialize;
 #[serde(try_from = "String")]
 pub struct Origin {
     secure: bool,
-    /// In small letters.
+    /// Lower case.
     host: String,
     port: u16,
 }
 
 impl Origin {
-    /// That of the pages of a server that speaks HTTP and is called `host` in requests: a name, and a port unless it is 80.
+    /// Origin of the pages of an HTTP server addressed as `host`: a name, with a port unless it is
+    /// 80.
     #[must_use]
     pub fn of_host(host: &str) -> Option<Self> {
         Self::new(false, host)
@@ -24,7 +25,7 @@ impl Origin {
 
     fn new(secure: bool, authority: &str) -> Option<Self> {
         let (host, port) = match authority.rsplit_once(':') {
-            // Colons within brackets are of an IPv6 address.
+            // Colons in brackets belong to an IPv6 address.
             Some((host, port)) if !port.ends_with(']') => (host, Some(port)),
             _ => (authority, None),
         };

@@ -1,39 +1,39 @@
-//! `[daemon.ros2]` of the configuration: which router, which domain, and the names there.
+//! `[daemon.ros2]`: router, domain, namespace.
 //!
-//! It is read by every build, so that one without ROS 2 can say what it lacks.
+//! Every build parses it, so that a build without ROS 2 can report what it lacks.
 
 use serde::Deserialize;
 
 use crate::capture::request::CaptureRequest;
 
-/// Most bytes of a name or an address.
+/// Longest name or address, bytes.
 const LONGEST: usize = 200;
-/// Largest domain (`ROS_DOMAIN_ID`), as ROS 2 has it on every system.
+/// Largest domain (`ROS_DOMAIN_ID`) that ROS 2 supports on every system.
 const LAST_DOMAIN: u8 = 232;
 
-/// `[daemon.ros2]`.
+/// The `[daemon.ros2]` table.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Ros2 {
     /// The zenoh router.
     pub router: Router,
-    /// `ROS_DOMAIN_ID` of those who are to see the topics.
+    /// `ROS_DOMAIN_ID` of the subscribers.
     pub domain: Domain,
-    /// Namespace of the node, before the names of its topics.
+    /// Namespace of the node and its topics.
     pub namespace: Namespace,
-    /// What is before the names of its frames.
+    /// Prefix of the frame names.
     pub frame_prefix: FramePrefix,
-    /// The capture that `start_capture` begins; without it there is no such service.
+    /// Capture that the service `start_capture` starts; without it the service is absent.
     pub capture: Option<CaptureRequest>,
 }
 
-/// An endpoint as zenoh writes it: `tcp/HOST:PORT`.
+/// An endpoint in zenoh's notation: `tcp/HOST:PORT`.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub struct Router(String);
 
 impl Default for Router {
-    /// Where `rmw_zenohd` listens.
+    /// Default address of `rmw_zenohd`.
     fn default() -> Self {
         Self("tcp/localhost:7447".to_owned())
     }
@@ -66,7 +66,7 @@ impl TryFrom<String> for Router {
     }
 }
 
-/// A domain.
+/// A ROS domain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "u64")]
 pub struct Domain(pub u8);
@@ -82,7 +82,7 @@ impl TryFrom<u64> for Domain {
     }
 }
 
-/// A namespace: `/`, or names with a slash before each.
+/// A namespace: `/`, or names each preceded by a slash.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub struct Namespace(String);
@@ -94,13 +94,13 @@ impl Default for Namespace {
 }
 
 impl Namespace {
-    /// It, with its slash.
+    /// The namespace with its leading slash.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.0
     }
 
-    /// `topic`, which begins with a slash, in it.
+    /// Absolute name of `topic`, which begins with a slash.
     #[must_use]
     pub fn resolve(&self, topic: &str) -> String {
         match self.0.as_str() {
@@ -129,7 +129,7 @@ impl TryFrom<String> for Namespace {
     }
 }
 
-/// What is before the names of frames; nothing by default.
+/// Prefix of frame names; empty by default.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub struct FramePrefix(pub String);

@@ -108,7 +108,7 @@ fn a_misspelt_key_is_an_error_with_its_line() {
         assert!(error.contains("line "), "{error}");
         assert!(error.contains("unknown field"), "{error}");
     }
-    // Nor does a value that is none pass.
+    // NaN and infinity are refused too.
     for (key, what) in [
         ("data_port = 70000", "70000"),
         ("lidar_group = '239.1.2'", "IPv4"),

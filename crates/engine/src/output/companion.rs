@@ -1,4 +1,4 @@
-//! The small file that some formats want beside their own.
+//! Companion files of formats that need one, such as `metadata.yaml` of a bag.
 
 use std::io::{self as stdio, Write};
 use std::path::Path;
@@ -8,8 +8,8 @@ use cloud::Companion;
 
 use crate::failure::{Failure, Kind};
 
-/// Writes what belongs beside the file `path`. One that is of another file stays: a folder has room for one, and both files are usable
-/// without.
+/// Writes the companion of the file `path`. A companion of another file stays: a folder has room
+/// for one, and both files are usable without it.
 pub(super) fn write_beside(path: &Path, companion: &Companion) -> Result<(), Failure> {
     let beside = path.with_file_name(companion.name);
     let failed = |what: String| {

@@ -1,18 +1,19 @@
-//! The file behind a sink: buffered, and shared with whoever gives it its name when it is complete.
+//! The file behind a sink: buffered, and shared with the commit that names it.
 
 use std::io::{self as stdio, BufWriter, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ::io::files::NewFile;
 
-/// Enough for what comes in small pieces (LAZ, E57, CSV); less than a batch of rows, which then goes to the system without being copied.
+/// Enough for formats that write small pieces (LAZ, E57, CSV), and less than a batch of rows, which
+/// then bypasses the buffer.
 const BUFFER_BYTES: usize = 1 << 16;
 
-/// A file with a buffer for writing, which can be read, too.
+/// A file with a write buffer that can also be read.
 pub struct Buffered<F: Write>(BufWriter<F>);
 
 impl<F: Write> Buffered<F> {
-    /// A buffer in front of `file`.
+    /// Wraps `file`.
     pub fn new(file: F) -> Self {
         Self(BufWriter::with_capacity(BUFFER_BYTES, file))
     }
@@ -33,7 +34,7 @@ impl<F: Write + Seek> Seek for Buffered<F> {
         self.0.seek(to)
     }
 
-    /// Without writing the buffer out.
+    /// Does not flush the buffer.
     fn stream_position(&mut self) -> stdio::Result<u64> {
         self.0.stream_position()
     }
@@ -46,7 +47,7 @@ impl<F: Read + Write> Read for Buffered<F> {
     }
 }
 
-/// The file, shared between the writer inside a sink and the commit after it.
+/// The file, shared by the writer inside a sink and the commit.
 #[derive(Clone)]
 pub struct Shared(Arc<Mutex<Option<NewFile>>>);
 
@@ -55,7 +56,7 @@ impl Shared {
         Self(Arc::new(Mutex::new(Some(file))))
     }
 
-    /// The file; from now on nobody else can write to it.
+    /// Takes the file out; later writes fail.
     pub(super) fn release(&self) -> Option<NewFile> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

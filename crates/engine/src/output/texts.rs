@@ -1,4 +1,4 @@
-//! Text files in a folder: pages, figures and tables. Left out: clouds.
+//! Text files: pages, figures, tables.
 
 use std::io::Write;
 use std::path::Path;
@@ -8,10 +8,10 @@ use io::files::{FileError, NewFile};
 use super::{file_failure, overwrite};
 use crate::failure::Failure;
 
-/// Makes a folder, and those above it, unless it is there.
+/// Creates a folder and its parents.
 ///
 /// # Errors
-/// [`crate::failure::Kind::BadInput`] where the system refuses.
+/// [`crate::failure::Kind::BadInput`] if the system refuses.
 pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|source| {
         file_failure(&FileError::Io {
@@ -22,10 +22,11 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Writes a whole file, or none.
+/// Writes a complete file or none.
 ///
 /// # Errors
-/// [`crate::failure::Kind::Usage`] for one that exists, unless `force`; [`crate::failure::Kind::BadInput`] where the system refuses.
+/// [`crate::failure::Kind::Usage`] for an existing file without `force`;
+/// [`crate::failure::Kind::BadInput`] if the system refuses.
 pub fn write_text(path: &Path, content: &str, force: bool) -> Result<(), Failure> {
     let mut file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
     file.write_all(content.as_bytes()).map_err(|source| {

@@ -1,4 +1,4 @@
-//! `velomotion info`: what a log or recording holds.
+//! What a log or recording holds.
 
 use io::recording::{DatagramKind, Sensor};
 use lidar::{Decoder, Options, Stats, UtcClock, UtcState};
@@ -21,51 +21,51 @@ pub fn read_contents(
     options: Options,
 ) -> Result<(Contents, Option<String>), Failure> {
     let config = source.config()?;
-    let mut ears = Ears::new(options.clone());
+    let mut sensors = SensorSurveys::new(options.clone());
     let mut survey =
         Survey::new(&config, options).map_err(|error| scan_failure(source.path(), &error))?;
     let pass = source.read_all(|record| {
-        ears.hear(record);
-        if ears.is_of_the_first(record) {
+        sensors.observe(record);
+        if sensors.is_reported(record) {
             survey.observe(record);
         }
         Ok(())
     })?;
-    let contents = ears.contents(&config, survey.drive(), &pass, &survey.steps());
+    let contents = sensors.contents(&config, survey.drive(), &pass, &survey.steps());
     Ok((contents, pass.truncated))
 }
 
-/// One ear a sensor.
-struct Ears {
+/// One survey per sensor.
+struct SensorSurveys {
     options: Options,
-    ears: Vec<Ear>,
-    /// For what is no sensor's.
-    rest: Decoder,
+    sensors: Vec<SensorSurvey>,
+    /// Packets that belong to no sensor.
+    unassigned: Decoder,
 }
 
-/// Listens to one sensor.
-struct Ear {
+/// Statistics of one sensor.
+struct SensorSurvey {
     source: [u8; 4],
-    /// Of its data; `None` until one came.
+    /// Port of its data packets; `None` until the first arrives.
     port: Option<u16>,
     decoder: Decoder,
     utc: UtcClock,
     pps: Option<Pps>,
 }
 
-/// Sensors that are listened to; of more, only the packets are counted.
-const MOST_SENSORS: usize = 64;
+/// Sensors with statistics of their own. Packets of further sensors are only counted.
+const MAX_SENSORS: usize = 64;
 
-impl Ears {
+impl SensorSurveys {
     fn new(options: Options) -> Self {
         Self {
             options: options.clone(),
-            ears: Vec::new(),
-            rest: Decoder::new(options),
+            sensors: Vec::new(),
+            unassigned: Decoder::new(options),
         }
     }
 
-    fn hear(&mut self, record: &Record<'_>) {
+    fn observe(&mut self, record: &Record<'_>) {
         let Wire::Lidar {
             source,
             port,
@@ -76,75 +76,83 @@ impl Ears {
         };
         match DatagramKind::of(payload) {
             DatagramKind::Position => {
-                if !self.ears.iter().any(|ear| ear.source == source) {
+                if !self.sensors.iter().any(|survey| survey.source == source) {
                     self.add(source, None);
                 }
-                for ear in self.ears.iter_mut().filter(|ear| ear.source == source) {
-                    ear.position(record, payload);
+                for survey in self
+                    .sensors
+                    .iter_mut()
+                    .filter(|survey| survey.source == source)
+                {
+                    survey.position(record, payload);
                 }
             }
-            DatagramKind::Data => match self.ear(source, port) {
-                Some(ear) => ear.data(record, payload),
-                None => self.rest.packet(record.host, payload, &mut |_| {}),
+            DatagramKind::Data => match self.survey(source, port) {
+                Some(survey) => survey.data(record, payload),
+                None => self.unassigned.packet(record.host, payload, &mut |_| {}),
             },
-            // A stranger with a lidar's marks is no sensor of its own.
+            // A damaged packet of an unknown sender does not count as a sensor.
             DatagramKind::Damaged => {
-                let known = |ear: &&mut Ear| ear.source == source && ear.port == Some(port);
-                match self.ears.iter_mut().find(known) {
-                    Some(ear) => ear.data(record, payload),
-                    None => self.rest.packet(record.host, payload, &mut |_| {}),
+                let known = |survey: &&mut SensorSurvey| {
+                    survey.source == source && survey.port == Some(port)
+                };
+                match self.sensors.iter_mut().find(known) {
+                    Some(survey) => survey.data(record, payload),
+                    None => self.unassigned.packet(record.host, payload, &mut |_| {}),
                 }
             }
-            DatagramKind::Foreign => self.rest.packet(record.host, payload, &mut |_| {}),
+            DatagramKind::Foreign => self.unassigned.packet(record.host, payload, &mut |_| {}),
         }
     }
 
-    /// Whether a record is of the drive, or of the lidar that the report is of.
-    fn is_of_the_first(&self, record: &Record<'_>) -> bool {
+    /// Whether the record belongs to the drive or to the reported lidar.
+    fn is_reported(&self, record: &Record<'_>) -> bool {
         match record.wire {
             Wire::Drive { .. } => true,
-            Wire::Lidar { source, port, .. } => self
-                .first()
-                .is_some_and(|ear| ear.source == source && ear.port.is_none_or(|own| own == port)),
+            Wire::Lidar { source, port, .. } => self.first().is_some_and(|survey| {
+                survey.source == source && survey.port.is_none_or(|own| own == port)
+            }),
         }
     }
 
-    /// The sensor that the report is of: the first that sent data, else the first that sent anything.
-    fn first(&self) -> Option<&Ear> {
-        let with_data = self.ears.iter().find(|ear| ear.port.is_some());
-        with_data.or(self.ears.first())
+    /// The reported sensor: the first that sent data, else the first that sent anything.
+    fn first(&self) -> Option<&SensorSurvey> {
+        let with_data = self.sensors.iter().find(|survey| survey.port.is_some());
+        with_data.or(self.sensors.first())
     }
 
-    /// Of the sensor that sends data from `source` to `port`.
-    fn ear(&mut self, source: [u8; 4], port: u16) -> Option<&mut Ear> {
-        let is = |wanted: Option<u16>| move |ear: &Ear| ear.source == source && ear.port == wanted;
-        let at = self.ears.iter().position(is(Some(port)));
-        // What sent position packets before its data.
-        let at = at.or_else(|| self.ears.iter().position(is(None)));
+    /// Survey of the sensor that sends data from `source` to `port`.
+    fn survey(&mut self, source: [u8; 4], port: u16) -> Option<&mut SensorSurvey> {
+        let is = |wanted: Option<u16>| {
+            move |survey: &SensorSurvey| survey.source == source && survey.port == wanted
+        };
+        let at = self.sensors.iter().position(is(Some(port)));
+        // A sensor whose position packets arrived before its data.
+        let at = at.or_else(|| self.sensors.iter().position(is(None)));
         let at = match at {
             Some(at) => at,
             None => self.add(source, Some(port))?,
         };
-        let ear = self.ears.get_mut(at)?;
-        ear.port = Some(port);
-        Some(ear)
+        let survey = self.sensors.get_mut(at)?;
+        survey.port = Some(port);
+        Some(survey)
     }
 
     fn add(&mut self, source: [u8; 4], port: Option<u16>) -> Option<usize> {
-        if self.ears.len() >= MOST_SENSORS {
+        if self.sensors.len() >= MAX_SENSORS {
             return None;
         }
-        self.ears.push(Ear {
+        self.sensors.push(SensorSurvey {
             source,
             port,
             decoder: Decoder::new(self.options.clone()),
             utc: UtcClock::new(),
             pps: None,
         });
-        Some(self.ears.len() - 1)
+        Some(self.sensors.len() - 1)
     }
 
-    /// What was heard: of the first sensor, and where there are several, of each.
+    /// Contents with the first sensor's values, and one report per sensor if there are several.
     fn contents(
         mut self,
         config: &ScanConfig,
@@ -152,38 +160,42 @@ impl Ears {
         pass: &Pass,
         steps: &[ClockStep],
     ) -> Contents {
-        for ear in &mut self.ears {
-            ear.decoder.finish(&mut |_| {});
+        for survey in &mut self.sensors {
+            survey.decoder.finish(&mut |_| {});
         }
-        let sensor = |ear: &Ear| -> Option<Sensor> {
-            let known = |s: &&Sensor| s.source == ear.source && s.data_port == ear.port;
+        let sensor = |survey: &SensorSurvey| -> Option<Sensor> {
+            let known = |s: &&Sensor| s.source == survey.source && s.data_port == survey.port;
             pass.sensors.iter().find(known).cloned()
         };
-        let nothing = Stats::default();
+        let empty = Stats::default();
         let first = self.first();
         let mut contents = contents(
             config,
-            first.map_or(&nothing, |ear| ear.decoder.stats()),
+            first.map_or(&empty, |survey| survey.decoder.stats()),
             drive,
             pass,
             steps,
         );
-        contents.gps = first.and_then(Ear::gps);
-        let strange = self.rest.stats();
-        contents.packets.malformed += strange.malformed;
-        if let Some(error) = &strange.first_malformed {
+        contents.gps = first.and_then(SensorSurvey::gps);
+        let unassigned = self.unassigned.stats();
+        contents.packets.malformed += unassigned.malformed;
+        if let Some(error) = &unassigned.first_malformed {
             contents.warnings.push(format!(
                 "{} packets that look like a lidar's are of no lidar here, the first: {error}",
-                strange.malformed
+                unassigned.malformed
             ));
         }
-        if self.ears.len() > 1 {
+        if self.sensors.len() > 1 {
             contents.sensors = self
-                .ears
+                .sensors
                 .iter()
-                .filter_map(|ear| {
-                    let name = recordings::name(&sensor(ear)?).to_string();
-                    Some(SensorReport::new(name, ear.decoder.stats(), ear.gps()))
+                .filter_map(|survey| {
+                    let name = recordings::name(&sensor(survey)?).to_string();
+                    Some(SensorReport::new(
+                        name,
+                        survey.decoder.stats(),
+                        survey.gps(),
+                    ))
                 })
                 .collect();
         }
@@ -191,7 +203,7 @@ impl Ears {
     }
 }
 
-impl Ear {
+impl SensorSurvey {
     fn data(&mut self, record: &Record<'_>, payload: &[u8]) {
         let utc = &mut self.utc;
         self.decoder.packet(record.host, payload, &mut |firing| {
@@ -207,19 +219,19 @@ impl Ear {
         }
     }
 
-    /// What is known of the receiver; `None` without position packets.
+    /// State of the satellite receiver; `None` without position packets.
     fn gps(&self) -> Option<Gps> {
         let pps = self.pps?;
         let state = self.utc.state();
         let locked = matches!(state, UtcState::Locked { .. });
-        let said = match self.utc.ends() {
+        let counts_with_text = match self.utc.ends() {
             ends if locked && ends > 0 => format!("{state}; the lock was lost {ends} times before"),
             _ => state.to_string(),
         };
         Some(Gps {
             pps: pps_name(pps),
             locked,
-            state: said,
+            state: counts_with_text,
         })
     }
 }
@@ -234,7 +246,7 @@ fn pps_name(pps: Pps) -> String {
     }
 }
 
-/// What was found, for the report.
+/// Contents from the decoder's and the file's statistics.
 #[must_use]
 pub fn contents(
     config: &ScanConfig,
@@ -286,7 +298,7 @@ fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
             stats.malformed
         ));
     }
-    let said = [
+    let counts_with_text = [
         (stats.lost_packets, "lidar packets are missing"),
         (
             stats.duplicates,
@@ -302,10 +314,10 @@ fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
         ),
         (
             stats.unidentified,
-            "lidar packets are of a model that nothing tells and were left out: give --model",
+            "lidar packets are of a model that empty tells and were left out: give --model",
         ),
         (
-            // Said above, if it was found.
+            // Reported above if the step was found.
             if lidar_was_set { 0 } else { stats.clock_steps },
             "times the lidar's clock was set",
         ),
@@ -326,8 +338,8 @@ fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
             "stretches of the file are damaged and were left out",
         ),
     ];
-    let said = said.iter().filter(|(count, _)| *count > 0);
-    warnings.extend(said.map(|(count, what)| format!("{count} {what}")));
+    let counts_with_text = counts_with_text.iter().filter(|(count, _)| *count > 0);
+    warnings.extend(counts_with_text.map(|(count, what)| format!("{count} {what}")));
     warnings
 }
 
@@ -339,7 +351,7 @@ fn transport(link: DriveLink) -> &'static str {
     }
 }
 
-/// A return mode as reports call it.
+/// Name of a return mode in reports.
 #[must_use]
 pub fn return_mode_name(mode: ReturnMode) -> String {
     match mode {

@@ -1,4 +1,5 @@
-//! Decoder options from a user's request: model, equal returns, calibration of the individual sensor.
+//! Decoder options from a user's request: model, equal returns, calibration of the individual
+//! sensor.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,7 +12,7 @@ use protocol::vlp16::Model;
 use crate::failure::{Failure, Kind};
 use crate::reconstruct::source::Source;
 
-/// Data packets after which the model is known.
+/// Data packets within which the decoder settles on a model.
 const ENOUGH: u64 = 200;
 
 /// How a user wants packets decoded.
@@ -49,7 +50,7 @@ pub fn decoder_options(request: &DecoderRequest, source: &Source) -> Result<Opti
     })
 }
 
-/// The model that the first packets show: a calibration is of one.
+/// Model of the first packets, which the calibration must match.
 fn model(options: &Options, source: &Source) -> Result<&'static Model, Failure> {
     let mut decoder = Decoder::new(options.clone());
     source.read_until(|record| {
@@ -71,7 +72,7 @@ fn model(options: &Options, source: &Source) -> Result<&'static Model, Failure> 
     })
 }
 
-/// Reads a calibration: ROS YAML, or the program's own TOML.
+/// Reads a calibration: ROS YAML or our TOML.
 fn calibration(path: &Path, model: &'static Model) -> Result<Corrections, Failure> {
     let wrong = |what: String| {
         Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(

@@ -1,10 +1,10 @@
-//! What the report on a scan says, as checks that a recording keeps beside its points.
+//! Diagnostics of a scan, stored beside its points (`diagnostic_msgs` levels OK and WARN).
 
 use cloud::{Check, Level};
 
 use crate::reconstruct::report::{Contents, Scan, Sync};
 
-/// The checks of a scan: whether the devices were real, what was lost, how well clocks and angles agree, what is doubtful.
+/// Checks of a scan: devices, losses, clock, tilt, cloud.
 #[must_use]
 pub fn of(scan: &Scan) -> Vec<Check> {
     vec![
@@ -16,7 +16,7 @@ pub fn of(scan: &Scan) -> Vec<Check> {
     ]
 }
 
-/// Names and values, without those that are not known.
+/// Names and values of a check, without unknown values.
 struct Values(Vec<(String, String)>);
 
 impl Values {

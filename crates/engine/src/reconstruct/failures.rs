@@ -1,4 +1,4 @@
-//! Why no cloud came of a recording, and what to do.
+//! Failures of a reconstruction, with what to do about them.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use scanner::{ScanError, UnreachableTolerance};
 
 use crate::failure::{Failure, Kind};
 
-/// The failure of a reconstruction, with what to do about it.
+/// The failure for a scanner error.
 #[must_use]
 pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
     if let ScanError::UnreachableTolerance(out) = error {
@@ -35,7 +35,7 @@ pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
     Failure::new(Kind::BadInput, format!("{}: {error}", path.display())).help(help)
 }
 
-/// No cloud is as accurate as was asked for: what would be.
+/// The requested tolerance cannot be met; lists what can.
 fn out_of_reach(path: &Path, out: &UnreachableTolerance) -> Failure {
     let mut would = Vec::new();
     if let Some(speed) = out.speed_that_would_do() {

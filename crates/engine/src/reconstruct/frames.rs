@@ -1,5 +1,7 @@
-//! A cloud for each turn of the lidar, cut at an azimuth, firing by firing; on request organised, with the shots that brought nothing
-//! back. A file a turn, or a message a turn in one MCAP.
+//! One cloud per revolution of the lidar, cut at an azimuth.
+//!
+//! A file per revolution, or one message per revolution in an MCAP. Organised clouds keep shots
+//! without a return.
 
 use std::path::{Path, PathBuf};
 
@@ -16,67 +18,68 @@ use super::replay::tilt_track;
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
 
-/// How frames are wanted.
+/// Requested frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
-    /// Azimuth at which one ends and the next begins.
+    /// Azimuth at which one frame ends and the next begins.
     pub cut: Degrees,
-    /// Whether shots without a return are kept: a row a ring, a column a firing.
+    /// Whether shots without a return are kept: one row per ring, one column per firing.
     pub organised: bool,
-    /// Name of the clouds, each with the frame's number before its extension.
+    /// Path of the clouds; each gets the frame's number before the extension.
     pub output: PathBuf,
-    /// Their columns beside the position.
+    /// Columns in addition to the position.
     pub fields: Fields,
-    /// Whether clouds that exist are overwritten.
+    /// Whether existing files are overwritten.
     pub force: bool,
 }
 
-/// Makes clouds of frames.
+/// Writes one cloud per frame.
 pub struct FrameWriter<'a> {
     plan: &'a FramePlan,
     metadata: Metadata,
     decoder: Decoder,
-    filling: Filling<'a>,
-    /// The one file of all turns, where the format has room for many clouds.
-    all: Option<Target>,
+    builder: FrameBuilder<'a>,
+    /// The single file of formats that hold many clouds.
+    mcap: Option<Target>,
 }
 
-/// What was written.
+/// Totals over mcap frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Written {
-    /// Points, and returns that have no place.
+pub struct FrameTotals {
+    /// Points, and returns without a tilt angle.
     pub placed: PlacementCounts,
-    /// Points that were left out: the lidar's clock was not locked to UTC.
+    /// Points omitted because the lidar's clock was not locked to UTC.
     pub without_utc: u64,
-    /// Clouds.
+    /// Clouds totals.
     pub clouds: u64,
 }
 
-/// The frame being filled.
-struct Filling<'a> {
+/// The frame under construction.
+struct FrameBuilder<'a> {
     alignment: &'a Alignment,
-    /// UTC by the lidar's receiver, where times are to be in it.
+    /// UTC clock of the lidar's receiver, if point times are in UTC.
     utc: Option<&'a UtcClock>,
     organised: bool,
-    /// Whether a return that is both of its pair is one point.
-    once: bool,
+    /// Whether two equal returns of a pulse become one point.
+    merge_equal: bool,
     cutter: FrameCutter,
     points: Points,
     grid: OrganisedFrame,
     placed: PlacementCounts,
     without_utc: u64,
-    /// Frames that have ended and are not written yet, with their rows.
+    /// Completed frames with their row counts, not totals yet.
     ended: Vec<(Frame, Points, u64)>,
     error: Option<Failure>,
-    /// When the last record came.
-    near: Option<Stamp<Host>>,
+    /// Receive time of the last record.
+    received: Option<Stamp<Host>>,
 }
 
 impl<'a> FrameWriter<'a> {
-    /// A writer of frames as planned.
+    /// Creates a writer.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for an azimuth that is no number, or an organised cloud of another format than PCD.
+    /// [`Kind::Usage`] for an invalid azimuth, for stdout, or for an organised cloud that is not a
+    /// PCD.
     pub fn new(
         plan: &'a FramePlan,
         alignment: &'a Alignment,
@@ -102,18 +105,18 @@ impl<'a> FrameWriter<'a> {
             )
             .help("give -o a name that ends in .pcd, or leave --organised out"));
         }
-        let once = options.duplicates == Duplicates::Unique;
-        let all = match Format::from_path(&plan.output) {
-            Ok(Format::Mcap) => Some(one_file(plan, alignment, utc.is_some(), &metadata)?),
+        let merge_equal = options.duplicates == Duplicates::Unique;
+        let mcap = match Format::from_path(&plan.output) {
+            Ok(Format::Mcap) => Some(open_mcap(plan, alignment, utc.is_some(), &metadata)?),
             _ => None,
         };
         Ok(Self {
-            all,
+            mcap,
             plan,
             metadata,
             decoder: Decoder::new(options),
-            filling: Filling {
-                once,
+            builder: FrameBuilder {
+                merge_equal,
                 alignment,
                 utc,
                 organised: plan.organised,
@@ -124,53 +127,57 @@ impl<'a> FrameWriter<'a> {
                 without_utc: 0,
                 ended: Vec::new(),
                 error: None,
-                near: None,
+                received: None,
             },
         })
     }
 
-    /// Takes a record.
+    /// Processes a record.
     ///
     /// # Errors
-    /// Where a cloud cannot be written, or the lidar turns into another model in mid-frame.
-    pub fn observe(&mut self, record: &Record<'_>, written: &mut Written) -> Result<(), Failure> {
+    /// A cloud cannot be totals, or the lidar's model changes within a frame.
+    pub fn observe(
+        &mut self,
+        record: &Record<'_>,
+        totals: &mut FrameTotals,
+    ) -> Result<(), Failure> {
         let Wire::Lidar { payload, .. } = record.wire else {
             return Ok(());
         };
-        let filling = &mut self.filling;
-        filling.near = Some(record.host);
+        let builder = &mut self.builder;
+        builder.received = Some(record.host);
         self.decoder
-            .packet(record.host, payload, &mut |firing| filling.firing(firing));
-        self.write(written)
+            .packet(record.host, payload, &mut |firing| builder.firing(firing));
+        self.write(totals)
     }
 
-    /// Writes the last frame. Where all are in one file, that is still to be committed.
+    /// Writes the last frame. Returns the target that holds mcap frames, not committed yet.
     ///
     /// # Errors
     /// As [`FrameWriter::observe`].
-    pub fn finish(mut self, written: &mut Written) -> Result<(Stats, Option<Target>), Failure> {
-        let filling = &mut self.filling;
-        self.decoder.finish(&mut |firing| filling.firing(firing));
-        if let Some(frame) = self.filling.cutter.finish() {
-            self.filling.end(frame);
+    pub fn finish(mut self, totals: &mut FrameTotals) -> Result<(Stats, Option<Target>), Failure> {
+        let builder = &mut self.builder;
+        self.decoder.finish(&mut |firing| builder.firing(firing));
+        if let Some(frame) = self.builder.cutter.finish() {
+            self.builder.end(frame);
         }
-        self.write(written)?;
-        written.placed = self.filling.placed;
-        written.without_utc = self.filling.without_utc;
-        Ok((self.decoder.stats().clone(), self.all))
+        self.write(totals)?;
+        totals.placed = self.builder.placed;
+        totals.without_utc = self.builder.without_utc;
+        Ok((self.decoder.stats().clone(), self.mcap))
     }
 
-    fn write(&mut self, written: &mut Written) -> Result<(), Failure> {
-        if let Some(error) = self.filling.error.take() {
+    fn write(&mut self, totals: &mut FrameTotals) -> Result<(), Failure> {
+        if let Some(error) = self.builder.error.take() {
             return Err(error);
         }
-        for (frame, points, rows) in std::mem::take(&mut self.filling.ended) {
-            if let Some(target) = &mut self.all {
+        for (frame, points, rows) in std::mem::take(&mut self.builder.ended) {
+            if let Some(target) = &mut self.mcap {
                 let sink = target.sink();
                 sink.points(&points)
                     .and_then(|()| sink.turn())
                     .map_err(|error| sink_failure(&self.plan.output, &error))?;
-                written.clouds += 1;
+                totals.clouds += 1;
                 continue;
             }
             let path = name(&self.plan.output, frame.index);
@@ -180,7 +187,7 @@ impl<'a> FrameWriter<'a> {
                 Target::open(&path, self.plan.fields, self.plan.force)?
             };
             let mut metadata = self.metadata.clone();
-            metadata.comments.push(said(&frame));
+            metadata.comments.push(frame_comment(&frame));
             if self.plan.organised {
                 metadata.comments.push(
                     "organised: a row a ring, the lowest first, a column a firing; in dual return the second returns' rings follow"
@@ -192,14 +199,14 @@ impl<'a> FrameWriter<'a> {
                 .and_then(|()| sink.points(&points))
                 .map_err(|error| sink_failure(&path, &error))?;
             target.commit()?;
-            written.clouds += 1;
+            totals.clouds += 1;
         }
         Ok(())
     }
 }
 
-/// Opens the one file of all turns.
-fn one_file(
+/// Opens the file that holds mcap frames.
+fn open_mcap(
     plan: &FramePlan,
     alignment: &Alignment,
     in_utc: bool,
@@ -208,7 +215,7 @@ fn one_file(
     let mut target = Target::turns(&plan.output, plan.fields, plan.force)?;
     let mut track = tilt_track(alignment);
     if in_utc {
-        // Samples have times of the host's clock, which the points have not.
+        // Samples carry host times, points carry UTC.
         track.samples.clear();
     }
     let sink = target.sink();
@@ -218,7 +225,7 @@ fn one_file(
     Ok(target)
 }
 
-impl Filling<'_> {
+impl FrameBuilder<'_> {
     fn firing(&mut self, firing: &Firing<'_>) {
         if let Some(frame) = self.cutter.firing(firing) {
             self.end(frame);
@@ -236,15 +243,15 @@ impl Filling<'_> {
             return;
         }
         for seen in firing.points() {
-            match self.alignment.place_received(&seen, self.near) {
-                Some(point) => self.keep(point),
+            match self.alignment.place_received(&seen, self.received) {
+                Some(point) => self.push(point),
                 None => self.placed.outside += 1,
             }
         }
     }
 
-    /// Adds a point to a frame that is not organised.
-    fn keep(&mut self, mut point: Point) {
+    /// Adds a point to an unorganised frame.
+    fn push(&mut self, mut point: Point) {
         if let Some(clock) = self.utc {
             let Some(time) = in_utc(clock, point.device_time) else {
                 self.without_utc += 1;
@@ -256,14 +263,14 @@ impl Filling<'_> {
         self.points.push(point);
     }
 
-    /// The frame is complete; one without points is not worth a cloud.
+    /// Completes the frame; frames without points are dropped.
     fn end(&mut self, frame: Frame) {
         let before = self.placed.points;
         let fields = self.points.fields();
         let mut rows = 1;
         if self.organised {
             rows = (self.grid.layers() * self.grid.rings()) as u64;
-            self.lay_out();
+            self.append_grid();
             self.grid.clear();
         }
         let points = std::mem::replace(&mut self.points, Points::new(fields));
@@ -277,23 +284,23 @@ impl Filling<'_> {
         }
     }
 
-    /// The grid as points, row by row.
-    fn lay_out(&mut self) {
+    /// Converts the grid to points, row by row.
+    fn append_grid(&mut self) {
         let (grid, alignment) = (&self.grid, self.alignment);
         for layer in 0..grid.layers() {
             for ring in 0..grid.rings() {
                 for column in 0..grid.columns().len() {
                     let seen = grid.cell(layer, ring, column).filter(|seen| {
-                        !(self.once && layer > 0 && seen.echo == Echo::LastAndStrongest)
+                        !(self.merge_equal && layer > 0 && seen.echo == Echo::LastAndStrongest)
                     });
-                    let placed = seen.and_then(|seen| alignment.place_received(seen, self.near));
+                    let placed = seen.and_then(|seen| alignment.place_received(seen, self.received));
                     match (seen, placed) {
                         (_, Some(_)) => self.placed.points += 1,
                         (Some(_), None) => self.placed.outside += 1,
                         (None, None) => {}
                     }
-                    let nothing = || nothing(alignment, self.near, grid, ring, column);
-                    let mut point = placed.unwrap_or_else(nothing);
+                    let empty_cell = || empty_cell(alignment, self.received, grid, ring, column);
+                    let mut point = placed.unwrap_or_else(empty_cell);
                     let fired = grid.time(ring, column);
                     if let Some(time) = fired.zip(self.utc).and_then(|(at, utc)| in_utc(utc, at)) {
                         point.time = time;
@@ -310,17 +317,18 @@ fn in_utc(clock: &UtcClock, device_time: Stamp<Lidar>) -> Option<Stamp<Host>> {
     Some(Stamp::from_nanos(utc.as_nanos()))
 }
 
-/// Whether the clock was locked from a firing's first laser to its last: an organised frame has it whole or not at all.
+/// Whether the clock was locked from the firing's first laser to its last. An organised frame keeps
+/// or drops a firing whole.
 fn has_utc(clock: &UtcClock, firing: &Firing<'_>) -> bool {
     let last = firing.model.lasers.iter().map(|laser| laser.delay_ns).max();
     let end = firing.start + Span::from_nanos(i64::from(last.unwrap_or(0)));
     clock.utc(firing.start).is_some() && clock.utc(end).is_some()
 }
 
-/// The point of a shot that brought nothing back: fired then, by that laser, without a place.
-fn nothing(
+/// The point of a shot without a return: time and ring, no position.
+fn empty_cell(
     alignment: &Alignment,
-    near: Option<Stamp<Host>>,
+    received: Option<Stamp<Host>>,
     grid: &OrganisedFrame,
     ring: usize,
     column: usize,
@@ -328,7 +336,7 @@ fn nothing(
     let time = grid
         .time(ring, column)
         .map_or(Stamp::from_nanos(0), |time| {
-            alignment.clock.moment_near(time, near).host
+            alignment.clock.moment_near(time, received).host
         });
     Point {
         position_m: [f64::NAN; 3],
@@ -340,13 +348,13 @@ fn nothing(
     }
 }
 
-/// What a frame's cloud says of it.
-fn said(frame: &Frame) -> String {
+/// Comment in a frame's cloud.
+fn frame_comment(frame: &Frame) -> String {
     let whole = if frame.whole { "whole" } else { "not whole" };
     format!("frame {}, {whole}: {} firings", frame.index, frame.firings)
 }
 
-/// `scan.pcd` to `scan-00017.pcd`.
+/// `scan.pcd` with index 17 becomes `scan-00017.pcd`.
 fn name(output: &Path, index: u64) -> PathBuf {
     let stem = output.file_stem().unwrap_or_default().to_string_lossy();
     let extension = output.extension().unwrap_or_default().to_string_lossy();

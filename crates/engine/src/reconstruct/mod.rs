@@ -3,7 +3,6 @@
 pub mod contents;
 pub mod decoder_options;
 pub mod diagnostics;
-mod doubts;
 mod failures;
 pub mod frames;
 pub mod replay;
@@ -11,5 +10,6 @@ pub mod report;
 pub mod source;
 pub mod tilt_table;
 pub mod utc;
+mod warnings;
 
 pub use failures::scan_failure;

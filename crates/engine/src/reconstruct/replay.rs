@@ -1,4 +1,4 @@
-//! `velomotion replay`: a cloud from a log, or from anybody's lidar recording. `capture` ends with the same function.
+//! From a log or recording to a cloud in two passes: solve clocks and angles, then place points.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,9 +18,9 @@ use sim::Truth;
 use units::{Host, Span, Stamp};
 
 use super::contents::contents;
-use super::doubts::{doubts, short};
 use super::failures::scan_failure;
-use super::frames::{FramePlan, FrameWriter, Written};
+use super::frames::{FramePlan, FrameTotals, FrameWriter};
+use super::warnings::{angle_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
 use crate::reconstruct::diagnostics as checks;
@@ -28,9 +28,9 @@ use crate::reconstruct::report::{self, Scan, StepReport, Sync, ToleranceReport};
 use crate::reconstruct::source::{Pass, Source};
 use crate::reconstruct::utc::{InUtc, UtcSurvey};
 
-/// Clock that point times refer to.
+/// Clock of the point times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TimeOf {
+pub enum TimeReference {
     /// The recording host's clock.
     #[default]
     Host,
@@ -38,32 +38,33 @@ pub enum TimeOf {
     Utc,
 }
 
-/// What to make a cloud of.
+/// A reconstruction.
 pub struct Request<'a> {
     /// Log or plain recording.
     pub recording: &'a Source,
-    /// Where angles come from.
+    /// Source of the tilt angles.
     pub tilt: TiltSource,
-    /// How the lidar's packets are read.
+    /// Options of the packet decoder.
     pub options: Options,
-    /// Whose clock the points' times are of.
-    pub time: TimeOf,
-    /// How accurate angles are to be.
+    /// Clock of the point times.
+    pub time: TimeReference,
+    /// Requested accuracy of the angles.
     pub accuracy: Accuracy,
-    /// How many times as fast as they were recorded points are handed on; `None`: as fast as they are made.
+    /// Playback speed relative to the recording; as fast as possible without it.
     pub pace: Option<f64>,
-    /// What truly happened, where a simulator knows.
+    /// Ground truth, if the recording is simulated.
     pub truth: Option<&'a Truth>,
-    /// Records that the recording's making lost.
+    /// Records lost during the recording.
     pub lost_records: u64,
-    /// Set where the user wants no more of it.
+    /// Stops the reconstruction when set.
     pub interrupt: &'a AtomicBool,
 }
 
-/// Makes the cloud of a recording: two passes over it, points into the target.
+/// Makes the cloud of a recording and commits it to `target`.
 ///
 /// # Errors
-/// [`Kind::BadInput`] where the recording does not hold what is needed, [`Kind::Incomplete`] where the cloud cannot be written.
+/// [`Kind::BadInput`] for an unsuitable recording, [`Kind::Incomplete`] if the cloud cannot be
+/// written.
 pub fn make(request: &Request<'_>, mut target: Target) -> Result<Scan, Failure> {
     let output = target.path().to_owned();
     let written = match request.truth {
@@ -80,91 +81,92 @@ pub fn make(request: &Request<'_>, mut target: Target) -> Result<Scan, Failure> 
     Ok(written)
 }
 
-/// What the first pass over a recording found.
-struct Surveyed {
+/// Result of the first pass.
+struct FirstPass {
     config: ScanConfig,
     drive: Option<(DriveLink, u64)>,
     pass: Pass,
     alignment: Alignment,
-    /// When the last data packet came.
-    heard: Option<Stamp<Host>>,
-    /// UTC by the lidar's receiver, where it was asked for.
+    /// Receive time of the last data packet.
+    last_data: Option<Stamp<Host>>,
+    /// UTC clock of the lidar's receiver, if requested.
     utc: Option<UtcClock>,
 }
 
-/// The first pass.
-fn survey(request: &Request<'_>) -> Result<Surveyed, Failure> {
+/// First pass: clocks, angles and sweeps.
+fn survey(request: &Request<'_>) -> Result<FirstPass, Failure> {
     let source = request.recording;
     let config = source.config()?;
     let cannot_scan = |error: ScanError| scan_failure(source.path(), &error);
     let mut survey = Survey::new(&config, request.options.clone()).map_err(cannot_scan)?;
-    let mut utc = (request.time == TimeOf::Utc).then(|| UtcSurvey::new(request.options.clone()));
-    let mut heard = None;
+    let mut utc =
+        (request.time == TimeReference::Utc).then(|| UtcSurvey::new(request.options.clone()));
+    let mut last_data = None;
     let pass = source.read(|record| {
         survey.observe(record);
         if let Wire::Lidar { payload, .. } = record.wire
             && payload.len() == DATA_LEN
         {
-            heard = Some(record.host);
+            last_data = Some(record.host);
         }
         if let Some(utc) = &mut utc {
             utc.observe(record);
         }
-        go_on(request)
+        check_interrupt(request)
     })?;
     let drive = survey.drive();
     let alignment = survey
         .solve(&config, &request.tilt, request.accuracy)
         .map_err(cannot_scan)?;
-    Ok(Surveyed {
+    Ok(FirstPass {
         config,
         drive,
         pass,
         alignment,
-        heard,
+        last_data,
         utc: utc.map(UtcSurvey::solve),
     })
 }
 
-fn go_on(request: &Request<'_>) -> Result<(), Failure> {
+fn check_interrupt(request: &Request<'_>) -> Result<(), Failure> {
     match request.interrupt.load(Ordering::Relaxed) {
-        true => Err(stopped(request.recording.path())),
+        true => Err(interrupted(request.recording.path())),
         false => Ok(()),
     }
 }
 
-/// The two passes.
+/// Both passes, with points going to `sink`.
 ///
 /// # Errors
-/// As for [`make`].
+/// As [`make`].
 pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result<Scan, Failure> {
-    let surveyed = survey(request)?;
-    let Some(utc) = surveyed.utc.clone() else {
-        let (placed, stats) = place(request, &surveyed, sink, output)?;
-        let scan = report(request, &surveyed, placed, &stats, output)?;
-        tell(sink, &scan, output)?;
+    let first_pass = survey(request)?;
+    let Some(utc) = first_pass.utc.clone() else {
+        let (placed, stats) = place(request, &first_pass, sink, output)?;
+        let scan = report(request, &first_pass, placed, &stats, output)?;
+        send_summary(sink, &scan, output)?;
         return Ok(scan);
     };
     let mut in_utc = InUtc::new(sink, utc);
-    let (mut placed, stats) = place(request, &surveyed, &mut in_utc, output)?;
+    let (mut placed, stats) = place(request, &first_pass, &mut in_utc, output)?;
     let without = in_utc.without();
     placed.points -= without;
     if placed.points == 0 {
-        return Err(never_locked(request));
+        return Err(utc_never_locked(request));
     }
-    let mut scan = report(request, &surveyed, placed, &stats, output)?;
-    left_out(&mut scan, without);
-    tell(&mut in_utc, &scan, output)?;
+    let mut scan = report(request, &first_pass, placed, &stats, output)?;
+    omit_without_utc(&mut scan, without);
+    send_summary(&mut in_utc, &scan, output)?;
     Ok(scan)
 }
 
-/// Tells a sink what was found out about the scan.
-fn tell(sink: &mut dyn Sink, scan: &Scan, output: &Path) -> Result<(), Failure> {
+/// Sends the summary of a scan to a sink.
+fn send_summary(sink: &mut dyn Sink, scan: &Scan, output: &Path) -> Result<(), Failure> {
     sink.checks(&checks::of(scan))
         .map_err(|error| sink_failure(output, &error))
 }
 
-/// How the platform tilted, as sinks want it.
+/// Tilt samples and sweeps for sinks that store them.
 pub(crate) fn tilt_track(alignment: &Alignment) -> TiltTrack {
     let trajectory = &alignment.trajectory;
     let samples = trajectory.samples().iter();
@@ -176,7 +178,7 @@ pub(crate) fn tilt_track(alignment: &Alignment) -> TiltTrack {
     }
 }
 
-fn never_locked(request: &Request<'_>) -> Failure {
+fn utc_never_locked(request: &Request<'_>) -> Failure {
     Failure::new(
         Kind::BadInput,
         format!(
@@ -184,117 +186,117 @@ fn never_locked(request: &Request<'_>) -> Failure {
             request.recording.path().display()
         ),
     )
-    .help("info says why; without --time utc times are of the recording host's clock")
+    .help("velomotion info shows the reason; omit --time utc to use the recording host's clock")
 }
 
-/// Says how many points have no UTC.
-fn left_out(scan: &mut Scan, without_utc: u64) {
+/// Counts points without UTC as omitted, with a warning.
+fn omit_without_utc(scan: &mut Scan, without_utc: u64) {
     if without_utc > 0 {
         scan.left_out += without_utc;
         scan.contents.warnings.push(format!(
-            "{without_utc} points were left out: the lidar's clock was not locked to UTC"
+            "{without_utc} points were omitted: the lidar's clock was not locked to UTC"
         ));
     }
 }
 
-/// The second pass.
+/// Second pass: places every return.
 fn place(
     request: &Request<'_>,
-    surveyed: &Surveyed,
+    first_pass: &FirstPass,
     sink: &mut dyn Sink,
     output: &Path,
 ) -> Result<(PlacementCounts, Stats), Failure> {
     let mut pace = pacer(request.pace)?;
     let cannot_write = |error: SinkError| sink_failure(output, &error);
-    sink.begin(&metadata(&surveyed.config, request))
+    sink.begin(&metadata(&first_pass.config, request))
         .map_err(cannot_write)?;
     if sink.wants_tilt() {
-        let track = tilt_track(&surveyed.alignment);
+        let track = tilt_track(&first_pass.alignment);
         sink.tilt(&track).map_err(cannot_write)?;
     }
-    let mut placer = Placer::new(&surveyed.alignment, request.options.clone(), sink);
+    let mut placer = Placer::new(&first_pass.alignment, request.options.clone(), sink);
     request.recording.read(|record| {
         if let Some(pace) = &mut pace {
-            wait(pace, record, request.interrupt);
+            wait_until_due(pace, record, request.interrupt);
         }
         placer.observe(record).map_err(cannot_write)?;
-        go_on(request)
+        check_interrupt(request)
     })?;
     placer.finish().map_err(cannot_write)
 }
 
-/// The two passes, a cloud a turn of the lidar.
+/// Both passes, with one cloud per revolution of the lidar.
 ///
 /// # Errors
-/// As for [`make`], and [`Kind::Usage`] for frames that cannot be.
+/// As [`make`], and [`Kind::Usage`] for invalid frame settings.
 pub fn frames(request: &Request<'_>, plan: &FramePlan) -> Result<Scan, Failure> {
-    let surveyed = survey(request)?;
-    let metadata = metadata(&surveyed.config, request);
+    let first_pass = survey(request)?;
+    let metadata = metadata(&first_pass.config, request);
     let mut pace = pacer(request.pace)?;
     let options = request.options.clone();
-    let utc = surveyed.utc.as_ref();
-    let mut writer = FrameWriter::new(plan, &surveyed.alignment, utc, options, metadata)?;
-    let mut written = Written::default();
+    let utc = first_pass.utc.as_ref();
+    let mut writer = FrameWriter::new(plan, &first_pass.alignment, utc, options, metadata)?;
+    let mut written = FrameTotals::default();
     request.recording.read(|record| {
         if let Some(pace) = &mut pace {
-            wait(pace, record, request.interrupt);
+            wait_until_due(pace, record, request.interrupt);
         }
         writer.observe(record, &mut written)?;
-        go_on(request)
+        check_interrupt(request)
     })?;
     let (stats, target) = writer.finish(&mut written)?;
     if written.placed.points == 0 && written.without_utc > 0 {
-        return Err(never_locked(request));
+        return Err(utc_never_locked(request));
     }
-    let mut scan = report(request, &surveyed, written.placed, &stats, &plan.output)?;
+    let mut scan = report(request, &first_pass, written.placed, &stats, &plan.output)?;
     scan.clouds = Some(written.clouds);
-    left_out(&mut scan, written.without_utc);
+    omit_without_utc(&mut scan, written.without_utc);
     if let Some(mut target) = target {
-        tell(target.sink(), &scan, &plan.output)?;
+        send_summary(target.sink(), &scan, &plan.output)?;
         target.commit()?;
     }
     Ok(scan)
 }
 
-/// What there is to say of a scan.
+/// Report on a scan.
 fn report(
     request: &Request<'_>,
-    surveyed: &Surveyed,
+    first_pass: &FirstPass,
     placed: PlacementCounts,
     stats: &Stats,
     output: &Path,
 ) -> Result<Scan, Failure> {
-    let (alignment, path) = (&surveyed.alignment, request.recording.path());
+    let (alignment, path) = (&first_pass.alignment, request.recording.path());
     if placed.points == 0 && placed.outside > 0 {
         return Err(Failure::new(
             Kind::BadInput,
             format!(
-                "{}: none of {} returns falls into the time for which a tilt angle is known",
+                "{}: no tilt angle is known at the time of any of the {} returns",
                 path.display(),
                 placed.outside
             ),
         )
-        .help("see whether the angles belong to this recording; --tilt none needs none"));
+        .help("check that the angles belong to this recording, or use --tilt none"));
     }
     if let Some(lasers) = stats.corrections_refused {
         return Err(Failure::new(
             Kind::BadInput,
-            format!("the calibration is of {lasers} lasers, the lidar has another number"),
+            format!("the calibration has {lasers} lasers, the lidar has a different number"),
         )
-        .help("give the calibration of this very lidar"));
+        .help("use the calibration of this individual lidar"));
     }
     let mut contents = contents(
-        &surveyed.config,
+        &first_pass.config,
         stats,
-        surveyed.drive,
-        &surveyed.pass,
+        first_pass.drive,
+        &first_pass.pass,
         &alignment.steps,
     );
-    let short = short(&surveyed.config, alignment);
-    let doubts = doubts(alignment).into_iter();
+    let incomplete = incomplete_sweeps(&first_pass.config, alignment);
+    let warnings = angle_warnings(alignment).into_iter();
     contents
         .warnings
-        .extend(doubts.chain(short.iter().cloned()));
+        .extend(warnings.chain(incomplete.iter().cloned()));
     Ok(Scan {
         contents,
         points: placed.points,
@@ -309,58 +311,61 @@ fn report(
         output: output.display().to_string(),
         log: path.display().to_string(),
         lost_records: request.lost_records,
-        unheard_s: unheard_s(surveyed),
-        short,
+        lidar_gap_s: lidar_gap_s(first_pass),
+        incomplete_sweeps: incomplete,
         reception: None,
         truth: None,
     })
 }
 
-/// How long the lidar was silent at the end of the last sweep, seconds.
-fn unheard_s(surveyed: &Surveyed) -> f64 {
-    let alignment = &surveyed.alignment;
-    // Sweeps are by the host's clock as it was before it was set.
+/// Seconds without lidar packets at the end of the last sweep.
+fn lidar_gap_s(first_pass: &FirstPass) -> f64 {
+    let alignment = &first_pass.alignment;
+    // Sweep times refer to the host clock before its step.
     let host_was_set = alignment
         .steps
         .iter()
         .any(|step| step.clock == SetClock::Host);
-    match (surveyed.heard, alignment.sweeps.last()) {
-        (Some(heard), Some(sweep)) if !host_was_set => {
-            sweep.end.saturating_since(heard).as_secs_f64().max(0.0)
+    match (first_pass.last_data, alignment.sweeps.last()) {
+        (Some(last_data), Some(sweep)) if !host_was_set => {
+            sweep.end.saturating_since(last_data).as_secs_f64().max(0.0)
         }
         _ => 0.0,
     }
 }
 
-/// A recording that is silent for longer is not waited for.
-const LONGEST_SILENCE: Span = Span::from_secs(10);
+/// Gaps over 10 s are reported and skipped.
+const MAX_GAP: Span = Span::from_secs(10);
 
 fn pacer(factor: Option<f64>) -> Result<Option<Pacer>, Failure> {
-    let pacer = factor.map(|factor| Pacer::new(factor, LONGEST_SILENCE));
+    let pacer = factor.map(|factor| Pacer::new(factor, MAX_GAP));
     pacer.transpose().map_err(|error| {
         Failure::new(Kind::Usage, format!("--realtime: {error}"))
             .help("1 is as fast as it was recorded, 2 twice as fast")
     })
 }
 
-/// Waits until a record is due. What is not waited for is said.
-fn wait(pace: &mut Pacer, record: &Record<'_>, interrupt: &AtomicBool) {
+/// Waits until a record is due. Skipped gaps are logged.
+fn wait_until_due(pace: &mut Pacer, record: &Record<'_>, interrupt: &AtomicBool) {
     if let Wait::Restarted(gap) = pace.wait(record.host, interrupt) {
         let (what, span) = match gap {
-            Gap::Silence(span) => ("not waited for: the recording is silent for", span),
+            Gap::Silence(span) => ("gap in the recording skipped:", span),
             Gap::Backwards(span) => ("the recording's time goes back by", span),
-            Gap::Behind(span) => ("behind the recording's time by", span),
+            Gap::Behind(span) => ("playback lags the recording by", span),
         };
         tracing::warn!("{what} {:.1} s", span.as_secs_f64());
     }
 }
 
-fn stopped(path: &Path) -> Failure {
+fn interrupted(path: &Path) -> Failure {
     Failure::new(
         Kind::Interrupted,
-        "stopped by the user while making the cloud",
+        "interrupted by the user while making the cloud",
     )
-    .help(format!("replay {} makes it again", path.display()))
+    .help(format!(
+        "velomotion replay {} makes the cloud",
+        path.display()
+    ))
 }
 
 fn sync(alignment: &Alignment) -> Sync {
@@ -377,7 +382,8 @@ fn sync(alignment: &Alignment) -> Sync {
     }
 }
 
-/// What the cloud says about itself. Nothing of the file's name or of today: a log gives the same bytes wherever it lies.
+/// Metadata of the cloud. Independent of file names and of the date, so that a log always gives the
+/// same bytes.
 fn metadata(config: &ScanConfig, request: &Request<'_>) -> Metadata {
     let mut comments = Vec::new();
     if request.tilt == TiltSource::None {
@@ -388,8 +394,8 @@ fn metadata(config: &ScanConfig, request: &Request<'_>) -> Metadata {
         source: format!("device {}", config.device),
         software: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
         time_reference: match request.time {
-            TimeOf::Host => "Unix seconds (UTC) of the recording host's clock",
-            TimeOf::Utc => "Unix seconds (UTC) by the lidar's satellite receiver",
+            TimeReference::Host => "Unix seconds (UTC) of the recording host's clock",
+            TimeReference::Utc => "Unix seconds (UTC) by the lidar's satellite receiver",
         }
         .to_owned(),
         comments,

@@ -1,39 +1,39 @@
-//! What commands say at the end: one JSON object for programs, a table for people.
+//! Reports of reconstructions, serialised as the JSON of `info`, `replay` and `capture`.
 
 use scanner::MethodChoice;
 use scanner::steps::{ClockStep, SetClock};
 use serde::{Deserialize, Serialize};
 
-/// Packets by what they were.
+/// Packet counts by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Packets {
-    /// Lidar data packets that were decoded.
+    /// Decoded lidar data packets.
     pub data: u64,
     /// Position packets.
     pub position: u64,
-    /// Records or packets that are damaged.
+    /// Damaged records or packets.
     pub malformed: u64,
-    /// Traffic of something else.
+    /// Other traffic.
     pub other: u64,
 }
 
-/// The tilt part of a log.
+/// The drive part of a log.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Tilt {
     /// Shaft samples.
     pub samples: u64,
-    /// usb, rs232 or can.
+    /// `usb`, `rs232` or `can`.
     pub transport: String,
 }
 
-/// What is known of a lidar's satellite receiver.
+/// State of a lidar's satellite receiver.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Gps {
-    /// State of the pulse per second: absent, synchronising, locked or error.
+    /// State of the pulse per second: `absent`, `synchronising`, `locked` or `error`.
     pub pps: String,
-    /// Whether the lidar's time is UTC: pulse and fix are good.
+    /// Whether the lidar's time is UTC: pulse and fix are valid.
     pub locked: bool,
-    /// The same in words, with the reason.
+    /// Description of the state, with its reason.
     pub state: String,
 }
 
@@ -44,23 +44,23 @@ pub struct SensorReport {
     pub name: String,
     /// Model.
     pub model: Option<String>,
-    /// strongest, last or dual.
+    /// `strongest`, `last` or `dual`.
     pub return_mode: Option<String>,
     /// Data packets.
     pub data: u64,
-    /// Channels with a distance.
+    /// Channels with a range.
     pub returns: u64,
     /// Data packets missing by device time.
     pub lost_packets: u64,
-    /// Rotation.
+    /// Lidar speed, revolutions per minute.
     pub rpm: Option<f64>,
-    /// What is known of its satellite receiver.
+    /// Satellite receiver.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gps: Option<Gps>,
 }
 
 impl SensorReport {
-    /// The report on what a decoder saw.
+    /// Creates a report from a decoder's statistics.
     #[must_use]
     pub fn new(name: String, stats: &lidar::Stats, gps: Option<Gps>) -> Self {
         Self {
@@ -76,73 +76,73 @@ impl SensorReport {
     }
 }
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Contents {
     /// Sensor model.
     pub model: Option<String>,
-    /// strongest, last or dual.
+    /// `strongest`, `last` or `dual`.
     pub return_mode: Option<String>,
-    /// Packets by what they were.
+    /// Packet counts.
     pub packets: Packets,
-    /// Channels with a distance.
+    /// Channels with a range.
     pub returns: u64,
     /// Data packets missing by device time.
     pub lost_packets: u64,
-    /// From the first to the last firing, seconds of the device's clock.
+    /// From the first to the last firing, seconds of device time.
     pub duration_s: f64,
-    /// Rotation of the lidar.
+    /// Lidar speed, revolutions per minute.
     pub rpm: Option<f64>,
-    /// What is known of the lidar's satellite receiver.
+    /// Satellite receiver.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gps: Option<Gps>,
-    /// Each lidar, where there are several; the rest of the report is of the first.
+    /// One report per lidar if there are several. The other fields describe the first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sensors: Vec<SensorReport>,
-    /// What a log holds of the drive.
+    /// Drive samples of a log.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tilt: Option<Tilt>,
-    /// Where and why the file ends too early.
+    /// Where and why the file ends early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truncated: Option<String>,
-    /// Whether the devices were software.
+    /// Whether the devices were simulated.
     pub simulated: bool,
-    /// What is doubtful about it.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
 /// One sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SweepReport {
-    /// Angle at its start.
+    /// Angle at the start.
     pub from_deg: f64,
-    /// Angle at its end.
+    /// Angle at the end.
     pub to_deg: f64,
-    /// Measured speed in the cruise.
+    /// Measured speed of the cruise.
     pub cruise_deg_s: f64,
     /// Time in motion, ramps included.
     pub duration_s: f64,
-    /// Range over time.
+    /// Angular range over duration.
     pub mean_deg_s: f64,
-    /// Turns of the lidar in that time; none where its speed is not known.
+    /// Lidar revolutions in that time, if its speed is known.
     pub frames: Option<f64>,
 }
 
-/// A clock that was set in mid-recording.
+/// A clock step during the recording.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StepReport {
-    /// host or lidar.
+    /// `host` or `lidar`.
     pub clock: &'static str,
-    /// When, Unix seconds of the host's clock as it was at the begin.
+    /// Time of the step, Unix seconds of the host clock before the step.
     pub when_s: f64,
     /// Seconds after the lidar's first packet.
     pub after_s: f64,
-    /// How far forward, seconds; negative where it was set back.
+    /// Size of the step, seconds; negative if the clock was set back.
     pub by_s: f64,
 }
 
 impl StepReport {
-    /// The report on a step.
+    /// Creates the report of a step.
     #[must_use]
     pub fn new(step: &ClockStep) -> Self {
         Self {
@@ -157,33 +157,33 @@ impl StepReport {
     }
 }
 
-/// Why a method was taken.
+/// Choice of a trajectory method under a tolerance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ToleranceReport {
-    /// How far off points may be.
+    /// Tolerated error, metres.
     pub asked_m: f64,
-    /// At this distance.
+    /// Distance at which it applies, metres.
     pub at_m: f64,
-    /// How far off they may be by the method taken.
+    /// Error bound of the chosen method, metres.
     pub bound_m: f64,
-    /// Each method that was tried, the cheapest first.
+    /// Every method tried, cheapest first.
     pub tried: Vec<TriedMethod>,
-    /// The same in words.
+    /// The choice in words.
     #[serde(skip)]
     pub why: String,
 }
 
-/// A method and how far off it may be.
+/// A method and its error bound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TriedMethod {
     /// Its name.
     pub method: &'static str,
-    /// How far off points may be by it at the distance asked for.
+    /// Error bound at the requested distance, metres.
     pub bound_m: f64,
 }
 
 impl ToleranceReport {
-    /// The report on a choice.
+    /// Creates the report of a choice.
     #[must_use]
     pub fn new(choice: &MethodChoice) -> Self {
         let tried = choice.bounds.iter().map(|(method, bound)| TriedMethod {
@@ -200,93 +200,93 @@ impl ToleranceReport {
     }
 }
 
-/// How the clocks and the angle were joined.
+/// Synchronisation of clocks and angles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sync {
-    /// Method of the lidar's clock.
+    /// Method of the clock model.
     pub clock_method: &'static str,
     /// Median delay of a packet above the clock's envelope.
     pub clock_residual_us: f64,
-    /// How far off the clock may be, beyond a constant delay.
+    /// Bound on the clock error, apart from a constant delay.
     pub clock_bound_us: f64,
-    /// How much slower than the host's clock the lidar's runs.
+    /// Drift of the lidar's clock against the host clock; positive if it runs slow.
     pub clock_drift_ppm: f64,
-    /// Clocks that were set in mid-recording.
+    /// Clock steps during the recording.
     pub steps: Vec<StepReport>,
     /// Method of the trajectory.
     pub angle_method: &'static str,
-    /// Why it was taken, where an accuracy was asked for.
+    /// Choice of the method, if a tolerance was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<ToleranceReport>,
-    /// RMS of angle samples against their neighbours.
+    /// RMS residual of the angle samples.
     pub angle_rms_deg: Option<f64>,
-    /// How far off an angle may be at worst.
+    /// Bound on the angle error.
     pub angle_bound_deg: Option<f64>,
 }
 
-/// What a capture heard of the lidar, and what of it was lost.
+/// Packets received and lost during a capture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reception {
-    /// Packets heard, position packets included.
+    /// Packets received, position packets included.
     pub packets: u64,
-    /// Packets that the kernel dropped because this program was too slow.
+    /// Packets dropped by the kernel because this program was too slow.
     pub dropped_by_kernel: u64,
-    /// Records, the drive's included, that the disk was too slow for or that the log cannot hold.
+    /// Records of either device dropped because the disk was too slow or the log cannot hold them.
     pub dropped_by_log: u64,
-    /// Of `packets`: those without a kernel time.
+    /// Received packets without a kernel timestamp.
     pub without_kernel_time: u64,
-    /// Packets of other senders than the configuration's; not in `packets`.
+    /// Packets of other senders than the configured lidar; not in `packets`.
     pub from_others: u64,
 }
 
-/// A cloud against the simulator's truth.
+/// Errors of a cloud against the simulator's truth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
-    /// Root mean square of the points' errors.
+    /// Root mean square of the point errors.
     pub rms_m: f64,
     /// Largest error.
     pub worst_m: f64,
 }
 
-/// What `replay` and `capture` say.
+/// Report of `replay` and `capture`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scan {
-    /// What the log holds.
+    /// Contents of the log.
     #[serde(flatten)]
     pub contents: Contents,
     /// Points of the cloud.
     pub points: u64,
-    /// Clouds, where each turn of the lidar is one.
+    /// Clouds written, if each revolution has its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clouds: Option<u64>,
-    /// Returns left out: fired outside every sweep or where no angle is known.
+    /// Returns omitted: fired outside every sweep or without a known angle.
     pub left_out: u64,
-    /// The sweeps.
+    /// Sweeps.
     pub sweeps: Vec<SweepReport>,
-    /// How the clocks and the angle were joined.
+    /// Synchronisation of clocks and angles.
     pub sync: Sync,
-    /// The cloud.
+    /// Path of the cloud.
     pub output: String,
-    /// The log.
+    /// Path of the log.
     pub log: String,
-    /// Records that a capture lost: packets that the kernel dropped, records that the disk was too slow for.
+    /// Records lost during the capture, by the kernel or the disk.
     pub lost_records: u64,
-    /// How long before the end of the last sweep the last lidar packet came, seconds; 0 where that is not known or it came later.
+    /// Seconds from the last lidar packet to the end of the last sweep; 0 if unknown or negative.
     #[serde(skip)]
-    pub unheard_s: f64,
-    /// What of the sweeps that the log was to have is missing; in the warnings too.
+    pub lidar_gap_s: f64,
+    /// Planned sweeps that are incomplete; also in the warnings.
     #[serde(skip)]
-    pub short: Vec<String>,
-    /// What a capture heard.
+    pub incomplete_sweeps: Vec<String>,
+    /// Packets received during a capture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reception: Option<Reception>,
-    /// Against the simulator's truth; real scans have none.
+    /// Errors against the simulator's truth; absent for real scans.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<Truth>,
 }
 
 impl SweepReport {
-    /// The report on a sweep during which the lidar turned at `rpm`.
+    /// Creates the report of a sweep at a lidar speed of `rpm`.
     #[must_use]
     pub fn new(sweep: &scanner::sweeps::Sweep, rpm: Option<f64>) -> Self {
         let duration_s = (sweep.end - sweep.start).as_secs_f64();
@@ -302,7 +302,7 @@ impl SweepReport {
 }
 
 impl Scan {
-    /// Adds what a comparison with the truth found.
+    /// Adds the comparison with the truth.
     #[must_use]
     pub fn with_truth(mut self, report: analysis::truth::TruthReport) -> Self {
         self.truth = Some(Truth {

@@ -1,4 +1,5 @@
-//! Reading recordings: passes over a file or a pipe, one sensor of it, its configuration, and its errors in the program's words.
+//! Recordings as a source of records: passes over a file or pipe, the selected sensor, the log's
+//! configuration.
 
 use std::fmt;
 use std::io::ErrorKind;
@@ -14,7 +15,7 @@ use scanner::ScanConfig;
 
 use crate::failure::{Failure, Kind};
 
-/// A recording and which of its sensors is meant.
+/// A recording and its selected sensor.
 #[derive(Debug)]
 pub struct Source {
     path: PathBuf,
@@ -22,21 +23,21 @@ pub struct Source {
     wanted: Option<SensorName>,
 }
 
-/// How a user names a sensor: its address, and its data port where one address has several.
+/// Name of a sensor: its address, and its data port if one address has several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorName {
     address: Ipv4Addr,
     port: Option<u16>,
 }
 
-/// What one pass over a recording found.
+/// Result of one pass over a recording.
 #[derive(Clone, Debug)]
 pub struct Pass {
-    /// Numbers of packets by kind.
+    /// Packet counts by kind.
     pub counts: Counts,
-    /// Where and why the file ends too early.
+    /// Where and why the file ends early.
     pub truncated: Option<String>,
-    /// The sensors in it, whichever was meant.
+    /// All sensors in the recording.
     pub sensors: Vec<Sensor>,
 }
 
@@ -71,7 +72,7 @@ impl fmt::Display for SensorName {
     }
 }
 
-/// A sensor as a user can name it.
+/// Name of a sensor.
 #[must_use]
 pub fn name(sensor: &Sensor) -> SensorName {
     SensorName {
@@ -80,7 +81,7 @@ pub fn name(sensor: &Sensor) -> SensorName {
     }
 }
 
-/// Which records of a pass are the wanted sensor's: where none is named, those of the first that sends data.
+/// Selects the records of one sensor; by default of the first that sends data.
 #[derive(Clone, Copy, Debug)]
 struct Filter {
     source: Option<[u8; 4]>,
@@ -102,7 +103,7 @@ impl Filter {
                 *self.source.get_or_insert(source) == source
                     && *self.port.get_or_insert(port) == port
             }
-            // No stranger with a lidar's marks is taken for the lidar.
+            // A damaged packet of another sender is not the lidar's.
             DatagramKind::Damaged => {
                 self.source.is_none_or(|wanted| wanted == source)
                     && self.port.is_none_or(|wanted| wanted == port)
@@ -114,10 +115,10 @@ impl Filter {
 }
 
 impl Source {
-    /// Opens a recording, `-` for the standard input. What can be read only once is copied to a temporary file.
+    /// Opens a recording; `-` is stdin. A pipe is spooled to a temporary file.
     ///
     /// # Errors
-    /// [`Kind::BadInput`] for what is missing, empty or no recording.
+    /// [`Kind::BadInput`] for a missing, empty or foreign file.
     pub fn open(path: &Path, wanted: Option<SensorName>) -> Result<Self, Failure> {
         let input = Input::open(path, SPOOL_LIMIT).map_err(|error| failure(&error))?;
         let source = Self {
@@ -129,7 +130,7 @@ impl Source {
         Ok(source)
     }
 
-    /// What it is called.
+    /// Path of the recording.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -139,13 +140,13 @@ impl Source {
         self.input.recording().map_err(|error| failure(&error))
     }
 
-    /// The configuration that a log carries; what is built in for recordings of others.
+    /// The configuration in a log; defaults for a plain recording.
     ///
     /// # Errors
-    /// [`Kind::BadInput`] where the file cannot be read, or carries a configuration of ours that cannot be understood.
+    /// [`Kind::BadInput`] for an unreadable file or an invalid configuration in a log.
     pub fn config(&self) -> Result<ScanConfig, Failure> {
         let recording = self.recording()?;
-        // Other programs comment their recordings too.
+        // Other programs write comments too.
         let Some(text) = recording
             .metadata()
             .filter(|text| text.trim_start().starts_with("velomotion = "))
@@ -169,10 +170,10 @@ impl Source {
         Ok(config)
     }
 
-    /// Gives every record of the wanted sensor and of the drive to `take`, in file order.
+    /// Passes every record of the selected sensor and of the drive to `take`, in file order.
     ///
     /// # Errors
-    /// Where the file cannot be read, where it holds several sensors and none is named or not the named one, and whatever `take` returns.
+    /// The file is unreadable, the selected sensor is absent or ambiguous, or `take` fails.
     pub fn read(
         &self,
         mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
@@ -188,10 +189,10 @@ impl Source {
         Ok(pass)
     }
 
-    /// Gives records of the wanted sensor and of the drive to `take`, in file order, as long as it wants more.
+    /// Passes records of the selected sensor and of the drive to `take` until it returns false.
     ///
     /// # Errors
-    /// Where the file cannot be read.
+    /// The file is unreadable.
     pub fn read_until(&self, mut take: impl FnMut(&Record<'_>) -> bool) -> Result<(), Failure> {
         let mut filter = self.filter();
         let mut recording = self.recording()?;
@@ -210,10 +211,10 @@ impl Source {
         }
     }
 
-    /// Gives every record to `take`, whichever sensor's, in file order.
+    /// Passes every record to `take`, in file order.
     ///
     /// # Errors
-    /// Where the file cannot be read, and whatever `take` returns.
+    /// The file is unreadable or `take` fails.
     pub fn read_all(
         &self,
         mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
@@ -231,7 +232,7 @@ impl Source {
         })
     }
 
-    /// One sensor must be meant, and be there.
+    /// Checks that the selection names exactly one sensor that is present.
     fn check(&self, sensors: &[Sensor]) -> Result<(), Failure> {
         let sending = || sensors.iter().filter(|sensor| sensor.data > 0);
         let list = || {
@@ -267,7 +268,7 @@ fn cut_off(end: &End) -> Option<String> {
     (*end != End::Complete).then(|| end.to_string())
 }
 
-/// A recording's error in the program's words.
+/// The failure for a recording error.
 #[must_use]
 pub fn failure(error: &RecordingError) -> Failure {
     let help = match error {

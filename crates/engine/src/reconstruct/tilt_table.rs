@@ -1,6 +1,4 @@
-//! What `--tilt` names.
-//!
-//! Left out: what angles are good for.
+//! The argument of `--tilt`: the log's angles, none, or a CSV table.
 
 use std::path::Path;
 
@@ -20,7 +18,7 @@ pub fn tilt_source(text: &str) -> Result<TiltSource, Failure> {
     }
 }
 
-/// Reads a CSV of time_s,angle_deg; a first line without numbers is a heading.
+/// Reads a CSV of time_s,angle_deg. A first line without numbers is a header.
 fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     let wrong = |what: String| {
         Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
@@ -37,7 +35,6 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
         let blank = line.is_empty() || line.starts_with('#');
         match parse_row(line) {
             Some(row) => rows.push(row),
-            // A heading may stand before the first row.
             None if blank => {}
             None if rows.is_empty() && !heading => heading = true,
             None => {

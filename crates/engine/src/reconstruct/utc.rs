@@ -1,6 +1,7 @@
-//! Point times in UTC, by the lidar's satellite receiver, in place of the recording host's clock.
+//! Point times in UTC from the lidar's satellite receiver.
 //!
-//! Only while the lidar's clock was locked: points of other times have no UTC, are left out and counted.
+//! Points measured while the lidar's clock was not locked have no UTC; they are omitted and
+//! counted.
 
 use cloud::{Check, Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
 use lidar::{Options, Timekeeper, UtcClock};
@@ -8,14 +9,14 @@ use protocol::record::{Record, Wire};
 use protocol::vlp16::PositionPacket;
 use units::Stamp;
 
-/// Follows one lidar's receiver through a recording.
+/// Tracks the satellite receiver of one lidar through a recording.
 pub struct UtcSurvey {
     timekeeper: Timekeeper,
     clock: UtcClock,
 }
 
 impl UtcSurvey {
-    /// Reads packets by `options`.
+    /// Creates a survey that decodes packets with `options`.
     #[must_use]
     pub fn new(options: Options) -> Self {
         Self {
@@ -24,7 +25,7 @@ impl UtcSurvey {
         }
     }
 
-    /// Takes a record of the lidar's.
+    /// Processes a lidar record.
     pub fn observe(&mut self, record: &Record<'_>) {
         let Wire::Lidar { payload, .. } = record.wire else {
             return;
@@ -36,14 +37,14 @@ impl UtcSurvey {
         }
     }
 
-    /// What was found.
+    /// The resulting clock.
     #[must_use]
     pub fn solve(self) -> UtcClock {
         self.clock
     }
 }
 
-/// Hands points on with their times in UTC.
+/// A sink adapter that converts point times to UTC.
 pub struct InUtc<'a> {
     sink: &'a mut dyn Sink,
     clock: UtcClock,
@@ -52,7 +53,7 @@ pub struct InUtc<'a> {
 }
 
 impl<'a> InUtc<'a> {
-    /// In front of `sink`, by `clock`.
+    /// Wraps `sink`.
     pub fn new(sink: &'a mut dyn Sink, clock: UtcClock) -> Self {
         let batch = Points::new(sink.fields());
         Self {
@@ -63,7 +64,7 @@ impl<'a> InUtc<'a> {
         }
     }
 
-    /// Points that were left out: the lidar's clock was not locked.
+    /// Points omitted because the lidar's clock was not locked.
     #[must_use]
     pub const fn without(&self) -> u64 {
         self.without
@@ -97,7 +98,7 @@ impl Sink for InUtc<'_> {
         self.sink.wants_tilt()
     }
 
-    /// Samples and sweeps have times of the host's clock, which the points have not.
+    /// Omits tilt samples: they carry host times.
     fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
         self.sink.tilt(&TiltTrack {
             mount: track.mount,

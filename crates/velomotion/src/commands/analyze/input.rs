@@ -19,7 +19,7 @@ use super::report::DeviceReport;
 use super::view::{Outside, Seen};
 use engine::failure::{Failure, Kind};
 use engine::reconstruct::replay;
-use engine::reconstruct::replay::TimeOf;
+use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::source::Source;
 
 /// Directions, and what is known of how they came about.
@@ -265,7 +265,7 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
             TiltSource::None
         },
         options: lidar::Options::default(),
-        time: TimeOf::Host,
+        time: TimeReference::Host,
         accuracy: Accuracy::Best,
         pace: None,
         truth: None,

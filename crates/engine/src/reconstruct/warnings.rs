@@ -1,0 +1,58 @@
+//! Warnings about a reconstructed scan: uncertain angles and incomplete sweeps.
+
+use scanner::{Alignment, ScanConfig};
+
+/// Angle bound above which a warning is due: 17 mm at 10 m.
+const WARNING_BOUND_DEG: f64 = 0.1;
+/// Distance from the planned end above which a sweep counts as cut incomplete_sweeps.
+const CUT_SHORT_DEG: f64 = 0.1;
+
+/// Warnings about angles: slow or missing polls, sweeps that deviate from the plan.
+pub(super) fn angle_warnings(alignment: &Alignment) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(bound) = alignment
+        .angle_bound_deg()
+        .filter(|bound| *bound > WARNING_BOUND_DEG)
+    {
+        warnings.push(format!(
+            "drive answers were slow or missing: the angle error may reach {bound:.2} deg, {:.0} mm at 10 m",
+            bound.to_radians() * 10e3
+        ));
+    }
+    if alignment.implausible > 0 {
+        warnings.push(format!(
+            "{} shaft positions contradict their neighbours and were omitted: the drive's link corrupts data",
+            alignment.implausible
+        ));
+    }
+    for (number, fit) in alignment.trajectory.fits().iter().enumerate() {
+        let remarks = fit.remarks.iter();
+        warnings.extend(remarks.map(|remark| format!("sweep {}: {remark}", number + 1)));
+    }
+    warnings
+}
+
+/// Planned sweeps that are cut incomplete_sweeps or absent. Empty for a log without a plan or without any
+/// sweep.
+pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
+    let Some(plan) = config.sweep.filter(|_| !alignment.sweeps.is_empty()) else {
+        return Vec::new();
+    };
+    let mut incomplete = Vec::new();
+    for (number, sweep) in alignment.sweeps.iter().enumerate() {
+        let back = plan.both_ways && number % 2 == 1;
+        let end = if back { plan.from_deg } else { plan.to_deg };
+        if (sweep.to.0 - end).abs() > CUT_SHORT_DEG {
+            incomplete.push(format!(
+                "sweep {} was cut incomplete_sweeps at {:.3} deg of {end} deg",
+                number + 1,
+                sweep.to.0
+            ));
+        }
+    }
+    let made = alignment.sweeps.len();
+    if (made as u64) < u64::from(plan.sweeps) {
+        incomplete.push(format!("{made} of {} sweeps were made", plan.sweeps));
+    }
+    incomplete
+}
