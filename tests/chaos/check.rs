@@ -1,4 +1,4 @@
-//! What must hold of the scans whatever has happened: the list, the folder and the files agree, and what is not whole says so.
+//! What must hold of the scans whatever has happened: the list, the folder and the files agree, and what is incomplete says so.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};

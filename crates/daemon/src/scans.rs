@@ -49,7 +49,7 @@ fn cannot(path: &Path, what: &str, error: &std::io::Error) -> Failure {
         Kind::BadInput,
         format!("{}: cannot {what}: {error}", path.display()),
     )
-    .help("see whether the disk is full and the folder may be written to; scans = \"...\" under [daemon] names another")
+    .help("check the free space and the write permission of the folder; scans = \"...\" under [daemon] names another")
 }
 
 /// Takes the scans folder for this process, making it where it is missing, until what is returned is dropped.

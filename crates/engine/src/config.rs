@@ -49,13 +49,13 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
             Kind::BadInput,
             format!("cannot read the configuration {}: {error}", path.display()),
         )
-        .help("name a text file that exists with --config, or leave the option out")
+        .help("name an existing text file with --config, or omit the option")
     })?;
     let config: Config = toml::from_str(&text).map_err(|error| {
         Failure::new(
             Kind::BadInput,
             format!(
-                "the configuration {} cannot be understood:\n{}",
+                "the configuration {} is invalid:\n{}",
                 path.display(),
                 error.to_string().trim_end()
             ),
@@ -67,7 +67,7 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
             Kind::BadInput,
             format!("the configuration {}: {what}", path.display()),
         )
-        .help("correct that value; docs/src/wiring.md says what each one means")
+        .help("correct that value; docs/src/wiring.md describes every key")
     })?;
     Ok(config)
 }

@@ -38,7 +38,7 @@ impl Target {
         if path == Path::new("-") {
             let scratch = ::io::files::scratch().map_err(|error| {
                 Failure::new(Kind::BadInput, format!("cannot write to stdout: {error}"))
-                    .help("set TMPDIR to a folder with room for the cloud, or name a file with -o")
+                    .help("set TMPDIR to a folder with enough space, or name a file with -o")
             })?;
             let scratch = Buffered::new(scratch);
             return Ok(Self {
@@ -49,7 +49,7 @@ impl Target {
         }
         let format = Format::from_path(path).map_err(|error| {
             Failure::new(Kind::Usage, format!("{}: {error}", path.display()))
-                .help("give -o a name with one of those extensions, or - for PLY on stdout")
+                .help("use one of those extensions with -o, or - for PLY on stdout")
         })?;
         Self::file(path, force, |file| {
             format.writer(Buffered::new(file), fields)
@@ -154,7 +154,7 @@ pub fn log_is_file(log: &Path, with: &str) -> Result<(), Failure> {
     if log == Path::new("-") {
         return Err(Failure::new(
             Kind::Usage,
-            format!("a log is a file: expected its name with {with}, got -"),
+            format!("a log must be a file: expected a file name with {with}, got -"),
         )
         .help(format!("name a file with {with}")));
     }
@@ -170,7 +170,7 @@ pub fn two_files(log: &Path, cloud: &Path) -> Result<(), Failure> {
         return Err(Failure::new(
             Kind::Usage,
             format!(
-                "the cloud and what it is made of are both {}",
+                "the cloud would overwrite its own recording {}",
                 log.display()
             ),
         )
@@ -187,10 +187,7 @@ pub fn not_over(input: &Path, output: &Path) -> Result<(), Failure> {
     if same_file(input, output) {
         return Err(Failure::new(
             Kind::Usage,
-            format!(
-                "{} would be written over what it is made of",
-                output.display()
-            ),
+            format!("the output would overwrite its input {}", output.display()),
         )
         .help("give it another name"));
     }
@@ -219,10 +216,11 @@ fn same_file(a: &Path, b: &Path) -> bool {
 /// [`Kind::Usage`].
 pub fn one_for_stdout(cloud: Option<&Path>, json: bool) -> Result<(), Failure> {
     if json && cloud == Some(Path::new("-")) {
-        return Err(
-            Failure::new(Kind::Usage, "-o - and --json both want stdout".to_owned())
-                .help("name a file with -o, or leave --json out"),
-        );
+        return Err(Failure::new(
+            Kind::Usage,
+            "-o - and --json both write to stdout".to_owned(),
+        )
+        .help("name a file with -o, or omit --json"));
     }
     Ok(())
 }
@@ -295,10 +293,10 @@ pub fn file_failure(error: &FileError) -> Failure {
             "choose another name, or overwrite it with --force",
         ),
         FileError::Directory { .. } => (Kind::Usage, "name a file in it"),
-        FileError::NoFolder { .. } => (Kind::Usage, "make the folder first, or name another"),
+        FileError::NoFolder { .. } => (Kind::Usage, "create the folder, or name another"),
         FileError::Io { .. } => (
             Kind::BadInput,
-            "see whether the disk is full and the folder may be written to",
+            "check the free space and the write permission of the folder",
         ),
     };
     Failure::new(kind, error.to_string()).help(help)
@@ -312,9 +310,9 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
     {
         return Failure::new(
             Kind::Incomplete,
-            "whoever read the cloud from stdout closed it before its end".to_owned(),
+            "the reader of stdout closed it before the end of the cloud".to_owned(),
         )
-        .help("read all of it, or write the cloud to a file with -o");
+        .help("read all of stdout, or write the cloud to a file with -o");
     }
     if path == Path::new("-") {
         return Failure::new(
@@ -322,7 +320,7 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
             format!("the cloud could not be written to stdout: {error}"),
         )
         .help(format!(
-            "its points wait in a scratch file, 29 bytes each, as a PLY begins with their count: free some space in {}, \
+            "a PLY begins with its point count, so points are first stored in a scratch file, 29 bytes each: free some space in {}, \
              set TMPDIR to a folder with more, or name a file with -o",
             ::io::files::scratch_folder().display()
         ));
@@ -334,11 +332,11 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
             Kind::Incomplete,
             format!("the cloud {} could not be written: {error}", path.display()),
         )
-        .help("a pipe cannot be gone back in: use -o - and send stdout there, or name a file");
+        .help("this format needs a seekable file: use -o - for a PLY on stdout, or name a file");
     }
     Failure::new(
         Kind::Incomplete,
         format!("the cloud {} could not be written: {error}", path.display()),
     )
-    .help("free some space or name another place; the cloud can be made again from its log with replay")
+    .help("free some space or choose another folder; velomotion replay makes the cloud again from its log")
 }

@@ -41,10 +41,7 @@ fn contents_rows(contents: &Contents) -> Vec<Row> {
     if contents.simulated {
         rows.insert(
             0,
-            (
-                "SIMULATED",
-                "software devices, no scan of anything real".to_owned(),
-            ),
+            ("SIMULATED", "simulated devices, not a real scan".to_owned()),
         );
     }
     if let Some(truncated) = &contents.truncated {

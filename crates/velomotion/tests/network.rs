@@ -204,7 +204,7 @@ fn packets_that_were_put_together_of_fragments_are_said() {
     let (file, count) = fragmented(&mut rig);
     assert!(count > 200);
     std::fs::write(folder.path().join("parts.pcap"), file).unwrap();
-    let warning = format!("{count} packets came in IP fragments and were put together");
+    let warning = format!("{count} packets were reassembled from IP fragments");
     for line in [
         "info parts.pcap --json",
         "replay parts.pcap --tilt none -o parts.ply --json",

@@ -44,7 +44,7 @@ pub struct ScanHead {
     pub name: Option<String>,
     /// How far it is.
     pub state: ScanState,
-    /// Why it is not whole.
+    /// Why it is incomplete.
     pub why: Option<Failure>,
     /// Whether the disk was full when its cloud was made: it is made of the log once there is room.
     #[serde(default)]
@@ -138,7 +138,7 @@ pub struct ScanView {
     pub cloud_bytes: Option<u64>,
     /// Whether there is a picture.
     pub thumbnail: bool,
-    /// Why it is not whole and what there is of it, in sentences for people, without files' places.
+    /// Why it is incomplete and what there is of it, in sentences for people, without files' places.
     pub summary: Option<String>,
 }
 

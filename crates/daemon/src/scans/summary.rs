@@ -1,4 +1,4 @@
-//! A scan that is not whole in a few sentences: what went wrong, what there is of it, what to do. No file's place is in them: whoever reads them
+//! A scan that is incomplete in a few sentences: what went wrong, what there is of it, what to do. No file's place is in them: whoever reads them
 //! in a browser has no use for one.
 
 use std::path::Path;

@@ -102,7 +102,7 @@ export interface Scan {
   why?: Problem | null;
   /** Whether its cloud is made once the disk has room. */
   waits_for_room?: boolean;
-  /** Why it is not whole and what there is of it, in sentences. */
+  /** Why it is incomplete and what there is of it, in sentences. */
   summary?: string | null;
   started_s: number;
   simulated: boolean;

@@ -64,7 +64,7 @@ pub fn missing(scan: &Scan) -> Option<Failure> {
     let lost = scan.contents.lost_packets;
     let mut said = Vec::new();
     if let Some(truncated) = &scan.contents.truncated {
-        said.push(format!("the log is not whole ({truncated})"));
+        said.push(format!("the log is incomplete ({truncated})"));
     }
     said.extend(scan.incomplete_sweeps.iter().cloned());
     if lost > 0 {

@@ -68,7 +68,7 @@ impl CaptureRequest {
                 Kind::Usage,
                 format!("sweeps: expected 1 to {MAX_SWEEPS}, got {sweeps}"),
             )
-            .help("make several captures"));
+            .help("run several captures"));
         }
         Ok(SweepRequest {
             from: Degrees(self.from_deg.unwrap_or(config.axis.max_deg)),
@@ -139,8 +139,7 @@ impl CapturePlan {
         let mut lines = Vec::new();
         if self.scan.simulated {
             lines.push(
-                "SIMULATED: software devices in a made-up hall, no scan of anything real"
-                    .to_owned(),
+                "SIMULATED: simulated devices in a generated hall, not a real scan".to_owned(),
             );
         }
         let Some(Step { plan, .. }) = self.steps.iter().find(|step| step.sweep) else {
@@ -153,7 +152,7 @@ impl CapturePlan {
             trim(self.axis.gearing.rate(plan.speed).0)
         ));
         let shape = if plan.triangle {
-            format!("too short to cruise, peak {:.2} deg/s", plan.cruise.0)
+            format!("too short for a cruise, peak {:.2} deg/s", plan.cruise.0)
         } else {
             format!("{:.3} s of cruise", plan.cruising.as_secs_f64())
         };

@@ -316,7 +316,7 @@ impl Ended {
     }
 }
 
-/// Says how it ended: a scan, and what is not whole of it, be it that packets never came.
+/// Says how it ended: a scan, and what is incomplete of it, be it that packets never came.
 ///
 /// # Errors
 /// Where there is no cloud.

@@ -112,7 +112,7 @@ impl DaemonConfig {
         }
         Err(Failure::new(
             Kind::Usage,
-            format!("{listen} can be reached from other machines, and no token is set: anybody could move the axis"),
+            format!("{listen} accepts other machines without a token: anyone could move the axis"),
         )
         .help(
             "set token = \"...\" under [daemon] of the configuration (head -c 24 /dev/urandom | base64 | tr +/ -_ makes one),\n\

@@ -17,7 +17,7 @@ pub(super) fn write_beside(path: &Path, companion: &Companion) -> Result<(), Fai
             Kind::Incomplete,
             format!("the cloud {} is saved, but {what}", path.display()),
         )
-        .help("see whether the disk is full and the folder may be written to")
+        .help("check the free space and the write permission of the folder")
     };
     let older = match std::fs::read_to_string(&beside) {
         Ok(text) => Some(text),
@@ -37,7 +37,7 @@ pub(super) fn write_beside(path: &Path, companion: &Companion) -> Result<(), Fai
     };
     if older.is_some_and(|text| !of_this(text)) {
         tracing::warn!(
-            "{} is of another recording and stays as it is; {name} plays without, or with a folder of its own",
+            "{} belongs to another recording and is kept; {name} plays without it, or from a folder of its own",
             beside.display()
         );
         return Ok(());

@@ -69,7 +69,7 @@ impl Shared {
             .as_mut()
         {
             Some(file) => act(file),
-            None => Err(stdio::Error::other("the file is complete already")),
+            None => Err(stdio::Error::other("the file is already complete")),
         }
     }
 }

@@ -181,7 +181,7 @@ impl SensorSurveys {
         contents.packets.malformed += unassigned.malformed;
         if let Some(error) = &unassigned.first_malformed {
             contents.warnings.push(format!(
-                "{} packets that look like a lidar's are of no lidar here, the first: {error}",
+                "{} packets resemble a lidar's but match no lidar here, the first: {error}",
                 unassigned.malformed
             ));
         }
@@ -225,7 +225,7 @@ impl SensorSurvey {
         let state = self.utc.state();
         let locked = matches!(state, UtcState::Locked { .. });
         let counts_with_text = match self.utc.ends() {
-            ends if locked && ends > 0 => format!("{state}; the lock was lost {ends} times before"),
+            ends if locked && ends > 0 => format!("{state}; the lock was lost {ends} times"),
             _ => state.to_string(),
         };
         Some(Gps {
@@ -302,40 +302,40 @@ fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
         (stats.lost_packets, "lidar packets are missing"),
         (
             stats.duplicates,
-            "lidar packets came twice and were used once",
+            "lidar packets arrived twice and were used once",
         ),
         (
             stats.reordered,
-            "lidar packets came out of order and were put back",
+            "lidar packets arrived out of order and were reordered",
         ),
         (
             stats.late,
-            "lidar packets came too late to be put back in order and were left out",
+            "lidar packets arrived too late to be reordered and were omitted",
         ),
         (
             stats.unidentified,
-            "lidar packets are of a model that empty tells and were left out: give --model",
+            "lidar packets are of an unknown model and were omitted: set --model",
         ),
         (
             // Reported above if the step was found.
             if lidar_was_set { 0 } else { stats.clock_steps },
-            "times the lidar's clock was set",
+            "steps of the lidar's clock",
         ),
         (
             pass.counts.fragments,
-            "IP fragments could not be put together",
+            "IP fragments could not be reassembled",
         ),
         (
             pass.counts.reassembled,
-            "packets came in IP fragments and were put together",
+            "packets were reassembled from IP fragments",
         ),
         (
             pass.counts.snapped,
-            "packets were recorded only in part: record again with the full snap length",
+            "packets were truncated by the recorder: record with the full snap length",
         ),
         (
             pass.counts.damaged,
-            "stretches of the file are damaged and were left out",
+            "parts of the file are damaged and were skipped",
         ),
     ];
     let counts_with_text = counts_with_text.iter().filter(|(count, _)| *count > 0);

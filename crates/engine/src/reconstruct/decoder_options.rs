@@ -64,11 +64,11 @@ fn model(options: &Options, source: &Source) -> Result<&'static Model, Failure> 
         Failure::new(
             Kind::BadInput,
             format!(
-                "{}: nothing tells which lidar the calibration is for",
+                "{}: the model of the calibrated lidar is unknown",
                 source.path().display()
             ),
         )
-        .help("say which with --model")
+        .help("set it with --model")
     })
 }
 
@@ -76,7 +76,7 @@ fn model(options: &Options, source: &Source) -> Result<&'static Model, Failure> 
 fn calibration(path: &Path, model: &'static Model) -> Result<Corrections, Failure> {
     let wrong = |what: String| {
         Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
-            "give a calibration as velodyne_pointcloud has it (.yaml), or one [[laser]] table a laser (.toml; docs, Replay)",
+            "use a velodyne_pointcloud calibration (.yaml), or a file with one [[laser]] table per laser (.toml; docs, Replay)",
         )
     };
     let text =

@@ -14,7 +14,7 @@ pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
     }
     let help = match error {
         ScanError::NoLidarPackets => {
-            "give a recording of the lidar's UDP traffic (ports 2368 and 8308); info says what this file holds"
+            "use a recording of the lidar's UDP traffic (ports 2368 and 8308); velomotion info lists what this file holds"
         }
         ScanError::NoTilt => {
             "this is a plain lidar recording: add --tilt none for the sensor's own frame, or --tilt ANGLES.csv"
@@ -28,7 +28,7 @@ pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
         | ScanError::TableOrder { .. } => {
             "give times as Unix seconds like the recording's, or as seconds since its first packet"
         }
-        ScanError::NoBound => "leave --tolerance out, or use the angles of the log",
+        ScanError::NoBound => "omit --tolerance, or use the angles of the log",
         ScanError::UnreachableTolerance(_) => "ask for less",
         ScanError::Gearing(_) => "correct encoder_lines and gear in the configuration",
     };
@@ -42,18 +42,17 @@ fn out_of_reach(path: &Path, out: &UnreachableTolerance) -> Failure {
         would.push(format!("sweeps at {:.2} deg/s or slower", speed.0));
     }
     if out.delay_share > 0.5 {
-        would
-            .push("a link to the drive with shorter round trips (CAN, where it is not)".to_owned());
+        would.push("a drive link with shorter round trips (CAN)".to_owned());
     }
     let coarser = out.tolerance_that_would_do();
     let mm = format!("{:.6}", coarser.off.0 * 1e3);
     would.push(format!(
-        "of this recording --tolerance {}mm@{}m",
+        "for this recording --tolerance {}mm@{}m",
         mm.trim_end_matches('0').trim_end_matches('.'),
         coarser.at.0
     ));
     Failure::new(Kind::Incomplete, format!("{}: {out}", path.display())).help(format!(
-        "no cloud was made; the recording is as it was. What would do: {}",
+        "no cloud was made; the recording is unchanged. Alternatives: {}",
         would.join("; ")
     ))
 }

@@ -43,14 +43,14 @@ pub struct FrameWriter<'a> {
     mcap: Option<Target>,
 }
 
-/// Totals over mcap frames.
+/// Totals over all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameTotals {
     /// Points, and returns without a tilt angle.
     pub placed: PlacementCounts,
     /// Points omitted because the lidar's clock was not locked to UTC.
     pub without_utc: u64,
-    /// Clouds totals.
+    /// Clouds written.
     pub clouds: u64,
 }
 
@@ -67,7 +67,7 @@ struct FrameBuilder<'a> {
     grid: OrganisedFrame,
     placed: PlacementCounts,
     without_utc: u64,
-    /// Completed frames with their row counts, not totals yet.
+    /// Completed frames with their row counts, not written yet.
     ended: Vec<(Frame, Points, u64)>,
     error: Option<Failure>,
     /// Receive time of the last record.
@@ -96,7 +96,7 @@ impl<'a> FrameWriter<'a> {
                 Kind::Usage,
                 "--frames makes many clouds, and stdout takes one".to_owned(),
             )
-            .help("give -o a name, such as turn.ply"));
+            .help("give -o a name, such as frame.ply"));
         }
         if plan.organised && plan.output.extension().is_none_or(|e| e != "pcd") {
             return Err(Failure::new(
@@ -135,7 +135,7 @@ impl<'a> FrameWriter<'a> {
     /// Processes a record.
     ///
     /// # Errors
-    /// A cloud cannot be totals, or the lidar's model changes within a frame.
+    /// A cloud cannot be written, or the lidar's model changes within a frame.
     pub fn observe(
         &mut self,
         record: &Record<'_>,
@@ -151,7 +151,7 @@ impl<'a> FrameWriter<'a> {
         self.write(totals)
     }
 
-    /// Writes the last frame. Returns the target that holds mcap frames, not committed yet.
+    /// Writes the last frame. Returns the target that holds all frames, not committed yet.
     ///
     /// # Errors
     /// As [`FrameWriter::observe`].
@@ -190,7 +190,7 @@ impl<'a> FrameWriter<'a> {
             metadata.comments.push(frame_comment(&frame));
             if self.plan.organised {
                 metadata.comments.push(
-                    "organised: a row a ring, the lowest first, a column a firing; in dual return the second returns' rings follow"
+                    "organised: one row per ring, lowest first, one column per firing; in dual return the rings of the second returns follow"
                         .to_owned(),
                 );
             }
@@ -205,7 +205,7 @@ impl<'a> FrameWriter<'a> {
     }
 }
 
-/// Opens the file that holds mcap frames.
+/// Opens the file that holds all frames.
 fn open_mcap(
     plan: &FramePlan,
     alignment: &Alignment,
@@ -237,7 +237,7 @@ impl FrameBuilder<'_> {
             }
             if let Err(error) = self.grid.push(firing) {
                 let error = Failure::new(Kind::BadInput, error.to_string())
-                    .help("say which model it is with --model");
+                    .help("set the model with --model");
                 self.error.get_or_insert(error);
             }
             return;

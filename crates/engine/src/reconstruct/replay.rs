@@ -360,7 +360,7 @@ fn wait_until_due(pace: &mut Pacer, record: &Record<'_>, interrupt: &AtomicBool)
 fn interrupted(path: &Path) -> Failure {
     Failure::new(
         Kind::Interrupted,
-        "interrupted by the user while making the cloud",
+        "interrupted by the user during reconstruction",
     )
     .help(format!(
         "velomotion replay {} makes the cloud",
@@ -395,7 +395,7 @@ fn metadata(config: &ScanConfig, request: &Request<'_>) -> Metadata {
         software: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
         time_reference: match request.time {
             TimeReference::Host => "Unix seconds (UTC) of the recording host's clock",
-            TimeReference::Utc => "Unix seconds (UTC) by the lidar's satellite receiver",
+            TimeReference::Utc => "Unix seconds (UTC) from the lidar's satellite receiver",
         }
         .to_owned(),
         comments,

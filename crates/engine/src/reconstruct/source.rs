@@ -157,11 +157,11 @@ impl Source {
             Failure::new(
                 Kind::BadInput,
                 format!(
-                    "{}: the log's configuration cannot be understood:\n{what}",
+                    "{}: the log's configuration is invalid:\n{what}",
                     self.path.display()
                 ),
             )
-            .help("replay the log with the version that its first line names")
+            .help("replay the log with the version named in its first line")
         };
         let config: ScanConfig = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
         if !config.mount.d_m.is_finite() {
@@ -259,7 +259,7 @@ impl Source {
                 Kind::BadInput,
                 format!("{path}: {several} lidars in one recording: {}", list()),
             )
-            .help("choose one with --sensor ADDRESS or --sensor ADDRESS:PORT; info tells more of each")),
+            .help("choose one with --sensor ADDRESS or --sensor ADDRESS:PORT; velomotion info describes each")),
         }
     }
 }
@@ -272,15 +272,13 @@ fn cut_off(end: &End) -> Option<String> {
 #[must_use]
 pub fn failure(error: &RecordingError) -> Failure {
     let help = match error {
-        RecordingError::Open { .. } => "see whether the name is right and the file may be read",
+        RecordingError::Open { .. } => "check the name and the read permission",
         RecordingError::Read { source, .. } if source.kind() == ErrorKind::IsADirectory => {
             "name one recording in it"
         }
-        RecordingError::Read { .. } => {
-            "see whether the disk is sound; copy the file and try the copy"
-        }
+        RecordingError::Read { .. } => "check the disk; copy the file and try the copy",
         RecordingError::Empty { .. } | RecordingError::Short { .. } => {
-            "the recording was never written: take it from its source again"
+            "the recording is empty: copy it from its source again"
         }
         RecordingError::Foreign { .. } => {
             "give a pcap or pcapng with lidar packets, as tcpdump, Wireshark or velomotion capture write it"

@@ -44,7 +44,7 @@ pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> V
         let end = if back { plan.from_deg } else { plan.to_deg };
         if (sweep.to.0 - end).abs() > CUT_SHORT_DEG {
             incomplete.push(format!(
-                "sweep {} was cut incomplete_sweeps at {:.3} deg of {end} deg",
+                "sweep {} was cut short at {:.3} deg of {end} deg",
                 number + 1,
                 sweep.to.0
             ));
@@ -52,7 +52,10 @@ pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> V
     }
     let made = alignment.sweeps.len();
     if (made as u64) < u64::from(plan.sweeps) {
-        incomplete.push(format!("{made} of {} sweeps were made", plan.sweeps));
+        incomplete.push(format!(
+            "{made} of {} planned sweeps are in the log",
+            plan.sweeps
+        ));
     }
     incomplete
 }

@@ -79,7 +79,7 @@ fn greet(daemon: &Daemon, common: &Common) {
         return;
     }
     if shared.simulated() {
-        to_stderr("SIMULATED: software devices in a made-up hall, no scan of anything real");
+        to_stderr("SIMULATED: simulated devices in a generated hall, not a real scan");
     }
     let who = match (address.ip().is_loopback(), &shared.settings().token) {
         (true, None) => "only from this machine",

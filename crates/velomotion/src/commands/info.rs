@@ -22,9 +22,9 @@ pub fn run(arguments: &cli::Info) -> Result<CommandOutput, Failure> {
     let failure = truncated.map(|truncated| {
         Failure::new(
             Kind::Incomplete,
-            format!("{} is not whole: {truncated}", source.path().display()),
+            format!("{} is incomplete: {truncated}", source.path().display()),
         )
-        .help("what is said above holds for the part that is there; replay makes a cloud of it")
+        .help("the report covers the existing part; velomotion replay makes a cloud of it")
     });
     Ok(CommandOutput {
         failure,

@@ -38,7 +38,7 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
     let progress = Progress::new(common);
     if let TiltSource::Table(table) = &request.tilt {
         progress.say(match table.time() {
-            TableTime::Unix => "tilt angles: times are Unix seconds, as in the recording",
+            TableTime::Unix => "tilt angles: times are Unix seconds",
             TableTime::SinceFirstPacket => {
                 "tilt angles: times count from the recording's first lidar packet"
             }
@@ -67,15 +67,15 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
         }
     };
     if scan.contents.simulated {
-        progress.say("SIMULATED: this log is of software devices");
+        progress.say("SIMULATED: this log was made by simulated devices");
     }
     let failure = scan.contents.truncated.as_ref().map(|truncated| {
         Failure::new(
             Kind::Incomplete,
-            format!("{} is not whole: {truncated}", arguments.input.display()),
+            format!("{} is incomplete: {truncated}", arguments.input.display()),
         )
         .help(format!(
-            "the cloud of what was there is {}; take the recording from its source again if you need the rest",
+            "the cloud of the existing part is {}; copy the recording from its source again if you need the rest",
             cloud.display()
         ))
     });

@@ -193,7 +193,7 @@ fn a_log_whose_end_never_reached_the_disk_makes_no_whole_scan() {
     assert_eq!(scan["state"], "partial", "{scan}");
     let why = scan["why"]["error"].as_str().unwrap();
     assert!(
-        why.contains("the log is not whole") && why.contains("cut short"),
+        why.contains("the log is incomplete") && why.contains("cut short"),
         "{why}"
     );
     for (name, stays) in [

@@ -166,7 +166,7 @@ fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failu
     let bytes = std::fs::read(path).map_err(|error| {
         wrong(
             format!("cannot read: {error}"),
-            "see whether the name is right and the file may be read",
+            "check the name and the read permission",
         )
     })?;
     let read = positions(format, bytes).map_err(|error| {
