@@ -1,4 +1,4 @@
-//! Tells the program which commit it was built from.
+//! Stores version and commit of the build.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -9,8 +9,8 @@ fn main() {
     println!("cargo:rerun-if-env-changed=VELOMOTION_COMMIT");
     let package = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
     let root = package.unwrap_or_default().join("../..");
-    // The reflog grows with every commit and checkout. Where there is no repository there is nothing to watch, and a build for tests may
-    // name an older commit: to compile everything again after each is not worth it.
+    // The reflog changes with every commit and checkout. Development builds may name an older
+    // commit, to avoid a rebuild after each.
     let log = root.join(".git/logs/HEAD");
     let released = env::var("PROFILE").is_ok_and(|profile| profile == "release");
     if released && log.exists() {
@@ -27,7 +27,7 @@ fn main() {
     }
 }
 
-/// The commit that is checked out, and its day; none where sources came without a repository, be it inside of somebody else's.
+/// Short hash and date of the checked-out commit; `None` outside the project's own repository.
 fn head(root: &Path) -> Option<String> {
     if !root.join(".git").exists() {
         return None;

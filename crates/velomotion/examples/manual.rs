@@ -1,4 +1,4 @@
-//! Writes man pages and shell completions, made from the command line itself: `cargo run -p velomotion --example manual -- FOLDER`.
+//! Writes man pages and shell completions: `cargo run -p velomotion --example manual -- FOLDER`.
 
 use std::error::Error;
 use std::fs;

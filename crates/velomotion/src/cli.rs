@@ -18,22 +18,22 @@ use scanner::Tolerance;
 use crate::commands::analyze::Sweep;
 use engine::reconstruct::source::SensorName;
 
-/// Version, and the commit that the program was built from.
+/// Version, and the commit of the build.
 pub const VERSION: &str = env!("VELOMOTION_VERSION");
 
 /// Dense point clouds from a multi-beam lidar on a tilting platform.
 #[derive(Debug, Parser)]
 #[command(version = VERSION, about, max_term_width = 100)]
 pub struct Cli {
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub command: Command,
-    /// What every command understands.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
 
-/// What every command understands.
+/// Options of every command.
 #[derive(Clone, Debug, Args)]
 pub struct Common {
     /// Device to use: sim, auto, or a [device.NAME] of the configuration
@@ -45,36 +45,36 @@ pub struct Common {
     /// Print exactly one JSON object on stdout
     #[arg(long, global = true)]
     pub json: bool,
-    /// Say less
+    /// Print less
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Say more (-vv: everything)
+    /// Print more (-vv: everything)
     #[arg(short, long, global = true, action = clap::ArgAction::Count)]
     pub verbose: u8,
 }
 
-/// The verbs.
+/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Sweep the platform and make a point cloud of it
     Capture(Capture),
     /// Make the point cloud of a log or of a plain lidar recording
     Replay(Replay),
-    /// Simulate a scene into a log, with the truth beside it
+    /// Simulate a scene into a log, with ground truth
     Simulate(Simulate),
-    /// Say what a file holds
+    /// List what a file holds
     Info(Info),
-    /// Say how densely and evenly scan patterns, clouds or logs cover what is about the scanner
+    /// Measure how densely and evenly scan patterns, clouds or logs cover the surroundings
     Analyze(Analyze),
-    /// Measure, on this machine and now, what accuracy costs in time
+    /// Measure on this machine what accuracy costs in time
     Tradeoff(Tradeoff),
-    /// Look at the tilt axis, home it, move it, stop it
+    /// Show, home, move or stop the tilt axis
     Tilt(Tilt),
-    /// Keep the scanner, show it in the browser and answer other programs, until told to end
+    /// Run the scanner as a service for browsers and other programs
     Daemon(Daemon),
-    /// Say what this machine has of a scanner, what is wrong and what to do
+    /// Check this machine's scanner setup and suggest fixes
     Doctor,
-    /// Run the software EPOS2 alone, for developing a client against it
+    /// Run the simulated EPOS2 alone, to develop a client against it
     FirmwareSim(FirmwareSim),
 }
 
@@ -93,19 +93,19 @@ pub struct Capture {
     /// Acceleration of the tilt axis [default: the device's]
     #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
     pub accel: Option<f64>,
-    /// How many sweeps [default: 1, with --both-ways 2]
+    /// Number of sweeps [default: 1, with --both-ways 2]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub sweeps: Option<u32>,
-    /// Scan on the way back too; each way counts as a sweep
+    /// Scan on the return move too; each direction counts as a sweep
     #[arg(long)]
     pub both_ways: bool,
-    /// Raw log to keep [default: named after the cloud]
+    /// Raw log to write [default: named after the cloud]
     #[arg(long, value_name = "LOG.pcapng")]
     pub log: Option<PathBuf>,
-    /// How accurate it is to be
+    /// Accuracy.
     #[command(flatten)]
     pub accuracy: Accuracy,
-    /// Where the cloud goes
+    /// Output.
     #[command(flatten)]
     pub output: Output,
 }
@@ -116,28 +116,30 @@ pub struct Replay {
     /// Log of a capture, or any pcap or pcapng with lidar packets; - is stdin
     #[arg(value_name = "LOG|PCAP")]
     pub input: PathBuf,
-    /// Where tilt angles come from: the log, nowhere (the sensor's own frame), or a CSV of time_s,angle_deg
+    /// Source of the tilt angles: the log, none (the sensor's own frame), or a CSV of
+    /// time_s,angle_deg
     #[arg(long, value_name = "log|none|ANGLES.csv", default_value = "log")]
     pub tilt: String,
-    /// Hand the points on at the times at which they were recorded, or FACTOR times as fast
+    /// Emit points at the recorded times, or FACTOR times as fast
     #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1")]
     pub realtime: Option<f64>,
-    /// Whose clock the points' times are of: the recording host's, or UTC by the lidar's satellite receiver
+    /// Clock of the point times: the recording host's, or UTC from the lidar's satellite receiver
     #[arg(long, value_enum, default_value_t = TimeReference::Host)]
     pub time: TimeReference,
-    /// Make a cloud of each turn of the lidar, cut at this azimuth; -o NAME.ply gives NAME-00000.ply and so on, NAME.mcap one file
+    /// Make one cloud per revolution, cut at this azimuth; -o NAME.ply gives NAME-00000.ply and so
+    /// on, NAME.mcap one file
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = azimuth)]
     pub frames: Option<f64>,
-    /// Keep the shots without a return: a row a ring, a column a firing (.pcd, with --frames)
+    /// Keep shots without a return: one row per ring, one column per firing (.pcd, with --frames)
     #[arg(long, requires = "frames")]
     pub organised: bool,
-    /// How the lidar's packets are read
+    /// Packet decoding.
     #[command(flatten)]
     pub lidar: Lidar,
-    /// How accurate it is to be
+    /// Accuracy.
     #[command(flatten)]
     pub accuracy: Accuracy,
-    /// Where the cloud goes
+    /// Output.
     #[command(flatten)]
     pub output: Output,
 }
@@ -145,7 +147,7 @@ pub struct Replay {
 /// `simulate`.
 #[derive(Clone, Debug, Args)]
 pub struct Simulate {
-    /// Scene file (TOML), or the name of a scene that comes with the program: hall
+    /// Scene file (TOML), or the name of a built-in scene: hall
     #[arg(value_name = "SCENE.toml|NAME")]
     pub scene: PathBuf,
     /// Log to write [default: named after the scene]
@@ -154,42 +156,44 @@ pub struct Simulate {
     /// Cloud of the true points: .ply .pcd .las .laz .e57 .mcap .csv; - is PLY on stdout
     #[arg(long, value_name = "CLOUD")]
     pub truth: Option<PathBuf>,
-    /// What chance depends on [default: the scene's]
+    /// Random seed [default: the scene's]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Effects of the scene to leave out, by name, or all of them: docs, Effects
+    /// Effects of the scene to omit, by name, or all of them: docs, Effects
     #[arg(long, value_name = "EFFECT,..|all", value_delimiter = ',', value_parser = effect_or_all(), hide_possible_values = true)]
     pub without: Vec<String>,
-    /// Threads that make packets; the log does not depend on it [default: one a core]
+    /// Threads that make packets; the log does not depend on it [default: one per core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
-    /// Say what each effect did and cost, which line asked for it, and which were not needed
+    /// Report what each effect changed and cost, the line that requested it, and effects without
+    /// influence
     #[arg(long)]
     pub explain: bool,
-    /// Overwrite files that exist
+    /// Overwrite existing files
     #[arg(long)]
     pub force: bool,
 }
 
-/// `--without`: all effects.
+/// `--without all`.
 pub const ALL: &str = "all";
 
-/// The names of effects, and [`ALL`].
+/// Names of the effects, and [`ALL`].
 fn effect_or_all() -> PossibleValuesParser {
     let names = sim::effects::Wishes::NAMES.iter().copied();
     PossibleValuesParser::new(names.chain([ALL]))
 }
 
-/// How accurate a cloud is to be.
+/// Requested accuracy.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct Accuracy {
-    /// How far off points may be at a distance, such as 2mm@20m: the cheapest way that is good enough [default: the best there is]
+    /// Tolerated point error at a distance, such as 2mm@20m: selects the cheapest sufficient method
+    /// [default: the most accurate]
     #[arg(long, value_name = "LENGTH@DISTANCE", allow_hyphen_values = true)]
     pub tolerance: Option<Tolerance>,
 }
 
 impl Accuracy {
-    /// What it asks of the synchroniser.
+    /// The accuracy requested from the scanner.
     #[must_use]
     pub fn wanted(&self) -> scanner::Accuracy {
         self.tolerance
@@ -197,37 +201,37 @@ impl Accuracy {
     }
 }
 
-/// How a lidar's packets are read.
+/// Packet decoding.
 #[derive(Clone, Debug, Default, Args)]
 pub struct Lidar {
-    /// Which lidar, where the recording holds several
+    /// Lidar to use if the recording holds several
     #[arg(long, value_name = "ADDRESS[:PORT]")]
     pub sensor: Option<SensorName>,
-    /// The lidar's model, where neither its packets' factory byte nor their spacing tells it right
+    /// Model, if neither the factory byte nor the timing of the packets identifies it
     #[arg(long, value_enum)]
     pub model: Option<ModelName>,
-    /// Calibration of this very lidar: YAML as ROS drivers have it, or TOML
+    /// Calibration of the individual lidar: ROS YAML or TOML
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,
-    /// Dual return: both returns of a pulse where they are equal, or one of them
+    /// Equal returns of a pulse in dual return mode: one point or two
     #[arg(long, value_enum, default_value_t = Equal::Once)]
     pub equal_returns: Equal,
-    /// Let all rays start in one point, as many drivers do, and not each at its laser's height
+    /// Start all rays in one point, as many drivers do, instead of at the height of each laser
     #[arg(long)]
     pub one_origin: bool,
 }
 
-/// Whose clock times are of.
+/// Clock of the point times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum TimeReference {
-    /// The recording host's
+    /// The recording host's clock
     #[default]
     Host,
-    /// UTC, where the lidar's clock was locked to a satellite receiver
+    /// UTC, while the lidar's clock is locked to a satellite receiver
     Utc,
 }
 
-/// The models by name.
+/// Lidar models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ModelName {
     /// VLP-16, Puck, Puck LITE
@@ -240,7 +244,7 @@ pub enum ModelName {
     Vlp32c,
 }
 
-/// What becomes of two equal returns of one pulse.
+/// Treatment of two equal returns of one pulse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Equal {
     /// One point
@@ -322,25 +326,25 @@ impl ModelName {
     }
 }
 
-/// Where a cloud goes.
+/// Output of a cloud.
 #[derive(Clone, Debug, Args)]
 pub struct Output {
     /// Cloud to write: .ply .pcd .las .laz .e57 .mcap .csv; - is PLY on stdout
     #[arg(short, long, value_name = "CLOUD")]
     pub output: Option<PathBuf>,
-    /// Add a column sd: how far each point is expected to be off (root mean square), metres
+    /// Add a column sd: standard error of each point (root mean square), metres
     #[arg(long)]
     pub uncertainty: bool,
-    /// Add a column echo: 1 strongest, 2 last, 3 both in one, 4 dual return's other one, 0 not told
+    /// Add a column echo: 1 strongest, 2 last, 3 both in one, 4 second return, 0 unknown
     #[arg(long)]
     pub echo: bool,
-    /// Overwrite files that exist
+    /// Overwrite existing files
     #[arg(long)]
     pub force: bool,
 }
 
 impl Output {
-    /// The columns of the cloud beside the position.
+    /// Columns of the cloud in addition to the position.
     #[must_use]
     pub fn fields(&self) -> Fields {
         let asked = [(self.uncertainty, Fields::SD), (self.echo, Fields::ECHO)];
@@ -355,7 +359,7 @@ pub struct Info {
     /// Log, pcap or pcapng; - is stdin
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// The lidars' model, where neither their packets' factory byte nor their spacing tells it right
+    /// Model, if neither the factory byte nor the timing of the packets identifies it
     #[arg(long, value_enum)]
     pub model: Option<ModelName>,
 }
@@ -363,36 +367,41 @@ pub struct Info {
 /// `analyze`.
 #[derive(Clone, Debug, Args)]
 pub struct Analyze {
-    /// Patterns by name (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED, each with ,KEY=VALUE: rpm, step,
-    /// start, seam, from, to, tilt, frames, d), clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings
+    /// Patterns by name (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED, each
+    /// with ,KEY=VALUE: rpm, step, start, seam, from, to, tilt, frames, d), clouds (.ply .pcd .las
+    /// .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings
     #[arg(value_name = "PATTERN|CLOUD|LOG", required = true)]
     pub inputs: Vec<String>,
-    /// How often the icosahedron whose faces are the bins is cut: 20 x 4^N bins
+    /// Subdivisions of the icosahedron whose faces are the bins: 20 x 4^N bins
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=8))]
     pub level: u32,
-    /// How far the K function may be off, as a share of all pairs: the cheapest way that is good enough; 0 counts every pair
+    /// Tolerated error of the K function as a share of all pairs: selects the cheapest sufficient
+    /// method; 0 counts every pair
     #[arg(long, value_name = "X", default_value_t = 1e-4, value_parser = tolerance)]
     pub tolerance: f64,
-    /// The K function by spherical harmonics up to this degree (64 is usual) instead: faster, but how far it is off is not known
+    /// The K function by spherical harmonics up to this degree (64 is usual) instead: faster, but
+    /// how far it is off is not known
     #[arg(long, value_name = "DEGREE", conflicts_with = "tolerance", value_parser = clap::value_parser!(u16).range(1..=512))]
     pub harmonics: Option<u16>,
     /// Bins of the K function, from 0 to 180 degrees
     #[arg(long, value_name = "N", default_value_t = 151, value_parser = clap::value_parser!(u16).range(1..=3_600))]
     pub bins: u16,
-    /// Where the scanner was, metres in the coordinates of the clouds: directions are seen from there [default: 0,0,0]
+    /// Position of the scanner in cloud coordinates, metres: the origin of all directions [default:
+    /// 0,0,0]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, conflicts_with = "sweep", value_parser = place)]
     pub origin: Option<[f64; 3]>,
-    /// Try settings of one pattern: ranges of speed, rpm or other numbers, each in steps (8 unless /N says so), and say which are best for their scan time
+    /// Try settings of one pattern: ranges of speed, rpm or other parameters in steps (8 unless
+    /// /N), and list the best per scan time
     #[arg(
         long,
         value_name = "KEY=FROM..TO[/N][,...]",
         allow_hyphen_values = true
     )]
     pub sweep: Option<Sweep>,
-    /// Folder for a page to look at (index.html), its figures (SVG), every curve (CSV) and analyze.json
+    /// Folder for a report: page (index.html), figures (SVG), curves (CSV) and analyze.json
     #[arg(long, value_name = "DIR", conflicts_with = "sweep")]
     pub report: Option<PathBuf>,
-    /// Write into a folder that is not empty, over what has the same names
+    /// Write into a folder that is not empty; files of the same names are overwritten
     #[arg(long, requires = "report")]
     pub force: bool,
 }
@@ -400,19 +409,19 @@ pub struct Analyze {
 /// `tradeoff`.
 #[derive(Clone, Debug, Args)]
 pub struct Tradeoff {
-    /// Folder for a page to look at (index.html), a figure a study (SVG) and tradeoff.json
+    /// Folder for a report: page (index.html), one figure per study (SVG) and tradeoff.json
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// Folder of a book's pages: writes tradeoff.md, and its figures into tradeoff/
+    /// Folder of book pages: writes tradeoff.md, and its figures to tradeoff/
     #[arg(long, value_name = "DIR")]
     pub markdown: Option<PathBuf>,
     /// Only these studies
     #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
     pub only: Vec<String>,
-    /// A look: smaller workloads and fewer rounds
+    /// Quick run: smaller workloads and fewer rounds
     #[arg(long)]
     pub quick: bool,
-    /// Overwrite files that exist
+    /// Overwrite existing files
     #[arg(long)]
     pub force: bool,
 }
@@ -420,7 +429,8 @@ pub struct Tradeoff {
 /// `daemon`.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Daemon {
-    /// Address and port to listen on; port 0 takes any that is free [default: the configuration's, 127.0.0.1:8016]
+    /// Address and port to listen on; port 0 selects a free one [default: the configuration's,
+    /// 127.0.0.1:8016]
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub listen: Option<SocketAddr>,
 }
@@ -428,24 +438,24 @@ pub struct Daemon {
 /// `tilt`.
 #[derive(Clone, Debug, Args)]
 pub struct Tilt {
-    /// What to do with the axis.
+    /// Request to the axis.
     #[command(subcommand)]
     pub verb: TiltVerb,
 }
 
-/// What to do with the axis.
+/// Request to the axis.
 #[derive(Clone, Copy, Debug, Subcommand)]
 pub enum TiltVerb {
-    /// Say how it stands; changes nothing
+    /// Show its state; nothing moves
     Status,
-    /// Find its zero at the limit switch
+    /// Find its zero position at the limit switch
     Home,
     /// Move it to an angle
     Goto {
-        /// Where to
+        /// Target angle
         #[arg(value_name = "DEG", allow_negative_numbers = true)]
         to: f64,
-        /// How fast
+        /// Speed
         #[arg(
             long,
             value_name = "DEG_PER_S",
@@ -457,11 +467,11 @@ pub enum TiltVerb {
         #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
         accel: Option<f64>,
     },
-    /// Stop it now and set the brake, also while a capture runs
+    /// Stop it now and set the brake, also during a capture
     Stop,
-    /// Say what faults it had, what they mean and what to do
+    /// List its faults, with meaning and remedy
     Faults {
-        /// Take the drive out of its fault; the history stays
+        /// Leave the fault state; the fault history stays
         #[arg(long)]
         clear: bool,
     },
@@ -483,12 +493,12 @@ pub struct FirmwareSim {
     /// Speak CANopen on a CAN interface of the kernel
     #[arg(long, group = "interface", value_name = "IFACE")]
     pub can: Option<String>,
-    /// Make a symbolic link to the port
+    /// Create a symbolic link to the port
     #[arg(long, value_name = "PATH", conflicts_with = "can")]
     pub link: Option<PathBuf>,
 }
 
-/// A share that something may be off by.
+/// Parses a share below 1.
 fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
@@ -496,7 +506,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A place as a user gives it, metres.
+/// Parses a position, metres.
 fn place(text: &str) -> Result<[f64; 3], String> {
     let numbers: Vec<f64> = text
         .split(',')
@@ -509,7 +519,7 @@ fn place(text: &str) -> Result<[f64; 3], String> {
     }
 }
 
-/// An azimuth as a user may give it, degrees.
+/// Parses an azimuth, degrees.
 fn azimuth(text: &str) -> Result<f64, String> {
     let degrees: f64 = text.parse().map_err(|_| "expected degrees".to_owned())?;
     if (-360.0..=360.0).contains(&degrees) {

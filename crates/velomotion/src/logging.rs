@@ -1,7 +1,5 @@
-//! What is said on stderr, for whoever keeps it: on a terminal with colours, in a file or a pipe as plain lines, and where systemd's
-//! journal has it, each line with its priority in front (`<4>`, sd-daemon(3)), so that `journalctl -p warning` finds it.
-//!
-//! Left out: times and rotation, which are the journal's.
+//! Logging to stderr: coloured on a terminal, plain lines in a file or pipe, and lines with a
+//! priority prefix (`<4>`, sd-daemon(3)) in systemd's journal.
 
 use std::io::{self, IsTerminal, Write};
 use std::os::unix::fs::MetadataExt;
@@ -13,11 +11,12 @@ use tracing_subscriber::fmt::MakeWriter;
 use crate::terminal::to_stderr;
 use engine::failure::Failure;
 
-/// Priority of an error, as syslog(3) numbers it.
+/// Priority of an error (syslog(3)).
 const ERROR: u8 = 3;
 
-/// Whether stderr is the journal's: `$JOURNAL_STREAM` says which device and inode that is (systemd.exec(5)). A program that was started by
-/// a service and has its stderr elsewhere inherits the variable all the same.
+/// Whether stderr is connected to the journal: `$JOURNAL_STREAM` holds its device and inode
+/// (systemd.exec(5)). A child of a service inherits the variable even if its own stderr is
+/// redirected.
 #[must_use]
 pub fn has_stderr() -> bool {
     let Ok(stream) = std::env::var("JOURNAL_STREAM") else {
@@ -27,17 +26,17 @@ pub fn has_stderr() -> bool {
     own.is_ok_and(|own| stream == format!("{}:{}", own.dev(), own.ino()))
 }
 
-/// Starts the log, on stderr: what is at least as grave as `level`, or what `$RUST_LOG` asks for.
+/// Starts logging events of at least `level`, or those selected by `$RUST_LOG`.
 pub fn start(level: &str) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
     let log = tracing_subscriber::fmt()
         .with_env_filter(filter)
-        // A closed stderr must not panic in mid-sweep.
+        // A closed stderr must not cause a panic during a sweep.
         .log_internal_errors(false)
         .without_time()
         .with_target(false);
     if has_stderr() {
-        // The priority is the level.
+        // The priority replaces the level.
         log.with_ansi(false)
             .with_level(false)
             .with_writer(Journal)
@@ -49,7 +48,7 @@ pub fn start(level: &str) {
     }
 }
 
-/// Says how a command failed. In the journal the message and what to do are lines of their own.
+/// Prints a failure. In the journal, message and help are separate lines.
 pub fn failed(failure: Failure) {
     if has_stderr() {
         let help = failure.help.as_deref().unwrap_or_default();
@@ -60,7 +59,7 @@ pub fn failed(failure: Failure) {
     }
 }
 
-/// A failure as miette prints it.
+/// A failure as a miette diagnostic.
 #[derive(Debug)]
 struct Printed(Failure);
 
@@ -79,16 +78,16 @@ impl miette::Diagnostic for Printed {
     }
 }
 
-/// Every line that is not empty, with the priority in front.
+/// Every non-empty line with its priority prefix.
 fn with_priority(priority: u8, text: &str) -> String {
     let lines = text.lines().filter(|line| !line.trim().is_empty());
     lines.map(|line| format!("<{priority}>{line}\n")).collect()
 }
 
-/// Makes writers that put an event's priority in front.
+/// Creates writers with an event's priority.
 struct Journal;
 
-/// A writer of one event.
+/// Writer of one event.
 struct Event {
     priority: u8,
 }
@@ -112,7 +111,7 @@ impl<'a> MakeWriter<'a> for Journal {
 }
 
 impl Write for Event {
-    /// Takes an event at once, as the log gives it.
+    /// Receives an event in a single call.
     fn write(&mut self, text: &[u8]) -> io::Result<usize> {
         let lines = with_priority(self.priority, &String::from_utf8_lossy(text));
         io::stderr().write_all(lines.as_bytes())?;

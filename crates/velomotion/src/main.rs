@@ -1,4 +1,4 @@
-//! The entry point: parses the command line, runs a command, prints what it says and how it failed.
+//! Entry point: parses the command line, runs the command, prints its result or failure.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -23,13 +23,13 @@ fn main() -> ExitCode {
     };
     let printed = print(&cli.common, said, failure.as_ref());
     let failure = failure.or_else(|| match printed {
-        // A reader that went away (a closed pipe) is no reason to fail.
+        // A closed pipe is not a failure.
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Some(
             Failure::new(
                 Kind::Incomplete,
                 format!("cannot print the result: {error}"),
             )
-            .help("see where stdout goes; what was done is done and its files are saved"),
+            .help("check the destination of stdout; the files are saved"),
         ),
         _ => None,
     });
@@ -43,9 +43,9 @@ fn main() -> ExitCode {
     }
 }
 
-/// Messages hold names of files and units: a line is broken at spaces only, not behind a hyphen or a slash.
+/// Breaks lines at spaces only, since messages contain paths and units.
 fn keep_words_whole() {
-    // Fails only where a hook was set before.
+    // Fails only if a hook is already set.
     let _ = miette::set_hook(Box::new(|_| {
         Box::new(
             miette::MietteHandlerOpts::new()
@@ -57,7 +57,8 @@ fn keep_words_whole() {
     }));
 }
 
-/// With `--json` exactly one object, failure or not; else the text, unless it is no result and `--quiet`. Where the cloud has stdout, stderr.
+/// Prints one object with `--json`, also for a failure; else the text. `--quiet` keeps results
+/// only. A cloud on stdout moves the text to stderr.
 fn print(
     common: &Common,
     said: Option<CommandOutput>,
@@ -96,7 +97,7 @@ fn error_object(failure: &Failure) -> serde_json::Value {
 fn start_log(common: &Common) {
     logging::start(match (common.quiet, common.verbose) {
         (true, _) => "error",
-        // What zenoh says of a router that is not there, the daemon says better.
+        // The daemon reports an absent router itself.
         (false, 0) => "warn,zenoh=error",
         (false, 1) => "info,zenoh=error",
         (false, _) => "debug,zenoh=info",

@@ -73,7 +73,7 @@ fn sensor_line(sensor: &SensorReport) -> String {
 fn reception_line(reception: &Reception) -> String {
     let others = match reception.from_others {
         0 => String::new(),
-        n => format!(", {n} of other senders left out"),
+        n => format!(", {n} of other senders omitted"),
     };
     format!(
         "{} lidar packets, {} dropped by the kernel{others}; {} records dropped by the log",
@@ -94,7 +94,7 @@ fn cloud_line(scan: &Scan) -> String {
         Some(clouds) if scan.output.ends_with(".mcap") => {
             format!("{clouds} frames in {}", scan.output)
         }
-        Some(clouds) => format!("{clouds} frames, numbered after the name {}", scan.output),
+        Some(clouds) => format!("{clouds} frames, numbered from the name {}", scan.output),
     }
 }
 
@@ -135,7 +135,7 @@ pub fn scan_table(scan: &Scan) -> String {
     }
     rows.push((
         "points",
-        format!("{} ({} returns left out)", scan.points, scan.left_out),
+        format!("{} ({} returns omitted)", scan.points, scan.left_out),
     ));
     if let Some(truth) = scan.truth {
         rows.push((
@@ -162,7 +162,7 @@ fn frames(frames: Option<f64>) -> String {
     })
 }
 
-/// Names and values as a table for people.
+/// Aligned labels and values.
 #[must_use]
 pub fn table(rows: Vec<(&'static str, String)>) -> String {
     let mut table = Table::new();

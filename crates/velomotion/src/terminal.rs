@@ -1,4 +1,4 @@
-//! What a person sees while a command works: sentences and, on a terminal, a bar with the time left. All on stderr.
+//! Messages and progress bars on stderr.
 
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
@@ -9,7 +9,7 @@ use units::{Degrees, Host, Stamp};
 
 use crate::cli::Common;
 
-/// Speaks to the person at the terminal.
+/// Output to the terminal.
 pub struct Progress {
     quiet: bool,
     terminal: bool,
@@ -17,7 +17,7 @@ pub struct Progress {
     run: Option<ProgressBar>,
 }
 
-/// A move that is under way.
+/// A move in progress.
 struct Sweep {
     bar: ProgressBar,
     plan: Plan,
@@ -27,7 +27,7 @@ struct Sweep {
 const MILLISECONDS: i64 = 1_000_000;
 
 impl Progress {
-    /// Quiet with `--quiet`; bars only where stderr is a terminal.
+    /// Creates an output that is quiet with `--quiet` and draws bars only on a terminal.
     #[must_use]
     pub fn new(common: &Common) -> Self {
         Self {
@@ -38,7 +38,7 @@ impl Progress {
         }
     }
 
-    /// One line, unless quiet.
+    /// Prints a line unless quiet.
     pub fn say(&self, line: &str) {
         if !self.quiet {
             match &self.sweep {
@@ -48,7 +48,7 @@ impl Progress {
         }
     }
 
-    /// A move begins that will take as long as planned.
+    /// Starts the bar of a move.
     pub fn begin_move(&mut self, plan: &Plan) {
         self.end_move();
         if self.quiet || !self.terminal {
@@ -69,7 +69,7 @@ impl Progress {
         });
     }
 
-    /// The axis stands at `angle` at `now`, with `packets` lidar packets received so far.
+    /// Updates the bar: the axis is at `angle` at `now`, and `packets` lidar packets were received.
     pub fn moved(&mut self, now: Stamp<Host>, angle: Degrees, packets: u64) {
         let Some(sweep) = &mut self.sweep else {
             return;
@@ -89,7 +89,7 @@ impl Progress {
         ));
     }
 
-    /// A simulation begins that will last so many seconds in its own world.
+    /// Starts the bar of a simulation of `seconds`.
     pub fn begin_run(&mut self, seconds: f64) {
         self.end_run();
         if self.quiet || !self.terminal {
@@ -104,7 +104,7 @@ impl Progress {
         self.run = Some(bar);
     }
 
-    /// So much of it is simulated.
+    /// Updates the bar of a simulation.
     pub fn ran(&mut self, seconds: f64) {
         if let Some(bar) = &self.run {
             let milliseconds = (seconds * 1e3) as u64;
@@ -115,7 +115,7 @@ impl Progress {
         }
     }
 
-    /// So many things are to be done one after the other.
+    /// Starts the bar of `count` items.
     pub fn begin_count(&mut self, count: u64) {
         self.end_run();
         if self.quiet || !self.terminal {
@@ -131,24 +131,24 @@ impl Progress {
         self.run = Some(bar);
     }
 
-    /// So many of them are done.
+    /// Updates the bar of items.
     pub fn counted(&mut self, done: u64) {
         match &self.run {
             Some(bar) => bar.set_position(done),
-            // A line now and then where nobody looks at a bar.
+            // Without a bar, prints a line now and then.
             None if done.is_multiple_of(16) => self.say(&format!("{done} done")),
             None => {}
         }
     }
 
-    /// The run or the count is over.
+    /// Removes the bar of a simulation or of items.
     pub fn end_run(&mut self) {
         if let Some(bar) = self.run.take() {
             bar.finish_and_clear();
         }
     }
 
-    /// The move is over.
+    /// Removes the bar of a move.
     pub fn end_move(&mut self) {
         if let Some(sweep) = self.sweep.take() {
             sweep.bar.finish_and_clear();
@@ -156,7 +156,7 @@ impl Progress {
     }
 }
 
-/// A line to stderr. Nobody may be reading any more, which is no reason to lose a scan (`eprintln!` would panic).
+/// Prints a line to stderr. A closed stderr must not lose a scan; `eprintln!` would panic.
 pub fn to_stderr(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

@@ -1,4 +1,4 @@
-//! `velomotion doctor`: what this machine has of a scanner, what is wrong with it, and what to do.
+//! `velomotion doctor`: checks the scanner setup of this machine and suggests fixes.
 
 use std::fs;
 use std::path::Path;
@@ -13,16 +13,16 @@ use engine::config::{self, Axis, Config, DeviceKind};
 use engine::devices::profile as devices;
 use engine::failure::Failure;
 
-/// One thing that was looked at.
+/// Result of one check.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 struct Finding {
-    /// What was looked at.
+    /// Item checked.
     what: String,
-    /// ok, warning or problem.
+    /// `ok`, `warning` or `problem`.
     verdict: Verdict,
-    /// What was found.
+    /// Finding.
     found: String,
-    /// What to do.
+    /// Suggested fix.
     #[serde(skip_serializing_if = "Option::is_none")]
     todo: Option<String>,
 }
@@ -40,13 +40,13 @@ struct Report {
     findings: Vec<Finding>,
 }
 
-/// A state file of sysfs, `None` where it is not there.
+/// Reads a file of sysfs; `None` if it does not exist.
 type Sysfs<'a> = &'a dyn Fn(&Path) -> Option<String>;
 
 /// Runs the command.
 ///
 /// # Errors
-/// Where the configuration cannot be read.
+/// An unreadable configuration.
 pub fn run(common: &Common) -> Result<CommandOutput, Failure> {
     let config = config::load(common.config.as_deref())?;
     let read = |path: &Path| {
@@ -86,7 +86,7 @@ fn drives(found: &Findings, read: Sysfs<'_>) -> Vec<Finding> {
     if findings.is_empty() {
         findings.push(
             finding("EPOS2 on USB", Verdict::Warning, "none (0403:A8B0)")
-                .todo("plug it in and switch it on; a drive on RS232 or CAN does not show here"),
+                .todo("connect it and switch it on; a drive on RS232 or CAN is not listed here"),
         );
     }
     for port in &found.serial_ports {
@@ -103,7 +103,7 @@ fn drives(found: &Findings, read: Sysfs<'_>) -> Vec<Finding> {
         found
             .problems
             .iter()
-            .map(|problem| finding("looking", Verdict::Problem, problem)),
+            .map(|problem| finding("device search", Verdict::Problem, problem)),
     );
     findings
 }
@@ -111,7 +111,7 @@ fn drives(found: &Findings, read: Sysfs<'_>) -> Vec<Finding> {
 fn epos2(unit: &Epos2Found, read: Sysfs<'_>) -> Finding {
     let what = format!("EPOS2 on USB {}", unit.bus_place);
     let Some(port) = &unit.port else {
-        return finding(what, Verdict::Problem, "no serial port: ftdi_sio does not know its id").todo(
+        return finding(what, Verdict::Problem, "no serial port: the driver ftdi_sio does not know its id").todo(
             "as root: modprobe ftdi_sio && echo 0403 a8b0 > /sys/bus/usb-serial/drivers/ftdi_sio/new_id\n\
              for good, in /etc/udev/rules.d/99-epos2.rules:\n\
              ACTION==\"add\", SUBSYSTEM==\"usb\", ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"a8b0\", \
@@ -127,7 +127,7 @@ fn epos2(unit: &Epos2Found, read: Sysfs<'_>) -> Finding {
             what,
             Verdict::Warning,
             format!(
-                "{}, latency timer {ms} ms: every answer is late by up to that",
+                "{}, latency timer {ms} ms: every answer may be delayed by that",
                 port.display()
             ),
         )
@@ -160,7 +160,7 @@ fn profiles(config: &Config, interfaces: &[CanInterface]) -> Vec<Finding> {
             (DeviceKind::Sim, _) => finding(what, Verdict::Ok, "software devices"),
             (DeviceKind::Can, _) => match &device.interface {
                 Some(name) => can_profile(what, name, interfaces),
-                None => finding(what, Verdict::Problem, "names no interface")
+                None => finding(what, Verdict::Problem, "no interface configured")
                     .todo("add interface = \"can0\" (or what it is)"),
             },
             (_, Some(port)) if port.exists() => {
@@ -171,8 +171,8 @@ fn profiles(config: &Config, interfaces: &[CanInterface]) -> Vec<Finding> {
                 Verdict::Problem,
                 format!("{} is not there", port.display()),
             )
-            .todo("plug the drive in, or correct port in the configuration"),
-            (DeviceKind::Usb, None) => finding(what, Verdict::Ok, "the EPOS2 that is found on USB"),
+            .todo("connect the drive, or correct `port` in the configuration"),
+            (DeviceKind::Usb, None) => finding(what, Verdict::Ok, "the EPOS2 found on USB"),
             (_, None) => finding(what, Verdict::Problem, "names no port")
                 .todo("add port = \"/dev/ttyUSB0\" (or what it is)"),
         });
@@ -180,26 +180,28 @@ fn profiles(config: &Config, interfaces: &[CanInterface]) -> Vec<Finding> {
     findings
 }
 
-/// An interface that is down has a finding of its own.
-fn can_profile(what: String, name: &str, interfaces: &[CanInterface]) -> Finding {
+/// Checks the interface of a CAN profile. An interface that is down has a finding of its own.
+fn can_profile(what: String, name: &str, interfaces: &[Interface]) -> Finding {
     if interfaces.iter().any(|interface| interface.name == name) {
         return finding(what, Verdict::Ok, format!("CAN interface {name}"));
     }
     finding(what, Verdict::Problem, format!("there is no CAN interface {name}")).todo(format!(
-        "plug the adapter in, or correct interface in the configuration;\n\
+        "connect the adapter, or correct `interface` in the configuration;\n\
          without an adapter, as root: modprobe vcan && ip link add {name} type vcan && ip link set {name} up"
     ))
 }
 
 fn axis(configured: &Axis) -> Finding {
     match devices::axis(configured) {
-        Ok(_) => finding("[axis]", Verdict::Ok, "an axis that can be"),
-        Err(failure) => finding("[axis]", Verdict::Problem, failure.to_string())
-            .todo("correct that value in the configuration; docs: wiring says what each one means"),
+        Ok(_) => finding("[axis]", Verdict::Ok, "axis configuration is valid"),
+        Err(failure) => finding("[axis]", Verdict::Problem, failure.to_string()).todo(
+            "correct that value in the configuration; docs/src/wiring.md describes every key",
+        ),
     }
 }
 
-/// The lidar's socket asks for 8 MiB; a smaller limit is what it gets.
+/// Checks the limit on socket buffers: the lidar's socket requests 8 MiB and gets at most the
+/// limit.
 fn receive_buffer(read: Sysfs<'_>) -> Finding {
     const WANTED: u64 = 8 << 20;
     let what = "UDP receive buffer";
@@ -210,7 +212,7 @@ fn receive_buffer(read: Sysfs<'_>) -> Finding {
             what,
             Verdict::Warning,
             format!(
-                "at most {} KiB: a long pause of this machine loses packets",
+                "at most {} KiB: packets are lost in a long pause of this machine",
                 limit >> 10
             ),
         )

@@ -1,4 +1,4 @@
-//! `velomotion firmware-sim`: the software EPOS2 alone, for whoever develops a client against it.
+//! `velomotion firmware-sim`: the simulated EPOS2 alone, to develop a client against it.
 
 use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
@@ -18,10 +18,11 @@ use engine::devices::simulated;
 use engine::devices::simulated_drive::{self as software_drive, Interface};
 use engine::failure::{Failure, Kind};
 
-/// Runs the command: the first line on stdout is the port; it ends at SIGTERM, Ctrl-C, or when a stdin that is no terminal closes.
+/// Runs the command. The first line on stdout is the port. It ends at SIGTERM, Ctrl-C, or when
+/// stdin closes unless that is a terminal.
 ///
 /// # Errors
-/// Where the machine gives no pseudo-terminal or has no such CAN interface, or the link cannot be made.
+/// No pseudo-terminal, no such CAN interface, or the link cannot be created.
 pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutput, Failure> {
     let config = config::load(common.config.as_deref())?;
     let axis = devices::axis(&config.axis)?;
@@ -41,7 +42,7 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
     Ok(CommandOutput::nothing())
 }
 
-/// One of the interfaces that are a pseudo-terminal, with the link to it.
+/// Opens a pseudo-terminal with its optional link.
 fn on_terminal(arguments: &cli::FirmwareSim) -> Result<(Interface, Option<Link>), Failure> {
     let pty = Pty::open().map_err(|error| failed(&error))?;
     let link = arguments
@@ -72,13 +73,14 @@ fn announce(port: &Path) -> Result<(), Failure> {
         .map_err(|error| {
             Failure::new(
                 Kind::Usage,
-                format!("cannot say the port on stdout: {error}"),
+                format!("cannot write the port to stdout: {error}"),
             )
-            .help("the first line on stdout is the port: read it")
+            .help("keep stdout open: its first line is the port")
         })
 }
 
-/// Sets `stop` when stdin comes to its end. A terminal is left alone: a shell stops what reads from it in the background.
+/// Sets `stop` when stdin ends. A terminal is not read: a shell would stop the process in the
+/// background.
 fn until_stdin_closes(stop: &Arc<AtomicBool>) -> Result<(), Failure> {
     if std::io::stdin().is_terminal() {
         return Ok(());
@@ -94,25 +96,25 @@ fn until_stdin_closes(stop: &Arc<AtomicBool>) -> Result<(), Failure> {
         .map(drop)
         .map_err(|error| {
             Failure::new(Kind::NoDevice, format!("no thread for stdin: {error}"))
-                .help("see how many processes and threads this user may have (ulimit -u)")
+                .help("check the limit on processes and threads (ulimit -u)")
         })
 }
 
-/// A symbolic link to the port that goes when the drive does.
+/// A symbolic link to the port, removed on drop.
 struct Link(PathBuf);
 
 impl Link {
     fn make(link: &Path, port: &Path) -> Result<Self, Failure> {
-        // A link that an earlier run left is replaced; anything else of that name is not ours.
+        // A link of an earlier run is replaced; any other file is not ours.
         if link.is_symlink() {
             let _ = std::fs::remove_file(link);
         }
         std::os::unix::fs::symlink(port, link).map_err(|error| {
             Failure::new(
                 Kind::Usage,
-                format!("cannot make the link {}: {error}", link.display()),
+                format!("cannot create the link {}: {error}", link.display()),
             )
-            .help("name a link in a folder that exists, where no file of that name is")
+            .help("choose an unused name in an existing folder")
         })?;
         Ok(Self(link.to_owned()))
     }

@@ -1,4 +1,4 @@
-//! The verbs, one file each.
+//! The commands, one file each.
 
 pub mod analyze;
 pub mod capture;
@@ -15,24 +15,24 @@ pub mod tradeoff;
 use crate::cli::{Cli, Command};
 use engine::failure::Failure;
 
-/// What a command has to say on stdout: one JSON object, or text for people.
+/// Output of a command: one JSON object or text.
 pub struct CommandOutput {
-    /// For programs.
+    /// Output with `--json`.
     pub json: serde_json::Value,
-    /// For people.
+    /// Output without `--json`.
     pub text: String,
-    /// A failure that left something worth saying: it decides the exit code and is printed after the text.
+    /// A failure that left a usable result. It sets the exit code and is printed after the text.
     pub failure: Option<Failure>,
-    /// Whether a cloud went to stdout: the text goes to stderr then.
+    /// Whether stdout holds a cloud, which moves the text to stderr.
     pub stdout_taken: bool,
-    /// Whether the text is what was asked for, and not about what was done: `--quiet` leaves it then.
+    /// Whether the text is the requested result, which `--quiet` keeps.
     pub is_result: bool,
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// [`Failure`] where nothing came of it.
+/// [`Failure`] without a result.
 pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
     match &cli.command {
         Command::Capture(arguments) => capture::run(arguments, &cli.common),
@@ -49,7 +49,7 @@ pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
 }
 
 impl CommandOutput {
-    /// Everything was said while the command ran.
+    /// No output.
     const fn nothing() -> Self {
         Self {
             json: serde_json::Value::Null,
@@ -60,7 +60,7 @@ impl CommandOutput {
         }
     }
 
-    /// A report that is no scan.
+    /// Report of an action.
     fn report(report: &impl serde::Serialize, text: String) -> Self {
         Self {
             json: json(report),
@@ -71,7 +71,7 @@ impl CommandOutput {
         }
     }
 
-    /// A report that is all that comes of the command.
+    /// Report that is the result of the command.
     fn result(report: &impl serde::Serialize, text: String) -> Self {
         Self {
             is_result: true,
@@ -79,7 +79,7 @@ impl CommandOutput {
         }
     }
 
-    /// A scan's report. Where the cloud itself went to stdout, nothing else may.
+    /// Report on a scan.
     #[must_use]
     pub fn scan(
         scan: &engine::reconstruct::report::Scan,
@@ -96,7 +96,7 @@ impl CommandOutput {
     }
 }
 
-/// The report as JSON. Reports are structs of numbers and strings: there is nothing in them that JSON cannot say.
+/// The report as JSON. Reports hold numbers and strings only, so that serialisation cannot fail.
 fn json(report: &impl serde::Serialize) -> serde_json::Value {
     serde_json::to_value(report)
         .unwrap_or_else(|error| serde_json::json!({ "error": error.to_string() }))

@@ -19,10 +19,10 @@ use crate::terminal::Progress;
 /// Runs the command.
 ///
 /// # Errors
-/// [`Failure`] where no cloud came of it.
+/// [`Failure`] without a cloud.
 pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
-    // The input is looked at before an output is opened.
+    // Check the input before an output is opened.
     let source = Source::open(&arguments.input, arguments.lidar.sensor)?;
     let request = Request {
         recording: &source,

@@ -1,4 +1,4 @@
-//! What the simulation says, as records of a log and points of a cloud.
+//! Conversion of a simulation to log records and truth points.
 
 use std::fs::File;
 use std::ops::ControlFlow;
@@ -23,17 +23,17 @@ use crate::terminal::Progress;
 use engine::failure::{Failure, Kind};
 use engine::output::{Target, sink_failure};
 
-/// Where a sensor's packets come from unless it was configured otherwise (63-9243).
+/// Factory address of a sensor (63-9243).
 const SOURCE: [u8; 4] = [192, 168, 1, 201];
 /// The drive's node id.
 const NODE: u8 = 1;
-/// Points handed on at a time.
+/// Points per batch.
 const BATCH: usize = 16_384;
 
-/// Why a simulation was cut short, and after how long in the scene.
+/// Cause and scene time of an early end.
 pub(super) type Cut = (Failure, Span);
 
-/// Writes the log, and the truth where it is wanted.
+/// Writes the log and the optional truth.
 pub(super) struct Log<'a> {
     writer: LogWriter<File>,
     gearing: Option<Gearing>,
@@ -78,7 +78,7 @@ impl<'a> Log<'a> {
             Ok(()) => ControlFlow::Continue(()),
             Err(error) => self.fail(
                 Failure::new(Kind::Incomplete, error.to_string())
-                    .help("free some space or name another place with -o"),
+                    .help("free some space or choose another folder with -o"),
             ),
         }
     }
@@ -113,7 +113,7 @@ impl<'a> Log<'a> {
         }
     }
 
-    /// Completes the files. Beside the name of the truth comes why it was cut short, if it was, and after how long in the scene.
+    /// Completes the files. Returns the path of the truth and the cause of an early end.
     pub fn finish(mut self, path: &Path) -> Result<(Option<PathBuf>, Option<Cut>), Failure> {
         self.progress.end_run();
         let _ = self.flush();
@@ -141,9 +141,9 @@ impl Out for Log<'_> {
                 self.last = at;
                 if self.interrupt.load(Ordering::Relaxed) {
                     return self.fail(
-                        Failure::new(Kind::Interrupted, "stopped by the user while simulating")
+                        Failure::new(Kind::Interrupted, "stopped by the user during the simulation")
                             .help(
-                                "the log of what came before is whole; run it again for all of it",
+                                "the log is complete up to that time; run the command again for the rest",
                             ),
                     );
                 }
@@ -207,7 +207,7 @@ impl Out for Log<'_> {
     }
 }
 
-/// Each laser's place by elevation, 0 the lowest.
+/// Ring of each laser by elevation; 0 is the lowest.
 fn rings(simulation: &Simulation) -> Vec<u8> {
     let beams = simulation.sensor.beams();
     let below = |elevation_deg: f64| {
@@ -221,7 +221,7 @@ fn rings(simulation: &Simulation) -> Vec<u8> {
         .collect()
 }
 
-/// The frame that asks for something.
+/// Frame of a request to the drive.
 fn request(ask: Ask, gearing: Gearing) -> Frame {
     let write = |address: Address, value: u32| {
         let write = WriteObject {
@@ -257,17 +257,18 @@ fn request(ask: Ask, gearing: Gearing) -> Frame {
     }
 }
 
-/// The first marker or the second, and its answer.
+/// Address and error answer of the two probe requests.
 const fn marker(second: bool) -> (Address, CommError) {
     let [one, other] = drive::MARKERS;
     if second { other } else { one }
 }
 
-/// Controlword in profile position mode (Firmware Specification, 8.3): a new setpoint, to be taken at once.
+/// Controlword bits in profile position mode (Firmware Specification, 8.3): new setpoint, change
+/// immediately.
 const NEW_SETPOINT: u16 = 0x0010;
 const AT_ONCE: u16 = 0x0020;
 
-/// What the log says of itself.
+/// Configuration stored in the log.
 pub(super) fn scan_config(scene: &Scene, gearing: Option<Gearing>) -> ScanConfig {
     let simulation = &scene.simulation;
     let step_m = f64::from(simulation.sensor.model().distance_unit_mm()) * 1e-3;
@@ -291,7 +292,7 @@ pub(super) fn scan_config(scene: &Scene, gearing: Option<Gearing>) -> ScanConfig
     }
 }
 
-/// The sweeps that the motion makes.
+/// The planned sweeps of the motion.
 fn plan(simulation: &Simulation) -> Option<SweepPlan> {
     let sweeps = || simulation.motion.legs().iter().filter(|leg| leg.sweep);
     let first = sweeps().next()?;

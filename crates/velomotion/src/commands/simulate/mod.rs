@@ -1,7 +1,7 @@
-//! `velomotion simulate`: a log of a scene that never was, and the truth beside it.
+//! `velomotion simulate`: a log of a simulated scene, and its ground truth.
 //!
-//! The log is one that `replay` reads: the lidar's datagrams, and the drive's USB frames where there is a drive. Left out: how anything is
-//! simulated (`sim::simulate`), and how what effects did is told ([`Explanation`]).
+//! The log holds the lidar's datagrams, and the drive's USB frames if the scene has a drive.
+//! `sim::simulate` does the simulation.
 
 mod log;
 
@@ -29,80 +29,80 @@ use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
 use log::{Log, scan_config};
 
-/// What was simulated.
+/// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// The scene as it was named.
+    /// Scene as named by the user.
     pub scene: String,
-    /// What draws depended on.
+    /// Random seed.
     pub seed: u64,
-    /// Effects that the scene asks for.
+    /// Requested effects.
     pub effects: Vec<Effect>,
-    /// Data packets that left the lidar.
+    /// Data packets sent.
     pub packets: u64,
-    /// Shots in them.
+    /// Shots in the packets.
     pub shots: u64,
-    /// Shots that returned.
+    /// Shots with a return.
     pub returned: u64,
-    /// Share of shots that returned, 0..=1.
+    /// Share of shots with a return, 0..=1.
     pub share_returned: f64,
-    /// Returns, two of one shot counted twice.
+    /// Returns; a dual return counts twice.
     pub returns: u64,
     /// Requests to the drive.
     pub polls: u64,
-    /// How long it took in the scene, seconds.
+    /// Duration in the scene, seconds.
     pub duration_s: f64,
-    /// How long it took to make, seconds.
+    /// Computing time, seconds.
     pub took_s: f64,
-    /// How many times faster than real time that is.
+    /// Duration over computing time.
     pub times_real_time: f64,
-    /// Threads that made packets.
+    /// Threads used.
     pub threads: usize,
-    /// The log.
+    /// Path of the log.
     pub log: String,
-    /// The cloud of the truth, where one was asked for.
+    /// Path of the truth cloud, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<String>,
-    /// What a user of the log must know.
+    /// Warnings for users of the log.
     pub warnings: Vec<String>,
-    /// What effects did and cost, where that was asked for.
+    /// Changes and costs of effects, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explanation: Option<Explanation>,
 }
 
-/// An effect that a scene asks for.
+/// A requested effect.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Effect {
     /// Its name.
     pub name: String,
-    /// The line of the scene file.
+    /// Line in the scene file.
     pub line: usize,
 }
 
-/// What to make of a scene.
+/// A simulation to run.
 pub struct Request<'a> {
-    /// How the scene is called.
+    /// Name of the scene.
     pub name: String,
     /// The log to write.
     pub log: &'a Path,
-    /// Where the truth goes.
+    /// Destination of the truth.
     pub truth: Option<Target>,
     /// Threads that make packets.
     pub threads: NonZeroUsize,
-    /// Whether to tell what effects did.
+    /// Whether to report what effects did.
     pub explain: bool,
-    /// Whether an older log may be overwritten.
+    /// Whether to overwrite an older log.
     pub force: bool,
-    /// Set where the user wants no more of it.
+    /// Stops the simulation when set.
     pub interrupt: &'a AtomicBool,
-    /// What to tell about how far it is.
+    /// Progress display.
     pub progress: Progress,
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// [`Failure`] for a scene that cannot be read and files that cannot be written.
+/// [`Failure`] for an invalid scene or an unwritable file.
 pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
     let (name, text) = find(&arguments.scene)?;
@@ -152,7 +152,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     })
 }
 
-/// A scene by the path of its file or its name.
+/// Finds a scene by path or name.
 fn find(scene: &Path) -> Result<(String, String), Failure> {
     let name = scene.display().to_string();
     if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
@@ -165,31 +165,31 @@ fn find(scene: &Path) -> Result<(String, String), Failure> {
             format!("scene {name}: cannot read: {error}"),
         )
         .help(format!(
-            "name a scene file (TOML), or one that comes with the program: {}",
+            "name a scene file (TOML) or a built-in scene: {}",
             shipped.join(", ")
         ))
     })?;
     Ok((name, text))
 }
 
-/// Nanoseconds since this was first asked.
+/// Nanoseconds since the first call.
 fn nanoseconds() -> u64 {
     static BEGINNING: OnceLock<Instant> = OnceLock::new();
     let since = BEGINNING.get_or_init(Instant::now).elapsed();
     u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// Reads a scene file's text; mesh files that it names lie beside it. With a clock the cost of effects is measured.
+/// Parses a scene; mesh paths are relative to it. A stopwatch measures the cost of effects.
 ///
 /// # Errors
-/// [`Kind::BadInput`] naming the line.
+/// [`Kind::BadInput`] with the line.
 pub fn read(name: &str, text: &str, seed: Option<u64>, clock: Stopwatch) -> Result<Scene, Failure> {
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     let mut meshes = |file: &str| {
         let path = folder.join(file);
-        // A pipe that nobody writes to would never end.
+        // Reading a FIFO without a writer would never end.
         if path.metadata().is_ok_and(|there| !there.is_file()) {
-            return Err(format!("{} is no file", path.display()));
+            return Err(format!("{} is not a file", path.display()));
         }
         std::fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))
     };
@@ -199,7 +199,7 @@ pub fn read(name: &str, text: &str, seed: Option<u64>, clock: Stopwatch) -> Resu
     })
 }
 
-/// Whether a log is to be a plain pcap, which holds the lidar's datagrams alone.
+/// Whether the log is a plain pcap, which holds the lidar's datagrams only.
 fn is_pcap(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default();
     extension.eq_ignore_ascii_case("pcap")
@@ -210,10 +210,10 @@ fn stem(name: &str) -> &str {
     stem.unwrap_or("scene")
 }
 
-/// Simulates a scene into a log. A failure that left something worth having comes beside the report.
+/// Simulates a scene into a log. A failure with a usable log is returned with the report.
 ///
 /// # Errors
-/// [`Failure`] where nothing came of it.
+/// [`Failure`] without a log.
 pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Failure>), Failure> {
     let Request {
         name,
@@ -267,7 +267,7 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
             line: asked.line,
         })
         .collect();
-    // Two engines: one that has effects in it, and one that has none.
+    // Separate instances, so that a scene without effects pays nothing for them.
     let summary = match scene.effects.is_none() {
         true => {
             let mut none = Effects::<OnFirings>::default();
@@ -302,7 +302,7 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
     let Some((failure, after)) = cut else {
         return Ok((report, None));
     };
-    // What was not simulated was not simulated fast.
+    // Only the simulated part counts towards the speed.
     let duration_s = after.as_secs_f64();
     let report = Report {
         duration_s,
@@ -340,7 +340,7 @@ impl Report {
         }
     }
 
-    /// For people: the table, and what effects did where that was asked for.
+    /// Text of the report.
     #[must_use]
     pub fn text(&self) -> String {
         match &self.explanation {
@@ -349,7 +349,7 @@ impl Report {
         }
     }
 
-    /// Its table.
+    /// Table of the report.
     #[must_use]
     pub fn table(&self) -> String {
         let effects = match self.effects.is_empty() {
@@ -397,13 +397,13 @@ impl Report {
     }
 }
 
-/// What the scene has and a log cannot say: how the lidar is turned on the platform, and where it is but for its height.
+/// Mount settings of the scene that a log cannot store: its rotation and horizontal offset.
 fn beyond_the_log(scene: &Scene) -> Option<String> {
     let mount = &scene.simulation.mount;
     let told = mount.turn == DMat3::IDENTITY && mount.at_m.truncate() == DVec2::ZERO;
     (!told).then(|| {
         format!(
-            "a log tells of the mount its height alone, {} m: a replay leaves the scene's position_m and rotation_deg out, the truth does not",
+            "a log stores only the height of the mount, {} m: replay ignores the scene's position_m and rotation_deg, the truth includes them",
             mount.at_m.z
         )
     })
@@ -429,7 +429,7 @@ fn metadata(name: &str) -> Metadata {
 
 fn cannot_simulate(name: &str, error: &SimulateError) -> Failure {
     Failure::new(Kind::BadInput, format!("scene {name}: {error}"))
-        .help("ask for less in the scene file's [motion] or [drive]")
+        .help("reduce the values in the scene file's [motion] or [drive]")
 }
 
 fn cannot_write(path: &Path, error: &dyn std::fmt::Display) -> Failure {
@@ -437,7 +437,7 @@ fn cannot_write(path: &Path, error: &dyn std::fmt::Display) -> Failure {
         Kind::Incomplete,
         format!("the log {} cannot be written: {error}", path.display()),
     )
-    .help("free some space or name another place with -o")
+    .help("free some space or choose another folder with -o")
 }
 
 fn log_failure(path: &Path, error: &LogError) -> Failure {
@@ -445,7 +445,7 @@ fn log_failure(path: &Path, error: &LogError) -> Failure {
         LogError::Exists { .. } => Failure::new(Kind::Usage, error.to_string())
             .help("choose another name with -o, or overwrite it with --force"),
         LogError::Create { .. } => Failure::new(Kind::BadInput, error.to_string())
-            .help("name a file in a folder that exists and may be written to"),
+            .help("name a file in an existing, writable folder"),
         _ => cannot_write(path, error),
     }
 }
