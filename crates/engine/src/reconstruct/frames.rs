@@ -293,7 +293,8 @@ impl FrameBuilder<'_> {
                     let seen = grid.cell(layer, ring, column).filter(|seen| {
                         !(self.merge_equal && layer > 0 && seen.echo == Echo::LastAndStrongest)
                     });
-                    let placed = seen.and_then(|seen| alignment.place_received(seen, self.received));
+                    let placed =
+                        seen.and_then(|seen| alignment.place_received(seen, self.received));
                     match (seen, placed) {
                         (_, Some(_)) => self.placed.points += 1,
                         (Some(_), None) => self.placed.outside += 1,
