@@ -181,7 +181,7 @@ fn profiles(config: &Config, interfaces: &[CanInterface]) -> Vec<Finding> {
 }
 
 /// Checks the interface of a CAN profile. An interface that is down has a finding of its own.
-fn can_profile(what: String, name: &str, interfaces: &[Interface]) -> Finding {
+fn can_profile(what: String, name: &str, interfaces: &[CanInterface]) -> Finding {
     if interfaces.iter().any(|interface| interface.name == name) {
         return finding(what, Verdict::Ok, format!("CAN interface {name}"));
     }
