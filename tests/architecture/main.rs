@@ -1,9 +1,15 @@
 //! The rules of the architecture that a test can check: which crate may depend on which, which
 //! crate may use which library, and which crates do no input or output.
 
-mod manifests;
+use std::sync::OnceLock;
 
+mod counts;
+mod manifests;
+mod modules;
+
+use counts::Counts;
 use manifests::{Workspace, confined, locked};
+use modules::Sources;
 
 /// The crates that a crate may depend on, as docs/ARCHITECTURE states them.
 ///
@@ -23,7 +29,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 11] = [
 ];
 
 /// The crates above those of the table.
-const UPPER_CRATES: [&str; 7] = [
+const UPPER_CRATES: [&str; 8] = [
     "engine",
     "daemon",
     "ros2",
@@ -31,6 +37,7 @@ const UPPER_CRATES: [&str; 7] = [
     "velomotion",
     "studies",
     "tests",
+    "architecture",
 ];
 
 /// Crates that a crate does not depend on even in its tests.
@@ -45,6 +52,11 @@ const INDEPENDENT: [(&str, &[&str]); 3] = [
 
 /// Packages that the default build leaves out: ROS 2's transport alone needs 137 crates.
 const OPTIONAL_PACKAGES: [&str; 2] = ["zenoh", "xxhash-rust"];
+
+/// Ceilings of the figures; they may only fall.
+const MAX_REPEATED_TYPES: usize = 194;
+const MAX_LONG_COMMENTS: usize = 2191;
+const MAX_CYCLES_ACROSS_FOLDERS: usize = 10;
 
 #[test]
 fn crates_depend_only_on_what_the_table_allows() {
@@ -140,4 +152,48 @@ fn lower_crates_ban_clocks_files_and_sockets() {
             );
         }
     }
+}
+
+/// The figures, made once for all tests.
+fn counts_of_sources() -> &'static Counts {
+    static COUNTS: OnceLock<Counts> = OnceLock::new();
+    COUNTS.get_or_init(|| Counts::of(&Sources::read()))
+}
+
+/// Prints the figures of the source text: `cargo test -p architecture -- --ignored --nocapture`.
+#[test]
+#[ignore = "prints figures, checks nothing"]
+fn counts() {
+    println!("{}", counts_of_sources());
+}
+
+#[test]
+fn modules_of_different_folders_do_not_import_each_other_in_cycles() {
+    let counts = counts_of_sources();
+    assert!(
+        counts.cycles.len() <= MAX_CYCLES_ACROSS_FOLDERS,
+        "{:#?}",
+        counts.cycles
+    );
+}
+
+#[test]
+fn comments_are_wrapped_at_100_columns() {
+    let counts = counts_of_sources();
+    assert!(
+        counts.long_comments.len() <= MAX_LONG_COMMENTS,
+        "{:#?}",
+        counts.long_comments
+    );
+}
+
+#[test]
+fn a_type_name_stands_for_one_type() {
+    let counts = counts_of_sources();
+    assert!(
+        counts.repeated_types.len() <= MAX_REPEATED_TYPES,
+        "{} type names are used more than once: {:#?}",
+        counts.repeated_types.len(),
+        counts.repeated_types
+    );
 }

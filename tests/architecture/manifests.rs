@@ -8,8 +8,9 @@ use toml::{Table, Value};
 /// The root of the repository.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("tests/ has a parent")
+        .ancestors()
+        .nth(2)
+        .expect("tests/architecture is two folders deep")
         .to_owned()
 }
 
