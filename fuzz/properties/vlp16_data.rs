@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use firmware_sim::vlp16::{DualPacketBuilder, PacketBuilder};
+use firmware_sim::vlp16::{DataPacketBuilder, PacketModel, ReturnMode};
 use lidar::{Decoder, Duplicates, Firing, Options, Timekeeper};
 use protocol::vlp16::models::{HDL_32E, PUCK_HI_RES, VLP_16, VLP_32C};
 use protocol::vlp16::{BLOCK_LEN, BLOCKS, DATA_LEN, DataPacket};
@@ -118,8 +118,12 @@ impl Sensor {
     }
 
     fn build(&mut self, head: u8) -> Vec<u8> {
-        let mut builder = PacketBuilder::new();
-        let mut dual = DualPacketBuilder::new();
+        let (mode, sequences) = if self.dual {
+            (ReturnMode::Dual, 12)
+        } else {
+            (ReturnMode::Strongest, 24)
+        };
+        let mut builder = DataPacketBuilder::new(PacketModel::Vlp16, mode);
         let mut one = [(0, 0); 16];
         let mut two = one;
         for (n, laser) in (0..).zip(one.iter_mut()) {
@@ -128,22 +132,12 @@ impl Sensor {
         two.iter_mut()
             .step_by(3)
             .for_each(|laser| *laser = (501, 7));
-        let sequences = if self.dual { 12 } else { 24 };
         for _ in 0..sequences {
-            if self.dual {
-                dual.firing(self.azimuth_cdeg, &one, &two);
-            } else {
-                builder.firing(self.azimuth_cdeg, &one);
-            }
+            builder.firing(self.azimuth_cdeg, &one, &two);
             self.azimuth_cdeg = (u32::from(self.azimuth_cdeg) + u32::from(self.step_cdeg / 2))
                 .rem_euclid(36_000) as u16;
         }
-        let mut packet = if self.dual {
-            dual.finish(0)
-        } else {
-            builder.finish(0)
-        }
-        .to_vec();
+        let mut packet = builder.finish(0).to_vec();
         packet[1200..1204].copy_from_slice(&self.stamp_us.to_le_bytes());
         packet[1204..].copy_from_slice(&self.factory);
         packet

@@ -1,6 +1,6 @@
 //! The position packet: what is read is what stands there, whatever stands there; a sentence's time is read a second way.
 
-use firmware_sim::vlp16::{Pps as SentPps, position_packet};
+use firmware_sim::vlp16::position_packet;
 use lidar::{Decoder, Options};
 use protocol::vlp16::{NmeaError, POSITION_LEN, PositionPacket, Pps, Rmc, UtcTime};
 use units::Stamp;
@@ -77,12 +77,7 @@ fn any_sentence(sentence: &[u8]) {
 
 /// What is wrong stands in the sentence, or just behind it.
 fn offset_is_inside(error: &NmeaError, len: usize) {
-    let (NmeaError::Absent { offset, .. }
-    | NmeaError::NotRmc { offset, .. }
-    | NmeaError::NoChecksum { offset, .. }
-    | NmeaError::Checksum { offset, .. }
-    | NmeaError::Field { offset, .. }) = error;
-    assert!((206..=206 + len).contains(offset), "{error}");
+    assert!((206..=206 + len).contains(&error.offset), "{error}");
     assert!(!error.to_string().is_empty());
 }
 
@@ -161,17 +156,13 @@ fn counted_once(payload: &[u8]) {
 
 fn own_packet(input: &mut Input<'_>) {
     let timestamp_us = input.u32();
-    let (sent, expected) = match input.u8() % 4 {
-        0 => (SentPps::Absent, Pps::Absent),
-        1 => (SentPps::Synchronising, Pps::Synchronising),
-        2 => (SentPps::Locked, Pps::Locked),
-        _ => (SentPps::Error, Pps::Error),
-    };
+    let pps = [Pps::Absent, Pps::Synchronising, Pps::Locked, Pps::Error];
+    let pps = pps[usize::from(input.u8() % 4)];
     let nmea = input.rest();
-    let payload = position_packet(timestamp_us, sent, nmea);
+    let payload = position_packet(timestamp_us, pps, nmea);
     let packet = PositionPacket::new(&payload).expect("of the right length");
     assert_eq!(packet.timestamp_us(), timestamp_us % 3_600_000_000);
-    assert_eq!(packet.pps(), expected);
+    assert_eq!(packet.pps(), pps);
     let kept = &nmea[..nmea.len().min(128)];
     let end = kept.iter().position(|byte| b"\r\n\0".contains(byte));
     assert_eq!(packet.nmea(), &kept[..end.unwrap_or(kept.len())]);

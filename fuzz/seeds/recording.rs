@@ -1,6 +1,6 @@
 //! Logs as we write them, and the same datagrams in the other formats that are read.
 
-use firmware_sim::vlp16::{PacketBuilder, Pps, position_packet};
+use firmware_sim::vlp16::{DataPacketBuilder, PacketModel, Pps, ReturnMode, position_packet};
 use io::log::{LogConfig, LogWriter};
 use protocol::canopen::NodeId;
 use protocol::canopen::sdo::Request;
@@ -120,7 +120,7 @@ fn log(link: DriveLink, ports: &[u16]) -> Vec<u8> {
             frame: &frame,
         },
     ];
-    let data = PacketBuilder::new().finish(5);
+    let data = DataPacketBuilder::new(PacketModel::Vlp16, ReturnMode::Strongest).finish(5);
     let position = position_packet(5, Pps::Absent, b"");
     for &port in ports {
         let payload = if port == 2368 {

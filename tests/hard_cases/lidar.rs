@@ -5,7 +5,7 @@ mod order;
 
 use ::lidar::{Decoder, Duplicates, Echo, Firing, Options, Stats, Timekeeper, UtcClock, UtcState};
 use firmware_sim::vlp16::{
-    DualPacketBuilder, HOUR_US, LASERS, PacketBuilder, Pps, Returns, SEQUENCE_PERIOD_NS,
+    DataPacketBuilder, HOUR_US, LASERS, PacketModel, Pps, ReturnMode, Returns, SEQUENCE_PERIOD_NS,
     position_packet,
 };
 use protocol::vlp16::PositionPacket;
@@ -77,19 +77,19 @@ impl<A: Fn(f64) -> f64, S: Fn(f64) -> bool> Head<A, S> {
     fn packet(&self, times: &[i64]) -> Packet {
         let us = (times[0] / 1_000).rem_euclid(i64::from(HOUR_US)) as u32;
         let cdeg = |t| (self.azimuth_deg(t) * 100.0).round() as u16 % 36_000;
-        let (mut one, mut two) = (PacketBuilder::new(), DualPacketBuilder::new());
+        let mode = if self.dual {
+            ReturnMode::Dual
+        } else {
+            ReturnMode::Strongest
+        };
+        let mut builder = DataPacketBuilder::new(PacketModel::Vlp16, mode);
         for &t in times {
             for t in [t, t + SEQUENCE_PERIOD_NS] {
                 let returns = [(range_raw(t - self.begin_ns), 9); LASERS];
-                one.firing(cdeg(t), &returns);
-                two.firing(cdeg(t), &returns, &returns);
+                builder.firing(cdeg(t), &returns, &returns);
             }
         }
-        let bytes = if self.dual {
-            two.finish(us)
-        } else {
-            one.finish(us)
-        };
+        let bytes = builder.finish(us);
         let last = times.last().unwrap();
         Packet {
             // Filled, sent, received.
@@ -256,7 +256,7 @@ fn dual_returns_may_be_missing_on_either_side() {
     last[1] = (5_001, 11);
     strongest[2] = (4_002, 92);
     (last[3], strongest[3]) = ((5_003, 93), (5_003, 93));
-    let mut builder = DualPacketBuilder::new();
+    let mut builder = DataPacketBuilder::new(PacketModel::Vlp16, ReturnMode::Dual);
     let packets: Vec<Packet> = (0..3u32)
         .map(|k| {
             for sequence in 0..12 {

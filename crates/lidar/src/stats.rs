@@ -89,7 +89,7 @@ impl fmt::Display for Conflict {
         match Model::of(self.product) {
             Some(named) => write!(f, "the packets' factory byte says {}", named.name)?,
             None => {
-                let byte = self.product.to_byte();
+                let byte = self.product.to_u8();
                 write!(f, "the packets' factory byte 0x{byte:02X} is not known")?;
             }
         }

@@ -4,7 +4,7 @@
 //! The packets come from `firmware-sim`, which writes them from the manual without any code of this
 //! crate.
 
-use firmware_sim::vlp16::{DualPacketBuilder, LASERS, PacketBuilder, Returns};
+use firmware_sim::vlp16::{DataPacketBuilder, LASERS, PacketModel, ReturnMode, Returns};
 use lidar::{Decoder, Duplicates, Echo, Firing, Options};
 use proptest::prelude::*;
 use units::{Host, Lidar, Stamp};
@@ -60,16 +60,16 @@ fn packet(
     shots: &[(Returns, Returns)],
     us: u32,
 ) -> Vec<u8> {
-    let (mut single, mut pairs) = (PacketBuilder::new(), DualPacketBuilder::new());
-    for (azimuth, (last, strongest)) in azimuths.zip(shots) {
-        single.firing(azimuth, last);
-        pairs.firing(azimuth, last, strongest);
-    }
-    if dual {
-        pairs.finish(us).to_vec()
+    let mode = if dual {
+        ReturnMode::Dual
     } else {
-        single.finish(us).to_vec()
+        ReturnMode::Strongest
+    };
+    let mut builder = DataPacketBuilder::new(PacketModel::Vlp16, mode);
+    for (azimuth, (last, strongest)) in azimuths.zip(shots) {
+        builder.firing(azimuth, last, strongest);
     }
+    builder.finish(us).to_vec()
 }
 
 /// What a packet is built from: start and azimuth of each firing, and its shots.

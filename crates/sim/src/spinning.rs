@@ -4,8 +4,8 @@
 //! sensors send one. Left out: dual return, GPS, limited field of view.
 
 use firmware_sim::vlp16::{
-    DATA_LEN, DISTANCE_UNIT_MM, LASERS, POSITION_LEN, PacketBuilder, Pps, SEQUENCES,
-    position_packet,
+    DATA_LEN, DISTANCE_UNIT_MM, DataPacketBuilder, LASERS, POSITION_LEN, PacketModel, Pps,
+    ReturnMode, SEQUENCES, position_packet,
 };
 use units::{Host, Stamp};
 
@@ -16,10 +16,19 @@ use crate::world::{World, elapsed};
 const DATA_PER_POSITION: u64 = 5;
 
 /// The lidar between two of its packets.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Spinning {
-    builder: PacketBuilder,
+    builder: DataPacketBuilder,
     packets: u64,
+}
+
+impl Default for Spinning {
+    fn default() -> Self {
+        Self {
+            builder: DataPacketBuilder::new(PacketModel::Vlp16, ReturnMode::Strongest),
+            packets: 0,
+        }
+    }
 }
 
 impl Spinning {
@@ -39,7 +48,7 @@ impl Spinning {
                     *slot = (distance_raw(found.hit.range_m), found.hit.reflectivity);
                 }
             }
-            self.builder.firing(azimuth_cdeg, &returns);
+            self.builder.firing(azimuth_cdeg, &returns, &[]);
         }
         self.packets += 1;
         self.builder.finish(world.clock.stamp_us(elapsed(first, 0)))

@@ -6,7 +6,7 @@
 use crate::placing::{Beam, Head, LASERS, Shot};
 use analysis::tradeoff::{Bench, Effort, StudyError};
 use drive::record::{Record, Wire};
-use firmware_sim::vlp16::{DATA_PORT, PacketBuilder};
+use firmware_sim::vlp16::{DATA_PORT, DataPacketBuilder, PacketModel, ReturnMode};
 use lidar::{Decoder, Options};
 use protocol::vlp16::models::VLP_16;
 use scanner::{Accuracy, Alignment, AngleTable, ScanConfig, Survey, TiltSource};
@@ -41,13 +41,13 @@ impl Workload {
     pub fn new(tilt_deg: Tilt, seconds: f64, mut answer: impl FnMut(&Ray) -> (u16, u8)) -> Self {
         let firing_ns = u64::from(VLP_16.firing_period_ns);
         let count = (seconds * 1e9 / (firing_ns * FIRINGS) as f64).ceil() as u64;
-        let mut builder = PacketBuilder::new();
+        let mut builder = DataPacketBuilder::new(PacketModel::Vlp16, ReturnMode::Strongest);
         let mut packets = Vec::new();
         for packet in 0..count {
             let first_ns = packet * FIRINGS * firing_ns;
             for firing in 0..FIRINGS {
                 let start_ns = first_ns + firing * firing_ns;
-                let returns = std::array::from_fn(|laser| {
+                let returns: [_; 16] = std::array::from_fn(|laser| {
                     let delay = VLP_16.lasers.get(laser).map_or(0, |l| l.delay_ns);
                     let t_ns = (start_ns + u64::from(delay)) as f64;
                     answer(&Ray {
@@ -58,7 +58,7 @@ impl Workload {
                 });
                 let azimuth_deg = (start_ns as f64 * AZIMUTH_DEG_NS) % 360.0;
                 let azimuth_cdeg = (azimuth_deg * 100.0).round() as u16 % 36_000;
-                builder.firing(azimuth_cdeg, &returns);
+                builder.firing(azimuth_cdeg, &returns, &[]);
             }
             let payload = builder.finish((first_ns / 1_000) as u32);
             let full = (first_ns + FIRINGS * firing_ns) as i64;

@@ -1,6 +1,8 @@
-//! Position packets: the sensor's clock, the state of its PPS input, and the last NMEA sentence it was given.
+//! Position packets: the sensor's clock, the state of its PPS input, and the last NMEA sentence.
 //!
-//! The 198 bytes in front and the rest behind are reserved; the manual leaves them open and sensors send zeros there.
+//! All other bytes are reserved; sensors send zeros.
+
+use protocol::vlp16::Pps;
 
 use super::{HOUR_US, POSITION_LEN, put};
 
@@ -10,7 +12,7 @@ const TIMESTAMP_AT: usize = 198;
 const PPS_AT: usize = 202;
 /// Offset of the NMEA sentence.
 const NMEA_AT: usize = 206;
-/// Room for the NMEA sentence, its CR LF included.
+/// Space for the NMEA sentence with CR LF.
 const NMEA_LEN: usize = 128;
 
 const _: () = {
@@ -18,23 +20,9 @@ const _: () = {
     assert!(NMEA_AT + NMEA_LEN <= POSITION_LEN);
 };
 
-/// State of the pulse-per-second input.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Pps {
-    /// No pulse seen: the clock runs free.
-    Absent = 0,
-    /// Pulses seen, not yet followed.
-    Synchronising = 1,
-    /// The clock follows the pulses.
-    Locked = 2,
-    /// Pulses that cannot be followed.
-    Error = 3,
-}
-
 /// The UDP payload of a position packet sent at `timestamp_us` past the hour (modulo an hour).
 ///
-/// `nmea` is the `$GPRMC` sentence, ended by CR LF, or empty; what goes beyond 128 bytes is cut off.
+/// `nmea` is the `$GPRMC` sentence with CR LF, or empty; it is cut at 128 bytes.
 #[must_use]
 pub fn position_packet(timestamp_us: u32, pps: Pps, nmea: &[u8]) -> [u8; POSITION_LEN] {
     let mut bytes = [0; POSITION_LEN];
@@ -43,7 +31,7 @@ pub fn position_packet(timestamp_us: u32, pps: Pps, nmea: &[u8]) -> [u8; POSITIO
         TIMESTAMP_AT,
         &(timestamp_us % HOUR_US).to_le_bytes(),
     );
-    put(&mut bytes, PPS_AT, &[pps as u8]);
+    put(&mut bytes, PPS_AT, &[pps.to_u8()]);
     put(&mut bytes, NMEA_AT, nmea.get(..NMEA_LEN).unwrap_or(nmea));
     bytes
 }

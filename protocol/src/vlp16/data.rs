@@ -1,9 +1,10 @@
 //! The data packet: 12 blocks of an azimuth and 32 channels, a timestamp and the two factory bytes (manual 9.3.2).
 //!
-//! A [`DataPacket`] is a view that is checked once; its accessors cannot fail. Deliberately absent: which laser a channel
-//! is and when it fired, which is a matter of the model.
+//! A [`DataPacket`] is a view that is checked once; its accessors cannot fail. The model determines
+//! which laser a channel belongs to and when it fired.
 
 use super::PacketError;
+use crate::codes::byte_codes;
 
 /// Length of a data packet's UDP payload in bytes.
 pub const DATA_LEN: usize = 1206;
@@ -27,10 +28,10 @@ const _: () = assert!(BLOCKS * BLOCK_LEN + TAIL_LEN == DATA_LEN);
 
 const NO_CHANNELS: [[u8; CHANNEL_LEN]; CHANNELS] = [[0; CHANNEL_LEN]; CHANNELS];
 
-/// A full turn in the units of a block's azimuth.
-const FULL_TURN_CDEG: u16 = 36_000;
+/// A revolution in hundredths of a degree.
+const REVOLUTION_CDEG: u16 = 36_000;
 
-/// A data packet's payload, found sound.
+/// A checked view of a data packet's payload.
 #[derive(Clone, Copy, Debug)]
 pub struct DataPacket<'a> {
     blocks: &'a [[u8; BLOCK_LEN]; BLOCKS],
@@ -41,65 +42,64 @@ pub struct DataPacket<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Block<'a>(&'a [u8; BLOCK_LEN]);
 
-/// One channel of a block: what one laser measured in one firing.
+/// One channel of a block: the measurement of one laser in one firing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Channel {
-    /// Distance in the model's unit (2 or 4 mm); 0 where nothing came back.
+    /// Distance in the model's unit (2 or 4 mm); 0 without a return.
     pub distance_raw: u16,
-    /// Calibrated reflectivity: 0 to 100 diffuse, 101 to 255 retro-reflective.
+    /// Calibrated reflectivity: 0 to 100 diffuse, 101 to 255 retroreflective.
     pub reflectivity: u8,
 }
 
-/// Which returns the packet carries (first factory byte, manual table 9-2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReturnMode {
-    /// 0x37: the strongest return.
-    Strongest,
-    /// 0x38: the last return.
-    Last,
-    /// 0x39: blocks come in pairs of one firing: the last return in the even block, the strongest in the odd one, or the
-    /// second strongest where the last is the strongest.
-    Dual,
-    /// A mode that is not listed.
-    Unknown(u8),
+byte_codes! {
+    /// Which returns the packet carries (first factory byte, manual table 9-2).
+    pub enum ReturnMode {
+        /// The strongest return.
+        Strongest = 0x37,
+        /// The last return.
+        Last = 0x38,
+        /// Blocks come in pairs of one firing: the last return in the even block, the strongest in
+        /// the odd one, or the second strongest where the last is the strongest.
+        Dual = 0x39,
+    }
 }
 
-/// Which sensor the packet is from (second factory byte, manual table 9-2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Product {
-    /// 0x21.
-    Hdl32e,
-    /// 0x22: VLP-16 and Puck LITE.
-    Vlp16,
-    /// 0x24.
-    PuckHiRes,
-    /// 0x28.
-    Vlp32c,
-    /// A product that is not listed, or firmware before 3.0.29, which has no factory bytes.
-    Unknown(u8),
+byte_codes! {
+    /// Which sensor the packet is from (second factory byte, manual table 9-2). Firmware before
+    /// 3.0.29 has no factory bytes.
+    pub enum Product {
+        /// HDL-32E.
+        Hdl32e = 0x21,
+        /// VLP-16 and Puck LITE.
+        Vlp16 = 0x22,
+        /// Puck Hi-Res.
+        PuckHiRes = 0x24,
+        /// VLP-32C.
+        Vlp32c = 0x28,
+    }
 }
 
 impl<'a> DataPacket<'a> {
     /// Checks length, every block's flag and every block's azimuth.
     ///
-    /// The factory bytes are not checked: unknown ones stay readable.
+    /// Factory bytes are not checked: unknown ones stay readable.
     ///
     /// # Errors
-    /// [`PacketError`] naming the first thing that is wrong and where.
+    /// [`PacketError`] with the first fault and its offset.
     pub fn new(payload: &'a [u8]) -> Result<Self, PacketError> {
         let packet = Self::view(payload).ok_or(PacketError::Length {
             layer: LAYER,
             expected: DATA_LEN,
             got: payload.len(),
         })?;
-        // All blocks are nearly always sound: no way out before the last one.
-        let sound = packet
+        // Nearly all packets are valid, so no early exit.
+        let valid = packet
             .blocks()
-            .fold(true, |sound, block| sound & block.is_sound());
-        if sound { Ok(packet) } else { packet.fault() }
+            .fold(true, |valid, block| valid & block.is_valid());
+        if valid { Ok(packet) } else { packet.fault() }
     }
 
-    /// The first thing that is wrong.
+    /// The first fault.
     #[cold]
     fn fault(self) -> Result<Self, PacketError> {
         for (i, block) in self.blocks().enumerate() {
@@ -111,7 +111,7 @@ impl<'a> DataPacket<'a> {
                     got: block.flag(),
                 });
             }
-            if block.azimuth_cdeg() > FULL_TURN_CDEG {
+            if block.azimuth_cdeg() > REVOLUTION_CDEG {
                 return Err(PacketError::Azimuth {
                     layer: LAYER,
                     offset: offset + FLAG_LEN,
@@ -142,8 +142,8 @@ impl<'a> DataPacket<'a> {
         self.blocks.iter().map(Block)
     }
 
-    /// When the first firing of the first block began: microseconds past the hour. 0 to 3,599,999,999 by the manual; devices
-    /// have been seen to run on past it for a while.
+    /// Start of the first firing of the first block in microseconds past the hour: 0 to 3,599,999,999 by
+    /// the manual; some devices run past it for a while.
     #[must_use]
     pub const fn timestamp_us(&self) -> u32 {
         let [a, b, c, d, _, _] = *self.tail;
@@ -153,19 +153,19 @@ impl<'a> DataPacket<'a> {
     /// The return mode byte.
     #[must_use]
     pub const fn return_mode(&self) -> ReturnMode {
-        ReturnMode::from_byte(self.tail[4])
+        ReturnMode::from_u8(self.tail[4])
     }
 
     /// The product byte.
     #[must_use]
     pub const fn product(&self) -> Product {
-        Product::from_byte(self.tail[5])
+        Product::from_u8(self.tail[5])
     }
 }
 
 impl<'a> Block<'a> {
-    fn is_sound(self) -> bool {
-        (self.flag() == FLAG) & (self.azimuth_cdeg() <= FULL_TURN_CDEG)
+    fn is_valid(self) -> bool {
+        (self.flag() == FLAG) & (self.azimuth_cdeg() <= REVOLUTION_CDEG)
     }
 
     const fn flag(self) -> [u8; FLAG_LEN] {
@@ -173,8 +173,8 @@ impl<'a> Block<'a> {
         [a, b]
     }
 
-    /// Azimuth at the block's first firing in hundredths of a degree, clockwise from the y axis seen from above: 0 to
-    /// 36000. 36000 itself occurs on the wire and means 0.
+    /// Azimuth at the block's first firing in hundredths of a degree, clockwise from the y axis seen from
+    /// above: 0 to 36000. 36000 occurs on the wire and means 0.
     #[must_use]
     pub const fn azimuth_cdeg(self) -> u16 {
         let [_, _, lo, hi, ..] = *self.0;
@@ -192,12 +192,12 @@ impl<'a> Block<'a> {
         self.raw_channels().iter().copied().map(Channel::from_bytes)
     }
 
-    /// The 32 channels as they are on the wire, three bytes each, for [`Channel::from_bytes`].
+    /// The 32 channels as on the wire, three bytes each, for [`Channel::from_bytes`].
     #[inline]
     #[must_use]
     pub fn raw_channels(self) -> &'a [[u8; CHANNEL_LEN]; CHANNELS] {
         let (_, channels) = self.0.split_at(FLAG_LEN + AZIMUTH_LEN);
-        // A block is long enough by the assertion above; the compiler sees it too and leaves the other case out.
+        // The assertion above proves that a block is long enough; the compiler removes the default.
         channels.as_chunks().0.first_chunk().unwrap_or(&NO_CHANNELS)
     }
 }
@@ -209,56 +209,6 @@ impl Channel {
         Self {
             distance_raw: u16::from_le_bytes([lo, hi]),
             reflectivity,
-        }
-    }
-}
-
-impl ReturnMode {
-    /// Reads the factory byte.
-    #[must_use]
-    pub const fn from_byte(byte: u8) -> Self {
-        match byte {
-            0x37 => Self::Strongest,
-            0x38 => Self::Last,
-            0x39 => Self::Dual,
-            other => Self::Unknown(other),
-        }
-    }
-
-    /// The factory byte.
-    #[must_use]
-    pub const fn to_byte(self) -> u8 {
-        match self {
-            Self::Strongest => 0x37,
-            Self::Last => 0x38,
-            Self::Dual => 0x39,
-            Self::Unknown(other) => other,
-        }
-    }
-}
-
-impl Product {
-    /// Reads the factory byte.
-    #[must_use]
-    pub const fn from_byte(byte: u8) -> Self {
-        match byte {
-            0x21 => Self::Hdl32e,
-            0x22 => Self::Vlp16,
-            0x24 => Self::PuckHiRes,
-            0x28 => Self::Vlp32c,
-            other => Self::Unknown(other),
-        }
-    }
-
-    /// The factory byte.
-    #[must_use]
-    pub const fn to_byte(self) -> u8 {
-        match self {
-            Self::Hdl32e => 0x21,
-            Self::Vlp16 => 0x22,
-            Self::PuckHiRes => 0x24,
-            Self::Vlp32c => 0x28,
-            Self::Unknown(other) => other,
         }
     }
 }
@@ -289,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn golden_bytes_read_as_the_manual_says() {
+    fn golden_bytes_decode_as_in_the_manual() {
         let bytes = golden();
         let packet = DataPacket::new(&bytes).unwrap();
         assert_eq!(packet.timestamp_us(), 0x4083_27D3);
@@ -310,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_say_where() {
+    fn errors_name_the_offset() {
         let mut bytes = golden();
         bytes[301] = 0xDD; // the second flag byte of an HDL-64E's lower block
         let error = DataPacket::new(&bytes).unwrap_err();
@@ -337,10 +287,10 @@ mod tests {
     }
 
     #[test]
-    fn factory_bytes_survive_the_round_trip() {
+    fn factory_bytes_round_trip() {
         for byte in 0..=255 {
-            assert_eq!(ReturnMode::from_byte(byte).to_byte(), byte);
-            assert_eq!(Product::from_byte(byte).to_byte(), byte);
+            assert_eq!(ReturnMode::from_u8(byte).to_u8(), byte);
+            assert_eq!(Product::from_u8(byte).to_u8(), byte);
         }
     }
 
@@ -348,13 +298,13 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(200))]
 
         #[test]
-        fn bytes_of_any_length_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..1300)) {
-            let sound = DataPacket::new(&bytes).is_ok();
-            prop_assert!(!sound || bytes.len() == DATA_LEN);
+        fn arbitrary_lengths_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..1300)) {
+            let valid = DataPacket::new(&bytes).is_ok();
+            prop_assert!(!valid || bytes.len() == DATA_LEN);
         }
 
         #[test]
-        fn a_flipped_bit_is_read_or_refused(at in 0..DATA_LEN * 8) {
+        fn a_flipped_bit_is_read_or_rejected(at in 0..DATA_LEN * 8) {
             let mut bytes = golden();
             bytes[at / 8] ^= 1 << (at % 8);
             let in_flag = (at / 8) < 1200 && (at / 8) % 100 < 2;

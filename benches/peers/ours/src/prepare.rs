@@ -114,7 +114,7 @@ pub fn prepare(packets: &Packets, folder: &Path) -> String {
     write("angles.csv", angles.as_bytes());
     let stats = decoder.stats();
     let model = stats.model.expect("a known model");
-    let mode = stats.return_mode.expect("a return mode").to_byte();
+    let mode = stats.return_mode.expect("a return mode").to_u8();
     let channels = packets.hosts.len() * 12 * 32;
     let conflict = !stats.conflicts.is_empty();
     format!(

@@ -5,10 +5,9 @@
 
 mod tables;
 
-use firmware_sim::vlp16::Model;
 use glam::{DMat3, DVec3};
 
-pub use firmware_sim::vlp16::{Model as PacketModel, ReturnMode};
+pub use firmware_sim::vlp16::{PacketModel, ReturnMode};
 
 /// The most lasers that a sensor has.
 pub const MOST_LASERS: usize = 32;
@@ -38,7 +37,7 @@ pub struct Reach {
 /// A sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensor {
-    model: Model,
+    model: PacketModel,
     beams: Vec<Beam>,
     /// Lasers that are there, a bit each.
     used: u32,
@@ -49,25 +48,25 @@ impl Sensor {
     /// VLP-16 and Puck LITE (manual 63-9243): 16 lasers from -15 to 15 degrees, 1 to 100 m.
     #[must_use]
     pub fn vlp16() -> Self {
-        Self::new(Model::Vlp16, tables::vlp16(), 100.0)
+        Self::new(PacketModel::Vlp16, tables::vlp16(), 100.0)
     }
 
     /// Puck Hi-Res (manual 63-9243): 16 lasers from -10 to 10 degrees, 1 to 100 m.
     #[must_use]
     pub fn hi_res() -> Self {
-        Self::new(Model::PuckHiRes, tables::hi_res(), 100.0)
+        Self::new(PacketModel::PuckHiRes, tables::hi_res(), 100.0)
     }
 
     /// HDL-32E (its manual; drawing 86-0106 revision B): 32 lasers from -30.67 to 10.67 degrees, 1 to 70 m as in the paper's Table 3.
     #[must_use]
     pub fn hdl32e() -> Self {
-        Self::new(Model::Hdl32e, tables::hdl32e(), 70.0)
+        Self::new(PacketModel::Hdl32e, tables::hdl32e(), 70.0)
     }
 
     /// VLP-32C (manual 63-9325): 32 lasers from -25 to 15 degrees, 1 to 200 m.
     #[must_use]
     pub fn vlp32c() -> Self {
-        Self::new(Model::Vlp32c, tables::vlp32c(), 200.0)
+        Self::new(PacketModel::Vlp32c, tables::vlp32c(), 200.0)
     }
 
     /// A 2D scanner: a VLP-16 with its laser 14 alone, the one next to level (1 degree below). Its packets are a VLP-16's in which the other lasers
@@ -98,7 +97,7 @@ impl Sensor {
         self
     }
 
-    fn new(model: Model, beams: Vec<Beam>, max_m: f64) -> Self {
+    fn new(model: PacketModel, beams: Vec<Beam>, max_m: f64) -> Self {
         let used = u32::MAX >> (MOST_LASERS - beams.len().clamp(1, MOST_LASERS));
         let reach = Reach { min_m: 1.0, max_m };
         Self {
@@ -117,7 +116,7 @@ impl Sensor {
 
     /// What its packets look like.
     #[must_use]
-    pub const fn model(&self) -> Model {
+    pub const fn model(&self) -> PacketModel {
         self.model
     }
 

@@ -3,7 +3,7 @@
 //! Where no effect is asked for, what is called here is `()` and compiles to nothing. A build without the feature `effects` does not even call it: a test holds
 //! the two against each other.
 
-use firmware_sim::vlp16::ModelPacket;
+use firmware_sim::vlp16::DataPacketBuilder;
 
 use super::{Chunk, Job, Packet};
 #[cfg(feature = "effects")]
@@ -20,7 +20,7 @@ pub(super) struct Worker<'a, F> {
     /// The firings of a packet, and what comes back to each.
     firings: Vec<Firing>,
     echoes: Vec<Echoes>,
-    packet: ModelPacket,
+    packet: DataPacketBuilder,
 }
 
 /// A return on the wire: distance in the sensor's units, calibrated reflectivity.
@@ -39,7 +39,8 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
         let simulation = job.simulation;
         let two = simulation.returns != ReturnMode::Strongest;
         let model = simulation.sensor.model();
-        let firings = simulation.returns.blocks() * model.firings_per_block();
+        let firings =
+            firmware_sim::vlp16::firing_blocks(simulation.returns) * model.firings_per_block();
         Self {
             surroundings: Surroundings::new(
                 simulation.scene.clone(),
@@ -49,7 +50,7 @@ impl<'a, F: FiringEffects> Worker<'a, F> {
             .with_normals(job.needs.normals),
             firings: vec![Firing::new(job.rays.count); firings],
             echoes: vec![Echoes::new(job.rays.count, two); firings],
-            packet: ModelPacket::new(simulation.sensor.model(), simulation.returns),
+            packet: DataPacketBuilder::new(simulation.sensor.model(), simulation.returns),
             job,
             effects,
         }
@@ -140,7 +141,7 @@ impl<C: Clock> Told<'_, C> {
     fn report(
         &self,
         echoes: &Echoes,
-        packet: &mut ModelPacket,
+        packet: &mut DataPacketBuilder,
         made: &mut Counts,
         points: &mut Vec<TruePoint>,
     ) {
@@ -152,7 +153,7 @@ impl<C: Clock> Told<'_, C> {
         let azimuth_cdeg = simulation.spin.azimuth_cdeg(device_ns);
         let lasers = self.firing.lasers;
         let reported = match simulation.returns {
-            ReturnMode::Strongest => None,
+            ReturnMode::Strongest | ReturnMode::Unknown(_) => None,
             ReturnMode::Last | ReturnMode::Dual => Some(by_range(echoes)),
         };
         let (first, second) = match &reported {

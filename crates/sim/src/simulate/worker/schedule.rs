@@ -36,7 +36,7 @@ impl Schedule {
             };
             (vec![all], possible)
         };
-        let blocks_per_packet = simulation.returns.blocks() as u64;
+        let blocks_per_packet = firmware_sim::vlp16::firing_blocks(simulation.returns) as u64;
         Self {
             runs,
             blocks_per_packet,
