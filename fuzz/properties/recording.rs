@@ -4,7 +4,7 @@
 use std::io::Read;
 
 use io::log::OwnedRecord;
-use io::recording::{Counts, Recording};
+use io::recording::{Recording, RecordingCounts};
 use protocol::record::Wire;
 
 /// The shortest record that carries anything: classic pcap's header.
@@ -46,7 +46,7 @@ struct Said {
     head: String,
     records: Vec<OwnedRecord>,
     end: String,
-    counts: Counts,
+    counts: RecordingCounts,
 }
 
 /// Reads a file of `size` bytes, or says why it is no recording.
@@ -75,7 +75,7 @@ fn read(file: impl Read, size: usize, strangers: bool) -> Result<Said, String> {
     })
 }
 
-fn add_up(counts: &Counts, records: &[OwnedRecord], size: usize, strangers: bool) {
+fn add_up(counts: &RecordingCounts, records: &[OwnedRecord], size: usize, strangers: bool) {
     let datagrams = counts.datagrams.values().sum::<u64>() + counts.more_datagrams;
     let driven = counts.to_drive + counts.from_drive;
     let kinds = [

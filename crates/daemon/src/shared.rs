@@ -6,7 +6,7 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use io::discover::Findings;
+use io::discover::ConnectedDevices;
 use tokio::sync::watch;
 use units::{Rpm, Span};
 
@@ -29,7 +29,7 @@ use engine::failure::{Failure, Kind};
 pub type FreeBytes = dyn Fn(&Path) -> std::io::Result<u64> + Send + Sync;
 
 /// Says what is plugged in.
-pub type Plugged = dyn Fn() -> Findings + Send + Sync;
+pub type Plugged = dyn Fn() -> ConnectedDevices + Send + Sync;
 
 /// What of the machine tests make up.
 #[derive(Clone)]

@@ -3,7 +3,7 @@
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-use io::discover::{Findings, discover};
+use io::discover::{ConnectedDevices, discover};
 
 use engine::config::{Device, DeviceKind};
 use engine::devices::drive_port::{self as ports, Looks};
@@ -38,7 +38,7 @@ fn place(profile: &str, device: &Device) -> Result<PathBuf, Failure> {
     match device.kind {
         DeviceKind::Sim => Ok(PathBuf::from(format!("-{profile}"))),
         _ if device.is_looked_for() => Ok(PathBuf::from(LOOKED_FOR)),
-        _ => ports::place(profile, device, Looks::Once, &Findings::default),
+        _ => ports::place(profile, device, Looks::Once, &ConnectedDevices::default),
     }
 }
 

@@ -22,7 +22,7 @@ use io::clock;
 use io::files::Overwrite;
 use io::log::{LogConfig, LogRecorder, LogWriter};
 use io::recording::{DatagramKind, Recording};
-use io::udp::{ListenConfig, Listener};
+use io::udp::{LidarListener, ListenConfig};
 use nix::time::{ClockId, clock_gettime};
 use protocol::record::Wire;
 use protocol::vlp16::{BLOCK_LEN, DATA_LEN, POSITION_LEN};
@@ -197,7 +197,7 @@ fn cpu(clock: ClockId) -> Result<f64, Box<dyn Error>> {
 fn receive(seconds: u64, log: Option<PathBuf>) -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let path = log.unwrap_or_else(|| folder.path().join("live.pcapng"));
-    let mut listener = Listener::bind(&ListenConfig {
+    let mut listener = LidarListener::bind(&ListenConfig {
         address: "127.0.0.1".parse()?,
         data_port: 0,
         position_port: Some(0),

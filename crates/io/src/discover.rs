@@ -48,7 +48,7 @@ pub struct Epos2Found {
 
 /// Connected devices, in order of their names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Findings {
+pub struct ConnectedDevices {
     /// Serial ports of any device.
     pub serial_ports: Vec<SerialPortFound>,
     /// EPOS2 units on USB.
@@ -59,8 +59,8 @@ pub struct Findings {
 
 /// Lists the devices of this machine.
 #[must_use]
-pub fn discover() -> Findings {
-    let mut findings = Findings::default();
+pub fn discover() -> ConnectedDevices {
+    let mut findings = ConnectedDevices::default();
     match serial_ports() {
         Ok(ports) => findings.serial_ports = ports,
         Err(e) => findings.problems.push(format!("serial ports: {e}")),

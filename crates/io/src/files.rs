@@ -65,13 +65,13 @@ pub enum FileError {
 /// `/dev/stdout`) is written in place.
 #[derive(Debug)]
 pub struct NewFile {
-    target: Target,
+    target: WriteTarget,
     path: PathBuf,
     overwrite: Overwrite,
 }
 
 #[derive(Debug)]
-enum Target {
+enum WriteTarget {
     Temporary(NamedTempFile),
     Device(File),
 }
@@ -99,7 +99,7 @@ impl NewFile {
             }
             Ok(metadata) if !metadata.is_file() => {
                 let device = OpenOptions::new().write(true).open(&file_path);
-                Target::Device(device.map_err(io_error)?)
+                WriteTarget::Device(device.map_err(io_error)?)
             }
             Ok(_) if overwrite == Overwrite::Refuse => {
                 return Err(FileError::Exists {
@@ -114,7 +114,7 @@ impl NewFile {
                         folder: folder.to_owned(),
                     });
                 }
-                Target::Temporary(create_temporary(&file_path, folder).map_err(io_error)?)
+                WriteTarget::Temporary(create_temporary(&file_path, folder).map_err(io_error)?)
             }
         };
         Ok(Self {
@@ -143,8 +143,10 @@ impl NewFile {
             source,
         };
         let temporary = match self.target {
-            Target::Device(mut device) => return device.flush().map_err(|e| io_error("write", e)),
-            Target::Temporary(temporary) => temporary,
+            WriteTarget::Device(mut device) => {
+                return device.flush().map_err(|e| io_error("write", e));
+            }
+            WriteTarget::Temporary(temporary) => temporary,
         };
         let synced = temporary.as_file().sync_all();
         synced.map_err(|e| io_error("write", e))?;
@@ -169,8 +171,8 @@ impl NewFile {
 
     fn file(&self) -> &File {
         match &self.target {
-            Target::Temporary(temporary) => temporary.as_file(),
-            Target::Device(device) => device,
+            WriteTarget::Temporary(temporary) => temporary.as_file(),
+            WriteTarget::Device(device) => device,
         }
     }
 }

@@ -31,9 +31,9 @@ use std::path::{Path, PathBuf};
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Stamp};
 
-pub use counts::{Counts, Malformed};
-pub use error::{End, Fault, RecordingError};
-pub use input::{Input, SPOOL_LIMIT};
+pub use counts::{Malformed, RecordingCounts};
+pub use error::{End, PacketFault, RecordingError};
+pub use input::{RecordingInput, SPOOL_LIMIT};
 pub use lidar::DatagramKind;
 pub use pace::{Gap, PaceError, Pacer, Wait};
 
@@ -65,7 +65,7 @@ pub struct Recording<R = File> {
     path: PathBuf,
     format_state: FormatState,
     metadata: Option<String>,
-    counts: Counts,
+    counts: RecordingCounts,
     /// Length of the record returned last, which is still at the front of the window.
     consumed: usize,
     end: Option<End>,
@@ -77,8 +77,8 @@ pub struct Recording<R = File> {
 
 #[derive(Debug)]
 enum FormatState {
-    Pcap(pcap::Header),
-    PcapNg(pcapng::Section),
+    Pcap(pcap::PcapFile),
+    PcapNg(pcapng::PcapngSection),
 }
 
 /// Content of the next bytes by the file format.
@@ -87,12 +87,12 @@ enum FileItem {
     /// A packet; `data` counts from the front of the window.
     Packet(CapturedPacket),
     /// An unusable packet with a valid frame.
-    Malformed { length: usize, fault: Fault },
+    Malformed { length: usize, fault: PacketFault },
     /// Damaged bytes, which the window has passed.
     Damaged {
         offset: u64,
         bytes: u64,
-        fault: Fault,
+        fault: PacketFault,
     },
     /// A block without a packet.
     Skip { length: usize },
@@ -145,7 +145,7 @@ enum PayloadLocation {
 
 impl Recording<File> {
     /// Opens a recording and reads its header. `-` is standard input. Standard input and pipes can
-    /// be read once; [`Input`] allows more passes.
+    /// be read once; [`RecordingInput`] allows more passes.
     ///
     /// # Errors
     /// [`RecordingError`]: the file is missing or unreadable, empty, too short for a header, of
@@ -175,11 +175,11 @@ impl<R: Read> Recording<R> {
         }
         let mut metadata = None;
         let format_state = if pcapng::is_section_header(start) {
-            let mut section = pcapng::Section::default();
+            let mut section = pcapng::PcapngSection::default();
             metadata = section.open(&mut window, &path)?;
             FormatState::PcapNg(section)
         } else {
-            let header = pcap::Header::parse(start, &path)?;
+            let header = pcap::PcapFile::parse(start, &path)?;
             window.consume(pcap::HEADER_LEN);
             FormatState::Pcap(header)
         };
@@ -188,7 +188,7 @@ impl<R: Read> Recording<R> {
             path,
             format_state,
             metadata,
-            counts: Counts::default(),
+            counts: RecordingCounts::default(),
             consumed: 0,
             end: None,
             can_frame: [0; link::CAN_FRAME_LEN],
@@ -197,7 +197,7 @@ impl<R: Read> Recording<R> {
         })
     }
 
-    /// Yields foreign UDP datagrams as well. Counts do not change.
+    /// Yields foreign UDP datagrams as well. RecordingCounts do not change.
     #[must_use]
     pub fn keep_foreign(mut self) -> Self {
         self.keep_foreign = true;
@@ -221,7 +221,7 @@ impl<R: Read> Recording<R> {
 
     /// Numbers of packets so far.
     #[must_use]
-    pub fn counts(&self) -> &Counts {
+    pub fn counts(&self) -> &RecordingCounts {
         &self.counts
     }
 

@@ -6,19 +6,18 @@
 //! out: anything that looks further ahead.
 
 use core::ptr;
-use std::sync::Arc;
 
 use protocol::vlp16::{DATA_LEN, DataPacket, Model, PositionPacket, ReturnMode};
 use units::{Host, Lidar, Span, Stamp};
 
-use crate::continuity::{Blind, missing};
-use crate::corrections::Corrections;
-use crate::firing::{Duplicates, Echo, Firing};
-use crate::firing_block::{FiringBlock, Layer, Layers};
+use crate::continuity::{BlindSector, missing};
+use crate::fast::UnpackedPacket;
+use crate::fast::{BlockReturns, FiringBlock, ReturnLayer};
+use crate::fast::{PaceCache, SineTable};
+use crate::firing::{Echo, Firing};
 use crate::geometry::{Geometry, fits};
-use crate::plan::{Link, Slot, Steps, Successor, first_azimuth};
-use crate::rotor::{Compass, Rotor};
-use crate::sorted::SortedPacket;
+use crate::options::Options;
+use crate::plan::{AzimuthSteps, BlockTiming, Successor, SuccessorLink, first_azimuth};
 use crate::stats::Stats;
 use crate::timekeeper::Timekeeper;
 
@@ -30,38 +29,12 @@ const LONG_GAP: Span = Span::from_secs(1);
 /// How every block begins.
 const BLOCK_FLAG: &[u8] = &[0xFF, 0xEE];
 
-/// How to decode.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// The model, where factory byte and packet spacing are not to be asked.
-    pub model: Option<&'static Model>,
-    /// Whether z includes the height at which each laser's ray starts (manual table 9-1).
-    pub vertical_offsets: bool,
-    /// Dual returns at one distance.
-    pub duplicates: Duplicates,
-    /// Where this sensor's lasers truly are and what its ranges are off by, in place of the model's
-    /// table. Used only where they have a laser for each of the model's;
-    /// [`Stats::corrections_refused`] says where they do not.
-    pub corrections: Option<Arc<Corrections>>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            model: None,
-            vertical_offsets: true,
-            duplicates: Duplicates::Unique,
-            corrections: None,
-        }
-    }
-}
-
 /// Decodes the packets of one sensor.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     timekeeper: Timekeeper,
-    unpacker: Unpacker,
-    held: Option<Held>,
+    unpacker: PacketDecoder,
+    held: Option<PendingPacket>,
     /// The held packet's payload.
     buffer: [u8; DATA_LEN],
     /// First firing of the last packet that was emitted since the clock last stepped.
@@ -70,7 +43,7 @@ pub struct Decoder {
 
 /// What is known of a packet apart from its bytes.
 #[derive(Clone, Copy, Debug)]
-struct Held {
+struct PendingPacket {
     start: Stamp<Lidar>,
     host: Stamp<Host>,
     dual: bool,
@@ -79,11 +52,11 @@ struct Held {
 
 /// Turns a packet and its successor into firings.
 #[derive(Clone, Debug)]
-struct Unpacker {
+struct PacketDecoder {
     options: Options,
     /// Some kilobytes, out of its place while it is used.
-    sensor: Option<Box<Sensor>>,
-    blind: Option<Blind>,
+    sensor: Option<Box<ModelTables>>,
+    blind: Option<BlindSector>,
     stats: Stats,
     turned_cdeg: f64,
     turning_ns: f64,
@@ -91,11 +64,11 @@ struct Unpacker {
 
 /// A model's tables.
 #[derive(Clone, Debug)]
-struct Sensor {
+struct ModelTables {
     geometry: Geometry,
-    compass: &'static Compass,
-    rotor: Rotor,
-    sorted: SortedPacket,
+    compass: &'static SineTable,
+    rotor: PaceCache,
+    sorted: UnpackedPacket,
 }
 
 impl Decoder {
@@ -104,7 +77,7 @@ impl Decoder {
     pub fn new(options: Options) -> Self {
         Self {
             timekeeper: Timekeeper::new(options.clone()),
-            unpacker: Unpacker {
+            unpacker: PacketDecoder {
                 options,
                 sensor: None,
                 blind: None,
@@ -195,7 +168,7 @@ impl Decoder {
                 held.model = known.model;
             }
         }
-        let new = Held {
+        let new = PendingPacket {
             start: known.start,
             host,
             dual: known.dual,
@@ -216,7 +189,7 @@ impl Decoder {
         }
     }
 
-    fn hold(&mut self, packet: Held, payload: &[u8]) {
+    fn hold(&mut self, packet: PendingPacket, payload: &[u8]) {
         if let Ok(payload) = payload.try_into() {
             self.buffer = payload;
             self.held = Some(packet);
@@ -227,8 +200,8 @@ impl Decoder {
     fn in_order(
         &mut self,
         packet: &DataPacket<'_>,
-        new: Held,
-        held: Held,
+        new: PendingPacket,
+        held: PendingPacket,
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let Ok(before) = DataPacket::new(&self.buffer) else {
@@ -252,8 +225,8 @@ impl Decoder {
     fn out_of_order(
         &mut self,
         packet: &DataPacket<'_>,
-        new: Held,
-        held: Held,
+        new: PendingPacket,
+        held: PendingPacket,
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let stats = &mut self.unpacker.stats;
@@ -280,12 +253,12 @@ impl Decoder {
     }
 }
 
-impl Unpacker {
+impl PacketDecoder {
     /// Emits the firings of a packet. `next` is its successor by device time, if that is known.
     fn unpack(
         &mut self,
         packet: &DataPacket<'_>,
-        held: Held,
+        held: PendingPacket,
         next: Option<Successor>,
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
@@ -293,7 +266,7 @@ impl Unpacker {
             self.stats.unidentified += 1;
             return;
         };
-        let steps = Steps::new(packet, model, held.dual);
+        let steps = AzimuthSteps::new(packet, model, held.dual);
         let link = steps.link(next);
         self.learn(&steps, link.measured);
         self.tally(model, &steps, link, next);
@@ -309,7 +282,7 @@ impl Unpacker {
         self.sensor = Some(sensor);
     }
 
-    fn sensor_of(&mut self, model: &'static Model) -> Box<Sensor> {
+    fn sensor_of(&mut self, model: &'static Model) -> Box<ModelTables> {
         let corrections = self.options.corrections.as_deref();
         let fitting = corrections.filter(|corrections| fits(corrections, model));
         self.stats.corrections_refused = match (corrections, fitting) {
@@ -317,12 +290,12 @@ impl Unpacker {
             _ => None,
         };
         let geometry = Geometry::new(model, self.options.vertical_offsets, fitting);
-        let rotor = Rotor::new(&geometry.fan);
-        Box::new(Sensor {
+        let rotor = PaceCache::new(&geometry.fan);
+        Box::new(ModelTables {
             geometry,
-            compass: Compass::get(),
+            compass: SineTable::get(),
             rotor,
-            sorted: SortedPacket::new(),
+            sorted: UnpackedPacket::new(),
         })
     }
 
@@ -331,24 +304,24 @@ impl Unpacker {
     fn unpack_block(
         &mut self,
         packet: &DataPacket<'_>,
-        held: Held,
-        sensor: &mut Sensor,
+        held: PendingPacket,
+        sensor: &mut ModelTables,
         i: usize,
-        slot: &Slot,
+        slot: &BlockTiming,
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let first = if held.dual { 2 * i } else { i };
         let layer = |i: usize| {
             let (block, sorted) = (packet.block(i)?, sensor.sorted.blocks.get(i)?);
-            Some(Layer::new(block.raw_channels(), sorted))
+            Some(ReturnLayer::new(block.raw_channels(), sorted))
         };
         let Some(even) = layer(first) else {
             return;
         };
         let returns = match layer(first + 1) {
             // No block follows the last one; a pair always has both.
-            Some(odd) if held.dual => Layers::two(even, odd, self.options.duplicates),
-            _ => Layers::one(even, single_echo(packet.return_mode())),
+            Some(odd) if held.dual => BlockReturns::two(even, odd, self.options.duplicates),
+            _ => BlockReturns::one(even, single_echo(packet.return_mode())),
         };
         let (seen, unique) = returns.count();
         self.stats.returns += seen;
@@ -367,7 +340,7 @@ impl Unpacker {
     }
 
     /// Keeps where the sensor looks away, until it fires there again.
-    fn learn(&mut self, steps: &Steps, measured: bool) {
+    fn learn(&mut self, steps: &AzimuthSteps, measured: bool) {
         if measured && let Some(blind) = steps.jump() {
             self.blind = Some(blind);
         } else if self.blind.is_some_and(|b| b.hides(steps.last_azimuth())) {
@@ -375,7 +348,13 @@ impl Unpacker {
         }
     }
 
-    fn tally(&mut self, model: &'static Model, steps: &Steps, link: Link, next: Option<Successor>) {
+    fn tally(
+        &mut self,
+        model: &'static Model,
+        steps: &AzimuthSteps,
+        link: SuccessorLink,
+        next: Option<Successor>,
+    ) {
         let stats = &mut self.stats;
         stats.model = Some(model);
         let length_ns = next.map_or(steps.fill_ns(), |next| next.after.as_nanos());

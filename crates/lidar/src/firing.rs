@@ -6,7 +6,7 @@
 use protocol::vlp16::{Channel, Model};
 use units::{Lidar, Span, Stamp};
 
-use crate::geometry::Ray;
+use crate::geometry::LaserRay;
 
 /// What to do where both returns of a dual-return pair have the same distance: one pulse reported
 /// twice.
@@ -51,7 +51,7 @@ impl Echo {
 
 /// One laser's measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Return {
+pub struct LaserReturn {
     /// Place in the firing order, from 0.
     pub laser: u8,
     /// Distance in the model's unit; never 0.
@@ -98,7 +98,7 @@ pub fn azimuth_variance_rad2(part: f64) -> f64 {
 
 /// The channels of one firing as they are on the wire, one entry a laser.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Channels<'a> {
+pub(crate) enum FiringChannels<'a> {
     One {
         raw: &'a [[u8; 3]],
         echo: Echo,
@@ -121,8 +121,8 @@ pub struct Firing<'a> {
     pub azimuth_rate_deg_s: f64,
     /// The model it was decoded as.
     pub model: &'static Model,
-    pub(crate) rays: &'a [Ray],
-    pub(crate) channels: Channels<'a>,
+    pub(crate) rays: &'a [LaserRay],
+    pub(crate) channels: FiringChannels<'a>,
     /// Its start after its block's, over the block's period.
     pub(crate) part: f64,
 }
@@ -131,8 +131,8 @@ impl<'a> Firing<'a> {
     /// The returns in firing order; a laser without one is absent. Of a dual pair the last return
     /// comes first.
     #[must_use]
-    pub const fn returns(&self) -> Returns<'a> {
-        Returns {
+    pub const fn returns(&self) -> LaserReturns<'a> {
+        LaserReturns {
             channels: self.channels,
             laser: 0,
             partner: None,
@@ -159,16 +159,16 @@ impl<'a> Firing<'a> {
         Some(self.azimuth_of(ray))
     }
 
-    fn azimuth_of(&self, ray: &Ray) -> f64 {
+    fn azimuth_of(&self, ray: &LaserRay) -> f64 {
         self.azimuth_deg + self.azimuth_rate_deg_s * ray.delay_s + ray.azimuth_offset_deg
     }
 
     /// A laser's delay over the block's period.
-    fn part_of(&self, ray: &Ray) -> f64 {
+    fn part_of(&self, ray: &LaserRay) -> f64 {
         ray.delay_ns as f64 / f64::from(self.model.block_period_ns())
     }
 
-    fn place(&self, seen: Return, ray: &Ray) -> SensorPoint {
+    fn place(&self, seen: LaserReturn, ray: &LaserRay) -> SensorPoint {
         let range_m = f64::from(seen.distance_raw) * self.model.distance_unit_m;
         let (sin_azimuth, cos_azimuth) = self.azimuth_of(ray).to_radians().sin_cos();
         let corrected_m = range_m + ray.range_offset_m;
@@ -193,16 +193,16 @@ impl<'a> Firing<'a> {
 
 /// Iterator over the returns of a firing.
 #[derive(Clone, Debug)]
-pub struct Returns<'a> {
-    channels: Channels<'a>,
+pub struct LaserReturns<'a> {
+    channels: FiringChannels<'a>,
     laser: u8,
-    partner: Option<Return>,
+    partner: Option<LaserReturn>,
 }
 
-impl Iterator for Returns<'_> {
-    type Item = Return;
+impl Iterator for LaserReturns<'_> {
+    type Item = LaserReturn;
 
-    fn next(&mut self) -> Option<Return> {
+    fn next(&mut self) -> Option<LaserReturn> {
         if let Some(partner) = self.partner.take() {
             return Some(partner);
         }
@@ -210,7 +210,7 @@ impl Iterator for Returns<'_> {
             let laser = self.laser;
             let i = usize::from(laser);
             let seen = |channel: Channel, echo| {
-                (channel.distance_raw != 0).then_some(Return {
+                (channel.distance_raw != 0).then_some(LaserReturn {
                     laser,
                     distance_raw: channel.distance_raw,
                     reflectivity: channel.reflectivity,
@@ -218,8 +218,8 @@ impl Iterator for Returns<'_> {
                 })
             };
             let found = match self.channels {
-                Channels::One { raw, echo } => seen(Channel::from_bytes(*raw.get(i)?), echo),
-                Channels::Two {
+                FiringChannels::One { raw, echo } => seen(Channel::from_bytes(*raw.get(i)?), echo),
+                FiringChannels::Two {
                     last,
                     strongest,
                     duplicates,
@@ -264,8 +264,8 @@ mod tests {
     fn pair(duplicates: Duplicates) -> Vec<(u8, u16, Echo)> {
         let last = raw(&[(500, 1), (0, 0), (700, 3), (0, 0), (900, 5)]);
         let strongest = raw(&[(500, 1), (600, 2), (300, 9), (0, 0), (0, 0)]);
-        let returns = Returns {
-            channels: Channels::Two {
+        let returns = LaserReturns {
+            channels: FiringChannels::Two {
                 last: &last,
                 strongest: &strongest,
                 duplicates,
@@ -299,7 +299,7 @@ mod tests {
             azimuth_rate_deg_s: 3_600.0,
             model: geometry.model,
             rays: &geometry.rays,
-            channels: Channels::One {
+            channels: FiringChannels::One {
                 raw,
                 echo: Echo::Strongest,
             },

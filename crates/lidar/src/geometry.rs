@@ -1,8 +1,8 @@
 //! Where each laser points and starts, as the sines, cosines and offsets that its points need,
 //! computed once a sensor.
 //!
-//! Twice: a [`Ray`] a laser for the exact path, which follows [`crate::LaserCorrection`]'s formula
-//! word by word, and [`Fan`], a column a term over the 32 channels of a block, for the fast one.
+//! Twice: a [`LaserRay`] a laser for the exact path, which follows [`crate::LaserCorrection`]'s formula
+//! word by word, and [`ChannelTable`], a column a term over the 32 channels of a block, for the fast one.
 //! Left out: everything that changes while the sensor turns.
 
 use core::array;
@@ -15,7 +15,7 @@ use crate::firing::azimuth_variance_rad2;
 
 /// One laser, ready for use.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ray {
+pub(crate) struct LaserRay {
     pub sin_elevation: f64,
     pub cos_elevation: f64,
     pub azimuth_offset_deg: f64,
@@ -38,7 +38,7 @@ pub(crate) type PerChannel<T> = [T; CHANNELS];
 /// Columns begin where lines of the cache do, so that no register's worth lies across two.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Fan {
+pub(crate) struct ChannelTable {
     pub out_per_count: PerChannel<f64>,
     pub out_counts: PerChannel<f64>,
     pub up_per_count: PerChannel<f64>,
@@ -61,8 +61,8 @@ pub(crate) struct Fan {
 #[derive(Clone, Debug)]
 pub(crate) struct Geometry {
     pub model: &'static Model,
-    pub rays: Vec<Ray>,
-    pub fan: Fan,
+    pub rays: Vec<LaserRay>,
+    pub fan: ChannelTable,
 }
 
 impl Geometry {
@@ -73,7 +73,7 @@ impl Geometry {
         corrections: Option<&Corrections>,
     ) -> Self {
         let corrected = |laser: usize| corrections.and_then(|c| c.lasers.get(laser)).copied();
-        let rays: Vec<Ray> = model
+        let rays: Vec<LaserRay> = model
             .lasers
             .iter()
             .enumerate()
@@ -81,7 +81,7 @@ impl Geometry {
                 let correction = corrected(i).unwrap_or_else(|| LaserCorrection::from(laser));
                 let (sin_elevation, cos_elevation) =
                     correction.elevation_deg.to_radians().sin_cos();
-                Ray {
+                LaserRay {
                     sin_elevation,
                     cos_elevation,
                     azimuth_offset_deg: correction.azimuth_offset_deg,
@@ -99,7 +99,7 @@ impl Geometry {
                 }
             })
             .collect();
-        let fan = Fan::new(model, &rays);
+        let fan = ChannelTable::new(model, &rays);
         Self { model, rays, fan }
     }
 }
@@ -109,16 +109,16 @@ pub(crate) fn fits(corrections: &Corrections, model: &Model) -> bool {
     corrections.lasers.len() == model.lasers.len()
 }
 
-impl Fan {
-    fn new(model: &Model, rays: &[Ray]) -> Self {
+impl ChannelTable {
+    fn new(model: &Model, rays: &[LaserRay]) -> Self {
         let lasers = rays.len().max(1);
         let laser = |channel: usize| channel % lasers;
-        let of = |value: &dyn Fn(&Ray) -> f64| -> PerChannel<f64> {
+        let of = |value: &dyn Fn(&LaserRay) -> f64| -> PerChannel<f64> {
             array::from_fn(|channel| rays.get(laser(channel)).map_or(0.0, value))
         };
         let unit_m = model.distance_unit_m;
         // Never 0: no angle in degrees has a cosine of exactly 0.
-        let out_per_count = |ray: &Ray| unit_m * ray.cos_elevation;
+        let out_per_count = |ray: &LaserRay| unit_m * ray.cos_elevation;
         let aside = of(&|ray| ray.tangential_offset_m / out_per_count(ray));
         let delay_ns: PerChannel<i64> = array::from_fn(|channel| {
             let firing = (channel / lasers) as i64 * i64::from(model.firing_period_ns);

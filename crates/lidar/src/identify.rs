@@ -55,7 +55,7 @@ fn pairs_share_azimuths(packet: &DataPacket<'_>) -> bool {
 pub(crate) struct Identifier {
     told: Option<&'static Model>,
     /// Set by spacing; holds for the named model it was set against.
-    found: Option<Finding>,
+    found: Option<SpacingFinding>,
     /// Whether a spacing was exactly that of the model that holds.
     confirmed: bool,
     /// What the last spacing said against a confirmed model.
@@ -65,7 +65,7 @@ pub(crate) struct Identifier {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Finding {
+struct SpacingFinding {
     named: Option<&'static Model>,
     model: &'static Model,
 }
@@ -108,7 +108,7 @@ impl Identifier {
                     spacing,
                     spacing_of: model,
                 });
-                Some(Finding { named, model })
+                Some(SpacingFinding { named, model })
             };
         }
         // What the user said stands, though it is reported.
@@ -129,13 +129,13 @@ impl Identifier {
     ) -> Option<&'static Model> {
         let holds = self.found.map(|found| found.model).or(named);
         match told_by(spacing, holds, named, dual, self.confirmed)? {
-            Said::Holds => {
+            SpacingEvidence::Holds => {
                 self.confirmed = true;
                 self.doubt = None;
                 self.regular = None;
                 None
             }
-            Said::Lossless(model) => {
+            SpacingEvidence::Lossless(model) => {
                 let before = self.regular.filter(|&(before, _)| ptr::eq(before, model));
                 let run = before.map_or(1, |(_, run)| run + 1);
                 self.regular = Some((model, run));
@@ -145,11 +145,11 @@ impl Identifier {
                 self.regular = None;
                 Some(model)
             }
-            Said::Other(model) if self.confirmed && !same(self.doubt, Some(model)) => {
+            SpacingEvidence::Other(model) if self.confirmed && !same(self.doubt, Some(model)) => {
                 self.doubt = Some(model);
                 None
             }
-            Said::Other(model) => {
+            SpacingEvidence::Other(model) => {
                 self.doubt = None;
                 Some(model)
             }
@@ -159,7 +159,7 @@ impl Identifier {
 
 /// What a spacing says of the model that holds.
 #[derive(Clone, Copy, Debug)]
-enum Said {
+enum SpacingEvidence {
     /// It is exactly its spacing.
     Holds,
     /// It is another's, and no multiple of its own.
@@ -175,7 +175,7 @@ fn told_by(
     named: Option<&'static Model>,
     dual: bool,
     confirmed: bool,
-) -> Option<Said> {
+) -> Option<SpacingEvidence> {
     if spacing < Span::ZERO || LONGEST < spacing {
         return None;
     }
@@ -188,18 +188,22 @@ fn told_by(
     let models = named.into_iter().chain([&VLP_16, &HDL_32E, &VLP_32C]);
     if let Some(holds) = holds {
         if is(holds, 1) {
-            return Some(Said::Holds);
+            return Some(SpacingEvidence::Holds);
         }
         if (2..=MOST_LOST).any(|packets| is(holds, packets)) {
             let mut models = models;
-            return models.find(|model| is(model, 1)).map(Said::Lossless);
+            return models
+                .find(|model| is(model, 1))
+                .map(SpacingEvidence::Lossless);
         }
     }
     // Packets may be missing right at the start as well; fewer are likelier than more.
     let most = if confirmed { 1 } else { MOST_LOST };
     (1..=most).find_map(|packets| {
         let mut models = models.clone();
-        models.find(|model| is(model, packets)).map(Said::Other)
+        models
+            .find(|model| is(model, packets))
+            .map(SpacingEvidence::Other)
     })
 }
 
@@ -220,8 +224,8 @@ mod tests {
     /// What the very first spacing says against the named model.
     fn told(us: i64, named: &'static Model, dual: bool) -> Option<&'static str> {
         match told_by(Span::from_micros(us), Some(named), Some(named), dual, false)? {
-            Said::Holds | Said::Lossless(_) => None,
-            Said::Other(model) => Some(model.name),
+            SpacingEvidence::Holds | SpacingEvidence::Lossless(_) => None,
+            SpacingEvidence::Other(model) => Some(model.name),
         }
     }
 
@@ -249,8 +253,8 @@ mod tests {
     #[test]
     fn a_product_that_is_not_listed_is_found_by_spacing() {
         let by = |us, dual| match told_by(Span::from_micros(us), None, None, dual, false)? {
-            Said::Holds | Said::Lossless(_) => None,
-            Said::Other(model) => Some(model.name),
+            SpacingEvidence::Holds | SpacingEvidence::Lossless(_) => None,
+            SpacingEvidence::Other(model) => Some(model.name),
         };
         assert_eq!(by(1_327, false), Some("VLP-16"));
         assert_eq!(by(553, false), Some("HDL-32E"));

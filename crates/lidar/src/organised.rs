@@ -10,11 +10,11 @@ use protocol::vlp16::Model;
 use units::{Lidar, Span, Stamp};
 
 use crate::firing::{Echo, Firing, SensorPoint};
-use crate::frames::FrameError;
+use crate::frames::LidarFrameError;
 
 /// One firing of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Column {
+pub struct FiringColumn {
     /// When laser 0 fired.
     pub start: Stamp<Lidar>,
     /// Azimuth at `start` in degrees, 0 up to 360, clockwise from y seen from above.
@@ -23,13 +23,13 @@ pub struct Column {
 
 /// The returns of some firings of one sensor, ring by firing.
 ///
-/// Layer 0 holds the strongest or last return of a single-return mode, and of dual mode the last.
-/// Layer 1 holds dual mode's second return; a pulse whose two returns are one has it in both
+/// ReturnLayer 0 holds the strongest or last return of a single-return mode, and of dual mode the last.
+/// ReturnLayer 1 holds dual mode's second return; a pulse whose two returns are one has it in both
 /// layers.
 #[derive(Clone, Debug, Default)]
 pub struct OrganisedFrame {
     model: Option<&'static Model>,
-    columns: Vec<Column>,
+    columns: Vec<FiringColumn>,
     /// Firing by firing, within one from the lowest ring up; a `Vec` a layer, the second empty
     /// until it is needed.
     layers: [Vec<Option<SensorPoint>>; 2],
@@ -45,19 +45,19 @@ impl OrganisedFrame {
     /// Adds a firing as the next column.
     ///
     /// # Errors
-    /// [`FrameError::Model`] where it is not of the model of those before it; the frame stays as it
+    /// [`LidarFrameError::Model`] where it is not of the model of those before it; the frame stays as it
     /// was.
-    pub fn push(&mut self, firing: &Firing<'_>) -> Result<(), FrameError> {
+    pub fn push(&mut self, firing: &Firing<'_>) -> Result<(), LidarFrameError> {
         let model = *self.model.get_or_insert(firing.model);
         if !ptr::eq(model, firing.model) {
-            return Err(FrameError::Model {
+            return Err(LidarFrameError::Model {
                 expected: model.name,
                 got: firing.model.name,
             });
         }
         let first = self.columns.len() * self.rings();
         let end = first + self.rings();
-        self.columns.push(Column {
+        self.columns.push(FiringColumn {
             start: firing.start,
             azimuth_deg: firing.azimuth_deg,
         });
@@ -101,7 +101,7 @@ impl OrganisedFrame {
 
     /// The grid's columns in the order of firing; their number is its width.
     #[must_use]
-    pub fn columns(&self) -> &[Column] {
+    pub fn columns(&self) -> &[FiringColumn] {
         &self.columns
     }
 

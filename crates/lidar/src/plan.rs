@@ -10,10 +10,10 @@
 use protocol::vlp16::{BLOCKS, DataPacket, Model};
 use units::Span;
 
-use crate::continuity::Blind;
+use crate::continuity::BlindSector;
 
 /// A turn in hundredths of a degree.
-pub(crate) const TURN_CDEG: i32 = 36_000;
+pub(crate) const REVOLUTION_CDEG: i32 = 36_000;
 /// A step back by less is the rotor's jitter or a slow reversal, not nearly a whole turn forward.
 const BACKLASH_CDEG: i32 = 100;
 /// A step of more than twice the usual one and this much is a jump.
@@ -35,7 +35,7 @@ pub(crate) struct Successor {
 
 /// One block, or one pair of a dual-return packet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Slot {
+pub(crate) struct BlockTiming {
     /// Time after the packet's first firing.
     pub after: Span,
     /// Azimuth of its first firing, 0 up to 36000.
@@ -46,7 +46,7 @@ pub(crate) struct Slot {
 
 /// The azimuth steps within a packet.
 #[derive(Clone, Debug)]
-pub(crate) struct Steps {
+pub(crate) struct AzimuthSteps {
     azimuths: [i32; BLOCKS],
     /// Step from each block to the next, that behind the last left out.
     inner: [i32; BLOCKS],
@@ -64,7 +64,7 @@ pub(crate) struct Steps {
 
 /// What the successor says of a packet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Link {
+pub(crate) struct SuccessorLink {
     /// Step from the last block to the successor's first, where the two follow each other.
     step_cdeg: Option<i32>,
     /// Length of the packet's gaps over their length by the rotor's rate.
@@ -76,9 +76,9 @@ pub(crate) struct Link {
 /// Azimuth from `from` to `to`, both 0 up to 36000, forward, or a little back.
 pub(crate) const fn turned(from: i32, to: i32) -> i32 {
     let way = to - from;
-    let forward = if way < 0 { way + TURN_CDEG } else { way };
-    if forward > TURN_CDEG - BACKLASH_CDEG {
-        forward - TURN_CDEG
+    let forward = if way < 0 { way + REVOLUTION_CDEG } else { way };
+    if forward > REVOLUTION_CDEG - BACKLASH_CDEG {
+        forward - REVOLUTION_CDEG
     } else {
         forward
     }
@@ -87,10 +87,10 @@ pub(crate) const fn turned(from: i32, to: i32) -> i32 {
 /// A block's azimuth with 36000 as 0.
 pub(crate) fn first_azimuth(packet: &DataPacket<'_>) -> i32 {
     let azimuth = packet.block(0).map_or(0, |block| block.azimuth_cdeg());
-    i32::from(azimuth) % TURN_CDEG
+    i32::from(azimuth) % REVOLUTION_CDEG
 }
 
-impl Steps {
+impl AzimuthSteps {
     pub(crate) fn new(packet: &DataPacket<'_>, model: &Model, dual: bool) -> Self {
         let mut steps = Self {
             azimuths: [0; BLOCKS],
@@ -108,7 +108,7 @@ impl Steps {
             .iter_mut()
             .zip(packet.blocks().step_by(stride))
         {
-            *azimuth = i32::from(block.azimuth_cdeg()) % TURN_CDEG;
+            *azimuth = i32::from(block.azimuth_cdeg()) % REVOLUTION_CDEG;
         }
         for (step, pair) in steps.inner.iter_mut().zip(steps.azimuths.windows(2)) {
             if let [from, to] = pair {
@@ -143,7 +143,7 @@ impl Steps {
         self.azimuths().last().copied().unwrap_or_default()
     }
 
-    /// Steps from each block to the next within the packet.
+    /// AzimuthSteps from each block to the next within the packet.
     fn inner(&self) -> impl Iterator<Item = i32> + Clone + '_ {
         let steps = self.inner.get(..self.blocks.saturating_sub(1));
         steps.unwrap_or_default().iter().copied()
@@ -169,14 +169,14 @@ impl Steps {
     }
 
     /// The first jump within the packet.
-    pub(crate) fn jump(&self) -> Option<Blind> {
+    pub(crate) fn jump(&self) -> Option<BlindSector> {
         // Without a median no step within the packet can be one.
         self.usual_cdeg?;
         let azimuths = self.azimuths();
         let mut pairs = azimuths.iter().zip(azimuths.iter().skip(1));
         pairs
             .find(|&(&from, &to)| self.is_jump(turned(from, to)))
-            .map(|(&from, &to)| Blind { from, to })
+            .map(|(&from, &to)| BlindSector { from, to })
     }
 
     /// Nominal time to fill the packet.
@@ -206,24 +206,24 @@ impl Steps {
     }
 
     /// Joins the packet to its successor, as far as the two can be shown to follow each other.
-    pub(crate) fn link(&self, next: Option<Successor>) -> Link {
+    pub(crate) fn link(&self, next: Option<Successor>) -> SuccessorLink {
         let inner_ns = self.gaps_ns();
         let Some(next) = next else {
-            return Link::missing();
+            return SuccessorLink::missing();
         };
         let step = turned(self.last_azimuth(), next.azimuth_cdeg);
         let goes_on = (!self.is_jump(step)).then_some(step);
         let excess_ns = next.after.as_nanos().saturating_sub(self.fill_ns());
         if (-CONTIGUOUS_NS..=CONTIGUOUS_NS).contains(&excess_ns) {
             // Whatever the azimuths say, there was no time for a gap.
-            return Link {
+            return SuccessorLink {
                 step_cdeg: goes_on,
                 stretch: 0.0,
                 measured: false,
             };
         }
         if inner_ns <= 0.0 || excess_ns < 0 {
-            return Link::missing();
+            return SuccessorLink::missing();
         }
         // With a narrow field of view the sensor may have looked away once more between the two
         // packets.
@@ -233,7 +233,7 @@ impl Steps {
         let outer_ns = if looked_away { self.gap_ns(step) } else { 0.0 };
         let stretch = excess_ns as f64 / (inner_ns + outer_ns);
         let follows = (goes_on.is_some() || looked_away) && stretch <= GAP_SLACK;
-        Link {
+        SuccessorLink {
             step_cdeg: goes_on.filter(|_| follows),
             // Where packets are missing after this one, the time they took is not the gap's.
             stretch: if follows { stretch } else { stretch.min(1.0) },
@@ -242,15 +242,15 @@ impl Steps {
     }
 
     /// Azimuth turned and block periods it took, up to the successor if it follows; jumps left out.
-    pub(crate) fn turned(&self, link: Link) -> (f64, f64) {
+    pub(crate) fn turned(&self, link: SuccessorLink) -> (f64, f64) {
         let inner = (self.mean_cdeg * self.count as f64, self.count as f64);
         link.step_cdeg
             .map_or(inner, |step| (inner.0 + f64::from(step), inner.1 + 1.0))
     }
 
     /// Time, azimuth and pace of each block.
-    pub(crate) fn slots(&self, link: Link) -> ([Slot; BLOCKS], usize) {
-        let mut slots = [Slot::default(); BLOCKS];
+    pub(crate) fn slots(&self, link: SuccessorLink) -> ([BlockTiming; BLOCKS], usize) {
+        let mut slots = [BlockTiming::default(); BLOCKS];
         let mut after_ns = 0;
         let steps = self.inner().map(Some).chain([link.step_cdeg]);
         for ((slot, &azimuth), step) in slots.iter_mut().zip(self.azimuths()).zip(steps) {
@@ -258,7 +258,7 @@ impl Steps {
             // step, which is rounded.
             let even = step.filter(|&step| !self.is_jump(step));
             let pace = even.map_or(self.mean_cdeg, f64::from);
-            *slot = Slot {
+            *slot = BlockTiming {
                 after: Span::from_nanos(after_ns),
                 azimuth_cdeg: azimuth,
                 pace_cdeg: pace,
@@ -279,7 +279,7 @@ const fn exceeds(step_cdeg: i32, usual_cdeg: i32) -> bool {
     step_cdeg > 2 * usual_cdeg + JUMP_CDEG
 }
 
-impl Link {
+impl SuccessorLink {
     /// No successor that follows: the rotor's rate stands in for the length of gaps.
     const fn missing() -> Self {
         Self {

@@ -36,7 +36,7 @@ pub struct Stats {
     pub lost_packets: u64,
     /// Firings emitted, each of all lasers.
     pub firings: u64,
-    /// Channels with a distance in the packets emitted.
+    /// FiringChannels with a distance in the packets emitted.
     pub returns: u64,
     /// The same with the two returns of a dual pair counted once where their distances are equal.
     pub unique_returns: u64,

@@ -6,9 +6,9 @@
 use protocol::vlp16::{DATA_LEN, DataPacket, Model};
 use units::{Host, Lidar, Span, Stamp};
 
-use crate::decoder::Options;
 use crate::hours::HourUnwrapper;
 use crate::identify::{Identifier, is_dual};
+use crate::options::Options;
 use crate::stats::Conflict;
 
 /// When a data packet was filled, by the device's clock.
@@ -32,7 +32,7 @@ pub struct Timekeeper {
 
 /// All that is known of a packet before its successor arrives.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Known {
+pub(crate) struct PacketFacts {
     pub start: Stamp<Lidar>,
     pub dual: bool,
     /// The model after this packet; it is told by the spacing before it, so it holds for the packet
@@ -70,12 +70,12 @@ impl Timekeeper {
         })
     }
 
-    pub(crate) fn observe(&mut self, host: Stamp<Host>, packet: &DataPacket<'_>) -> Known {
+    pub(crate) fn observe(&mut self, host: Stamp<Host>, packet: &DataPacket<'_>) -> PacketFacts {
         let start = self.hours.unwrap(packet.timestamp_us(), host);
         let spacing = self.last.map(|last| start.saturating_since(last));
         self.last = Some(start);
         let (model, conflict) = self.identifier.observe(packet, spacing);
-        Known {
+        PacketFacts {
             start,
             dual: is_dual(packet),
             model,

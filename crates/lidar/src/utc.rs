@@ -87,7 +87,7 @@ pub struct UtcChange {
 
 /// A span of device time in which UTC is known.
 #[derive(Clone, Copy, Debug)]
-struct Lock {
+struct UtcLock {
     from: Stamp<Lidar>,
     /// `None` while it lasts.
     until: Option<Stamp<Lidar>>,
@@ -101,7 +101,7 @@ struct Lock {
 #[derive(Clone, Debug)]
 pub struct UtcClock {
     state: UtcState,
-    locks: VecDeque<Lock>,
+    locks: VecDeque<UtcLock>,
     data: Option<Stamp<Lidar>>,
     position: Option<Stamp<Lidar>>,
     late: u64,
@@ -230,7 +230,7 @@ impl UtcClock {
         if self.locks.len() == MOST_LOCKS {
             self.locks.pop_front();
         }
-        self.locks.push_back(Lock {
+        self.locks.push_back(UtcLock {
             from: at,
             until: None,
             offset: Span::from_nanos(hours.saturating_mul(HOUR_NS)),

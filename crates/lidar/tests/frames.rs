@@ -5,7 +5,9 @@
 //! that the frame of every firing is known in closed form.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
-use lidar::{Decoder, Duplicates, Echo, Firing, Frame, FrameCutter, Options, OrganisedFrame};
+use lidar::{
+    Decoder, Duplicates, Echo, Firing, FrameCutter, Options, OrganisedFrame, RevolutionFrame,
+};
 use proptest::prelude::*;
 use units::Stamp;
 
@@ -69,7 +71,7 @@ fn decode(packets: &[Packet], mut each: impl FnMut(&Firing<'_>)) {
 }
 
 /// The frames, and for each firing its time after the first packet and the number of its frame.
-fn cut(packets: &[Packet], cut_azimuth_deg: f64) -> (Vec<Frame>, Vec<(i64, u64)>) {
+fn cut(packets: &[Packet], cut_azimuth_deg: f64) -> (Vec<RevolutionFrame>, Vec<(i64, u64)>) {
     let mut cutter = FrameCutter::new(cut_azimuth_deg).unwrap();
     let (mut frames, mut firings) = (Vec::new(), Vec::new());
     decode(packets, |firing| {

@@ -12,7 +12,7 @@
 use std::path::PathBuf;
 
 use lidar::{
-    Decoder, Duplicates, Frame, FrameCutter, Options, OrganisedFrame, SensorPoint, Stats,
+    Decoder, Duplicates, FrameCutter, Options, OrganisedFrame, RevolutionFrame, SensorPoint, Stats,
     Timekeeper, UtcClock, UtcState,
 };
 use pcap_parser::{parse_pcap_frame, parse_pcap_header};
@@ -303,7 +303,7 @@ fn both_passes_agree_on_the_fill() {
 }
 
 struct Cut {
-    frames: Vec<Frame>,
+    frames: Vec<RevolutionFrame>,
     /// Columns, cells with something in them in either layer, and layers of each frame.
     grids: Vec<(usize, usize, usize)>,
 }
@@ -313,7 +313,7 @@ fn cut(datagrams: &[Datagram], cut_azimuth_deg: f64) -> Cut {
     let mut grid = OrganisedFrame::new();
     let (mut frames, mut grids) = (Vec::new(), Vec::new());
     let mut decoder = Decoder::new(Options::default());
-    let mut close = |frame: Option<Frame>, grid: &mut OrganisedFrame| {
+    let mut close = |frame: Option<RevolutionFrame>, grid: &mut OrganisedFrame| {
         let Some(frame) = frame else { return };
         let cells = (0..grid.layers())
             .flat_map(|layer| (0..grid.rings()).map(move |ring| (layer, ring)))

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use io::can::{CanError, CanPort, Slcan, SocketCan};
-use io::discover::Findings;
+use io::discover::ConnectedDevices;
 use io::port::{LatencyTimer, Port, PortError, SerialPort};
 use protocol::canopen::CanFrame;
 use protocol::canopen::slcan::Bitrate;
@@ -50,7 +50,7 @@ pub fn place(
     name: &str,
     device: &Device,
     looks: Looks,
-    plugged: &dyn Fn() -> Findings,
+    plugged: &dyn Fn() -> ConnectedDevices,
 ) -> Result<PathBuf, Failure> {
     if device.is_looked_for() {
         return found(&plugged(), looks);
@@ -78,7 +78,7 @@ pub fn place(
 }
 
 /// The EPOS2's serial port on USB.
-fn found(plugged: &Findings, looks: Looks) -> Result<PathBuf, Failure> {
+fn found(plugged: &ConnectedDevices, looks: Looks) -> Result<PathBuf, Failure> {
     if let Some(port) = plugged.epos2.iter().find_map(|unit| unit.port.clone()) {
         return Ok(port);
     }

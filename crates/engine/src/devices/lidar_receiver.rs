@@ -10,7 +10,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use io::log::RecorderHandle;
-use io::udp::{GATHER, ListenCounts, Listener, UdpError};
+use io::udp::{GATHER, LidarListener, ListenCounts, UdpError};
 use protocol::record::{Record, Wire};
 
 use crate::devices::lidar_sockets::{DATA_PORT, LidarSockets, POSITION_PORT};
@@ -182,7 +182,7 @@ fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &Shared) {
 
 /// Listens until it is to come round.
 fn turn(
-    listener: &mut Listener,
+    listener: &mut LidarListener,
     ports: Destinations,
     log: Option<&RecorderHandle>,
     onlooker: &mut PacketTap,

@@ -1,6 +1,6 @@
 //! The lidar's UDP sockets.
 
-use io::udp::{ListenConfig, Listener};
+use io::udp::{LidarListener, ListenConfig};
 
 use crate::config::Device;
 use crate::devices::lidar_receiver::lidar_failure;
@@ -14,7 +14,7 @@ pub const POSITION_PORT: u16 = 8308;
 
 /// The lidar's sockets, bound; nothing is recorded yet.
 pub struct LidarSockets {
-    listener: Listener,
+    listener: LidarListener,
     ports: Destinations,
 }
 
@@ -37,7 +37,7 @@ impl LidarSockets {
     /// # Errors
     /// [`Kind::NoDevice`] where another program has the ports, or the address is not this machine's.
     pub fn bind(config: &ListenConfig) -> Result<Self, Failure> {
-        let listener = Listener::bind(config).map_err(|error| lidar_failure(&error))?;
+        let listener = LidarListener::bind(config).map_err(|error| lidar_failure(&error))?;
         let mut local = listener.sockets().iter().map(|s| s.address().port());
         let ports = Destinations {
             data: local.next().unwrap_or(DATA_PORT),
@@ -53,7 +53,7 @@ impl LidarSockets {
     }
 
     /// The sockets, and which local ports they have.
-    pub(crate) fn into_parts(self) -> (Listener, Destinations) {
+    pub(crate) fn into_parts(self) -> (LidarListener, Destinations) {
         (self.listener, self.ports)
     }
 }

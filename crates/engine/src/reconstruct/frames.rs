@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use cloud::formats::Format;
 use cloud::{Fields, Metadata, Point, Points};
 use lidar::{
-    Decoder, Duplicates, Echo, Firing, Frame, FrameCutter, Options, OrganisedFrame, Stats, UtcClock,
+    Decoder, Duplicates, Echo, Firing, FrameCutter, Options, OrganisedFrame, RevolutionFrame,
+    Stats, UtcClock,
 };
 use protocol::record::{Record, Wire};
 use scanner::{Alignment, PlacementCounts};
@@ -68,7 +69,7 @@ struct FrameBuilder<'a> {
     placed: PlacementCounts,
     without_utc: u64,
     /// Completed frames with their row counts, not written yet.
-    ended: Vec<(Frame, Points, u64)>,
+    ended: Vec<(RevolutionFrame, Points, u64)>,
     error: Option<Failure>,
     /// Receive time of the last record.
     received: Option<Stamp<Host>>,
@@ -264,7 +265,7 @@ impl FrameBuilder<'_> {
     }
 
     /// Completes the frame; frames without points are dropped.
-    fn end(&mut self, frame: Frame) {
+    fn end(&mut self, frame: RevolutionFrame) {
         let before = self.placed.points;
         let fields = self.points.fields();
         let mut rows = 1;
@@ -350,7 +351,7 @@ fn empty_cell(
 }
 
 /// Comment in a frame's cloud.
-fn frame_comment(frame: &Frame) -> String {
+fn frame_comment(frame: &RevolutionFrame) -> String {
     let whole = if frame.whole { "whole" } else { "not whole" };
     format!("frame {}, {whole}: {} firings", frame.index, frame.firings)
 }

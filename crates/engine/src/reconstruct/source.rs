@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use io::recording::{
-    Counts, DatagramKind, End, Input, Recording, RecordingError, SPOOL_LIMIT, Sensor, Sensors,
+    DatagramKind, End, Recording, RecordingCounts, RecordingError, RecordingInput, SPOOL_LIMIT,
+    Sensor, Sensors,
 };
 use protocol::record::{Record, Wire};
 use scanner::ScanConfig;
@@ -19,7 +20,7 @@ use crate::failure::{Failure, Kind};
 #[derive(Debug)]
 pub struct Source {
     path: PathBuf,
-    input: Input,
+    input: RecordingInput,
     wanted: Option<SensorName>,
 }
 
@@ -34,7 +35,7 @@ pub struct SensorName {
 #[derive(Clone, Debug)]
 pub struct Pass {
     /// Packet counts by kind.
-    pub counts: Counts,
+    pub counts: RecordingCounts,
     /// Where and why the file ends early.
     pub truncated: Option<String>,
     /// All sensors in the recording.
@@ -120,7 +121,7 @@ impl Source {
     /// # Errors
     /// [`Kind::BadInput`] for a missing, empty or foreign file.
     pub fn open(path: &Path, wanted: Option<SensorName>) -> Result<Self, Failure> {
-        let input = Input::open(path, SPOOL_LIMIT).map_err(|error| failure(&error))?;
+        let input = RecordingInput::open(path, SPOOL_LIMIT).map_err(|error| failure(&error))?;
         let source = Self {
             path: path.to_owned(),
             input,

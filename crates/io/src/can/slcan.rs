@@ -36,13 +36,13 @@ pub struct Slcan<P: Port> {
     /// Sent frames without an answer so far; meaningless if the adapter does not answer.
     unanswered: u32,
     noise: u64,
-    status: Status,
+    status: StatusQuery,
     dropped: u64,
 }
 
 /// The query for the status flags.
 #[derive(Debug, Default)]
-struct Status {
+struct StatusQuery {
     /// Time of the next query; `None`: never.
     next: Option<Stamp<Host>>,
     /// While a query is pending: answers to earlier frames that precede its answer.
@@ -65,7 +65,7 @@ impl<P: Port> Slcan<P> {
             answers: false,
             unanswered: 0,
             noise: 0,
-            status: Status::default(),
+            status: StatusQuery::default(),
             dropped: 0,
         };
         // The empty line ends a partial one. An adapter may refuse to close a closed channel.
@@ -109,7 +109,7 @@ impl<P: Port> Slcan<P> {
         let now = self.port.now();
         let due = self.status.next.is_some_and(|next| next <= now);
         if due {
-            self.status = Status {
+            self.status = StatusQuery {
                 next: Some(now.saturating_add(STATUS_PERIOD)),
                 answers_before: Some(self.unanswered),
             };
@@ -191,7 +191,7 @@ impl<P: Port> Slcan<P> {
             }
             // An adapter without status flags is not queried again.
             Reply::Refused if self.status.answers_before == Some(0) => {
-                self.status = Status::default()
+                self.status = StatusQuery::default()
             }
             Reply::Refused if self.answers && self.unanswered > 0 => {
                 self.frame_answered();

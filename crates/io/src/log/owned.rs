@@ -7,12 +7,12 @@ use units::{Host, Stamp};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OwnedRecord {
     host: Stamp<Host>,
-    kind: Kind,
+    kind: OwnedWire,
     bytes: Box<[u8]>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum OwnedWire {
     Lidar {
         source: [u8; 4],
         port: u16,
@@ -28,12 +28,12 @@ impl OwnedRecord {
     #[must_use]
     pub fn as_record(&self) -> Record<'_> {
         let wire = match self.kind {
-            Kind::Lidar { source, port } => Wire::Lidar {
+            OwnedWire::Lidar { source, port } => Wire::Lidar {
                 source,
                 port,
                 payload: &self.bytes,
             },
-            Kind::Drive { link, direction } => Wire::Drive {
+            OwnedWire::Drive { link, direction } => Wire::Drive {
                 link,
                 direction,
                 frame: &self.bytes,
@@ -59,12 +59,12 @@ impl From<&Record<'_>> for OwnedRecord {
                 source,
                 port,
                 payload,
-            } => (Kind::Lidar { source, port }, payload),
+            } => (OwnedWire::Lidar { source, port }, payload),
             Wire::Drive {
                 link,
                 direction,
                 frame,
-            } => (Kind::Drive { link, direction }, frame),
+            } => (OwnedWire::Drive { link, direction }, frame),
         };
         Self {
             host: record.host,

@@ -29,7 +29,7 @@ const QUEUE_LEN: usize = 65_536;
 /// Interval at which [`LogRecorder::finish_while`] polls the thread.
 const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-enum Message {
+enum RecorderMessage {
     Record(OwnedRecord),
     Finish,
 }
@@ -48,7 +48,7 @@ pub struct RecorderCounts {
 }
 
 #[derive(Debug, Default)]
-struct Shared {
+struct RecorderState {
     dropped: AtomicU64,
     failed: AtomicBool,
 }
@@ -63,8 +63,8 @@ pub struct LogRecorder {
 /// A sender of records; clone it for each thread.
 #[derive(Clone, Debug)]
 pub struct RecorderHandle {
-    queue: SyncSender<Message>,
-    shared: Arc<Shared>,
+    queue: SyncSender<RecorderMessage>,
+    shared: Arc<RecorderState>,
 }
 
 impl RecorderHandle {
@@ -73,7 +73,7 @@ impl RecorderHandle {
     pub fn record(&self, record: &Record<'_>) {
         match self
             .queue
-            .try_send(Message::Record(OwnedRecord::from(record)))
+            .try_send(RecorderMessage::Record(OwnedRecord::from(record)))
         {
             Ok(()) => {}
             Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) => {
@@ -105,7 +105,7 @@ impl LogRecorder {
         end: impl FnOnce(&W) -> io::Result<()> + Send + 'static,
     ) -> Result<Self, LogError> {
         let (queue, inbox) = sync_channel(QUEUE_LEN);
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(RecorderState::default());
         let thread_shared = Arc::clone(&shared);
         let thread = thread::Builder::new()
             .name("log".to_owned())
@@ -149,7 +149,8 @@ impl LogRecorder {
         let mut is_requested = false;
         while !self.thread.is_finished() {
             // A full queue takes the message later. A thread that failed no longer reads it.
-            is_requested = is_requested || self.handle.queue.try_send(Message::Finish).is_ok();
+            is_requested =
+                is_requested || self.handle.queue.try_send(RecorderMessage::Finish).is_ok();
             waiting();
             thread::sleep(POLL_INTERVAL);
         }
@@ -215,15 +216,15 @@ impl<W: Write> Sorter<W> {
 
     fn run(
         mut self,
-        inbox: &Receiver<Message>,
+        inbox: &Receiver<RecorderMessage>,
         end: impl FnOnce(&W) -> io::Result<()>,
     ) -> Result<RecorderCounts, LogError> {
         let mut period_ends = Instant::now() + HOLD;
         loop {
             let wait = period_ends.saturating_duration_since(Instant::now());
             match inbox.recv_timeout(wait) {
-                Ok(Message::Record(record)) => self.hold(record),
-                Ok(Message::Finish) | Err(RecvTimeoutError::Disconnected) => break,
+                Ok(RecorderMessage::Record(record)) => self.hold(record),
+                Ok(RecorderMessage::Finish) | Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) => {}
             }
             if Instant::now() >= period_ends {

@@ -8,7 +8,7 @@ use protocol::epos2::usb::{DLE, UsbDecoder};
 
 /// A run of bytes that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Piece {
+pub(super) enum StreamPiece {
     /// A frame from `90 02` to its last CRC byte, stuffing included.
     Frame(usize),
     /// Bytes outside frames, or of an aborted frame.
@@ -27,17 +27,17 @@ pub(super) struct Delimiter {
 impl Delimiter {
     /// Adds a byte. Returns the piece that ends with it, or noise that ends two bytes before it,
     /// where a frame starts.
-    pub(super) fn push(&mut self, byte: u8) -> Option<Piece> {
+    pub(super) fn push(&mut self, byte: u8) -> Option<StreamPiece> {
         self.open += 1;
         self.last = byte;
         let within = self.decoder.is_within_frame();
         match self.decoder.push(byte) {
             None if !within && self.decoder.is_within_frame() => self.start(),
             None => None,
-            Some(Ok(_) | Err(FrameError::Crc { .. })) => Some(Piece::Frame(self.take())),
+            Some(Ok(_) | Err(FrameError::Crc { .. })) => Some(StreamPiece::Frame(self.take())),
             // The sync pair of a new frame inside another frame.
             Some(Err(_)) if self.decoder.is_within_frame() => self.start(),
-            Some(Err(_)) => Some(Piece::Noise(self.take())),
+            Some(Err(_)) => Some(StreamPiece::Noise(self.take())),
         }
     }
 
@@ -47,11 +47,11 @@ impl Delimiter {
     }
 
     /// Ends the open piece.
-    pub(super) fn flush(&mut self) -> Option<Piece> {
+    pub(super) fn flush(&mut self) -> Option<StreamPiece> {
         self.decoder.reset();
         match self.take() {
             0 => None,
-            open => Some(Piece::Noise(open)),
+            open => Some(StreamPiece::Noise(open)),
         }
     }
 
@@ -60,10 +60,10 @@ impl Delimiter {
     }
 
     /// Starts a frame at a sync pair; the bytes before it are noise.
-    fn start(&mut self) -> Option<Piece> {
+    fn start(&mut self) -> Option<StreamPiece> {
         let before = self.open.saturating_sub(2);
         self.open = 2;
-        (before > 0).then_some(Piece::Noise(before))
+        (before > 0).then_some(StreamPiece::Noise(before))
     }
 }
 
@@ -71,7 +71,7 @@ impl Delimiter {
 mod tests {
     use super::*;
 
-    fn pieces(bytes: &[u8]) -> Vec<Piece> {
+    fn pieces(bytes: &[u8]) -> Vec<StreamPiece> {
         let mut delimiter = Delimiter::default();
         let mut pieces: Vec<_> = bytes.iter().filter_map(|&b| delimiter.push(b)).collect();
         pieces.extend(delimiter.flush());
@@ -92,7 +92,11 @@ mod tests {
         let stream = [&ANSWER[..], &STUFFED, &ANSWER].concat();
         assert_eq!(
             pieces(&stream),
-            [Piece::Frame(14), Piece::Frame(15), Piece::Frame(14)]
+            [
+                StreamPiece::Frame(14),
+                StreamPiece::Frame(15),
+                StreamPiece::Frame(14)
+            ]
         );
     }
 
@@ -101,20 +105,30 @@ mod tests {
         let stream = [&[0x11, 0x90][..], &ANSWER, &[0x90, 0x33]].concat();
         assert_eq!(
             pieces(&stream),
-            [Piece::Noise(2), Piece::Frame(14), Piece::Noise(2)]
+            [
+                StreamPiece::Noise(2),
+                StreamPiece::Frame(14),
+                StreamPiece::Noise(2)
+            ]
         );
     }
 
     #[test]
     fn a_sync_pair_inside_a_frame_aborts_it() {
         let stream = [&ANSWER[..9], &ANSWER].concat();
-        assert_eq!(pieces(&stream), [Piece::Noise(9), Piece::Frame(14)]);
+        assert_eq!(
+            pieces(&stream),
+            [StreamPiece::Noise(9), StreamPiece::Frame(14)]
+        );
     }
 
     #[test]
     fn a_single_dle_aborts_a_frame() {
         let stream = [&ANSWER[..8], &[0x90, 0x05], &ANSWER].concat();
-        assert_eq!(pieces(&stream), [Piece::Noise(10), Piece::Frame(14)]);
+        assert_eq!(
+            pieces(&stream),
+            [StreamPiece::Noise(10), StreamPiece::Frame(14)]
+        );
     }
 
     #[test]
@@ -123,13 +137,16 @@ mod tests {
         stream.pop();
         stream.extend([0x90, 0x90]);
         stream.extend(ANSWER);
-        assert_eq!(pieces(&stream), [Piece::Frame(15), Piece::Frame(14)]);
+        assert_eq!(
+            pieces(&stream),
+            [StreamPiece::Frame(15), StreamPiece::Frame(14)]
+        );
     }
 
     #[test]
     fn stuffed_data_is_no_sync_pair() {
         let frame = [0x90, 0x02, 0x00, 0x01, 0x90, 0x90, 0x02, 0xAA, 0xBB];
-        assert_eq!(pieces(&frame), [Piece::Frame(9)]);
+        assert_eq!(pieces(&frame), [StreamPiece::Frame(9)]);
     }
 
     proptest::proptest! {
@@ -139,7 +156,7 @@ mod tests {
                 proptest::prelude::Just(0x90_u8), proptest::prelude::Just(2), proptest::prelude::any::<u8>()
             ], 0..200)) {
             let total: usize = pieces(&bytes).iter().map(|piece| match *piece {
-                Piece::Frame(n) | Piece::Noise(n) => n,
+                StreamPiece::Frame(n) | StreamPiece::Noise(n) => n,
             }).sum();
             proptest::prop_assert_eq!(total, bytes.len());
         }

@@ -8,7 +8,7 @@
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Span, Stamp};
 
-use super::delimit::{Delimiter, Piece};
+use super::delimit::{Delimiter, StreamPiece};
 use super::{Port, PortError};
 
 /// Silence that ends an incomplete frame: the EPOS2's frame timeout.
@@ -81,8 +81,8 @@ impl<P, S: FnMut(&Record<'_>)> RecordingPort<P, S> {
     }
 
     /// Passes the first pending bytes to the sink.
-    fn emit(&mut self, piece: Piece, host: Stamp<Host>) {
-        let (Piece::Frame(length) | Piece::Noise(length)) = piece;
+    fn emit(&mut self, piece: StreamPiece, host: Stamp<Host>) {
+        let (StreamPiece::Frame(length) | StreamPiece::Noise(length)) = piece;
         let length = length.min(self.pending.len());
         let bytes: Vec<u8> = self.pending.drain(..length).collect();
         let record = self.record(host, Direction::FromDevice, &bytes);

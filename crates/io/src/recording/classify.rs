@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::link::{self, Content};
 use super::reassembly::Fragment;
 use super::{
-    CapturedPacket, DatagramKind, Fault, FoundRecord, FoundWire, PayloadLocation, Recording,
+    CapturedPacket, DatagramKind, FoundRecord, FoundWire, PacketFault, PayloadLocation, Recording,
 };
 
 impl<R> Recording<R> {
@@ -16,7 +16,7 @@ impl<R> Recording<R> {
         let content = match link::parse(packet.link, packet.direction, data) {
             // A capture with a complete datagram is valid even if it lost the bytes after it.
             Ok(content @ Content::Datagram { .. }) => Ok(content),
-            _ if (data.len() as u64) < u64::from(packet.original) => Err(Fault::Snapped {
+            _ if (data.len() as u64) < u64::from(packet.original) => Err(PacketFault::Snapped {
                 captured: data.len() as u32,
                 original: packet.original,
             }),
@@ -66,7 +66,7 @@ impl<R> Recording<R> {
         })
     }
 
-    /// Counts a datagram; `None` if it is not wanted.
+    /// RecordingCounts a datagram; `None` if it is not wanted.
     fn datagram(
         &mut self,
         source: [u8; 4],

@@ -5,7 +5,7 @@ use std::collections::btree_map::Entry;
 
 use protocol::record::Direction;
 
-use super::Fault;
+use super::PacketFault;
 
 /// Limit of distinct pairs of port and size, which bounds memory.
 const MAX_KINDS: usize = 1024;
@@ -16,13 +16,13 @@ pub struct Malformed {
     /// Offset of its record in the file, in bytes.
     pub offset: u64,
     /// Its fault.
-    pub fault: Fault,
+    pub fault: PacketFault,
 }
 
 /// Numbers of packets by kind. `records` is the sum of `datagrams`, `more_datagrams`, `to_drive`,
 /// `from_drive`, `other`, `fragments`, `joined` and `malformed`; the other fields detail these.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct RecordingCounts {
     /// Packets in the file; a damaged stretch counts as one.
     pub records: u64,
     /// The lidar's datagrams ([`DatagramKind::is_lidar`](super::DatagramKind::is_lidar)) by
@@ -58,7 +58,7 @@ pub struct Counts {
     pub damaged_bytes: u64,
 }
 
-impl Counts {
+impl RecordingCounts {
     pub(super) fn packet(&mut self) {
         self.records += 1;
     }
@@ -74,7 +74,7 @@ impl Counts {
         count_pair(&mut self.foreign, port, size);
     }
 
-    /// Counts the completion of a datagram; its earlier fragments were counted as not reassembled.
+    /// RecordingCounts the completion of a datagram; its earlier fragments were counted as not reassembled.
     pub(super) fn reassembled(&mut self, fragments: u64) {
         let before = fragments.saturating_sub(1);
         self.fragments = self.fragments.saturating_sub(before);
@@ -89,11 +89,11 @@ impl Counts {
         }
     }
 
-    pub(super) fn malformed(&mut self, offset: u64, fault: Fault) {
+    pub(super) fn malformed(&mut self, offset: u64, fault: PacketFault) {
         self.malformed += 1;
         match fault {
-            Fault::Snapped { .. } => self.snapped += 1,
-            Fault::Timeless => self.timeless += 1,
+            PacketFault::Snapped { .. } => self.snapped += 1,
+            PacketFault::Timeless => self.timeless += 1,
             _ => {}
         }
         if self.first_malformed.is_none() {
@@ -102,7 +102,7 @@ impl Counts {
     }
 }
 
-/// Counts a pair; returns false beyond the limit.
+/// RecordingCounts a pair; returns false beyond the limit.
 fn count_pair(kinds: &mut BTreeMap<(u16, usize), u64>, port: u16, size: usize) -> bool {
     let room = kinds.len() < MAX_KINDS;
     match kinds.entry((port, size)) {
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn pairs_beyond_the_limit_are_counted() {
-        let mut counts = Counts::default();
+        let mut counts = RecordingCounts::default();
         for port in 0..2000 {
             counts.lidar(port, 7);
             counts.foreign(port, 9);

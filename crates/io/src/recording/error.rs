@@ -80,7 +80,7 @@ pub enum End {
         /// Offset of that record in the file.
         offset: u64,
         /// Its fault.
-        fault: Fault,
+        fault: PacketFault,
     },
 }
 
@@ -105,7 +105,7 @@ impl fmt::Display for End {
 
 /// Reason why a packet is unusable.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Fault {
+pub enum PacketFault {
     /// The capture truncated the packet (snap length).
     #[error("the capture kept {captured} bytes of {original}")]
     Snapped {

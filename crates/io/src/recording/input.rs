@@ -1,6 +1,6 @@
 //! Source of a recording: a file, a named pipe, or standard input (`-`).
 //!
-//! A pipe can be read once. For several passes [`Input`] copies it to a temporary file, up to a
+//! A pipe can be read once. For several passes [`RecordingInput`] copies it to a temporary file, up to a
 //! limit.
 
 use std::fs::File;
@@ -25,7 +25,7 @@ const CHUNK_LEN: usize = 256 << 10;
 
 /// A recording for any number of passes.
 #[derive(Debug)]
-pub struct Input {
+pub struct RecordingInput {
     /// Name for errors.
     name: PathBuf,
     /// File to open for a pass without a copy.
@@ -33,7 +33,7 @@ pub struct Input {
     copy: Option<NamedTempFile>,
 }
 
-impl Input {
+impl RecordingInput {
     /// Opens a file. A pipe is copied to its end into a temporary file of at most `limit` bytes, in
     /// [`crate::files::scratch_folder`].
     ///
@@ -187,7 +187,7 @@ mod tests {
         ]
         .concat();
         std::fs::write(&file, &header).unwrap();
-        let input = Input::open(&file, 1).unwrap();
+        let input = RecordingInput::open(&file, 1).unwrap();
         assert!(!input.is_copied());
         assert!(input.recording().unwrap().next_record().unwrap().is_none());
 
@@ -197,14 +197,14 @@ mod tests {
             let fifo = fifo.clone();
             std::thread::spawn(move || std::fs::write(fifo, header).unwrap())
         };
-        let input = Input::open(&fifo, SPOOL_LIMIT).unwrap();
+        let input = RecordingInput::open(&fifo, SPOOL_LIMIT).unwrap();
         writer.join().unwrap();
         assert!(input.is_copied());
         for _ in 0..2 {
             let mut recording = input.recording().unwrap();
             assert!(recording.next_record().unwrap().is_none());
         }
-        let missing = Input::open(folder.path().join("missing"), 1).unwrap_err();
+        let missing = RecordingInput::open(folder.path().join("missing"), 1).unwrap_err();
         assert!(matches!(missing, RecordingError::Open { .. }), "{missing}");
     }
 

@@ -12,7 +12,7 @@ use etherparse::{
 };
 use protocol::record::{Direction, DriveLink};
 
-use super::Fault;
+use super::PacketFault;
 use super::reassembly::{DatagramId, Fragment};
 use super::sensors::source_of;
 
@@ -91,7 +91,7 @@ pub(super) fn parse(
     link: LinkType,
     direction: Option<Direction>,
     data: &[u8],
-) -> Result<Content, Fault> {
+) -> Result<Content, PacketFault> {
     let network = match link {
         LinkType::Ethernet => after_header(data, "Ethernet header", 12, 14)?,
         LinkType::Cooked1 => after_header(data, "Linux cooked header", 14, 16)?,
@@ -99,7 +99,7 @@ pub(super) fn parse(
         LinkType::Ip => raw_ip(data)?,
         LinkType::Can => return can(data, direction),
         LinkType::Serial(link) => {
-            let direction = direction.ok_or(Fault::Undirected)?;
+            let direction = direction.ok_or(PacketFault::Undirected)?;
             return Ok(Content::Serial { link, direction });
         }
         LinkType::Unused => return Ok(Content::Other),
@@ -114,7 +114,7 @@ pub(super) fn parse(
 }
 
 /// The packet after the link header, with its VLAN tags.
-struct Network<'a> {
+struct NetworkPacket<'a> {
     kind: EtherType,
     packet: &'a [u8],
 }
@@ -125,12 +125,12 @@ fn after_header<'a>(
     layer: &'static str,
     type_offset: usize,
     header_len: usize,
-) -> Result<Network<'a>, Fault> {
+) -> Result<NetworkPacket<'a>, PacketFault> {
     let kind = data
         .get(type_offset..)
         .and_then(|bytes| bytes.first_chunk());
     match (kind, data.get(header_len..)) {
-        (Some(&kind), Some(packet)) => Ok(Network {
+        (Some(&kind), Some(packet)) => Ok(NetworkPacket {
             kind: EtherType(u16::from_be_bytes(kind)),
             packet,
         }),
@@ -139,7 +139,7 @@ fn after_header<'a>(
 }
 
 /// A raw IP packet, whose first four bits are the version.
-fn raw_ip(packet: &[u8]) -> Result<Network<'_>, Fault> {
+fn raw_ip(packet: &[u8]) -> Result<NetworkPacket<'_>, PacketFault> {
     let first = packet
         .first()
         .ok_or_else(|| short("IP header", 20, packet))?;
@@ -147,16 +147,16 @@ fn raw_ip(packet: &[u8]) -> Result<Network<'_>, Fault> {
         4 => EtherType::IPV4,
         6 => EtherType::IPV6,
         got => {
-            return Err(Fault::Header(format!(
+            return Err(PacketFault::Header(format!(
                 "IP version: expected 4 or 6, got {got}"
             )));
         }
     };
-    Ok(Network { kind, packet })
+    Ok(NetworkPacket { kind, packet })
 }
 
-fn short(layer: &str, expected: usize, data: &[u8]) -> Fault {
-    Fault::Short {
+fn short(layer: &str, expected: usize, data: &[u8]) -> PacketFault {
+    PacketFault::Short {
         layer: layer.to_owned(),
         offset: 0,
         expected,
@@ -201,7 +201,7 @@ fn fragment(ip: &Ipv4Slice<'_>, data: &[u8]) -> Content {
 }
 
 /// Port and payload of a reassembled UDP datagram; the payload counts from its start.
-pub(super) fn udp(datagram: &[u8]) -> Result<(u16, Range<usize>), Fault> {
+pub(super) fn udp(datagram: &[u8]) -> Result<(u16, Range<usize>), PacketFault> {
     let udp = UdpSlice::from_slice(datagram).map_err(|error| short_layer(&error, 0))?;
     Ok((udp.destination_port(), within(datagram, udp.payload())))
 }
@@ -215,7 +215,7 @@ fn within(whole: &[u8], part: &[u8]) -> Range<usize> {
 /// A datagram whose IP length is too large and whose UDP length is correct: VLP-16 firmware of 2014
 /// sends position packets with the IP length of a data packet. A truncated packet does not qualify,
 /// since its UDP length is too large as well.
-fn by_udp_length(network: &Network<'_>, data: &[u8]) -> Option<Content> {
+fn by_udp_length(network: &NetworkPacket<'_>, data: &[u8]) -> Option<Content> {
     let lax = LaxSlicedPacket::from_ether_type(network.kind, network.packet);
     match (&lax.net, &lax.transport) {
         (Some(LaxNetSlice::Ipv4(ip)), Some(TransportSlice::Udp(udp)))
@@ -232,7 +232,7 @@ fn by_udp_length(network: &Network<'_>, data: &[u8]) -> Option<Content> {
 }
 
 /// A classic CAN frame, padded to the full structure.
-fn can(data: &[u8], direction: Option<Direction>) -> Result<Content, Fault> {
+fn can(data: &[u8], direction: Option<Direction>) -> Result<Content, PacketFault> {
     let Some((head, _)) = data.split_first_chunk::<8>() else {
         return Err(short("CAN frame", 8, data));
     };
@@ -265,15 +265,15 @@ fn direction_of_can(id: u32) -> Direction {
 }
 
 /// The fault that etherparse found in a network layer `start` bytes into the packet.
-fn fault(error: SliceError, start: usize) -> Fault {
+fn fault(error: SliceError, start: usize) -> PacketFault {
     match error {
         SliceError::Len(error) => short_layer(&error, start),
-        other => Fault::Header(other.to_string()),
+        other => PacketFault::Header(other.to_string()),
     }
 }
 
-fn short_layer(error: &LenError, start: usize) -> Fault {
-    Fault::Short {
+fn short_layer(error: &LenError, start: usize) -> PacketFault {
+    PacketFault::Short {
         layer: error.layer.to_string(),
         offset: start.saturating_add(error.layer_start_offset),
         expected: error.required_len,
@@ -316,7 +316,7 @@ mod tests {
         assert_eq!(direction, Direction::ToDevice);
         assert!(matches!(
             can(&head, None),
-            Err(Fault::Short {
+            Err(PacketFault::Short {
                 expected: 10,
                 got: 8,
                 ..
@@ -324,7 +324,7 @@ mod tests {
         ));
         assert!(matches!(
             can(&head[..7], None),
-            Err(Fault::Short {
+            Err(PacketFault::Short {
                 expected: 8,
                 got: 7,
                 ..

@@ -7,7 +7,7 @@ use std::path::Path;
 use pcap_parser::pcap::{PcapHeader, parse_pcap_frame, parse_pcap_frame_be, parse_pcap_header};
 use units::Stamp;
 
-use super::error::{End, Fault, RecordingError};
+use super::error::{End, PacketFault, RecordingError};
 use super::link::LinkType;
 use super::window::Window;
 use super::{CapturedPacket, FileItem, Format};
@@ -23,13 +23,13 @@ const MAX_PACKET_LEN: u32 = 1 << 20;
 
 /// The file header.
 #[derive(Debug)]
-pub(super) struct Header {
+pub(super) struct PcapFile {
     link: LinkType,
     nanoseconds: bool,
     big_endian: bool,
 }
 
-impl Header {
+impl PcapFile {
     /// Reads the header at the start of a file.
     pub(super) fn parse(start: &[u8], path: &Path) -> Result<Self, RecordingError> {
         let header = match parse_pcap_header(start) {
@@ -88,7 +88,7 @@ impl Header {
             None => return Ok(truncated(RECORD_HEADER_LEN, bytes.len())),
         };
         if captured > MAX_PACKET_LEN {
-            let fault = Fault::Length {
+            let fault = PacketFault::Length {
                 expected: "at most 1048576",
                 got: captured.into(),
             };

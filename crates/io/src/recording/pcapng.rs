@@ -14,7 +14,7 @@ use pcap_parser::pcapng::{
 use protocol::record::Direction;
 use units::{Host, Stamp};
 
-use super::error::{End, Fault, RecordingError};
+use super::error::{End, PacketFault, RecordingError};
 use super::link::LinkType;
 use super::resync::resync;
 use super::window::Window;
@@ -39,7 +39,7 @@ const MAX_INTERFACES: usize = 4096;
 
 /// The current section.
 #[derive(Debug, Default)]
-pub(super) struct Section {
+pub(super) struct PcapngSection {
     big_endian: bool,
     interfaces: Vec<CaptureInterface>,
 }
@@ -66,7 +66,7 @@ pub(super) fn is_section_header(start: &[u8]) -> bool {
     start.starts_with(&SHB_MAGIC.to_le_bytes())
 }
 
-impl Section {
+impl PcapngSection {
     /// Reads the first section header and returns its comment.
     pub(super) fn open<R: Read>(
         &mut self,
@@ -97,7 +97,7 @@ impl Section {
             Ok(Ok((_, length))) => {
                 let block = window.bytes().get(..length).unwrap_or_default();
                 let Ok((_, header)) = parse_sectionheaderblock(block) else {
-                    let fault = Fault::Block { kind: SHB_MAGIC };
+                    let fault = PacketFault::Block { kind: SHB_MAGIC };
                     return Err(foreign(format!(
                         "an invalid pcapng section header: {fault}"
                     )));
@@ -134,7 +134,7 @@ impl Section {
             },
             SPB_MAGIC => FileItem::Malformed {
                 length,
-                fault: Fault::Timeless,
+                fault: PacketFault::Timeless,
             },
             _ => FileItem::Skip { length },
         })
@@ -149,7 +149,7 @@ impl Section {
                 offset,
                 expected,
                 got,
-            } => (offset, Fault::Cut { expected, got }),
+            } => (offset, PacketFault::Cut { expected, got }),
             End::Unreadable { offset, fault } => (*offset, fault.clone()),
         };
         // A damaged description keeps its number, so that later ones keep theirs. A damaged section
@@ -198,7 +198,7 @@ impl Section {
                 magic if magic == BYTE_ORDER_MAGIC.to_le_bytes() => false,
                 magic if magic == BYTE_ORDER_MAGIC.to_be_bytes() => true,
                 magic => {
-                    return unreadable(Fault::Header(format!(
+                    return unreadable(PacketFault::Header(format!(
                         "byte-order magic: expected 1A 2B 3C 4D in either order, got {magic:02X?}"
                     )));
                 }
@@ -207,7 +207,7 @@ impl Section {
         let kind = self.u32(kind);
         let front = self.u32(length);
         if !(FRAMING_LEN..=MAX_BLOCK_LEN).contains(&front) || !front.is_multiple_of(4) {
-            return unreadable(Fault::Length {
+            return unreadable(PacketFault::Length {
                 expected: "12 to 16777216, a multiple of 4",
                 got: front.into(),
             });
@@ -218,7 +218,7 @@ impl Section {
         };
         let back = block.last_chunk().map_or(0, |&back| self.u32(back));
         if back != front {
-            return unreadable(Fault::Lengths { front, back });
+            return unreadable(PacketFault::Lengths { front, back });
         }
         Ok(Ok((kind, front as usize)))
     }
@@ -266,16 +266,16 @@ impl Section {
         }
     }
 
-    fn packet(&self, block: &[u8]) -> Result<CapturedPacket, Fault> {
+    fn packet(&self, block: &[u8]) -> Result<CapturedPacket, PacketFault> {
         let parse = match self.big_endian {
             true => parse_enhancedpacketblock_be,
             false => parse_enhancedpacketblock_le,
         };
-        let (_, packet) = parse(block).map_err(|_| Fault::Block { kind: EPB_MAGIC })?;
+        let (_, packet) = parse(block).map_err(|_| PacketFault::Block { kind: EPB_MAGIC })?;
         let interface = usize::try_from(packet.if_id)
             .ok()
             .and_then(|id| self.interfaces.get(id))
-            .ok_or(Fault::Interface {
+            .ok_or(PacketFault::Interface {
                 got: packet.if_id,
                 described: self.interfaces.len(),
             })?;

@@ -32,7 +32,7 @@ pub struct Sensor {
     pub last: Stamp<Host>,
 }
 
-/// Counts records by sensor.
+/// RecordingCounts records by sensor.
 #[derive(Clone, Debug, Default)]
 pub struct Sensors {
     /// In order of appearance; `data_port` is `None` for position packets.
@@ -43,7 +43,7 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Counts a record; returns whether it is a lidar's.
+    /// RecordingCounts a record; returns whether it is a lidar's.
     pub fn observe(&mut self, record: &Record<'_>) -> bool {
         let Wire::Lidar {
             source,

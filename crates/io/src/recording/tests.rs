@@ -126,7 +126,7 @@ fn data_packet(fill: u8) -> Vec<u8> {
 }
 
 /// All records, foreign ones included, with the end and the counts.
-fn read(bytes: &[u8]) -> (Vec<OwnedRecord>, End, Counts) {
+fn read(bytes: &[u8]) -> (Vec<OwnedRecord>, End, RecordingCounts) {
     let mut recording = Recording::new(bytes, "test").unwrap().keep_foreign();
     let mut records = Vec::new();
     while let Some(record) = recording.next_record().unwrap() {
@@ -279,7 +279,7 @@ fn faults_name_the_short_layer() {
     assert!(
         matches!(
             &fault,
-            Fault::Short {
+            PacketFault::Short {
                 expected: 13,
                 got: 12,
                 ..
@@ -383,7 +383,7 @@ fn pcapng_sections_reset_interfaces_and_other_blocks_are_skipped() {
     assert_eq!((counts.records, counts.malformed), (7, 3));
     assert_eq!(
         counts.first_malformed.unwrap().fault,
-        Fault::Interface {
+        PacketFault::Interface {
             got: 1,
             described: 1
         }
@@ -416,7 +416,7 @@ fn a_wrong_length_ends_the_reading_with_its_offset() {
     let (records, end, _) = read(&file);
     assert_eq!(records.len(), 1);
     assert!(
-        matches!(end, End::Unreadable { offset: at, fault: Fault::Length { .. } } if at == offset),
+        matches!(end, End::Unreadable { offset: at, fault: PacketFault::Length { .. } } if at == offset),
         "{end:?}"
     );
 
@@ -427,7 +427,7 @@ fn a_wrong_length_ends_the_reading_with_its_offset() {
     let (records, end, _) = read(&[head.clone(), broken].concat());
     assert_eq!(records.len(), 0);
     assert!(
-        matches!(end, End::Unreadable { offset, fault: Fault::Lengths { .. } } if offset == head.len() as u64),
+        matches!(end, End::Unreadable { offset, fault: PacketFault::Lengths { .. } } if offset == head.len() as u64),
         "{end:?}"
     );
 }

@@ -79,7 +79,7 @@ pub struct ListenCounts {
 
 /// Bound sockets with a runtime of their own, owned by one thread.
 #[derive(Debug)]
-pub struct Listener {
+pub struct LidarListener {
     /// Data first, then position, then further data.
     sockets: Vec<LidarSocket>,
     /// Undelivered datagrams of each socket.
@@ -103,10 +103,10 @@ pub fn listen(
     stop: &AtomicBool,
     sink: impl FnMut(&Record<'_>),
 ) -> Result<ListenCounts, UdpError> {
-    Listener::bind(config)?.run(stop, sink)
+    LidarListener::bind(config)?.run(stop, sink)
 }
 
-impl Listener {
+impl LidarListener {
     /// Binds the sockets.
     ///
     /// # Errors
@@ -160,7 +160,7 @@ impl Listener {
     }
 
     /// Sets the longest time for which datagrams gather; it shortens while more than 48 datagrams
-    /// arrive in it. To stop sooner, set the flag of [`Listener::run`] and unpark its thread.
+    /// arrive in it. To stop sooner, set the flag of [`LidarListener::run`] and unpark its thread.
     pub fn gather(&mut self, longest: Duration) {
         self.longest_gather = longest;
         self.gather = longest.min(self.gather.max(GATHER));

@@ -99,16 +99,16 @@ pub enum CalibrationError {
 }
 
 /// One laser of a file, with the lines of what may be out of proportion.
-struct Entry {
+struct LaserEntry {
     /// The laser's number in firing order, and its line.
     id: (i64, usize),
     correction: LaserCorrection,
     /// Key and line of elevation, azimuth offset, and of each length.
-    lines: Lines,
+    lines: EntryLines,
 }
 
 /// Which key, in which line, a quantity came from.
-struct Lines {
+struct EntryLines {
     elevation: (&'static str, usize),
     azimuth: (&'static str, usize),
     range: (&'static str, usize),
@@ -121,7 +121,7 @@ fn assemble(
     layer: &'static str,
     line: usize,
     model: &'static Model,
-    entries: Vec<Entry>,
+    entries: Vec<LaserEntry>,
 ) -> Result<Corrections, CalibrationError> {
     let expected = model.lasers.len();
     if entries.len() != expected {
@@ -133,7 +133,7 @@ fn assemble(
             got: entries.len(),
         });
     }
-    let mut slots: Vec<Option<Entry>> = Vec::new();
+    let mut slots: Vec<Option<LaserEntry>> = Vec::new();
     slots.resize_with(expected, || None);
     for entry in entries {
         let (id, id_line) = entry.id;
@@ -166,7 +166,7 @@ fn assemble(
 fn plausible(
     layer: &'static str,
     model: &'static Model,
-    entry: &Entry,
+    entry: &LaserEntry,
     usual: LaserCorrection,
 ) -> Result<(), CalibrationError> {
     let refuse = |(key, line): (&'static str, usize), expected: String, got: String| {
@@ -179,7 +179,7 @@ fn plausible(
         })
     };
     let (
-        Entry {
+        LaserEntry {
             id: (id, _),
             correction,
             lines,

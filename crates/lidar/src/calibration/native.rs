@@ -11,22 +11,22 @@ use protocol::vlp16::Model;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{CalibrationError, Entry, Lines, assemble};
+use super::{CalibrationError, EntryLines, LaserEntry, assemble};
 use crate::corrections::{Corrections, LaserCorrection};
 
 const LAYER: &str = "calibration TOML";
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct CalibrationFile {
     model: Spanned<String>,
     #[serde(default)]
-    laser: Vec<Table>,
+    laser: Vec<LaserTable>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Table {
+struct LaserTable {
     id: Spanned<i64>,
     elevation_deg: Spanned<f64>,
     azimuth_offset_deg: Option<Spanned<f64>>,
@@ -41,7 +41,7 @@ struct Table {
 /// # Errors
 /// [`CalibrationError`], with the line.
 pub fn from_toml(text: &str, model: &'static Model) -> Result<Corrections, CalibrationError> {
-    let file: File = toml::from_str(text).map_err(|error| CalibrationError::Syntax {
+    let file: CalibrationFile = toml::from_str(text).map_err(|error| CalibrationError::Syntax {
         layer: LAYER,
         line: error.span().map_or(1, |span| line(text, span)),
         message: error.message().to_owned(),
@@ -60,8 +60,8 @@ pub fn from_toml(text: &str, model: &'static Model) -> Result<Corrections, Calib
     assemble(LAYER, line(text, file.model.span()), model, entries)
 }
 
-impl Table {
-    fn entry(&self, text: &str, model: &'static Model) -> Result<Entry, CalibrationError> {
+impl LaserTable {
+    fn entry(&self, text: &str, model: &'static Model) -> Result<LaserEntry, CalibrationError> {
         let id_line = line(text, self.id.span());
         let laser = usize::try_from(*self.id.get_ref()).ok();
         // A number beyond the model's is refused when all is put together.
@@ -102,7 +102,7 @@ impl Table {
             self.vertical_offset_m.as_ref(),
             usual.vertical_offset_m,
         )?;
-        Ok(Entry {
+        Ok(LaserEntry {
             id: (*self.id.get_ref(), id_line),
             correction: LaserCorrection {
                 elevation_deg,
@@ -112,7 +112,7 @@ impl Table {
                 tangential_offset_m,
                 vertical_offset_m,
             },
-            lines: Lines {
+            lines: EntryLines {
                 elevation,
                 azimuth,
                 range,

@@ -13,8 +13,8 @@ use std::f64::consts::PI;
 
 use protocol::vlp16::Model;
 
-use super::yaml::{Node, Value, parse};
-use super::{CalibrationError, Entry, Lines, assemble};
+use super::yaml::{YamlNode, YamlValue, parse};
+use super::{CalibrationError, EntryLines, LaserEntry, assemble};
 use crate::corrections::{Corrections, LaserCorrection};
 
 const LAYER: &str = "calibration YAML";
@@ -70,10 +70,10 @@ pub fn from_ros_yaml(
     model: &'static Model,
 ) -> Result<RosCalibration, CalibrationError> {
     let root = parse(LAYER, text)?;
-    let top = Mapping::new(&root, "the file", |key| TOP.contains(&key))?;
+    let top = YamlMapping::new(&root, "the file", |key| TOP.contains(&key))?;
     check_unit(&top, model)?;
     let lasers = top.required("lasers")?;
-    let Value::List(items) = &lasers.value else {
+    let YamlValue::List(items) = &lasers.value else {
         return Err(value("lasers", lasers, "a list"));
     };
     let count = top.required("num_lasers")?;
@@ -105,7 +105,7 @@ pub fn from_ros_yaml(
 }
 
 /// The distance unit is the packet's, not the sensor's own: another one means another model.
-fn check_unit(top: &Mapping<'_>, model: &'static Model) -> Result<(), CalibrationError> {
+fn check_unit(top: &YamlMapping<'_>, model: &'static Model) -> Result<(), CalibrationError> {
     let Some(unit) = top.get("distance_resolution") else {
         return Ok(());
     };
@@ -118,9 +118,9 @@ fn check_unit(top: &Mapping<'_>, model: &'static Model) -> Result<(), Calibratio
 }
 
 /// One laser.
-fn entry(item: &Node, ignored: &mut Vec<Ignored>) -> Result<Entry, CalibrationError> {
+fn entry(item: &YamlNode, ignored: &mut Vec<Ignored>) -> Result<LaserEntry, CalibrationError> {
     let is_reflectivity = |key: &str| REFLECTIVITY.iter().any(|&(known, _)| known == key);
-    let laser = Mapping::new(item, "a laser", |key| {
+    let laser = YamlMapping::new(item, "a laser", |key| {
         LASER.contains(&key) || is_reflectivity(key)
     })?;
     let id = laser.required("laser_id")?;
@@ -151,7 +151,7 @@ fn entry(item: &Node, ignored: &mut Vec<Ignored>) -> Result<Entry, CalibrationEr
             ignored.push(Ignored { line, key });
         }
     }
-    Ok(Entry {
+    Ok(LaserEntry {
         id: (whole("laser_id", id)?, id.line),
         correction: LaserCorrection {
             elevation_deg: w.to_degrees(),
@@ -161,7 +161,7 @@ fn entry(item: &Node, ignored: &mut Vec<Ignored>) -> Result<Entry, CalibrationEr
             tangential_offset_m: horizontal_m,
             vertical_offset_m: vertical_m * w.cos(),
         },
-        lines: Lines {
+        lines: EntryLines {
             elevation,
             azimuth,
             range,
@@ -175,7 +175,7 @@ fn entry(item: &Node, ignored: &mut Vec<Ignored>) -> Result<Entry, CalibrationEr
 
 /// Passes two-point corrections only where they come to nothing: where both equal the one for all
 /// distances.
-fn two_point(laser: &Mapping<'_>, range_offset_m: f64) -> Result<(), CalibrationError> {
+fn two_point(laser: &YamlMapping<'_>, range_offset_m: f64) -> Result<(), CalibrationError> {
     const AVAILABLE: &str = "two_pt_correction_available";
     let Some(available) = laser.get(AVAILABLE) else {
         return Ok(());
@@ -200,18 +200,18 @@ fn two_point(laser: &Mapping<'_>, range_offset_m: f64) -> Result<(), Calibration
 }
 
 /// A mapping all of whose keys are known.
-struct Mapping<'a> {
+struct YamlMapping<'a> {
     line: usize,
-    pairs: &'a [(Node, Node)],
+    pairs: &'a [(YamlNode, YamlNode)],
 }
 
-impl<'a> Mapping<'a> {
+impl<'a> YamlMapping<'a> {
     fn new(
-        node: &'a Node,
+        node: &'a YamlNode,
         what: &'static str,
         known: impl Fn(&str) -> bool,
     ) -> Result<Self, CalibrationError> {
-        let Value::Map(pairs) = &node.value else {
+        let YamlValue::Map(pairs) = &node.value else {
             return Err(value(what, node, "a mapping"));
         };
         for (key, _) in pairs {
@@ -230,14 +230,14 @@ impl<'a> Mapping<'a> {
         })
     }
 
-    fn get(&self, key: &str) -> Option<&'a Node> {
+    fn get(&self, key: &str) -> Option<&'a YamlNode> {
         let mut pairs = self.pairs.iter();
         pairs
             .find(|(name, _)| name.as_str() == Some(key))
             .map(|(_, value)| value)
     }
 
-    fn required(&self, key: &'static str) -> Result<&'a Node, CalibrationError> {
+    fn required(&self, key: &'static str) -> Result<&'a YamlNode, CalibrationError> {
         self.get(key).ok_or(CalibrationError::MissingKey {
             layer: LAYER,
             line: self.line,
@@ -246,7 +246,7 @@ impl<'a> Mapping<'a> {
     }
 }
 
-fn value(key: &str, node: &Node, expected: &str) -> CalibrationError {
+fn value(key: &str, node: &YamlNode, expected: &str) -> CalibrationError {
     CalibrationError::Value {
         layer: LAYER,
         line: node.line,
@@ -256,13 +256,13 @@ fn value(key: &str, node: &Node, expected: &str) -> CalibrationError {
     }
 }
 
-fn number(key: &str, node: &Node) -> Result<f64, CalibrationError> {
+fn number(key: &str, node: &YamlNode) -> Result<f64, CalibrationError> {
     let read = node.as_str().and_then(|text| text.parse::<f64>().ok());
     read.filter(|x| x.is_finite())
         .ok_or_else(|| value(key, node, "a finite number"))
 }
 
-fn whole(key: &str, node: &Node) -> Result<i64, CalibrationError> {
+fn whole(key: &str, node: &YamlNode) -> Result<i64, CalibrationError> {
     let read = node.as_str().and_then(|text| text.parse().ok());
     read.ok_or_else(|| value(key, node, "a whole number"))
 }

@@ -12,23 +12,23 @@ const MOST_DEPTH: usize = 16;
 
 /// A value and the line on which it begins.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Node {
+pub(super) struct YamlNode {
     pub line: usize,
-    pub value: Value,
+    pub value: YamlValue,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Value {
+pub(super) enum YamlValue {
     Scalar(String),
-    List(Vec<Node>),
+    List(Vec<YamlNode>),
     /// Keys in the order of the file, none twice.
-    Map(Vec<(Node, Node)>),
+    Map(Vec<(YamlNode, YamlNode)>),
 }
 
-impl Node {
+impl YamlNode {
     pub(super) fn as_str(&self) -> Option<&str> {
         match &self.value {
-            Value::Scalar(text) => Some(text),
+            YamlValue::Scalar(text) => Some(text),
             _ => None,
         }
     }
@@ -36,35 +36,35 @@ impl Node {
     /// What it is, for an error.
     pub(super) fn describe(&self) -> String {
         match &self.value {
-            Value::Scalar(text) => format!("{text:?}"),
-            Value::List(items) => format!("a list of {}", items.len()),
-            Value::Map(pairs) => format!("a mapping of {} keys", pairs.len()),
+            YamlValue::Scalar(text) => format!("{text:?}"),
+            YamlValue::List(items) => format!("a list of {}", items.len()),
+            YamlValue::Map(pairs) => format!("a mapping of {} keys", pairs.len()),
         }
     }
 }
 
 /// A list or mapping whose end has not come.
-struct Open {
-    node: Node,
+struct OpenNode {
+    node: YamlNode,
     /// The key whose value comes next.
-    key: Option<Node>,
+    key: Option<YamlNode>,
 }
 
 /// Reads the one document of `text`.
-pub(super) fn parse(layer: &'static str, text: &str) -> Result<Node, CalibrationError> {
+pub(super) fn parse(layer: &'static str, text: &str) -> Result<YamlNode, CalibrationError> {
     let wrong = |line, message: &str| CalibrationError::Syntax {
         layer,
         line,
         message: message.to_owned(),
     };
-    let mut open: Vec<Open> = Vec::new();
+    let mut open: Vec<OpenNode> = Vec::new();
     let mut root = None;
     for event in Parser::new_from_str(text) {
         let (event, Span { start, .. }) =
             event.map_err(|error| wrong(error.marker().line(), error.info()))?;
         let line = start.line();
-        let begin = |value| Open {
-            node: Node { line, value },
+        let begin = |value| OpenNode {
+            node: YamlNode { line, value },
             key: None,
         };
         let done = match event {
@@ -76,16 +76,16 @@ pub(super) fn parse(layer: &'static str, text: &str) -> Result<Node, Calibration
             {
                 return Err(wrong(line, "anchors and tags are not supported"));
             }
-            Event::Scalar(text, ..) => Some(Node {
+            Event::Scalar(text, ..) => Some(YamlNode {
                 line,
-                value: Value::Scalar(text.into_owned()),
+                value: YamlValue::Scalar(text.into_owned()),
             }),
             Event::SequenceStart(..) => {
-                open.push(begin(Value::List(Vec::new())));
+                open.push(begin(YamlValue::List(Vec::new())));
                 None
             }
             Event::MappingStart(..) => {
-                open.push(begin(Value::Map(Vec::new())));
+                open.push(begin(YamlValue::Map(Vec::new())));
                 None
             }
             Event::SequenceEnd | Event::MappingEnd => open.pop().map(|open| open.node),
@@ -106,13 +106,13 @@ pub(super) fn parse(layer: &'static str, text: &str) -> Result<Node, Calibration
     root.ok_or(wrong(1, "expected a document, got an empty file"))
 }
 
-impl Open {
+impl OpenNode {
     /// Adds a finished item, key or value.
-    fn take(&mut self, done: Node) -> Result<(), String> {
+    fn take(&mut self, done: YamlNode) -> Result<(), String> {
         match (&mut self.node.value, self.key.take()) {
-            (Value::List(items), _) => items.push(done),
-            (Value::Map(pairs), Some(key)) => pairs.push((key, done)),
-            (Value::Map(pairs), None) => {
+            (YamlValue::List(items), _) => items.push(done),
+            (YamlValue::Map(pairs), Some(key)) => pairs.push((key, done)),
+            (YamlValue::Map(pairs), None) => {
                 let Some(name) = done.as_str() else {
                     return Err(format!("expected a key, got {}", done.describe()));
                 };
@@ -122,7 +122,7 @@ impl Open {
                 self.key = Some(done);
             }
             // Scalars are never open.
-            (Value::Scalar(_), _) => {}
+            (YamlValue::Scalar(_), _) => {}
         }
         Ok(())
     }

@@ -5,7 +5,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{mask8x32, u8x32};
-use lidar::Layer;
+use lidar::ReturnLayer;
 use units::Stamp;
 
 use super::lanes::{BLOCK_ROWS, CHANNELS, store};
@@ -24,7 +24,7 @@ pub(super) struct Destinations<S: Simd, const L: usize> {
 impl<const L: usize> CompressedRows<L> {
     /// The kept rows of a block with one layer or two.
     #[inline(always)]
-    pub(super) fn kept(layers: [&Layer<'_>; L]) -> Self {
+    pub(super) fn kept(layers: [&ReturnLayer<'_>; L]) -> Self {
         Self(match layers.as_slice() {
             [first, second] => spread(first.kept()) | spread(second.kept()) << 1,
             [only, ..] => u64::from(only.kept()),

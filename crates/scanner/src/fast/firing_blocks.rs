@@ -10,7 +10,7 @@ use cloud::mount::Tilt;
 use cloud::{Fields, Points, Spare};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch};
-use lidar::{FiringBlock, Layer};
+use lidar::{FiringBlock, ReturnLayer};
 use units::{Degrees, Host, Span, Stamp};
 
 use super::clock_cursor::{ClockCursor, Tangent};
@@ -199,7 +199,7 @@ impl<'a> FiringBlockPlacer<'a> {
         &self,
         simd: S,
         block: &FiringBlock<'_>,
-        layers: [&Layer<'_>; L],
+        layers: [&ReturnLayer<'_>; L],
         pose: &Pose,
         to: &mut Spare<'_, BLOCK_ROWS>,
     ) -> usize {

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use io::can::CanInterface;
-use io::discover::{Epos2Found, Findings, discover};
+use io::discover::{ConnectedDevices, Epos2Found, discover};
 use serde::Serialize;
 
 use super::CommandOutput;
@@ -81,7 +81,7 @@ impl Finding {
     }
 }
 
-fn drives(found: &Findings, read: Sysfs<'_>) -> Vec<Finding> {
+fn drives(found: &ConnectedDevices, read: Sysfs<'_>) -> Vec<Finding> {
     let mut findings: Vec<Finding> = found.epos2.iter().map(|unit| epos2(unit, read)).collect();
     if findings.is_empty() {
         findings.push(

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use daemon::Options;
-use io::discover::{EPOS2_PRODUCT, EPOS2_VENDOR, Epos2Found, Findings, UsbIdentity};
+use io::discover::{ConnectedDevices, EPOS2_PRODUCT, EPOS2_VENDOR, Epos2Found, UsbIdentity};
 use serde_json::json;
 use units::Span;
 
@@ -94,9 +94,9 @@ fn a_drive_that_is_looked_for_is_found_wherever_its_cable_comes_back() {
     let on_the_bus = Arc::clone(&units);
     let rig = Rig::with("", |options| {
         bench(options, "");
-        options.world.plugged = Arc::new(move || Findings {
+        options.world.plugged = Arc::new(move || ConnectedDevices {
             epos2: on_the_bus.lock().unwrap().clone(),
-            ..Findings::default()
+            ..ConnectedDevices::default()
         });
     });
     let plug = |port: Option<PathBuf>| {

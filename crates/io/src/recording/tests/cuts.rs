@@ -143,7 +143,7 @@ impl Read for Pieces<'_> {
     }
 }
 
-fn exhaust_from(reader: impl Read) -> Option<(Counts, End)> {
+fn exhaust_from(reader: impl Read) -> Option<(RecordingCounts, End)> {
     let mut recording = Recording::new(reader, "noise").ok()?.keep_foreign();
     while recording.next_record().unwrap().is_some() {}
     let counts = recording.counts();

@@ -49,7 +49,7 @@ fn ip_part(id: u16, offset: usize, more: bool, part: &[u8]) -> Vec<u8> {
     out
 }
 
-fn one(link: u32, data: &[u8]) -> (Vec<OwnedRecord>, End, Counts) {
+fn one(link: u32, data: &[u8]) -> (Vec<OwnedRecord>, End, RecordingCounts) {
     read(&pcap(0xA1B2_C3D4, false, link, &[(1, 0, None, data)]))
 }
 
@@ -135,7 +135,7 @@ fn ipv6_on_every_link() {
                 "link {link}, {cut}"
             );
             assert_eq!(counts.malformed, 1, "link {link} cut at {cut}: {counts:?}");
-            if let Fault::Short {
+            if let PacketFault::Short {
                 offset,
                 expected,
                 got,
@@ -312,7 +312,7 @@ fn pcapng_of_several_sections_interfaces_and_packet_blocks() {
         );
         assert_eq!((counts.timeless, counts.damaged), (1, 0));
         let first = counts.first_malformed.unwrap().fault;
-        assert_eq!(first, Fault::Block { kind: 6 });
+        assert_eq!(first, PacketFault::Block { kind: 6 });
     }
 }
 

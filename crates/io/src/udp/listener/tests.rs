@@ -36,7 +36,7 @@ fn payload_of(record: &OwnedRecord) -> (u16, Vec<u8>) {
 
 #[test]
 fn both_ports_deliver_with_kernel_times() {
-    let mut listener = Listener::bind(&local(1 << 20)).unwrap();
+    let mut listener = LidarListener::bind(&local(1 << 20)).unwrap();
     let data = listener.sockets()[0].address();
     let position = listener.sockets()[1].address();
     assert_ne!(data.port(), position.port());
@@ -92,7 +92,7 @@ fn both_ports_deliver_with_kernel_times() {
 
 #[test]
 fn kernel_times_do_not_depend_on_the_read() {
-    let mut listener = Listener::bind(&local(1 << 20)).unwrap();
+    let mut listener = LidarListener::bind(&local(1 << 20)).unwrap();
     let to = listener.sockets()[0].address();
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
     sender.send_to(b"early", to).unwrap();
@@ -112,7 +112,7 @@ fn kernel_times_do_not_depend_on_the_read() {
 
 #[test]
 fn drops_of_the_kernel_are_counted_exactly() {
-    let mut listener = Listener::bind(&local(4096)).unwrap();
+    let mut listener = LidarListener::bind(&local(4096)).unwrap();
     let to = listener.sockets()[0].address();
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
     let stop = AtomicBool::new(true);
@@ -146,7 +146,7 @@ fn bind_errors_name_the_reason() {
         address: Ipv4Addr::new(203, 0, 113, 7), // TEST-NET-3 (RFC 5737)
         ..local(65_536)
     };
-    let elsewhere = Listener::bind(&config).unwrap_err();
+    let elsewhere = LidarListener::bind(&config).unwrap_err();
     assert!(
         matches!(elsewhere, UdpError::NoInterface { .. }),
         "{elsewhere}"
@@ -163,7 +163,7 @@ fn a_common_port_takes_one_socket() {
         position_port: Some(port),
         ..local(65_536)
     };
-    assert_eq!(Listener::bind(&config).unwrap().sockets().len(), 1);
+    assert_eq!(LidarListener::bind(&config).unwrap().sockets().len(), 1);
 }
 
 /// A data packet with valid block flags.
@@ -176,7 +176,7 @@ fn data_packet() -> Vec<u8> {
 }
 
 /// Received datagrams by source, port and length.
-fn received(listener: &mut Listener) -> Vec<([u8; 4], u16, usize)> {
+fn received(listener: &mut LidarListener) -> Vec<([u8; 4], u16, usize)> {
     let mut received = Vec::new();
     listener
         .run(&AtomicBool::new(true), |record| match record.wire {
@@ -193,7 +193,7 @@ fn received(listener: &mut Listener) -> Vec<([u8; 4], u16, usize)> {
 
 #[test]
 fn datagrams_of_several_ports_are_delivered_in_order_of_time() {
-    let mut listener = Listener::bind(&local(4 << 20)).unwrap();
+    let mut listener = LidarListener::bind(&local(4 << 20)).unwrap();
     let [data, position] = [0, 1].map(|n: usize| listener.sockets()[n].address());
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
     // Several batches, most of them of one port; the longest datagram and an empty one are among
@@ -228,7 +228,7 @@ fn datagrams_of_several_ports_are_delivered_in_order_of_time() {
 
 #[test]
 fn drops_are_counted_after_batches_without_drops() {
-    let mut listener = Listener::bind(&local(65_536)).unwrap();
+    let mut listener = LidarListener::bind(&local(65_536)).unwrap();
     let to = listener.sockets()[0].address();
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
     let mut sent = 0;
@@ -251,7 +251,7 @@ fn sensors_are_distinguished_by_source_and_port() {
         more_ports: vec![0],
         ..local(1 << 20)
     };
-    let mut listener = Listener::bind(&config).unwrap();
+    let mut listener = LidarListener::bind(&config).unwrap();
     let [data, position, more] = [0, 1, 2].map(|n: usize| listener.sockets()[n].address());
     let sensors = ["127.0.0.2:0", "127.0.0.3:0"].map(|at| UdpSocket::bind(at).unwrap());
     sensors[0].send_to(&data_packet(), data).unwrap();
@@ -283,7 +283,7 @@ fn only_wanted_sources_are_delivered() {
         sources: vec![Ipv4Addr::new(127, 0, 0, 3)],
         ..local(1 << 20)
     };
-    let mut listener = Listener::bind(&config).unwrap();
+    let mut listener = LidarListener::bind(&config).unwrap();
     let data = listener.sockets()[0].address();
     for from in ["127.0.0.2:0", "127.0.0.3:0", "127.0.0.4:0"] {
         let sensor = UdpSocket::bind(from).unwrap();
@@ -304,7 +304,7 @@ fn multicast_groups_are_joined_on_the_given_interface() {
         group: Some(group),
         ..local(1 << 20)
     };
-    let mut listener = Listener::bind(&config).unwrap();
+    let mut listener = LidarListener::bind(&config).unwrap();
     let port = listener.sockets()[0].address().port();
     let sender = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::DGRAM, None).unwrap();
     sender.set_multicast_if_v4(&Ipv4Addr::LOCALHOST).unwrap();
@@ -327,7 +327,7 @@ fn multicast_groups_are_joined_on_the_given_interface() {
         group: Some(Ipv4Addr::new(192, 168, 1, 1)),
         ..local(1 << 20)
     };
-    let error = Listener::bind(&nonsense).unwrap_err();
+    let error = LidarListener::bind(&nonsense).unwrap_err();
     assert!(
         matches!(error, UdpError::Io { action: "join", .. }),
         "{error}"
@@ -336,7 +336,7 @@ fn multicast_groups_are_joined_on_the_given_interface() {
 
 #[test]
 fn the_gathering_time_follows_the_rate() {
-    let mut listener = Listener::bind(&local(1 << 20)).unwrap();
+    let mut listener = LidarListener::bind(&local(1 << 20)).unwrap();
     let longest = Duration::from_millis(50);
     listener.gather(longest);
     (0..10).for_each(|_| listener.adapt(3));
@@ -356,7 +356,7 @@ fn the_gathering_time_follows_the_rate() {
 
 #[test]
 fn a_stop_interrupts_the_gathering() {
-    let mut listener = Listener::bind(&local(1 << 20)).unwrap();
+    let mut listener = LidarListener::bind(&local(1 << 20)).unwrap();
     listener.gather(Duration::from_secs(600));
     (0..20).for_each(|_| listener.adapt(0));
     assert_eq!(listener.gather, Duration::from_secs(600));

@@ -9,17 +9,17 @@
 use protocol::vlp16::{CHANNELS, Model};
 use units::{Lidar, Real, Span, Stamp};
 
-use crate::firing::{Channels, Duplicates, Echo, Firing};
+use super::azimuth::{PaceOffsets, SinCos};
+use super::unpack::{RawChannels, UnpackedBlock};
+use crate::firing::{Duplicates, Echo, Firing, FiringChannels};
 use crate::geometry::Geometry;
-use crate::rotor::{Ahead, SinCos};
-use crate::sorted::{Raw, Sorted};
 
 /// The returns of one block: each channel's only one, or of a pair of blocks each channel's first
 /// or second.
 #[derive(Clone, Copy, Debug)]
-pub struct Layer<'a> {
-    raw: &'a Raw,
-    sorted: &'a Sorted,
+pub struct ReturnLayer<'a> {
+    raw: &'a RawChannels,
+    sorted: &'a UnpackedBlock,
     kept: u32,
 }
 
@@ -32,8 +32,8 @@ pub struct FiringBlock<'a> {
     pub(crate) pace_cdeg: f64,
     pub(crate) geometry: &'a Geometry,
     pub(crate) azimuth: SinCos,
-    pub(crate) ahead: &'a Ahead,
-    pub(crate) returns: Layers<'a>,
+    pub(crate) ahead: &'a PaceOffsets,
+    pub(crate) returns: BlockReturns<'a>,
 }
 
 /// Where channels look along the horizon: one, or several.
@@ -47,21 +47,21 @@ pub struct Heading<V> {
 
 /// One block, or a pair of them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Layers<'a> {
+pub(crate) enum BlockReturns<'a> {
     One {
-        only: Layer<'a>,
+        only: ReturnLayer<'a>,
         echo: Echo,
     },
     Two {
-        last: Layer<'a>,
-        strongest: Layer<'a>,
+        last: ReturnLayer<'a>,
+        strongest: ReturnLayer<'a>,
         duplicates: Duplicates,
     },
 }
 
-impl<'a> Layer<'a> {
+impl<'a> ReturnLayer<'a> {
     #[inline(always)]
-    pub(crate) const fn new(raw: &'a Raw, sorted: &'a Sorted) -> Self {
+    pub(crate) const fn new(raw: &'a RawChannels, sorted: &'a UnpackedBlock) -> Self {
         Self {
             raw,
             sorted,
@@ -91,14 +91,18 @@ impl<'a> Layer<'a> {
     }
 }
 
-impl<'a> Layers<'a> {
+impl<'a> BlockReturns<'a> {
     #[inline(always)]
-    pub(crate) const fn one(only: Layer<'a>, echo: Echo) -> Self {
+    pub(crate) const fn one(only: ReturnLayer<'a>, echo: Echo) -> Self {
         Self::One { only, echo }
     }
 
     #[inline(always)]
-    pub(crate) fn two(last: Layer<'a>, strongest: Layer<'a>, duplicates: Duplicates) -> Self {
+    pub(crate) fn two(
+        last: ReturnLayer<'a>,
+        strongest: ReturnLayer<'a>,
+        duplicates: Duplicates,
+    ) -> Self {
         let mut strongest = strongest;
         if duplicates == Duplicates::Unique {
             strongest.kept &= strongest.sorted.changed;
@@ -110,7 +114,7 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// Channels with a distance, and the same with equal pairs counted once.
+    /// FiringChannels with a distance, and the same with equal pairs counted once.
     #[inline(always)]
     pub(crate) fn count(&self) -> (u64, u64) {
         let ones = |mask: u32| u64::from(mask.count_ones());
@@ -141,10 +145,10 @@ impl<'a> FiringBlock<'a> {
     /// comes first.
     #[inline]
     #[must_use]
-    pub const fn layers(&self) -> (&Layer<'a>, Option<&Layer<'a>>) {
+    pub const fn layers(&self) -> (&ReturnLayer<'a>, Option<&ReturnLayer<'a>>) {
         match &self.returns {
-            Layers::One { only, .. } => (only, None),
-            Layers::Two {
+            BlockReturns::One { only, .. } => (only, None),
+            BlockReturns::Two {
                 last, strongest, ..
             } => (last, Some(strongest)),
         }
@@ -156,8 +160,8 @@ impl<'a> FiringBlock<'a> {
     #[must_use]
     pub fn echo_codes(&self) -> [[u8; CHANNELS]; 2] {
         match &self.returns {
-            Layers::One { echo, .. } => [[echo.code(); CHANNELS]; 2],
-            Layers::Two { strongest, .. } => {
+            BlockReturns::One { echo, .. } => [[echo.code(); CHANNELS]; 2],
+            BlockReturns::Two { strongest, .. } => {
                 let changed = strongest.sorted.changed;
                 let codes = |apart: Echo| {
                     core::array::from_fn(|channel| match changed >> channel & 1 {
@@ -268,22 +272,22 @@ impl<'a> FiringBlock<'a> {
     }
 
     /// The channels of firing `n`.
-    fn channels(&self, n: usize) -> Channels<'a> {
+    fn channels(&self, n: usize) -> FiringChannels<'a> {
         let lasers = self.geometry.model.lasers.len();
-        let of = |layer: &Layer<'a>| {
+        let of = |layer: &ReturnLayer<'a>| {
             let raw = layer.raw.get(n * lasers..(n + 1) * lasers);
             raw.unwrap_or_default()
         };
         match &self.returns {
-            Layers::One { only, echo } => Channels::One {
+            BlockReturns::One { only, echo } => FiringChannels::One {
                 raw: of(only),
                 echo: *echo,
             },
-            Layers::Two {
+            BlockReturns::Two {
                 last,
                 strongest,
                 duplicates,
-            } => Channels::Two {
+            } => FiringChannels::Two {
                 last: of(last),
                 strongest: of(strongest),
                 duplicates: *duplicates,

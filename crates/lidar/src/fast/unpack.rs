@@ -9,14 +9,14 @@ use fearless_simd::{Level, dispatch, u8x64, u16x32};
 use protocol::vlp16::{BLOCKS, CHANNELS, DataPacket};
 
 /// The channels of a block as they are on the wire.
-pub(crate) type Raw = [[u8; 3]; CHANNELS];
+pub(crate) type RawChannels = [[u8; 3]; CHANNELS];
 
 /// The channels of one block.
 ///
 /// Aligned as registers are, which must not lie across two lines of the cache.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(crate) struct Sorted {
+pub(crate) struct UnpackedBlock {
     /// Distances in the model's unit.
     pub counts: [f64; CHANNELS],
     pub reflectivities: [u8; CHANNELS],
@@ -28,12 +28,12 @@ pub(crate) struct Sorted {
 
 /// All channels of a packet.
 #[derive(Clone, Debug)]
-pub(crate) struct SortedPacket {
+pub(crate) struct UnpackedPacket {
     level: Level,
-    pub blocks: [Sorted; BLOCKS],
+    pub blocks: [UnpackedBlock; BLOCKS],
 }
 
-impl Default for Sorted {
+impl Default for UnpackedBlock {
     fn default() -> Self {
         Self {
             counts: [0.0; CHANNELS],
@@ -44,11 +44,11 @@ impl Default for Sorted {
     }
 }
 
-impl SortedPacket {
+impl UnpackedPacket {
     pub(crate) fn new() -> Self {
         Self {
             level: Level::new(),
-            blocks: [Sorted::default(); BLOCKS],
+            blocks: [UnpackedBlock::default(); BLOCKS],
         }
     }
 
@@ -58,7 +58,7 @@ impl SortedPacket {
     }
 }
 
-/// Which bytes of [`Raw`] are the distances.
+/// Which bytes of [`RawChannels`] are the distances.
 const COUNTS: [u8; 2 * CHANNELS] = {
     let mut bytes = [0; 2 * CHANNELS];
     let mut i = 0;
@@ -81,14 +81,14 @@ const REFLECTIVITIES: [u8; 2 * CHANNELS] = {
     bytes
 };
 
-/// The place of a byte of [`Raw`] where its first 64 bytes and its last 64 are joined.
+/// The place of a byte of [`RawChannels`] where its first 64 bytes and its last 64 are joined.
 const fn among_two(byte: usize) -> u8 {
     let place = if byte < 64 { byte } else { byte + 32 };
     place as u8
 }
 
 #[inline(always)]
-fn sort<S: Simd>(simd: S, packet: &DataPacket<'_>, blocks: &mut [Sorted; BLOCKS]) {
+fn sort<S: Simd>(simd: S, packet: &DataPacket<'_>, blocks: &mut [UnpackedBlock; BLOCKS]) {
     let counts_of = u8x64::simd_from(simd, COUNTS);
     let reflectivities_of = u8x64::simd_from(simd, REFLECTIVITIES);
     let mut before = u16x32::splat(simd, 0);
@@ -156,7 +156,7 @@ mod tests {
                 detected.as_avx2().map(Level::Avx2),
             ].into_iter().flatten());
             for level in levels {
-                let mut sorted = SortedPacket { level, ..SortedPacket::new() };
+                let mut sorted = UnpackedPacket { level, ..UnpackedPacket::new() };
                 sorted.set(&packet);
                 let mut before = [0; CHANNELS];
                 for (sorted, block) in sorted.blocks.iter().zip(packet.blocks()) {

@@ -12,11 +12,11 @@ use std::sync::LazyLock;
 
 use protocol::vlp16::CHANNELS;
 
-use crate::geometry::{Fan, PerChannel};
+use crate::geometry::{ChannelTable, PerChannel};
 
 /// Whole degrees of a turn.
 const DEGREES: usize = 360;
-/// Steps of a degree on the wire.
+/// AzimuthSteps of a degree on the wire.
 const HUNDREDTHS: usize = 100;
 /// Paces that are kept; a power of two. A rotor held at one speed shows three or four.
 const PACES: usize = 8;
@@ -44,10 +44,10 @@ impl SinCos {
 }
 
 /// How far each channel's azimuth is ahead of its block's: sine and cosine, times the way along the
-/// horizon of one count. Aligned as [`Fan`] is.
+/// horizon of one count. Aligned as [`ChannelTable`] is.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Ahead {
+pub(crate) struct PaceOffsets {
     pub sin: PerChannel<f64>,
     pub cos: PerChannel<f64>,
     /// Bits of the pace, so that any two paces differ.
@@ -56,24 +56,24 @@ pub(crate) struct Ahead {
 
 /// Sine and cosine of every azimuth that a packet can say.
 #[derive(Clone, Debug)]
-pub(crate) struct Compass {
+pub(crate) struct SineTable {
     degrees: [SinCos; DEGREES],
     hundredths: [SinCos; HUNDREDTHS],
 }
 
 /// How far channels are ahead, by pace, for one sensor.
 #[derive(Clone, Debug)]
-pub(crate) struct Rotor {
-    paces: Box<[Ahead; PACES]>,
+pub(crate) struct PaceCache {
+    paces: Box<[PaceOffsets; PACES]>,
 }
 
-impl Compass {
+impl SineTable {
     /// The only one: it is the same for all sensors, and for a short recording it would be much of
     /// the work.
     pub(crate) fn get() -> &'static Self {
-        static COMPASS: LazyLock<Compass> = LazyLock::new(|| {
+        static COMPASS: LazyLock<SineTable> = LazyLock::new(|| {
             let table = |i: usize, step_deg: f64| SinCos::of_degrees(i as f64 * step_deg);
-            Compass {
+            SineTable {
                 degrees: array::from_fn(|i| table(i, 1.0)),
                 hundredths: array::from_fn(|i| table(i, 0.01)),
             }
@@ -94,9 +94,9 @@ impl Compass {
     }
 }
 
-impl Rotor {
-    pub(crate) fn new(fan: &Fan) -> Self {
-        let still = Ahead::new(fan, 0.0);
+impl PaceCache {
+    pub(crate) fn new(fan: &ChannelTable) -> Self {
+        let still = PaceOffsets::new(fan, 0.0);
         Self {
             paces: Box::new(array::from_fn(|_| still.clone())),
         }
@@ -104,20 +104,20 @@ impl Rotor {
 
     /// Of the channels at a pace in hundredths of a degree per block period.
     #[inline]
-    pub(crate) fn ahead(&mut self, fan: &Fan, pace_cdeg: f64) -> &Ahead {
+    pub(crate) fn ahead(&mut self, fan: &ChannelTable, pace_cdeg: f64) -> &PaceOffsets {
         // Neighbouring whole paces fall on different places.
         let place = pace_cdeg as i64 as usize % PACES;
         let kept = &mut self.paces[place];
         if kept.pace != pace_cdeg.to_bits() {
-            *kept = Ahead::new(fan, pace_cdeg);
+            *kept = PaceOffsets::new(fan, pace_cdeg);
         }
         kept
     }
 }
 
-impl Ahead {
+impl PaceOffsets {
     #[cold]
-    fn new(fan: &Fan, pace_cdeg: f64) -> Self {
+    fn new(fan: &ChannelTable, pace_cdeg: f64) -> Self {
         let mut ahead = Self {
             pace: pace_cdeg.to_bits(),
             sin: [0.0; CHANNELS],
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn every_azimuth_of_the_wire_has_its_sine_and_cosine() {
-        let compass = Compass::get();
+        let compass = SineTable::get();
         for cdeg in 0..36_000 {
             let (sin, cos) = (f64::from(cdeg) / 100.0).to_radians().sin_cos();
             let got = compass.azimuth(cdeg);
@@ -159,13 +159,13 @@ mod tests {
     fn what_is_kept_by_pace_is_what_is_computed_anew() {
         for model in [&VLP_16, &VLP_32C] {
             let fan = Geometry::new(model, true, None).fan;
-            let mut rotor = Rotor::new(&fan);
+            let mut rotor = PaceCache::new(&fan);
             // Paces that share a place, come back, stand still, run backwards and are no whole
             // numbers.
             for pace_cdeg in [
                 39.0, 40.0, 47.0, 39.0, 0.0, -0.0, -40.0, 39.818, 36_000.0, 40.0,
             ] {
-                let new = Ahead::new(&fan, pace_cdeg);
+                let new = PaceOffsets::new(&fan, pace_cdeg);
                 let kept = rotor.ahead(&fan, pace_cdeg);
                 assert_eq!((kept.sin, kept.cos), (new.sin, new.cos), "{pace_cdeg}");
             }
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn the_last_channel_is_ahead_by_its_share_of_the_pace() {
         let fan = Geometry::new(&VLP_16, true, None).fan;
-        let mut rotor = Rotor::new(&fan);
+        let mut rotor = PaceCache::new(&fan);
         // 55.296 and 15 x 2.304 us of 110.592 us: 0.8125 of 0.4 deg; 15 deg up, 2 mm a count.
         let ahead = rotor.ahead(&fan, 40.0);
         let across = 0.002 * 15_f64.to_radians().cos();
