@@ -6,9 +6,9 @@
 //!
 //! Left out on purpose: where the points come from (`scanner`), and opening files (`io`).
 
-mod check;
+mod columns;
+mod diagnostic;
 mod error;
-mod fields;
 pub mod formats;
 pub mod messages;
 mod metadata;
@@ -20,9 +20,9 @@ mod sink;
 mod summary;
 mod tilt_track;
 
-pub use check::{Check, Level};
+pub use columns::{Column, Fields, MissingColumns};
+pub use diagnostic::{Diagnostic, DiagnosticLevel};
 pub use error::SinkError;
-pub use fields::{Column, Fields, MissingColumns};
 pub use metadata::Metadata;
 pub use points::{Point, Points, Spare};
 pub use sink::{Companion, Sink};

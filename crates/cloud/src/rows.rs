@@ -1,14 +1,39 @@
-//! Columns into rows of bytes: one pass a column over the batch's rows, so that no row asks which columns there are.
+//! Columns into rows of bytes, in one pass per column over the rows of a batch.
 
-/// Rows of one length, reused from batch to batch.
+use std::ops::Range;
+
+use crate::points::Values;
+
+/// Number type of a column in a row, little-endian.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NumberType {
+    U8,
+    U16,
+    F32,
+    F64,
+}
+
+impl NumberType {
+    /// Its size in bytes.
+    pub(crate) const fn bytes(self) -> usize {
+        match self {
+            Self::U8 => 1,
+            Self::U16 => 2,
+            Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
+/// RowBuffer of one length, reused from batch to batch.
 #[derive(Clone, Debug)]
-pub(crate) struct Rows {
+pub(crate) struct RowBuffer {
     row_bytes: usize,
     bytes: Vec<u8>,
 }
 
-impl Rows {
-    /// Rows of `row_bytes` bytes (at least one).
+impl RowBuffer {
+    /// RowBuffer of `row_bytes` bytes (at least one).
     pub(crate) fn new(row_bytes: usize) -> Self {
         Self {
             row_bytes: row_bytes.max(1),
@@ -16,25 +41,25 @@ impl Rows {
         }
     }
 
-    /// `count` rows; what stood in them before may still stand there.
+    /// Sets the number of rows to `count`; their content is unspecified.
     pub(crate) fn reset(&mut self, count: usize) {
         self.bytes.resize(count * self.row_bytes, 0);
     }
 
-    /// Every row; none where rows are not of `N` bytes.
+    /// Every row; none if rows are not of `N` bytes.
     pub(crate) fn each<const N: usize>(&mut self) -> impl Iterator<Item = &mut [u8; N]> {
         let fits = N == self.row_bytes;
         let (rows, _) = self.bytes.as_chunks_mut::<N>();
         rows.iter_mut().take(if fits { usize::MAX } else { 0 })
     }
 
-    /// Writes a column at byte `offset` of every row.
-    pub(crate) fn fill<const N: usize>(
-        &mut self,
-        offset: usize,
-        values: impl Iterator<Item = [u8; N]>,
-    ) {
-        fill(&mut self.bytes, self.row_bytes, offset, values);
+    /// All rows, to be filled.
+    pub(crate) fn bytes_mut(&mut self) -> &mut [u8] {
+        &mut self.bytes
+    }
+
+    pub(crate) const fn row_bytes(&self) -> usize {
+        self.row_bytes
     }
 
     pub(crate) fn bytes(&self) -> &[u8] {
@@ -42,7 +67,7 @@ impl Rows {
     }
 }
 
-/// The same over rows that someone else keeps.
+/// Writes a column at byte `offset` of every row of `rows`.
 pub(crate) fn fill<const N: usize>(
     rows: &mut [u8],
     row_bytes: usize,
@@ -56,16 +81,100 @@ pub(crate) fn fill<const N: usize>(
     }
 }
 
+/// Writes `range` of a column as numbers of `number`, times by `seconds` of their nanoseconds.
+pub(crate) fn fill_values(
+    rows: &mut [u8],
+    row_bytes: usize,
+    offset: usize,
+    (values, range): (Values<'_>, Range<usize>),
+    number: NumberType,
+    seconds: impl Fn(i64) -> f64,
+) {
+    use NumberType::{F32, F64, U8, U16};
+    match values {
+        Values::Bytes(column) => {
+            let column = part(column, range).iter();
+            match number {
+                U8 => fill(rows, row_bytes, offset, column.map(|v| [*v])),
+                U16 => fill(
+                    rows,
+                    row_bytes,
+                    offset,
+                    column.map(|v| u16::from(*v).to_le_bytes()),
+                ),
+                F32 => fill(
+                    rows,
+                    row_bytes,
+                    offset,
+                    column.map(|v| f32::from(*v).to_le_bytes()),
+                ),
+                F64 => fill(
+                    rows,
+                    row_bytes,
+                    offset,
+                    column.map(|v| f64::from(*v).to_le_bytes()),
+                ),
+            }
+        }
+        Values::Floats(column) => {
+            fill_floats(
+                rows,
+                row_bytes,
+                offset,
+                part(column, range).iter().copied(),
+                number,
+            );
+        }
+        Values::HostTimes(column) => {
+            let seconds = part(column, range).iter().map(|t| seconds(t.as_nanos()));
+            fill_floats(rows, row_bytes, offset, seconds, number);
+        }
+        Values::LidarTimes(column) => {
+            let seconds = part(column, range).iter().map(|t| seconds(t.as_nanos()));
+            fill_floats(rows, row_bytes, offset, seconds, number);
+        }
+    }
+}
+
+/// Writes floats as f32, or as f64 for any wider type.
+fn fill_floats(
+    rows: &mut [u8],
+    row_bytes: usize,
+    offset: usize,
+    values: impl Iterator<Item = f64>,
+    number: NumberType,
+) {
+    match number {
+        NumberType::F64 => fill(rows, row_bytes, offset, values.map(f64::to_le_bytes)),
+        _ => fill(
+            rows,
+            row_bytes,
+            offset,
+            values.map(|v| (v as f32).to_le_bytes()),
+        ),
+    }
+}
+
+/// Some rows of a column; none if it is shorter.
+fn part<T>(column: &[T], range: Range<usize>) -> &[T] {
+    column.get(range).unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn columns_become_rows() {
-        let mut rows = Rows::new(3);
+        let mut rows = RowBuffer::new(3);
         rows.reset(2);
-        rows.fill(0, [1u8, 2].iter().map(|v| [*v]));
-        rows.fill(1, [0x0304u16, 0x0506].iter().map(|v| v.to_be_bytes()));
+        fill(rows.bytes_mut(), 3, 0, [1u8, 2].iter().map(|v| [*v]));
+        fill(
+            rows.bytes_mut(),
+            3,
+            1,
+            [0x0304u16, 0x0506].iter().map(|v| v.to_be_bytes()),
+        );
         assert_eq!(rows.bytes(), [1, 3, 4, 2, 5, 6]);
         rows.reset(1);
         assert_eq!(rows.bytes(), [1, 3, 4]);

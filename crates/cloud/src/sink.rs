@@ -3,7 +3,7 @@
 //! A sink declares its columns and takes batches; producers compute only what is declared. Nothing here knows
 //! files: a writer, a live view, a message queue and a comparison with the truth are all sinks.
 
-use crate::{Check, Fields, Metadata, Points, SinkError, Summary, TiltTrack};
+use crate::{Diagnostic, Fields, Metadata, Points, SinkError, Summary, TiltTrack};
 
 /// A small file that belongs beside a sink's own.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,7 +55,7 @@ pub trait Sink {
     ///
     /// # Errors
     /// [`SinkError`] where it cannot be kept.
-    fn turn(&mut self) -> Result<(), SinkError> {
+    fn revolution(&mut self) -> Result<(), SinkError> {
         Ok(())
     }
 
@@ -63,8 +63,8 @@ pub trait Sink {
     ///
     /// # Errors
     /// [`SinkError`] where it cannot be kept.
-    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
-        let _ = checks;
+    fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
+        let _ = diagnostics;
         Ok(())
     }
 
@@ -123,14 +123,14 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
         self.1.tilt(track)
     }
 
-    fn turn(&mut self) -> Result<(), SinkError> {
-        self.0.turn()?;
-        self.1.turn()
+    fn revolution(&mut self) -> Result<(), SinkError> {
+        self.0.revolution()?;
+        self.1.revolution()
     }
 
-    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
-        self.0.checks(checks)?;
-        self.1.checks(checks)
+    fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
+        self.0.diagnostics(diagnostics)?;
+        self.1.diagnostics(diagnostics)
     }
 
     fn companion(&self, file_name: &str) -> Option<Companion> {
@@ -169,12 +169,12 @@ macro_rules! forward {
                 (**self).tilt(track)
             }
 
-            fn turn(&mut self) -> Result<(), SinkError> {
-                (**self).turn()
+            fn revolution(&mut self) -> Result<(), SinkError> {
+                (**self).revolution()
             }
 
-            fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
-                (**self).checks(checks)
+            fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
+                (**self).diagnostics(diagnostics)
             }
 
             fn companion(&self, file_name: &str) -> Option<Companion> {
@@ -248,12 +248,12 @@ mod tests {
                 self.0 += 1;
                 Ok(())
             }
-            fn turn(&mut self) -> Result<(), SinkError> {
+            fn revolution(&mut self) -> Result<(), SinkError> {
                 self.0 += 10;
                 Ok(())
             }
-            fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
-                self.0 += 100 * (1 + checks.len());
+            fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
+                self.0 += 100 * (1 + diagnostics.len());
                 Ok(())
             }
             fn companion(&self, file_name: &str) -> Option<Companion> {
@@ -269,8 +269,8 @@ mod tests {
             Box::new((&mut first, (Points::new(Fields::NONE), &mut second)));
         assert!(pair.wants_tilt());
         pair.tilt(&TiltTrack::default()).unwrap();
-        pair.turn().unwrap();
-        pair.checks(&[]).unwrap();
+        pair.revolution().unwrap();
+        pair.diagnostics(&[]).unwrap();
         assert_eq!(pair.companion("scan").unwrap().text, "scan");
         drop(pair);
         assert_eq!((first.0, second.0), (111, 111));

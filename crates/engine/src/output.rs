@@ -73,7 +73,7 @@ impl Target {
     pub fn turns(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
         Self::file(path, force, |file| {
             let writer = McapWriter::new(Buffered::new(file));
-            Box::new(writer.with_fields(fields).by_turns())
+            Box::new(writer.with_fields(fields).by_revolution())
         })
     }
 

@@ -20,9 +20,9 @@ use std::thread::{self, JoinHandle};
 
 use units::{Host, Stamp};
 
-use self::attributes::Attributes;
-use self::worker::{Ending, Order};
-use super::fallible::{Fault, Output};
+use self::attributes::PointAttributes;
+use self::worker::{FileEnding, WorkerCommand};
+use super::fallible::{FallibleOutput, WriteFault};
 use super::stage::Stage;
 use super::{check_places, gps_time};
 use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
@@ -37,9 +37,9 @@ const QUEUE: usize = 4;
 pub struct E57Writer<W: Read + Write + Seek + Send + 'static> {
     fields: Fields,
     stage: Stage,
-    fault: Fault,
-    output: Option<Output<W>>,
-    worker: Option<Worker>,
+    fault: WriteFault,
+    output: Option<FallibleOutput<W>>,
+    worker: Option<EncoderThread>,
     description: Vec<String>,
     /// The whole second in which the first point was fired.
     start: Option<Stamp<Host>>,
@@ -47,15 +47,15 @@ pub struct E57Writer<W: Read + Write + Seek + Send + 'static> {
     summary: Summary,
 }
 
-struct Worker {
-    orders: SyncSender<Order>,
+struct EncoderThread {
+    orders: SyncSender<WorkerCommand>,
     thread: JoinHandle<e57::Result<()>>,
 }
 
 impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
     /// A writer into `output`, which is empty, with the columns of [`Fields::FILE`].
     pub fn new(output: W) -> Self {
-        let (output, fault) = Output::new(output);
+        let (output, fault) = FallibleOutput::new(output);
         Self {
             fields: Fields::FILE,
             stage: Stage::default(),
@@ -97,7 +97,7 @@ impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
     }
 
     /// Hands something on to the thread. If that has ended, it says why.
-    fn order(&mut self, order: Order) -> Result<(), SinkError> {
+    fn order(&mut self, order: WorkerCommand) -> Result<(), SinkError> {
         self.written()?;
         let sent = self.worker.as_ref().map(|worker| worker.orders.send(order));
         match sent {
@@ -141,7 +141,7 @@ impl<W: Read + Write + Seek + Send + 'static> Sink for E57Writer<W> {
         check_places(FORMAT, f64::from(f32::MAX), self.summary.points, batch)?;
         self.note_times(batch);
         let start = self.start.unwrap_or(Stamp::from_nanos(0));
-        if let Err(error) = self.order(Order::Points(Box::new(batch.clone()), start)) {
+        if let Err(error) = self.order(WorkerCommand::Points(Box::new(batch.clone()), start)) {
             self.stage.cut();
             return Err(error);
         }
@@ -159,26 +159,26 @@ impl<W: Read + Write + Seek + Send + 'static> Sink for E57Writer<W> {
         let Some(output) = self.output.take() else {
             return Ok(());
         };
-        let attributes = Attributes::new(self.fields);
-        let about = worker::About::new(metadata);
+        let attributes = PointAttributes::new(self.fields);
+        let about = worker::CloudDescription::new(metadata);
         let (orders, receiver) = sync_channel(QUEUE);
         let thread = thread::Builder::new()
             .name(FORMAT.to_owned())
             .spawn(move || worker::run(output, &attributes, &about, &receiver))
             .map_err(|error| self.encoding(error))?;
-        self.worker = Some(Worker { orders, thread });
+        self.worker = Some(EncoderThread { orders, thread });
         self.stage.opened();
         Ok(())
     }
 
     fn finish(&mut self) -> Result<Summary, SinkError> {
         self.stage.finish(FORMAT)?;
-        let ending = Ending {
+        let ending = FileEnding {
             identity: identity::of(&self.description, self.summary, [self.start, self.end]),
             start_gps_s: self.start.map(gps_time::gps_s),
             end_gps_s: self.end.map(gps_time::gps_s),
         };
-        self.order(Order::Finish(ending))?;
+        self.order(WorkerCommand::Finish(ending))?;
         self.wait()?;
         Ok(self.summary)
     }

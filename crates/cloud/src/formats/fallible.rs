@@ -1,17 +1,17 @@
 //! An output whose failures the libraries that write formats never see.
 //!
 //! The `las` crate completes its file when its writer is dropped and panics if that fails, so on a full disk any error would end the
-//! program; others wrap what the system said in errors of their own, or lose it on a thread. [`Output`] keeps the first error for us and from
+//! program; others wrap what the system said in errors of their own, or lose it on a thread. [`FallibleOutput`] keeps the first error for us and from
 //! then on only pretends to write.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The first error of an [`Output`].
+/// The first error of an [`FallibleOutput`].
 #[derive(Clone, Default)]
-pub(in crate::formats) struct Fault(Arc<Mutex<Option<io::Error>>>);
+pub(in crate::formats) struct WriteFault(Arc<Mutex<Option<io::Error>>>);
 
-impl Fault {
+impl WriteFault {
     /// The error, again and again: what was pretended once stays lost. It is rebuilt because an [`io::Error`]
     /// cannot be cloned.
     pub(in crate::formats) fn get(&self) -> Option<io::Error> {
@@ -29,16 +29,16 @@ impl Fault {
 }
 
 /// Passes everything on until the first error.
-pub(in crate::formats) struct Output<W> {
+pub(in crate::formats) struct FallibleOutput<W> {
     inner: W,
-    fault: Fault,
+    fault: WriteFault,
     /// Where a pretended write would be; `None` while writing is real.
     pretended: Option<u64>,
 }
 
-impl<W: Write + Seek> Output<W> {
-    pub(in crate::formats) fn new(inner: W) -> (Self, Fault) {
-        let fault = Fault::default();
+impl<W: Write + Seek> FallibleOutput<W> {
+    pub(in crate::formats) fn new(inner: W) -> (Self, WriteFault) {
+        let fault = WriteFault::default();
         let output = Self {
             inner,
             fault: fault.clone(),
@@ -59,7 +59,7 @@ impl<W: Write + Seek> Output<W> {
     }
 }
 
-impl<W: Write + Seek> Write for Output<W> {
+impl<W: Write + Seek> Write for FallibleOutput<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.pretended.is_none() {
             match self.inner.write(bytes) {
@@ -85,7 +85,7 @@ impl<W: Write + Seek> Write for Output<W> {
 }
 
 /// For formats that go back to what they wrote. Behind the first error there is nothing to read.
-impl<W: Read + Write + Seek> Read for Output<W> {
+impl<W: Read + Write + Seek> Read for FallibleOutput<W> {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         if self.pretended.is_some() {
             return Ok(0);
@@ -100,7 +100,7 @@ impl<W: Read + Write + Seek> Read for Output<W> {
     }
 }
 
-impl<W: Write + Seek> Seek for Output<W> {
+impl<W: Write + Seek> Seek for FallibleOutput<W> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         let here = match self.pretended {
             Some(here) => here,
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn the_first_error_is_kept_and_the_rest_pretended() {
-        let (mut output, fault) = Output::new(SmallDisk::new(5));
+        let (mut output, fault) = FallibleOutput::new(SmallDisk::new(5));
         output.write_all(b"1234").unwrap();
         assert!(fault.get().is_none());
         output.write_all(b"56789").unwrap();

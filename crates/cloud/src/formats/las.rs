@@ -16,14 +16,14 @@ use std::io::{Seek, Write};
 
 use las::{Builder, GpsTimeType, PointData, PointDataBuilder, Transform, Vector, Vlr};
 
-use self::extra_bytes::Extra;
+use self::extra_bytes::ExtraColumn;
 use super::check_places;
-use super::fallible::{Fault, Output};
+use super::fallible::{FallibleOutput, WriteFault};
 use super::gps_time;
 use super::seconds::seconds;
 use super::stage::Stage;
-use crate::rows::fill;
-use crate::{Column, Fields, Metadata, Points, Sink, SinkError, Summary};
+use crate::rows::{fill, fill_values};
+use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const SCALE_M: f64 = 1e-4;
 const STEPS_PER_M: f64 = 1e4;
@@ -51,19 +51,19 @@ const SYNTHETIC: u8 = 1;
 pub struct LasWriter<W: Write + Seek + Send + Sync + 'static> {
     format: &'static str,
     fields: Fields,
-    extras: Vec<Extra>,
+    extras: Vec<ExtraColumn>,
     flags: u8,
     stage: Stage,
-    fault: Fault,
-    state: State<W>,
+    fault: WriteFault,
+    state: LasState<W>,
     summary: Summary,
 }
 
-enum State<W: Write + Seek + Send + Sync + 'static> {
+enum LasState<W: Write + Seek + Send + Sync + 'static> {
     /// Before begin, or after finish.
-    Idle(Output<W>),
+    Idle(FallibleOutput<W>),
     Open {
-        writer: las::Writer<Output<W>>,
+        writer: las::Writer<FallibleOutput<W>>,
         slab: PointData,
     },
     /// The output went down with the library's writer.
@@ -82,7 +82,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
     }
 
     fn new(format: &'static str, output: W) -> Self {
-        let (output, fault) = Output::new(output);
+        let (output, fault) = FallibleOutput::new(output);
         Self {
             format,
             fields: Fields::FILE,
@@ -90,7 +90,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
             flags: 0,
             stage: Stage::default(),
             fault,
-            state: State::Idle(output),
+            state: LasState::Idle(output),
             summary: Summary::default(),
         }
     }
@@ -106,9 +106,11 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
     /// Gives the output back, at its start; `None` where it was lost because writing the header failed.
     pub fn into_inner(self) -> Option<W> {
         match self.state {
-            State::Idle(output) => Some(output.into_inner()),
-            State::Open { writer, .. } => writer.into_inner().ok().map(Output::into_inner),
-            State::Lost => None,
+            LasState::Idle(output) => Some(output.into_inner()),
+            LasState::Open { writer, .. } => {
+                writer.into_inner().ok().map(FallibleOutput::into_inner)
+            }
+            LasState::Lost => None,
         }
     }
 
@@ -161,7 +163,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
 }
 
 /// Writes a batch's points as records of format 6 into `rows`.
-fn encode(batch: &Points, flags: u8, extras: &[Extra], rows: &mut [u8], row_bytes: usize) {
+fn encode(batch: &Points, flags: u8, extras: &[ExtraColumn], rows: &mut [u8], row_bytes: usize) {
     fill(
         rows,
         row_bytes,
@@ -183,28 +185,8 @@ fn encode(batch: &Points, flags: u8, extras: &[Extra], rows: &mut [u8], row_byte
     fill(rows, row_bytes, at::GPS_TIME, gps.map(f64::to_le_bytes));
     for extra in extras {
         let offset = at::EXTRA + extra.offset;
-        match extra.column {
-            Column::Ring => fill(rows, row_bytes, offset, batch.ring().iter().map(|v| [*v])),
-            Column::Laser => fill(rows, row_bytes, offset, batch.laser().iter().map(|v| [*v])),
-            Column::Echo => fill(rows, row_bytes, offset, batch.echo().iter().map(|v| [*v])),
-            Column::Tilt => {
-                let tilt = batch.tilt_deg().iter().map(|v| *v as f32);
-                fill(rows, row_bytes, offset, tilt.map(f32::to_le_bytes));
-            }
-            Column::Sd => {
-                let sd = batch.sd_m().iter().map(|v| *v as f32);
-                fill(rows, row_bytes, offset, sd.map(f32::to_le_bytes));
-            }
-            Column::Time => {
-                let time = batch.time().iter().map(|t| seconds(t.as_nanos()));
-                fill(rows, row_bytes, offset, time.map(f64::to_le_bytes));
-            }
-            Column::DeviceTime => {
-                let time = batch.device_time().iter().map(|t| seconds(t.as_nanos()));
-                fill(rows, row_bytes, offset, time.map(f64::to_le_bytes));
-            }
-            Column::Intensity => {}
-        }
+        let values = (batch.values(extra.column), 0..batch.len());
+        fill_values(rows, row_bytes, offset, values, extra.number, seconds);
     }
 }
 
@@ -237,7 +219,7 @@ impl<W: Write + Seek + Send + Sync + 'static> Sink for LasWriter<W> {
         self.stage.points(self.format)?;
         batch.fields().require(self.fields)?;
         check_places(self.format, LIMIT_M, self.summary.points, batch)?;
-        let State::Open { writer, slab } = &mut self.state else {
+        let LasState::Open { writer, slab } = &mut self.state else {
             return Err(SinkError::Order {
                 format: self.format,
                 expected: "begin",
@@ -266,10 +248,10 @@ impl<W: Write + Seek + Send + Sync + 'static> Sink for LasWriter<W> {
         self.flags = if metadata.simulated { SYNTHETIC } else { 0 };
         let header = self.header(metadata)?;
         let slab = PointDataBuilder::new().for_header(&header).build();
-        if let State::Idle(output) = std::mem::replace(&mut self.state, State::Lost) {
+        if let LasState::Idle(output) = std::mem::replace(&mut self.state, LasState::Lost) {
             let writer = las::Writer::new(output, header);
             let writer = self.outcome(writer)?;
-            self.state = State::Open { writer, slab };
+            self.state = LasState::Open { writer, slab };
             self.stage.opened();
         }
         Ok(())
@@ -277,12 +259,12 @@ impl<W: Write + Seek + Send + Sync + 'static> Sink for LasWriter<W> {
 
     fn finish(&mut self) -> Result<Summary, SinkError> {
         self.stage.finish(self.format)?;
-        if let State::Open { writer, .. } = std::mem::replace(&mut self.state, State::Lost) {
+        if let LasState::Open { writer, .. } = std::mem::replace(&mut self.state, LasState::Lost) {
             let output = writer.into_inner().and_then(|mut output| {
                 output.flush()?;
                 Ok(output)
             });
-            self.state = State::Idle(self.outcome(output)?);
+            self.state = LasState::Idle(self.outcome(output)?);
         }
         Ok(self.summary)
     }

@@ -20,14 +20,14 @@ use std::io::{Seek, Write};
 use mcap::{Compression, WriteOptions};
 use units::{Degrees, Host, Span, Stamp};
 
-use self::channels::Channels;
-use super::fallible::{Fault, Output};
+use self::channels::McapChannels;
+use super::fallible::{FallibleOutput, WriteFault};
 use super::stage::Stage;
 use crate::messages::cdr::Cdr;
 use crate::messages::{
     Cloud, Cutting, Frames, Time, Topic, diagnostic_array, joint_state, tf_message,
 };
-use crate::{Check, Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
+use crate::{Companion, Diagnostic, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
 
 pub use crate::messages::{MOST_POINTS, MOST_SPAN};
 
@@ -43,13 +43,13 @@ const CHUNK_BYTES: u64 = 1 << 20;
 pub struct McapWriter<W: Write + Seek> {
     stage: Stage,
     clouds: Cutting,
-    log: Log<W>,
+    log: McapLog<W>,
 }
 
 /// Messages on their way into the file, in the order of time.
-struct Log<W: Write + Seek> {
-    fault: Fault,
-    state: State<W>,
+struct McapLog<W: Write + Seek> {
+    fault: WriteFault,
+    state: McapState<W>,
     hardware: String,
     track: TiltTrack,
     /// Samples of the track that are written.
@@ -62,15 +62,15 @@ struct Log<W: Write + Seek> {
     points: u64,
 }
 
-enum State<W: Write + Seek> {
-    Idle(Output<W>),
+enum McapState<W: Write + Seek> {
+    Idle(FallibleOutput<W>),
     Open {
-        writer: Box<mcap::Writer<Output<W>>>,
-        channels: Channels,
+        writer: Box<mcap::Writer<FallibleOutput<W>>>,
+        channels: McapChannels,
     },
     Done {
-        output: Output<W>,
-        channels: Channels,
+        output: FallibleOutput<W>,
+        channels: McapChannels,
     },
     Lost,
 }
@@ -78,13 +78,13 @@ enum State<W: Write + Seek> {
 impl<W: Write + Seek> McapWriter<W> {
     /// A writer into `output` with the columns of [`Fields::FILE`], but for the tilt; a cloud a sweep.
     pub fn new(output: W) -> Self {
-        let (output, fault) = Output::new(output);
+        let (output, fault) = FallibleOutput::new(output);
         Self {
             stage: Stage::default(),
             clouds: Cutting::new(FORMAT, Fields::FILE, Frames::default()),
-            log: Log {
+            log: McapLog {
                 fault,
-                state: State::Idle(output),
+                state: McapState::Idle(output),
                 hardware: String::new(),
                 track: TiltTrack::default(),
                 samples: 0,
@@ -103,23 +103,23 @@ impl<W: Write + Seek> McapWriter<W> {
         self
     }
 
-    /// The same with a cloud a turn of the lidar, as [`Sink::turn`] tells; only before [`Sink::begin`].
+    /// The same with a cloud a turn of the lidar, as [`Sink::revolution`] tells; only before [`Sink::begin`].
     #[must_use]
-    pub fn by_turns(mut self) -> Self {
-        self.clouds = self.clouds.by_turns();
+    pub fn by_revolution(mut self) -> Self {
+        self.clouds = self.clouds.by_revolution();
         self
     }
 
     /// Gives the output back; `None` where writing failed or was not finished.
     pub fn into_inner(self) -> Option<W> {
         match self.log.state {
-            State::Idle(output) | State::Done { output, .. } => Some(output.into_inner()),
-            State::Open { .. } | State::Lost => None,
+            McapState::Idle(output) | McapState::Done { output, .. } => Some(output.into_inner()),
+            McapState::Open { .. } | McapState::Lost => None,
         }
     }
 }
 
-impl<W: Write + Seek> Log<W> {
+impl<W: Write + Seek> McapLog<W> {
     fn encoding(&self, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> SinkError {
         SinkError::Encode {
             format: FORMAT,
@@ -158,7 +158,7 @@ impl<W: Write + Seek> Log<W> {
         at: Stamp<Host>,
         bytes: &[u8],
     ) -> Result<(), SinkError> {
-        let State::Open { writer, channels } = &mut self.state else {
+        let McapState::Open { writer, channels } = &mut self.state else {
             return Err(SinkError::Order {
                 format: FORMAT,
                 expected: "begin",
@@ -223,7 +223,7 @@ impl<W: Write + Seek> Log<W> {
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
         self.hardware.clone_from(&metadata.source);
-        let State::Idle(output) = std::mem::replace(&mut self.state, State::Lost) else {
+        let McapState::Idle(output) = std::mem::replace(&mut self.state, McapState::Lost) else {
             return Ok(());
         };
         let options = WriteOptions::new()
@@ -236,14 +236,14 @@ impl<W: Write + Seek> Log<W> {
             writer.write_metadata(&bag::record())?;
             Ok(writer)
         });
-        self.state = State::Open {
+        self.state = McapState::Open {
             writer: Box::new(self.outcome(writer)?),
-            channels: Channels::default(),
+            channels: McapChannels::default(),
         };
         Ok(())
     }
 
-    fn write_checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
+    fn write_diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
         let last = self.track.samples.last().map(|sample| sample.0);
         let Some(end) = last.max(self.now) else {
             // Nothing was said, so there is no time to say it at.
@@ -251,15 +251,15 @@ impl<W: Write + Seek> Log<W> {
         };
         self.go_on_to(end)?;
         let stamp = self.time(end)?;
-        diagnostic_array(&mut self.cdr, stamp, &self.hardware, checks);
+        diagnostic_array(&mut self.cdr, stamp, &self.hardware, diagnostics);
         self.write(Topic::Diagnostics, end)
     }
 
     fn finish(&mut self) -> Result<(), SinkError> {
-        let State::Open {
+        let McapState::Open {
             mut writer,
             channels,
-        } = std::mem::replace(&mut self.state, State::Lost)
+        } = std::mem::replace(&mut self.state, McapState::Lost)
         else {
             return Ok(());
         };
@@ -268,7 +268,7 @@ impl<W: Write + Seek> Log<W> {
         let mut output = writer.into_inner();
         let flushed = output.flush().map_err(mcap::McapError::from);
         self.outcome(flushed)?;
-        self.state = State::Done { output, channels };
+        self.state = McapState::Done { output, channels };
         Ok(())
     }
 }
@@ -327,19 +327,19 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
         Ok(())
     }
 
-    fn turn(&mut self) -> Result<(), SinkError> {
+    fn revolution(&mut self) -> Result<(), SinkError> {
         self.stage.points(FORMAT)?;
-        self.clouds.turn(|cloud| self.log.write_cloud(cloud))
+        self.clouds.revolution(|cloud| self.log.write_cloud(cloud))
     }
 
-    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
+    fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
         self.stage.points(FORMAT)?;
         self.end_cloud()?;
-        self.log.write_checks(checks)
+        self.log.write_diagnostics(diagnostics)
     }
 
     fn companion(&self, file_name: &str) -> Option<Companion> {
-        let State::Done { channels, .. } = &self.log.state else {
+        let McapState::Done { channels, .. } = &self.log.state else {
             return None;
         };
         Some(bag::companion(file_name, channels))

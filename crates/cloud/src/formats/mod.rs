@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn every_format_writes_what_its_writer_was_given() {
         for format in Format::ALL {
-            let file = testing::Shared::default();
+            let file = testing::SharedOutput::default();
             let mut sink = format.writer(file.clone(), Fields::FILE);
             let cloud = testing::cloud_from(100, testing::NOW_NS);
             sink.begin(&testing::metadata()).unwrap();

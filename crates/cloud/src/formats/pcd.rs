@@ -5,8 +5,9 @@
 
 use std::io::{self, Seek, SeekFrom, Write};
 
-use super::layout::{Kind, Layout};
+use super::layout::RowLayout;
 use super::stage::Stage;
+use crate::rows::NumberType;
 use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const FORMAT: &str = "pcd";
@@ -17,7 +18,7 @@ const DIGITS: usize = 20;
 #[derive(Debug)]
 pub struct PcdWriter<W> {
     output: W,
-    layout: Layout,
+    layout: RowLayout,
     stage: Stage,
     counts_at: u64,
     points: u64,
@@ -30,7 +31,7 @@ impl<W: Write + Seek> PcdWriter<W> {
     pub fn new(output: W) -> Self {
         Self {
             output,
-            layout: Layout::new(Fields::FILE),
+            layout: RowLayout::new(Fields::FILE),
             stage: Stage::default(),
             counts_at: 0,
             points: 0,
@@ -50,7 +51,7 @@ impl<W: Write + Seek> PcdWriter<W> {
     /// The same with other columns; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.layout = Layout::new(fields);
+        self.layout = RowLayout::new(fields);
         self
     }
 
@@ -65,7 +66,7 @@ impl<W: Write + Seek> PcdWriter<W> {
             head += &format!("# {line}\n");
         }
         let properties: Vec<_> = self.layout.properties().collect();
-        let list = |what: &dyn Fn(&(&'static str, Kind)) -> String| {
+        let list = |what: &dyn Fn(&(&'static str, NumberType)) -> String| {
             let values: Vec<String> = properties.iter().map(what).collect();
             values.join(" ")
         };
@@ -104,10 +105,10 @@ impl<W: Write + Seek> PcdWriter<W> {
     }
 }
 
-const fn letter(kind: Kind) -> &'static str {
+const fn letter(kind: NumberType) -> &'static str {
     match kind {
-        Kind::Float | Kind::Double => "F",
-        Kind::Byte => "U",
+        NumberType::F32 | NumberType::F64 => "F",
+        NumberType::U8 | NumberType::U16 => "U",
     }
 }
 

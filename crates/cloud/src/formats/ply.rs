@@ -14,8 +14,9 @@
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-use super::layout::{Kind, Layout};
+use super::layout::RowLayout;
 use super::stage::Stage;
+use crate::rows::NumberType;
 use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const FORMAT: &str = "ply";
@@ -24,7 +25,7 @@ const FORMAT: &str = "ply";
 #[derive(Debug)]
 pub struct PlyWriter<W> {
     output: W,
-    layout: Layout,
+    layout: RowLayout,
     stage: Stage,
     count_at: u64,
     summary: Summary,
@@ -36,7 +37,7 @@ pub struct PlyWriter<W> {
 pub struct PlyPipe<W, S> {
     output: W,
     scratch: S,
-    layout: Layout,
+    layout: RowLayout,
     stage: Stage,
     head: String,
     summary: Summary,
@@ -52,13 +53,14 @@ fn head(metadata: &Metadata) -> String {
 }
 
 /// The header from the count on.
-fn tail(layout: &Layout) -> String {
+fn tail(layout: &RowLayout) -> String {
     let mut tail = String::new();
     for (name, kind) in layout.properties() {
         let kind = match kind {
-            Kind::Float => "float",
-            Kind::Double => "double",
-            Kind::Byte => "uchar",
+            NumberType::F32 => "float",
+            NumberType::F64 => "double",
+            NumberType::U16 => "ushort",
+            NumberType::U8 => "uchar",
         };
         tail += &format!("property {kind} {name}\n");
     }
@@ -86,7 +88,7 @@ impl<W: Write + Seek> PlyWriter<W> {
     pub fn new(output: W) -> Self {
         Self {
             output,
-            layout: Layout::new(Fields::FILE),
+            layout: RowLayout::new(Fields::FILE),
             stage: Stage::default(),
             count_at: 0,
             summary: Summary::default(),
@@ -96,7 +98,7 @@ impl<W: Write + Seek> PlyWriter<W> {
     /// The same with other columns; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.layout = Layout::new(fields);
+        self.layout = RowLayout::new(fields);
         self
     }
 
@@ -158,7 +160,7 @@ impl<W: Write, S: Read + Write + Seek> PlyPipe<W, S> {
         Self {
             output,
             scratch,
-            layout: Layout::new(Fields::FILE),
+            layout: RowLayout::new(Fields::FILE),
             stage: Stage::default(),
             head: String::new(),
             summary: Summary::default(),
@@ -168,7 +170,7 @@ impl<W: Write, S: Read + Write + Seek> PlyPipe<W, S> {
     /// The same with other columns; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.layout = Layout::new(fields);
+        self.layout = RowLayout::new(fields);
         self
     }
 

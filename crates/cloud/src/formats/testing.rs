@@ -55,15 +55,15 @@ pub fn cloud_from(count: u32, start_ns: i64) -> Points {
 
 /// Bytes that outlive the sink that owns the output.
 #[derive(Clone, Default)]
-pub struct Shared(Arc<Mutex<Cursor<Vec<u8>>>>);
+pub struct SharedOutput(Arc<Mutex<Cursor<Vec<u8>>>>);
 
-impl Shared {
+impl SharedOutput {
     pub fn content(&self) -> Vec<u8> {
         self.0.lock().unwrap().get_ref().clone()
     }
 }
 
-impl Write for Shared {
+impl Write for SharedOutput {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.0.lock().unwrap().write(bytes)
     }
@@ -72,13 +72,13 @@ impl Write for Shared {
     }
 }
 
-impl Read for Shared {
+impl Read for SharedOutput {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         self.0.lock().unwrap().read(bytes)
     }
 }
 
-impl Seek for Shared {
+impl Seek for SharedOutput {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.0.lock().unwrap().seek(to)
     }

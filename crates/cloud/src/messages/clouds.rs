@@ -52,8 +52,8 @@ impl Cutting {
     }
 
     /// The same with a cloud a turn of the lidar; only before the first batch.
-    pub(crate) fn by_turns(self) -> Self {
-        let cutter = Cutter::by_turns();
+    pub(crate) fn by_revolution(self) -> Self {
+        let cutter = Cutter::by_revolution();
         Self { cutter, ..self }
     }
 
@@ -74,7 +74,7 @@ impl Cutting {
     }
 
     /// A turn of the lidar ends.
-    pub(crate) fn turn(
+    pub(crate) fn revolution(
         &mut self,
         take: impl FnOnce(Cloud<'_>) -> Result<(), SinkError>,
     ) -> Result<(), SinkError> {

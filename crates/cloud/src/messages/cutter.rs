@@ -14,7 +14,7 @@ pub const MOST_SPAN: Span = Span::from_secs(8);
 /// Cuts points in the order of their times into clouds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cutter {
-    by_turns: bool,
+    by_revolution: bool,
     /// When sweeps end, in the order of time.
     sweep_ends: Vec<Stamp<Host>>,
     /// Those that points have passed.
@@ -23,21 +23,21 @@ pub(crate) struct Cutter {
 
 impl Cutter {
     /// One that leaves it to others to say when a turn ends, and cuts only what is too long.
-    pub(crate) fn by_turns() -> Self {
+    pub(crate) fn by_revolution() -> Self {
         Self {
-            by_turns: true,
+            by_revolution: true,
             ..Self::default()
         }
     }
 
     /// Whether others say when a cloud ends.
     pub(crate) const fn is_by_turns(&self) -> bool {
-        self.by_turns
+        self.by_revolution
     }
 
     /// Cuts where these sweeps end, unless turns are told.
     pub(crate) fn sweep(&mut self, sweeps: &[(Stamp<Host>, Stamp<Host>)]) {
-        if !self.by_turns {
+        if !self.by_revolution {
             self.sweep_ends = sweeps.iter().map(|sweep| sweep.1).collect();
         }
     }

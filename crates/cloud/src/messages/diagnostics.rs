@@ -2,20 +2,20 @@
 
 use super::cdr::Cdr;
 use super::{Time, header};
-use crate::Check;
+use crate::Diagnostic;
 
 /// Checks as they were found by `stamp`, of the device `hardware`.
-pub fn diagnostic_array(cdr: &mut Cdr, stamp: Time, hardware: &str, checks: &[Check]) {
+pub fn diagnostic_array(cdr: &mut Cdr, stamp: Time, hardware: &str, diagnostics: &[Diagnostic]) {
     cdr.clear();
     header(cdr, stamp, "");
-    cdr.length(checks.len());
-    for check in checks {
-        cdr.u8(check.level as u8);
-        cdr.string(&check.name);
-        cdr.string(&check.message);
+    cdr.length(diagnostics.len());
+    for diagnostic in diagnostics {
+        cdr.u8(diagnostic.level as u8);
+        cdr.string(&diagnostic.name);
+        cdr.string(&diagnostic.message);
         cdr.string(hardware);
-        cdr.length(check.values.len());
-        for (key, value) in &check.values {
+        cdr.length(diagnostic.values.len());
+        for (key, value) in &diagnostic.values {
             cdr.string(key);
             cdr.string(value);
         }
@@ -26,22 +26,27 @@ pub fn diagnostic_array(cdr: &mut Cdr, stamp: Time, hardware: &str, checks: &[Ch
 mod tests {
     use super::super::testing::Reader;
     use super::*;
-    use crate::Level;
+    use crate::DiagnosticLevel;
 
     #[test]
     fn checks_are_read_back() {
-        let check = |level, values| Check {
+        let check = |level, values| Diagnostic {
             name: "clock".into(),
             level,
             message: "steps".into(),
             values,
         };
-        let checks = [
-            check(Level::Warn, vec![("by".into(), "1 s".into())]),
-            check(Level::Ok, vec![]),
+        let diagnostics = [
+            check(DiagnosticLevel::Warn, vec![("by".into(), "1 s".into())]),
+            check(DiagnosticLevel::Ok, vec![]),
         ];
         let mut cdr = Cdr::new();
-        diagnostic_array(&mut cdr, Time { sec: 1, nanosec: 2 }, "VLP-16", &checks);
+        diagnostic_array(
+            &mut cdr,
+            Time { sec: 1, nanosec: 2 },
+            "VLP-16",
+            &diagnostics,
+        );
         let mut reader = Reader::new(cdr.bytes());
         assert_eq!(reader.header(), (1, 2, String::new()));
         assert_eq!(reader.u32(), 2);

@@ -23,7 +23,7 @@ pub use clouds::{Cloud, Clouds};
 pub use cutter::{MOST_POINTS, MOST_SPAN};
 pub use diagnostics::diagnostic_array;
 pub use joint_state::joint_state;
-pub use point_cloud2::{CloudMessage, CloudMessageError, Message, fields_of};
+pub use point_cloud2::{CloudMessage, CloudMessageError, FinishedMessage, fields_of};
 pub use transforms::{Frames, Rotation, Transform, tf_message};
 pub use trigger::{TRIGGER, trigger_response};
 

@@ -5,17 +5,13 @@
 
 use std::ops::Range;
 
-use units::{Host, Stamp};
+use units::{Host, Lidar, Stamp};
 
 use super::cdr::Cdr;
 use super::{Time, UnsayableTime, header};
-use crate::rows::fill;
+use crate::points::Values;
+use crate::rows::{NumberType, fill_values};
 use crate::{Column, Fields, MissingColumns, Points};
-
-const UINT8: u8 = 2;
-const UINT16: u8 = 4;
-const FLOAT32: u8 = 7;
-const FLOAT64: u8 = 8;
 
 /// The columns of a cloud message: intensity, ring and time are always there, the tilt never, as the joint says it.
 #[must_use]
@@ -23,13 +19,23 @@ pub fn fields_of(wanted: Fields) -> Fields {
     (wanted | Fields::INTENSITY | Fields::RING | Fields::TIME) - Fields::TILT
 }
 
-/// Data type and bytes.
-const fn kind(column: Column) -> (u8, usize) {
+/// Number type of a column.
+const fn number_type(column: Column) -> NumberType {
     match column {
-        Column::Intensity | Column::Time | Column::Tilt | Column::Sd => (FLOAT32, 4),
-        Column::Ring => (UINT16, 2),
-        Column::Laser | Column::Echo => (UINT8, 1),
-        Column::DeviceTime => (FLOAT64, 8),
+        Column::Intensity | Column::Time | Column::Tilt | Column::Sd => NumberType::F32,
+        Column::Ring => NumberType::U16,
+        Column::Laser | Column::Echo => NumberType::U8,
+        Column::DeviceTime => NumberType::F64,
+    }
+}
+
+/// `datatype` of a `sensor_msgs/PointField`.
+const fn datatype(number: NumberType) -> u8 {
+    match number {
+        NumberType::U8 => 2,
+        NumberType::U16 => 4,
+        NumberType::F32 => 7,
+        NumberType::F64 => 8,
     }
 }
 
@@ -39,7 +45,7 @@ pub struct CloudMessage {
     columns: Fields,
     point_bytes: usize,
     cdr: Cdr,
-    places: Places,
+    places: LengthPlaceholders,
     first: Stamp<Host>,
     last: Stamp<Host>,
     points: u32,
@@ -47,7 +53,7 @@ pub struct CloudMessage {
 
 /// Where the message says what is only known at its end.
 #[derive(Clone, Copy, Debug, Default)]
-struct Places {
+struct LengthPlaceholders {
     width: usize,
     row_bytes: usize,
     length: usize,
@@ -69,12 +75,15 @@ impl CloudMessage {
     #[must_use]
     pub fn new(wanted: Fields) -> Self {
         let columns = fields_of(wanted);
-        let bytes: usize = columns.columns().map(|column| kind(column).1).sum();
+        let bytes: usize = columns
+            .columns()
+            .map(|column| number_type(column).bytes())
+            .sum();
         Self {
             columns,
             point_bytes: 3 * 4 + bytes,
             cdr: Cdr::new(),
-            places: Places::default(),
+            places: LengthPlaceholders::default(),
             first: Stamp::from_nanos(0),
             last: Stamp::from_nanos(0),
             points: 0,
@@ -138,7 +147,7 @@ impl CloudMessage {
         };
         let (point_bytes, count) = (self.point_bytes, rows.len());
         let space = self.cdr.room(count * point_bytes);
-        encode(space, point_bytes, self.columns, batch, rows, self.first);
+        encode(space, point_bytes, self.columns, batch, &rows, self.first);
         self.points = self
             .points
             .saturating_add(u32::try_from(count).unwrap_or(u32::MAX));
@@ -146,7 +155,7 @@ impl CloudMessage {
     }
 
     /// The whole message. More points may follow, for a longer one.
-    pub fn message(&mut self) -> Message<'_> {
+    pub fn message(&mut self) -> FinishedMessage<'_> {
         let bytes = u32::try_from(self.point_bytes)
             .unwrap_or(u32::MAX)
             .saturating_mul(self.points);
@@ -156,7 +165,7 @@ impl CloudMessage {
         self.cdr.set_u32(places.length, bytes);
         // is_dense: every point has a place.
         self.cdr.u8(1);
-        Message(&mut self.cdr)
+        FinishedMessage(&mut self.cdr)
     }
 
     /// All before the points.
@@ -171,18 +180,18 @@ impl CloudMessage {
         let columns = self.columns.columns();
         cdr.length(3 + columns.count());
         let mut offset = 0;
-        let mut field = |name: &str, (datatype, bytes): (u8, usize)| {
+        let mut field = |name: &str, number: NumberType| {
             cdr.string(name);
             cdr.u32(offset);
-            cdr.u8(datatype);
+            cdr.u8(datatype(number));
             cdr.u32(1);
-            offset += bytes as u32;
+            offset += number.bytes() as u32;
         };
         for axis in ["x", "y", "z"] {
-            field(axis, (FLOAT32, 4));
+            field(axis, NumberType::F32);
         }
         for column in self.columns.columns() {
-            field(column.name(), kind(column));
+            field(column.name(), number_type(column));
         }
         cdr.u8(0); // is_bigendian
         cdr.u32(offset);
@@ -194,9 +203,9 @@ impl CloudMessage {
 
 /// A whole message; what ends it is taken back when this is dropped.
 #[derive(Debug)]
-pub struct Message<'a>(&'a mut Cdr);
+pub struct FinishedMessage<'a>(&'a mut Cdr);
 
-impl Message<'_> {
+impl FinishedMessage<'_> {
     /// Its bytes, encapsulation header included.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
@@ -204,7 +213,7 @@ impl Message<'_> {
     }
 }
 
-impl Drop for Message<'_> {
+impl Drop for FinishedMessage<'_> {
     fn drop(&mut self) {
         self.0.pop();
     }
@@ -216,94 +225,33 @@ fn place(cdr: &mut Cdr) -> usize {
     cdr.len() - 4
 }
 
+/// Writes rows of a batch; `time` counts from `first`.
 fn encode(
     space: &mut [u8],
     point_bytes: usize,
     columns: Fields,
     batch: &Points,
-    rows: Range<usize>,
+    rows: &Range<usize>,
     first: Stamp<Host>,
 ) {
-    let mut at = 0;
-    for axis in [batch.x_m(), batch.y_m(), batch.z_m()] {
-        let axis = part(axis, &rows).iter();
-        fill(
-            space,
-            point_bytes,
-            at,
-            axis.map(|v| (*v as f32).to_le_bytes()),
-        );
-        at += 4;
+    let since_first = |ns: i64| Stamp::from_nanos(ns).saturating_since(first).as_secs_f64();
+    let of_lidar = |ns: i64| Stamp::<Lidar>::from_nanos(ns).as_secs_f64();
+    let axes = [batch.x_m(), batch.y_m(), batch.z_m()];
+    let axes = axes.map(|axis| (Values::Floats(axis), NumberType::F32));
+    let columns = columns
+        .columns()
+        .map(|column| (batch.values(column), number_type(column)));
+    let mut offset = 0;
+    for (values, number) in axes.into_iter().chain(columns) {
+        let part = (values, rows.clone());
+        match values {
+            Values::LidarTimes(_) => {
+                fill_values(space, point_bytes, offset, part, number, of_lidar)
+            }
+            _ => fill_values(space, point_bytes, offset, part, number, since_first),
+        }
+        offset += number.bytes();
     }
-    for column in columns.columns() {
-        fill_column(space, point_bytes, at, column, batch, rows.clone(), first);
-        at += kind(column).1;
-    }
-}
-
-fn fill_column(
-    space: &mut [u8],
-    step: usize,
-    at: usize,
-    column: Column,
-    batch: &Points,
-    rows: Range<usize>,
-    first: Stamp<Host>,
-) {
-    let singles = |v: &f64| (*v as f32).to_le_bytes();
-    match column {
-        Column::Intensity => {
-            let values = part(batch.intensity(), &rows).iter();
-            fill(space, step, at, values.map(|v| f32::from(*v).to_le_bytes()));
-        }
-        Column::Ring => {
-            let values = part(batch.ring(), &rows).iter();
-            fill(space, step, at, values.map(|v| u16::from(*v).to_le_bytes()));
-        }
-        Column::Laser => fill(
-            space,
-            step,
-            at,
-            part(batch.laser(), &rows).iter().map(|v| [*v]),
-        ),
-        Column::Echo => fill(
-            space,
-            step,
-            at,
-            part(batch.echo(), &rows).iter().map(|v| [*v]),
-        ),
-        Column::Tilt => fill(
-            space,
-            step,
-            at,
-            part(batch.tilt_deg(), &rows).iter().map(singles),
-        ),
-        Column::Sd => fill(
-            space,
-            step,
-            at,
-            part(batch.sd_m(), &rows).iter().map(singles),
-        ),
-        Column::Time => {
-            let since = |t: &Stamp<Host>| t.saturating_since(first).as_secs_f64() as f32;
-            let times = part(batch.time(), &rows).iter();
-            fill(space, step, at, times.map(|t| since(t).to_le_bytes()));
-        }
-        Column::DeviceTime => {
-            let times = part(batch.device_time(), &rows).iter();
-            fill(
-                space,
-                step,
-                at,
-                times.map(|t| t.as_secs_f64().to_le_bytes()),
-            );
-        }
-    }
-}
-
-/// Some rows of a column; none where it is shorter.
-fn part<'a, T>(column: &'a [T], rows: &Range<usize>) -> &'a [T] {
-    column.get(rows.clone()).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -1,109 +1,55 @@
-//! The fast way into columns: room beyond the last point is written as whole arrays, then as much of it as holds points is kept.
-//!
-//! A producer that makes points by the dozen writes them where they are to stay, in loops without a branch, and says
-//! afterwards how many count. Left out: any meaning of the rows.
+//! The fast way into columns: whole arrays are written beyond the last point, then counted as far as
+//! they hold points.
 
 use units::{Host, Lidar, Stamp};
 
 use super::Points;
 use crate::Fields;
+use crate::columns::for_each_column;
 
-/// `R` rows beyond the last point, to be written; what stands in them is of no meaning.
-#[derive(Debug)]
-pub struct Spare<'a, const R: usize> {
-    /// x (right), metres.
-    pub x_m: &'a mut [f64; R],
-    /// y (forward), metres.
-    pub y_m: &'a mut [f64; R],
-    /// z (up), metres.
-    pub z_m: &'a mut [f64; R],
-    /// Reflectivity, if asked for.
-    pub intensity: Option<&'a mut [u8; R]>,
-    /// Ring, if asked for.
-    pub ring: Option<&'a mut [u8; R]>,
-    /// Laser number, if asked for.
-    pub laser: Option<&'a mut [u8; R]>,
-    /// Time on the host's clock, if asked for.
-    pub time: Option<&'a mut [Stamp<Host>; R]>,
-    /// Time on the lidar's clock, if asked for.
-    pub device_time: Option<&'a mut [Stamp<Lidar>; R]>,
-    /// Tilt angle in degrees, if asked for.
-    pub tilt_deg: Option<&'a mut [f64; R]>,
-    /// How far the point is off, as a root mean square expected, metres, if asked for.
-    pub sd_m: Option<&'a mut [f64; R]>,
-    /// Which return of its pulse, if asked for.
-    pub echo: Option<&'a mut [u8; R]>,
+macro_rules! define_spare {
+    ($($(#[$doc:meta])* $variant:ident $constant:ident $name:literal
+        ($column:ident: $element:ty) ($field:ident: $value:ty) $to:expr, $from:expr;)*) => {
+        /// `R` rows beyond the last point, to be written; their content is unspecified.
+        #[derive(Debug)]
+        pub struct Spare<'a, const R: usize> {
+            /// x (right), metres.
+            pub x_m: &'a mut [f64; R],
+            /// y (forward), metres.
+            pub y_m: &'a mut [f64; R],
+            /// z (up), metres.
+            pub z_m: &'a mut [f64; R],
+            $($(#[$doc])* pub $column: Option<&'a mut [$element; R]>,)*
+        }
+
+        impl Points {
+            /// Room for `R` more points, to be written and then counted by [`Points::keep`].
+            ///
+            /// `None` never happens: the room is made first.
+            #[inline(always)]
+            pub fn spare<const R: usize>(&mut self) -> Option<Spare<'_, R>> {
+                let (fields, row) = (self.fields, self.len);
+                let end = row + R;
+                if self.x_m.len() < end {
+                    self.grow(end);
+                }
+                Some(Spare {
+                    x_m: rows(&mut self.x_m, row)?,
+                    y_m: rows(&mut self.y_m, row)?,
+                    z_m: rows(&mut self.z_m, row)?,
+                    $($column: wanted(fields, Fields::$constant, &mut self.$column, row),)*
+                })
+            }
+        }
+    };
 }
+for_each_column!(define_spare);
 
 impl Points {
-    /// Room for `R` more points, to be written and then counted by [`Points::keep`].
-    ///
-    /// `None` never happens: the room is made first.
-    #[inline(always)]
-    pub fn spare<const R: usize>(&mut self) -> Option<Spare<'_, R>> {
-        let (fields, row) = (self.fields, self.len);
-        let end = row + R;
-        if self.x_m.len() < end {
-            self.grow(end);
-        }
-        Some(Spare {
-            x_m: rows(&mut self.x_m, row)?,
-            y_m: rows(&mut self.y_m, row)?,
-            z_m: rows(&mut self.z_m, row)?,
-            intensity: wanted(fields, Fields::INTENSITY, &mut self.intensity, row),
-            ring: wanted(fields, Fields::RING, &mut self.ring, row),
-            laser: wanted(fields, Fields::LASER, &mut self.laser, row),
-            time: wanted(fields, Fields::TIME, &mut self.time, row),
-            device_time: wanted(fields, Fields::DEVICE_TIME, &mut self.device_time, row),
-            tilt_deg: wanted(fields, Fields::TILT, &mut self.tilt_deg, row),
-            sd_m: wanted(fields, Fields::SD, &mut self.sd_m, row),
-            echo: wanted(fields, Fields::ECHO, &mut self.echo, row),
-        })
-    }
-
-    /// Makes points of the first `count` rows that were spare; of no more than there are.
+    /// Counts the first `count` spare rows as points, as far as there are so many.
     #[inline]
     pub fn keep(&mut self, count: usize) {
         self.len = (self.len + count).min(self.x_m.len());
-    }
-
-    /// Lengthens every column asked for to `end` rows or more: all that is reserved, or twice that.
-    #[cold]
-    fn grow(&mut self, end: usize) {
-        let reserved = self.x_m.capacity();
-        let end = if end <= reserved {
-            reserved
-        } else {
-            end.max(2 * reserved)
-        };
-        let wanted = |field| self.fields.contains(field);
-        self.x_m.resize(end, 0.0);
-        self.y_m.resize(end, 0.0);
-        self.z_m.resize(end, 0.0);
-        if wanted(Fields::INTENSITY) {
-            self.intensity.resize(end, 0);
-        }
-        if wanted(Fields::RING) {
-            self.ring.resize(end, 0);
-        }
-        if wanted(Fields::LASER) {
-            self.laser.resize(end, 0);
-        }
-        if wanted(Fields::TIME) {
-            self.time.resize(end, Stamp::from_nanos(0));
-        }
-        if wanted(Fields::DEVICE_TIME) {
-            self.device_time.resize(end, Stamp::from_nanos(0));
-        }
-        if wanted(Fields::TILT) {
-            self.tilt_deg.resize(end, 0.0);
-        }
-        if wanted(Fields::SD) {
-            self.sd_m.resize(end, 0.0);
-        }
-        if wanted(Fields::ECHO) {
-            self.echo.resize(end, 0);
-        }
     }
 }
 
@@ -199,7 +145,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn rows_that_are_kept_are_points_that_were_pushed(
+        fn kept_rows_equal_pushed_points(
             steps in prop::collection::vec(any_step(), 0..12),
             columns in prop::sample::subsequence(Column::ALL.to_vec(), 0..=Column::ALL.len()),
         ) {
@@ -233,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn room_for_a_column_nobody_asked_for_is_not_made() {
+    fn columns_not_requested_get_no_room() {
         let mut points = Points::new(Fields::RING);
         let rows = points.spare::<64>().unwrap();
         assert!(rows.ring.is_some() && rows.time.is_none() && rows.tilt_deg.is_none());

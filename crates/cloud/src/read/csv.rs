@@ -1,12 +1,12 @@
-//! Text: a row a point. A header row may name the columns; x, y and z are found by name, in capitals or not, else they are the first three.
+//! SourceFile: a row a point. A header row may name the columns; x, y and z are found by name, in capitals or not, else they are the first three.
 
-use super::{Positions, ReadError, Text};
+use super::{Positions, ReadError, SourceFile};
 use crate::formats::Format;
 
 const NAMES: [[&str; 2]; 3] = [["x_m", "x"], ["y_m", "y"], ["z_m", "z"]];
 
 pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
-    let text = Text {
+    let text = SourceFile {
         format: Format::Csv,
         bytes,
     };

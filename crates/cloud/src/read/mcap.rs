@@ -8,7 +8,7 @@ use mcap::McapError;
 use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::{Number, Positions, ReadError};
+use super::{Positions, ReadError, SourceNumber};
 use crate::formats::Format;
 use crate::messages::Topic;
 
@@ -34,7 +34,7 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
         .with_prevalidate_chunk_crcs(true)
         .with_record_length_limit(limit);
     let mut reader = LinearReader::new_with_options(options);
-    let mut clouds = Clouds::default();
+    let mut clouds = CloudCollector::default();
     let mut rest = bytes;
     while let Some(event) = reader.next_event() {
         let at = bytes.len() - rest.len();
@@ -49,8 +49,8 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
             }
             LinearReadEvent::Record { data, opcode } => {
                 clouds.record(opcode, data).map_err(|unread| match unread {
-                    Unread::File(error) => bad(error),
-                    Unread::Message(error) => error,
+                    RecordError::File(error) => bad(error),
+                    RecordError::Message(error) => error,
                 })?
             }
         }
@@ -60,7 +60,7 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
 
 /// What was read so far.
 #[derive(Default)]
-struct Clouds {
+struct CloudCollector {
     /// Schemas of point clouds.
     schemas: HashSet<u16>,
     /// Channels of point clouds.
@@ -69,17 +69,17 @@ struct Clouds {
 }
 
 /// Why a record cannot be read.
-enum Unread {
+enum RecordError {
     File(McapError),
     Message(ReadError),
 }
 
-impl Clouds {
-    fn record(&mut self, opcode: u8, data: &[u8]) -> Result<(), Unread> {
+impl CloudCollector {
+    fn record(&mut self, opcode: u8, data: &[u8]) -> Result<(), RecordError> {
         if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
             return Ok(());
         }
-        match mcap::parse_record(opcode, data).map_err(Unread::File)? {
+        match mcap::parse_record(opcode, data).map_err(RecordError::File)? {
             Record::Schema { header, .. } if header.name == Topic::Points.message_type().name => {
                 self.schemas.insert(header.id);
             }
@@ -90,7 +90,7 @@ impl Clouds {
                 self.channels.insert(channel.id);
             }
             Record::Message { header, data } if self.channels.contains(&header.channel_id) => {
-                cloud(&data, &mut self.positions).map_err(Unread::Message)?;
+                cloud(&data, &mut self.positions).map_err(RecordError::Message)?;
             }
             _ => {}
         }
@@ -99,12 +99,12 @@ impl Clouds {
 }
 
 /// A message, read from its beginning. Offsets of errors are within the message.
-struct Cdr<'a> {
+struct CdrReader<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl<'a> Cdr<'a> {
+impl<'a> CdrReader<'a> {
     fn take(&mut self, count: usize) -> Result<&'a [u8], ReadError> {
         let left = self.bytes.get(self.at..).unwrap_or_default();
         let taken = left.get(..count);
@@ -133,7 +133,7 @@ impl<'a> Cdr<'a> {
 
 /// Adds the points of a `sensor_msgs/msg/PointCloud2`, finite or not.
 fn cloud(message: &[u8], positions: &mut Positions) -> Result<(), ReadError> {
-    let mut cdr = Cdr {
+    let mut cdr = CdrReader {
         bytes: message,
         at: 0,
     };
@@ -147,13 +147,13 @@ fn cloud(message: &[u8], positions: &mut Positions) -> Result<(), ReadError> {
     cdr.sequence()?;
     cdr.u32()?;
     cdr.u32()?;
-    let mut axes: [Option<(usize, Number)>; 3] = [None; 3];
+    let mut axes: [Option<(usize, SourceNumber)>; 3] = [None; 3];
     for _ in 0..cdr.u32()? {
         let name = cdr.sequence()?;
         let offset = cdr.u32()?;
         let number = match cdr.u8()? {
-            7 => Some(Number::F32),
-            8 => Some(Number::F64),
+            7 => Some(SourceNumber::F32),
+            8 => Some(SourceNumber::F64),
             _ => None,
         };
         cdr.u32()?;
@@ -173,7 +173,8 @@ fn cloud(message: &[u8], positions: &mut Positions) -> Result<(), ReadError> {
     let point_bytes = cdr.u32()?;
     cdr.u32()?;
     for row in cdr.sequence()?.chunks_exact(point_bytes.max(1)) {
-        let read = |(offset, number): (usize, Number)| number.read(row.get(offset..)?, big_endian);
+        let read =
+            |(offset, number): (usize, SourceNumber)| number.read(row.get(offset..)?, big_endian);
         if let (Some(x), Some(y), Some(z)) = (read(x), read(y), read(z)) {
             positions.push([x, y, z]);
         }

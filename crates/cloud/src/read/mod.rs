@@ -63,14 +63,14 @@ pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Read, ReadError> {
 }
 
 /// A little-endian number somewhere in bytes.
-trait Take: Sized {
+trait ReadLe: Sized {
     /// The number at an offset; `None` where the bytes end before.
     fn take(bytes: &[u8], at: usize) -> Option<Self>;
 }
 
-macro_rules! take {
+macro_rules! read_le {
     ($($number:ty),*) => {$(
-        impl Take for $number {
+        impl ReadLe for $number {
             fn take(bytes: &[u8], at: usize) -> Option<Self> {
                 Some(Self::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
             }
@@ -78,11 +78,11 @@ macro_rules! take {
     )*};
 }
 
-take!(u16, u32, u64);
+read_le!(u16, u32, u64);
 
 /// A number type of PLY or PCD.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Number {
+enum SourceNumber {
     I8,
     U8,
     I16,
@@ -93,7 +93,7 @@ enum Number {
     F64,
 }
 
-impl Number {
+impl SourceNumber {
     const fn bytes(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -127,12 +127,12 @@ impl Number {
 
 /// A file and what to say of it.
 #[derive(Clone, Copy)]
-struct Text<'a> {
+struct SourceFile<'a> {
     format: Format,
     bytes: &'a [u8],
 }
 
-impl<'a> Text<'a> {
+impl<'a> SourceFile<'a> {
     fn wrong(
         &self,
         offset: usize,

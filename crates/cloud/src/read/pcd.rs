@@ -1,19 +1,19 @@
 //! PCD 0.7 and before: text, binary, or binary compressed (LZF, columns one after the other).
 
-use super::{Number, Positions, ReadError, Text, shown};
+use super::{Positions, ReadError, SourceFile, SourceNumber, shown};
 use crate::formats::Format;
 
 /// A column.
 #[derive(Clone, Copy)]
-struct Field {
-    number: Option<Number>,
+struct PcdField {
+    number: Option<SourceNumber>,
     size: usize,
     count: usize,
 }
 
 /// What the header says.
 #[derive(Default)]
-struct Header {
+struct PcdHeader {
     names: Vec<String>,
     sizes: Vec<usize>,
     types: Vec<String>,
@@ -24,11 +24,11 @@ struct Header {
 }
 
 pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
-    let text = Text {
+    let text = SourceFile {
         format: Format::Pcd,
         bytes,
     };
-    let mut header = Header::default();
+    let mut header = PcdHeader::default();
     let mut offset = 0;
     loop {
         let end = || text.wrong(bytes.len(), "a line DATA", "the end of the file");
@@ -37,7 +37,7 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
         let key = words.next().unwrap_or("#");
         let words: Vec<&str> = words.collect();
         if key == "DATA" {
-            let read = Read::new(&text, &header, next)?;
+            let read = PcdReader::new(&text, &header, next)?;
             return match words.as_slice() {
                 ["ascii"] => read.text(),
                 ["binary"] => read.binary(),
@@ -54,7 +54,7 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
     }
 }
 
-impl Header {
+impl PcdHeader {
     fn take(&mut self, key: &str, words: &[&str]) -> Option<()> {
         let numbers = || {
             words
@@ -78,24 +78,24 @@ impl Header {
         Some(())
     }
 
-    fn fields(&self) -> impl Iterator<Item = (&str, Field)> {
+    fn fields(&self) -> impl Iterator<Item = (&str, PcdField)> {
         let columns = self.names.iter().zip(&self.sizes).zip(&self.types);
         columns.enumerate().map(|(i, ((name, &size), kind))| {
             let number = match (kind.as_str(), size) {
-                ("I", 1) => Some(Number::I8),
-                ("U", 1) => Some(Number::U8),
-                ("I", 2) => Some(Number::I16),
-                ("U", 2) => Some(Number::U16),
-                ("I", 4) => Some(Number::I32),
-                ("U", 4) => Some(Number::U32),
-                ("F", 4) => Some(Number::F32),
-                ("F", 8) => Some(Number::F64),
+                ("I", 1) => Some(SourceNumber::I8),
+                ("U", 1) => Some(SourceNumber::U8),
+                ("I", 2) => Some(SourceNumber::I16),
+                ("U", 2) => Some(SourceNumber::U16),
+                ("I", 4) => Some(SourceNumber::I32),
+                ("U", 4) => Some(SourceNumber::U32),
+                ("F", 4) => Some(SourceNumber::F32),
+                ("F", 8) => Some(SourceNumber::F64),
                 _ => None,
             };
             let count = self.counts.get(i).copied().unwrap_or(1);
             (
                 name.as_str(),
-                Field {
+                PcdField {
                     number,
                     size,
                     count,
@@ -106,24 +106,24 @@ impl Header {
 }
 
 /// Where x, y and z are: the number of the word in a row of text, the byte in a row, the byte before the column's first in one long row.
-struct Read<'a> {
-    text: Text<'a>,
+struct PcdReader<'a> {
+    text: SourceFile<'a>,
     start: usize,
     points: usize,
     row: usize,
-    columns: [Column; 3],
+    columns: [PcdColumn; 3],
 }
 
 #[derive(Clone, Copy)]
-struct Column {
+struct PcdColumn {
     word: usize,
     byte: usize,
-    number: Number,
+    number: SourceNumber,
     stride: usize,
 }
 
-impl<'a> Read<'a> {
-    fn new(text: &Text<'a>, header: &Header, start: usize) -> Result<Self, ReadError> {
+impl<'a> PcdReader<'a> {
+    fn new(text: &SourceFile<'a>, header: &PcdHeader, start: usize) -> Result<Self, ReadError> {
         let whole = header.width.checked_mul(header.height);
         let points = header.points.or(whole).unwrap_or(0);
         let mut columns = [None; 3];
@@ -133,7 +133,7 @@ impl<'a> Read<'a> {
             if let (Some(slot), Some(number)) =
                 (axis.and_then(|a| columns.get_mut(a)), field.number)
             {
-                *slot = Some(Column {
+                *slot = Some(PcdColumn {
                     word,
                     byte: row,
                     number,
@@ -180,7 +180,7 @@ impl<'a> Read<'a> {
         {
             return Err(self.short(rows.len(), "bytes"));
         }
-        let read = |row: &[u8], column: Column| {
+        let read = |row: &[u8], column: PcdColumn| {
             let bytes = row.get(column.byte..).unwrap_or_default();
             column.number.read(bytes, false).unwrap_or(f64::NAN)
         };
@@ -211,7 +211,7 @@ impl<'a> Read<'a> {
             self.text
                 .wrong(self.start + 8, "data packed by LZF", "other bytes")
         })?;
-        let read = |point: usize, column: Column| {
+        let read = |point: usize, column: PcdColumn| {
             let at = column.byte * self.points + point * column.stride;
             let bytes = unpacked.get(at..).unwrap_or_default();
             column.number.read(bytes, false).unwrap_or(f64::NAN)

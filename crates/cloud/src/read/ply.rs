@@ -1,38 +1,38 @@
 //! PLY: text, little-endian or big-endian, any properties of the vertices.
 
-use super::{Number, Positions, ReadError, Text, shown};
+use super::{Positions, ReadError, SourceFile, SourceNumber, shown};
 use crate::formats::Format;
 
 /// What the header says.
-struct Header {
-    data: Data,
+struct PlyHeader {
+    data: PlyEncoding,
     /// Where the data begins.
     start: usize,
-    elements: Vec<Element>,
+    elements: Vec<PlyElement>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Data {
+enum PlyEncoding {
     Text,
     Little,
     Big,
 }
 
-struct Element {
+struct PlyElement {
     name: String,
     count: usize,
-    properties: Vec<(String, Property)>,
+    properties: Vec<(String, PlyProperty)>,
 }
 
 #[derive(Clone, Copy)]
-enum Property {
-    One(Number),
+enum PlyProperty {
+    One(SourceNumber),
     /// So many of the second as the first says.
-    List(Number, Number),
+    List(SourceNumber, SourceNumber),
 }
 
 pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
-    let text = Text {
+    let text = SourceFile {
         format: Format::Ply,
         bytes,
     };
@@ -41,19 +41,21 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
     for element in &header.elements {
         if element.name == "vertex" {
             return match header.data {
-                Data::Text => text_vertices(&text, element, offset),
-                Data::Little | Data::Big => {
-                    vertices(&text, element, offset, header.data == Data::Big)
+                PlyEncoding::Text => text_vertices(&text, element, offset),
+                PlyEncoding::Little | PlyEncoding::Big => {
+                    vertices(&text, element, offset, header.data == PlyEncoding::Big)
                 }
             };
         }
         // So many as nothing has no end.
-        let is_nothing = element.properties.is_empty() && header.data != Data::Text;
+        let is_nothing = element.properties.is_empty() && header.data != PlyEncoding::Text;
         let count = if is_nothing { 0 } else { element.count };
         for _ in 0..count {
             offset = match header.data {
-                Data::Text => text.line(offset)?.map(|(_, next)| next),
-                Data::Little | Data::Big => skip(bytes, element, offset, header.data == Data::Big),
+                PlyEncoding::Text => text.line(offset)?.map(|(_, next)| next),
+                PlyEncoding::Little | PlyEncoding::Big => {
+                    skip(bytes, element, offset, header.data == PlyEncoding::Big)
+                }
             }
             .ok_or_else(|| text.wrong(bytes.len(), format!("a {}", element.name), "the end"))?;
         }
@@ -61,10 +63,10 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
     Err(text.wrong(0, "an element vertex", "none"))
 }
 
-fn header(text: &Text<'_>) -> Result<Header, ReadError> {
+fn header(text: &SourceFile<'_>) -> Result<PlyHeader, ReadError> {
     let mut offset = 0;
     let mut data = None;
-    let mut elements: Vec<Element> = Vec::new();
+    let mut elements: Vec<PlyElement> = Vec::new();
     loop {
         let end = || text.wrong(text.bytes.len(), "end_header", "the end of the file");
         let (line, next) = text.line(offset)?.ok_or_else(end)?;
@@ -75,9 +77,9 @@ fn header(text: &Text<'_>) -> Result<Header, ReadError> {
             (0, _) => return Err(wrong("ply")),
             (_, ["format", kind, _]) => {
                 data = Some(match *kind {
-                    "ascii" => Data::Text,
-                    "binary_little_endian" => Data::Little,
-                    "binary_big_endian" => Data::Big,
+                    "ascii" => PlyEncoding::Text,
+                    "binary_little_endian" => PlyEncoding::Little,
+                    "binary_big_endian" => PlyEncoding::Big,
                     _ => {
                         return Err(wrong(
                             "format ascii, binary_little_endian or binary_big_endian",
@@ -85,7 +87,7 @@ fn header(text: &Text<'_>) -> Result<Header, ReadError> {
                     }
                 });
             }
-            (_, ["element", name, count]) => elements.push(Element {
+            (_, ["element", name, count]) => elements.push(PlyElement {
                 name: (*name).to_owned(),
                 count: count.parse().map_err(|_| wrong("a number of elements"))?,
                 properties: Vec::new(),
@@ -97,7 +99,7 @@ fn header(text: &Text<'_>) -> Result<Header, ReadError> {
             }
             (_, ["end_header"]) => {
                 let data = data.ok_or_else(|| wrong("format before end_header"))?;
-                return Ok(Header {
+                return Ok(PlyHeader {
                     data,
                     start: next,
                     elements,
@@ -109,34 +111,34 @@ fn header(text: &Text<'_>) -> Result<Header, ReadError> {
     }
 }
 
-fn property(words: &[&str]) -> Option<Property> {
+fn property(words: &[&str]) -> Option<PlyProperty> {
     match words {
-        [one] => Some(Property::One(number(one)?)),
-        ["list", count, item] => Some(Property::List(number(count)?, number(item)?)),
+        [one] => Some(PlyProperty::One(number(one)?)),
+        ["list", count, item] => Some(PlyProperty::List(number(count)?, number(item)?)),
         _ => None,
     }
 }
 
-fn number(name: &str) -> Option<Number> {
+fn number(name: &str) -> Option<SourceNumber> {
     Some(match name {
-        "char" | "int8" => Number::I8,
-        "uchar" | "uint8" => Number::U8,
-        "short" | "int16" => Number::I16,
-        "ushort" | "uint16" => Number::U16,
-        "int" | "int32" => Number::I32,
-        "uint" | "uint32" => Number::U32,
-        "float" | "float32" => Number::F32,
-        "double" | "float64" => Number::F64,
+        "char" | "int8" => SourceNumber::I8,
+        "uchar" | "uint8" => SourceNumber::U8,
+        "short" | "int16" => SourceNumber::I16,
+        "ushort" | "uint16" => SourceNumber::U16,
+        "int" | "int32" => SourceNumber::I32,
+        "uint" | "uint32" => SourceNumber::U32,
+        "float" | "float32" => SourceNumber::F32,
+        "double" | "float64" => SourceNumber::F64,
         _ => return None,
     })
 }
 
 /// Where what follows one of an element begins.
-fn skip(bytes: &[u8], element: &Element, mut offset: usize, big_endian: bool) -> Option<usize> {
+fn skip(bytes: &[u8], element: &PlyElement, mut offset: usize, big_endian: bool) -> Option<usize> {
     for (_, property) in &element.properties {
         offset = match property {
-            Property::One(number) => offset.checked_add(number.bytes())?,
-            Property::List(count, item) => {
+            PlyProperty::One(number) => offset.checked_add(number.bytes())?,
+            PlyProperty::List(count, item) => {
                 let items = count.read(bytes.get(offset..)?, big_endian)?;
                 let size = (items as usize).checked_mul(item.bytes())?;
                 offset.checked_add(count.bytes())?.checked_add(size)?
@@ -147,14 +149,14 @@ fn skip(bytes: &[u8], element: &Element, mut offset: usize, big_endian: bool) ->
 }
 
 /// Which property is this one.
-fn place(text: &Text<'_>, element: &Element, name: &str) -> Result<usize, ReadError> {
+fn place(text: &SourceFile<'_>, element: &PlyElement, name: &str) -> Result<usize, ReadError> {
     let found = element.properties.iter().position(|(own, _)| own == name);
     found.ok_or_else(|| text.wrong(0, format!("a property {name} of the vertices"), "none"))
 }
 
 fn text_vertices(
-    text: &Text<'_>,
-    element: &Element,
+    text: &SourceFile<'_>,
+    element: &PlyElement,
     offset: usize,
 ) -> Result<Positions, ReadError> {
     let at = |name: &str| place(text, element, name);
@@ -168,12 +170,12 @@ fn text_vertices(
 }
 
 fn vertices(
-    text: &Text<'_>,
-    element: &Element,
+    text: &SourceFile<'_>,
+    element: &PlyElement,
     start: usize,
     big_endian: bool,
 ) -> Result<Positions, ReadError> {
-    let mut columns = [(0, Number::F32); 3];
+    let mut columns = [(0, SourceNumber::F32); 3];
     for (column, name) in columns.iter_mut().zip(["x", "y", "z"]) {
         let mut offset = 0;
         for (own, property) in element
@@ -181,7 +183,7 @@ fn vertices(
             .iter()
             .take(place(text, element, name)? + 1)
         {
-            let Property::One(number) = property else {
+            let PlyProperty::One(number) = property else {
                 return Err(text.wrong(0, "vertices without lists", format!("a list {own}")));
             };
             *column = (offset, *number);
@@ -190,7 +192,7 @@ fn vertices(
     }
     let mut row = 0_usize;
     for (own, property) in &element.properties {
-        let Property::One(number) = property else {
+        let PlyProperty::One(number) = property else {
             return Err(text.wrong(0, "vertices without lists", format!("a list {own}")));
         };
         row += number.bytes();
@@ -204,7 +206,7 @@ fn vertices(
         let expected = format!("{} vertices of {row} bytes", element.count);
         return Err(text.wrong(start, expected, format!("{} bytes", rows.len())));
     }
-    let read = |row: &[u8], (offset, number): (usize, Number)| {
+    let read = |row: &[u8], (offset, number): (usize, SourceNumber)| {
         let bytes = row.get(offset..).unwrap_or_default();
         number.read(bytes, big_endian).unwrap_or(f64::NAN)
     };

@@ -4,7 +4,7 @@ use super::*;
 fn places(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError> {
     positions(format, bytes).map(|read| read.positions)
 }
-use crate::formats::testing::{Shared, cloud_from, metadata};
+use crate::formats::testing::{SharedOutput, cloud_from, metadata};
 use crate::{Fields, Sink};
 
 /// Points of a day that every format can say: ROS 2 ends in 2038.
@@ -13,7 +13,7 @@ fn cloud(count: u32) -> crate::Points {
 }
 
 fn written(format: Format, points: &crate::Points) -> Vec<u8> {
-    let output = Shared::default();
+    let output = SharedOutput::default();
     let mut writer = format.writer(output.clone(), Fields::FILE);
     writer.begin(&metadata()).unwrap();
     writer.points(points).unwrap();

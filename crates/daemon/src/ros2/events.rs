@@ -6,7 +6,7 @@ use cloud::messages::cdr::Cdr;
 use cloud::messages::{
     CloudMessage, Frames, Time, Topic, diagnostic_array, joint_state, tf_message,
 };
-use cloud::{Check, Fields, Level};
+use cloud::{Diagnostic, DiagnosticLevel, Fields};
 use units::{Degrees, Host, Metres, Stamp};
 
 use super::link::{Error, Link};
@@ -127,17 +127,17 @@ fn device(
     name: String,
     (state, problem): (DeviceState, &Option<Failure>),
     values: Vec<(String, String)>,
-) -> Check {
+) -> Diagnostic {
     let (level, usual) = match state {
-        DeviceState::Connected => (Level::Ok, "connected"),
-        DeviceState::Absent => (Level::Error, "absent"),
-        DeviceState::Fault => (Level::Error, "fault"),
+        DeviceState::Connected => (DiagnosticLevel::Ok, "connected"),
+        DeviceState::Absent => (DiagnosticLevel::Error, "absent"),
+        DeviceState::Fault => (DiagnosticLevel::Error, "fault"),
     };
     let message = problem.as_ref().map(|problem| match &problem.help {
         Some(help) => format!("{} ({help})", problem.message),
         None => problem.message.clone(),
     });
-    Check {
+    Diagnostic {
         name,
         level,
         message: message.unwrap_or_else(|| usual.to_owned()),
@@ -150,7 +150,7 @@ fn values<const N: usize>(values: [(&str, String); N]) -> Vec<(String, String)> 
 }
 
 /// The status as diagnostics have it.
-fn checks(node: &str, status: &Status, shared: &Shared) -> Vec<Check> {
+fn checks(node: &str, status: &Status, shared: &Shared) -> Vec<Diagnostic> {
     let (drive, lidar, disk) = (&status.drive, &status.lidar, &status.disk);
     let known = |value: Option<f64>| value.map_or("unknown".to_owned(), |v| format!("{v:.3}"));
     let drive = device(
@@ -180,9 +180,13 @@ fn checks(node: &str, status: &Status, shared: &Shared) -> Vec<Check> {
         .free_bytes
         .is_some_and(|free| free < disk.reserve_bytes);
     let activity = &status.activity;
-    let scans = Check {
+    let scans = Diagnostic {
         name: format!("{node}: scans"),
-        level: if full { Level::Warn } else { Level::Ok },
+        level: if full {
+            DiagnosticLevel::Warn
+        } else {
+            DiagnosticLevel::Ok
+        },
         message: match full {
             true => "the disk is nearly full".to_owned(),
             false => format!("{:?}", activity.doing).to_lowercase(),
@@ -202,9 +206,13 @@ fn checks(node: &str, status: &Status, shared: &Shared) -> Vec<Check> {
         .ros2
         .missed
         .load(std::sync::atomic::Ordering::Relaxed);
-    let network = Check {
+    let network = Diagnostic {
         name: format!("{node}: ros2"),
-        level: if missed > 0 { Level::Warn } else { Level::Ok },
+        level: if missed > 0 {
+            DiagnosticLevel::Warn
+        } else {
+            DiagnosticLevel::Ok
+        },
         message: match missed {
             0 => "every message was sent".to_owned(),
             _ => "the network took too long for some messages".to_owned(),

@@ -1,12 +1,12 @@
 //! Diagnostics of a scan, stored beside its points (`diagnostic_msgs` levels OK and WARN).
 
-use cloud::{Check, Level};
+use cloud::{Diagnostic, DiagnosticLevel};
 
 use crate::reconstruct::report::{Contents, Scan, Sync};
 
 /// Checks of a scan: devices, losses, clock, tilt, cloud.
 #[must_use]
-pub fn of(scan: &Scan) -> Vec<Check> {
+pub fn of(scan: &Scan) -> Vec<Diagnostic> {
     vec![
         devices(&scan.contents),
         lidar(scan),
@@ -37,19 +37,19 @@ impl Values {
     }
 }
 
-fn check(name: &str, doubt: Option<String>, fine: &str, values: Values) -> Check {
-    Check {
+fn check(name: &str, doubt: Option<String>, fine: &str, values: Values) -> Diagnostic {
+    Diagnostic {
         name: format!("velomotion: {name}"),
         level: match doubt {
-            Some(_) => Level::Warn,
-            None => Level::Ok,
+            Some(_) => DiagnosticLevel::Warn,
+            None => DiagnosticLevel::Ok,
         },
         message: doubt.unwrap_or_else(|| fine.to_owned()),
         values: values.0,
     }
 }
 
-fn devices(contents: &Contents) -> Check {
+fn devices(contents: &Contents) -> Diagnostic {
     let doubt = contents
         .simulated
         .then(|| "SIMULATED: simulated devices, not a real scan".to_owned());
@@ -57,7 +57,7 @@ fn devices(contents: &Contents) -> Check {
     check("devices", doubt, "real devices", values)
 }
 
-fn lidar(scan: &Scan) -> Check {
+fn lidar(scan: &Scan) -> Diagnostic {
     let contents = &scan.contents;
     let lost = contents.lost_packets.saturating_add(scan.lost_records);
     let doubt = (lost > 0).then(|| format!("{lost} packets were lost"));
@@ -76,7 +76,7 @@ fn lidar(scan: &Scan) -> Check {
     check("lidar", doubt, "nothing was lost", values)
 }
 
-fn clock(sync: &Sync) -> Check {
+fn clock(sync: &Sync) -> Diagnostic {
     let steps = sync.steps.len();
     let doubt = (steps > 0).then(|| format!("{steps} clock steps were found and corrected"));
     let values = Values::new()
@@ -89,7 +89,7 @@ fn clock(sync: &Sync) -> Check {
     check("clock", doubt, &fine, values)
 }
 
-fn tilt(scan: &Scan) -> Check {
+fn tilt(scan: &Scan) -> Diagnostic {
     let sync = &scan.sync;
     let tilt = scan.contents.tilt.as_ref();
     let values = Values::new()
@@ -106,7 +106,7 @@ fn tilt(scan: &Scan) -> Check {
     check("tilt", None, &fine, values)
 }
 
-fn cloud(scan: &Scan) -> Check {
+fn cloud(scan: &Scan) -> Diagnostic {
     let contents = &scan.contents;
     let mut values = Values::new()
         .with("points", scan.points)

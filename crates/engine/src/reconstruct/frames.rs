@@ -176,7 +176,7 @@ impl<'a> FrameWriter<'a> {
             if let Some(target) = &mut self.mcap {
                 let sink = target.sink();
                 sink.points(&points)
-                    .and_then(|()| sink.turn())
+                    .and_then(|()| sink.revolution())
                     .map_err(|error| sink_failure(&self.plan.output, &error))?;
                 totals.clouds += 1;
                 continue;

@@ -162,7 +162,7 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
 
 /// Sends the summary of a scan to a sink.
 fn send_summary(sink: &mut dyn Sink, scan: &Scan, output: &Path) -> Result<(), Failure> {
-    sink.checks(&checks::of(scan))
+    sink.diagnostics(&checks::of(scan))
         .map_err(|error| sink_failure(output, &error))
 }
 

@@ -3,7 +3,7 @@
 //! Points measured while the lidar's clock was not locked have no UTC; they are omitted and
 //! counted.
 
-use cloud::{Check, Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
+use cloud::{Companion, Diagnostic, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
 use lidar::{Options, Timekeeper, UtcClock};
 use protocol::record::{Record, Wire};
 use protocol::vlp16::PositionPacket;
@@ -106,12 +106,12 @@ impl Sink for InUtc<'_> {
         })
     }
 
-    fn turn(&mut self) -> Result<(), SinkError> {
-        self.sink.turn()
+    fn revolution(&mut self) -> Result<(), SinkError> {
+        self.sink.revolution()
     }
 
-    fn checks(&mut self, checks: &[Check]) -> Result<(), SinkError> {
-        self.sink.checks(checks)
+    fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
+        self.sink.diagnostics(diagnostics)
     }
 
     fn companion(&self, file_name: &str) -> Option<Companion> {

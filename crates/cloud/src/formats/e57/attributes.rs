@@ -21,11 +21,11 @@ const DOUBLE: RecordDataType = RecordDataType::Double {
 const BYTE: RecordDataType = RecordDataType::Integer { min: 0, max: 255 };
 
 /// Which attributes a point has.
-pub(super) struct Attributes {
+pub(super) struct PointAttributes {
     columns: Vec<Column>,
 }
 
-impl Attributes {
+impl PointAttributes {
     /// Those for positions and `fields`.
     pub(super) fn new(fields: Fields) -> Self {
         Self {

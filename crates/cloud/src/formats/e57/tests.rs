@@ -4,10 +4,10 @@ use e57::{E57Reader, RecordName, RecordValue};
 
 use super::*;
 use crate::Point;
-use crate::formats::testing::{LATE_NS, NOW_NS, Shared, SmallDisk, cloud_from, metadata};
+use crate::formats::testing::{LATE_NS, NOW_NS, SharedOutput, SmallDisk, cloud_from, metadata};
 
 fn written(fields: Fields, batches: &[Points]) -> Vec<u8> {
-    let file = Shared::default();
+    let file = SharedOutput::default();
     let mut writer = E57Writer::new(file.clone()).with_fields(fields);
     writer.begin(&metadata()).unwrap();
     for batch in batches {
@@ -142,7 +142,7 @@ fn the_same_points_give_the_same_bytes_and_others_another_identity() {
 
 #[test]
 fn what_it_says_cannot_break_the_description() {
-    let file = Shared::default();
+    let file = SharedOutput::default();
     let mut writer = E57Writer::new(file.clone());
     let metadata = Metadata {
         source: "]]></description>".into(),
@@ -158,7 +158,7 @@ fn what_it_says_cannot_break_the_description() {
 
 #[test]
 fn a_place_that_is_none_is_refused_and_what_was_whole_is_kept() {
-    let file = Shared::default();
+    let file = SharedOutput::default();
     let mut writer = E57Writer::new(file.clone());
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud_from(10, NOW_NS)).unwrap();
@@ -209,7 +209,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
 /// A writer that is not finished leaves what no reader takes for a cloud, and lets go of its output.
 #[test]
 fn a_writer_that_is_dropped_leaves_no_cloud() {
-    let file = Shared::default();
+    let file = SharedOutput::default();
     let mut writer = E57Writer::new(file.clone());
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud_from(10_000, NOW_NS)).unwrap();

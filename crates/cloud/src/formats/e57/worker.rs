@@ -6,19 +6,19 @@ use std::sync::mpsc::Receiver;
 use e57::{DateTime, Extension, Quaternion, Transform, Translation};
 use units::{Host, Stamp};
 
-use super::attributes::{Attributes, NAMESPACE, URL};
+use super::attributes::{NAMESPACE, PointAttributes, URL};
 use crate::{Metadata, Points};
 
 /// What the thread is to do.
-pub(super) enum Order {
+pub(super) enum WorkerCommand {
     /// Write these points, whose times count from a stamp.
     Points(Box<Points>, Stamp<Host>),
     /// Complete the file.
-    Finish(Ending),
+    Finish(FileEnding),
 }
 
 /// What is known at the end.
-pub(super) struct Ending {
+pub(super) struct FileEnding {
     /// The file's identity in place of [`PLACEHOLDER`].
     pub(super) identity: String,
     /// When acquisition began and ended, GPS seconds; `None` where no point has a time.
@@ -27,14 +27,14 @@ pub(super) struct Ending {
 }
 
 /// What is known at the begin.
-pub(super) struct About {
+pub(super) struct CloudDescription {
     name: String,
     description: String,
     sensor: String,
     software: String,
 }
 
-impl About {
+impl CloudDescription {
     pub(super) fn new(metadata: &Metadata) -> Self {
         let name = if metadata.simulated {
             "SIMULATED scan"
@@ -61,9 +61,9 @@ const PLACEHOLDER: &str = "{00000000-0000-8000-8000-000000000000}";
 /// Does what it is told until the file is complete. Where nobody is left to tell it anything, the file stays as it is.
 pub(super) fn run<W: Read + Write + Seek>(
     output: W,
-    attributes: &Attributes,
-    about: &About,
-    orders: &Receiver<Order>,
+    attributes: &PointAttributes,
+    about: &CloudDescription,
+    orders: &Receiver<WorkerCommand>,
 ) -> e57::Result<()> {
     let mut file = e57::E57Writer::new(output, PLACEHOLDER)?;
     if attributes.are_extended() {
@@ -89,12 +89,12 @@ pub(super) fn run<W: Read + Write + Seek>(
     }));
     let ending = loop {
         match orders.recv() {
-            Ok(Order::Points(points, start)) => {
+            Ok(WorkerCommand::Points(points, start)) => {
                 for point in points.iter() {
                     cloud.add_point(attributes.values(&point, start))?;
                 }
             }
-            Ok(Order::Finish(ending)) => break ending,
+            Ok(WorkerCommand::Finish(ending)) => break ending,
             Err(_) => return Ok(()),
         }
     };

@@ -3,6 +3,7 @@
 
 use las::Vlr;
 
+use crate::rows::NumberType;
 use crate::{Column, Fields};
 
 const RECORD_BYTES: usize = 192;
@@ -11,56 +12,62 @@ const DESCRIPTION_AT: usize = 160;
 
 /// A column among the extra bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Extra {
+pub(super) struct ExtraColumn {
     pub(super) column: Column,
+    pub(super) number: NumberType,
     /// Byte offset among the extra bytes.
     pub(super) offset: usize,
 }
 
-/// LAS data type code, size in bytes, description (at most 32 characters). `None`: the column has a place of its own.
-const fn kind(column: Column) -> Option<(u8, usize, &'static str)> {
-    const U8: u8 = 1;
-    const F32: u8 = 9;
-    const F64: u8 = 10;
+/// Number type and description (at most 32 characters); `None` for the column with a standard field.
+const fn kind(column: Column) -> Option<(NumberType, &'static str)> {
+    use NumberType::{F32, F64, U8};
     match column {
         Column::Intensity => None,
-        Column::Ring => Some((U8, 1, "0 = lowest elevation")),
-        Column::Time => Some((F64, 8, "Unix seconds, host clock")),
-        Column::Tilt => Some((F32, 4, "tilt of the platform, degrees")),
-        Column::Laser => Some((U8, 1, "laser in firing order")),
-        Column::DeviceTime => Some((F64, 8, "seconds, clock of the lidar")),
-        Column::Sd => Some((F32, 4, "expected error (RMS), metres")),
-        Column::Echo => Some((U8, 1, "1 strongest 2 last 3 both 4 rest")),
+        Column::Ring => Some((U8, "0 = lowest elevation")),
+        Column::Time => Some((F64, "Unix seconds, host clock")),
+        Column::Tilt => Some((F32, "tilt of the platform, degrees")),
+        Column::Laser => Some((U8, "laser in firing order")),
+        Column::DeviceTime => Some((F64, "seconds, clock of the lidar")),
+        Column::Sd => Some((F32, "expected error (RMS), metres")),
+        Column::Echo => Some((U8, "1 strongest 2 last 3 both 4 rest")),
     }
 }
 
-/// Where each of the columns that need extra bytes stands.
-pub(super) fn layout(fields: Fields) -> Vec<Extra> {
+/// The columns that need extra bytes, with their offsets.
+pub(super) fn layout(fields: Fields) -> Vec<ExtraColumn> {
     let mut offset = 0;
     let mut extras = Vec::new();
     for column in fields.columns() {
-        if let Some((_, size, _)) = kind(column) {
-            extras.push(Extra { column, offset });
-            offset += size;
+        if let Some((number, _)) = kind(column) {
+            extras.push(ExtraColumn {
+                column,
+                number,
+                offset,
+            });
+            offset += number.bytes();
         }
     }
     extras
 }
 
-/// Bytes that they take in a point; at most 26, with every column.
-pub(super) fn length(extras: &[Extra]) -> u16 {
-    extras
-        .iter()
-        .filter_map(|extra| kind(extra.column))
-        .map(|(_, size, _)| size as u16)
-        .sum()
+/// Bytes of them in a point; at most 27, with every column.
+pub(super) fn length(extras: &[ExtraColumn]) -> u16 {
+    extras.iter().map(|extra| extra.number.bytes() as u16).sum()
 }
 
 /// The record that describes them.
-pub(super) fn record(extras: &[Extra]) -> Vlr {
+pub(super) fn record(extras: &[ExtraColumn]) -> Vlr {
     let mut data = Vec::with_capacity(extras.len() * RECORD_BYTES);
     for extra in extras {
-        if let Some((code, _, description)) = kind(extra.column) {
+        if let Some((number, description)) = kind(extra.column) {
+            // Data types of table 24.
+            let code = match number {
+                NumberType::U8 => 1,
+                NumberType::U16 => 3,
+                NumberType::F32 => 9,
+                NumberType::F64 => 10,
+            };
             let mut record = [0; RECORD_BYTES];
             // Bytes 0 and 1 are reserved; options (byte 3) stay 0: no nodata, minimum, maximum, scale or offset.
             put(&mut record, 2, &[code]);
@@ -72,7 +79,7 @@ pub(super) fn record(extras: &[Extra]) -> Vlr {
     Vlr {
         user_id: "LASF_Spec".to_owned(),
         record_id: 4,
-        description: "Extra bytes".to_owned(),
+        description: "ExtraColumn bytes".to_owned(),
         data,
     }
 }
@@ -92,9 +99,9 @@ mod tests {
         let extras = layout(Fields::ALL);
         let mut expected = 0;
         for extra in &extras {
-            let (_, size, description) = kind(extra.column).unwrap();
+            let (number, description) = kind(extra.column).unwrap();
             assert_eq!(extra.offset, expected);
-            expected += size;
+            expected += number.bytes();
             assert!(description.len() <= 32 && extra.column.name().len() <= 32);
         }
         assert_eq!(usize::from(length(&extras)), expected);

@@ -253,7 +253,7 @@ fn what_a_full_disk_cut_off_cannot_be_finished() {
 
 #[test]
 fn a_writer_that_is_dropped_leaves_a_file_of_what_it_had() {
-    let file = crate::formats::testing::Shared::default();
+    let file = crate::formats::testing::SharedOutput::default();
     let mut writer = LasWriter::laz(file.clone());
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud(12)).unwrap();

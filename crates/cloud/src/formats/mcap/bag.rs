@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::channels::Channels;
+use super::channels::McapChannels;
 use crate::Companion;
 use crate::messages::Topic;
 
@@ -31,7 +31,7 @@ pub(super) fn quality(topic: Topic) -> String {
 }
 
 /// `metadata.yaml` for the recording `file_name`.
-pub(super) fn companion(file_name: &str, channels: &Channels) -> Companion {
+pub(super) fn companion(file_name: &str, channels: &McapChannels) -> Companion {
     let (start, end) = channels.times().unwrap_or((0, 0));
     let duration = end.saturating_sub(start);
     let messages: u64 = channels.counts().map(|(_, count)| u64::from(count)).sum();

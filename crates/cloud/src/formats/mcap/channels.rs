@@ -12,18 +12,18 @@ use crate::messages::Topic;
 
 /// What was written on each topic.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Channels {
-    by_topic: BTreeMap<Topic, Channel>,
+pub(super) struct McapChannels {
+    by_topic: BTreeMap<Topic, McapChannel>,
     times: Option<(u64, u64)>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Channel {
+struct McapChannel {
     id: u16,
     messages: u32,
 }
 
-impl Channels {
+impl McapChannels {
     /// Writes a message that was complete at `at`, not before 1970.
     pub(super) fn write<W: Write + Seek>(
         &mut self,
@@ -34,7 +34,7 @@ impl Channels {
     ) -> McapResult<()> {
         let mut channel = match self.by_topic.get(&topic) {
             Some(channel) => *channel,
-            None => Channel {
+            None => McapChannel {
                 id: declare(writer, topic)?,
                 messages: 0,
             },
@@ -61,7 +61,7 @@ impl Channels {
             .map(|(topic, channel)| (*topic, channel.messages))
     }
 
-    /// Log times of the first and the last message, nanoseconds since 1970.
+    /// McapLog times of the first and the last message, nanoseconds since 1970.
     pub(super) const fn times(&self) -> Option<(u64, u64)> {
         self.times
     }

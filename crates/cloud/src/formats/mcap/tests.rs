@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use units::Metres;
 
 use super::*;
-use crate::formats::testing::{self, NOW_NS, Shared, SmallDisk, cloud_from, metadata};
-use crate::{Level, Point};
+use crate::formats::testing::{self, NOW_NS, SharedOutput, SmallDisk, cloud_from, metadata};
+use crate::{DiagnosticLevel, Point};
 
 const MS: i64 = 1_000_000;
 
@@ -38,10 +38,10 @@ fn track() -> TiltTrack {
     }
 }
 
-fn checks() -> Vec<Check> {
-    vec![Check {
+fn diagnostics() -> Vec<Diagnostic> {
+    vec![Diagnostic {
         name: "clock".into(),
-        level: Level::Warn,
+        level: DiagnosticLevel::Warn,
         message: "a step".into(),
         values: vec![("by".into(), "1 s".into())],
     }]
@@ -71,7 +71,7 @@ fn read(bytes: &[u8]) -> Vec<Read> {
         .collect()
 }
 
-/// Log time and points of each cloud.
+/// McapLog time and points of each cloud.
 fn clouds(messages: &[Read]) -> Vec<(i64, u32)> {
     messages
         .iter()
@@ -98,9 +98,9 @@ fn written(
     }
     for batch in batches {
         writer.points(batch).unwrap();
-        writer.turn().unwrap();
+        writer.revolution().unwrap();
     }
-    writer.checks(&checks()).unwrap();
+    writer.diagnostics(&diagnostics()).unwrap();
     writer.finish().unwrap();
     writer.into_inner().unwrap().into_inner()
 }
@@ -133,7 +133,7 @@ fn a_cloud_a_turn_where_turns_are_told() {
         points([]),
         points([2 * MS, 120 * MS, 160 * MS]),
     ];
-    let messages = read(&written(new().by_turns(), Some(&track()), &batches));
+    let messages = read(&written(new().by_revolution(), Some(&track()), &batches));
     assert_eq!(clouds(&messages), [(MS, 2), (160 * MS, 3)]);
 }
 
@@ -244,7 +244,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
             .begin(&metadata())
             .and_then(|()| writer.tilt(&track()))
             .and_then(|()| writer.points(&cloud))
-            .and_then(|()| writer.checks(&checks()))
+            .and_then(|()| writer.diagnostics(&diagnostics()))
             .and_then(|()| writer.finish());
         match result {
             Ok(summary) => assert!(summary.points == 50 && room >= whole, "{room} of {whole}"),
@@ -258,7 +258,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
 
 #[test]
 fn what_a_killed_writer_leaves_has_its_whole_chunks() {
-    let file = Shared::default();
+    let file = SharedOutput::default();
     let mut writer = McapWriter::new(file.clone());
     writer.begin(&metadata()).unwrap();
     writer.tilt(&track()).unwrap();
@@ -329,7 +329,7 @@ proptest! {
         turns in any::<bool>(),
     ) {
         let batches: Vec<Points> = after.chunks(batch).map(|c| points(c.iter().copied())).collect();
-        let writer = if turns { new().by_turns() } else { new() };
+        let writer = if turns { new().by_revolution() } else { new() };
         let messages = read(&written(writer, Some(&track()), &batches));
         let total: u32 = clouds(&messages).iter().map(|c| c.1).sum();
         prop_assert_eq!(total as usize, after.len());

@@ -4,7 +4,7 @@
 //! all memory, or more than there is, which ends the program. So whatever is reserved is looked at beforehand: records, extended records
 //! (LAS 1.4 R15, 2.4 to 2.7), the table of chunks and the layers of each (LASzip's own description of its record and its chunks). Left out: whether it is true.
 
-use crate::read::Take;
+use crate::read::ReadLe;
 
 /// What is wrong: where, what should be there, and what is.
 pub(super) type Wrong = (usize, &'static str, String);
@@ -44,7 +44,7 @@ const ITEMS: [(u16, Option<u16>, bool, Option<u16>); 10] = [
 
 /// Looks at everything that is reserved by what the file says; `points` is how many it promises.
 pub(super) fn kept(bytes: &[u8], points: u64) -> Result<(), Wrong> {
-    let header = Header::read(bytes).ok_or((
+    let header = LasHeader::read(bytes).ok_or((
         bytes.len(),
         "a header of LAS",
         format!("{} bytes", bytes.len()),
@@ -64,7 +64,7 @@ pub(super) fn kept(bytes: &[u8], points: u64) -> Result<(), Wrong> {
     }
 }
 
-struct Header {
+struct LasHeader {
     minor: u8,
     size: usize,
     data: usize,
@@ -73,7 +73,7 @@ struct Header {
     point_size: u16,
 }
 
-impl Header {
+impl LasHeader {
     fn read(bytes: &[u8]) -> Option<Self> {
         Some(Self {
             minor: *bytes.get(MINOR)?,
@@ -87,7 +87,7 @@ impl Header {
 }
 
 /// Extended records behind the points.
-fn extended(bytes: &[u8], header: &Header) -> Result<(), Wrong> {
+fn extended(bytes: &[u8], header: &LasHeader) -> Result<(), Wrong> {
     if header.minor < 4 {
         return Ok(());
     }
@@ -122,7 +122,7 @@ struct Compressor {
     layers: usize,
 }
 
-fn compressed(bytes: &[u8], header: &Header) -> Result<(), Wrong> {
+fn compressed(bytes: &[u8], header: &LasHeader) -> Result<(), Wrong> {
     let compressor = compressor(bytes, header).ok_or((
         header.size,
         "a record of LASzip",
@@ -157,7 +157,7 @@ fn compressed(bytes: &[u8], header: &Header) -> Result<(), Wrong> {
     Ok(())
 }
 
-fn compressor(bytes: &[u8], header: &Header) -> Option<Compressor> {
+fn compressor(bytes: &[u8], header: &LasHeader) -> Option<Compressor> {
     let mut at = header.size;
     for _ in 0..header.records {
         let length = usize::from(u16::take(bytes, at.checked_add(HEAD_LENGTH)?)?);

@@ -1,60 +1,77 @@
-//! Which columns a cloud has beside its positions.
+//! The columns of a cloud beside its positions, in one table.
 //!
-//! A position is what makes a point, so x, y and z are always there and have no bit here.
+//! [`for_each_column`] hands the table to a macro: [`Column`] and [`Fields`] are made here,
+//! `Point`, `Points` and `Spare` in `points`. A new column is a row here, its number types in the
+//! formats, and its value in `scanner`.
 
 use std::fmt;
 use std::ops::{BitOr, BitOrAssign, Sub};
 
-/// A column beside the position.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Column {
-    /// Calibrated reflectivity as the lidar reports it, 0..=255.
-    Intensity,
-    /// Ring, 0 = lowest elevation.
-    Ring,
-    /// Time of the firing on the host's clock.
-    Time,
-    /// Tilt angle of the platform at the firing, degrees.
-    Tilt,
-    /// Laser number in firing order.
-    Laser,
-    /// Time of the firing on the lidar's own clock.
-    DeviceTime,
-    /// How far the point is off, as a root mean square expected, metres.
-    Sd,
-    /// Which return of its pulse the point is: 1 the strongest, 2 the last, 3 both at one distance, 4 dual mode's other one (the
-    /// strongest, or the second strongest where the last is the strongest), 0 not told.
-    Echo,
+/// Calls a macro with a row for each column, in the order in which files list them: [`Column`]
+/// variant, [`Fields`] constant, name in files; column of `Points` and its element; field of
+/// `Point` and its type; conversions from field to element and back.
+macro_rules! for_each_column {
+    ($callback:ident) => {
+        $callback! {
+            /// Calibrated reflectivity as the lidar reports it, 0..=255.
+            Intensity INTENSITY "intensity" (intensity: u8) (intensity: u8) identity, identity;
+            /// Ring, 0 = lowest elevation.
+            Ring RING "ring" (ring: u8) (ring: u8) identity, identity;
+            /// Time of the firing on the host's clock.
+            Time TIME "time" (time: Stamp<Host>) (time: Stamp<Host>) identity, identity;
+            /// Tilt angle of the platform at the firing, degrees.
+            Tilt TILT "tilt" (tilt_deg: f64) (tilt: Degrees) |tilt: Degrees| tilt.0, Degrees;
+            /// Laser number in firing order.
+            Laser LASER "laser" (laser: u8) (laser: u8) identity, identity;
+            /// Time of the firing on the lidar's own clock.
+            DeviceTime DEVICE_TIME "device_time"
+                (device_time: Stamp<Lidar>) (device_time: Stamp<Lidar>) identity, identity;
+            /// Expected error of the point, root mean square, metres.
+            Sd SD "sd" (sd_m: f64) (sd_m: f64) identity, identity;
+            /// Return of its pulse: 1 strongest, 2 last, 3 both at one distance, 4 second return, 0
+            /// unknown. The second return of dual mode is the strongest, or the second strongest if
+            /// the last is the strongest.
+            Echo ECHO "echo" (echo: u8) (echo: u8) identity, identity;
+        }
+    };
 }
+pub(crate) use for_each_column;
+
+macro_rules! define_columns {
+    ($($(#[$doc:meta])* $variant:ident $constant:ident $name:literal
+        ($column:ident: $element:ty) ($field:ident: $value:ty) $to:expr, $from:expr;)*) => {
+        /// A column beside the position.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Column {
+            $($(#[$doc])* $variant,)*
+        }
+
+        impl Column {
+            /// Every column, in the order in which files list them.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
+
+            /// Name in files and messages.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)*
+                }
+            }
+        }
+
+        impl Fields {
+            $(
+                #[doc = concat!("[`Column::", stringify!($variant), "`].")]
+                pub const $constant: Self = Column::$variant.field();
+            )*
+            /// Every column.
+            pub const ALL: Self = Self(0 $(| Self::$constant.0)*);
+        }
+    };
+}
+for_each_column!(define_columns);
 
 impl Column {
-    /// Every column, in the order in which files list them.
-    pub const ALL: [Self; 8] = [
-        Self::Intensity,
-        Self::Ring,
-        Self::Time,
-        Self::Tilt,
-        Self::Laser,
-        Self::DeviceTime,
-        Self::Sd,
-        Self::Echo,
-    ];
-
-    /// The column's name in files and messages.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Intensity => "intensity",
-            Self::Ring => "ring",
-            Self::Time => "time",
-            Self::Tilt => "tilt",
-            Self::Laser => "laser",
-            Self::DeviceTime => "device_time",
-            Self::Sd => "sd",
-            Self::Echo => "echo",
-        }
-    }
-
     /// The set of this column alone.
     #[must_use]
     pub const fn field(self) -> Fields {
@@ -62,34 +79,15 @@ impl Column {
     }
 }
 
-/// A set of columns: what a sink wants, what a cloud has.
+/// A set of columns: those that a sink requests, or that a cloud has.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Fields(u8);
 
 impl Fields {
     /// Positions alone.
     pub const NONE: Self = Self(0);
-    /// [`Column::Intensity`].
-    pub const INTENSITY: Self = Column::Intensity.field();
-    /// [`Column::Ring`].
-    pub const RING: Self = Column::Ring.field();
-    /// [`Column::Time`].
-    pub const TIME: Self = Column::Time.field();
-    /// [`Column::Tilt`].
-    pub const TILT: Self = Column::Tilt.field();
-    /// [`Column::Laser`].
-    pub const LASER: Self = Column::Laser.field();
-    /// [`Column::DeviceTime`].
-    pub const DEVICE_TIME: Self = Column::DeviceTime.field();
-    /// [`Column::Sd`].
-    pub const SD: Self = Column::Sd.field();
-    /// [`Column::Echo`].
-    pub const ECHO: Self = Column::Echo.field();
-    /// What a file carries unless asked otherwise: intensity, ring, time and tilt.
+    /// Default columns of a file: intensity, ring, time and tilt.
     pub const FILE: Self = Self(Self::INTENSITY.0 | Self::RING.0 | Self::TIME.0 | Self::TILT.0);
-    /// Every column.
-    pub const ALL: Self =
-        Self(Self::FILE.0 | Self::LASER.0 | Self::DEVICE_TIME.0 | Self::SD.0 | Self::ECHO.0);
 
     /// Whether every column of `other` is in this set.
     #[must_use]

@@ -3,7 +3,7 @@
 /// How good something is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
-pub enum Level {
+pub enum DiagnosticLevel {
     /// As it should be.
     Ok = 0,
     /// To be known by whoever uses the cloud.
@@ -14,11 +14,11 @@ pub enum Level {
 
 /// One thing that was looked at.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Check {
+pub struct Diagnostic {
     /// What was looked at.
     pub name: String,
     /// How good it is.
-    pub level: Level,
+    pub level: DiagnosticLevel,
     /// The finding in a sentence.
     pub message: String,
     /// Names and values behind it, in their order.
