@@ -1,8 +1,10 @@
-//! What a scan becomes: columns of points, where the tilt mount puts them, and the sinks that keep them.
+//! What a scan becomes: columns of points, where the tilt mount puts them, and the sinks that keep
+//! them.
 //!
-//! [`Points`] is a structure of arrays that holds only the columns someone asked for ([`Fields`]); [`mount`] is
-//! the paper's Eq. 4-6; a [`Sink`] takes batches of points; [`formats`] are the sinks that write a file, [`messages`] what a scan says in
-//! ROS 2's terms; [`read`] reads the positions of a file.
+//! [`Points`] is a structure of arrays that holds only the columns someone asked for ([`Fields`]);
+//! [`mount`] is the paper's Eq. 4-6; a [`Sink`] takes batches of points; [`formats`] are the sinks
+//! that write a file, [`messages`] what a scan says in ROS 2's terms; [`read`] reads the positions
+//! of a file.
 //!
 //! Left out on purpose: where the points come from (`scanner`), and opening files (`io`).
 

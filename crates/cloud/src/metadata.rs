@@ -1,6 +1,7 @@
 //! What a cloud says about itself beside its points.
 //!
-//! Free of any wall-clock time, user or host name: the same log must give the same file, bit for bit.
+//! Free of any wall-clock time, user or host name: the same log must give the same file, bit for
+//! bit.
 
 /// What a file says in its header, whatever the format.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,12 +18,13 @@ pub struct Metadata {
     pub comments: Vec<String>,
 }
 
-/// Longest comment line: some PLY readers keep a line in 1024 bytes, some split it into at most 32 words.
+/// Longest comment line: some PLY readers keep a line in 1024 bytes, some split it into at most 32
+/// words.
 const LINE_CHARS: usize = 120;
 
 impl Metadata {
-    /// Everything as lines of printable ASCII, none empty, none longer than 120 characters. A cloud from
-    /// software devices says so in the first line, which starts with `SIMULATED`.
+    /// Everything as lines of printable ASCII, none empty, none longer than 120 characters. A cloud
+    /// from software devices says so in the first line, which starts with `SIMULATED`.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let mut text = Vec::new();
@@ -48,8 +50,8 @@ impl Metadata {
     }
 }
 
-/// Splits at control characters and at the longest line, and replaces what is not ASCII: PLY and LAS are ASCII
-/// formats, and their readers fail on anything else.
+/// Splits at control characters and at the longest line, and replaces what is not ASCII: PLY and
+/// LAS are ASCII formats, and their readers fail on anything else.
 fn printable(text: &str) -> Vec<String> {
     text.split(|c: char| c.is_control() && c != '\t')
         .flat_map(|line| {

@@ -1,12 +1,13 @@
-//! How the lidar sits on the tilt axis: Eq. 4-6 of "Analysis of 3D Scan Measurement Distribution with
-//! Application to a Multi-Beam Lidar on a Rotating Platform" (2018).
+//! How the lidar sits on the tilt axis: Eq. 4-6 of "Analysis of 3D Scan Measurement Distribution
+//! with Application to a Multi-Beam Lidar on a Rotating Platform" (2018).
 //!
-//! Frames are x right, y forward, z up. The platform turns about Y, and the lidar's origin is at height d above
-//! that axis. Everything is f64: in f32 these equations are wrong by tens of micrometres at 100 m, as a test
-//! below measures.
+//! Frames are x right, y forward, z up. The platform turns about Y, and the lidar's origin is at
+//! height d above that axis. Everything is f64: in f32 these equations are wrong by tens of
+//! micrometres at 100 m, as a test below measures.
 //!
-//! Left out until a calibration gives it: the rigid transforms before the rotation (boresight, offsets along x and y)
-//! and after it (pose of the axis). They would compose here, behind [`Mount::place`], and nowhere else.
+//! Left out until a calibration gives it: the rigid transforms before the rotation (boresight,
+//! offsets along x and y) and after it (pose of the axis). They would compose here, behind
+//! [`Mount::place`], and nowhere else.
 
 use units::{Degrees, Metres, Real};
 
@@ -17,7 +18,8 @@ pub struct Mount {
     pub d: Metres,
 }
 
-/// A tilt angle with its sine and cosine, so that the points of one firing can share them; or several of them.
+/// A tilt angle with its sine and cosine, so that the points of one firing can share them; or
+/// several of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tilt<V = f64> {
     sin: V,
@@ -40,8 +42,8 @@ impl Tilt {
 
     /// The tilts `ahead_rad` beyond this one, at most [`MOST_AHEAD_RAD`] either way.
     ///
-    /// Taylor's series about the angle ends at the third power, so that a point is off by at most 2e-3 ^ 4 / 24 = 7e-13 of its
-    /// distance.
+    /// Taylor's series about the angle ends at the third power, so that a point is off by at most
+    /// 2e-3 ^ 4 / 24 = 7e-13 of its distance.
     #[inline(always)]
     #[must_use]
     pub fn ahead<V: Real>(self, ahead_rad: V) -> Tilt<V> {
@@ -61,11 +63,11 @@ impl Mount {
         Self { d }
     }
 
-    /// A point of the lidar's frame (Eq. 1-3, metres) in the frame of the platform's base, whose origin is on
-    /// the tilt axis (Eq. 4-6, metres).
+    /// A point of the lidar's frame (Eq. 1-3, metres) in the frame of the platform's base, whose
+    /// origin is on the tilt axis (Eq. 4-6, metres).
     ///
-    /// With x_v, y_v, z_v of Eq. 1-3 the paper's equations read x = x_v cos g + (z_v + d) sin g, y = y_v,
-    /// z = (z_v + d) cos g - x_v sin g.
+    /// With x_v, y_v, z_v of Eq. 1-3 the paper's equations read x = x_v cos g + (z_v + d) sin g, y
+    /// = y_v, z = (z_v + d) cos g - x_v sin g.
     #[inline(always)]
     #[must_use]
     pub fn place<V: Real>(&self, position_m: [V; 3], tilt: Tilt<V>) -> [V; 3] {
@@ -78,8 +80,9 @@ impl Mount {
         ]
     }
 
-    /// How far a placed point (Eq. 4-6, metres) is from the tilt axis and from the axis that the lidar's head turns about, square metres
-    /// each: the arms by which errors of tilt and azimuth move it.
+    /// How far a placed point (Eq. 4-6, metres) is from the tilt axis and from the axis that the
+    /// lidar's head turns about, square metres each: the arms by which errors of tilt and azimuth
+    /// move it.
     #[inline(always)]
     #[must_use]
     pub fn arms_m2<V: Real>(&self, placed_m: [V; 3], tilt: Tilt<V>) -> [V; 2] {

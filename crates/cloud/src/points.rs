@@ -1,8 +1,8 @@
 //! Points as a structure of arrays, with only the requested columns.
 //!
 //! The columns are private, so that they always have one length. [`Points`] serves as a reusable
-//! batch ([`Points::clear`] keeps the memory) and as a whole cloud ([`Points::append`]). [`Point`] is
-//! a row on its way in or out; [`Points::spare`] is the fast way in.
+//! batch ([`Points::clear`] keeps the memory) and as a whole cloud ([`Points::append`]). [`Point`]
+//! is a row on its way in or out; [`Points::spare`] is the fast way in.
 
 mod spare;
 

@@ -1,7 +1,8 @@
 //! Where points go.
 //!
-//! A sink declares its columns and takes batches; producers compute only what is declared. Nothing here knows
-//! files: a writer, a live view, a message queue and a comparison with the truth are all sinks.
+//! A sink declares its columns and takes batches; producers compute only what is declared. Nothing
+//! here knows files: a writer, a live view, a message queue and a comparison with the truth are all
+//! sinks.
 
 use crate::{Diagnostic, Fields, Metadata, Points, SinkError, Summary, TiltTrack};
 
@@ -14,13 +15,15 @@ pub struct Companion {
     pub text: String,
 }
 
-/// Where points go. Only [`Sink::points`] is required. Calls come in the order begin, tilt, points and turn (any number), checks, finish,
-/// companion.
+/// Where points go. Only [`Sink::points`] is required. Calls come in the order begin, tilt, points
+/// and turn (any number), checks, finish, companion.
 pub trait Sink {
-    /// Takes a batch, which has at least the columns of [`Sink::fields`]. The batch is reused afterwards.
+    /// Takes a batch, which has at least the columns of [`Sink::fields`]. The batch is reused
+    /// afterwards.
     ///
     /// # Errors
-    /// [`SinkError`] where the batch cannot be kept; the producer stops then and still calls [`Sink::finish`].
+    /// [`SinkError`] where the batch cannot be kept; the producer stops then and still calls
+    /// [`Sink::finish`].
     fn points(&mut self, batch: &Points) -> Result<(), SinkError>;
 
     /// The columns that the sink wants beside the position; by default none.
@@ -51,7 +54,8 @@ pub trait Sink {
         Ok(())
     }
 
-    /// What came since the last time, or since the begin, is a turn of the lidar and what comes is another; by default does nothing.
+    /// What came since the last time, or since the begin, is a turn of the lidar and what comes is
+    /// another; by default does nothing.
     ///
     /// # Errors
     /// [`SinkError`] where it cannot be kept.
@@ -59,7 +63,8 @@ pub trait Sink {
         Ok(())
     }
 
-    /// Called at most once, after the last batch: what was found out about the scan; by default does nothing.
+    /// Called at most once, after the last batch: what was found out about the scan; by default
+    /// does nothing.
     ///
     /// # Errors
     /// [`SinkError`] where it cannot be kept.
@@ -68,7 +73,8 @@ pub trait Sink {
         Ok(())
     }
 
-    /// What belongs beside the file `file_name` that the sink wrote; to be asked after finish. By default nothing.
+    /// What belongs beside the file `file_name` that the sink wrote; to be asked after finish. By
+    /// default nothing.
     fn companion(&self, file_name: &str) -> Option<Companion> {
         let _ = file_name;
         None
@@ -98,7 +104,8 @@ impl Sink for Points {
     }
 }
 
-/// Gives every batch to both. The summary is the first one's; both are finished even if the first fails.
+/// Gives every batch to both. The summary is the first one's; both are finished even if the first
+/// fails.
 impl<A: Sink, B: Sink> Sink for (A, B) {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         self.0.points(batch)?;

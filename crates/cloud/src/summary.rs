@@ -19,7 +19,8 @@ pub struct Summary {
 }
 
 impl Bounds {
-    /// The box around columns x, y, z; NaN does not count. `None` where an axis has no number at all.
+    /// The box around columns x, y, z; NaN does not count. `None` where an axis has no number at
+    /// all.
     #[must_use]
     pub fn of(columns_m: [&[f64]; 3]) -> Option<Self> {
         let mut bounds = Self {
@@ -51,7 +52,8 @@ impl Bounds {
     }
 }
 
-/// Numbers that are compared side by side: more than one comparison takes, so that none waits for the one before it.
+/// Numbers that are compared side by side: more than one comparison takes, so that none waits for
+/// the one before it.
 const LANES: usize = 16;
 
 /// Least and greatest number of a column; infinities the wrong way round where there is none.

@@ -5,7 +5,8 @@ use units::{Degrees, Host, Metres, Stamp};
 /// How the platform tilted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TiltTrack {
-    /// Height of the lidar's origin above the tilt axis, metres; `None` where the platform does not tilt and points are in the lidar's frame.
+    /// Height of the lidar's origin above the tilt axis, metres; `None` where the platform does not
+    /// tilt and points are in the lidar's frame.
     pub mount: Option<Metres>,
     /// Every measured angle that the points' tilt goes by, in the order of time.
     pub samples: Vec<(Stamp<Host>, Degrees)>,

@@ -1,10 +1,12 @@
-//! UDP payloads in memory to tilted points in memory: points per second on one core, beside what memory itself allows.
+//! UDP payloads in memory to tilted points in memory: points per second on one core, beside what
+//! memory itself allows.
 //!
 //! `cargo bench -p scanner --bench fast_path [-- --runs N --only LINE]`
 //!
-//! Points have x, y, z, intensity, ring, time and tilt: 42 bytes. The platform swings at 56.25 deg/s, its angle is polled every
-//! millisecond. Every line is the least time of all runs and the spread up to their median; lines of one table are measured in
-//! turns, so that they share what else the machine does.
+//! Points have x, y, z, intensity, ring, time and tilt: 42 bytes. The platform swings at 56.25
+//! deg/s, its angle is polled every millisecond. Every line is the least time of all runs and the
+//! spread up to their median; lines of one table are measured in turns, so that they share what
+//! else the machine does.
 #![expect(clippy::unwrap_used, reason = "a bench of recordings")]
 
 mod common;

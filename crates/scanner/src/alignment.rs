@@ -52,7 +52,8 @@ pub struct PlacementCounts {
     pub outside: u64,
 }
 
-/// Standard deviation of the lidar's stamps, nanoseconds: truncated to microseconds, 1 us / sqrt(12).
+/// Standard deviation of the lidar's stamps, nanoseconds: truncated to microseconds, 1 us /
+/// sqrt(12).
 const STAMP_SD_NS: f64 = 288.675_134_594_812_9;
 
 impl Alignment {
@@ -99,7 +100,8 @@ impl Alignment {
     }
 
     /// Like [`Alignment::place`], for a packet received at `received` by the host's clock of that
-    /// time, which distinguishes device times that occur twice after the lidar's clock was set back.
+    /// time, which distinguishes device times that occur twice after the lidar's clock was set
+    /// back.
     #[must_use]
     pub fn place_received(
         &self,
@@ -128,8 +130,8 @@ impl Alignment {
 
     /// Expected error of a point, root mean square over its three axes, metres:
     ///
-    /// `sd^2 = (rho sd_tilt)^2 + sd_range^2 + (r cos(w) sd_azimuth)^2`
-    /// with `sd_tilt^2 = sd_fit^2 + (rate sd_clock)^2`,
+    /// `sd^2 = (rho sd_tilt)^2 + sd_range^2 + (r cos(w) sd_azimuth)^2` with `sd_tilt^2 = sd_fit^2 +
+    /// (rate sd_clock)^2`,
     ///
     /// where rho is the distance from the tilt axis, r cos(w) the distance from the lidar's spin
     /// axis, `sd_fit` that of the trajectory and `sd_clock` that of clock and stamps.

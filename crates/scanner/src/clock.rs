@@ -1,9 +1,10 @@
 //! A device's clock against the host's: a lower envelope under the arrival times.
 //!
-//! A packet never arrives before it is complete, and some packet always arrives almost at once, so the lower edge of
-//! (arrival - device time) is the clock; everything above it is the network and the operating system. [`DeviceClock`] is fitted
-//! to a whole recording (`envelope`). The smallest delay itself (a cable, an interrupt: tens of microseconds) is invisible
-//! to timing and stays in the result. Clocks that are set in mid-recording are told apart in [`crate::steps`].
+//! A packet never arrives before it is complete, and some packet always arrives almost at once, so
+//! the lower edge of (arrival - device time) is the clock; everything above it is the network and
+//! the operating system. [`DeviceClock`] is fitted to a whole recording (`envelope`). The smallest
+//! delay itself (a cable, an interrupt: tens of microseconds) is invisible to timing and stays in
+//! the result. Clocks that are set in mid-recording are told apart in [`crate::steps`].
 
 mod device;
 mod endpoint;
@@ -24,7 +25,8 @@ use units::{Host, Lidar, Stamp};
 pub struct Arrival<C = Lidar> {
     /// Device time of the packet: of a lidar's, of its first firing.
     pub device: Stamp<C>,
-    /// When the packet could first have left: host receive time less the time the packet took to fill.
+    /// When the packet could first have left: host receive time less the time the packet took to
+    /// fill.
     pub host: Stamp<Host>,
 }
 

@@ -1,4 +1,5 @@
-//! What a scan needs to know beside its bytes: carried in the log as TOML, so that a log explains itself.
+//! What a scan needs to know beside its bytes: carried in the log as TOML, so that a log explains
+//! itself.
 
 use cloud::mount::Mount;
 use serde::{Deserialize, Serialize};
@@ -26,11 +27,13 @@ pub struct ScanConfig {
     pub sweep: Option<SweepPlan>,
 }
 
-/// Bytes of the body that asks for an object on RS232 (Communication Guide: length, two words, checksum), and bits of a byte.
+/// Bytes of the body that asks for an object on RS232 (Communication Guide: length, two words,
+/// checksum), and bits of a byte.
 const READ_BODY_BITS: i64 = 7 * 10;
 
 impl ScanConfig {
-    /// How long the question for a position is under way on an RS232 line before the drive has all of it; nothing elsewhere.
+    /// How long the question for a position is under way on an RS232 line before the drive has all
+    /// of it; nothing elsewhere.
     pub(crate) fn request_transmission_time(&self) -> Span {
         let baud = i64::from(self.rs232_baud.unwrap_or(0));
         Span::from_nanos(
@@ -77,7 +80,8 @@ pub struct SweepPlan {
     pub from_deg: f64,
     /// Angle where sweeps end, degrees.
     pub to_deg: f64,
-    /// Speed as commanded in whole rpm, degrees per second; a sweep too short for it does not reach it.
+    /// Speed as commanded in whole rpm, degrees per second; a sweep too short for it does not reach
+    /// it.
     pub cruise_deg_s: f64,
     /// Acceleration as commanded in whole rpm/s, degrees per second squared.
     pub accel_deg_s2: f64,
@@ -110,8 +114,8 @@ impl Default for MountConfig {
 }
 
 impl Default for LidarConfig {
-    /// 3 cm: the typical accuracy of the VLP-16 by its manual (63-9243, specifications), which does not say of what kind it is; here it
-    /// counts as one standard deviation.
+    /// 3 cm: the typical accuracy of the VLP-16 by its manual (63-9243, specifications), which does
+    /// not say of what kind it is; here it counts as one standard deviation.
     fn default() -> Self {
         Self { range_sd_m: 0.03 }
     }

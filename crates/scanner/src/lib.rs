@@ -1,8 +1,9 @@
 //! Synchroniser of lidar and tilt drive: the platform's angle at the instant each laser fired.
 //!
-//! [`scanner`] is the data path in one reading: [`align`] finds clock, angles, sweeps and trajectory
-//! in the records of a log, [`place()`] turns its firings into points. [`Live`] does both while
-//! records come in. Nothing here reads a clock or a file: the same records give the same cloud.
+//! [`scanner`] is the data path in one reading: [`align`] finds clock, angles, sweeps and
+//! trajectory in the records of a log, [`place()`] turns its firings into points. [`Live`] does
+//! both while records come in. Nothing here reads a clock or a file: the same records give the same
+//! cloud.
 //!
 //! ```
 //! use cloud::Points;

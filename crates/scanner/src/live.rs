@@ -1,9 +1,10 @@
-//! The cloud while it is measured, by the same steps as [`crate::scanner`], with streaming estimates.
+//! The cloud while it is measured, by the same steps as [`crate::scanner`], with streaming
+//! estimates.
 //!
 //! Each packet waits until the angle is known for all of the packet before it; that one is then
 //! placed. The clock is Olson's online estimate, and the trajectory is straight lines between
-//! samples, as a fit needs the whole sweep. Clock steps are not undone. A replay of the same records
-//! places the same points more accurately.
+//! samples, as a fit needs the whole sweep. Clock steps are not undone. A replay of the same
+//! records places the same points more accurately.
 
 use std::collections::VecDeque;
 

@@ -1,15 +1,18 @@
 //! Clocks that are set in mid-recording: found, told apart, undone.
 //!
-//! Three clocks stamp what is recorded, and two of them may be set: the host's (by NTP, for a leap second, by hand) and the
-//! lidar's (by its pulse per second, or because it began anew). Either shows as a jump of (arrival - device time) that stays: a delay
-//! goes as it came, this does not (`jumps`). Whose clock it was is told by who else saw it. The drive's records are stamped by the
-//! host's clock alone, so if they jump by as much at the same place of the recording, it was the host's; else, and without
-//! records of the drive, it was the clock whose spacing from packet to packet was not its usual one.
+//! Three clocks stamp what is recorded, and two of them may be set: the host's (by NTP, for a leap
+//! second, by hand) and the lidar's (by its pulse per second, or because it began anew). Either
+//! shows as a jump of (arrival - device time) that stays: a delay goes as it came, this does not
+//! (`jumps`). Whose clock it was is told by who else saw it. The drive's records are stamped by the
+//! host's clock alone, so if they jump by as much at the same place of the recording, it was the
+//! host's; else, and without records of the drive, it was the clock whose spacing from packet to
+//! packet was not its usual one.
 //!
-//! All host stamps after a step of the host's clock, the drive's too (`monotonic`), are brought back to the clock before it, so time goes on evenly and
-//! so do clock and trajectory. A lidar's clock that was set has another piece from then on. Steps of the host's clock below 10 ms
-//! are not looked for: they show in the clock's bound. So does what is undone within six seconds.
-//! An hour that wraps is nothing to be found here: `lidar` unwraps it.
+//! All host stamps after a step of the host's clock, the drive's too (`monotonic`), are brought
+//! back to the clock before it, so time goes on evenly and so do clock and trajectory. A lidar's
+//! clock that was set has another piece from then on. Steps of the host's clock below 10 ms are not
+//! looked for: they show in the clock's bound. So does what is undone within six seconds. An hour
+//! that wraps is nothing to be found here: `lidar` unwraps it.
 
 mod jumps;
 mod monotonic;
@@ -80,8 +83,8 @@ pub(crate) struct Timeline {
 const UNSURE: usize = 16;
 
 impl Timeline {
-    /// Finds the lidar's clock and what steps there were, from packets in the order in which they were recorded. `None` without
-    /// a packet.
+    /// Finds the lidar's clock and what steps there were, from packets in the order in which they
+    /// were recorded. `None` without a packet.
     pub fn new(arrivals: &[Arrival], monotonic: &ClockSteps) -> Option<Self> {
         let found = jumps::find(arrivals);
         let mut cuts: Vec<(Jump, SetClock)> = found
@@ -156,7 +159,8 @@ fn judge(
     }
 }
 
-/// The packets between the cuts, without those that are not certain, in order of device time; with the first and last of all.
+/// The packets between the cuts, without those that are not certain, in order of device time; with
+/// the first and last of all.
 fn pieces(arrivals: &[Arrival], cuts: &[(Jump, SetClock)], strays: &[usize]) -> Vec<Stretch> {
     let ends = cuts.iter().map(|(jump, _)| jump.at).chain([arrivals.len()]);
     let mut from = 0;

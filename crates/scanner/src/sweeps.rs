@@ -1,8 +1,10 @@
-//! Which stretches of time were sweeps: found from what the host wrote to the drive and from how the angle then moved.
+//! Which stretches of time were sweeps: found from what the host wrote to the drive and from how
+//! the angle then moved.
 //!
-//! The commands say when a profile move was asked for and where to; the samples say when the axis left its place and
-//! when it came to rest. A move is a sweep of the plan if it starts at one end of the plan and heads for the other, so moves to
-//! the starting place, homing and returns drop out without marks in the log. A sweep that was cut short stays one, with the angle it reached.
+//! The commands say when a profile move was asked for and where to; the samples say when the axis
+//! left its place and when it came to rest. A move is a sweep of the plan if it starts at one end
+//! of the plan and heads for the other, so moves to the starting place, homing and returns drop out
+//! without marks in the log. A sweep that was cut short stays one, with the angle it reached.
 
 mod streaming;
 
@@ -78,7 +80,8 @@ const END_TOLERANCE_DEG: f64 = 0.1;
 /// A jump is more than this and than the way at three times the commanded speed.
 const JUMP_DEG: f64 = 0.1;
 const JUMP_SPEEDS: f64 = 3.0;
-/// The axis is at rest while it stays within this of its place: an encoder at an edge flickers by one count.
+/// The axis is at rest while it stays within this of its place: an encoder at an edge flickers by
+/// one count.
 const REST_QC: f64 = 1.5;
 
 impl MoveWatch {
@@ -158,8 +161,9 @@ impl MoveWatch {
     }
 }
 
-/// The plan's sweeps among the moves: the first goes along, with `both_ways` the next one back, and so on, and no more than were
-/// planned. So the way to the starting place is none, though it may go from end to end.
+/// The plan's sweeps among the moves: the first goes along, with `both_ways` the next one back, and
+/// so on, and no more than were planned. So the way to the starting place is none, though it may go
+/// from end to end.
 fn planned(moved: impl Iterator<Item = (Sweep, Degrees)>, plan: &SweepPlan) -> Vec<Sweep> {
     let mut sweeps: Vec<Sweep> = Vec::new();
     for (sweep, target) in moved {
@@ -211,8 +215,8 @@ fn sweep(
     Some((sweep, command.target))
 }
 
-/// How many samples there are before the angle jumps farther than the axis can have gone: a drive that lost its supply counts from
-/// zero again, and what follows is no angle of this axis.
+/// How many samples there are before the angle jumps farther than the axis can have gone: a drive
+/// that lost its supply counts from zero again, and what follows is no angle of this axis.
 fn unbroken(window: &[AngleSample], speed: DegPerS) -> usize {
     let jump = window.windows(2).position(|pair| match pair {
         [a, b] => {
@@ -224,7 +228,8 @@ fn unbroken(window: &[AngleSample], speed: DegPerS) -> usize {
     jump.map_or(window.len(), |before| before + 1)
 }
 
-/// Measured speed over the middle half of the way, by least squares: ramps stay outside unless they take over half of it.
+/// Measured speed over the middle half of the way, by least squares: ramps stay outside unless they
+/// take over half of it.
 fn cruise(moving: &[AngleSample], from: Degrees, to: Degrees) -> DegPerS {
     let way = to.0 - from.0;
     let middle = |s: &&AngleSample| {

@@ -1,9 +1,10 @@
 //! An accuracy that is asked for instead of a method: `2mm@20m`.
 //!
-//! Every way to know the angle has a bound, and a cost. The cheapest whose bound is good enough at the distance named is taken; where none
-//! is, it is said how far the best one comes, and nothing is made. What the bound holds is [`crate::trajectory::Trajectory::bound_deg`] and
-//! the lidar's clock at the fastest motion. Left out: the lidar's own ranges, which no choice here changes, and a delay that all packets of
-//! the lidar share, which timing cannot see.
+//! Every way to know the angle has a bound, and a cost. The cheapest whose bound is good enough at
+//! the distance named is taken; where none is, it is said how far the best one comes, and nothing
+//! is made. What the bound holds is [`crate::trajectory::Trajectory::bound_deg`] and the lidar's
+//! clock at the fastest motion. Left out: the lidar's own ranges, which no choice here changes, and
+//! a delay that all packets of the lidar share, which timing cannot see.
 
 use core::fmt;
 use core::str::FromStr;
@@ -64,14 +65,16 @@ pub struct UnreachableTolerance {
     pub fastest: DegPerS,
 }
 
-/// A number with three digits that count: rounded to one or two a bound may look like what it misses.
+/// A number with three digits that count: rounded to one or two a bound may look like what it
+/// misses.
 fn three_digits(number: f64) -> String {
     let decimals = 2.0 - number.abs().max(1e-6).log10().floor();
     format!("{number:.*}", decimals.clamp(0.0, 9.0) as usize)
 }
 
 impl UnreachableTolerance {
-    /// The tolerance at the same distance that the best method meets with a tenth to spare, rounded up to two digits.
+    /// The tolerance at the same distance that the best method meets with a tenth to spare, rounded
+    /// up to two digits.
     #[must_use]
     pub fn tolerance_that_would_do(&self) -> Tolerance {
         let least_mm = 1.1e3 * self.bound.0;
@@ -85,8 +88,8 @@ impl UnreachableTolerance {
         }
     }
 
-    /// The speed at which the best method would do, where a slower sweep helps: all of its bound but the encoder's count shrinks
-    /// with the speed.
+    /// The speed at which the best method would do, where a slower sweep helps: all of its bound
+    /// but the encoder's count shrinks with the speed.
     #[must_use]
     pub fn speed_that_would_do(&self) -> Option<DegPerS> {
         /// Below it a motor does not turn evenly.
@@ -109,7 +112,8 @@ impl Tolerance {
         Metres(angle_deg.to_radians() * self.at.0)
     }
 
-    /// The cheapest method of `through` that does, with why; `clock` is how far off the lidar's clock may be.
+    /// The cheapest method of `through` that does, with why; `clock` is how far off the lidar's
+    /// clock may be.
     pub(crate) fn choose(
         &self,
         clock: Span,

@@ -1,9 +1,11 @@
 //! The tilt angle over host time: from shaft samples to an angle at any instant.
 //!
-//! A [`Trajectory`] is what the synchroniser asks; how it came about is nobody else's concern. Between sweeps, and with
-//! methods that know no sweeps, it goes from sample to sample (`interpolate`); over each sweep it may be the commanded motion found in
-//! the samples (`profile`, `profile_fit`) or a spline through them (`spline`), whichever is truer (`choose`). All end as
-//! piecewise cubics (`pieces`), followed by one cursor. It never extrapolates: outside its samples there is no angle.
+//! A [`Trajectory`] is what the synchroniser asks; how it came about is nobody else's concern.
+//! Between sweeps, and with methods that know no sweeps, it goes from sample to sample
+//! (`interpolate`); over each sweep it may be the commanded motion found in the samples (`profile`,
+//! `profile_fit`) or a spline through them (`spline`), whichever is truer (`choose`). All end as
+//! piecewise cubics (`pieces`), followed by one cursor. It never extrapolates: outside its samples
+//! there is no angle.
 
 use units::{DegPerS, Degrees, Host, Span, Stamp};
 
@@ -163,9 +165,9 @@ impl Trajectory {
         }
     }
 
-    /// Through samples in any order; of several at one instant the first is kept. Their angles come in steps of `quantum`.
-    /// A method of whole sweeps goes over `sweeps`, and straight where it cannot; without a method each sweep gets the truest.
-    /// `None` without samples.
+    /// Through samples in any order; of several at one instant the first is kept. Their angles come
+    /// in steps of `quantum`. A method of whole sweeps goes over `sweeps`, and straight where it
+    /// cannot; without a method each sweep gets the truest. `None` without samples.
     #[must_use]
     pub fn through(
         samples: Vec<AngleSample>,
@@ -194,8 +196,8 @@ impl Trajectory {
         Some(trajectory)
     }
 
-    /// The same, of samples whose instants are all off together, by a standard deviation in nanoseconds: what that is worth at its speed
-    /// is added to each piece's.
+    /// The same, of samples whose instants are all off together, by a standard deviation in
+    /// nanoseconds: what that is worth at its speed is added to each piece's.
     #[must_use]
     pub(crate) fn with_shared_sd(mut self, sd_ns: f64) -> Self {
         if let Curve::Piecewise(pieces) = &mut self.curve {
@@ -217,7 +219,8 @@ impl Trajectory {
             let low = before.map_or(Stamp::from_nanos(i64::MIN), |before| pause(before, sweep));
             let next = sweeps.get(i + 1);
             let high = next.map_or(Stamp::from_nanos(i64::MAX), |next| pause(sweep, next));
-            // Samples of one time each: the same noise everywhere would mix a quick sweep with rest.
+            // Samples of one time each: the same noise everywhere would mix a quick sweep with
+            // rest.
             let inside = within(&self.samples, (sweep.start, sweep.end));
             let noise = Noise::of(inside, Degrees(noise.angle_sd_deg * f64::sqrt(12.0)));
             let best = choose::Candidates::new(sweep, &self.samples, &noise, (low, high))
@@ -278,7 +281,8 @@ impl Trajectory {
         }
     }
 
-    /// The piece that holds at an instant; `None` of a platform that stands still, and outside the time that samples cover.
+    /// The piece that holds at an instant; `None` of a platform that stands still, and outside the
+    /// time that samples cover.
     #[must_use]
     pub fn piece(&self, at: Moment) -> Option<&CubicPiece> {
         match &self.curve {
@@ -287,8 +291,9 @@ impl Trajectory {
         }
     }
 
-    /// Variance of the angle at an instant that is known to `clock_sd_ns` nanoseconds (one standard deviation), square radians:
-    /// (piece's deviation)^2 + (rate x clock's deviation)^2. 0 where there is no piece.
+    /// Variance of the angle at an instant that is known to `clock_sd_ns` nanoseconds (one standard
+    /// deviation), square radians: (piece's deviation)^2 + (rate x clock's deviation)^2. 0 where
+    /// there is no piece.
     #[must_use]
     pub fn variance_rad2(&self, at: Moment, clock_sd_ns: f64) -> f64 {
         self.piece(at).map_or(0.0, |piece| {
@@ -300,7 +305,8 @@ impl Trajectory {
         &self.curve
     }
 
-    /// The samples that it goes by, in strictly increasing time; none of a platform that stands still.
+    /// The samples that it goes by, in strictly increasing time; none of a platform that stands
+    /// still.
     #[must_use]
     pub fn samples(&self) -> &[AngleSample] {
         &self.samples
@@ -318,10 +324,12 @@ impl Trajectory {
         &self.fits
     }
 
-    /// How well the samples within `spans` agree with each other, degrees: their root mean square against the fits, or where there are
-    /// none each against the line between its neighbours. `None` where too few fall there.
+    /// How well the samples within `spans` agree with each other, degrees: their root mean square
+    /// against the fits, or where there are none each against the line between its neighbours.
+    /// `None` where too few fall there.
     ///
-    /// It holds the jitter of the stamps, and of lines what they miss of a ramp; a constant delay does not show.
+    /// It holds the jitter of the stamps, and of lines what they miss of a ramp; a constant delay
+    /// does not show.
     #[must_use]
     pub fn rms_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> Option<f64> {
         if self.fits.is_empty() {
@@ -337,9 +345,10 @@ impl Trajectory {
         Some((squares / self.fits.len() as f64).sqrt())
     }
 
-    /// How far off the angle may be within `spans`, at worst, degrees. Of fits: three standard deviations, and the delay that all
-    /// samples may share at the speed there. Of samples joined: a step of the encoder, half a poll's round trip at the speed there, and
-    /// what a straight line misses where the speed changes.
+    /// How far off the angle may be within `spans`, at worst, degrees. Of fits: three standard
+    /// deviations, and the delay that all samples may share at the speed there. Of samples joined:
+    /// a step of the encoder, half a poll's round trip at the speed there, and what a straight line
+    /// misses where the speed changes.
     #[must_use]
     pub fn bound_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> f64 {
         let over = |(i, span): (usize, &(Stamp<Host>, Stamp<Host>))| {
@@ -352,7 +361,8 @@ impl Trajectory {
         spans.iter().enumerate().map(over).fold(0.0, f64::max)
     }
 
-    /// How much of [`Trajectory::bound_deg`] is a delay that all samples of a sweep may share, degrees.
+    /// How much of [`Trajectory::bound_deg`] is a delay that all samples of a sweep may share,
+    /// degrees.
     #[must_use]
     pub fn delay_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> f64 {
         let fastest = self.fastest(spans).0.abs();
@@ -388,7 +398,8 @@ fn within(samples: &[AngleSample], (from, to): (Stamp<Host>, Stamp<Host>)) -> &[
     samples.get(low..high.max(low)).unwrap_or_default()
 }
 
-/// Each sample against the line between its neighbours, root mean square, degrees. `None` of fewer than three samples.
+/// Each sample against the line between its neighbours, root mean square, degrees. `None` of fewer
+/// than three samples.
 fn leave_one_out_rms(samples: &[AngleSample]) -> Option<f64> {
     let off = samples.windows(3).filter_map(|w| match w {
         [a, b, c] => {
@@ -401,8 +412,8 @@ fn leave_one_out_rms(samples: &[AngleSample]) -> Option<f64> {
     (count > 0).then(|| (sum / f64::from(count)).sqrt())
 }
 
-/// An encoder says which of its counts the shaft is in. On its way through a count it is in the middle of it in the mean; at rest, where
-/// it was sent, at its beginning.
+/// An encoder says which of its counts the shaft is in. On its way through a count it is in the
+/// middle of it in the mean; at rest, where it was sent, at its beginning.
 fn centred(mut samples: Vec<AngleSample>, quantum: Degrees) -> Vec<AngleSample> {
     samples.sort_by_key(|s| s.host);
     let angles: Vec<f64> = samples.iter().map(|s| s.angle.0).collect();

@@ -173,7 +173,8 @@ fn live_points_are_those_of_a_replay() {
         common += 1;
         let same = |p: &Point| (p.intensity, p.ring, p.echo);
         assert_eq!(same(&point), same(other));
-        // The jitter of the packets is 20 us, at 56.25 deg/s 0.0011 deg; half of a count is 0.00075.
+        // The jitter of the packets is 20 us, at 56.25 deg/s 0.0011 deg; half of a count is
+        // 0.00075.
         assert!(
             (point.time - other.time).as_nanos().abs() < 25_000,
             "{point:?} {other:?}"

@@ -1,7 +1,9 @@
-//! The fast path against the definition on real recordings: the same points in the same order, a nanometre and a nanosecond
-//! apart at most, for every model, return mode, field of view, and with corrections.
+//! The fast path against the definition on real recordings: the same points in the same order, a
+//! nanometre and a nanosecond apart at most, for every model, return mode, field of view, and with
+//! corrections.
 //!
-//! The recordings are looked for as the benches do it; where they are absent each test says that it was skipped.
+//! The recordings are looked for as the benches do it; where they are absent each test says that it
+//! was skipped.
 #![expect(clippy::unwrap_used, reason = "a test of recordings")]
 
 #[path = "../benches/common/mod.rs"]
@@ -96,7 +98,8 @@ fn every_recording_becomes_the_points_of_the_definition() {
     }
 }
 
-/// Whatever the packets are taken for; and with that model's own table as corrections, moved a little.
+/// Whatever the packets are taken for; and with that model's own table as corrections, moved a
+/// little.
 #[test]
 fn every_model_and_its_corrections_place_as_the_definition_does() {
     for recording in RECORDINGS.into_iter().filter_map(Recording::read) {

@@ -1,8 +1,8 @@
 //! CSV: a header row with units, one row a point, nothing rounded.
 //!
-//! `x_m,y_m,z_m,intensity,ring,time_s,tilt_deg`; metadata as lines that start with `#` before the header row.
-//! Coordinates and angles are the shortest decimals that read back to the same f64; times have their nine
-//! decimals, so no nanosecond is lost.
+//! `x_m,y_m,z_m,intensity,ring,time_s,tilt_deg`; metadata as lines that start with `#` before the
+//! header row. Coordinates and angles are the shortest decimals that read back to the same f64;
+//! times have their nine decimals, so no nanosecond is lost.
 //!
 //! Left out: quoting (no field needs it), other separators, reading.
 

@@ -1,14 +1,17 @@
 //! ASTM E57 (E2807), by the `e57` crate.
 //!
-//! One point cloud with its pose (none: the frame is the file's), bounds, limits, the times at which acquisition began and ended, and what the
-//! metadata says in its description; of software devices that begins with SIMULATED. A point has cartesianX, Y, Z (f32), intensity (0..=255),
-//! rowIndex (the ring) and timeStamp (f64 seconds after the begin, which is a whole second); the tilt and whatever else is asked for
-//! are attributes of an extension, which other readers leave out.
+//! One point cloud with its pose (none: the frame is the file's), bounds, limits, the times at
+//! which acquisition began and ended, and what the metadata says in its description; of software
+//! devices that begins with SIMULATED. A point has cartesianX, Y, Z (f32), intensity (0..=255),
+//! rowIndex (the ring) and timeStamp (f64 seconds after the begin, which is a whole second); the
+//! tilt and whatever else is asked for are attributes of an extension, which other readers leave
+//! out.
 //!
-//! The library's writer of a cloud borrows its writer of a file, so both live on a thread of their own; batches go there by a short queue.
+//! The library's writer of a cloud borrows its writer of a file, so both live on a thread of their
+//! own; batches go there by a short queue.
 //!
-//! Left out: spherical coordinates, columnIndex (a cloud of many turns is no grid), images, a creation date (the same log must give the same
-//! bytes), reading.
+//! Left out: spherical coordinates, columnIndex (a cloud of many turns is no grid), images, a
+//! creation date (the same log must give the same bytes), reading.
 
 mod attributes;
 mod identity;
@@ -31,9 +34,11 @@ const FORMAT: &str = "e57";
 /// Batches under way to the thread: enough that neither side waits for the other's hiccups.
 const QUEUE: usize = 4;
 
-/// Writes E57 to an output that seeks and reads back what it wrote. It writes pages of 1 KiB: give it a buffered output.
+/// Writes E57 to an output that seeks and reads back what it wrote. It writes pages of 1 KiB: give
+/// it a buffered output.
 ///
-/// A file whose output failed, or whose writer was dropped before [`Sink::finish`], is lost: what describes its points stands at the end.
+/// A file whose output failed, or whose writer was dropped before [`Sink::finish`], is lost: what
+/// describes its points stands at the end.
 pub struct E57Writer<W: Read + Write + Seek + Send + 'static> {
     fields: Fields,
     stage: Stage,

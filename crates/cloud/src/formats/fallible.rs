@@ -1,8 +1,9 @@
 //! An output whose failures the libraries that write formats never see.
 //!
-//! The `las` crate completes its file when its writer is dropped and panics if that fails, so on a full disk any error would end the
-//! program; others wrap what the system said in errors of their own, or lose it on a thread. [`FallibleOutput`] keeps the first error for us and from
-//! then on only pretends to write.
+//! The `las` crate completes its file when its writer is dropped and panics if that fails, so on a
+//! full disk any error would end the program; others wrap what the system said in errors of their
+//! own, or lose it on a thread. [`FallibleOutput`] keeps the first error for us and from then on
+//! only pretends to write.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,8 +13,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(in crate::formats) struct WriteFault(Arc<Mutex<Option<io::Error>>>);
 
 impl WriteFault {
-    /// The error, again and again: what was pretended once stays lost. It is rebuilt because an [`io::Error`]
-    /// cannot be cloned.
+    /// The error, again and again: what was pretended once stays lost. It is rebuilt because an
+    /// [`io::Error`] cannot be cloned.
     pub(in crate::formats) fn get(&self) -> Option<io::Error> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         kept.as_ref().map(|error| match error.raw_os_error() {

@@ -1,9 +1,9 @@
-//! Host (Unix, UTC) time as GPS time, seconds since 1980-01-06 without leap seconds: for E57, and as LAS wants it, adjusted standard GPS
-//! time, minus 10^9.
+//! Host (Unix, UTC) time as GPS time, seconds since 1980-01-06 without leap seconds: for E57, and
+//! as LAS wants it, adjusted standard GPS time, minus 10^9.
 //!
-//! Near 2026 an f64 of the adjusted one steps by 0.06 us, four times finer than Unix seconds. The leap seconds are IERS
-//! Bulletin C's; none has been announced after that of 2017. A host whose clock smears a leap second is off by
-//! up to a second around it.
+//! Near 2026 an f64 of the adjusted one steps by 0.06 us, four times finer than Unix seconds. The
+//! leap seconds are IERS Bulletin C's; none has been announced after that of 2017. A host whose
+//! clock smears a leap second is off by up to a second around it.
 
 use units::{Host, Stamp};
 

@@ -1,14 +1,15 @@
 //! LAS 1.4 and LAZ, point format 6, by the `las` crate.
 //!
-//! Coordinates are in a local frame without a coordinate reference system, in 0.1 mm steps from offset 0, which
-//! reaches 214.7 km. Intensity is the reflectivity times 257, so that 0..=255 fills 0..=65535. `gps_time` is
-//! adjusted standard GPS time, got from the host's Unix time and the leap seconds. Ring, time (f64 Unix
-//! seconds), tilt (f32 degrees) and whatever else is asked for are extra bytes, described so that readers see
-//! them by name. A simulated cloud says so in the system identifier, in the text record, and by the synthetic
-//! flag of every point, which survives merging with other clouds.
+//! Coordinates are in a local frame without a coordinate reference system, in 0.1 mm steps from
+//! offset 0, which reaches 214.7 km. Intensity is the reflectivity times 257, so that 0..=255 fills
+//! 0..=65535. `gps_time` is adjusted standard GPS time, got from the host's Unix time and the leap
+//! seconds. Ring, time (f64 Unix seconds), tilt (f32 degrees) and whatever else is asked for are
+//! extra bytes, described so that readers see them by name. A simulated cloud says so in the system
+//! identifier, in the text record, and by the synthetic flag of every point, which survives merging
+//! with other clouds.
 //!
-//! Left out: a creation date (the same log must give the same bytes), scan angle and edge flags (they speak of
-//! line scanners), colours, reading.
+//! Left out: a creation date (the same log must give the same bytes), scan angle and edge flags
+//! (they speak of line scanners), colours, reading.
 
 mod extra_bytes;
 
@@ -45,7 +46,8 @@ const ONE_OF_ONE: u8 = 0x11;
 /// Classification flag bit 0: not from a real lidar.
 const SYNTHETIC: u8 = 1;
 
-/// Writes LAS or LAZ, batch by batch, to an output that seeks. LAZ writes in small pieces: give it a buffered output.
+/// Writes LAS or LAZ, batch by batch, to an output that seeks. LAZ writes in small pieces: give it
+/// a buffered output.
 ///
 /// Unlike PLY, a file whose output failed in mid-batch is lost: its header cannot be completed.
 pub struct LasWriter<W: Write + Seek + Send + Sync + 'static> {
@@ -103,7 +105,8 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
         self
     }
 
-    /// Gives the output back, at its start; `None` where it was lost because writing the header failed.
+    /// Gives the output back, at its start; `None` where it was lost because writing the header
+    /// failed.
     pub fn into_inner(self) -> Option<W> {
         match self.state {
             LasState::Idle(output) => Some(output.into_inner()),

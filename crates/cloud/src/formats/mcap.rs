@@ -1,13 +1,15 @@
 //! MCAP with ROS 2's messages: opens in Foxglove, plays with `ros2 bag`.
 //!
-//! Profile `ros2`, every channel CDR with its definition (`ros2msg`), chunks of 1 MiB compressed by LZ4, with an index. A cloud is a
-//! `PointCloud2` a sweep, or a turn of the lidar; one that would be longer than [`MOST_POINTS`] or [`MOST_SPAN`] goes on in further messages,
-//! as 42 seconds of a VLP-16, 360 MB, in one message are of no use to anybody. So memory stays bounded, too: a message is held once,
-//! at most 23 MB of it as usually made.
+//! Profile `ros2`, every channel CDR with its definition (`ros2msg`), chunks of 1 MiB compressed by
+//! LZ4, with an index. A cloud is a `PointCloud2` a sweep, or a turn of the lidar; one that would
+//! be longer than [`MOST_POINTS`] or [`MOST_SPAN`] goes on in further messages, as 42 seconds of a
+//! VLP-16, 360 MB, in one message are of no use to anybody. So memory stays bounded, too: a message
+//! is held once, at most 23 MB of it as usually made.
 //!
-//! Beside the clouds: the tilt joint at every sample of the track, transforms at most every [`TRANSFORMS_EVERY`], how lidar and axis sit on each other
-//! (latched), what was found out about the scan. A message's log time is when what it says was complete: a cloud's is that of its last point,
-//! while its header has that of its first. Messages come in the order of their log times.
+//! Beside the clouds: the tilt joint at every sample of the track, transforms at most every
+//! [`TRANSFORMS_EVERY`], how lidar and axis sit on each other (latched), what was found out about
+//! the scan. A message's log time is when what it says was complete: a cloud's is that of its last
+//! point, while its header has that of its first. Messages come in the order of their log times.
 //!
 //! Left out: organised clouds, the tilt as a column (the joint says it), reading.
 
@@ -32,14 +34,17 @@ use crate::{Companion, Diagnostic, Fields, Metadata, Points, Sink, SinkError, Su
 pub use crate::messages::{MOST_POINTS, MOST_SPAN};
 
 const FORMAT: &str = "mcap";
-/// Transforms come no closer: on the steepest ramp, 500 deg/s^2, a straight line over this time is off by one step of the encoder.
+/// Transforms come no closer: on the steepest ramp, 500 deg/s^2, a straight line over this time is
+/// off by one step of the encoder.
 pub const TRANSFORMS_EVERY: Span = Span::from_millis(5);
-/// Uncompressed bytes of a chunk, which a reader needs at once, save where a single message is longer.
+/// Uncompressed bytes of a chunk, which a reader needs at once, save where a single message is
+/// longer.
 const CHUNK_BYTES: u64 = 1 << 20;
 
 /// Writes MCAP to an output that seeks.
 ///
-/// A file whose output failed cannot be completed; what a killed program leaves has its whole chunks, which `mcap recover` makes a file of.
+/// A file whose output failed cannot be completed; what a killed program leaves has its whole
+/// chunks, which `mcap recover` makes a file of.
 pub struct McapWriter<W: Write + Seek> {
     stage: Stage,
     clouds: Cutting,
@@ -76,7 +81,8 @@ enum McapState<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> McapWriter<W> {
-    /// A writer into `output` with the columns of [`Fields::FILE`], but for the tilt; a cloud a sweep.
+    /// A writer into `output` with the columns of [`Fields::FILE`], but for the tilt; a cloud a
+    /// sweep.
     pub fn new(output: W) -> Self {
         let (output, fault) = FallibleOutput::new(output);
         Self {
@@ -96,14 +102,16 @@ impl<W: Write + Seek> McapWriter<W> {
         }
     }
 
-    /// The same with other columns beside x, y, z, intensity, ring and time; only before [`Sink::begin`].
+    /// The same with other columns beside x, y, z, intensity, ring and time; only before
+    /// [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.clouds = self.clouds.with_fields(fields);
         self
     }
 
-    /// The same with a cloud a turn of the lidar, as [`Sink::revolution`] tells; only before [`Sink::begin`].
+    /// The same with a cloud a turn of the lidar, as [`Sink::revolution`] tells; only before
+    /// [`Sink::begin`].
     #[must_use]
     pub fn by_revolution(mut self) -> Self {
         self.clouds = self.clouds.by_revolution();

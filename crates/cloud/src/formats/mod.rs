@@ -1,8 +1,8 @@
-//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP and CSV, each a [`Sink`] over anything that writes (and seeks, where a count
-//! goes into a header).
+//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP and CSV, each a [`Sink`] over anything that writes
+//! (and seeks, where a count goes into a header).
 //!
-//! Nothing here opens, names or renames files, and nothing reads them. A writer stores intensity, ring, time and tilt
-//! ([`Fields::FILE`](crate::Fields::FILE)) unless `with_fields` asks otherwise.
+//! Nothing here opens, names or renames files, and nothing reads them. A writer stores intensity,
+//! ring, time and tilt ([`Fields::FILE`](crate::Fields::FILE)) unless `with_fields` asks otherwise.
 //!
 //! | format | positions | time | order of writing |
 //! |---|---|---|---|
@@ -118,7 +118,8 @@ impl Format {
         Self::from_extension(&extension.to_string_lossy())
     }
 
-    /// A writer of this format with the columns `fields` into `output`, which should be buffered: LAZ and E57 write in small pieces. E57 reads what it wrote.
+    /// A writer of this format with the columns `fields` into `output`, which should be buffered:
+    /// LAZ and E57 write in small pieces. E57 reads what it wrote.
     pub fn writer<W>(self, output: W, fields: Fields) -> Box<dyn Sink + Send>
     where
         W: Read + Write + Seek + Send + Sync + 'static,
@@ -135,8 +136,8 @@ impl Format {
     }
 }
 
-/// Refuses a batch with a coordinate that is no number or beyond `limit_m`, in a format that cannot hold it, where `before` points came
-/// before the batch.
+/// Refuses a batch with a coordinate that is no number or beyond `limit_m`, in a format that cannot
+/// hold it, where `before` points came before the batch.
 pub(crate) fn check_places(
     format: &'static str,
     limit_m: f64,

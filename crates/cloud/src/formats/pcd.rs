@@ -1,7 +1,8 @@
 //! PCD 0.7, binary: the file of the Point Cloud Library, with a grid for organised clouds.
 //!
-//! Unorganised clouds are one row as wide as they have points. An organised one has a row a ring and a column a firing; its cells without
-//! a return are points whose position is not a number. Left out: the compressed and the text form.
+//! Unorganised clouds are one row as wide as they have points. An organised one has a row a ring
+//! and a column a firing; its cells without a return are points whose position is not a number.
+//! Left out: the compressed and the text form.
 
 use std::io::{self, Seek, SeekFrom, Write};
 

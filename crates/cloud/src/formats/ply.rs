@@ -1,14 +1,14 @@
 //! Binary little-endian PLY.
 //!
-//! `float x y z` in metres, then by default `float intensity` (0..255), `uchar ring`, `double time` (Unix
-//! seconds of the host), `float tilt` (degrees). Intensity is a float because PCL's point types declare it so
-//! and PCL matches a field only if its type matches too; ring is a uchar because every reader knows that type:
-//! Open3D 0.20 skips a ushort and meshio fails on one. An f32 coordinate is within 4 um of the truth at 100 m,
-//! an f32 tilt within 2e-6 deg at 45.
+//! `float x y z` in metres, then by default `float intensity` (0..255), `uchar ring`, `double time`
+//! (Unix seconds of the host), `float tilt` (degrees). Intensity is a float because PCL's point
+//! types declare it so and PCL matches a field only if its type matches too; ring is a uchar
+//! because every reader knows that type: Open3D 0.20 skips a ushort and meshio fails on one. An f32
+//! coordinate is within 4 um of the truth at 100 m, an f32 tilt within 2e-6 deg at 45.
 //!
-//! The vertex count is known last but stands first. [`PlyWriter`] seeks back; a comment of matching length
-//! beside the count takes up the slack, so that the count itself is a plain number for every reader. [`PlyPipe`]
-//! keeps the rows aside instead.
+//! The vertex count is known last but stands first. [`PlyWriter`] seeks back; a comment of matching
+//! length beside the count takes up the slack, so that the count itself is a plain number for every
+//! reader. [`PlyPipe`] keeps the rows aside instead.
 //!
 //! Left out: faces, ASCII and big-endian PLY, reading.
 
@@ -21,7 +21,8 @@ use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const FORMAT: &str = "ply";
 
-/// Writes PLY to an output that seeks, batch by batch. Each batch is one write: the output needs no buffer.
+/// Writes PLY to an output that seeks, batch by batch. Each batch is one write: the output needs no
+/// buffer.
 #[derive(Debug)]
 pub struct PlyWriter<W> {
     output: W,
@@ -31,8 +32,8 @@ pub struct PlyWriter<W> {
     summary: Summary,
 }
 
-/// Writes PLY to an output that does not seek (a pipe): as the header has the count, the rows (29 bytes a point) wait in a scratch
-/// file, or in memory (`Cursor<Vec<u8>>`), until [`Sink::finish`].
+/// Writes PLY to an output that does not seek (a pipe): as the header has the count, the rows (29
+/// bytes a point) wait in a scratch file, or in memory (`Cursor<Vec<u8>>`), until [`Sink::finish`].
 #[derive(Debug)]
 pub struct PlyPipe<W, S> {
     output: W,

@@ -2,8 +2,8 @@
 
 const NS_PER_S: i64 = 1_000_000_000;
 
-/// `ns` nanoseconds in seconds. Whole seconds and fraction are converted apart, so that only their sum is rounded:
-/// `ns as f64 * 1e-9` rounds three times.
+/// `ns` nanoseconds in seconds. Whole seconds and fraction are converted apart, so that only their
+/// sum is rounded: `ns as f64 * 1e-9` rounds three times.
 pub(super) fn seconds(ns: i64) -> f64 {
     let whole = ns.div_euclid(NS_PER_S) as f64;
     let fraction = ns.rem_euclid(NS_PER_S) as f64 / NS_PER_S as f64;

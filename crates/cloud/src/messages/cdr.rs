@@ -1,7 +1,9 @@
-//! CDR, the wire format of ROS 2 messages (OMG DDS-XTypes 1.3, section 7.4: plain CDR, version 1), little-endian.
+//! CDR, the wire format of ROS 2 messages (OMG DDS-XTypes 1.3, section 7.4: plain CDR, version 1),
+//! little-endian.
 //!
-//! Four bytes of encapsulation header, then the members of a message in their order, each number at a multiple of its own size counted from
-//! behind that header. Left out: big-endian, parameter lists, reading.
+//! Four bytes of encapsulation header, then the members of a message in their order, each number at
+//! a multiple of its own size counted from behind that header. Left out: big-endian, parameter
+//! lists, reading.
 
 /// A message being written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -58,8 +60,8 @@ impl Cdr {
         self.number(value.to_le_bytes());
     }
 
-    /// A `string`: its length with the zero that ends it, its bytes, the zero. What follows a zero within is left out, for a reader in C
-    /// would not see it.
+    /// A `string`: its length with the zero that ends it, its bytes, the zero. What follows a zero
+    /// within is left out, for a reader in C would not see it.
     pub fn string(&mut self, text: &str) {
         let text = text.split('\0').next().unwrap_or_default();
         self.length(text.len().saturating_add(1));
@@ -67,7 +69,8 @@ impl Cdr {
         self.bytes.push(0);
     }
 
-    /// The length of a sequence, before its elements. A sequence of more than [`u32::MAX`] elements cannot be said; none here comes near.
+    /// The length of a sequence, before its elements. A sequence of more than [`u32::MAX`] elements
+    /// cannot be said; none here comes near.
     pub fn length(&mut self, elements: usize) {
         self.u32(u32::try_from(elements).unwrap_or(u32::MAX));
     }

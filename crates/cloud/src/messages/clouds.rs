@@ -1,7 +1,8 @@
-//! A scan as `sensor_msgs/PointCloud2`, one a sweep, handed over one after the other: what a network sends of a cloud that is being made, and a
-//! recording keeps of it.
+//! A scan as `sensor_msgs/PointCloud2`, one a sweep, handed over one after the other: what a
+//! network sends of a cloud that is being made, and a recording keeps of it.
 //!
-//! One message is held at a time, and the points wait while it is taken. Left out: where messages go, and what else is said of a scan.
+//! One message is held at a time, and the points wait while it is taken. Left out: where messages
+//! go, and what else is said of a scan.
 
 use units::{Host, Stamp};
 
@@ -33,7 +34,8 @@ pub(crate) struct Cutting {
 }
 
 impl Cutting {
-    /// Into clouds a sweep with these columns beside x, y, z, intensity, ring and time, in frames of these names.
+    /// Into clouds a sweep with these columns beside x, y, z, intensity, ring and time, in frames
+    /// of these names.
     pub(crate) fn new(format: &'static str, fields: Fields, frames: Frames) -> Self {
         Self {
             format,

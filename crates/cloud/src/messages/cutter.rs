@@ -67,7 +67,8 @@ impl Cutter {
         over.map_or(end, |over| rows.start + over)
     }
 
-    /// Goes on to the sweep in which `time` is, or which comes after it; whether it was in an earlier one.
+    /// Goes on to the sweep in which `time` is, or which comes after it; whether it was in an
+    /// earlier one.
     pub(crate) fn go_on_to(&mut self, time: Stamp<Host>) -> bool {
         let before = self.passed;
         while self

@@ -1,5 +1,6 @@
-//! The messages' definitions as recordings carry them (`ros2msg`): a message, then everything that it is made of, each behind a line of 80
-//! equals signs. As in ROS 2's `common_interfaces`, `rcl_interfaces` and `geometry2`, without their comments.
+//! The messages' definitions as recordings carry them (`ros2msg`): a message, then everything that
+//! it is made of, each behind a line of 80 equals signs. As in ROS 2's `common_interfaces`,
+//! `rcl_interfaces` and `geometry2`, without their comments.
 
 macro_rules! part {
     ($name:literal, $text:literal) => {

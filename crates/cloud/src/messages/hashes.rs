@@ -1,5 +1,6 @@
-//! Type hashes, computed from the definitions: ROS 2's RIHS01 (REP 2016), the SHA-256 of a type's description and of all that it is made of, as
-//! JSON in the order and with the blanks that `rosidl` writes.
+//! Type hashes, computed from the definitions: ROS 2's RIHS01 (REP 2016), the SHA-256 of a type's
+//! description and of all that it is made of, as JSON in the order and with the blanks that
+//! `rosidl` writes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -127,7 +128,8 @@ fn hashes_of_messages_are_those_of_their_definitions() {
     }
 }
 
-/// A service is hashed as the type that holds a request, a response and an event; the event is made for every service alike.
+/// A service is hashed as the type that holds a request, a response and an event; the event is made
+/// for every service alike.
 #[test]
 fn the_hash_of_the_service_is_that_of_its_definition() {
     let (request, response) = TRIGGER.definition.split_once("---\n").unwrap();

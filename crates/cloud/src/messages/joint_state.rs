@@ -5,7 +5,8 @@ use units::Degrees;
 use super::cdr::Cdr;
 use super::{TILT_JOINT, Time, header};
 
-/// The tilt joint as measured at `stamp`: its position alone, radians, as velocity and effort are not measured.
+/// The tilt joint as measured at `stamp`: its position alone, radians, as velocity and effort are
+/// not measured.
 pub fn joint_state(cdr: &mut Cdr, stamp: Time, tilt: Degrees) {
     cdr.clear();
     header(cdr, stamp, "");

@@ -1,8 +1,10 @@
-//! What a scan says in ROS 2's messages: clouds, the tilt joint, transforms, diagnostics. Bytes alone: a recording keeps them
-//! ([`formats::mcap`](crate::formats::mcap)), a network would send the same.
+//! What a scan says in ROS 2's messages: clouds, the tilt joint, transforms, diagnostics. Bytes
+//! alone: a recording keeps them ([`formats::mcap`](crate::formats::mcap)), a network would send
+//! the same.
 //!
-//! Frames: clouds of a tilting platform are in [`frames::BASE`], the frame of every other format (x right, y forward, z up, on the tilt axis);
-//! [`frames::ROOT`] is the same place with ROS's axes (REP 103: x forward, y left). Left out: reading messages, any transport.
+//! Frames: clouds of a tilting platform are in [`frames::BASE`], the frame of every other format (x
+//! right, y forward, z up, on the tilt axis); [`frames::ROOT`] is the same place with ROS's axes
+//! (REP 103: x forward, y left). Left out: reading messages, any transport.
 
 pub mod cdr;
 mod clouds;
@@ -66,7 +68,8 @@ pub struct MessageType {
     pub name: &'static str,
     /// Its definition with all that it is made of, in the form `ros2msg`.
     pub definition: &'static str,
-    /// Its type hash (REP 2016), which subscribers of `rmw_zenoh` know it by: `RIHS01_` and a SHA-256.
+    /// Its type hash (REP 2016), which subscribers of `rmw_zenoh` know it by: `RIHS01_` and a
+    /// SHA-256.
     pub hash: &'static str,
 }
 
@@ -126,7 +129,8 @@ impl Topic {
         }
     }
 
-    /// Whether the last message is kept for subscribers that come later (durability "transient local").
+    /// Whether the last message is kept for subscribers that come later (durability "transient
+    /// local").
     #[must_use]
     pub const fn is_latched(self) -> bool {
         matches!(self, Self::StaticTransforms)

@@ -1,7 +1,9 @@
-//! `sensor_msgs/PointCloud2`, filled batch by batch in the form in which it will go out, so that a cloud is held once.
+//! `sensor_msgs/PointCloud2`, filled batch by batch in the form in which it will go out, so that a
+//! cloud is held once.
 //!
-//! The fields of ROS 2's Velodyne driver in its order: x, y, z, intensity (float32), ring (uint16), time (float32, seconds after the header's
-//! stamp), 22 bytes a point without padding; then whatever else was asked for. Left out: organised clouds.
+//! The fields of ROS 2's Velodyne driver in its order: x, y, z, intensity (float32), ring (uint16),
+//! time (float32, seconds after the header's stamp), 22 bytes a point without padding; then
+//! whatever else was asked for. Left out: organised clouds.
 
 use std::ops::Range;
 
@@ -13,7 +15,8 @@ use crate::points::Values;
 use crate::rows::{NumberType, fill_values};
 use crate::{Column, Fields, MissingColumns, Points};
 
-/// The columns of a cloud message: intensity, ring and time are always there, the tilt never, as the joint says it.
+/// The columns of a cloud message: intensity, ring and time are always there, the tilt never, as
+/// the joint says it.
 #[must_use]
 pub fn fields_of(wanted: Fields) -> Fields {
     (wanted | Fields::INTENSITY | Fields::RING | Fields::TIME) - Fields::TILT
@@ -102,7 +105,8 @@ impl CloudMessage {
         self.points
     }
 
-    /// The stamp of its header, which is the time of its earliest point; and the time of its last. Of an empty cloud both are 0.
+    /// The stamp of its header, which is the time of its earliest point; and the time of its last.
+    /// Of an empty cloud both are 0.
     #[must_use]
     pub const fn times(&self) -> (Stamp<Host>, Stamp<Host>) {
         (self.first, self.last)
@@ -115,7 +119,8 @@ impl CloudMessage {
         self.last = Stamp::from_nanos(0);
     }
 
-    /// Adds `rows` of a batch, in the frame `frame`, which is that of the first batch. The first batch tells the header's stamp.
+    /// Adds `rows` of a batch, in the frame `frame`, which is that of the first batch. The first
+    /// batch tells the header's stamp.
     ///
     /// # Errors
     /// [`CloudMessageError`]; nothing is added then.

@@ -1,4 +1,5 @@
-//! The slow reader of CDR that tests hold the writer against: it knows alignment as a rule about positions, not as padding written.
+//! The slow reader of CDR that tests hold the writer against: it knows alignment as a rule about
+//! positions, not as padding written.
 
 pub struct Reader<'a> {
     payload: &'a [u8],

@@ -18,7 +18,8 @@ impl Rotation {
         quaternion: [0.0, 0.0, 0.0, 1.0],
     };
 
-    /// The tilt by `angle`: about y, positive from z towards x, as Eq. 4-6 have it ([`crate::mount::Mount::place`]).
+    /// The tilt by `angle`: about y, positive from z towards x, as Eq. 4-6 have it
+    /// ([`crate::mount::Mount::place`]).
     #[must_use]
     pub fn tilt(angle: Degrees) -> Self {
         let (sin, cos) = (angle.to_radians().0 / 2.0).sin_cos();
@@ -50,7 +51,8 @@ pub struct Transform<'a> {
     pub rotation: Rotation,
 }
 
-/// The names of a scanner's frames: those of [`frames`], behind a prefix where there are several scanners.
+/// The names of a scanner's frames: those of [`frames`], behind a prefix where there are several
+/// scanners.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
     root: String,

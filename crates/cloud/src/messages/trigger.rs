@@ -2,8 +2,8 @@
 
 use super::cdr::Cdr;
 
-/// The service's full name, its definition (request, three dashes, response), and its type hash, which is that of the service: request, response
-/// and event.
+/// The service's full name, its definition (request, three dashes, response), and its type hash,
+/// which is that of the service: request, response and event.
 pub const TRIGGER: super::MessageType = super::MessageType {
     name: "std_srvs/srv/Trigger",
     definition: "---\nbool success\nstring message\n",

@@ -1,5 +1,5 @@
-//! The fast way into columns: whole arrays are written beyond the last point, then counted as far as
-//! they hold points.
+//! The fast way into columns: whole arrays are written beyond the last point, then counted as far
+//! as they hold points.
 
 use units::{Host, Lidar, Stamp};
 

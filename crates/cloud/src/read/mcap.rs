@@ -1,4 +1,5 @@
-//! MCAP with ROS 2's messages, by the `mcap` crate: the points of every `sensor_msgs/msg/PointCloud2`, each in the frame that its message names.
+//! MCAP with ROS 2's messages, by the `mcap` crate: the points of every
+//! `sensor_msgs/msg/PointCloud2`, each in the frame that its message names.
 //!
 //! Left out: transforms between frames, and messages in other encodings than little-endian CDR.
 
@@ -24,7 +25,8 @@ fn wrong(offset: usize, expected: &str, got: impl ToString) -> ReadError {
     }
 }
 
-/// A chunk or record may be so much larger than the whole file, and so large in any case: more is reserved for no file.
+/// A chunk or record may be so much larger than the whole file, and so large in any case: more is
+/// reserved for no file.
 const TIMES_LARGER: usize = 256;
 const ANY_CASE: usize = 64 << 20;
 

@@ -1,8 +1,9 @@
 //! Clouds read back: where their points are, and nothing else of them.
 //!
-//! What the formats of [`crate::formats`] write, and what other programs write in them: PLY and PCD as text or binary in any layout of columns, LAS and LAZ of
-//! every version that the `las` crate reads, E57, PointCloud2 in MCAP, text with a row a point. Positions are in metres as they stand in the file. Left out: all other columns, and opening
-//! files.
+//! What the formats of [`crate::formats`] write, and what other programs write in them: PLY and PCD
+//! as text or binary in any layout of columns, LAS and LAZ of every version that the `las` crate
+//! reads, E57, PointCloud2 in MCAP, text with a row a point. Positions are in metres as they stand
+//! in the file. Left out: all other columns, and opening files.
 
 mod csv;
 mod e57;
@@ -37,11 +38,13 @@ pub struct ReadError {
 pub struct Read {
     /// Where its points are.
     pub positions: Positions,
-    /// Rows that were left out, as some coordinate of theirs is no finite number: shots without a return in organised clouds, and the like.
+    /// Rows that were left out, as some coordinate of theirs is no finite number: shots without a
+    /// return in organised clouds, and the like.
     pub without_numbers: u64,
 }
 
-/// The positions of a cloud of this format. Whatever the format, rows with a coordinate that is no finite number are no points: they are left out and counted.
+/// The positions of a cloud of this format. Whatever the format, rows with a coordinate that is no
+/// finite number are no points: they are left out and counted.
 ///
 /// # Errors
 /// [`ReadError`] for what is not of the format, or ends too early.
@@ -147,7 +150,8 @@ impl<'a> SourceFile<'a> {
         }
     }
 
-    /// The line at `offset` without its end, and where the next begins; `None` at the end of the file.
+    /// The line at `offset` without its end, and where the next begins; `None` at the end of the
+    /// file.
     fn line(&self, offset: usize) -> Result<Option<(&'a str, usize)>, ReadError> {
         let rest = self.bytes.get(offset..).unwrap_or_default();
         if rest.is_empty() {
@@ -164,7 +168,8 @@ impl<'a> SourceFile<'a> {
         }
     }
 
-    /// Points as text, a line each from `offset` on, numbers by `separated`; x, y and z stand at these places. Empty lines and `#` are passed over.
+    /// Points as text, a line each from `offset` on, numbers by `separated`; x, y and z stand at
+    /// these places. Empty lines and `#` are passed over.
     fn rows(
         &self,
         mut offset: usize,

@@ -105,7 +105,8 @@ impl PcdHeader {
     }
 }
 
-/// Where x, y and z are: the number of the word in a row of text, the byte in a row, the byte before the column's first in one long row.
+/// Where x, y and z are: the number of the word in a row of text, the byte in a row, the byte
+/// before the column's first in one long row.
 struct PcdReader<'a> {
     text: SourceFile<'a>,
     start: usize,
@@ -223,8 +224,9 @@ impl<'a> PcdReader<'a> {
     }
 }
 
-/// LZF: runs of new bytes (0..32: so many and one more), and copies of what came before (three bits of length and 13 of distance, length in a
-/// byte of its own from 7 on). `None` for anything else, or another size than `whole`.
+/// LZF: runs of new bytes (0..32: so many and one more), and copies of what came before (three bits
+/// of length and 13 of distance, length in a byte of its own from 7 on). `None` for anything else,
+/// or another size than `whole`.
 fn unpack(packed: &[u8], whole: usize) -> Option<Vec<u8>> {
     let mut out: Vec<u8> = Vec::new();
     let mut bytes = packed.iter().copied();

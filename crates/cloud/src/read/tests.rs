@@ -58,8 +58,8 @@ fn every_prefix_of_a_file_is_an_error_or_its_first_points() {
     }
 }
 
-/// Whatever byte of a file is another, there is an error or there are points: nothing panics, and nothing is reserved that a header merely
-/// promises.
+/// Whatever byte of a file is another, there is an error or there are points: nothing panics, and
+/// nothing is reserved that a header merely promises.
 #[test]
 fn any_byte_may_be_another() {
     let points = cloud(5);

@@ -1,7 +1,7 @@
 //! Real recordings in memory, and how a stretch of code is timed.
 //!
-//! The recordings are not part of the project: they are looked for in `$VELOMOTION_RECORDINGS`, or in `shared/recordings`
-//! beside the checkout.
+//! The recordings are not part of the project: they are looked for in `$VELOMOTION_RECORDINGS`, or
+//! in `shared/recordings` beside the checkout.
 #![expect(
     clippy::disallowed_methods,
     clippy::unwrap_used,
@@ -71,7 +71,8 @@ impl Recording {
         })
     }
 
-    /// Clock and angle, the platform going from 0 to -45 degrees and back at 56.25 deg/s, polled every millisecond.
+    /// Clock and angle, the platform going from 0 to -45 degrees and back at 56.25 deg/s, polled
+    /// every millisecond.
     pub fn tilting(&self) -> Alignment {
         let hosts = || self.datagrams.iter().map(|(host, _)| *host);
         let (from, to) = (hosts().min().unwrap(), hosts().max().unwrap());

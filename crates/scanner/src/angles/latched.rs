@@ -1,10 +1,12 @@
 //! Positions that came at SYNC, with the drive's own time, to angle samples.
 //!
-//! The drive latches position (6064) and time (1013) together, after the SYNC was sent and before the frame that carries them
-//! came in. So every pair bounds the drive's clock from both sides: the upper envelope of the SYNC times and the lower one of
-//! the arrivals, each free of what single frames suffered on their way, hold the clock between them. It is taken in the
-//! middle, as a bus is no slower one way than the other, and half of what is between them is the bound.
-//! The drive's time wraps after 71 minutes and begins anew when the drive does; a run between two starts has a clock of its own.
+//! The drive latches position (6064) and time (1013) together, after the SYNC was sent and before
+//! the frame that carries them came in. So every pair bounds the drive's clock from both sides: the
+//! upper envelope of the SYNC times and the lower one of the arrivals, each free of what single
+//! frames suffered on their way, hold the clock between them. It is taken in the middle, as a bus
+//! is no slower one way than the other, and half of what is between them is the bound. The drive's
+//! time wraps after 71 minutes and begins anew when the drive does; a run between two starts has a
+//! clock of its own.
 
 use drive::ShaftSample;
 use units::{Drive, Gearing, Host, Span, Stamp};
@@ -14,8 +16,8 @@ use crate::clock::{Arrival, DeviceClock};
 
 /// Fewer pairs than this tell no clock; they stand in the middle of SYNC and arrival, as polls do.
 const FEWEST: usize = 8;
-/// The drive's clock and the host's may differ by this over a pause before the drive counts as started anew, and by as much
-/// again of the pause.
+/// The drive's clock and the host's may differ by this over a pause before the drive counts as
+/// started anew, and by as much again of the pause.
 const RESTART: Span = Span::from_secs(1);
 const RESTART_SHARE: i64 = 1_000;
 /// What quantisation of the drive's time, 1 us, adds to a bound.
@@ -28,8 +30,9 @@ struct LatchedSample {
     device_ns: i64,
 }
 
-/// Angle samples of what came at SYNC, in its order, and the standard deviation of their clock, nanoseconds: an error that they share,
-/// so that no fit averages over it. Samples without the drive's time are passed over.
+/// Angle samples of what came at SYNC, in its order, and the standard deviation of their clock,
+/// nanoseconds: an error that they share, so that no fit averages over it. Samples without the
+/// drive's time are passed over.
 pub(crate) fn angle_samples(stream: &[ShaftSample], gearing: Gearing) -> (Vec<AngleSample>, f64) {
     let mut samples = Vec::with_capacity(stream.len());
     let mut square_ns2 = 0.0;
@@ -82,7 +85,8 @@ fn runs(stream: &[ShaftSample]) -> Vec<Vec<LatchedSample>> {
     runs
 }
 
-/// How far the drive's clock went while the host's went by `host`; `None` where it cannot have gone on.
+/// How far the drive's clock went while the host's went by `host`; `None` where it cannot have gone
+/// on.
 fn went(before_us: u32, after_us: u32, host: Span) -> Option<Span> {
     const WRAP_US: i64 = 1 << 32;
     let least = i64::from(after_us) - i64::from(before_us);
@@ -110,8 +114,9 @@ impl TwoSidedClock {
             })
             .collect();
         let late = DeviceClock::fit(&arrivals)?;
-        // After frames were lost samples may for long be given the SYNC before their own: a whole beat early, which would tilt the
-        // envelope. They, and those whose SYNC was held up as long, tell nothing of it.
+        // After frames were lost samples may for long be given the SYNC before their own: a whole
+        // beat early, which would tilt the envelope. They, and those whose SYNC was held up as
+        // long, tell nothing of it.
         let ahead = |latched: &LatchedSample| {
             let taken = late.host(Stamp::from_nanos(latched.device_ns));
             taken.saturating_since(latched.sample.request)
@@ -130,7 +135,8 @@ impl TwoSidedClock {
         Some(Self { early, late })
     }
 
-    /// Standard deviation of the middle between both sides, nanoseconds, beside what the quickest ways there and back differ by.
+    /// Standard deviation of the middle between both sides, nanoseconds, beside what the quickest
+    /// ways there and back differ by.
     fn sd_ns(&self, device_ns: i64) -> f64 {
         let early = self.early.sd_near_ns(backwards(device_ns), None);
         let late = self.late.sd_near_ns(Stamp::from_nanos(device_ns), None);
@@ -173,8 +179,8 @@ mod tests {
         Gearing::new(500, 120, 1).unwrap()
     }
 
-    /// A stream at 1 kHz on a drive whose clock is 60 ppm slow and reads `first_us` at the start; the SYNC takes `there` and the
-    /// answer `back` microseconds in sample i. Position i.
+    /// A stream at 1 kHz on a drive whose clock is 60 ppm slow and reads `first_us` at the start;
+    /// the SYNC takes `there` and the answer `back` microseconds in sample i. Position i.
     fn stream(
         count: i64,
         first_us: i64,

@@ -1,8 +1,8 @@
 //! Samples that no platform can have given: a position far beside its neighbours for one sample.
 //!
-//! A link without a checksum (SLCAN on a serial line) may hand on a flipped bit as a position. What a motor does between two
-//! samples is bounded by what it does around them and by how hard it can be accelerated; beyond that a lone sample is
-//! left out. Runs of wrong samples are not found here.
+//! A link without a checksum (SLCAN on a serial line) may hand on a flipped bit as a position. What
+//! a motor does between two samples is bounded by what it does around them and by how hard it can
+//! be accelerated; beyond that a lone sample is left out. Runs of wrong samples are not found here.
 
 use super::AngleSample;
 
@@ -38,7 +38,8 @@ fn is_plausible(last: &AngleSample, this: &AngleSample, next: &AngleSample) -> b
     let across = next.angle.0 - last.angle.0;
     let share = if whole > 0.0 { since / whole } else { 0.5 };
     let beside = (this.angle.0 - last.angle.0 - across * share).abs();
-    // Motion one way is never farther beside the line than its ends are apart. Half of a turn back and forth under full acceleration; samples stand where they are within their bounds.
+    // Motion one way is never farther beside the line than its ends are apart. Half of a turn back
+    // and forth under full acceleration; samples stand where they are within their bounds.
     let slack = (last.bound + this.bound + next.bound).as_secs_f64();
     let hard = 0.5 * HARDEST_DEG_S2 * (whole + slack).powi(2);
     beside <= ALWAYS_DEG + across.abs() + hard

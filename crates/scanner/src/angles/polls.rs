@@ -1,9 +1,11 @@
-//! Shaft samples to angle samples. What came at SYNC with the drive's own time goes by that (`stream`); what was asked
-//! for stands in the middle of request and answer, slow polls left out where they are not needed.
+//! Shaft samples to angle samples. What came at SYNC with the drive's own time goes by that
+//! (`stream`); what was asked for stands in the middle of request and answer, slow polls left out
+//! where they are not needed.
 //!
-//! A poll that took unusually long was held up on one side or the other, and which side cannot be known: its
-//! middle may be off by half the excess. In steady motion its neighbours tell the angle better than it does. On a ramp they may not: a slow
-//! poll stays where the line across the hole would be worse than the poll.
+//! A poll that took unusually long was held up on one side or the other, and which side cannot be
+//! known: its middle may be off by half the excess. In steady motion its neighbours tell the angle
+//! better than it does. On a ramp they may not: a slow poll stays where the line across the hole
+//! would be worse than the poll.
 
 use std::collections::VecDeque;
 

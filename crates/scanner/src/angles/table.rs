@@ -21,15 +21,16 @@ pub enum TableTime {
     SinceFirstPacket,
 }
 
-/// Times below this (1973) cannot be Unix times of a lidar recording and count from its first packet.
+/// Times below this (1973) cannot be Unix times of a lidar recording and count from its first
+/// packet.
 const UNIX_FROM_S: f64 = 1e8;
 
 impl AngleTable {
     /// Rows of (seconds, degrees), in strictly increasing time.
     ///
     /// # Errors
-    /// [`ScanError::TableShort`] with fewer than two rows, [`ScanError::TableRange`] for times and angles that cannot be,
-    /// [`ScanError::TableOrder`] where time does not increase.
+    /// [`ScanError::TableShort`] with fewer than two rows, [`ScanError::TableRange`] for times and
+    /// angles that cannot be, [`ScanError::TableOrder`] where time does not increase.
     pub fn new(rows: Vec<(f64, f64)>) -> Result<Self, ScanError> {
         if rows.len() < 2 {
             return Err(ScanError::TableShort { rows: rows.len() });
@@ -91,7 +92,8 @@ impl AngleTable {
     }
 }
 
-/// Times from 1653 to 2286 and angles within ten turns: what is outside is a mistake, and would overflow 64 bits of nanoseconds.
+/// Times from 1653 to 2286 and angles within ten turns: what is outside is a mistake, and would
+/// overflow 64 bits of nanoseconds.
 fn in_range((seconds, degrees): (f64, f64)) -> bool {
     seconds.abs() <= 1e10 && degrees.abs() <= 3_600.0
 }

@@ -13,8 +13,8 @@ use super::segment::{ClockSegment, Moment, OffsetLine};
 
 /// Maps a device's time to host time.
 ///
-/// `C` is the device's clock. In one piece as long as nobody set the device's clock; a clock that was set, or began anew, has
-/// another piece from then on.
+/// `C` is the device's clock. In one piece as long as nobody set the device's clock; a clock that
+/// was set, or began anew, has another piece from then on.
 pub struct DeviceClock<C = Lidar> {
     origin_ns: i64,
     /// In the order in which they were recorded, never empty.
@@ -61,7 +61,8 @@ pub(crate) struct ErrorCell {
     pub sd_ns: f64,
 }
 
-/// A device time this far beyond a piece's arrivals may still be of it: packets that were lost at its end, firings of its last.
+/// A device time this far beyond a piece's arrivals may still be of it: packets that were lost at
+/// its end, firings of its last.
 const BEYOND_NS: f64 = 5e6;
 
 impl<C> DeviceClock<C> {
@@ -106,8 +107,9 @@ impl<C> DeviceClock<C> {
         }
     }
 
-    /// Fits a piece for each stretch. Between stretches one of the two clocks was set; where it was the host's, host times go on
-    /// from the stretch before. Beside the clock, how much later packets came from each stretch to the next.
+    /// Fits a piece for each stretch. Between stretches one of the two clocks was set; where it was
+    /// the host's, host times go on from the stretch before. Beside the clock, how much later
+    /// packets came from each stretch to the next.
     pub(crate) fn fit_pieces(
         stretches: &[Stretch<C>],
         host_was_set: &[bool],
@@ -168,21 +170,23 @@ impl<C> DeviceClock<C> {
         self.moment_near(device, None)
     }
 
-    /// The same, where the device's clock read `device` twice, for the time that is nearer to `near`, about when it arrived by the
-    /// host's clock of that time.
+    /// The same, where the device's clock read `device` twice, for the time that is nearer to
+    /// `near`, about when it arrived by the host's clock of that time.
     #[must_use]
     pub fn moment_near(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Moment {
         self.segment(device, near)
             .moment(device, self.since_origin(device))
     }
 
-    /// Median of how late packets came above the envelope: the link's typical delay beyond its smallest.
+    /// Median of how late packets came above the envelope: the link's typical delay beyond its
+    /// smallest.
     #[must_use]
     pub fn residual(&self) -> Span {
         self.residual
     }
 
-    /// How far off the clock may be at worst, beyond the constant delay: see [`DeviceClock::bound_at`].
+    /// How far off the clock may be at worst, beyond the constant delay: see
+    /// [`DeviceClock::bound_at`].
     #[must_use]
     pub fn bound(&self) -> Span {
         let cells = self.pieces.iter().flat_map(|piece| &piece.cells);
@@ -191,20 +195,22 @@ impl<C> DeviceClock<C> {
 
     /// How far off the clock may be at `device`, beyond the constant delay.
     ///
-    /// It is a statistical bound, which holds all along a recording in 99 of 100: what oscillators wander across a block, and 3.5
-    /// standard deviations of its line, which follow from how densely packets lie just above it; and where all packets of some
-    /// seconds are later than chance allows, that: steps too small to be found, and slews too fast to be followed.
+    /// It is a statistical bound, which holds all along a recording in 99 of 100: what oscillators
+    /// wander across a block, and 3.5 standard deviations of its line, which follow from how
+    /// densely packets lie just above it; and where all packets of some seconds are later than
+    /// chance allows, that: steps too small to be found, and slews too fast to be followed.
     #[must_use]
     pub fn bound_at(&self, device: Stamp<C>) -> Span {
         let cell = self.cell(device, None);
         cell.map_or(Span::ZERO, |cell| span(cell.bound_ns))
     }
 
-    /// Standard deviation of the clock at `device`, nanoseconds, beyond the constant delay; where the device's clock read `device` twice,
-    /// of the time that is nearer to `near`.
+    /// Standard deviation of the clock at `device`, nanoseconds, beyond the constant delay; where
+    /// the device's clock read `device` twice, of the time that is nearer to `near`.
     ///
-    /// That of its line, from how densely packets lie just above it; what oscillators wander across a block, and packets that are
-    /// all late for some seconds, as errors even over what [`DeviceClock::bound_at`] allows them.
+    /// That of its line, from how densely packets lie just above it; what oscillators wander across
+    /// a block, and packets that are all late for some seconds, as errors even over what
+    /// [`DeviceClock::bound_at`] allows them.
     #[must_use]
     pub fn sd_near_ns(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> f64 {
         self.cell(device, near).map_or(0.0, |cell| cell.sd_ns)
@@ -217,8 +223,8 @@ impl<C> DeviceClock<C> {
         cells.get(next.saturating_sub(1))
     }
 
-    /// Drift of the device's clock against the host's at the middle of the recording, in parts per million; positive when
-    /// the device's seconds are long.
+    /// Drift of the device's clock against the host's at the middle of the recording, in parts per
+    /// million; positive when the device's seconds are long.
     #[must_use]
     pub fn drift_ppm(&self) -> f64 {
         let longest = self

@@ -1,25 +1,29 @@
 //! How far below the lowest packets the clock is: Pitman's estimate of where a distribution ends.
 //!
-//! A delay that is the sum of several stages (waiting to be polled, waiting to be scheduled) is rarely close to its least
-//! value: with two stages the density near it grows linearly from zero, and the lowest of n packets is late by about the n^-1/2 part of
-//! the spread instead of the n^-1. The hull, which takes the lowest packets at their word, is late with them.
+//! A delay that is the sum of several stages (waiting to be polled, waiting to be scheduled) is
+//! rarely close to its least value: with two stages the density near it grows linearly from zero,
+//! and the lowest of n packets is late by about the n^-1/2 part of the spread instead of the n^-1.
+//! The hull, which takes the lowest packets at their word, is late with them.
 //!
-//! Near its end let the share of delays below d be proportional to d^a (a = 1: a step, a = 2: two stages). Of the packets less than D
-//! above the hull, the likelihood of a line that runs d(x) below it is
+//! Near its end let the share of delays below d be proportional to d^a (a = 1: a step, a = 2: two
+//! stages). Of the packets less than D above the hull, the likelihood of a line that runs d(x)
+//! below it is
 //!
 //! ```text
 //!     product over packets of  (r + d)^(a-1) / (D + d)^a,     r: lateness above the hull,     0 where a packet would be early
 //! ```
 //!
-//! Its maximum is no good estimate at an end (it may lie on the edge); its mean over all lines is the one of least
-//! variance among those that move with the data (E. J. G. Pitman, Biometrika 30, 1939, pp. 391-421). It is taken over a grid
-//! of the line's two ends, and the spread there is how well the line is known. The exponent is measured by Hill's estimator
-//! (B. M. Hill, Annals of Statistics 3, 1975, pp. 1163-1174) from the lowest packets of the whole recording.
+//! Its maximum is no good estimate at an end (it may lie on the edge); its mean over all lines is
+//! the one of least variance among those that move with the data (E. J. G. Pitman, Biometrika 30,
+//! 1939, pp. 391-421). It is taken over a grid of the line's two ends, and the spread there is how
+//! well the line is known. The exponent is measured by Hill's estimator (B. M. Hill, Annals of
+//! Statistics 3, 1975, pp. 1163-1174) from the lowest packets of the whole recording.
 
 use super::envelope::Point;
 use super::segment::OffsetLine;
 
-/// How delays are spread just above the least: the share below d is that of `depth_ns` times (d / depth)^exponent.
+/// How delays are spread just above the least: the share below d is that of `depth_ns` times (d /
+/// depth)^exponent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tail {
     depth_ns: f64,
@@ -55,7 +59,8 @@ impl Tail {
         }
     }
 
-    /// The same depth with the exponent that the lateness of packets shows (Hill); between that of one stage and of three.
+    /// The same depth with the exponent that the lateness of packets shows (Hill); between that of
+    /// one stage and of three.
     pub fn measured(self, late_ns: impl Iterator<Item = f64>) -> Self {
         let low = late_ns.filter(|r| *r > 0.0 && *r < self.depth_ns);
         let (count, sum) = low.fold((0.0, 0.0), |(count, sum), r| {
@@ -108,7 +113,8 @@ struct LinePosterior {
     middle: f64,
 }
 
-/// Where the clock is by the lowest of a block's points, and how well that is known. `None` where there are too few.
+/// Where the clock is by the lowest of a block's points, and how well that is known. `None` where
+/// there are too few.
 pub(super) fn line(points: &[Point], hull: OffsetLine, tail: Tail) -> Option<(OffsetLine, Ends)> {
     let (first, last) = (points.first()?.0, points.last()?.0);
     let length = last - first;
@@ -202,7 +208,8 @@ impl LinePosterior {
     }
 }
 
-/// Of the line that begins `begin` and ends `end` below the hull; `None` where a packet would be early.
+/// Of the line that begins `begin` and ends `end` below the hull; `None` where a packet would be
+/// early.
 fn log_likelihood(low: &[Low], begin: f64, end: f64, tail: Tail) -> Option<f64> {
     let per_depth = 1.0 / tail.depth_ns;
     let (mut up, mut down) = (0.0, 0.0);

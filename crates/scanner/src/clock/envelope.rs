@@ -1,40 +1,47 @@
-//! Lines under the arrivals: of each block of 30 s one, neighbouring blocks blended linearly, so that slow wander of either
-//! oscillator is followed.
+//! Lines under the arrivals: of each block of 30 s one, neighbouring blocks blended linearly, so
+//! that slow wander of either oscillator is followed.
 //!
-//! A block's line is first the edge of its lower convex hull under its middle. On a link where packets come often with next to
-//! the least delay that is the clock to within a fraction of a microsecond. Where they do not, `endpoint` says how far below the hull the clock is.
-//! Left out: clocks that were set; whoever calls cuts there.
+//! A block's line is first the edge of its lower convex hull under its middle. On a link where
+//! packets come often with next to the least delay that is the clock to within a fraction of a
+//! microsecond. Where they do not, `endpoint` says how far below the hull the clock is. Left out:
+//! clocks that were set; whoever calls cuts there.
 
 use super::device::ErrorCell;
 use super::endpoint::{self, Ends, Tail};
 use super::segment::OffsetLine;
 
-/// Length of a block: long enough to meet a prompt packet on a busy link, short against an oscillator's wander.
+/// Length of a block: long enough to meet a prompt packet on a busy link, short against an
+/// oscillator's wander.
 pub(super) const BLOCK_NS: f64 = 30e9;
-/// No pair of crystal oscillators in working order drifts apart faster; holds the slope where a recording is too
-/// short to measure it.
+/// No pair of crystal oscillators in working order drifts apart faster; holds the slope where a
+/// recording is too short to measure it.
 const MAX_SLOPE: f64 = 200e-6;
-/// A clock that is being slewed (500 ppm by the kernel) does, which takes this long to tell from delays.
+/// A clock that is being slewed (500 ppm by the kernel) does, which takes this long to tell from
+/// delays.
 const MAX_SLEW: f64 = 600e-6;
 const SLEW_NS: f64 = 10e9;
-/// Share of all packets that tells how the least delays are spread, or so many, where a recording is short.
+/// Share of all packets that tells how the least delays are spread, or so many, where a recording
+/// is short.
 const LOW_SHARE: f64 = 0.02;
 const FEWEST_LOW: usize = 64;
 /// With fewer packets in a block the hull stays as it is.
 const FEWEST: usize = 8 * FEWEST_LOW;
-/// Where so many are within this above the hull, it is the clock to within a fraction of a microsecond, and stays.
+/// Where so many are within this above the hull, it is the clock to within a fraction of a
+/// microsecond, and stays.
 const PROMPT_NS: f64 = 5e3;
 /// Rounds in which lines and the spread of the delays above them are found from each other.
 const ROUNDS: usize = 3;
-/// How fast the rates of two ordinary oscillators part, per second (0.03 ppm/s): across a block of length L a straight line misses
-/// L^2/8 of it. Where neighbouring blocks show more, it is theirs, and a quarter for what they do not show.
+/// How fast the rates of two ordinary oscillators part, per second (0.03 ppm/s): across a block of
+/// length L a straight line misses L^2/8 of it. Where neighbouring blocks show more, it is theirs,
+/// and a quarter for what they do not show.
 const WANDER_PER_S: f64 = 0.03e-6;
 const MORE_WANDER: f64 = 1.25;
 /// Standard deviations within which all of a recording stays in 99 of 100 cases.
 const DEVIATIONS: f64 = 3.5;
 /// Cells of a block.
 const CELLS: f64 = 16.0;
-/// A cell's least late packet is later than it may be by chance if so many others should have been before it.
+/// A cell's least late packet is later than it may be by chance if so many others should have been
+/// before it.
 const MISSED: f64 = 9.0;
 /// What is later was held up by the network: a clock that was set by as much is found.
 const HELD_UP_NS: f64 = 10e6;
@@ -62,7 +69,8 @@ struct LowDelays {
 }
 
 impl LowDelays {
-    /// What the least of `count` delays stays below: with one stage of delay or two, and packets that come in bunches.
+    /// What the least of `count` delays stays below: with one stage of delay or two, and packets
+    /// that come in bunches.
     fn least_of(self, count: usize) -> f64 {
         let part = MISSED / (self.share * count as f64);
         2.0 * self.depth_ns * part.max(part.sqrt())
@@ -108,7 +116,8 @@ impl Envelope {
     }
 }
 
-/// Brings lines down to where the delays above them come to an end, where that matters; how the delays are spread.
+/// Brings lines down to where the delays above them come to an end, where that matters; how the
+/// delays are spread.
 fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
     let low = |blocks: &[EnvelopeBlock<'_>]| {
         let mut late: Vec<f64> = blocks.iter().flat_map(EnvelopeBlock::lateness).collect();
@@ -117,7 +126,8 @@ fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
     let (depth_ns, count) = low(blocks)?;
     let all: usize = blocks.iter().map(|block| block.points.len()).sum();
     for block in blocks.iter_mut() {
-        // The lowest of k packets that are up to D late is late by about D over the root of k, or less.
+        // The lowest of k packets that are up to D late is late by about D over the root of k, or
+        // less.
         let own = (count * block.points.len()) as f64 / all as f64;
         block.ends = Ends::all(depth_ns / own.max(1.0).sqrt());
     }
@@ -152,8 +162,8 @@ fn lowest(late: &mut [f64]) -> Option<(f64, usize)> {
     Some((depth.max(0.0), count.max(1)))
 }
 
-/// How far off the clock may be, cell by cell. Two things tell: how well each line is known, and cells of which all packets are late,
-/// above which the clock may be.
+/// How far off the clock may be, cell by cell. Two things tell: how well each line is known, and
+/// cells of which all packets are late, above which the clock may be.
 fn cells(
     points: &[Point],
     blocks: &[EnvelopeBlock<'_>],
@@ -271,7 +281,8 @@ impl EnvelopeBlock<'_> {
     }
 }
 
-/// Blocks of 30 s that overlap by half and are spread evenly, so that the last one is as long as the first.
+/// Blocks of 30 s that overlap by half and are spread evenly, so that the last one is as long as
+/// the first.
 fn blocks(begin_ns: f64, length_ns: f64) -> impl Iterator<Item = (f64, f64)> {
     let strides = ((length_ns - BLOCK_NS) / (BLOCK_NS / 2.0)).ceil().max(0.0);
     let stride = if strides > 0.0 {
@@ -285,8 +296,8 @@ fn blocks(begin_ns: f64, length_ns: f64) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// The line under all of `points` (sorted by x) that is closest to them in sum: the hull edge under their mean x, its slope
-/// held to what oscillators do.
+/// The line under all of `points` (sorted by x) that is closest to them in sum: the hull edge under
+/// their mean x, its slope held to what oscillators do.
 fn line_below(points: &[Point]) -> Option<OffsetLine> {
     let (first, last) = (points.first()?, points.last()?);
     let centre = 0.5 * (first.0 + last.0);

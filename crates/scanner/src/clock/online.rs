@@ -1,13 +1,15 @@
 //! A device's clock while packets come in: Olson's passive algorithm, streaming.
 //!
-//! E. Olson, "A passive solution to the sensor synchronization problem" (IROS 2010): of all packets so far the one that was late
-//! the least tells the clock, its offset allowed to grow by the most that the two clocks can drift apart since; a packet
-//! that comes before that replaces it. Cost: constant, in time and memory. On a link of few prompt packets the clock is late by
-//! what it may grow until the next of them comes; a whole recording is better served by [`super::DeviceClock`].
+//! E. Olson, "A passive solution to the sensor synchronization problem" (IROS 2010): of all packets
+//! so far the one that was late the least tells the clock, its offset allowed to grow by the most
+//! that the two clocks can drift apart since; a packet that comes before that replaces it. Cost:
+//! constant, in time and memory. On a link of few prompt packets the clock is late by what it may
+//! grow until the next of them comes; a whole recording is better served by [`super::DeviceClock`].
 //!
-//! Time never runs backwards for firings asked for packet by packet: where a prompter packet lowers the offset, the clock runs at half its speed until it is
-//! there. It begins anew where the host's clock went back, the device's was set, or nothing has come in time for five
-//! seconds (the host's clock went forward); then time may jump, and [`OnlineClock::observe`] says so.
+//! Time never runs backwards for firings asked for packet by packet: where a prompter packet lowers
+//! the offset, the clock runs at half its speed until it is there. It begins anew where the host's
+//! clock went back, the device's was set, or nothing has come in time for five seconds (the host's
+//! clock went forward); then time may jump, and [`OnlineClock::observe`] says so.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -24,8 +26,8 @@ const RATE: f64 = 100e-6;
 const CATCH_UP: f64 = 0.5;
 /// Stamps that go back by more were not reordered.
 const BACK_NS: f64 = 10e6;
-/// A gap in device time that the host's clock does not show, or packets all later than this for [`PATIENCE_NS`], are of a
-/// clock that was set.
+/// A gap in device time that the host's clock does not show, or packets all later than this for
+/// [`PATIENCE_NS`], are of a clock that was set.
 const SET_NS: f64 = 10e6;
 const PATIENCE_NS: f64 = 5e9;
 /// Intervals between prompt packets that the bound remembers.
@@ -69,7 +71,8 @@ impl<C> OnlineClock<C> {
         }
     }
 
-    /// Takes a packet. Whether the clock began anew with it, because one of the clocks was set; the first does not count.
+    /// Takes a packet. Whether the clock began anew with it, because one of the clocks was set; the
+    /// first does not count.
     pub fn observe(&mut self, arrival: Arrival<C>) -> bool {
         let (device, host) = (arrival.device.as_nanos(), arrival.host.as_nanos());
         if self.state.is_some() {
@@ -104,9 +107,10 @@ impl<C> OnlineClock<C> {
             .map_or(Span::ZERO, |state| span(state.median))
     }
 
-    /// How far off the clock may be now, beyond the constant delay: what it grew, and clocks may have drifted, in the two longest of
-    /// the last 32 intervals between prompt packets. Statistical: it holds at 99 of 100
-    /// packets from the first second on; until two such intervals are known it is a second.
+    /// How far off the clock may be now, beyond the constant delay: what it grew, and clocks may
+    /// have drifted, in the two longest of the last 32 intervals between prompt packets.
+    /// Statistical: it holds at 99 of 100 packets from the first second on; until two such
+    /// intervals are known it is a second.
     #[must_use]
     pub fn bound(&self) -> Span {
         span(
@@ -151,7 +155,8 @@ impl OnlineState {
         if host < -BACK_NS || device < -BACK_NS {
             return true;
         }
-        // Packets that were held up come close together by the host's clock, never far apart by the device's.
+        // Packets that were held up come close together by the host's clock, never far apart by the
+        // device's.
         if device > PATIENCE_NS.min(host + 100.0 * SET_NS) && at.1 < self.target(at.0) - SET_NS {
             return true;
         }

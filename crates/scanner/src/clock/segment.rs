@@ -120,8 +120,8 @@ impl ClockSegment {
         }
     }
 
-    /// Distance of the blend from its tangent after `length_ns`: half of the second derivative times
-    /// the length squared.
+    /// Distance of the blend from its tangent after `length_ns`: half of the second derivative
+    /// times the length squared.
     #[inline(always)]
     pub fn bend_ns(&self, length_ns: f64) -> f64 {
         self.second.map_or(0.0, |after| {

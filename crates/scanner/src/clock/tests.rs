@@ -19,7 +19,8 @@ impl Noise {
 
 const EPOCH: i64 = 1_795_000_000_000_000_000;
 
-/// Arrivals of a clock that drifts by `ppm`, with exponential delays of `mean_us` and some millisecond spikes.
+/// Arrivals of a clock that drifts by `ppm`, with exponential delays of `mean_us` and some
+/// millisecond spikes.
 fn link(seconds: f64, ppm: f64, mean_us: f64) -> Vec<Arrival> {
     let mut noise = Noise(7);
     (0..(seconds / 1.327_104e-3) as i64)

@@ -23,7 +23,8 @@ pub(super) struct ClockCursor<'a> {
     received: Option<Stamp<Host>>,
 }
 
-/// Greatest distance of a blend from its tangent: at 1 rad/s it moves a point 100 m away by 0.05 nm.
+/// Greatest distance of a blend from its tangent: at 1 rad/s it moves a point 100 m away by 0.05
+/// nm.
 const MAX_BEND_NS: f64 = 5e-4;
 
 impl<'a> ClockCursor<'a> {

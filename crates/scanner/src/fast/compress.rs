@@ -1,7 +1,7 @@
 //! Stream compaction: registers are written to columns without the channels that have no return.
 //!
-//! Each register is written whole. The next one overwrites the values beyond its kept ones; those of
-//! the last register stay beyond the last point.
+//! Each register is written whole. The next one overwrites the values beyond its kept ones; those
+//! of the last register stay beyond the last point.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{mask8x32, u8x32};

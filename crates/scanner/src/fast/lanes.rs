@@ -1,7 +1,7 @@
 //! Loads and stores between columns and registers, as many values at a time as a register holds.
 //!
-//! Loops over the 32 channels of a block are written this way because the compiler otherwise unrolls
-//! them into scalars before it vectorises.
+//! Loops over the 32 channels of a block are written this way because the compiler otherwise
+//! unrolls them into scalars before it vectorises.
 
 use fearless_simd::prelude::*;
 

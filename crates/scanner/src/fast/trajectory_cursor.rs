@@ -265,8 +265,8 @@ struct Crossing {
     stretch: f64,
 }
 
-/// Evaluates the pieces that begin within a block at the channels that fire in them. Returns whether
-/// all angles are near the anchor.
+/// Evaluates the pieces that begin within a block at the channels that fire in them. Returns
+/// whether all angles are near the anchor.
 #[inline(always)]
 fn cross<S: Simd>(
     simd: S,

@@ -1,10 +1,11 @@
 //! Jumps of (arrival - device time) that stay.
 //!
-//! Before and after each packet stand the least values of six seconds. Where they differ by more than clocks drift in that time, and
-//! the difference is already there within a tenth of a second, it is a jump. A delay is none, be it of seconds: what was held up
-//! comes all at once, so that the values fall back within as long as it was held up. Near the ends of a recording, where there are no six seconds, the values
-//! must be level instead.
-//! Left out: jumps up that are undone within six seconds, and whose clock it was.
+//! Before and after each packet stand the least values of six seconds. Where they differ by more
+//! than clocks drift in that time, and the difference is already there within a tenth of a second,
+//! it is a jump. A delay is none, be it of seconds: what was held up comes all at once, so that the
+//! values fall back within as long as it was held up. Near the ends of a recording, where there are
+//! no six seconds, the values must be level instead. Left out: jumps up that are undone within six
+//! seconds, and whose clock it was.
 
 use std::collections::VecDeque;
 

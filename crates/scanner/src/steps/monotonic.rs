@@ -1,18 +1,21 @@
 //! The drive's records over a step of the host's clock.
 //!
-//! What pairs requests with answers goes by their stamps and would stumble over time that goes back or leaps. So stamps are sewn together while records
-//! come in, wherever they cannot be of one clock: they go back, or leap while the lidar did not go on. The sewn time is for pairing only:
-//! once it is known from the whole recording which clock was set and by how much, every stamp is turned back
-//! into the one that was recorded, less the steps before it.
-//! Left out: how steps are found.
+//! What pairs requests with answers goes by their stamps and would stumble over time that goes back
+//! or leaps. So stamps are sewn together while records come in, wherever they cannot be of one
+//! clock: they go back, or leap while the lidar did not go on. The sewn time is for pairing only:
+//! once it is known from the whole recording which clock was set and by how much, every stamp is
+//! turned back into the one that was recorded, less the steps before it. Left out: how steps are
+//! found.
 
 use units::{Host, Span, Stamp};
 
 /// Stamps that go back by more are of a clock that was set back.
 const BACK: Span = Span::from_millis(-5);
-/// A leap ahead of what the lidar shows by more is of a clock that was set forward. Less than this disturbs no pairing.
+/// A leap ahead of what the lidar shows by more is of a clock that was set forward. Less than this
+/// disturbs no pairing.
 const LEAP: Span = Span::from_millis(1_500);
-/// What is put between two clocks: how long it truly was is not known to a microsecond, and after so long a silence pairing begins anew.
+/// What is put between two clocks: how long it truly was is not known to a microsecond, and after
+/// so long a silence pairing begins anew.
 const SEAM: Span = Span::from_millis(2_500);
 /// The lidar tells how time went only while its packets come.
 const ALIVE: Span = Span::from_millis(500);
@@ -36,7 +39,8 @@ pub(crate) struct ClockSteps {
     /// Packets of the lidar before each sample.
     samples: Vec<u32>,
     packets: u32,
-    /// Device time and stamp of the lidar's last packet, and its device time at the drive's last record.
+    /// Device time and stamp of the lidar's last packet, and its device time at the drive's last
+    /// record.
     lidar: Option<(i64, Stamp<Host>)>,
     lidar_then: Option<i64>,
 }
@@ -98,7 +102,8 @@ impl ClockSteps {
         ((near(last) || near(host)) && went >= Span::ZERO).then_some(went)
     }
 
-    /// Whether the drive's records jump by about `by` about where the lidar's packet `at` is in the file.
+    /// Whether the drive's records jump by about `by` about where the lidar's packet `at` is in the
+    /// file.
     pub fn shows(&self, at: usize, by: Span) -> bool {
         self.pause(at, by).is_some()
     }
@@ -115,7 +120,8 @@ impl ClockSteps {
         here - first >= DENSE && last - here >= DENSE
     }
 
-    /// The first sewn time after a step of the host's clock by `by`, at the lidar's packet `at`; `None` where no record follows.
+    /// The first sewn time after a step of the host's clock by `by`, at the lidar's packet `at`;
+    /// `None` where no record follows.
     pub fn boundary(&self, at: usize, by: Span) -> Option<Stamp<Host>> {
         let after = packets(at).saturating_sub(NEAR);
         let pause = self.pause(at, by).or_else(|| {

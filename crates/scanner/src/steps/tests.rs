@@ -20,7 +20,8 @@ impl Noise {
     }
 }
 
-/// A recording of a lidar at 30 ppm and of a drive that is polled, as it would be had nobody set a clock.
+/// A recording of a lidar at 30 ppm and of a drive that is polled, as it would be had nobody set a
+/// clock.
 struct Recorded {
     packets: Vec<Arrival>,
     /// Request and answer.
@@ -119,8 +120,8 @@ impl Seen {
         Timeline::new(&self.arrivals, &self.monotonic).unwrap()
     }
 
-    /// Greatest error of clock and polls against what was, in microseconds, a constant aside; how many polls are off by a round trip or
-    /// more.
+    /// Greatest error of clock and polls against what was, in microseconds, a constant aside; how
+    /// many polls are off by a round trip or more.
     fn errors(&self, timeline: &Timeline, truth: &Recorded) -> (f64, usize) {
         let clock = truth.packets.iter().zip(&self.arrivals).map(|(was, seen)| {
             let since = was.device.as_nanos() - EPOCH;
@@ -148,7 +149,8 @@ fn only(timeline: &Timeline) -> ClockStep {
     step
 }
 
-/// NTP, a leap second, somebody at the keyboard: from 12 ms to a year, both ways, with the drive polled and without one.
+/// NTP, a leap second, somebody at the keyboard: from 12 ms to a year, both ways, with the drive
+/// polled and without one.
 #[test]
 fn the_hosts_clock_is_set() {
     for poll_us in [Some(2_500), Some(1_000), Some(60_000), None] {
@@ -224,7 +226,8 @@ fn the_hosts_clock_is_set_near_the_ends() {
     }
 }
 
-/// The lidar's clock is set by its first pulse, forward or back, or begins anew after an outage: a piece of its own, and no host time is touched.
+/// The lidar's clock is set by its first pulse, forward or back, or begins anew after an outage: a
+/// piece of its own, and no host time is touched.
 #[test]
 fn the_lidars_clock_is_set() {
     for poll_us in [Some(2_500), None] {
@@ -266,8 +269,8 @@ fn the_lidars_clock_is_set() {
     }
 }
 
-/// A network that stands still hands on what it held all at once, be it at the end of a recording or from its start; a link
-/// that loses packets, or a host that is paused, changes nothing either.
+/// A network that stands still hands on what it held all at once, be it at the end of a recording
+/// or from its start; a link that loses packets, or a host that is paused, changes nothing either.
 #[test]
 fn delays_are_no_steps() {
     for (from, length) in [

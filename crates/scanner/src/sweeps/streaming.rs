@@ -8,7 +8,8 @@ use super::{END_TOLERANCE_DEG, MoveWatch, REST_QC};
 use crate::angles::AngleSample;
 use crate::config::SweepPlan;
 
-/// Follows the samples of an axis while it sweeps: when sweeps begin and end, as far as it is known by then.
+/// Follows the samples of an axis while it sweeps: when sweeps begin and end, as far as it is known
+/// by then.
 #[derive(Clone, Debug)]
 pub(crate) struct SweepWatch {
     rest_deg: f64,

@@ -11,7 +11,8 @@ use super::{AngleSample, Method, noise};
 /// Standard deviations that a bound holds.
 const SURE: f64 = 3.0;
 
-/// Of a fit within a span: what it scatters, and the delay that all samples may share at the speed there, degrees.
+/// Of a fit within a span: what it scatters, and the delay that all samples may share at the speed
+/// there, degrees.
 pub(super) fn of_fit(
     pieces: &PiecewiseCubic,
     (from, to): (Stamp<Host>, Stamp<Host>),
@@ -55,9 +56,10 @@ fn widest_step(samples: &[AngleSample]) -> f64 {
     steps.fold(0.0, f64::max)
 }
 
-/// Half of a round trip at the speed there, and what a line misses of a change of speed: a quarter of it times the time between two
-/// samples where it comes at once in the middle between them (if it comes evenly, an eighth). Of fewer than four samples nothing is known but
-/// that the axis went from one to the next.
+/// Half of a round trip at the speed there, and what a line misses of a change of speed: a quarter
+/// of it times the time between two samples where it comes at once in the middle between them (if
+/// it comes evenly, an eighth). Of fewer than four samples nothing is known but that the axis went
+/// from one to the next.
 fn of_lines(samples: &[AngleSample]) -> f64 {
     if samples.len() < 4 {
         return widest_step(samples);

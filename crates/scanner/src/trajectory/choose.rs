@@ -1,9 +1,11 @@
-//! Which curve through a sweep's samples is the truest: judged by what its residuals show beyond the scatter of single samples.
+//! Which curve through a sweep's samples is the truest: judged by what its residuals show beyond
+//! the scatter of single samples.
 //!
-//! The commanded motion has few parameters, so it averages over hundreds of samples; but it is right only if the axis did what
-//! it was told. Residuals of many samples in a row that do not cancel say how far it did not. A spline follows anything and averages over
-//! fewer samples. Each has an error that can be told from the samples: what they scatter it by, and what is left in a row. The
-//! one with the least is taken.
+//! The commanded motion has few parameters, so it averages over hundreds of samples; but it is
+//! right only if the axis did what it was told. Residuals of many samples in a row that do not
+//! cancel say how far it did not. A spline follows anything and averages over fewer samples. Each
+//! has an error that can be told from the samples: what they scatter it by, and what is left in a
+//! row. The one with the least is taken.
 
 use units::{Degrees, Host, Span, Stamp};
 
@@ -22,9 +24,11 @@ pub struct SweepFit {
     pub method: Method,
     /// Root mean square of samples against it, degrees, over the sweep.
     pub rms_deg: f64,
-    /// How far it may be off by what the samples scatter and what is left of them in a row, one standard deviation, degrees.
+    /// How far it may be off by what the samples scatter and what is left of them in a row, one
+    /// standard deviation, degrees.
     pub sd_deg: f64,
-    /// A delay that all samples of it share lies between these, as each was taken between its request and its answer.
+    /// A delay that all samples of it share lies between these, as each was taken between its
+    /// request and its answer.
     pub delay: (Span, Span),
     /// The motion that was found; `None` where none was looked for or it is not the one taken.
     pub profile: Option<Profile>,
@@ -46,7 +50,8 @@ impl SweepFit {
 const BESIDE: Span = Span::from_millis(60);
 /// So many residuals in a row are taken together.
 const ROW: usize = 16;
-/// A motion is not the commanded one if residuals in a row show this many times what samples scatter it by, and this much.
+/// A motion is not the commanded one if residuals in a row show this many times what samples
+/// scatter it by, and this much.
 const STRANGE: f64 = 4.0;
 const STRANGE_DEG: f64 = 0.01;
 /// So long after a ramp a servo that moves a head has settled, seconds.
@@ -106,7 +111,8 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// The truest of them, with its pieces; of `method` alone where one is asked for. `None` where there is none.
+    /// The truest of them, with its pieces; of `method` alone where one is asked for. `None` where
+    /// there is none.
     pub(super) fn best(&self, method: Option<Method>) -> Option<(SweepFit, PiecewiseCubic)> {
         let servo = |method: Method| match method {
             Method::Profile => Some(Servo::None),
@@ -127,7 +133,8 @@ impl<'a> Candidates<'a> {
                     else {
                         continue;
                     };
-                    // The motion alone is quickly fitted, and mostly it is that; where a look leaves as much as that, it is not.
+                    // The motion alone is quickly fitted, and mostly it is that; where a look
+                    // leaves as much as that, it is not.
                     let doubtful = if method == Method::Profile { 1.0 } else { 0.25 };
                     if one.leaves_less_than(doubtful) {
                         self.look_closer(&mut one, servo(method));
@@ -342,7 +349,8 @@ fn observed(samples: &[AngleSample], noise: &Noise, origin: Stamp<Host>) -> Vec<
     observed
 }
 
-/// The same with neighbours of the cruise put together where there are many, as a straight line tells no more by its parts.
+/// The same with neighbours of the cruise put together where there are many, as a straight line
+/// tells no more by its parts.
 fn condensed(observed: &[Observed], guess: &Profile) -> Vec<Observed> {
     let [start, up, brake, end] = guess.corners_s();
     // The guess may be off, and a servo comes after.
@@ -381,8 +389,8 @@ fn is_alike(a: &Observed, b: &Observed) -> bool {
     (a.angle_deg - b.angle_deg).abs() < f64::EPSILON * 64.0
 }
 
-/// What residuals show that does not cancel over a row of them, root mean square, degrees: their means' squares, less what scatter
-/// alone would make of these.
+/// What residuals show that does not cancel over a row of them, root mean square, degrees: their
+/// means' squares, less what scatter alone would make of these.
 fn in_a_row(off: &[(f64, f64, f64)]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for row in off.chunks(ROW).filter(|row| row.len() > ROW / 2) {
@@ -406,8 +414,8 @@ fn in_a_row(off: &[(f64, f64, f64)]) -> f64 {
     }
 }
 
-/// Between which delays every sample was taken within its bound: samples of the sweep's faster half, whose residual tells when the
-/// axis was where they say.
+/// Between which delays every sample was taken within its bound: samples of the sweep's faster
+/// half, whose residual tells when the axis was where they say.
 fn delay(off: &[(f64, f64, f64)]) -> (Span, Span) {
     let fastest = off.iter().map(|o| o.1.abs()).fold(0.0, f64::max);
     let quick = off.iter().filter(|o| o.1.abs() > fastest / 2.0);
@@ -431,7 +439,8 @@ fn delay(off: &[(f64, f64, f64)]) -> (Span, Span) {
     )
 }
 
-/// A profile as cubics from the origin until `end_s`: its corners, behind them steps that grow as the servo's answer decays.
+/// A profile as cubics from the origin until `end_s`: its corners, behind them steps that grow as
+/// the servo's answer decays.
 fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<PiecewiseCubic> {
     let profile = &fit.profile;
     let mut at = vec![0.0, end_s];
@@ -451,7 +460,8 @@ fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<Piecewise
         } else {
             0.0
         };
-        // Hermite's error is (step / quick)^4 / 384 of what is left: below 1e-6 degrees for any servo.
+        // Hermite's error is (step / quick)^4 / 384 of what is left: below 1e-6 degrees for any
+        // servo.
         while quick > 0.0 && since < 20.0 * over && at.len() < MOST_PIECES {
             since += quick / 8.0 * f64::exp((since / over / 4.0).min(3.0));
             at.push(corner + since);
@@ -470,7 +480,8 @@ fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<Piecewise
         [a, b] if a < b => {
             let [from_s, to_s] = [a, b].map(|s| s.saturating_since(origin).as_secs_f64());
             let ns = b.saturating_since(*a).as_nanos() as f64;
-            // Just inside: at a corner of a profile without lag the acceleration jumps, and the speed does not.
+            // Just inside: at a corner of a profile without lag the acceleration jumps, and the
+            // speed does not.
             let ends = [from_s, to_s].map(|s| {
                 let (angle_deg, rate_deg_s) = profile.place(s);
                 [angle_deg, rate_deg_s * 1e-9]

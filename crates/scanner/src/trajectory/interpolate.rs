@@ -1,7 +1,8 @@
-//! From sample to sample: the nearest one, a straight line, or a cubic with the speeds between neighbours.
+//! From sample to sample: the nearest one, a straight line, or a cubic with the speeds between
+//! neighbours.
 //!
-//! All three pass every sample, its error included, and know nothing of what the axis was told. That makes them cheap, possible
-//! while samples still come in, and right whatever moved the axis.
+//! All three pass every sample, its error included, and know nothing of what the axis was told.
+//! That makes them cheap, possible while samples still come in, and right whatever moved the axis.
 
 use units::Span;
 
@@ -9,7 +10,8 @@ use super::AngleSample;
 use super::noise::{Noise, rates, seconds};
 use super::pieces::{CubicPiece, PiecewiseCubic};
 
-/// Each instant has the angle of the sample that is nearest to it. Samples are in strictly increasing time.
+/// Each instant has the angle of the sample that is nearest to it. Samples are in strictly
+/// increasing time.
 pub(super) fn nearest(samples: &[AngleSample], noise: &Noise) -> Option<PiecewiseCubic> {
     let rates = rates(samples);
     let mut from = samples.first()?.host;
@@ -39,7 +41,8 @@ pub(super) fn linear(samples: &[AngleSample], noise: &Noise) -> Option<Piecewise
     let bent = |i: usize| bend(samples, i) / 8.0;
     between(samples, noise, &rates, |a, b, [sa, sb], i| {
         let ns = b.host.saturating_since(a.host).as_nanos() as f64;
-        // Mean over the line of the variances of both ends, and of a parabola's distance from its chord.
+        // Mean over the line of the variances of both ends, and of a parabola's distance from its
+        // chord.
         let sd = f64::sqrt((sa * sa + sb * sb) / 3.0 + bent(i).powi(2) * (8.0 / 15.0));
         CubicPiece::line(a.host, a.angle.0, (b.angle.0 - a.angle.0) / ns).with_sd(sd)
     })
@@ -57,7 +60,8 @@ impl StreamingFit {
         self.last[1].as_ref()
     }
 
-    /// The line to a sample from the one before it; `None` of the first, and of one that is not later.
+    /// The line to a sample from the one before it; `None` of the first, and of one that is not
+    /// later.
     pub(crate) fn add(&mut self, sample: AngleSample) -> Option<CubicPiece> {
         let [before, last] = self.last;
         if last.is_some_and(|last| sample.host <= last.host) {
@@ -77,15 +81,16 @@ impl StreamingFit {
     }
 }
 
-/// A cubic between neighbours whose speed at each sample is that of the parabola through it and its neighbours, and which never goes beyond them. Samples are in
-/// strictly increasing time.
+/// A cubic between neighbours whose speed at each sample is that of the parabola through it and its
+/// neighbours, and which never goes beyond them. Samples are in strictly increasing time.
 pub(super) fn hermite(samples: &[AngleSample], noise: &Noise) -> Option<PiecewiseCubic> {
     let rates = rates(samples);
     let speeds = parabolas(samples);
     between(samples, noise, &rates, |a, b, [sa, sb], i| {
         let ns = b.host.saturating_since(a.host).as_nanos() as f64;
         let speed = |i: usize| speeds.get(i).copied().unwrap_or_default() * 1e-9;
-        // The mean gain of a cubic convolution on noise is 0.81 (57/70, Keys 1981, kernel with a = -1/2).
+        // The mean gain of a cubic convolution on noise is 0.81 (57/70, Keys 1981, kernel with a =
+        // -1/2).
         let sd = f64::sqrt((sa * sa + sb * sb) / 2.0 * 57.0 / 70.0);
         let (from, to) = ([a.angle.0, speed(i)], [b.angle.0, speed(i + 1)]);
         CubicPiece::hermite(a.host, ns, from, to).with_sd(sd)
@@ -136,7 +141,8 @@ fn bend(samples: &[AngleSample], i: usize) -> f64 {
     (after - before) / 2.0 * length
 }
 
-/// Degrees per second at each sample of the parabola through it and both neighbours; at the ends of the line to the only one.
+/// Degrees per second at each sample of the parabola through it and both neighbours; at the ends of
+/// the line to the only one.
 fn parabolas(samples: &[AngleSample]) -> Vec<f64> {
     let slope = |i: usize| {
         let (a, b) = (samples.get(i)?, samples.get(i + 1)?);
@@ -146,8 +152,8 @@ fn parabolas(samples: &[AngleSample]) -> Vec<f64> {
     (0..samples.len())
         .map(|i| match (i.checked_sub(1).and_then(slope), slope(i)) {
             (Some((before, h0)), Some((after, h1))) => {
-                // Of stamps that lie close together the parabola is wild: held to where the cubic does not leave the range of its
-                // ends (Fritsch and Carlson 1980).
+                // Of stamps that lie close together the parabola is wild: held to where the cubic
+                // does not leave the range of its ends (Fritsch and Carlson 1980).
                 let most = 3.0 * f64::min(before.abs(), after.abs());
                 let speed = (before * h1 + after * h0) / (h0 + h1);
                 if before * after > 0.0 {

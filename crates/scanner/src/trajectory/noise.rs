@@ -1,8 +1,9 @@
 //! How far samples are off, judged by each other.
 //!
-//! A sample's angle is the encoder's to a count, but at an instant known only within its bound: at speed the bound is worth
-//! degrees. How much of the bound errors really take up is told by samples and their neighbours, and held to what a bound can mean.
-//! A delay that all samples share does not show here.
+//! A sample's angle is the encoder's to a count, but at an instant known only within its bound: at
+//! speed the bound is worth degrees. How much of the bound errors really take up is told by samples
+//! and their neighbours, and held to what a bound can mean. A delay that all samples share does not
+//! show here.
 
 use units::Degrees;
 
@@ -27,8 +28,8 @@ impl Noise {
         angle_sd_deg: 0.0,
     };
 
-    /// That of `samples`, whose angles come in steps of `quantum`. Where motion tells nothing, errors count as even
-    /// over the bounds.
+    /// That of `samples`, whose angles come in steps of `quantum`. Where motion tells nothing,
+    /// errors count as even over the bounds.
     #[must_use]
     pub fn of(samples: &[AngleSample], quantum: Degrees) -> Self {
         let angle_sd_deg = quantum.0.abs() * EVEN / 2.0;
@@ -86,8 +87,8 @@ pub(super) fn seconds(a: &AngleSample, b: &AngleSample) -> f64 {
     b.host.saturating_since(a.host).as_secs_f64()
 }
 
-/// Degrees per second at each sample: between its neighbours, at the ends to the only one. Samples are in strictly increasing
-/// time.
+/// Degrees per second at each sample: between its neighbours, at the ends to the only one. Samples
+/// are in strictly increasing time.
 pub(super) fn rates(samples: &[AngleSample]) -> Vec<f64> {
     let last = samples.len().saturating_sub(1);
     (0..samples.len())

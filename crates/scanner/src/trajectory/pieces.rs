@@ -1,7 +1,7 @@
 //! A piecewise cubic over host time: what every method of knowing the angle ends as.
 //!
-//! So there is one way to ask, one cursor for the fast path, and no method that costs more than another once it is fitted.
-//! Left out: where the coefficients come from.
+//! So there is one way to ask, one cursor for the fast path, and no method that costs more than
+//! another once it is fitted. Left out: where the coefficients come from.
 
 use units::{Degrees, Host, Real, Stamp};
 
@@ -36,8 +36,8 @@ impl CubicPiece {
         }
     }
 
-    /// The cubic that passes `a` degrees with slope `va` at its start and `b` with `vb` after `length_ns` (slopes in degrees
-    /// per nanosecond).
+    /// The cubic that passes `a` degrees with slope `va` at its start and `b` with `vb` after
+    /// `length_ns` (slopes in degrees per nanosecond).
     #[must_use]
     pub fn hermite(
         from: Stamp<Host>,
@@ -79,7 +79,8 @@ impl CubicPiece {
         c1 + ns * (2.0 * c2 + ns * (3.0 * c3))
     }
 
-    /// Variance of the angle where it changes by `deg_per_ns` and the instant has a standard deviation, square radians.
+    /// Variance of the angle where it changes by `deg_per_ns` and the instant has a standard
+    /// deviation, square radians.
     #[inline(always)]
     pub(crate) fn variance_rad2(&self, deg_per_ns: f64, clock_sd_ns: f64) -> f64 {
         let (own, by_clock) = (
@@ -108,8 +109,8 @@ impl CubicPiece {
 }
 
 impl PiecewiseCubic {
-    /// `pieces` until `end`. Of several that start at one instant the last is kept, and none that starts at the end or later
-    /// but the very first. `None` without pieces.
+    /// `pieces` until `end`. Of several that start at one instant the last is kept, and none that
+    /// starts at the end or later but the very first. `None` without pieces.
     #[must_use]
     pub fn new(mut pieces: Vec<CubicPiece>, end: Stamp<Host>) -> Option<Self> {
         pieces.sort_by_key(|piece| piece.from);
@@ -135,7 +136,8 @@ impl PiecewiseCubic {
         &self.pieces
     }
 
-    /// The piece that holds at an instant; `None` before the first and after the end, to the nanosecond.
+    /// The piece that holds at an instant; `None` before the first and after the end, to the
+    /// nanosecond.
     #[must_use]
     pub fn piece(&self, at: Moment) -> Option<&CubicPiece> {
         let (first, end) = self.span();
@@ -182,7 +184,8 @@ impl PiecewiseCubic {
         debug_assert!(first.min(from) == self.span().0);
     }
 
-    /// Adds what an instant that is off by `sd_ns` makes of each piece's deviation, at the speed in its middle.
+    /// Adds what an instant that is off by `sd_ns` makes of each piece's deviation, at the speed in
+    /// its middle.
     pub(super) fn widen(&mut self, sd_ns: f64) {
         let starts = self.pieces.iter().skip(1).map(|piece| piece.from);
         let ends: Vec<Stamp<Host>> = starts.chain([self.end]).collect();
@@ -198,7 +201,8 @@ impl PiecewiseCubic {
         self.pieces.drain(..past.saturating_sub(1));
     }
 
-    /// Goes on with `piece` until `end`; a piece that does not start later than the last one takes its place.
+    /// Goes on with `piece` until `end`; a piece that does not start later than the last one takes
+    /// its place.
     pub(crate) fn append(&mut self, piece: CubicPiece, end: Stamp<Host>) {
         while self.pieces.len() > 1
             && self

@@ -1,8 +1,10 @@
-//! What holds the parameters of a motion that the samples do not tell: near what was commanded, as far as that may be off.
+//! What holds the parameters of a motion that the samples do not tell: near what was commanded, as
+//! far as that may be off.
 //!
-//! A ramp that no sample sees is held alone. Where samples begin or end in the midst of the motion, or of its cruise alone, there are
-//! whole directions in which nothing changes (a later start and a farther beginning are one straight line), and every parameter is held;
-//! those that samples tell do not feel it.
+//! A ramp that no sample sees is held alone. Where samples begin or end in the midst of the motion,
+//! or of its cruise alone, there are whole directions in which nothing changes (a later start and a
+//! farther beginning are one straight line), and every parameter is held; those that samples tell
+//! do not feel it.
 
 use std::ops::Range;
 
@@ -33,7 +35,8 @@ enum MotionParameter {
     Servo,
 }
 
-/// A parameter that is held: of what it is, its place among the parameters, how far it is off what was commanded, and how far it may be.
+/// A parameter that is held: of what it is, its place among the parameters, how far it is off what
+/// was commanded, and how far it may be.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prior {
     part: MotionParameter,
@@ -69,8 +72,9 @@ impl RegularisedParameters {
         self.start || self.ramp_up || self.ramp_down || self.way || self.servo
     }
 
-    /// Of all that was held what decided, the samples having less to say of it; `variances` are what they and it leave to the parameters.
-    /// At least one thing, as without any the fit had no solution.
+    /// Of all that was held what decided, the samples having less to say of it; `variances` are
+    /// what they and it leave to the parameters. At least one thing, as without any the fit had no
+    /// solution.
     pub(super) fn that_decided(priors: &[Prior], variances: &[f64]) -> Self {
         let left = |prior: &Prior| {
             let variance = variances.get(prior.place).copied().unwrap_or_default();
@@ -108,8 +112,8 @@ impl RegularisedParameters {
     }
 }
 
-/// What holds the parameters of `now` near those of `then`: start, ramps, beginning, way in this order, and those of the servo, which are at
-/// `servo`.
+/// What holds the parameters of `now` near those of `then`: start, ramps, beginning, way in this
+/// order, and those of the servo, which are at `servo`.
 pub(super) fn priors(
     now: &Profile,
     then: &Profile,

@@ -1,11 +1,14 @@
 //! The motion that was commanded: a trapezoid of the speed, behind a servo that lags.
 //!
-//! Speed rises evenly over `ramp_up_s`, holds, and falls evenly over `ramp_down_s`; without a stretch of constant speed it is a
-//! triangle. The servo answers as 1 / (1 + lag s + inertia s2): without inertia a shaft that is always nearing its demand, with it one that
-//! may overshoot. In cruise it is behind by its lag. What is the same on both ramps and in cruise, a dead time, is in the start.
+//! Speed rises evenly over `ramp_up_s`, holds, and falls evenly over `ramp_down_s`; without a
+//! stretch of constant speed it is a triangle. The servo answers as 1 / (1 + lag s + inertia s2):
+//! without inertia a shaft that is always nearing its demand, with it one that may overshoot. In
+//! cruise it is behind by its lag. What is the same on both ramps and in cruise, a dead time, is in
+//! the start.
 //!
-//! Every function is written so that it stays exact where its parameters degenerate: a ramp of no length, a lag of none, a cruise of
-//! a quarter of an hour. Left out: how the parameters are found, which is `profile_fit`.
+//! Every function is written so that it stays exact where its parameters degenerate: a ramp of no
+//! length, a lag of none, a cruise of a quarter of an hour. Left out: how the parameters are found,
+//! which is `profile_fit`.
 
 mod swing;
 
@@ -26,12 +29,13 @@ pub struct Profile {
     pub way_deg: f64,
     /// Time constant of the servo, seconds; 0 where the shaft follows at once.
     pub lag_s: f64,
-    /// Inertia of the servo, seconds squared: 1 / (2 pi f)2 of a natural frequency f, damped by lag / (2 sqrt(inertia)); 0 of a servo of
-    /// first order.
+    /// Inertia of the servo, seconds squared: 1 / (2 pi f)2 of a natural frequency f, damped by lag
+    /// / (2 sqrt(inertia)); 0 of a servo of first order.
     pub inertia_s2: f64,
 }
 
-/// Derivatives of an angle by start, speed, both ramps, beginning, way, lag and inertia, in this order.
+/// Derivatives of an angle by start, speed, both ramps, beginning, way, lag and inertia, in this
+/// order.
 pub(super) type Gradient = [f64; 8];
 
 impl Profile {
@@ -111,7 +115,8 @@ impl Profile {
     }
 }
 
-/// What a demand that goes over to unit speed has brought about: position in seconds, speed, and the position's derivatives.
+/// What a demand that goes over to unit speed has brought about: position in seconds, speed, and
+/// the position's derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ramp {
     position: f64,
@@ -137,7 +142,8 @@ impl Ramp {
         }
         let demand = Self::demand(since, length);
         if lag <= 0.0 {
-            // The limit of the shaft's answer as the lag goes to zero: it is behind by speed times lag.
+            // The limit of the shaft's answer as the lag goes to zero: it is behind by speed times
+            // lag.
             return Self {
                 by_lag: -demand.rate,
                 ..demand
@@ -189,8 +195,9 @@ impl Ramp {
         }
     }
 
-    /// The shaft's answer to this demand: less lag x (its speed - m), where m is how much of the speed is still missing. With
-    /// x = time / lag and f(x) = (1 - exp(-x)) / x, m is part x f(x) on the ramp and exp(-x after it) x f(length / lag) behind it.
+    /// The shaft's answer to this demand: less lag x (its speed - m), where m is how much of the
+    /// speed is still missing. With x = time / lag and f(x) = (1 - exp(-x)) / x, m is part x f(x)
+    /// on the ramp and exp(-x after it) x f(length / lag) behind it.
     fn behind(self, since: f64, length: f64, lag: f64) -> Self {
         let missing = if since < length {
             Missing::on_the_ramp(since, length, lag)

@@ -1,10 +1,13 @@
-//! Finds the commanded motion in samples: least squares over start, speed, both ramps, beginning, way and, on request, the lag.
+//! Finds the commanded motion in samples: least squares over start, speed, both ramps, beginning,
+//! way and, on request, the lag.
 //!
-//! In these parameters the problem is well posed (condition some tens) as long as the samples see both ramps; speed, acceleration and
-//! deceleration instead would not converge. Where a ramp is shorter than what the samples see, its length is held near what was
-//! commanded, and where the samples do not tell all of the motion (they begin or end in the midst of it) all parameters are; the fit says
-//! which of them that decided. A minimum is found by Levenberg and Marquardt's method (MINPACK's, Moré 1978).
-//! Left out: whether the motion was the commanded one at all; residuals tell, and `choose` asks them.
+//! In these parameters the problem is well posed (condition some tens) as long as the samples see
+//! both ramps; speed, acceleration and deceleration instead would not converge. Where a ramp is
+//! shorter than what the samples see, its length is held near what was commanded, and where the
+//! samples do not tell all of the motion (they begin or end in the midst of it) all parameters are;
+//! the fit says which of them that decided. A minimum is found by Levenberg and Marquardt's method
+//! (MINPACK's, Moré 1978). Left out: whether the motion was the commanded one at all; residuals
+//! tell, and `choose` asks them.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
@@ -28,11 +31,13 @@ pub struct ProfileFit {
     pub profile: Profile,
     /// Whether the cruise was never reached.
     pub is_triangle: bool,
-    /// Condition number of the fit, its columns scaled to one length, what holds parameters among them.
+    /// Condition number of the fit, its columns scaled to one length, what holds parameters among
+    /// them.
     pub condition: f64,
     /// Which parameters were held near what was commanded, as the samples do not tell them.
     pub held: RegularisedParameters,
-    /// Weighted sum of squares a degree of freedom: 1 where the samples are as good as they are taken to be.
+    /// Weighted sum of squares a degree of freedom: 1 where the samples are as good as they are
+    /// taken to be.
     pub excess: f64,
     servo: Servo,
     covariance: DMatrix<f64>,
@@ -60,8 +65,8 @@ impl Servo {
 const FEWEST_IN_RAMP: usize = 3;
 /// Above this the samples do not tell all parameters.
 const WORST_CONDITION: f64 = 1e6;
-/// A sum of squares that changes by less than this, as a part of it, is the least: of a thousand samples, parameters are then within a
-/// thirtieth of what these scatter them by.
+/// A sum of squares that changes by less than this, as a part of it, is the least: of a thousand
+/// samples, parameters are then within a thirtieth of what these scatter them by.
 const LEAST: f64 = 1e-6;
 /// So many observations are enough for a look.
 const ENOUGH_TO_LOOK: usize = 100;
@@ -90,8 +95,9 @@ impl ProfileFit {
     }
 }
 
-/// Fits from `guess`, with the servo's parameters that it has, or from where a look has led, `begin`. `None` where there are fewer observations than parameters, or no minimum is
-/// found that is a motion at all.
+/// Fits from `guess`, with the servo's parameters that it has, or from where a look has led,
+/// `begin`. `None` where there are fewer observations than parameters, or no minimum is found that
+/// is a motion at all.
 pub(super) fn fit(
     observed: &[Observed],
     guess: Profile,
@@ -159,8 +165,8 @@ fn solve(
     }
 }
 
-/// A fit to one observation in every few, for a look at what it comes to; `None` where there are too few for that, or they do not tell
-/// everything.
+/// A fit to one observation in every few, for a look at what it comes to; `None` where there are
+/// too few for that, or they do not tell everything.
 pub(super) fn look(observed: &[Observed], guess: Profile, servo: Servo) -> Option<ProfileFit> {
     let part = observed.len() / ENOUGH_TO_LOOK;
     if part < 2 {
@@ -170,7 +176,8 @@ pub(super) fn look(observed: &[Observed], guess: Profile, servo: Servo) -> Optio
     fit(&some, guess, servo, None).filter(|fit| !fit.held.any())
 }
 
-/// Which parameters a profile has: a triangle's speed follows from its way and its ramps, and there may be no lag.
+/// Which parameters a profile has: a triangle's speed follows from its way and its ramps, and there
+/// may be no lag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct ProfileShape {
     is_triangle: bool,
@@ -211,8 +218,8 @@ impl ProfileShape {
         parameters
     }
 
-    /// The profile of parameters, which are first brought to where a motion is possible. The way never changes its direction from
-    /// that of `guess`.
+    /// The profile of parameters, which are first brought to where a motion is possible. The way
+    /// never changes its direction from that of `guess`.
     fn profile(self, parameters: &[f64], guess: &Profile) -> Option<Profile> {
         let &[
             start_s,
@@ -255,7 +262,8 @@ impl ProfileShape {
         })
     }
 
-    /// Angle at an instant and its derivatives by the parameters, of which as many count as there are.
+    /// Angle at an instant and its derivatives by the parameters, of which as many count as there
+    /// are.
     fn row(self, profile: &Profile, at_s: f64) -> (f64, Gradient) {
         let (angle, [start, speed, up, down, from, way, lag, inertia]): (f64, Gradient) =
             profile.with_gradient(at_s);
@@ -280,7 +288,8 @@ impl ProfileShape {
     }
 }
 
-/// The problem as the solver sees it: one row an observation, and one for each parameter that is held.
+/// The problem as the solver sees it: one row an observation, and one for each parameter that is
+/// held.
 struct Problem<'a> {
     observed: &'a [Observed],
     guess: Profile,

@@ -1,8 +1,9 @@
 //! A cubic spline through samples by least squares: for motion that nobody commanded.
 //!
-//! Knots are evenly spaced, as far apart as the motion allows: the spacing with the least predicted error by generalised cross-validation
-//! (Craven and Wahba 1979) is taken. Where a stretch has no samples the spline is held straight by a slight stiffness, so that
-//! every system has a solution. Normal equations of B-splines have a band of four and are solved as such.
+//! Knots are evenly spaced, as far apart as the motion allows: the spacing with the least predicted
+//! error by generalised cross-validation (Craven and Wahba 1979) is taken. Where a stretch has no
+//! samples the spline is held straight by a slight stiffness, so that every system has a solution.
+//! Normal equations of B-splines have a band of four and are solved as such.
 
 use units::{Host, Span, Stamp};
 
@@ -32,7 +33,8 @@ const STIFFNESS: f64 = 1e-9;
 /// More knots than this are not tried: time grows with them.
 const MOST_KNOTS: usize = 100_000;
 
-/// Fits `observed`, in order of time and in seconds after `origin`, from `from_s` to `to_s`. `None` with fewer than four of them or no time.
+/// Fits `observed`, in order of time and in seconds after `origin`, from `from_s` to `to_s`. `None`
+/// with fewer than four of them or no time.
 pub(super) fn fit(
     observed: &[Observed],
     origin: Stamp<Host>,
@@ -161,8 +163,8 @@ impl Spline {
         };
         let stretches = self.coefficients.len() + 1 - BAND;
         let excess = self.excess();
-        // Away from the ends the band's inverse is about the same everywhere there are samples: asked for in full at each knot, it would
-        // cost more than the fit.
+        // Away from the ends the band's inverse is about the same everywhere there are samples:
+        // asked for in full at each knot, it would cost more than the fit.
         let pieces = (0..stretches).map(|k| {
             let (from, to) = (at(k), at(k + 1));
             let around = self.coefficients.get(k..k + BAND)?;

@@ -73,7 +73,8 @@ fn the_bound_sees_slow_polls_and_holes() {
             .unwrap()
             .bound_deg(&all)
     };
-    // 50 deg/s: 1 ms of doubt is 0.05 deg, and from rest to 50 deg/s at once within a millisecond, or within 11 ms, 50 x 0.011 / 4.
+    // 50 deg/s: 1 ms of doubt is 0.05 deg, and from rest to 50 deg/s at once within a millisecond,
+    // or within 11 ms, 50 x 0.011 / 4.
     assert!((moving(&[], 1_000) - (0.05 + 0.0125)).abs() < 1e-3);
     let hole: Vec<i64> = (45..55).collect();
     assert!((moving(&hole, 0) - 50.0 * 0.011 / 4.0).abs() < 1e-3);

@@ -1,4 +1,5 @@
-//! Columns as attributes of E57 points: what the standard has a place for, and an extension for the rest.
+//! Columns as attributes of E57 points: what the standard has a place for, and an extension for the
+//! rest.
 
 use e57::{RawValues, Record, RecordDataType, RecordName, RecordValue};
 use units::{Host, Stamp};

@@ -206,7 +206,8 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     }
 }
 
-/// A writer that is not finished leaves what no reader takes for a cloud, and lets go of its output.
+/// A writer that is not finished leaves what no reader takes for a cloud, and lets go of its
+/// output.
 #[test]
 fn a_writer_that_is_dropped_leaves_no_cloud() {
     let file = SharedOutput::default();

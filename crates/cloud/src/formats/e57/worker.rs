@@ -58,7 +58,8 @@ fn text(text: &str) -> String {
 /// Stands in the file's description until its identity is known.
 const PLACEHOLDER: &str = "{00000000-0000-8000-8000-000000000000}";
 
-/// Does what it is told until the file is complete. Where nobody is left to tell it anything, the file stays as it is.
+/// Does what it is told until the file is complete. Where nobody is left to tell it anything, the
+/// file stays as it is.
 pub(super) fn run<W: Read + Write + Seek>(
     output: W,
     attributes: &PointAttributes,

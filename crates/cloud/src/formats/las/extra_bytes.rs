@@ -1,5 +1,5 @@
-//! The extra bytes of a point and the record that describes them (LAS 1.4 R15, section 5.5: `LASF_Spec` 4, 192
-//! bytes a dimension), so that readers show them by name.
+//! The extra bytes of a point and the record that describes them (LAS 1.4 R15, section 5.5:
+//! `LASF_Spec` 4, 192 bytes a dimension), so that readers show them by name.
 
 use las::Vlr;
 
@@ -19,7 +19,8 @@ pub(super) struct ExtraColumn {
     pub(super) offset: usize,
 }
 
-/// Number type and description (at most 32 characters); `None` for the column with a standard field.
+/// Number type and description (at most 32 characters); `None` for the column with a standard
+/// field.
 const fn kind(column: Column) -> Option<(NumberType, &'static str)> {
     use NumberType::{F32, F64, U8};
     match column {
@@ -69,7 +70,8 @@ pub(super) fn record(extras: &[ExtraColumn]) -> Vlr {
                 NumberType::F64 => 10,
             };
             let mut record = [0; RECORD_BYTES];
-            // Bytes 0 and 1 are reserved; options (byte 3) stay 0: no nodata, minimum, maximum, scale or offset.
+            // Bytes 0 and 1 are reserved; options (byte 3) stay 0: no nodata, minimum, maximum,
+            // scale or offset.
             put(&mut record, 2, &[code]);
             put(&mut record, NAME_AT, extra.column.name().as_bytes());
             put(&mut record, DESCRIPTION_AT, description.as_bytes());

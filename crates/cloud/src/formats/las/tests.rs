@@ -201,7 +201,8 @@ fn coordinates_that_do_not_fit_are_named() {
     }
 }
 
-/// The library panics when it cannot complete its file on drop: no byte at which the disk may fill up must get there.
+/// The library panics when it cannot complete its file on drop: no byte at which the disk may fill
+/// up must get there.
 #[test]
 fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     for make in [LasWriter::las, LasWriter::laz] {

@@ -1,6 +1,8 @@
-//! What `ros2 bag` wants to know beside the messages: the qualities of service with which topics were offered, and `metadata.yaml`.
+//! What `ros2 bag` wants to know beside the messages: the qualities of service with which topics
+//! were offered, and `metadata.yaml`.
 //!
-//! In version 5 of rosbag2's format, which Humble and everything after it read. There policies are numbers (rmw/types.h).
+//! In version 5 of rosbag2's format, which Humble and everything after it read. There policies are
+//! numbers (rmw/types.h).
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -11,8 +13,8 @@ use crate::messages::Topic;
 
 const VERSION: u32 = 5;
 
-/// The record that rosbag2's own writer leaves. Without metadata in it readers take qualities of service as numbers, the form of every version
-/// before 9; newer ones would else look for names.
+/// The record that rosbag2's own writer leaves. Without metadata in it readers take qualities of
+/// service as numbers, the form of every version before 9; newer ones would else look for names.
 pub(super) fn record() -> mcap::records::Metadata {
     mcap::records::Metadata {
         name: "rosbag2".to_owned(),
@@ -20,7 +22,8 @@ pub(super) fn record() -> mcap::records::Metadata {
     }
 }
 
-/// The quality of service of a topic as YAML: reliable; kept for late subscribers or not; keep the last messages; no deadlines.
+/// The quality of service of a topic as YAML: reliable; kept for late subscribers or not; keep the
+/// last messages; no deadlines.
 pub(super) fn quality(topic: Topic) -> String {
     let (durability, depth) = if topic.is_latched() { (1, 1) } else { (2, 10) };
     let never = "\n    sec: 9223372036\n    nsec: 854775807";

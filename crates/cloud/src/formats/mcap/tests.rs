@@ -27,7 +27,8 @@ fn points(after_ns: impl IntoIterator<Item = i64>) -> Points {
     points
 }
 
-/// Two sweeps, 0..100 ms and 150..250 ms, and a sample a millisecond from 10 ms before to 10 ms after.
+/// Two sweeps, 0..100 ms and 150..250 ms, and a sample a millisecond from 10 ms before to 10 ms
+/// after.
 fn track() -> TiltTrack {
     TiltTrack {
         mount: Some(Metres(0.06)),
@@ -233,7 +234,8 @@ fn metadata_yaml_counts_what_was_written() {
     }
 }
 
-/// The library has no writer that goes on after its output failed: it must neither panic nor say that all is well.
+/// The library has no writer that goes on after its output failed: it must neither panic nor say
+/// that all is well.
 #[test]
 fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     let cloud = cloud_from(50, NOW_NS);

@@ -138,8 +138,8 @@ fn an_empty_cloud_is_a_file_too() {
     assert_eq!((read(&pipe).vertices, read(&pipe).rest), (0, 0));
 }
 
-/// The width of an f32 step between 64 and 128 m is 2^-17 m: half of it is the bound. Measured over the whole
-/// sphere of 100 m.
+/// The width of an f32 step between 64 and 128 m is 2^-17 m: half of it is the bound. Measured over
+/// the whole sphere of 100 m.
 #[test]
 fn f32_positions_are_within_4_um_at_100_m() {
     let mut worst: f64 = 0.0;

@@ -1,8 +1,10 @@
 //! Whether a LAS or LAZ file promises no more than its bytes can hold.
 //!
-//! The crates that read it reserve what a header, a table or a chunk promises before they look whether it is there: one byte of a file may then take
-//! all memory, or more than there is, which ends the program. So whatever is reserved is looked at beforehand: records, extended records
-//! (LAS 1.4 R15, 2.4 to 2.7), the table of chunks and the layers of each (LASzip's own description of its record and its chunks). Left out: whether it is true.
+//! The crates that read it reserve what a header, a table or a chunk promises before they look
+//! whether it is there: one byte of a file may then take all memory, or more than there is, which
+//! ends the program. So whatever is reserved is looked at beforehand: records, extended records
+//! (LAS 1.4 R15, 2.4 to 2.7), the table of chunks and the layers of each (LASzip's own description
+//! of its record and its chunks). Left out: whether it is true.
 
 use crate::read::ReadLe;
 
@@ -20,7 +22,8 @@ const EXTENDED_AT: usize = 235;
 const EXTENDED: usize = 243;
 /// The bits of the format that say that points are compressed.
 const COMPRESSED: u8 = 0xC0;
-/// Bytes in front of what a record holds, and of an extended one; where either says how many it holds.
+/// Bytes in front of what a record holds, and of an extended one; where either says how many it
+/// holds.
 const HEAD: usize = 54;
 const HEAD_LENGTH: usize = 20;
 const EXTENDED_HEAD: usize = 60;
@@ -28,7 +31,8 @@ const EXTENDED_HEAD: usize = 60;
 const LASZIP: (&[u8], u16) = (b"laszip encoded\0\0", 22_204);
 /// Its compressor for points of format 6 and above.
 const LAYERED: u16 = 3;
-/// Its items: number, bytes where they are given, whether they come in layers, and in how many; where it is not said, a layer a byte.
+/// Its items: number, bytes where they are given, whether they come in layers, and in how many;
+/// where it is not said, a layer a byte.
 const ITEMS: [(u16, Option<u16>, bool, Option<u16>); 10] = [
     (0, None, false, Some(0)),
     (6, Some(20), false, Some(0)),
@@ -128,7 +132,8 @@ fn compressed(bytes: &[u8], header: &LasHeader) -> Result<(), Wrong> {
         "a record of LASzip",
         "none that is whole".to_owned(),
     ))?;
-    // Where the table is is said in front of the chunks, or at the end of the file if that could not be written.
+    // Where the table is is said in front of the chunks, or at the end of the file if that could
+    // not be written.
     let said = |at: usize| u64::take(bytes, at).filter(|&table| table > header.data as u64);
     let table = said(header.data)
         .or_else(|| said(bytes.len().checked_sub(8)?))
@@ -195,7 +200,8 @@ fn compressor(bytes: &[u8], header: &LasHeader) -> Option<Compressor> {
     None
 }
 
-/// Chunks stand one behind the other: a point as it is, how many there are, how long each layer is, and the layers.
+/// Chunks stand one behind the other: a point as it is, how many there are, how long each layer is,
+/// and the layers.
 fn layers(
     bytes: &[u8],
     compressor: &Compressor,

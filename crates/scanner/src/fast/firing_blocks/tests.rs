@@ -1,4 +1,5 @@
-//! The fast path against the definition: every model, return mode and option, any angle over time, any spans.
+//! The fast path against the definition: every model, return mode and option, any angle over time,
+//! any spans.
 
 use std::sync::Arc;
 
@@ -112,7 +113,8 @@ fn fast(
     (points, placed)
 }
 
-/// The same points in the same order: places within a nanometre, times within a nanosecond, all else to the bit.
+/// The same points in the same order: places within a nanometre, times within a nanosecond, all
+/// else to the bit.
 fn assert_same(fast: &(Points, PlacementCounts), slow: &(Points, PlacementCounts)) {
     assert_eq!(fast.1, slow.1);
     assert_eq!(fast.0.len(), slow.0.len());
@@ -147,7 +149,8 @@ fn clock(seconds: i64, ppm: &[i64; 4]) -> LidarClock {
 }
 
 prop_compose! {
-    /// Samples at irregular times around the packets, of an axis that moves at up to 500 deg/s either way.
+    /// Samples at irregular times around the packets, of an axis that moves at up to 500 deg/s
+    /// either way.
     fn any_trajectory()(
         steps in prop::collection::vec((1i64..4_000_000, -500.0..500.0f64), 2..200),
         begin in -5_000_000i64..20_000_000,

@@ -2,9 +2,10 @@
 
 use super::Ramp;
 
-/// A servo 1 / (1 + b1 s + b2 s2): a demand of unit speed from 0 on it follows as t - b1 + g(t), where g is the solution of
-/// b2 g" + b1 g' + g = 0 with g(0) = b1 and g'(0) = -1. With C and S the cosine and the sine over w, a = b1 / (2 b2) and
-/// w2 = 1/b2 - a2, which may be negative, g = exp(-a t) (b1 C + (a b1 - 1) S).
+/// A servo 1 / (1 + b1 s + b2 s2): a demand of unit speed from 0 on it follows as t - b1 + g(t),
+/// where g is the solution of b2 g" + b1 g' + g = 0 with g(0) = b1 and g'(0) = -1. With C and S the
+/// cosine and the sine over w, a = b1 / (2 b2) and w2 = 1/b2 - a2, which may be negative, g =
+/// exp(-a t) (b1 C + (a b1 - 1) S).
 struct Servo {
     lag: f64,
     inertia: f64,
@@ -46,7 +47,8 @@ impl Servo {
                 s: decay * sin / w,
             };
         }
-        // Two poles: the slow one's rate is the product, 1/b2, over the quick one's, so that no digits are lost.
+        // Two poles: the slow one's rate is the product, 1/b2, over the quick one's, so that no
+        // digits are lost.
         let quick = self.a + w;
         let slow = 1.0 / self.inertia / quick;
         let (quick, slow) = (f64::exp(-quick * t), f64::exp(-slow * t));
@@ -73,8 +75,8 @@ impl Servo {
         (g, whole - (whole * c + (self.a * whole - self.lag) * s))
     }
 
-    /// The same, and the integral's derivatives by lag and inertia: those of C and S by a and w2 are -t C, -t S, -t S / 2 and
-    /// (t C - S) / (2 w2), and a and w2 are functions of both.
+    /// The same, and the integral's derivatives by lag and inertia: those of C and S by a and w2
+    /// are -t C, -t S, -t S / 2 and (t C - S) / (2 w2), and a and w2 are functions of both.
     fn behind_with_gradient(&self, t: f64) -> Behind {
         if t <= 0.0 {
             return Behind::default();
@@ -135,7 +137,8 @@ struct Behind {
 
 /// When so many of its decay times have gone by, the answer is over: exp(-40) is nothing beside 1.
 const OVER: f64 = 40.0;
-/// Below it (t C - S) / (2 w2) is a series: three terms are good to 1e-11 there, the difference to as much above.
+/// Below it (t C - S) / (2 w2) is a series: three terms are good to 1e-11 there, the difference to
+/// as much above.
 const SMALL_PHASE: f64 = 1e-2;
 
 /// Position and speed behind a ramp of `length` seconds.

@@ -83,7 +83,8 @@ fn the_closed_form_is_the_servo_stepped_through() {
     }
 }
 
-/// The servo's own two, whose closed forms are the least obvious: underdamped, overdamped, and where both poles meet.
+/// The servo's own two, whose closed forms are the least obvious: underdamped, overdamped, and
+/// where both poles meet.
 #[test]
 fn derivatives_by_lag_and_inertia_are_differences() {
     for damping in [

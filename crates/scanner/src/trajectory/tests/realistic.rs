@@ -1,5 +1,5 @@
-//! A drive as they are: a servo of second order at 15 Hz, gear ripple that its encoder does not see, polls of 0.8 to 2.5 ms with
-//! spikes, an encoder of 0.0015 degrees.
+//! A drive as they are: a servo of second order at 15 Hz, gear ripple that its encoder does not
+//! see, polls of 0.8 to 2.5 ms with spikes, an encoder of 0.0015 degrees.
 
 use super::*;
 use crate::sweeps::Commanded;
@@ -139,8 +139,8 @@ impl Drive {
 }
 
 impl Run {
-    /// Worst and root mean square difference to the platform during the sweep, degrees, after the constant delay that suits best,
-    /// which comes with them in seconds.
+    /// Worst and root mean square difference to the platform during the sweep, degrees, after the
+    /// constant delay that suits best, which comes with them in seconds.
     pub fn error(&self, trajectory: &Trajectory) -> (f64, f64, f64) {
         let truth = |t: f64| {
             let at = self.shaft[(t / STEP_S) as usize];
@@ -193,7 +193,8 @@ impl Run {
     }
 }
 
-/// The bar: worst below 0.011 degrees and root mean square below 0.0028, of which the ripple alone, unseen by any encoder, is 0.0021.
+/// The bar: worst below 0.011 degrees and root mean square below 0.0028, of which the ripple alone,
+/// unseen by any encoder, is 0.0021.
 #[test]
 fn the_best_curve_through_a_real_drives_polls_is_as_true_as_its_gear() {
     for damping in [0.7, 1.0] {
@@ -237,7 +238,8 @@ fn the_best_curve_through_a_real_drives_polls_is_as_true_as_its_gear() {
     }
 }
 
-/// At SYNC, 1 kHz, with the drive's own time: samples are so good that a spline sees what a servo of first order does not have.
+/// At SYNC, 1 kHz, with the drive's own time: samples are so good that a spline sees what a servo
+/// of first order does not have.
 #[test]
 fn where_samples_are_good_the_curve_follows_them() {
     let run = Drive {
@@ -331,7 +333,8 @@ fn a_triangle_is_a_motion_too() {
     }
 }
 
-/// Degenerate profiles: an acceleration that no sample sees, a speed of next to nothing, a way of two counts.
+/// Degenerate profiles: an acceleration that no sample sees, a speed of next to nothing, a way of
+/// two counts.
 #[test]
 fn degenerate_profiles_are_fitted_or_joined() {
     let still = Drive {
@@ -476,7 +479,8 @@ fn several_sweeps_have_a_fit_each() {
     }
 }
 
-/// 45 degrees in a quarter of an hour: 360,000 polls, a cruise of 900 s between ramps of a tenth of a millisecond.
+/// 45 degrees in a quarter of an hour: 360,000 polls, a cruise of 900 s between ramps of a tenth of
+/// a millisecond.
 #[test]
 fn a_quarter_of_an_hour_at_three_minutes_of_arc_a_second() {
     let speed = 0.05;
