@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use drive::{AxisConfig, Client, Command, Listener, Observation, ShaftSample, Taken};
-use engine::config::{Axis, Device, DeviceKind};
+use engine::config::{AxisSettings, Device, DeviceKind};
 use engine::devices::drive_port as ports;
 use engine::devices::drive_session::Session;
 use engine::devices::profile as devices;
@@ -342,7 +342,7 @@ fn main() {
     if let Some(interface) = &can {
         links.push(("SocketCAN", DeviceKind::Can, vec!["--can", interface]));
     }
-    let axis = || devices::axis(&Axis::default()).unwrap();
+    let axis = || devices::axis(&AxisSettings::default()).unwrap();
     println!(
         "| link | poll period | samples/s | round trip us: median | 99 % | worst | client, of a core | software drive |"
     );

@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use cloud::Fields;
 use engine::output::Target;
-use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
 use scanner::trajectory::Method;
@@ -108,7 +108,7 @@ fn now_s() -> f64 {
 
 /// Points and the method of their angles.
 fn replayed(log: &Path, accuracy: Accuracy, cloud: &Path) -> (u64, &'static str) {
-    let request = Request {
+    let request = Reconstruction {
         recording: &Source::open(log, None).unwrap(),
         tilt: TiltSource::Log,
         options: lidar::Options::default(),

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use cloud::{Fields, Points};
 use daemon::client::Client;
 use daemon::scans::{CLOUD, LOG, ScanState, ScanView};
-use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 use io::recording::Recording;
 use scanner::{Accuracy, TiltSource};
@@ -143,7 +143,7 @@ pub fn worth_nothing(scan: &ScanView, folder: &Path) -> Result<(), String> {
 
 fn points_of(log: &Path) -> Option<u64> {
     let mut points = Points::new(Fields::FILE);
-    let request = Request {
+    let request = Reconstruction {
         recording: &Source::open(log, None).ok()?,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),

@@ -5,15 +5,15 @@ use std::sync::atomic::AtomicBool;
 
 use engine::reconstruct::frames::FramePlan;
 use engine::reconstruct::replay::TimeReference;
-use engine::reconstruct::replay::{self, Request};
-use engine::reconstruct::report::Scan;
+use engine::reconstruct::replay::{self, Reconstruction};
+use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
 use scanner::TiltSource;
 use units::Degrees;
 use velomotion_tests::capture::{Captured, Setting};
 
-fn frames(log: &Path, output: &Path, organised: bool) -> Scan {
-    let request = Request {
+fn frames(log: &Path, output: &Path, organised: bool) -> ScanReport {
+    let request = Reconstruction {
         recording: &Source::open(log, None).unwrap(),
         tilt: TiltSource::Log,
         options: lidar::Options::default(),

@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
 use engine::failure::Failure;
-use engine::reconstruct::replay::{self, Request};
-use engine::reconstruct::report::Scan;
+use engine::reconstruct::replay::{self, Reconstruction};
+use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
 use io::files::Overwrite;
 use io::log::{LogConfig, LogWriter};
@@ -46,9 +46,9 @@ fn with_others(log: &Path, others: &[([u8; 4], u16)], to: &Path) {
     writer.finish().unwrap();
 }
 
-fn scan(log: &Path, sensor: Option<&str>) -> Result<Scan, Failure> {
+fn scan(log: &Path, sensor: Option<&str>) -> Result<ScanReport, Failure> {
     let sensor = sensor.map(|name| name.parse().unwrap());
-    let request = Request {
+    let request = Reconstruction {
         recording: &Source::open(log, sensor).unwrap(),
         tilt: TiltSource::None,
         options: lidar::Options::default(),

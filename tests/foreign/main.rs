@@ -13,7 +13,7 @@ use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use engine::config::Axis;
+use engine::config::AxisSettings;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
 use engine::devices::simulated_drive::{self as software_drive, Interface};
@@ -200,7 +200,7 @@ fn python_canopen_runs_our_software_drive_over_slcan() {
     let port = pty.path().to_owned();
     let stop = Arc::new(AtomicBool::new(false));
     let stopping = Arc::clone(&stop);
-    let axis = devices::axis(&Axis::default()).unwrap();
+    let axis = devices::axis(&AxisSettings::default()).unwrap();
     let node = simulated::node(&axis);
     let drive = std::thread::spawn(move || {
         let interface = Interface::Slcan(SlcanServer::new(), pty);

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
-use engine::reconstruct::replay::{self, Request};
-use engine::reconstruct::report::Scan;
+use engine::reconstruct::replay::{self, Reconstruction};
+use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
 use scanner::TiltSource;
@@ -126,9 +126,9 @@ fn cut(log: &Path, end: Stamp<units::Host>) -> Vec<u8> {
     bytes[..at].to_vec()
 }
 
-fn scan(log: &Path) -> (Scan, Points) {
+fn scan(log: &Path) -> (ScanReport, Points) {
     let mut points = Points::new(Fields::ALL);
-    let request = Request {
+    let request = Reconstruction {
         recording: &Source::open(log, None).unwrap(),
         tilt: TiltSource::Log,
         options: lidar::Options::default(),

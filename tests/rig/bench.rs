@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use engine::config::{Axis, Config, Device, DeviceKind, Devices};
+use engine::config::{AxisSettings, Config, Device, DeviceKind, Devices};
 use engine::devices::lidar_sockets::DATA_PORT;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
@@ -151,10 +151,10 @@ impl Drop for Bench {
 }
 
 /// The axis, with the brake of the checkout's own configuration.
-fn axis() -> Axis {
-    Axis {
+fn axis() -> AxisSettings {
+    AxisSettings {
         brake_output: Some(1),
-        ..Axis::default()
+        ..AxisSettings::default()
     }
 }
 

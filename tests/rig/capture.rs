@@ -15,15 +15,15 @@ use cloud::{Fields, Points};
 use drive::{Client, Observation};
 use engine::capture::moves as motion;
 use engine::capture::request::scan_config;
-use engine::config::{Axis, Config};
+use engine::config::{AxisSettings, Config};
 use engine::devices::drive_port::BusLine;
 use engine::devices::drive_session::{Session, SessionError};
 use engine::devices::profile as devices;
 use engine::devices::simulated;
 use engine::failure::Failure;
 use engine::output::Target;
-use engine::reconstruct::replay::{self, Request};
-use engine::reconstruct::report::Scan;
+use engine::reconstruct::replay::{self, Reconstruction};
+use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
 use io::can::Slcan;
 use io::port::{Port, RecordingPort};
@@ -94,9 +94,9 @@ impl Captured {
     /// Runs the capture, whatever it comes to.
     pub fn run(setting: Setting) -> (Self, Result<(), SessionError>) {
         // With the brake of the checkout's own configuration.
-        let mut axis = devices::axis(&Axis {
+        let mut axis = devices::axis(&AxisSettings {
             brake_output: Some(1),
-            ..Axis::default()
+            ..AxisSettings::default()
         })
         .unwrap();
         axis.timing.poll_period = setting.poll_period.unwrap_or(axis.timing.poll_period);
@@ -357,7 +357,7 @@ impl Captured {
 
     /// The program's report and the cloud.
     #[must_use]
-    pub fn scan(&self) -> (Scan, Points) {
+    pub fn scan(&self) -> (ScanReport, Points) {
         self.try_scan().unwrap()
     }
 
@@ -365,9 +365,9 @@ impl Captured {
     ///
     /// # Errors
     /// Where it does not.
-    pub fn try_scan(&self) -> Result<(Scan, Points), Failure> {
+    pub fn try_scan(&self) -> Result<(ScanReport, Points), Failure> {
         let mut points = Points::new(Fields::ALL);
-        let request = Request {
+        let request = Reconstruction {
             recording: &Source::open(&self.log(), None).unwrap(),
             tilt: TiltSource::Log,
             options: lidar::Options::default(),
@@ -403,7 +403,7 @@ impl Captured {
 
     fn file(&self, name: &str, tilt: TiltSource) -> PathBuf {
         let path = self.folder.path().join(name);
-        let request = Request {
+        let request = Reconstruction {
             recording: &Source::open(&self.log(), None).unwrap(),
             tilt,
             options: lidar::Options::default(),

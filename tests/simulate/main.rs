@@ -12,7 +12,7 @@ use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
 use engine::reconstruct::replay;
-use engine::reconstruct::report::Scan;
+use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
 use scanner::TiltSource;
 use sim::scene_file::Scene;
@@ -132,9 +132,9 @@ impl Simulated {
 }
 
 /// The program's report and the cloud of a log.
-fn replayed(log: &Path, tilt: TiltSource) -> (Scan, Points) {
+fn replayed(log: &Path, tilt: TiltSource) -> (ScanReport, Points) {
     let mut points = Points::new(Fields::ALL);
-    let request = replay::Request {
+    let request = replay::Reconstruction {
         recording: &Source::open(log, None).unwrap(),
         tilt,
         options: lidar::Options::default(),

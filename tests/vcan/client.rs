@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use drive::{Client, Command, Listener, Observation, Outcome, ShaftSample};
 use engine::capture::moves::{self as motion, SweepRequest};
-use engine::config::Axis;
+use engine::config::AxisSettings;
 use engine::devices::drive_port::BusLine;
 use engine::devices::drive_session::Session;
 use engine::devices::profile as devices;
@@ -57,9 +57,9 @@ impl<W: std::io::Write> Heard<W> {
 pub fn sweep(out: &Path) {
     let onlooker = Onlooker::start(&out.join(CANDUMP_LOG));
     // With the brake of the checkout's own configuration.
-    let mut axis = devices::axis(&Axis {
+    let mut axis = devices::axis(&AxisSettings {
         brake_output: Some(1),
-        ..Axis::default()
+        ..AxisSettings::default()
     })
     .unwrap();
     // An emulated machine on a busy one may stand still for longer than a drive may be silent; that is tested in virtual time.

@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
-use engine::config::Axis;
+use engine::config::AxisSettings;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
 use engine::devices::simulated_drive::{self as software_drive, Interface, SoftwareDriveError};
@@ -149,7 +149,7 @@ impl SoftwareDrive {
     fn start() -> Self {
         let stop = Arc::new(AtomicBool::new(false));
         let stopping = Arc::clone(&stop);
-        let node = simulated::node(&devices::axis(&Axis::default()).unwrap());
+        let node = simulated::node(&devices::axis(&AxisSettings::default()).unwrap());
         let interface = Interface::Can(CanServer::new(), SocketCan::open(BUS).unwrap());
         let thread = std::thread::spawn(move || software_drive::run(node, interface, &stopping));
         Self { stop, thread }

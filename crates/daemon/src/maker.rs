@@ -26,8 +26,8 @@ use engine::capture::run as job;
 use engine::failure::{Failure, Kind};
 use engine::output::{Buffered, Target, file_failure};
 use engine::reconstruct::replay::TimeReference;
-use engine::reconstruct::replay::{self, Request};
-use engine::reconstruct::report::Scan;
+use engine::reconstruct::replay::{self, Reconstruction};
+use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
 
 /// How often it is looked whether there is room again.
@@ -209,13 +209,13 @@ fn draw(cloud: &Path, to: &Path) -> Result<(), Failure> {
     file.commit().map_err(|error| file_failure(&error))
 }
 
-fn cloud(shared: &Shared, making: &Making, room: &Arc<Room>) -> Result<Scan, Failure> {
+fn cloud(shared: &Shared, making: &Making, room: &Arc<Room>) -> Result<ScanReport, Failure> {
     let target = Target::file(&shared.cloud(&making.id), true, |file| {
         let file = Buffered::new(Roomy::new(file, Arc::clone(room)));
         Format::Ply.writer(file, Fields::FILE)
     })?;
     let source = Source::open(&shared.log(&making.id), None)?;
-    let request = Request {
+    let request = Reconstruction {
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),

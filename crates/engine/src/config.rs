@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use scanner::config::{LidarConfig, MountConfig};
 use serde::Deserialize;
 
-pub use axis::{Axis, Homing, LimitSwitches};
+pub use axis::{AxisSettings, HomingSettings, LimitSwitchSettings};
 pub use device::{Device, DeviceKind, Devices};
 
 use crate::config::daemon::DaemonConfig;
@@ -31,7 +31,7 @@ pub struct Config {
     /// Accuracy of the lidar; simulated devices state their own.
     pub lidar: LidarConfig,
     /// The tilt axis.
-    pub axis: Axis,
+    pub axis: AxisSettings,
     /// The daemon.
     pub daemon: DaemonConfig,
 }

@@ -124,8 +124,8 @@ pub struct Replay {
     #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1")]
     pub realtime: Option<f64>,
     /// Clock of the point times: the recording host's, or UTC from the lidar's satellite receiver
-    #[arg(long, value_enum, default_value_t = TimeReference::Host)]
-    pub time: TimeReference,
+    #[arg(long, value_enum, default_value_t = TimeArgument::Host)]
+    pub time: TimeArgument,
     /// Make one cloud per revolution, cut at this azimuth; -o NAME.ply gives NAME-00000.ply and so
     /// on, NAME.mcap one file
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = azimuth)]
@@ -223,7 +223,7 @@ pub struct Lidar {
 
 /// Clock of the point times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum TimeReference {
+pub enum TimeArgument {
     /// The recording host's clock
     #[default]
     Host,
@@ -254,11 +254,11 @@ pub enum Equal {
     Twice,
 }
 
-impl From<TimeReference> for replay::TimeReference {
-    fn from(time: TimeReference) -> Self {
+impl From<TimeArgument> for replay::TimeReference {
+    fn from(time: TimeArgument) -> Self {
         match time {
-            TimeReference::Host => Self::Host,
-            TimeReference::Utc => Self::Utc,
+            TimeArgument::Host => Self::Host,
+            TimeArgument::Utc => Self::Utc,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
-use engine::reconstruct::report::{Contents, Reception, Scan, SensorReport};
+use engine::reconstruct::report::{Contents, Reception, ScanReport, SensorReport};
 
 /// Label and value of a table row.
 type Row = (&'static str, String);
@@ -88,7 +88,7 @@ fn warning_rows(contents: &Contents) -> impl Iterator<Item = Row> + '_ {
         .map(|warning| ("warning", warning.clone()))
 }
 
-fn cloud_line(scan: &Scan) -> String {
+fn cloud_line(scan: &ScanReport) -> String {
     match scan.clouds {
         None => scan.output.clone(),
         Some(clouds) if scan.output.ends_with(".mcap") => {
@@ -100,7 +100,7 @@ fn cloud_line(scan: &Scan) -> String {
 
 /// The report on a scan as a table.
 #[must_use]
-pub fn scan_table(scan: &Scan) -> String {
+pub fn scan_table(scan: &ScanReport) -> String {
     let mut rows = contents_rows(&scan.contents);
     for sweep in &scan.sweeps {
         rows.push((

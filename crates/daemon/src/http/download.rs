@@ -28,7 +28,7 @@ use crate::scans::{LOG, THUMBNAIL};
 use engine::failure::{Failure, Kind};
 use engine::output::Buffered;
 use engine::reconstruct::replay::TimeReference;
-use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 
 /// Bytes that are read at once.
@@ -145,7 +145,7 @@ fn make(
         .help("free some space on that disk")
     };
     let source = Source::open(log, None)?;
-    let request = Request {
+    let request = Reconstruction {
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),

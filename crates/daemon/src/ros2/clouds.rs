@@ -18,7 +18,7 @@ use engine::config::ros2::Ros2;
 use engine::failure::Failure;
 use engine::output::sink_failure;
 use engine::reconstruct::replay::TimeReference;
-use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 
 /// What failures call the place that clouds go to.
@@ -65,7 +65,7 @@ fn send(
         .record(id)
         .and_then(|record| record.asked.clone());
     let source = Source::open(&shared.log(id), None)?;
-    let request = Request {
+    let request = Reconstruction {
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),

@@ -5,7 +5,7 @@
 use std::time::{Duration, Instant};
 
 use crate::failure::{Failure, Kind};
-use crate::reconstruct::report::Scan;
+use crate::reconstruct::report::ScanReport;
 
 /// A lidar that turns sends a packet every 1.3 ms. After so long without one the sweep is stopped: what is not recorded is not worth making.
 pub const LIDAR_SILENCE: Duration = Duration::from_secs(1);
@@ -60,7 +60,7 @@ impl Watch {
 
 /// What a scan lacks that nobody has complained of: packets that never came, an end of the log that never reached the disk.
 #[must_use]
-pub fn missing(scan: &Scan) -> Option<Failure> {
+pub fn missing(scan: &ScanReport) -> Option<Failure> {
     let lost = scan.contents.lost_packets;
     let mut said = Vec::new();
     if let Some(truncated) = &scan.contents.truncated {

@@ -144,7 +144,7 @@ mod tests {
     }
 
     fn axis() -> AxisConfig {
-        crate::devices::profile::axis(&crate::config::Axis::default()).unwrap()
+        crate::devices::profile::axis(&crate::config::AxisSettings::default()).unwrap()
     }
 
     fn ways(request: SweepRequest, home: f64) -> Vec<(f64, f64, bool)> {

@@ -26,8 +26,8 @@ use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::listen_config;
 use crate::failure::{Failure, Kind};
 use crate::output::Target;
-use crate::reconstruct::replay::{self, Request, TimeReference};
-use crate::reconstruct::report::{Reception, Scan};
+use crate::reconstruct::replay::{self, Reconstruction, TimeReference};
+use crate::reconstruct::report::{Reception, ScanReport};
 use crate::reconstruct::source::Source;
 
 /// Begins the line that says why there is no cloud of what else went wrong.
@@ -240,9 +240,9 @@ pub fn cloud(
     lost_records: u64,
     interrupt: &AtomicBool,
     target: Target,
-) -> Result<Scan, Failure> {
+) -> Result<ScanReport, Failure> {
     let source = Source::open(&setup.log, None)?;
-    let request = Request {
+    let request = Reconstruction {
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
@@ -321,10 +321,10 @@ impl Ended {
 /// # Errors
 /// Where there is no cloud.
 pub fn conclude(
-    made: Result<Scan, Failure>,
+    made: Result<ScanReport, Failure>,
     outcome: Outcome,
     (cloud, log): (&Path, &Path),
-) -> Result<(Scan, Option<Failure>), Failure> {
+) -> Result<(ScanReport, Option<Failure>), Failure> {
     let saved = match &made {
         Ok(_) => format!(
             "what was captured is saved: the cloud {} and the log {}",
@@ -347,7 +347,7 @@ pub fn conclude(
     });
     match (made, failure) {
         (Ok(scan), failure) => {
-            let scan = Scan {
+            let scan = ScanReport {
                 reception: outcome.reception,
                 ..scan
             };

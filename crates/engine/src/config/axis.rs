@@ -8,7 +8,7 @@ use super::{between, positive};
 /// The tilt axis: encoder, gear, limits.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Axis {
+pub struct AxisSettings {
     /// Node id of the drive.
     pub node: u8,
     /// Lines of the encoder on the motor shaft.
@@ -29,15 +29,15 @@ pub struct Axis {
     /// factory setting assigns no output.
     pub brake_output: Option<u8>,
     /// Limit switches; the factory's inputs without the table.
-    pub limit_switches: LimitSwitches,
-    /// Homing.
-    pub homing: Homing,
+    pub limit_switches: LimitSwitchSettings,
+    /// HomingSettings.
+    pub homing: HomingSettings,
 }
 
 /// Digital inputs of the limit switches (1..=9). A switch omitted from the table does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct LimitSwitches {
+pub struct LimitSwitchSettings {
     /// Input of the lower limit switch.
     #[serde(default)]
     pub negative: Option<u8>,
@@ -49,11 +49,11 @@ pub struct LimitSwitches {
     pub normally_closed: bool,
 }
 
-/// Homing of the axis.
+/// HomingSettings of the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Homing {
-    /// Homing method (object 6098).
+pub struct HomingSettings {
+    /// HomingSettings method (object 6098).
     pub method: i8,
     /// Tilt angle of the position that homing finds, degrees.
     pub at_deg: f64,
@@ -65,7 +65,7 @@ pub struct Homing {
     pub edge_speed_deg_s: f64,
 }
 
-impl Default for Axis {
+impl Default for AxisSettings {
     fn default() -> Self {
         let scan = AxisConfig::default();
         Self {
@@ -78,13 +78,13 @@ impl Default for Axis {
             max_accel_deg_s2: 10_000.0,
             quick_stop_deg_s2: 500.0,
             brake_output: None,
-            limit_switches: LimitSwitches::default(),
-            homing: Homing::default(),
+            limit_switches: LimitSwitchSettings::default(),
+            homing: HomingSettings::default(),
         }
     }
 }
 
-impl Default for LimitSwitches {
+impl Default for LimitSwitchSettings {
     /// Factory setting: inputs 6 and 5, high when pressed (objects 2070, 2071).
     fn default() -> Self {
         Self {
@@ -95,7 +95,7 @@ impl Default for LimitSwitches {
     }
 }
 
-impl Default for Homing {
+impl Default for HomingSettings {
     fn default() -> Self {
         Self {
             method: 18,
@@ -107,7 +107,7 @@ impl Default for Homing {
     }
 }
 
-impl Axis {
+impl AxisSettings {
     /// The part stored in a log.
     #[must_use]
     pub fn scan(&self) -> AxisConfig {

@@ -5,9 +5,9 @@ fn the_checkouts_own_file_says_sim_and_nothing_but_defaults() {
     let text = include_str!("../../../../velomotion.toml");
     let config: Config = toml::from_str(text).unwrap();
     assert_eq!(config.device.default.as_deref(), Some("sim"));
-    let braked = Axis {
+    let braked = AxisSettings {
         brake_output: Some(1),
-        ..Axis::default()
+        ..AxisSettings::default()
     };
     assert_eq!(config.axis, braked);
     assert_eq!(config.mount, MountConfig::default());
@@ -74,8 +74,8 @@ fn a_brake_and_a_switch_that_are_not_named_are_not_there() {
     assert_eq!(axis("").brake_output, None);
     assert_eq!(axis("[axis]\nnode = 2").brake_output, None);
     let of = |text| axis(text).limit_switches;
-    assert_eq!(of("[axis]\nnode = 2"), LimitSwitches::default());
-    let one = LimitSwitches {
+    assert_eq!(of("[axis]\nnode = 2"), LimitSwitchSettings::default());
+    let one = LimitSwitchSettings {
         negative: Some(3),
         positive: None,
         normally_closed: true,

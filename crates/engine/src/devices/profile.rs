@@ -3,7 +3,7 @@
 use drive::config::{Brake, Homing, LimitSwitches, Limits, Timing};
 use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
 
-use crate::config::{Axis, Config, Device, DeviceKind};
+use crate::config::{AxisSettings, Config, Device, DeviceKind};
 use crate::failure::{Failure, Kind};
 
 /// Acceleration while homing, of an axis that may take so much.
@@ -43,7 +43,7 @@ pub fn choose(config: &Config, asked: Option<&str>) -> Result<(String, Device), 
 ///
 /// # Errors
 /// [`Kind::BadInput`] where the configuration describes no axis that can be.
-pub fn axis(axis: &Axis) -> Result<drive::AxisConfig, Failure> {
+pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
     let wrong = |error: &dyn std::fmt::Display| {
         Failure::new(
             Kind::BadInput,
@@ -106,26 +106,26 @@ mod tests {
 
     #[test]
     fn a_gentle_axis_homes_gently() {
-        let gentle = Axis {
+        let gentle = AxisSettings {
             max_accel_deg_s2: 100.0,
-            ..Axis::default()
+            ..AxisSettings::default()
         };
         let config = axis(&gentle).unwrap();
         assert_eq!(config.homing.acceleration, config.max_acceleration);
-        let strong = axis(&Axis::default()).unwrap();
+        let strong = axis(&AxisSettings::default()).unwrap();
         assert_eq!(strong.homing.acceleration, HOMING_ACCELERATION);
     }
 
     #[test]
     fn limit_switches_reach_the_client_as_configured() {
-        let switches = config::LimitSwitches {
+        let switches = config::LimitSwitchSettings {
             negative: None,
             positive: Some(2),
             normally_closed: true,
         };
-        let config = axis(&Axis {
+        let config = axis(&AxisSettings {
             limit_switches: switches,
-            ..Axis::default()
+            ..AxisSettings::default()
         });
         let expected = LimitSwitches {
             negative: None,

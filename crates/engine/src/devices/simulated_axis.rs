@@ -81,7 +81,7 @@ impl Places {
         let degree = qc(DEGREE);
         let (min, max) = (qc(axis.limits.min), qc(axis.limits.max));
         let middle = qc(Degrees(0.5 * (axis.limits.min.0 + axis.limits.max.0)));
-        // Homing finds its reference at its home position less the way it goes on from there.
+        // HomingSettings finds its reference at its home position less the way it goes on from there.
         let home_position = axis.homing.home_position;
         let reference = qc(Degrees(home_position.0 - axis.homing.offset.0));
         let method = axis.homing.method;
@@ -135,7 +135,7 @@ mod tests {
     use protocol::epos2::objects::{self, Object, Scalar};
 
     use super::*;
-    use crate::config::{Axis, Homing};
+    use crate::config::{AxisSettings, HomingSettings};
     use crate::devices::profile as devices;
 
     fn set<T: Scalar>(node: &mut Node, object: Object<T>, value: T) {
@@ -211,14 +211,14 @@ mod tests {
             (-4, -48.0, -45.0),
         ];
         for (method, at_deg, to_deg) in cases {
-            let axis = devices::axis(&Axis {
-                homing: Homing {
+            let axis = devices::axis(&AxisSettings {
+                homing: HomingSettings {
                     method,
                     at_deg,
                     to_deg,
-                    ..Homing::default()
+                    ..HomingSettings::default()
                 },
-                ..Axis::default()
+                ..AxisSettings::default()
             })
             .unwrap();
             let node = homed(&axis);

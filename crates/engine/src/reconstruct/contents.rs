@@ -9,7 +9,7 @@ use scanner::{ScanConfig, Survey};
 
 use super::failures::scan_failure;
 use crate::failure::Failure;
-use crate::reconstruct::report::{Contents, Gps, Packets, SensorReport, Tilt};
+use crate::reconstruct::report::{Contents, Gps, PacketCounts, SensorReport, TiltReport};
 use crate::reconstruct::source::{self as recordings, Pass, Source};
 
 /// Reads the whole recording and lists what it holds, with the error of a file that ends early.
@@ -39,7 +39,7 @@ pub fn read_contents(
 struct SensorSurveys {
     options: Options,
     sensors: Vec<SensorSurvey>,
-    /// Packets that belong to no sensor.
+    /// PacketCounts that belong to no sensor.
     unassigned: Decoder,
 }
 
@@ -53,7 +53,7 @@ struct SensorSurvey {
     pps: Option<Pps>,
 }
 
-/// Sensors with statistics of their own. Packets of further sensors are only counted.
+/// Sensors with statistics of their own. PacketCounts of further sensors are only counted.
 const MAX_SENSORS: usize = 64;
 
 impl SensorSurveys {
@@ -256,14 +256,14 @@ pub fn contents(
     steps: &[ClockStep],
 ) -> Contents {
     let counts = &pass.counts;
-    let tilt = drive.map(|(link, samples)| Tilt {
+    let tilt = drive.map(|(link, samples)| TiltReport {
         samples,
         transport: transport(link).to_owned(),
     });
     Contents {
         model: stats.model.map(|model| model.name.to_owned()),
         return_mode: stats.return_mode.map(return_mode_name),
-        packets: Packets {
+        packets: PacketCounts {
             data: stats.data,
             position: stats.position,
             malformed: stats.malformed + counts.malformed,

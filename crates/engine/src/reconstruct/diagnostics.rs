@@ -2,11 +2,11 @@
 
 use cloud::{Diagnostic, DiagnosticLevel};
 
-use crate::reconstruct::report::{Contents, Scan, Sync};
+use crate::reconstruct::report::{Contents, ScanReport, SyncReport};
 
 /// Checks of a scan: devices, losses, clock, tilt, cloud.
 #[must_use]
-pub fn of(scan: &Scan) -> Vec<Diagnostic> {
+pub fn of(scan: &ScanReport) -> Vec<Diagnostic> {
     vec![
         devices(&scan.contents),
         lidar(scan),
@@ -57,7 +57,7 @@ fn devices(contents: &Contents) -> Diagnostic {
     check("devices", doubt, "real devices", values)
 }
 
-fn lidar(scan: &Scan) -> Diagnostic {
+fn lidar(scan: &ScanReport) -> Diagnostic {
     let contents = &scan.contents;
     let lost = contents.lost_packets.saturating_add(scan.lost_records);
     let doubt = (lost > 0).then(|| format!("{lost} packets were lost"));
@@ -76,7 +76,7 @@ fn lidar(scan: &Scan) -> Diagnostic {
     check("lidar", doubt, "nothing was lost", values)
 }
 
-fn clock(sync: &Sync) -> Diagnostic {
+fn clock(sync: &SyncReport) -> Diagnostic {
     let steps = sync.steps.len();
     let doubt = (steps > 0).then(|| format!("{steps} clock steps were found and corrected"));
     let values = Values::new()
@@ -89,7 +89,7 @@ fn clock(sync: &Sync) -> Diagnostic {
     check("clock", doubt, &fine, values)
 }
 
-fn tilt(scan: &Scan) -> Diagnostic {
+fn tilt(scan: &ScanReport) -> Diagnostic {
     let sync = &scan.sync;
     let tilt = scan.contents.tilt.as_ref();
     let values = Values::new()
@@ -106,7 +106,7 @@ fn tilt(scan: &Scan) -> Diagnostic {
     check("tilt", None, &fine, values)
 }
 
-fn cloud(scan: &Scan) -> Diagnostic {
+fn cloud(scan: &ScanReport) -> Diagnostic {
     let contents = &scan.contents;
     let mut values = Values::new()
         .with("points", scan.points)

@@ -24,7 +24,7 @@ use super::warnings::{angle_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
 use crate::reconstruct::diagnostics as checks;
-use crate::reconstruct::report::{self, Scan, StepReport, Sync, ToleranceReport};
+use crate::reconstruct::report::{self, ScanReport, StepReport, SyncReport, ToleranceReport};
 use crate::reconstruct::source::{Pass, Source};
 use crate::reconstruct::utc::{InUtc, UtcSurvey};
 
@@ -39,7 +39,7 @@ pub enum TimeReference {
 }
 
 /// A reconstruction.
-pub struct Request<'a> {
+pub struct Reconstruction<'a> {
     /// Log or plain recording.
     pub recording: &'a Source,
     /// Source of the tilt angles.
@@ -65,7 +65,7 @@ pub struct Request<'a> {
 /// # Errors
 /// [`Kind::BadInput`] for an unsuitable recording, [`Kind::Incomplete`] if the cloud cannot be
 /// written.
-pub fn make(request: &Request<'_>, mut target: Target) -> Result<Scan, Failure> {
+pub fn make(request: &Reconstruction<'_>, mut target: Target) -> Result<ScanReport, Failure> {
     let output = target.path().to_owned();
     let written = match request.truth {
         None => scan(request, target.sink(), &output)?,
@@ -94,7 +94,7 @@ struct FirstPass {
 }
 
 /// First pass: clocks, angles and sweeps.
-fn survey(request: &Request<'_>) -> Result<FirstPass, Failure> {
+fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
     let source = request.recording;
     let config = source.config()?;
     let cannot_scan = |error: ScanError| scan_failure(source.path(), &error);
@@ -128,7 +128,7 @@ fn survey(request: &Request<'_>) -> Result<FirstPass, Failure> {
     })
 }
 
-fn check_interrupt(request: &Request<'_>) -> Result<(), Failure> {
+fn check_interrupt(request: &Reconstruction<'_>) -> Result<(), Failure> {
     match request.interrupt.load(Ordering::Relaxed) {
         true => Err(interrupted(request.recording.path())),
         false => Ok(()),
@@ -139,7 +139,11 @@ fn check_interrupt(request: &Request<'_>) -> Result<(), Failure> {
 ///
 /// # Errors
 /// As [`make`].
-pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result<Scan, Failure> {
+pub fn scan(
+    request: &Reconstruction<'_>,
+    sink: &mut dyn Sink,
+    output: &Path,
+) -> Result<ScanReport, Failure> {
     let first_pass = survey(request)?;
     let Some(utc) = first_pass.utc.clone() else {
         let (placed, stats) = place(request, &first_pass, sink, output)?;
@@ -161,7 +165,7 @@ pub fn scan(request: &Request<'_>, sink: &mut dyn Sink, output: &Path) -> Result
 }
 
 /// Sends the summary of a scan to a sink.
-fn send_summary(sink: &mut dyn Sink, scan: &Scan, output: &Path) -> Result<(), Failure> {
+fn send_summary(sink: &mut dyn Sink, scan: &ScanReport, output: &Path) -> Result<(), Failure> {
     sink.diagnostics(&checks::of(scan))
         .map_err(|error| sink_failure(output, &error))
 }
@@ -178,7 +182,7 @@ pub(crate) fn tilt_track(alignment: &Alignment) -> TiltTrack {
     }
 }
 
-fn utc_never_locked(request: &Request<'_>) -> Failure {
+fn utc_never_locked(request: &Reconstruction<'_>) -> Failure {
     Failure::new(
         Kind::BadInput,
         format!(
@@ -190,7 +194,7 @@ fn utc_never_locked(request: &Request<'_>) -> Failure {
 }
 
 /// Counts points without UTC as omitted, with a warning.
-fn omit_without_utc(scan: &mut Scan, without_utc: u64) {
+fn omit_without_utc(scan: &mut ScanReport, without_utc: u64) {
     if without_utc > 0 {
         scan.left_out += without_utc;
         scan.contents.warnings.push(format!(
@@ -201,7 +205,7 @@ fn omit_without_utc(scan: &mut Scan, without_utc: u64) {
 
 /// Second pass: places every return.
 fn place(
-    request: &Request<'_>,
+    request: &Reconstruction<'_>,
     first_pass: &FirstPass,
     sink: &mut dyn Sink,
     output: &Path,
@@ -229,7 +233,7 @@ fn place(
 ///
 /// # Errors
 /// As [`make`], and [`Kind::Usage`] for invalid frame settings.
-pub fn frames(request: &Request<'_>, plan: &FramePlan) -> Result<Scan, Failure> {
+pub fn frames(request: &Reconstruction<'_>, plan: &FramePlan) -> Result<ScanReport, Failure> {
     let first_pass = survey(request)?;
     let metadata = metadata(&first_pass.config, request);
     let mut pace = pacer(request.pace)?;
@@ -260,12 +264,12 @@ pub fn frames(request: &Request<'_>, plan: &FramePlan) -> Result<Scan, Failure> 
 
 /// Report on a scan.
 fn report(
-    request: &Request<'_>,
+    request: &Reconstruction<'_>,
     first_pass: &FirstPass,
     placed: PlacementCounts,
     stats: &Stats,
     output: &Path,
-) -> Result<Scan, Failure> {
+) -> Result<ScanReport, Failure> {
     let (alignment, path) = (&first_pass.alignment, request.recording.path());
     if placed.points == 0 && placed.outside > 0 {
         return Err(Failure::new(
@@ -297,7 +301,7 @@ fn report(
     contents
         .warnings
         .extend(warnings.chain(incomplete.iter().cloned()));
-    Ok(Scan {
+    Ok(ScanReport {
         contents,
         points: placed.points,
         left_out: placed.outside,
@@ -368,8 +372,8 @@ fn interrupted(path: &Path) -> Failure {
     ))
 }
 
-fn sync(alignment: &Alignment) -> Sync {
-    Sync {
+fn sync(alignment: &Alignment) -> SyncReport {
+    SyncReport {
         clock_method: "lower envelope",
         clock_residual_us: alignment.clock.residual().as_micros_f64(),
         clock_bound_us: alignment.clock.bound().as_micros_f64(),
@@ -384,7 +388,7 @@ fn sync(alignment: &Alignment) -> Sync {
 
 /// Metadata of the cloud. Independent of file names and of the date, so that a log always gives the
 /// same bytes.
-fn metadata(config: &ScanConfig, request: &Request<'_>) -> Metadata {
+fn metadata(config: &ScanConfig, request: &Reconstruction<'_>) -> Metadata {
     let mut comments = Vec::new();
     if request.tilt == TiltSource::None {
         comments.push("not tilted: the sensor's own frame".to_owned());

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Packet counts by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Packets {
+pub struct PacketCounts {
     /// Decoded lidar data packets.
     pub data: u64,
     /// Position packets.
@@ -19,7 +19,7 @@ pub struct Packets {
 
 /// The drive part of a log.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Tilt {
+pub struct TiltReport {
     /// Shaft samples.
     pub samples: u64,
     /// `usb`, `rs232` or `can`.
@@ -84,7 +84,7 @@ pub struct Contents {
     /// `strongest`, `last` or `dual`.
     pub return_mode: Option<String>,
     /// Packet counts.
-    pub packets: Packets,
+    pub packets: PacketCounts,
     /// Channels with a range.
     pub returns: u64,
     /// Data packets missing by device time.
@@ -101,7 +101,7 @@ pub struct Contents {
     pub sensors: Vec<SensorReport>,
     /// Drive samples of a log.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub tilt: Option<Tilt>,
+    pub tilt: Option<TiltReport>,
     /// Where and why the file ends early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truncated: Option<String>,
@@ -202,7 +202,7 @@ impl ToleranceReport {
 
 /// Synchronisation of clocks and angles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Sync {
+pub struct SyncReport {
     /// Method of the clock model.
     pub clock_method: &'static str,
     /// Median delay of a packet above the clock's envelope.
@@ -224,24 +224,24 @@ pub struct Sync {
     pub angle_bound_deg: Option<f64>,
 }
 
-/// Packets received and lost during a capture.
+/// PacketCounts received and lost during a capture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reception {
-    /// Packets received, position packets included.
+    /// PacketCounts received, position packets included.
     pub packets: u64,
-    /// Packets dropped by the kernel because this program was too slow.
+    /// PacketCounts dropped by the kernel because this program was too slow.
     pub dropped_by_kernel: u64,
     /// Records of either device dropped because the disk was too slow or the log cannot hold them.
     pub dropped_by_log: u64,
     /// Received packets without a kernel timestamp.
     pub without_kernel_time: u64,
-    /// Packets of other senders than the configured lidar; not in `packets`.
+    /// PacketCounts of other senders than the configured lidar; not in `packets`.
     pub from_others: u64,
 }
 
 /// Errors of a cloud against the simulator's truth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Truth {
+pub struct TruthErrors {
     /// Root mean square of the point errors.
     pub rms_m: f64,
     /// Largest error.
@@ -250,7 +250,7 @@ pub struct Truth {
 
 /// Report of `replay` and `capture`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Scan {
+pub struct ScanReport {
     /// Contents of the log.
     #[serde(flatten)]
     pub contents: Contents,
@@ -264,7 +264,7 @@ pub struct Scan {
     /// Sweeps.
     pub sweeps: Vec<SweepReport>,
     /// Synchronisation of clocks and angles.
-    pub sync: Sync,
+    pub sync: SyncReport,
     /// Path of the cloud.
     pub output: String,
     /// Path of the log.
@@ -277,12 +277,12 @@ pub struct Scan {
     /// Planned sweeps that are incomplete; also in the warnings.
     #[serde(skip)]
     pub incomplete_sweeps: Vec<String>,
-    /// Packets received during a capture.
+    /// PacketCounts received during a capture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reception: Option<Reception>,
     /// Errors against the simulator's truth; absent for real scans.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub truth: Option<Truth>,
+    pub truth: Option<TruthErrors>,
 }
 
 impl SweepReport {
@@ -301,11 +301,11 @@ impl SweepReport {
     }
 }
 
-impl Scan {
+impl ScanReport {
     /// Adds the comparison with the truth.
     #[must_use]
     pub fn with_truth(mut self, report: analysis::truth::TruthReport) -> Self {
-        self.truth = Some(Truth {
+        self.truth = Some(TruthErrors {
             rms_m: report.rms_m,
             worst_m: report.worst_m,
         });

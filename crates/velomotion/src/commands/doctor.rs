@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::CommandOutput;
 use crate::cli::Common;
-use engine::config::{self, Axis, Config, DeviceKind};
+use engine::config::{self, AxisSettings, Config, DeviceKind};
 use engine::devices::profile as devices;
 use engine::failure::Failure;
 
@@ -191,7 +191,7 @@ fn can_profile(what: String, name: &str, interfaces: &[CanInterface]) -> Finding
     ))
 }
 
-fn axis(configured: &Axis) -> Finding {
+fn axis(configured: &AxisSettings) -> Finding {
     match devices::axis(configured) {
         Ok(_) => finding("[axis]", Verdict::Ok, "axis configuration is valid"),
         Err(failure) => finding("[axis]", Verdict::Problem, failure.to_string()).todo(
@@ -312,11 +312,11 @@ mod tests {
 
     #[test]
     fn an_axis_that_cannot_be_is_a_problem() {
-        let wrong = Axis {
+        let wrong = AxisSettings {
             min_deg: 10.0,
-            ..Axis::default()
+            ..AxisSettings::default()
         };
         assert_eq!(axis(&wrong).verdict, Verdict::Problem);
-        assert_eq!(axis(&Axis::default()).verdict, Verdict::Ok);
+        assert_eq!(axis(&AxisSettings::default()).verdict, Verdict::Ok);
     }
 }

@@ -82,7 +82,7 @@ impl CommandOutput {
     /// Report on a scan.
     #[must_use]
     pub fn scan(
-        scan: &engine::reconstruct::report::Scan,
+        scan: &engine::reconstruct::report::ScanReport,
         failure: Option<Failure>,
         stdout_taken: bool,
     ) -> Self {

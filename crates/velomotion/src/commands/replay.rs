@@ -5,7 +5,7 @@ use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
 use engine::reconstruct::decoder_options::decoder_options;
 use engine::reconstruct::frames::FramePlan;
-use engine::reconstruct::replay::{self, Request};
+use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 use engine::reconstruct::tilt_table::tilt_source;
 use scanner::{TableTime, TiltSource};
@@ -24,7 +24,7 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
     let interrupt = signals::interrupt_flag()?;
     // Check the input before an output is opened.
     let source = Source::open(&arguments.input, arguments.lidar.sensor)?;
-    let request = Request {
+    let request = Reconstruction {
         recording: &source,
         tilt: tilt_source(&arguments.tilt)?,
         options: decoder_options(&arguments.lidar.request(), &source)?,

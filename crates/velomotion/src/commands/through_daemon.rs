@@ -70,11 +70,12 @@ pub fn capture(
     interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
     let stdout = target.is_stdout();
-    let made =
-        job::cloud(setup, None, scan.lost_records, interrupt, target).map(|made| report::Scan {
+    let made = job::cloud(setup, None, scan.lost_records, interrupt, target).map(|made| {
+        report::ScanReport {
             truth: truth(&scan),
             ..made
-        });
+        }
+    });
     if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
         older_log.replaced();
     }
@@ -88,7 +89,7 @@ pub fn capture(
 }
 
 /// What the daemon's simulator knows of the cloud.
-fn truth(scan: &WholeView) -> Option<report::Truth> {
+fn truth(scan: &WholeView) -> Option<report::TruthErrors> {
     let truth = scan.report.as_ref()?.get("truth")?;
     serde_json::from_value(truth.clone()).ok()
 }

@@ -257,7 +257,7 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
         tilted = matches!(record.wire, Wire::Drive { .. });
         !tilted
     })?;
-    let request = replay::Request {
+    let request = replay::Reconstruction {
         recording: &source,
         tilt: if tilted {
             TiltSource::Log

@@ -9,7 +9,7 @@ use protocol::vlp16::models::ALL;
 use serde::Serialize;
 use sim::patterns::{Pattern, SPHERE_M, View};
 
-use engine::reconstruct::report::Scan;
+use engine::reconstruct::report::ScanReport;
 
 /// What a scan can see, and by what it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -46,7 +46,7 @@ impl Seen {
 
     /// Of a log: `None` where its lidar's model is not known, or there are several lidars.
     #[must_use]
-    pub fn of_log(scan: &Scan, track: &TiltTrack, places: &[DVec3]) -> Option<Self> {
+    pub fn of_log(scan: &ScanReport, track: &TiltTrack, places: &[DVec3]) -> Option<Self> {
         if scan.contents.sensors.len() > 1 {
             return None;
         }
