@@ -1,9 +1,6 @@
-//! The fast path against the definition on real recordings: the same points in the same order, a
-//! nanometre and a nanosecond apart at most, for every model, return mode, field of view, and with
+//! The fast path against the definition on real recordings: the same points in the same order, at
+//! most a nanometre and a nanosecond apart, for every model, return mode, field of view, and with
 //! corrections.
-//!
-//! The recordings are looked for as the benches do it; where they are absent each test says that it
-//! was skipped.
 #![expect(clippy::unwrap_used, reason = "a test of recordings")]
 
 #[path = "../benches/common/mod.rs"]
@@ -84,7 +81,17 @@ fn assert_same(name: &str, recording: &Recording, alignment: &Alignment, options
 
 #[test]
 fn every_recording_becomes_the_points_of_the_definition() {
-    for recording in RECORDINGS.into_iter().filter_map(Recording::read) {
+    assert_placed_as_defined(Recording::read_cut);
+}
+
+#[test]
+#[ignore = "needs the whole recordings"]
+fn every_whole_recording_becomes_the_points_of_the_definition() {
+    assert_placed_as_defined(Recording::read_whole);
+}
+
+fn assert_placed_as_defined(read: impl Fn(&'static str) -> Recording) {
+    for recording in RECORDINGS.into_iter().map(read) {
         let (tilting, at_rest) = (recording.tilting(), recording.at_rest());
         let default = Options::default();
         let every = Options {
@@ -98,11 +105,21 @@ fn every_recording_becomes_the_points_of_the_definition() {
     }
 }
 
-/// Whatever the packets are taken for; and with that model's own table as corrections, moved a
-/// little.
 #[test]
 fn every_model_and_its_corrections_place_as_the_definition_does() {
-    for recording in RECORDINGS.into_iter().filter_map(Recording::read) {
+    assert_models_placed_as_defined(Recording::read_cut);
+}
+
+#[test]
+#[ignore = "needs the whole recordings"]
+fn every_model_and_its_corrections_place_whole_recordings_as_the_definition_does() {
+    assert_models_placed_as_defined(Recording::read_whole);
+}
+
+/// Decodes the packets as every model's, and with that model's own table, changed slightly, as
+/// corrections.
+fn assert_models_placed_as_defined(read: impl Fn(&'static str) -> Recording) {
+    for recording in RECORDINGS.into_iter().map(read) {
         let tilting = recording.tilting();
         for model in protocol::vlp16::models::ALL {
             let told = Options {

@@ -1,7 +1,7 @@
-//! Real recordings in memory, and how a stretch of code is timed.
+//! Real recordings in memory, and the timing of code.
 //!
-//! The recordings are not part of the project: they are looked for in `$VELOMOTION_RECORDINGS`, or
-//! in `shared/recordings` beside the checkout.
+//! Tests take the cuts of `tests/recordings`. Benchmarks take the whole recordings of
+//! `$VELOMOTION_RECORDINGS`, or of `shared/recordings` beside the checkout.
 #![expect(
     clippy::disallowed_methods,
     clippy::unwrap_used,
@@ -9,7 +9,7 @@
 )]
 #![allow(dead_code, reason = "each bench uses a part")]
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use drive::record::{Record, Wire};
@@ -38,26 +38,34 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// `None`, said aloud, where it is absent.
-    pub fn read(name: &'static str) -> Option<Self> {
-        let beside =
+    /// Reads a cut in `tests/recordings`.
+    pub fn read_cut(name: &'static str) -> Self {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/recordings");
+        Self::read(Path::new(folder), name)
+    }
+
+    /// Reads a whole recording.
+    pub fn read_whole(name: &'static str) -> Self {
+        let default =
             || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings");
-        let folder = std::env::var_os("VELOMOTION_RECORDINGS").map_or_else(beside, PathBuf::from);
+        let folder = std::env::var_os("VELOMOTION_RECORDINGS").map_or_else(default, PathBuf::from);
+        Self::read(&folder, name)
+    }
+
+    fn read(folder: &Path, name: &'static str) -> Self {
         let path = folder.join(name);
-        let Ok(bytes) = std::fs::read(&path) else {
-            println!("SKIPPED: no recording at {}", path.display());
-            return None;
-        };
+        let bytes =
+            std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let mut datagrams = datagrams(&bytes);
         if !datagrams.is_sorted_by_key(|(host, _)| *host) {
             println!("{name}: its times go back; they are taken from the sensor's own clock here");
             restamp(&bytes, &mut datagrams);
         }
-        Some(Self {
+        Self {
             name,
             bytes,
             datagrams,
-        })
+        }
     }
 
     pub fn records(&self) -> impl Iterator<Item = Record<'_>> {

@@ -294,25 +294,15 @@ fn ping() -> Vec<u8> {
     file
 }
 
-/// Real recordings lie beside the checkout; `None`, said aloud, where they do not.
-fn recording(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("VELOMOTION_RECORDINGS").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings"),
-        PathBuf::from,
-    );
-    let path = folder.join(name);
-    if path.is_file() {
-        return Some(path.canonicalize().unwrap());
-    }
-    eprintln!("skipped: {} is not there", path.display());
-    None
+/// A cut of a real recording.
+fn recording(name: &str) -> PathBuf {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/recordings");
+    Path::new(folder).join(name).canonicalize().unwrap()
 }
 
 #[test]
 fn a_recording_for_ros_is_a_bag_and_leaves_the_metadata_of_another_alone() {
-    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
-        return;
-    };
+    let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let line = |options: &str| format!("replay {} --tilt none {options}", path.display());
     let metadata = || std::fs::read_to_string(place.path("metadata.yaml")).unwrap();
@@ -333,9 +323,7 @@ fn a_recording_for_ros_is_a_bag_and_leaves_the_metadata_of_another_alone() {
 
 #[test]
 fn a_real_recording_becomes_a_cloud() {
-    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
-        return;
-    };
+    let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let line = format!("replay {} --tilt none -o cloud.csv --json", path.display());
     let output = place.run(&line);
@@ -345,9 +333,9 @@ fn a_real_recording_becomes_a_cloud() {
         String::from_utf8_lossy(&output.stderr)
     );
     let scan = json(&output);
-    assert_eq!(scan["points"], 73_486);
-    assert_eq!(scan["packets"]["data"], 293);
-    assert_eq!(scan["packets"]["position"], 57);
+    assert_eq!(scan["points"], 7_747);
+    assert_eq!(scan["packets"]["data"], 26);
+    assert_eq!(scan["packets"]["position"], 5);
     assert_eq!(scan["lost_packets"], 0);
     assert_eq!(scan["simulated"], false);
     // A plain recording has no tilt of its own: that is said, not guessed.
@@ -360,13 +348,11 @@ fn a_real_recording_becomes_a_cloud() {
 
 #[test]
 fn another_rigs_angles_can_be_attached() {
-    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
-        return;
-    };
+    let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     std::fs::write(
         place.path("angles.csv"),
-        "time_s,angle_deg\n0.0,-10\n0.2,-20\n",
+        "time_s,angle_deg\n0.0,-10\n0.02,-20\n",
     )
     .unwrap();
     let line = format!(
@@ -382,9 +368,9 @@ fn another_rigs_angles_can_be_attached() {
     let scan = json(&output);
     let points = scan["points"].as_u64().unwrap();
     let left_out = scan["left_out"].as_u64().unwrap();
-    // 0.2 s of 0.389 s: never beyond the angles that are known.
-    assert_eq!(points + left_out, 73_486);
-    assert!((30_000..45_000).contains(&points), "{points}");
+    // 0.02 s of 0.0345 s: only points within the time of the angles.
+    assert_eq!(points + left_out, 7_747);
+    assert!((3_500..5_500).contains(&points), "{points}");
     std::fs::write(
         place.path("late.csv"),
         "time_s,angle_deg\n2e9,-10\n2.1e9,-20\n",
