@@ -1,7 +1,6 @@
-//! Other people's programs read what we write.
+//! Programs of other projects read velomotion's files.
 //!
-//! Each test says what it skipped where its program is missing; with `VELOMOTION_FOREIGN=required`, as in CI, that is a failure.
-//! `VELOMOTION_PYTHON` names a python3 that has `requirements.txt` installed.
+//! `VELOMOTION_PYTHON` names a python3 that has the packages of `requirements.txt`; tshark is Debian's.
 
 mod clouds;
 mod ray_casting;
@@ -22,57 +21,36 @@ use serde_json::Value;
 use sim::Attached;
 use velomotion_tests::capture::{Captured, Setting};
 
-/// What the program printed, or `None`, said aloud, where it or one of its modules is not there.
-fn run(mut command: Command, needs: &str) -> Option<String> {
-    match command.output() {
-        Ok(output) if output.status.success() => {
-            Some(String::from_utf8_lossy(&output.stdout).into_owned())
-        }
-        Ok(output) => panic!("{command:?}: {}", String::from_utf8_lossy(&output.stderr)),
-        Err(error) => missing(&format!("{command:?}: {error}; needs {needs}")),
-    }
+/// Runs a program that must succeed, and returns what it printed.
+fn run(mut command: Command) -> String {
+    let output = command
+        .output()
+        .unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {errors}");
+    String::from_utf8(output.stdout).unwrap()
 }
 
-fn missing<T>(why: &str) -> Option<T> {
-    assert!(
-        std::env::var_os("VELOMOTION_FOREIGN").is_none_or(|v| v != "required"),
-        "required here: {why}"
-    );
-    eprintln!("skipped: {why}");
-    None
+/// The Python interpreter of the tests.
+fn python() -> Command {
+    Command::new(std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into()))
 }
 
-fn python(script: &str, arguments: &[&Path], modules: &str) -> Option<Value> {
-    let python = std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into());
-    let import = Command::new(&python)
-        .args(["-c", &format!("import {modules}")])
-        .output();
-    if !matches!(&import, Ok(output) if output.status.success()) {
-        return missing(&format!("{script}: {python:?} cannot import {modules}"));
-    }
-    let mut command = Command::new(python);
-    command
-        .arg(
-            Path::new(env!("CARGO_MANIFEST_DIR"))
-                .join("foreign")
-                .join(script),
-        )
-        .args(arguments);
-    let said = run(command, modules)?;
-    Some(serde_json::from_str(&said).unwrap_or_else(|error| panic!("{error} in {said}")))
+/// Runs a script of this folder, and returns the JSON object that it printed.
+fn run_script(name: &str, arguments: &[&Path]) -> Value {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("foreign");
+    let mut command = python();
+    command.arg(folder.join(name)).args(arguments);
+    let printed = run(command);
+    serde_json::from_str(&printed).unwrap_or_else(|error| panic!("{error} in {printed}"))
 }
 
 #[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn velodyne_decoder_decodes_our_log_to_the_same_points() {
     let scan = Captured::new(Setting::default());
     let sensor = scan.sensor_frame("sensor.csv");
-    let Some(result) = python(
-        "velodyne_decoder_agrees.py",
-        &[&scan.log(), &sensor],
-        "velodyne_decoder, dpkt, numpy",
-    ) else {
-        return;
-    };
+    let result = run_script("velodyne_decoder_agrees.py", &[&scan.log(), &sensor]);
     assert_eq!(result["theirs"], result["ours"], "{result}");
     assert!(result["ours"].as_u64().unwrap() > 180_000, "{result}");
     assert_eq!(result["same_rings"], true, "{result}");
@@ -89,6 +67,7 @@ fn velodyne_decoder_decodes_our_log_to_the_same_points() {
 }
 
 #[test]
+#[ignore = "needs tshark"]
 fn tshark_reads_our_log_without_a_malformed_record() {
     let scan = Captured::new(Setting::default());
     let fields = [
@@ -113,11 +92,12 @@ fn tshark_reads_our_log_without_a_malformed_record() {
         .arg(scan.log())
         .args(fields)
         .args(checks);
-    let Some(said) = run(command, "Debian's tshark") else {
-        return;
-    };
-    assert_eq!(said.lines().count(), scan.records());
-    let udp = said.lines().filter(|line| line.contains("\t1214")).count();
+    let printed = run(command);
+    assert_eq!(printed.lines().count(), scan.records());
+    let udp = printed
+        .lines()
+        .filter(|line| line.contains("\t1214"))
+        .count();
     assert_eq!(udp as u64, scan.data_packets());
     let mut command = Command::new("tshark");
     command
@@ -128,11 +108,12 @@ fn tshark_reads_our_log_without_a_malformed_record() {
             "-Y",
             "_ws.malformed || udp.checksum.status == 0 || ip.checksum.status == 0",
         ]);
-    assert_eq!(run(command, "Debian's tshark").as_deref(), Some(""));
+    assert_eq!(run(command), "");
 }
 
 /// The drive's traffic of a capture over CAN, dissected by somebody else's CANopen.
 #[test]
+#[ignore = "needs tshark"]
 fn tshark_reads_the_can_traffic_of_a_capture_as_canopen() {
     let scan = Captured::new(Setting::over(Attached::Can));
     let tshark = |arguments: &[&str]| {
@@ -142,28 +123,22 @@ fn tshark_reads_the_can_traffic_of_a_capture_as_canopen() {
             .arg(scan.log())
             .args(["-d", "can.subdissector,canopen"])
             .args(arguments);
-        run(command, "Debian's tshark")
+        run(command)
     };
-    let Some(said) = tshark(&["-Y", "canopen"]) else {
-        return;
-    };
-    let frames = said.lines().count();
+    let printed = tshark(&["-Y", "canopen"]);
+    let frames = printed.lines().count();
     assert!(frames > 1_500, "{frames}");
     // A SYNC has no data to dissect.
-    assert_eq!(
-        tshark(&["-Y", "can && !canopen && can.len > 0"]).as_deref(),
-        Some("")
-    );
-    assert_eq!(tshark(&["-Y", "_ws.malformed"]).as_deref(), Some(""));
+    assert_eq!(tshark(&["-Y", "can && !canopen && can.len > 0"]), "");
+    assert_eq!(tshark(&["-Y", "_ws.malformed"]), "");
 }
 
 #[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn laspy_reads_our_laz_with_the_right_count_and_bounds() {
     let scan = Captured::new(Setting::default());
     let cloud = scan.cloud_file("cloud.laz");
-    let Some(result) = python("laspy_reads.py", &[&cloud], "laspy, lazrs, numpy") else {
-        return;
-    };
+    let result = run_script("laspy_reads.py", &[&cloud]);
     let summary = scan.cloud().summary();
     let bounds = summary.bounds.unwrap();
     assert_eq!(result["points"].as_u64(), Some(summary.points));
@@ -195,6 +170,7 @@ fn laspy_reads_our_laz_with_the_right_count_and_bounds() {
 }
 
 #[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn python_canopen_runs_our_software_drive_over_slcan() {
     let pty = io::port::Pty::open().unwrap();
     let port = pty.path().to_owned();
@@ -206,16 +182,9 @@ fn python_canopen_runs_our_software_drive_over_slcan() {
         let interface = Interface::Slcan(SlcanServer::new(), pty);
         software_drive::run(node, interface, &stopping)
     });
-    let said = python(
-        "canopen_master.py",
-        &[&port, Path::new("-10000")],
-        "canopen, can, serial",
-    );
+    let seen = run_script("canopen_master.py", &[&port, Path::new("-10000")]);
     stop.store(true, Ordering::Relaxed);
     drive.join().unwrap().unwrap();
-    let Some(seen) = said else {
-        return;
-    };
     assert_eq!(seen["name"], "EPOS2", "{seen}");
     assert_eq!(seen["vendor"], 0xFB, "{seen}");
     assert_eq!(seen["device_type"], 0x0002_0192, "{seen}");

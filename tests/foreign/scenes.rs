@@ -9,7 +9,7 @@ use velomotion::cli::Common;
 use velomotion::commands::simulate;
 use velomotion::terminal::Progress;
 
-use crate::python;
+use crate::run_script;
 
 /// How far a point is from the nearest surface: along the axes and their diagonals, which is at most 1.1 times too far.
 fn from_surface_m(scene: &sim::Scene, point: DVec3) -> f64 {
@@ -23,6 +23,7 @@ fn from_surface_m(scene: &sim::Scene, point: DVec3) -> f64 {
 }
 
 #[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn velodyne_decoder_puts_simulated_points_on_the_scenes_surfaces() {
     let hall = sim::scenes::hall();
     for (model, theirs, unit_m, crossing_m) in [
@@ -57,11 +58,8 @@ fn velodyne_decoder_puts_simulated_points_on_the_scenes_surfaces() {
         let scene = simulate::read(model, &text, None, None).unwrap();
         let (report, _) = simulate::make(scene, request).unwrap();
         let arguments = [log.as_path(), Path::new(theirs), points.as_path()];
-        let modules = "velodyne_decoder, dpkt, numpy";
-        let Some(said) = python("velodyne_decoder_points.py", &arguments, modules) else {
-            return;
-        };
-        assert_eq!(said["points"].as_u64(), Some(report.returns), "{model}");
+        let printed = run_script("velodyne_decoder_points.py", &arguments);
+        assert_eq!(printed["points"].as_u64(), Some(report.returns), "{model}");
         let bytes = std::fs::read(&points).unwrap();
         let numbers: Vec<f64> = (bytes.as_chunks().0.iter())
             .map(|bytes| f64::from_le_bytes(*bytes))

@@ -113,9 +113,7 @@ pub fn sweep(out: &Path) {
     session.run(Command::Status, &mut |_| {}).unwrap();
     assert_eq!(session.port().port().0.dropped(), 0);
     drop(session);
-    if let Some(onlooker) = onlooker {
-        onlooker.finish();
-    }
+    onlooker.finish();
     let heard = heard.into_inner();
     heard.log.finish().unwrap();
     let angles = heard.samples.iter().map(|s| gearing.angle(s.position).0);

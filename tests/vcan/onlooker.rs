@@ -37,27 +37,20 @@ pub struct Onlooker {
 }
 
 impl Onlooker {
-    /// Starts it and waits until it hears the bus; `None`, after saying so, where there is none.
-    pub fn start(file: &Path) -> Option<Self> {
+    /// Starts it and waits until it receives frames of the bus.
+    pub fn start(file: &Path) -> Self {
         let process = Command::new("candump")
             .args(["-L", "-r", RECEIVE_BUFFER, BUS])
             .stdout(File::create(file).unwrap())
-            .spawn();
-        let process = match process {
-            Ok(process) => process,
-            Err(error) => {
-                println!("no candump: {error}");
-                fs::remove_file(file).unwrap();
-                return None;
-            }
-        };
+            .spawn()
+            .unwrap();
         let mut onlooker = Self {
             process,
             file: file.to_owned(),
             bus: SocketCan::open(BUS).unwrap(),
         };
         onlooker.send_until_heard(BEGIN);
-        Some(onlooker)
+        onlooker
     }
 
     /// Ends it when it has written all that was on the bus so far.

@@ -46,8 +46,9 @@ fn begin(rig: &Rig, router: &mut Peer) -> String {
 }
 
 #[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn a_capture_is_begun_and_stopped_by_calls() {
-    let Some(python) = python() else { return };
+    let python = python();
     let place = endpoint();
     let mut router = Peer::start(&python, "router", &place);
     let rig = daemon(
@@ -100,8 +101,9 @@ fn scans(rig: &Rig) -> u64 {
 
 /// Without a configured capture nobody can begin one.
 #[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn nothing_moves_by_ros_unless_it_is_configured() {
-    let Some(python) = python() else { return };
+    let python = python();
     let place = endpoint();
     let mut router = Peer::start(&python, "router", &place);
     let rig = daemon(&place, "");
