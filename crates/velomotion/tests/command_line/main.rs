@@ -300,6 +300,15 @@ fn recording(name: &str) -> PathBuf {
     Path::new(folder).join(name).canonicalize().unwrap()
 }
 
+/// A whole recording, of which the repository has a cut.
+fn whole_recording(name: &str) -> PathBuf {
+    let folder = std::env::var_os("VELOMOTION_RECORDINGS").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings"),
+        PathBuf::from,
+    );
+    folder.join(name).canonicalize().unwrap()
+}
+
 #[test]
 fn a_recording_for_ros_is_a_bag_and_leaves_the_metadata_of_another_alone() {
     let path = recording("vlp16-strongest-gps.pcap");

@@ -29,9 +29,7 @@ const PAYLOAD: usize = 16 + 42;
 
 #[test]
 fn a_stray_datagram_in_front_is_not_taken_for_the_lidar() {
-    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
-        return;
-    };
+    let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let input = changed(&place, &path, |records| {
         let data = records.iter().find(|r| r.len() == PAYLOAD + 1206).unwrap();
@@ -47,17 +45,15 @@ fn a_stray_datagram_in_front_is_not_taken_for_the_lidar() {
         records.insert(0, stray);
     });
     let line = format!("replay {} --tilt none -o cloud.ply --json", input.display());
-    assert_eq!(json(&place.run(&line))["points"], 73_486);
+    assert_eq!(json(&place.run(&line))["points"], 7_747);
     let found = json(&place.run(&format!("info {} --json", input.display())));
-    assert_eq!(found["returns"], 73_486);
+    assert_eq!(found["returns"], 7_747);
     assert_eq!(found["packets"]["malformed"], 1);
 }
 
 #[test]
 fn position_packets_in_front_of_the_data_count() {
-    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
-        return;
-    };
+    let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let is_position = |record: &Vec<u8>| record.len() == PAYLOAD + 512;
     let input = changed(&place, &path, |records| {
@@ -66,18 +62,16 @@ fn position_packets_in_front_of_the_data_count() {
         records.insert(0, position);
     });
     let found = json(&place.run(&format!("info {} --json", input.display())));
-    assert_eq!(found["packets"]["position"], 57);
-    assert_eq!(found["returns"], 73_486);
+    assert_eq!(found["packets"]["position"], 5);
+    assert_eq!(found["returns"], 7_747);
     let input = changed(&place, &path, |records| records.retain(is_position));
     let found = json(&place.run(&format!("info {} --json", input.display())));
-    assert_eq!(found["packets"]["position"], 57);
+    assert_eq!(found["packets"]["position"], 5);
 }
 
 #[test]
 fn packets_out_of_order_cost_no_utc() {
-    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
-        return;
-    };
+    let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let points = |input: &Path| {
         let options = "--tilt none --time utc -o cloud.ply --force --json";
@@ -86,7 +80,7 @@ fn packets_out_of_order_cost_no_utc() {
     };
     let all = points(&path);
     let input = changed(&place, &path, |records| {
-        for at in [100, 150, 200, 250] {
+        for at in [5, 10, 15, 20] {
             records.swap(at, at + 1);
         }
     });
@@ -95,13 +89,11 @@ fn packets_out_of_order_cost_no_utc() {
 
 #[test]
 fn dual_returns_say_which_they_are() {
-    let Some(path) = recording("vlp16-dual.pcap") else {
-        return;
-    };
+    let path = recording("vlp16-dual.pcap");
     let place = Place::new();
     for (more, counts) in [
-        ("", [0, 0, 1_236, 57_413, 765]),
-        ("--equal-returns twice", [0, 0, 1_236, 114_826, 765]),
+        ("", [0, 0, 4, 1_508, 2]),
+        ("--equal-returns twice", [0, 0, 4, 3_016, 2]),
     ] {
         let options = format!("--tilt none --echo --force -o cloud.csv {more}");
         assert!(
@@ -124,9 +116,7 @@ fn dual_returns_say_which_they_are() {
 
 #[test]
 fn rays_may_start_in_one_point() {
-    let Some(path) = recording("vlp16-strongest-gps.pcap") else {
-        return;
-    };
+    let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let line = format!(
         "replay {} --tilt none --one-origin -o cloud.csv",
@@ -139,5 +129,5 @@ fn rays_may_start_in_one_point() {
         .map(|row| row.split(',').nth(2).unwrap().parse::<f64>().unwrap())
         .sum();
     // The sum that independent decoders give.
-    assert!((z / 3_310.884 - 1.0).abs() < 1e-4, "{z}");
+    assert!((z / 544.269 - 1.0).abs() < 1e-4, "{z}");
 }
