@@ -62,6 +62,8 @@ pub(super) enum Access {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
     pub address: Address,
+    /// The last subindex of a run of equal entries.
+    pub last_sub: u8,
     pub ty: Type,
     pub access: Access,
     /// As from the factory.
@@ -78,6 +80,7 @@ pub(super) struct Entry {
 pub(super) const fn entry(index: u16, sub: u8, ty: Type, access: Access, default: i64) -> Entry {
     Entry {
         address: Address { index, sub },
+        last_sub: sub,
         ty,
         access,
         default,
@@ -89,6 +92,11 @@ pub(super) const fn entry(index: u16, sub: u8, ty: Type, access: Access, default
 }
 
 impl Entry {
+    /// The same entry at all subindices up to `last_sub`.
+    pub const fn to_sub(self, last_sub: u8) -> Self {
+        Self { last_sub, ..self }
+    }
+
     pub const fn within(self, low: i64, high: i64) -> Self {
         Self { low, high, ..self }
     }

@@ -5,15 +5,11 @@ use super::super::entry::Type::{Text, U8, U16, U32};
 use super::super::entry::{Entry, entry};
 
 #[rustfmt::skip]
-pub(super) const ENTRIES: [Entry; 136] = [
+pub(super) const ENTRIES: &[Entry] = &[
     entry(0x1000, 0, U32, Ro, 0x0002_0192), // Device Type
     entry(0x1001, 0, U8, Ro, 0), // Error Register
     entry(0x1003, 0, U8, Rw, 0), // Number of Errors
-    entry(0x1003, 1, U32, Ro, 0), // Error History (1)
-    entry(0x1003, 2, U32, Ro, 0), // Error History (2)
-    entry(0x1003, 3, U32, Ro, 0), // Error History (3)
-    entry(0x1003, 4, U32, Ro, 0), // Error History (4)
-    entry(0x1003, 5, U32, Ro, 0), // Error History (5)
+    entry(0x1003, 1, U32, Ro, 0).to_sub(5), // Error History (1) to (5)
     entry(0x1005, 0, U32, Rw, 0x80).within(128, 128), // COB-ID SYNC
     entry(0x1008, 0, Text, Const, 0), // Manufacturer Device Name
     entry(0x100C, 0, U16, Rw, 0), // Guard Time
@@ -56,40 +52,19 @@ pub(super) const ENTRIES: [Entry; 136] = [
     entry(0x1403, 2, U8, Rw, 0xFF), // Transmission Type
     entry(0x1600, 0, U8, Rw, 1).within(0, 8), // Number of Mapped Application Objects in RxPDO 1
     entry(0x1600, 1, U32, Rw, 0x6040_0010), // 1st Mapped Object in RxPDO 1
-    entry(0x1600, 2, U32, Rw, 0), // 2nd Mapped Object in RxPDO 1
-    entry(0x1600, 3, U32, Rw, 0), // 3rd Mapped Object in RxPDO 1
-    entry(0x1600, 4, U32, Rw, 0), // 4th Mapped Object in RxPDO 1
-    entry(0x1600, 5, U32, Rw, 0), // 5th Mapped Object in RxPDO 1
-    entry(0x1600, 6, U32, Rw, 0), // 6th Mapped Object in RxPDO 1
-    entry(0x1600, 7, U32, Rw, 0), // 7th Mapped Object in RxPDO 1
-    entry(0x1600, 8, U32, Rw, 0), // 8th Mapped Object in RxPDO 1
+    entry(0x1600, 2, U32, Rw, 0).to_sub(8), // 2nd to 8th Mapped Object in RxPDO 1
     entry(0x1601, 0, U8, Rw, 2).within(0, 8), // Number of Mapped Application Objects in RxPDO 2
     entry(0x1601, 1, U32, Rw, 0x6040_0010), // 1st Mapped Object in RxPDO 2
     entry(0x1601, 2, U32, Rw, 0x6060_0008), // 2nd Mapped Object in RxPDO 2
-    entry(0x1601, 3, U32, Rw, 0), // 3rd Mapped Object in RxPDO 2
-    entry(0x1601, 4, U32, Rw, 0), // 4th Mapped Object in RxPDO 2
-    entry(0x1601, 5, U32, Rw, 0), // 5th Mapped Object in RxPDO 2
-    entry(0x1601, 6, U32, Rw, 0), // 6th Mapped Object in RxPDO 2
-    entry(0x1601, 7, U32, Rw, 0), // 7th Mapped Object in RxPDO 2
-    entry(0x1601, 8, U32, Rw, 0), // 8th Mapped Object in RxPDO 2
+    entry(0x1601, 3, U32, Rw, 0).to_sub(8), // 3rd to 8th Mapped Object in RxPDO 2
     entry(0x1602, 0, U8, Rw, 2).within(0, 8), // Number of Mapped Application Objects in RxPDO 3
     entry(0x1602, 1, U32, Rw, 0x6040_0010), // 1st Mapped Object in RxPDO 3
     entry(0x1602, 2, U32, Rw, 0x607A_0020), // 2nd Mapped Object in RxPDO 3
-    entry(0x1602, 3, U32, Rw, 0), // 3rd Mapped Object in RxPDO 3
-    entry(0x1602, 4, U32, Rw, 0), // 4th Mapped Object in RxPDO 3
-    entry(0x1602, 5, U32, Rw, 0), // 5th Mapped Object in RxPDO 3
-    entry(0x1602, 6, U32, Rw, 0), // 6th Mapped Object in RxPDO 3
-    entry(0x1602, 7, U32, Rw, 0), // 7th Mapped Object in RxPDO 3
-    entry(0x1602, 8, U32, Rw, 0), // 8th Mapped Object in RxPDO 3
+    entry(0x1602, 3, U32, Rw, 0).to_sub(8), // 3rd to 8th Mapped Object in RxPDO 3
     entry(0x1603, 0, U8, Rw, 2).within(0, 8), // Number of Mapped Application Objects in RxPDO 4
     entry(0x1603, 1, U32, Rw, 0x6040_0010), // 1st Mapped Object in RxPDO 4
     entry(0x1603, 2, U32, Rw, 0x60FF_0020), // 2nd Mapped Object in RxPDO 4
-    entry(0x1603, 3, U32, Rw, 0), // 3rd Mapped Object in RxPDO 4
-    entry(0x1603, 4, U32, Rw, 0), // 4th Mapped Object in RxPDO 4
-    entry(0x1603, 5, U32, Rw, 0), // 5th Mapped Object in RxPDO 4
-    entry(0x1603, 6, U32, Rw, 0), // 6th Mapped Object in RxPDO 4
-    entry(0x1603, 7, U32, Rw, 0), // 7th Mapped Object in RxPDO 4
-    entry(0x1603, 8, U32, Rw, 0), // 8th Mapped Object in RxPDO 4
+    entry(0x1603, 3, U32, Rw, 0).to_sub(8), // 3rd to 8th Mapped Object in RxPDO 4
     entry(0x1800, 0, U8, Ro, 3), // Internal Largest SubIndex Supported
     entry(0x1800, 1, U32, Rw, 0x4000_0180).plus_node_id(), // COB-ID used by TxPDO 1
     entry(0x1800, 2, U8, Rw, 0xFF), // Transmission Type
@@ -108,38 +83,17 @@ pub(super) const ENTRIES: [Entry; 136] = [
     entry(0x1803, 3, U16, Rw, 10), // Inhibit Time
     entry(0x1A00, 0, U8, Rw, 1).within(0, 8), // Number of Mapped Application Objects in TxPDO 1
     entry(0x1A00, 1, U32, Rw, 0x6041_0010), // 1st Mapped Object in TxPDO 1
-    entry(0x1A00, 2, U32, Rw, 0), // 2nd Mapped Object in TxPDO 1
-    entry(0x1A00, 3, U32, Rw, 0), // 3rd Mapped Object in TxPDO 1
-    entry(0x1A00, 4, U32, Rw, 0), // 4th Mapped Object in TxPDO 1
-    entry(0x1A00, 5, U32, Rw, 0), // 5th Mapped Object in TxPDO 1
-    entry(0x1A00, 6, U32, Rw, 0), // 6th Mapped Object in TxPDO 1
-    entry(0x1A00, 7, U32, Rw, 0), // 7th Mapped Object in TxPDO 1
-    entry(0x1A00, 8, U32, Rw, 0), // 8th Mapped Object in TxPDO 1
+    entry(0x1A00, 2, U32, Rw, 0).to_sub(8), // 2nd to 8th Mapped Object in TxPDO 1
     entry(0x1A01, 0, U8, Rw, 2).within(0, 8), // Number of Mapped Application Objects in TxPDO 2
     entry(0x1A01, 1, U32, Rw, 0x6041_0010), // 1st Mapped Object in TxPDO 2
     entry(0x1A01, 2, U32, Rw, 0x6061_0008), // 2nd Mapped Object in TxPDO 2
-    entry(0x1A01, 3, U32, Rw, 0), // 3rd Mapped Object in TxPDO 2
-    entry(0x1A01, 4, U32, Rw, 0), // 4th Mapped Object in TxPDO 2
-    entry(0x1A01, 5, U32, Rw, 0), // 5th Mapped Object in TxPDO 2
-    entry(0x1A01, 6, U32, Rw, 0), // 6th Mapped Object in TxPDO 2
-    entry(0x1A01, 7, U32, Rw, 0), // 7th Mapped Object in TxPDO 2
-    entry(0x1A01, 8, U32, Rw, 0), // 8th Mapped Object in TxPDO 2
+    entry(0x1A01, 3, U32, Rw, 0).to_sub(8), // 3rd to 8th Mapped Object in TxPDO 2
     entry(0x1A02, 0, U8, Rw, 2).within(0, 8), // Number of Mapped Application Objects in TxPDO 3
     entry(0x1A02, 1, U32, Rw, 0x6041_0010), // 1st Mapped Object in TxPDO 3
     entry(0x1A02, 2, U32, Rw, 0x6064_0020), // 2nd Mapped Object in TxPDO 3
-    entry(0x1A02, 3, U32, Rw, 0), // 3rd Mapped Object in TxPDO 3
-    entry(0x1A02, 4, U32, Rw, 0), // 4th Mapped Object in TxPDO 3
-    entry(0x1A02, 5, U32, Rw, 0), // 5th Mapped Object in TxPDO 3
-    entry(0x1A02, 6, U32, Rw, 0), // 6th Mapped Object in TxPDO 3
-    entry(0x1A02, 7, U32, Rw, 0), // 7th Mapped Object in TxPDO 3
-    entry(0x1A02, 8, U32, Rw, 0), // 8th Mapped Object in TxPDO 3
+    entry(0x1A02, 3, U32, Rw, 0).to_sub(8), // 3rd to 8th Mapped Object in TxPDO 3
     entry(0x1A03, 0, U8, Rw, 2).within(0, 8), // Number of Mapped Application Objects in TxPDO 4
     entry(0x1A03, 1, U32, Rw, 0x6041_0010), // 1st Mapped Object in TxPDO 4
     entry(0x1A03, 2, U32, Rw, 0x606C_0020), // 2nd Mapped Object in TxPDO 4
-    entry(0x1A03, 3, U32, Rw, 0), // 3rd Mapped Object in TxPDO 4
-    entry(0x1A03, 4, U32, Rw, 0), // 4th Mapped Object in TxPDO 4
-    entry(0x1A03, 5, U32, Rw, 0), // 5th Mapped Object in TxPDO 4
-    entry(0x1A03, 6, U32, Rw, 0), // 6th Mapped Object in TxPDO 4
-    entry(0x1A03, 7, U32, Rw, 0), // 7th Mapped Object in TxPDO 4
-    entry(0x1A03, 8, U32, Rw, 0), // 8th Mapped Object in TxPDO 4
+    entry(0x1A03, 3, U32, Rw, 0).to_sub(8), // 3rd to 8th Mapped Object in TxPDO 4
 ];

@@ -5,7 +5,7 @@ use super::super::entry::Type::{I8, I16, I32, U8, U16, U32};
 use super::super::entry::{Entry, entry};
 
 #[rustfmt::skip]
-pub(super) const ENTRIES: [Entry; 76] = [
+pub(super) const ENTRIES: &[Entry] = &[
     entry(0x6007, 0, I16, Rw, 3), // Abort Connection Option Code
     entry(0x6040, 0, U16, Rww, 0).mappable(), // Controlword
     entry(0x6041, 0, U16, Ro, 0).mappable(), // Statusword

@@ -5,7 +5,7 @@ use super::super::entry::Type::{Domain, I8, I16, I32, U8, U16, U32, U64};
 use super::super::entry::{Entry, entry};
 
 #[rustfmt::skip]
-pub(super) const ENTRIES: [Entry; 218] = [
+pub(super) const ENTRIES: &[Entry] = &[
     entry(0x2000, 0, U8, Rw, 0).plus_node_id(), // Node ID
     entry(0x2001, 0, U16, Rw, 2).within(0, 7), // CAN Bitrate
     entry(0x2002, 0, U16, Rw, 5).within(0, 5), // RS232 Baudrate
@@ -22,25 +22,16 @@ pub(super) const ENTRIES: [Entry; 218] = [
     entry(0x2009, 0, U16, Ro, 1), // Internal Dip Switch State
     entry(0x200A, 0, U16, Ro, 2), // CAN Bitrate Display
     entry(0x200C, 0, U8, Const, 4), // Internal Number of Entries
-    entry(0x200C, 1, U32, Rw, 0), // Custom persistent memory 1
-    entry(0x200C, 2, U32, Rw, 0), // Custom persistent memory 2
-    entry(0x200C, 3, U32, Rw, 0), // Custom persistent memory 3
-    entry(0x200C, 4, U32, Rw, 0), // Custom persistent memory 4
+    entry(0x200C, 1, U32, Rw, 0).to_sub(4), // Custom persistent memory 1 to 4
     entry(0x2010, 0, U16, Rw, 0), // Internal DataRecorder Control
     entry(0x2011, 0, U16, Rw, 3), // Internal DataRecorder Configuration
     entry(0x2012, 0, U16, Rw, 0xA), // Internal DataRecorder Sampling Period
     entry(0x2013, 0, U16, Rw, 0), // Internal DataRecorder Number of Preceding Samples
     entry(0x2014, 0, U16, Rw, 0), // Internal DataRecorder Number of Sampling Variables
     entry(0x2015, 0, U8, Ro, 4), // Internal Number of Entries
-    entry(0x2015, 1, U16, Rw, 0), // Internal DataRecorder Index of Variable 1
-    entry(0x2015, 2, U16, Rw, 0), // Internal DataRecorder Index of Variable 2
-    entry(0x2015, 3, U16, Rw, 0), // Internal DataRecorder Index of Variable 3
-    entry(0x2015, 4, U16, Rw, 0), // Internal DataRecorder Index of Variable 4
+    entry(0x2015, 1, U16, Rw, 0).to_sub(4), // Internal DataRecorder Index of Variable 1 to 4
     entry(0x2016, 0, U8, Ro, 4), // Internal Number of Entries
-    entry(0x2016, 1, U16, Rw, 0), // Internal DataRecorder SubIndex of Variable 1
-    entry(0x2016, 2, U16, Rw, 0), // Internal DataRecorder SubIndex of Variable 2
-    entry(0x2016, 3, U16, Rw, 0), // Internal DataRecorder SubIndex of Variable 3
-    entry(0x2016, 4, U16, Rw, 0), // Internal DataRecorder SubIndex of Variable 4
+    entry(0x2016, 1, U16, Rw, 0).to_sub(4), // Internal DataRecorder SubIndex of Variable 1 to 4
     entry(0x2017, 0, U16, Ro, 0), // Internal DataRecorder Status
     entry(0x2018, 0, U16, Ro, 0), // Internal DataRecorder Max Number of Samples
     entry(0x2019, 0, U16, Ro, 0), // Internal DataRecorder Number of Recorded Samples
@@ -72,13 +63,7 @@ pub(super) const ENTRIES: [Entry; 218] = [
     entry(0x202E, 1, U16, Ro, 0), // Internal Object ADC NTC temperature value
     entry(0x202E, 2, I16, Ro, 0), // Internal Object ADC current U (W1)
     entry(0x202E, 3, I16, Ro, 0), // Internal Object ADC current V (W2)
-    entry(0x202E, 4, U16, Ro, 0), // Internal Object ADC Input voltage
-    entry(0x202E, 5, U16, Ro, 0), // Internal Object ADC Gate driver voltage
-    entry(0x202E, 6, U16, Ro, 0), // Internal Object ADC Sine entry Voltage
-    entry(0x202E, 7, U16, Ro, 0), // Internal Object ADC Cosine entry Voltage
-    entry(0x202E, 8, U16, Ro, 0), // Internal Object ADC CAN-ID Switch 1
-    entry(0x202E, 9, U16, Ro, 0), // Internal Object ADC CAN-ID Switch 2
-    entry(0x202E, 10, U16, Ro, 0), // Internal Object ADC CAN-ID Switch 3
+    entry(0x202E, 4, U16, Ro, 0).to_sub(10), // Internal Object ADC Input voltage to CAN-ID Switch 3
     entry(0x202E, 11, I16, Ro, 0), // Internal Object ADC current W (W3)
     entry(0x202E, 12, I16, Ro, 0), // Internal Object ADC Supply Voltage Udd
     entry(0x2030, 0, I16, Rww, 0).mappable(), // Current Mode Setting Value
@@ -214,9 +199,7 @@ pub(super) const ENTRIES: [Entry; 218] = [
     entry(0x2410, 1, U16, Rw, 0), // Internal LR Identification Control
     entry(0x2410, 2, U16, Rw, 0), // Internal LR Identification Current
     entry(0x2411, 0, U8, Ro, 3), // Internal Number of Entries
-    entry(0x2411, 1, U16, Ro, 0), // Internal Resistance
-    entry(0x2411, 2, U16, Ro, 0), // Internal Inductivity
-    entry(0x2411, 3, U16, Ro, 0), // Internal Frequency
+    entry(0x2411, 1, U16, Ro, 0).to_sub(3), // Internal Resistance to Frequency
     entry(0x2FFF, 0, U8, Ro, 6), // Internal Number of Entries
     entry(0x2FFF, 1, U32, Wo, 0), // Internal Download Start
     entry(0x2FFF, 2, U16, Rw, 0), // Internal Download Number of SubSections

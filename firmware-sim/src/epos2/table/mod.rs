@@ -1,8 +1,10 @@
-//! The dictionary's entries: index, subindex, type, access, factory value, limits and mappability, all 430 of them.
+//! The entries of the dictionary: index, subindex, type, access, factory value, limits and
+//! mappability, all 430 of them.
 //!
-//! The entries follow the device description (EDS) of an EPOS2 70/10 with firmware 2126h, one line an entry, in the order of
-//! addresses; where it gives no factory value, the one is taken that a real unit was configured with. Objects whose function is
-//! not simulated (data recorder, interpolation buffer, autotuning, analogue inputs...) are plain storage.
+//! They follow the device description (EDS) of an EPOS2 70/10 with firmware 2126h, in the order of
+//! addresses. Where it gives no factory value, the value of a real unit is used. Objects of functions
+//! that are not simulated (data recorder, interpolation buffer, autotuning, analogue inputs) are
+//! plain storage.
 
 mod communication;
 mod device;
@@ -10,50 +12,35 @@ mod manufacturer;
 
 use super::entry::Entry;
 
-/// How many entries there are.
-pub(super) const COUNT: usize =
-    communication::ENTRIES.len() + manufacturer::ENTRIES.len() + device::ENTRIES.len();
+/// The number of entries in the device description.
+pub(super) const COUNT: usize = 430;
 
-/// All entries.
+const PARTS: [&[Entry]; 3] = [
+    communication::ENTRIES,
+    manufacturer::ENTRIES,
+    device::ENTRIES,
+];
+
+/// All entries, one per subindex, in order for binary search.
 pub(super) static TABLE: [Entry; COUNT] = {
-    let mut all = [communication::ENTRIES[0]; COUNT];
-    let parts: [&[Entry]; 3] = [
-        &communication::ENTRIES,
-        &manufacturer::ENTRIES,
-        &device::ENTRIES,
-    ];
-    let (mut part, mut to) = (0, 0);
-    while part < parts.len() {
+    let mut all = [PARTS[0][0]; COUNT];
+    let (mut part, mut to, mut last) = (0, 0, 0);
+    while part < PARTS.len() {
         let mut from = 0;
-        while from < parts[part].len() {
-            all[to] = parts[part][from];
+        while from < PARTS[part].len() {
+            let mut entry = PARTS[part][from];
+            while entry.address.sub <= entry.last_sub {
+                let key = (entry.address.index as u32) << 8 | entry.address.sub as u32;
+                assert!(key > last, "the table is not in order");
+                all[to] = entry;
+                last = key;
+                entry.address.sub += 1;
+                to += 1;
+            }
             from += 1;
-            to += 1;
         }
         part += 1;
     }
+    assert!(to == COUNT);
     all
-};
-
-/// The device description has so many, and lookups are binary searches.
-const _: () = {
-    assert!(COUNT == 430);
-    let parts: [&[Entry]; 3] = [
-        &communication::ENTRIES,
-        &manufacturer::ENTRIES,
-        &device::ENTRIES,
-    ];
-    let mut last = 0;
-    let mut part = 0;
-    while part < parts.len() {
-        let mut i = 0;
-        while i < parts[part].len() {
-            let address = parts[part][i].address;
-            let key = (address.index as u32) << 8 | address.sub as u32;
-            assert!(key > last, "the table is not in order");
-            last = key;
-            i += 1;
-        }
-        part += 1;
-    }
 };
