@@ -2,7 +2,7 @@
 //! behind a CR, and every command has its answer.
 
 use firmware_sim::epos2::{Node, NodeConfig, SlcanServer};
-use protocol::canopen::slcan::{Command, CommandDecoder, Reply, ReplyDecoder};
+use protocol::canopen::slcan::{CommandDecoder, ReplyDecoder, SlcanCommand, SlcanReply};
 
 use super::can_frames::frame;
 use super::input::Input;
@@ -17,13 +17,13 @@ pub fn holds(data: &[u8]) {
     }
 }
 
-fn replies(bytes: &[u8]) -> Vec<Option<Reply>> {
+fn replies(bytes: &[u8]) -> Vec<Option<SlcanReply>> {
     let mut decoder = ReplyDecoder::new();
     let pushed = bytes.iter().filter_map(|&byte| decoder.push(byte));
     pushed.map(Result::ok).collect()
 }
 
-fn commands(bytes: &[u8]) -> Vec<Option<Command>> {
+fn commands(bytes: &[u8]) -> Vec<Option<SlcanCommand>> {
     let mut decoder = CommandDecoder::new();
     let pushed = bytes.iter().filter_map(|&byte| decoder.push(byte));
     pushed.map(Result::ok).collect()
@@ -45,7 +45,7 @@ fn any_bytes(bytes: &[u8]) {
 fn frame_behind_noise(input: &mut Input<'_>) {
     let frame = frame(input);
     let stamp = input.u16();
-    let reply = Reply::Received {
+    let reply = SlcanReply::Received {
         frame,
         stamp_ms: (stamp & 1 == 0).then_some(stamp >> 1),
     };
@@ -55,10 +55,10 @@ fn frame_behind_noise(input: &mut Input<'_>) {
     assert_eq!(replies(&bytes).last(), Some(&Some(reply)));
 
     let mut bytes = [noise, b"\r"].concat();
-    Command::Transmit(frame).encode(&mut bytes);
+    SlcanCommand::Transmit(frame).encode(&mut bytes);
     assert_eq!(
         commands(&bytes).last(),
-        Some(&Some(Command::Transmit(frame)))
+        Some(&Some(SlcanCommand::Transmit(frame)))
     );
 }
 
@@ -80,7 +80,7 @@ fn adapter(input: &mut Input<'_>) {
             1 => node.set_phase_us(input.u16().into()),
             2 => {
                 let mut line = Vec::new();
-                Command::Transmit(frame(input)).encode(&mut line);
+                SlcanCommand::Transmit(frame(input)).encode(&mut line);
                 tell(&mut server, &mut node, &mut shadow, &line);
             }
             _ => tell(&mut server, &mut node, &mut shadow, input.short()),
@@ -101,8 +101,8 @@ fn tell(server: &mut SlcanServer, node: &mut Node, shadow: &mut CommandDecoder, 
 /// Whether a whole line brings a frame; else it is one answer to a command.
 fn is_frame(line: &[u8]) -> bool {
     match replies(line).as_slice() {
-        [Some(Reply::Received { .. })] => true,
-        [Some(Reply::Unknown(_)) | None] | [] | [_, _, ..] => panic!("no reply: {line:X?}"),
+        [Some(SlcanReply::Received { .. })] => true,
+        [Some(SlcanReply::Unknown(_)) | None] | [] | [_, _, ..] => panic!("no reply: {line:X?}"),
         [Some(_)] => false,
     }
 }

@@ -1,7 +1,7 @@
 //! SLCAN sessions: lines of both directions, and a host that opens the adapter and asks the unit.
 
 use protocol::canopen::sdo::Request;
-use protocol::canopen::slcan::{Bitrate, Command, Reply};
+use protocol::canopen::slcan::{Bitrate, SlcanCommand, SlcanReply};
 use protocol::canopen::{CanFrame, CobId, NodeId};
 use protocol::epos2::objects;
 
@@ -42,21 +42,21 @@ fn host() -> Vec<u8> {
     let node = NodeId::new(1).expect("an id");
     let nmt = CobId::new(0).expect("an id");
     let commands = [
-        Command::Empty,
-        Command::Empty,
-        Command::Close,
-        Command::Version,
-        Command::SerialNumber,
-        Command::Stamps(true),
-        Command::Bitrate(Bitrate::Kbit1000),
-        Command::Open,
-        Command::Status,
-        Command::Transmit(CanFrame::of(nmt, [1, 1])),
-        Command::Transmit(request(node)),
-        Command::Transmit(CanFrame::of(CobId::SYNC, [])),
-        Command::Close,
-        Command::OpenListening,
-        Command::Transmit(request(node)),
+        SlcanCommand::Empty,
+        SlcanCommand::Empty,
+        SlcanCommand::Close,
+        SlcanCommand::Version,
+        SlcanCommand::SerialNumber,
+        SlcanCommand::Stamps(true),
+        SlcanCommand::Bitrate(Bitrate::Kbit1000),
+        SlcanCommand::Open,
+        SlcanCommand::Status,
+        SlcanCommand::Transmit(CanFrame::of(nmt, [1, 1])),
+        SlcanCommand::Transmit(request(node)),
+        SlcanCommand::Transmit(CanFrame::of(CobId::SYNC, [])),
+        SlcanCommand::Close,
+        SlcanCommand::OpenListening,
+        SlcanCommand::Transmit(request(node)),
     ];
     let mut bytes = Vec::new();
     for command in commands {
@@ -68,14 +68,14 @@ fn host() -> Vec<u8> {
 fn replies() -> Vec<u8> {
     let mut bytes = Vec::new();
     let frame = request(NodeId::MAX);
-    let frames = [None, Some(59_999)].map(|stamp_ms| Reply::Received { frame, stamp_ms });
+    let frames = [None, Some(59_999)].map(|stamp_ms| SlcanReply::Received { frame, stamp_ms });
     let flat = [
-        Reply::Done,
-        Reply::Refused,
-        Reply::Sent,
-        Reply::SentExtended,
+        SlcanReply::Done,
+        SlcanReply::Refused,
+        SlcanReply::Sent,
+        SlcanReply::SentExtended,
     ];
-    for reply in flat.into_iter().chain(frames).chain([Reply::Status(0x24)]) {
+    for reply in flat.into_iter().chain(frames).chain([SlcanReply::Status(0x24)]) {
         reply.encode(&mut bytes);
     }
     bytes.extend(b"V1013\rNA123\rxyz\r");

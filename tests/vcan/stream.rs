@@ -7,7 +7,7 @@ use protocol::canopen::heartbeat::Heartbeat;
 use protocol::canopen::pdo::{
     Configuration, Layout, Mapping, Pdo, TransmissionType, configuration,
 };
-use protocol::canopen::sync::Sync;
+use protocol::canopen::sync::SyncMessage;
 use protocol::canopen::{Channel, NodeId, PdoNumber};
 use protocol::epos2::cia402::{State, control, mode, status};
 use protocol::epos2::objects;
@@ -141,7 +141,7 @@ pub fn one_second(master: &mut Master, node: NodeId) -> Report {
     let mut syncs = Vec::with_capacity(SYNCS);
     for beat in 0..SYNCS {
         master.listen(due(beat));
-        syncs.push(master.send(&Sync::default().to_frame()));
+        syncs.push(master.send(&SyncMessage::default().to_frame()));
     }
     master.listen(due(SYNCS) + REST);
     let heard = master.take_heard();

@@ -9,7 +9,7 @@ use protocol::canopen::heartbeat::{Heartbeat, HeartbeatConsumer, HeartbeatEvent}
 use protocol::canopen::nmt::{Nmt, NmtCommand, NmtState};
 use protocol::canopen::pdo::{Configuration, Layout, Mapping, Pdo, TransmissionType};
 use protocol::canopen::sdo::Request;
-use protocol::canopen::sync::Sync;
+use protocol::canopen::sync::SyncMessage;
 use protocol::canopen::{CanFrame, Channel, Message, NodeId, PdoNumber};
 use protocol::epos2::objects::{Address, POSITION_ACTUAL, TIMESTAMP};
 use protocol::epos2::{CommError, DeviceError};
@@ -265,7 +265,7 @@ impl Bus {
             now.saturating_add(period.max(FASTEST))
         };
         self.next_sync = Some(next.max(self.beats.earliest(now)));
-        Sync::default().to_frame()
+        SyncMessage::default().to_frame()
     }
 
     fn position(&mut self, data: &[u8], now: Stamp<Host>) -> Option<ShaftSample> {

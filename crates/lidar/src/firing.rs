@@ -3,7 +3,7 @@
 //! Points are made as they are asked for: who only needs the times pays for no geometry. Left out:
 //! where the sensor stood.
 
-use protocol::vlp16::{Channel, Model};
+use protocol::vlp16::{ChannelReturn, Model};
 use units::{Lidar, Span, Stamp};
 
 use crate::geometry::LaserRay;
@@ -209,7 +209,7 @@ impl Iterator for LaserReturns<'_> {
         loop {
             let laser = self.laser;
             let i = usize::from(laser);
-            let seen = |channel: Channel, echo| {
+            let seen = |channel: ChannelReturn, echo| {
                 (channel.distance_raw != 0).then_some(LaserReturn {
                     laser,
                     distance_raw: channel.distance_raw,
@@ -218,14 +218,16 @@ impl Iterator for LaserReturns<'_> {
                 })
             };
             let found = match self.channels {
-                FiringChannels::One { raw, echo } => seen(Channel::from_bytes(*raw.get(i)?), echo),
+                FiringChannels::One { raw, echo } => {
+                    seen(ChannelReturn::from_bytes(*raw.get(i)?), echo)
+                }
                 FiringChannels::Two {
                     last,
                     strongest,
                     duplicates,
                 } => {
-                    let even = Channel::from_bytes(*last.get(i)?);
-                    let odd = Channel::from_bytes(*strongest.get(i)?);
+                    let even = ChannelReturn::from_bytes(*last.get(i)?);
+                    let odd = ChannelReturn::from_bytes(*strongest.get(i)?);
                     if even.distance_raw == odd.distance_raw {
                         if duplicates == Duplicates::All {
                             self.partner = seen(odd, Echo::LastAndStrongest);

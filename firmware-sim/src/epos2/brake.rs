@@ -11,7 +11,7 @@ use super::node::Node;
 
 /// The holding brake as the axis feels it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Brake {
+pub enum BrakeState {
     /// No output feeds a brake.
     Absent,
     /// The shaft is held.
@@ -22,12 +22,12 @@ pub enum Brake {
 
 /// How long the shaft has been slow, and how long that has been waited for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Standstill {
+pub(super) struct StandstillTimer {
     still_ms: u16,
     waited_ms: u16,
 }
 
-impl Standstill {
+impl StandstillTimer {
     pub const NONE: Self = Self {
         still_ms: 0,
         waited_ms: 0,
@@ -42,11 +42,11 @@ const BRAKE_BIT: u16 = 1 << objects::OUTPUT_BRAKE;
 impl Node {
     /// What the brake does.
     #[must_use]
-    pub fn brake(&self) -> Brake {
+    pub fn brake(&self) -> BrakeState {
         match (self.has_brake(), self.brake_released) {
-            (false, _) => Brake::Absent,
-            (true, true) => Brake::Open,
-            (true, false) => Brake::Closed,
+            (false, _) => BrakeState::Absent,
+            (true, true) => BrakeState::Open,
+            (true, false) => BrakeState::Closed,
         }
     }
 
@@ -76,7 +76,7 @@ impl Node {
     }
 
     /// One millisecond of waiting for the shaft to stand; whether the brake may close.
-    pub(super) fn stands(&self, standstill: &mut Standstill) -> bool {
+    pub(super) fn stands(&self, standstill: &mut StandstillTimer) -> bool {
         if !self.has_brake() {
             return true;
         }
@@ -96,7 +96,7 @@ impl Node {
     /// active then, and does not say more.
     pub(super) fn output_state(&self) -> u16 {
         let written = self.dictionary.get(objects::OUTPUT_STATE) & !BRAKE_BIT;
-        if self.brake() == Brake::Closed {
+        if self.brake() == BrakeState::Closed {
             written | BRAKE_BIT
         } else {
             written

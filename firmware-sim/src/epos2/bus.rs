@@ -6,7 +6,7 @@ use super::can::CanServer;
 use super::node::Node;
 
 /// The other nodes on a unit's CAN bus. `()` is a bus without any, a pair is the nodes of both.
-pub trait Bus {
+pub trait CanBus {
     /// Puts a frame on the bus; what the others send because of it goes to `answers`.
     fn send(&mut self, frame: &CanFrame, answers: &mut dyn FnMut(&CanFrame));
 }
@@ -20,18 +20,18 @@ pub struct Neighbour<'a> {
     pub server: &'a mut CanServer,
 }
 
-impl Bus for () {
+impl CanBus for () {
     fn send(&mut self, _: &CanFrame, _: &mut dyn FnMut(&CanFrame)) {}
 }
 
-impl Bus for Neighbour<'_> {
+impl CanBus for Neighbour<'_> {
     fn send(&mut self, frame: &CanFrame, answers: &mut dyn FnMut(&CanFrame)) {
         self.server
             .input(self.node, frame, &mut |answer| answers(answer));
     }
 }
 
-impl<A: Bus, B: Bus> Bus for (A, B) {
+impl<A: CanBus, B: CanBus> CanBus for (A, B) {
     fn send(&mut self, frame: &CanFrame, answers: &mut dyn FnMut(&CanFrame)) {
         self.0.send(frame, answers);
         self.1.send(frame, answers);

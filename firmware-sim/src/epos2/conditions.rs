@@ -6,7 +6,7 @@ use protocol::epos2::objects::{self, Address};
 
 use super::Abort;
 use super::dictionary::Dictionary;
-use super::entry::{Entry, Type};
+use super::entry::{DictionaryEntry, Type};
 use super::homing_method;
 use super::mapping;
 use super::node::Node;
@@ -21,7 +21,7 @@ const MODES: [i8; 3] = [mode::PROFILE_POSITION, mode::PROFILE_VELOCITY, mode::HO
 impl Node {
     /// Entries that nothing can be stored in: a download needs the service mode, which the unit never enters; the interpolation
     /// buffer and the recorder's need a mode that is not simulated.
-    pub(super) fn check_storable(&self, entry: &Entry) -> Result<(), Abort> {
+    pub(super) fn check_storable(&self, entry: &DictionaryEntry) -> Result<(), Abort> {
         if entry.address.index == DOWNLOAD {
             Err(Abort::SERVICE_MODE)
         } else if matches!(entry.ty, Type::U64 | Type::Text | Type::Domain) {

@@ -16,7 +16,7 @@ pub struct NodeConfig {
     /// CANopen node id, 1..=127.
     pub node_id: u8,
     /// What the unit says about itself.
-    pub identity: Identity,
+    pub identity: UnitIdentity,
     /// Quadcounts in a turn of the motor (four per encoder line), up to 10,000,000; also what 2210:1 has at first.
     pub qc_per_turn: u32,
     /// Where the shaft is at power-on, world qc. The unit calls that place 0.
@@ -35,7 +35,7 @@ pub struct NodeConfig {
 
 /// What the unit says about itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Identity {
+pub struct UnitIdentity {
     /// 1018:2; its high word is the hardware version (2003:2).
     pub product_code: u32,
     /// 1018:3; its high word is the software version (2003:1).
@@ -78,7 +78,7 @@ impl Region {
     }
 }
 
-impl Default for Identity {
+impl Default for UnitIdentity {
     /// An EPOS2 70/10, hardware 6420, software 2126; the serial number is the simulator's own.
     fn default() -> Self {
         Self {
@@ -103,7 +103,7 @@ impl Default for NodeConfig {
         };
         Self {
             node_id: 1,
-            identity: Identity::default(),
+            identity: UnitIdentity::default(),
             qc_per_turn: 2000,
             initial_position: -3_000,
             index_position: 700,

@@ -7,7 +7,7 @@ use protocol::epos2::cia402::{State, control, mode};
 use protocol::epos2::device_error::Reaction;
 use protocol::epos2::objects::{self, Object};
 
-use super::brake::Standstill;
+use super::brake::StandstillTimer;
 use super::node::Node;
 use super::position_mode::PositionMode;
 
@@ -22,15 +22,15 @@ pub(super) enum Sequence {
     /// The demand comes to rest, then the shaft, the brake closes, then the power goes off.
     Leaving {
         to: State,
-        step: Step,
+        step: LeavingStep,
     },
 }
 
 /// What a [`Sequence::Leaving`] waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum LeavingStep {
     /// The shaft to stand: how long it has, and how long that was waited for.
-    Standstill(Standstill),
+    StandstillTimer(StandstillTimer),
     /// The brake to close.
     Brake { left_ms: u16 },
 }
@@ -39,7 +39,7 @@ impl Sequence {
     const fn leaving(to: State) -> Self {
         Self::Leaving {
             to,
-            step: Step::Standstill(Standstill::NONE),
+            step: LeavingStep::StandstillTimer(StandstillTimer::NONE),
         }
     }
 }
@@ -49,7 +49,7 @@ const MEASURE_MS: u16 = 2;
 
 /// The commands of the controlword.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Command {
+enum ControlCommand {
     Shutdown,
     SwitchOn,
     EnableOperation,
@@ -57,7 +57,7 @@ enum Command {
     QuickStop,
 }
 
-impl Command {
+impl ControlCommand {
     /// Bits 0 to 3; `None` with bit 7 set, which is "fault reset" alone.
     fn of(word: u16) -> Option<Self> {
         let has = |bits| word & bits == bits;
@@ -89,7 +89,7 @@ impl Node {
             }
             return;
         }
-        if let Some(command) = Command::of(word) {
+        if let Some(command) = ControlCommand::of(word) {
             self.transition(command);
         }
         if self.state == State::OperationEnabled && self.sequence == Sequence::Idle {
@@ -102,8 +102,8 @@ impl Node {
         }
     }
 
-    fn transition(&mut self, command: Command) {
-        use Command as C;
+    fn transition(&mut self, command: ControlCommand) {
+        use ControlCommand as C;
         use State as S;
         match (self.state, command) {
             (S::SwitchOnDisabled, C::Shutdown) => self.state = S::ReadyToSwitchOn,
@@ -219,7 +219,7 @@ impl Node {
             self.power_off(State::FaultReactionDisabled);
             self.sequence = Sequence::Leaving {
                 to: State::Fault,
-                step: Step::Brake { left_ms: 0 },
+                step: LeavingStep::Brake { left_ms: 0 },
             };
             return;
         };
@@ -254,31 +254,31 @@ impl Node {
             Sequence::Leaving { .. } if self.generator.is_moving() => {}
             Sequence::Leaving {
                 to,
-                step: Step::Standstill(mut standstill),
+                step: LeavingStep::StandstillTimer(mut standstill),
             } => {
                 let step = if self.stands(&mut standstill) {
                     self.brake_released = false;
                     match self.brake_fall_ms() {
                         0 => return self.power_off(to),
-                        fall => Step::Brake { left_ms: fall - 1 },
+                        fall => LeavingStep::Brake { left_ms: fall - 1 },
                     }
                 } else {
-                    Step::Standstill(standstill)
+                    LeavingStep::StandstillTimer(standstill)
                 };
                 self.sequence = Sequence::Leaving { to, step };
             }
             Sequence::Leaving {
                 to,
-                step: Step::Brake { left_ms: 0 },
+                step: LeavingStep::Brake { left_ms: 0 },
             } => self.power_off(to),
             Sequence::Leaving {
                 to,
-                step: Step::Brake { left_ms },
+                step: LeavingStep::Brake { left_ms },
             } => {
                 let left_ms = left_ms - 1;
                 self.sequence = Sequence::Leaving {
                     to,
-                    step: Step::Brake { left_ms },
+                    step: LeavingStep::Brake { left_ms },
                 };
             }
         }

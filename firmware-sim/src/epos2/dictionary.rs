@@ -5,7 +5,7 @@
 use protocol::epos2::objects::{Address, Object, Scalar};
 
 use super::Abort;
-use super::entry::Entry;
+use super::entry::DictionaryEntry;
 use super::table::{COUNT, TABLE};
 
 /// Stored values, one an entry; the entries that are computed have one too, unused.
@@ -43,11 +43,11 @@ impl Dictionary {
     }
 
     /// The entry at `address`.
-    pub fn entry(address: Address) -> Result<&'static Entry, Abort> {
+    pub fn entry(address: Address) -> Result<&'static DictionaryEntry, Abort> {
         Self::place(address).map(|(_, entry)| entry)
     }
 
-    fn place(address: Address) -> Result<(usize, &'static Entry), Abort> {
+    fn place(address: Address) -> Result<(usize, &'static DictionaryEntry), Abort> {
         let found = TABLE.binary_search_by_key(&address, |entry| entry.address);
         // Not found, it would stand behind the other subindices of its index, of which each has 0.
         let before = found.unwrap_or_else(|at| at.saturating_sub(1));

@@ -45,7 +45,7 @@ impl Type {
 
 /// Who may do what with an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Access {
+pub(super) enum EntryAccess {
     /// Read; never changes.
     Const,
     /// Read.
@@ -60,12 +60,12 @@ pub(super) enum Access {
 
 /// One entry.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
+pub(super) struct DictionaryEntry {
     pub address: Address,
     /// The last subindex of a run of equal entries.
     pub last_sub: u8,
     pub ty: Type,
-    pub access: Access,
+    pub access: EntryAccess,
     /// As from the factory.
     pub default: i64,
     /// The factory value has the node id added.
@@ -77,8 +77,14 @@ pub(super) struct Entry {
 }
 
 /// An entry without limits of its own.
-pub(super) const fn entry(index: u16, sub: u8, ty: Type, access: Access, default: i64) -> Entry {
-    Entry {
+pub(super) const fn entry(
+    index: u16,
+    sub: u8,
+    ty: Type,
+    access: EntryAccess,
+    default: i64,
+) -> DictionaryEntry {
+    DictionaryEntry {
         address: Address { index, sub },
         last_sub: sub,
         ty,
@@ -91,7 +97,7 @@ pub(super) const fn entry(index: u16, sub: u8, ty: Type, access: Access, default
     }
 }
 
-impl Entry {
+impl DictionaryEntry {
     /// The same entry at all subindices up to `last_sub`.
     pub const fn to_sub(self, last_sub: u8) -> Self {
         Self { last_sub, ..self }
@@ -122,15 +128,15 @@ impl Entry {
 
     pub fn check_read(&self) -> Result<(), Abort> {
         match self.access {
-            Access::Wo => Err(Abort::WRITE_ONLY),
-            Access::Const | Access::Ro | Access::Rw | Access::Rww => Ok(()),
+            EntryAccess::Wo => Err(Abort::WRITE_ONLY),
+            EntryAccess::Const | EntryAccess::Ro | EntryAccess::Rw | EntryAccess::Rww => Ok(()),
         }
     }
 
     pub fn check_access(&self) -> Result<(), Abort> {
         match self.access {
-            Access::Const | Access::Ro => Err(Abort::READ_ONLY),
-            Access::Rw | Access::Rww | Access::Wo => Ok(()),
+            EntryAccess::Const | EntryAccess::Ro => Err(Abort::READ_ONLY),
+            EntryAccess::Rw | EntryAccess::Rww | EntryAccess::Wo => Ok(()),
         }
     }
 
@@ -160,11 +166,11 @@ impl Entry {
 
     /// Whether a PDO that the node sends may carry it.
     pub const fn is_sendable(&self) -> bool {
-        self.mappable && !matches!(self.access, Access::Wo)
+        self.mappable && !matches!(self.access, EntryAccess::Wo)
     }
 
     /// Whether a PDO that the node receives may carry it.
     pub const fn is_receivable(&self) -> bool {
-        self.mappable && matches!(self.access, Access::Rww | Access::Wo)
+        self.mappable && matches!(self.access, EntryAccess::Rww | EntryAccess::Wo)
     }
 }

@@ -15,13 +15,13 @@ pub(super) struct Errors {
     history: [u32; DEPTH],
     count: usize,
     /// Oldest first.
-    untold: [News; UNTOLD],
+    untold: [PendingEmergency; UNTOLD],
     untold_count: usize,
 }
 
 /// What an emergency message tells: an error, or with none that all are gone; and the register after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct News {
+pub(super) struct PendingEmergency {
     pub error: DeviceError,
     pub register: u8,
 }
@@ -52,13 +52,13 @@ impl Errors {
         }
         let register = self.register;
         if let Some(free) = self.untold.get_mut(self.untold_count) {
-            *free = News { error, register };
+            *free = PendingEmergency { error, register };
             self.untold_count += 1;
         }
     }
 
     /// The next that the bus has not been told.
-    pub fn next_news(&mut self) -> Option<News> {
+    pub fn next_news(&mut self) -> Option<PendingEmergency> {
         let news = *self.untold.first().filter(|_| self.untold_count > 0)?;
         self.untold.rotate_left(1);
         self.untold_count -= 1;

@@ -11,8 +11,8 @@ use protocol::epos2::objects::Address;
 use units::{Host, Span, Stamp};
 
 use super::Abort;
-use super::bus::Bus;
-use super::value::{LONGEST, Value};
+use super::bus::CanBus;
+use super::value::{LONGEST, ObjectValue};
 
 /// The client has no clock of its own: it waits until the bus has nothing more to say.
 type Client = SdoClient<LONGEST>;
@@ -20,17 +20,21 @@ const NOW: Stamp<Host> = Stamp::from_nanos(0);
 const WAITED: Stamp<Host> = Stamp::from_nanos(1);
 
 /// Reads an object of another node.
-pub(super) fn read(bus: &mut impl Bus, node: u8, address: Address) -> Result<Value, Abort> {
+pub(super) fn read(
+    bus: &mut impl CanBus,
+    node: u8,
+    address: Address,
+) -> Result<ObjectValue, Abort> {
     let outcome = transfer(bus, node, |client| client.read(address).is_ok())?;
     outcome
         .result
-        .map(|value| Value::of_bytes(&value.bytes))
+        .map(|value| ObjectValue::of_bytes(&value.bytes))
         .map_err(code)
 }
 
 /// Writes an object of another node.
 pub(super) fn write(
-    bus: &mut impl Bus,
+    bus: &mut impl CanBus,
     node: u8,
     address: Address,
     bytes: &[u8],
@@ -40,7 +44,7 @@ pub(super) fn write(
 }
 
 fn transfer(
-    bus: &mut impl Bus,
+    bus: &mut impl CanBus,
     node: u8,
     begin: impl FnOnce(&mut Client) -> bool,
 ) -> Result<Outcome<LONGEST>, Abort> {
@@ -80,7 +84,7 @@ fn code(error: TransferError) -> Abort {
 }
 
 /// Network management for other nodes; 0 is all.
-pub(super) fn nmt(bus: &mut impl Bus, node: u16, command: NmtCommand) {
+pub(super) fn nmt(bus: &mut impl CanBus, node: u16, command: NmtCommand) {
     let addressed = u8::try_from(node).ok().and_then(NodeId::new);
     if addressed.is_some() || node == 0 {
         let node = addressed;
@@ -89,7 +93,7 @@ pub(super) fn nmt(bus: &mut impl Bus, node: u16, command: NmtCommand) {
 }
 
 /// Puts a frame on the bus; what comes back because of it nobody has asked for.
-pub(super) fn send(bus: &mut impl Bus, request: &SendCanFrame) -> Result<(), Abort> {
+pub(super) fn send(bus: &mut impl CanBus, request: &SendCanFrame) -> Result<(), Abort> {
     let id = CobId::new(request.cob_id).ok_or(Abort::CAN_ID)?;
     let data = request.data.get(..usize::from(request.len));
     let frame = data
@@ -100,7 +104,7 @@ pub(super) fn send(bus: &mut impl Bus, request: &SendCanFrame) -> Result<(), Abo
 }
 
 /// Asks for a frame and returns its data, filled up with zeros.
-pub(super) fn request(bus: &mut impl Bus, request: &RequestCanFrame) -> Result<[u8; 8], Abort> {
+pub(super) fn request(bus: &mut impl CanBus, request: &RequestCanFrame) -> Result<[u8; 8], Abort> {
     let id = CobId::new(request.cob_id).ok_or(Abort::CAN_ID)?;
     let frame = u8::try_from(request.len)
         .ok()

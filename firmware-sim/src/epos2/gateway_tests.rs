@@ -5,13 +5,13 @@ use std::vec::Vec;
 
 use protocol::canopen::nmt::{NmtCommand, NmtState};
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, RequestCanFrame,
-    SegmentedRead, SegmentedWrite, SendCanFrame, WriteObject, WriteSegment,
+    GatewayNmt, InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, RequestCanFrame,
+    SegmentedRead, SegmentedWrite, SendCanFrame, SerialAnswer, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::rs232::encode_body;
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
-use protocol::epos2::{Bounded, CommError, DeviceError, Frame};
+use protocol::epos2::{Bounded, CommError, DeviceError, SerialFrame};
 
 use super::super::{CanServer, Neighbour, Node, NodeConfig, Rs232Server, UsbServer};
 
@@ -41,7 +41,7 @@ impl Bench {
         }
     }
 
-    fn ask(&mut self, request: &Frame) -> Frame {
+    fn ask(&mut self, request: &SerialFrame) -> SerialFrame {
         let [a, b] = &mut self.far;
         let [sa, sb] = &mut self.servers;
         let mut bus = (
@@ -83,8 +83,8 @@ impl Bench {
         WriteObject::parse_answer(&self.ask(&request.to_frame())).unwrap()
     }
 
-    fn error(&mut self, request: &Frame) -> CommError {
-        Answer::parse(&self.ask(request)).unwrap().error
+    fn error(&mut self, request: &SerialFrame) -> CommError {
+        SerialAnswer::parse(&self.ask(request)).unwrap().error
     }
 }
 
@@ -189,7 +189,7 @@ fn network_management_reaches_whom_it_names() {
     let mut tell = |node, command: NmtCommand| {
         assert_eq!(
             bench.error(
-                &Nmt {
+                &GatewayNmt {
                     node,
                     specifier: u16::from(command.to_u8())
                 }

@@ -3,8 +3,8 @@
 //! What the shaft makes of the demand is the shaft's business.
 
 use super::fixed::{Fine, MS, Speed, WORLD_END};
-use super::leg::Leg;
-use super::profile::{Limits, Profile, Unusable};
+use super::leg::ProfileLeg;
+use super::profile::{MotionLimits, TrapezoidalProfile, Unusable};
 
 /// The demand and where it goes.
 #[derive(Clone, Copy, Debug)]
@@ -12,17 +12,17 @@ pub(super) struct Generator {
     qc_per_turn: u32,
     position: Fine,
     speed: Speed,
-    motion: Motion,
+    motion: DemandMotion,
     /// Since the motion began: ms with 32 fractional bits.
     time: i128,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Motion {
+enum DemandMotion {
     Rest,
-    Profile(Profile),
+    TrapezoidalProfile(TrapezoidalProfile),
     /// To zero if the direction changes, to the speed; then on at this speed.
-    Ramp([Leg; 2]),
+    Ramp([ProfileLeg; 2]),
 }
 
 impl Generator {
@@ -31,7 +31,7 @@ impl Generator {
             qc_per_turn,
             position,
             speed: Speed::ZERO,
-            motion: Motion::Rest,
+            motion: DemandMotion::Rest,
             time: 0,
         }
     }
@@ -46,13 +46,13 @@ impl Generator {
     }
 
     pub const fn is_moving(&self) -> bool {
-        !matches!(self.motion, Motion::Rest)
+        !matches!(self.motion, DemandMotion::Rest)
     }
 
     /// Stands still at once, wherever it is.
     pub fn freeze(&mut self) {
         self.speed = Speed::ZERO;
-        self.motion = Motion::Rest;
+        self.motion = DemandMotion::Rest;
         self.time = 0;
     }
 
@@ -65,9 +65,9 @@ impl Generator {
     /// Moves what is under way as a whole, speeds unchanged. A profile, which ends at a place, stays.
     pub fn shift(&mut self, by: Fine) {
         match &mut self.motion {
-            Motion::Profile(_) => return,
-            Motion::Rest => {}
-            Motion::Ramp(legs) => {
+            DemandMotion::TrapezoidalProfile(_) => return,
+            DemandMotion::Rest => {}
+            DemandMotion::Ramp(legs) => {
                 for leg in legs {
                     leg.from = leg.from.saturating_add(by);
                 }
@@ -86,10 +86,11 @@ impl Generator {
     }
 
     /// Goes to `target`, from whatever it is doing now.
-    pub fn go_to(&mut self, target: Fine, limits: Limits) -> Result<(), Unusable> {
+    pub fn go_to(&mut self, target: Fine, limits: MotionLimits) -> Result<(), Unusable> {
         let target = target.clamp(-WORLD_END, WORLD_END);
-        let profile = Profile::plan(self.position, self.speed, target, limits, self.qc_per_turn)?;
-        self.begin(Motion::Profile(profile));
+        let profile =
+            TrapezoidalProfile::plan(self.position, self.speed, target, limits, self.qc_per_turn)?;
+        self.begin(DemandMotion::TrapezoidalProfile(profile));
         Ok(())
     }
 
@@ -106,7 +107,7 @@ impl Generator {
         }
         let reverses = self.speed.0.signum() * speed.0.signum() < 0;
         let turn = if reverses { Speed::ZERO } else { self.speed };
-        let stop = Leg::change(self.position, self.speed, turn, deceleration);
+        let stop = ProfileLeg::change(self.position, self.speed, turn, deceleration);
         let from = if reverses {
             stop.finish(self.qc_per_turn)
         } else {
@@ -114,11 +115,11 @@ impl Generator {
         };
         let slows = speed.0.unsigned_abs() < turn.0.unsigned_abs();
         let rate = if slows { deceleration } else { acceleration };
-        let change = Leg::change(from, turn, speed, rate);
-        self.begin(Motion::Ramp([stop, change]));
+        let change = ProfileLeg::change(from, turn, speed, rate);
+        self.begin(DemandMotion::Ramp([stop, change]));
     }
 
-    fn begin(&mut self, motion: Motion) {
+    fn begin(&mut self, motion: DemandMotion) {
         self.motion = motion;
         self.time = 0;
     }
@@ -127,8 +128,8 @@ impl Generator {
     pub fn step(&mut self) {
         self.time += MS;
         let (position, speed) = match &self.motion {
-            Motion::Rest => return,
-            Motion::Profile(profile) => match profile.at(self.time) {
+            DemandMotion::Rest => return,
+            DemandMotion::TrapezoidalProfile(profile) => match profile.at(self.time) {
                 Some(now) => now,
                 None => {
                     self.position = profile.target();
@@ -136,7 +137,7 @@ impl Generator {
                     return;
                 }
             },
-            Motion::Ramp(legs) => {
+            DemandMotion::Ramp(legs) => {
                 let now = self.on_ramp(legs);
                 if now.1 == Speed::ZERO && self.time >= legs[0].duration + legs[1].duration {
                     self.position = now.0.clamp(-WORLD_END, WORLD_END);
@@ -153,7 +154,7 @@ impl Generator {
         }
     }
 
-    fn on_ramp(&self, [stop, change]: &[Leg; 2]) -> (Fine, Speed) {
+    fn on_ramp(&self, [stop, change]: &[ProfileLeg; 2]) -> (Fine, Speed) {
         if self.time < stop.duration {
             return stop.at(self.time, self.qc_per_turn);
         }
@@ -162,7 +163,7 @@ impl Generator {
             return change.at(time, self.qc_per_turn);
         }
         let from = change.finish(self.qc_per_turn);
-        Leg::cruise(from, change.end, 0).at(time - change.duration, self.qc_per_turn)
+        ProfileLeg::cruise(from, change.end, 0).at(time - change.duration, self.qc_per_turn)
     }
 }
 

@@ -6,7 +6,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::super::fixed::{FINE_PER_QC, MS, Speed, fine};
-use super::super::profile::Limits;
+use super::super::profile::MotionLimits;
 use super::Generator;
 
 const QC_PER_TURN: u32 = 2000;
@@ -135,23 +135,23 @@ fn rpm() -> impl Strategy<Value = i32> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Motion {
+struct DemandMotion {
     speed_rpm: i32,
     a: u32,
     d: u32,
 }
 
-fn motion() -> impl Strategy<Value = Motion> {
-    (rpm(), rate(), rate(), any::<bool>()).prop_map(|(speed_rpm, a, d, same)| Motion {
+fn motion() -> impl Strategy<Value = DemandMotion> {
+    (rpm(), rate(), rate(), any::<bool>()).prop_map(|(speed_rpm, a, d, same)| DemandMotion {
         speed_rpm,
         a,
         d: if same { a } else { d },
     })
 }
 
-impl Motion {
-    fn limits(self) -> Limits {
-        Limits {
+impl DemandMotion {
+    fn limits(self) -> MotionLimits {
+        MotionLimits {
             speed: Speed::from_rpm(self.speed_rpm),
             acceleration: self.a,
             deceleration: self.d,
@@ -169,7 +169,7 @@ impl Motion {
 }
 
 /// A generator on its way for so many milliseconds.
-fn under_way(first: i64, m: Motion, after: usize) -> Generator {
+fn under_way(first: i64, m: DemandMotion, after: usize) -> Generator {
     let mut generator = Generator::new(0, QC_PER_TURN);
     generator.go_to(fine(first), m.limits()).unwrap();
     for _ in 0..after {

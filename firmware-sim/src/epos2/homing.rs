@@ -1,6 +1,6 @@
 //! Homing mode (Firmware Specification, "Homing Mode"; methods as in CiA 402).
 //!
-//! What a [`Method`] looks for is found here: the edge of a switch, seen once a control cycle; a mechanical stop, where the current
+//! What a [`HomingMethod`] looks for is found here: the edge of a switch, seen once a control cycle; a mechanical stop, where the current
 //! reaches its threshold (2080); the index pulse beyond either, which is latched exactly. After detection the axis moves by the
 //! home offset (607C) from the reference, and that place gets the position 2081.
 
@@ -8,15 +8,15 @@ use protocol::epos2::cia402::{control, status};
 use protocol::epos2::objects::{self, input};
 
 use super::fixed::{Speed, fine, floor_qc};
-use super::homing_method::{Method, Search, method};
+use super::homing_method::{HomingMethod, ReferenceSearch, method};
 use super::node::Node;
-use super::profile::Limits;
+use super::profile::MotionLimits;
 
 /// What homing has under way and how the last one ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Homing {
+pub(super) struct HomingState {
     phase: Phase,
-    method: Method,
+    method: HomingMethod,
     attained: bool,
     failed: bool,
     /// Bit 10: standing still after homing or its interruption.
@@ -33,7 +33,7 @@ enum Phase {
     /// Interrupted: ramping down.
     Stopping,
     /// Towards the switch.
-    Search { direction: i32 },
+    ReferenceSearch { direction: i32 },
     /// Towards the mechanical stop.
     Press { direction: i32 },
     /// A limit switch was met before the home switch: back, until the home switch is met from behind.
@@ -46,7 +46,7 @@ enum Phase {
     Return { reference: i64 },
 }
 
-impl Homing {
+impl HomingState {
     /// Whether it moves the axis.
     pub fn is_active(&self) -> bool {
         !matches!(self.phase, Phase::Idle | Phase::Stopping)
@@ -90,15 +90,15 @@ impl Node {
     fn start_homing(&mut self) {
         let number = self.dictionary.get(objects::HOMING_METHOD);
         let chosen = method(number).unwrap_or_default();
-        self.homing = Homing {
+        self.homing = HomingState {
             method: chosen,
             last: floor_qc(self.shaft.position()),
-            ..Homing::default()
+            ..HomingState::default()
         };
         // 2210:2: only type 1 has an index channel.
         let no_index = self.dictionary.get(objects::SENSOR_TYPE) != 1;
         let rates = [self.homing_speed(true), self.homing_speed(false)];
-        let moves = chosen != Method::default();
+        let moves = chosen != HomingMethod::default();
         if chosen.index.is_some() && no_index
             || moves && (rates.contains(&Speed::ZERO) || self.homing_acceleration() == 0)
         {
@@ -106,14 +106,14 @@ impl Node {
             return;
         }
         match (chosen.search, chosen.index) {
-            (Some(Search::Switch { bit, direction }), _) if self.inputs & bit != 0 => {
+            (Some(ReferenceSearch::Switch { bit, direction }), _) if self.inputs & bit != 0 => {
                 self.leave_switch(-direction, false);
             }
-            (Some(Search::Switch { direction, .. }), _) => {
+            (Some(ReferenceSearch::Switch { direction, .. }), _) => {
                 self.run(direction, true);
-                self.homing.phase = Phase::Search { direction };
+                self.homing.phase = Phase::ReferenceSearch { direction };
             }
-            (Some(Search::Stop { direction }), _) => {
+            (Some(ReferenceSearch::Stop { direction }), _) => {
                 self.run(direction, true);
                 self.homing.phase = Phase::Press { direction };
             }
@@ -156,7 +156,7 @@ impl Node {
             }
             // Only the end of the world stops the shaft in these.
             _ if !moving => self.fail_homing(),
-            Phase::Search { direction } => self.search(direction),
+            Phase::ReferenceSearch { direction } => self.search(direction),
             Phase::Press { direction } => self.watch_current(direction, now),
             Phase::Back { direction } => self.search_back(direction),
             Phase::Leave { direction, on } => self.watch_edge(direction, on, now),
@@ -251,7 +251,7 @@ impl Node {
     fn return_to(&mut self, reference: i64) {
         let offset = self.dictionary.get(objects::HOME_OFFSET);
         let acceleration = self.homing_acceleration();
-        let limits = Limits {
+        let limits = MotionLimits {
             speed: self.homing_speed(true),
             acceleration,
             deceleration: acceleration,

@@ -4,36 +4,36 @@ use protocol::epos2::objects::input;
 
 /// How a reference is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Method {
+pub(super) struct HomingMethod {
     /// What is looked for first.
-    pub search: Option<Search>,
+    pub search: Option<ReferenceSearch>,
     /// Direction of the way to the index pulse, which is the reference then.
     pub index: Option<i32>,
 }
 
 /// What is looked for; directions are 1 and -1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Search {
+pub(super) enum ReferenceSearch {
     /// A switch: its bit in 2071. Its edge is met on the way back.
     Switch { bit: u16, direction: i32 },
     /// A mechanical stop.
     Stop { direction: i32 },
 }
 
-impl Method {
+impl HomingMethod {
     /// The switch that is looked for; 0 for none.
     pub const fn switch_bit(&self) -> u16 {
         match self.search {
-            Some(Search::Switch { bit, .. }) => bit,
-            Some(Search::Stop { .. }) | None => 0,
+            Some(ReferenceSearch::Switch { bit, .. }) => bit,
+            Some(ReferenceSearch::Stop { .. }) | None => 0,
         }
     }
 }
 
 /// The method of a number; `None` for one that the unit does not have.
-pub(super) fn method(number: i8) -> Option<Method> {
-    let switch = |bit, direction| Some(Search::Switch { bit, direction });
-    let stop = |direction| Some(Search::Stop { direction });
+pub(super) fn method(number: i8) -> Option<HomingMethod> {
+    let switch = |bit, direction| Some(ReferenceSearch::Switch { bit, direction });
+    let stop = |direction| Some(ReferenceSearch::Stop { direction });
     let (search, index) = match number {
         0 | 35 => (None, None),
         1 => (switch(input::NEGATIVE_LIMIT, -1), Some(1)),
@@ -52,7 +52,7 @@ pub(super) fn method(number: i8) -> Option<Method> {
         -4 => (stop(-1), None),
         _ => return None,
     };
-    Some(Method { search, index })
+    Some(HomingMethod { search, index })
 }
 
 /// Whether a value may be written to 6098.

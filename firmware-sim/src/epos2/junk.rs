@@ -2,9 +2,9 @@
 
 /// A small generator of arbitrary numbers (splitmix64).
 #[derive(Clone, Debug)]
-pub(super) struct Junk(u64);
+pub(super) struct GarbageGenerator(u64);
 
-impl Junk {
+impl GarbageGenerator {
     pub const fn new(seed: u64) -> Self {
         Self(seed)
     }

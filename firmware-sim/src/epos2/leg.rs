@@ -4,7 +4,7 @@ use super::fixed::{BITS, Fine, Speed, distance, div_ceil};
 
 /// Constant acceleration from `from` and `start` until `end` is reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Leg {
+pub(super) struct ProfileLeg {
     pub from: Fine,
     pub start: Speed,
     pub end: Speed,
@@ -14,7 +14,7 @@ pub(super) struct Leg {
     pub duration: i128,
 }
 
-impl Leg {
+impl ProfileLeg {
     /// A change of speed. An acceleration of 0 is taken for 1.
     pub fn change(from: Fine, start: Speed, end: Speed, acceleration: u32) -> Self {
         let acceleration = acceleration.max(1);

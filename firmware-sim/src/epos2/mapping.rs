@@ -5,7 +5,7 @@
 //! keeps it works with both.
 
 use protocol::canopen::CanId;
-use protocol::canopen::pdo::{CommunicationId, Layout, LayoutError, MAX_ENTRIES, Mapping};
+use protocol::canopen::pdo::{CommunicationId, LayoutError, MAX_ENTRIES, MappedObject, PdoLayout};
 use protocol::epos2::Bounded;
 use protocol::epos2::objects::Address;
 
@@ -31,16 +31,16 @@ pub(super) fn identifier(dictionary: &Dictionary, index: u16) -> CommunicationId
 }
 
 /// What the PDO whose parameters stand at `index` carries: nothing, if its entries do not go together.
-pub(super) fn layout(dictionary: &Dictionary, index: u16) -> Layout {
+pub(super) fn layout(dictionary: &Dictionary, index: u16) -> PdoLayout {
     let mapping = index + TO_MAPPING;
     let count = dictionary.raw(Address::new(mapping, 0)) as u8;
-    Layout::new(&entries(dictionary, mapping, count)).unwrap_or_default()
+    PdoLayout::new(&entries(dictionary, mapping, count)).unwrap_or_default()
 }
 
-fn entries(dictionary: &Dictionary, mapping: u16, count: u8) -> Bounded<Mapping, MAX_ENTRIES> {
+fn entries(dictionary: &Dictionary, mapping: u16, count: u8) -> Bounded<MappedObject, MAX_ENTRIES> {
     let mut entries = Bounded::new();
     let raw = (1..=count).map(|sub| dictionary.raw(Address::new(mapping, sub)));
-    entries.extend(raw.map(Mapping::from_u32));
+    entries.extend(raw.map(MappedObject::from_u32));
     entries
 }
 
@@ -55,14 +55,14 @@ pub(super) fn check(dictionary: &Dictionary, address: Address, raw: u32) -> Resu
         _ if identifier(dictionary, index - TO_MAPPING).valid => Err(Abort::STATE),
         (_, 0) => {
             let entries = entries(dictionary, index, raw as u8);
-            match Layout::new(&entries) {
+            match PdoLayout::new(&entries) {
                 Ok(_) => Ok(()),
                 Err(LayoutError::Empty { .. }) => Err(Abort::PDO_MAPPING),
                 Err(_) => Err(Abort::PDO_LENGTH),
             }
         }
         _ if dictionary.raw(Address::new(index, 0)) != 0 => Err(Abort::STATE),
-        (direction, _) => check_entry(Mapping::from_u32(raw), direction == TRANSMIT_MAPPING),
+        (direction, _) => check_entry(MappedObject::from_u32(raw), direction == TRANSMIT_MAPPING),
     }
 }
 
@@ -84,7 +84,7 @@ fn check_identifier(old: CommunicationId, raw: u32) -> Result<(), Abort> {
 }
 
 /// Whether an object may be mapped, in its whole length; 0 is no object.
-fn check_entry(mapping: Mapping, sent: bool) -> Result<(), Abort> {
+fn check_entry(mapping: MappedObject, sent: bool) -> Result<(), Abort> {
     if mapping.to_u32() == 0 {
         return Ok(());
     }

@@ -2,7 +2,7 @@
 //!
 //! [`Node`] is the unit: an object dictionary, the CiA 402 state machine and a profile generator that run at 1 kHz in integer
 //! arithmetic, one [`Node::tick`] a millisecond. [`UsbServer`] and [`Rs232Server`] answer the frames of its serial interfaces,
-//! [`CanServer`] those of a CAN bus, [`SlcanServer`] the same through a serial CAN adapter. A [`Bus`] is what its gateway reaches.
+//! [`CanServer`] those of a CAN bus, [`SlcanServer`] the same through a serial CAN adapter. A [`CanBus`] is what its gateway reaches.
 //! Facts are from the EPOS2 Firmware Specification and Communication Guide; where they are silent the choice is said in a comment.
 //!
 //! Left out: the modes a tilt axis has no use for, and everything electrical. The shaft follows its demand exactly unless the
@@ -43,16 +43,16 @@ mod usb;
 mod value;
 mod velocity_mode;
 
-pub use brake::Brake;
-pub use bus::{Bus, Neighbour};
+pub use brake::BrakeState;
+pub use bus::{CanBus, Neighbour};
 pub use can::CanServer;
-pub use config::{Identity, MAX_SWITCHES, NodeConfig, Region, Servo, Switch};
-pub use node::{Node, Segment};
+pub use config::{MAX_SWITCHES, NodeConfig, Region, Servo, Switch, UnitIdentity};
+pub use node::{Node, ShaftSegment};
 pub use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
 pub use rs232::Rs232Server;
 pub use slcan::SlcanServer;
 pub use usb::UsbServer;
-pub use value::Value;
+pub use value::ObjectValue;
 
 /// Why the dictionary refuses an access: the code that a serial answer or an SDO abort carries.
 pub type Abort = protocol::epos2::CommError;

@@ -7,13 +7,13 @@ use super::node::Node;
 
 /// Where in its life on the network a node is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Network {
+pub(super) struct NetworkState {
     state: NmtState,
     /// How often the communication has started, power-on included.
     starts: u32,
 }
 
-impl Network {
+impl NetworkState {
     /// Just switched on: nobody has started the node.
     pub const fn at_power_on() -> Self {
         Self {

@@ -11,17 +11,17 @@ use super::dictionary::Dictionary;
 use super::errors::Errors;
 use super::fixed::{fine, floor_qc, q32};
 use super::generator::Generator;
-use super::homing::Homing;
-use super::network::Network;
+use super::homing::HomingState;
+use super::network::NetworkState;
 use super::objects::is_powered;
 use super::position_mode::PositionMode;
-use super::shaft::Shaft;
+use super::shaft::MotorShaft;
 use super::storage::factory;
 use super::velocity_mode::VelocityMode;
 
 /// The shaft's way through one millisecond, a straight line; world positions in 2^-32 qc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Segment {
+pub struct ShaftSegment {
     /// At the beginning of the millisecond.
     pub start: i64,
     /// At its end, which is the beginning of the next.
@@ -41,7 +41,7 @@ pub struct Node {
     /// The demand.
     pub(super) generator: Generator,
     /// What follows it.
-    pub(super) shaft: Shaft,
+    pub(super) shaft: MotorShaft,
     pub(super) state: State,
     pub(super) controlword: u16,
     pub(super) sequence: Sequence,
@@ -55,13 +55,13 @@ pub struct Node {
     pub(super) lost_demand: bool,
     pub(super) position_mode: PositionMode,
     pub(super) velocity_mode: VelocityMode,
-    pub(super) homing: Homing,
+    pub(super) homing: HomingState,
     /// 2071:1 as of the last control cycle.
     pub(super) inputs: u16,
-    pub(super) network: Network,
+    pub(super) network: NetworkState,
     /// The node id in use: that of 2000 at power-on.
     id: u8,
-    segment: Segment,
+    segment: ShaftSegment,
     ticks: u64,
     phase_us: u32,
     timestamp_base_us: u32,
@@ -72,15 +72,20 @@ impl Node {
     #[must_use]
     pub fn new(config: NodeConfig) -> Self {
         let saved = factory(&config);
-        let shaft = Shaft::new(
+        let shaft = MotorShaft::new(
             fine(config.initial_position.into()),
             config.hard_stops,
             config.servo,
         );
-        Self::boot(config, saved, shaft, Network::at_power_on())
+        Self::boot(config, saved, shaft, NetworkState::at_power_on())
     }
 
-    fn boot(config: NodeConfig, saved: Dictionary, shaft: Shaft, network: Network) -> Self {
+    fn boot(
+        config: NodeConfig,
+        saved: Dictionary,
+        shaft: MotorShaft,
+        network: NetworkState,
+    ) -> Self {
         let qc_per_turn = saved.get(objects::ENCODER_LINES).saturating_mul(4);
         let at = q32(shaft.position());
         let mut node = Self {
@@ -96,11 +101,11 @@ impl Node {
             lost_demand: false,
             position_mode: PositionMode::default(),
             velocity_mode: VelocityMode::default(),
-            homing: Homing::default(),
+            homing: HomingState::default(),
             inputs: 0,
             network,
             id: saved.get(objects::NODE_ID),
-            segment: Segment { start: at, end: at },
+            segment: ShaftSegment { start: at, end: at },
             ticks: 0,
             phase_us: 0,
             timestamp_base_us: 0,
@@ -144,12 +149,12 @@ impl Node {
             .follow(self.generator.position(), self.generator.qc_per_turn());
         self.follow_shaft();
         let end = q32(self.shaft.position());
-        self.segment = Segment { start, end };
+        self.segment = ShaftSegment { start, end };
     }
 
     /// The shaft's way in the millisecond that the last [`Node::tick`] began.
     #[must_use]
-    pub const fn segment(&self) -> Segment {
+    pub const fn segment(&self) -> ShaftSegment {
         self.segment
     }
 
@@ -215,7 +220,7 @@ impl Node {
 
     /// The encoder's count at this instant, world qc.
     fn world_count(&self) -> i64 {
-        let Segment { start, end } = self.segment;
+        let ShaftSegment { start, end } = self.segment;
         let moved = (i128::from(end) - i128::from(start)) * i128::from(self.phase_us) / 1000;
         ((i128::from(start) + moved) >> 32) as i64
     }

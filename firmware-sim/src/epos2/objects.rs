@@ -10,7 +10,7 @@ use super::dictionary::Dictionary;
 use super::entry::Type;
 use super::node::Node;
 use super::storage::{RESTORE_COB_IDS, RESTORE_FACTORY};
-use super::value::Value;
+use super::value::ObjectValue;
 
 /// Encoder counter.
 const ENCODER_COUNTER: Address = Address::new(0x2020, 0);
@@ -33,17 +33,17 @@ impl Node {
     /// # Errors
     /// [`Abort::NO_OBJECT`], [`Abort::NO_SUB`], [`Abort::WRITE_ONLY`]; [`Abort::STATE`] for the data recorder's buffer, as
     /// nothing is ever recorded.
-    pub fn read(&self, address: Address) -> Result<Value, Abort> {
+    pub fn read(&self, address: Address) -> Result<ObjectValue, Abort> {
         let entry = Dictionary::entry(address)?;
         entry.check_read()?;
         match entry.ty {
-            Type::Text => Ok(Value::text("EPOS2")),
+            Type::Text => Ok(ObjectValue::text("EPOS2")),
             Type::Domain => Err(Abort::STATE),
             ty => {
                 let raw = self
                     .computed(address)
                     .unwrap_or_else(|| self.dictionary.raw(address).into());
-                Ok(Value::number(ty, raw))
+                Ok(ObjectValue::number(ty, raw))
             }
         }
     }

@@ -7,7 +7,7 @@ use protocol::epos2::objects;
 
 use super::fixed::{Speed, fine, floor_qc};
 use super::node::Node;
-use super::profile::Limits;
+use super::profile::MotionLimits;
 
 /// What the mode has under way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,9 +102,9 @@ impl Node {
     }
 
     /// Profile velocity and accelerations within their limits (607F, 6410:4, 60C5).
-    fn move_limits(&self) -> Limits {
+    fn move_limits(&self) -> MotionLimits {
         let speed = self.dictionary.get(objects::PROFILE_VELOCITY);
-        Limits {
+        MotionLimits {
             speed: self.speed_within_limits(speed),
             acceleration: self.acceleration(objects::PROFILE_ACCELERATION),
             deceleration: self.acceleration(objects::PROFILE_DECELERATION),

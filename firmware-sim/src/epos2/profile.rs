@@ -5,11 +5,11 @@
 //! for the cruise speed becomes a triangle. Not here: the sinusoidal profile (type 1) and the limits' sources (607F, 60C5).
 
 use super::fixed::{BITS, Fine, MS, Speed, distance, div_ceil};
-use super::leg::Leg;
+use super::leg::ProfileLeg;
 
 /// What a move may not exceed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Limits {
+pub(super) struct MotionLimits {
     /// Cruise speed, above zero.
     pub speed: Speed,
     /// rpm/s, above zero.
@@ -25,10 +25,10 @@ pub(super) struct Unusable;
 
 /// A move that ends at rest on its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Profile {
+pub(super) struct TrapezoidalProfile {
     qc_per_turn: u32,
     /// Brake to zero, change to the cruise speed, cruise; those not needed last no time.
-    legs: [Leg; 3],
+    legs: [ProfileLeg; 3],
     landing: Landing,
 }
 
@@ -48,24 +48,24 @@ struct Landing {
 /// The longest move, ms.
 const LONGEST: i128 = (1 << 31) * MS;
 
-impl Profile {
+impl TrapezoidalProfile {
     /// The move from `from`, where the speed is `speed`, to `target`.
     pub fn plan(
         from: Fine,
         speed: Speed,
         target: Fine,
-        limits: Limits,
+        limits: MotionLimits,
         qc_per_turn: u32,
     ) -> Result<Self, Unusable> {
         if limits.speed <= Speed::ZERO || limits.acceleration == 0 || limits.deceleration == 0 {
             return Err(Unusable);
         }
-        let brake = Leg::change(from, speed, Speed::ZERO, limits.deceleration);
+        let brake = ProfileLeg::change(from, speed, Speed::ZERO, limits.deceleration);
         let standstill = brake.finish(qc_per_turn);
         let (brake, from, entry) = if overshoots(from, speed, standstill, target) {
             (brake, standstill, Speed::ZERO)
         } else {
-            (Leg::default(), from, Speed(speed.0.abs()))
+            (ProfileLeg::default(), from, Speed(speed.0.abs()))
         };
         let profile = Self::onward(brake, from, entry, target, limits, qc_per_turn);
         if profile.duration() > LONGEST {
@@ -76,11 +76,11 @@ impl Profile {
 
     /// The part after braking: `target` is ahead, far enough to stop from `entry`, a speed towards it.
     fn onward(
-        brake: Leg,
+        brake: ProfileLeg,
         from: Fine,
         entry: Speed,
         target: Fine,
-        limits: Limits,
+        limits: MotionLimits,
         qc_per_turn: u32,
     ) -> Self {
         let forward = target >= from;
@@ -92,7 +92,7 @@ impl Profile {
         } else {
             limits.acceleration
         };
-        let change = Leg::change(from, signed(entry), signed(peak), acceleration);
+        let change = ProfileLeg::change(from, signed(entry), signed(peak), acceleration);
         let cruise_from = change.finish(qc_per_turn);
         let work = peak.squared() / i128::from(limits.deceleration);
         let landing_length = distance(work, qc_per_turn);
@@ -109,7 +109,7 @@ impl Profile {
             legs: [
                 brake,
                 change,
-                Leg::cruise(cruise_from, signed(peak), duration),
+                ProfileLeg::cruise(cruise_from, signed(peak), duration),
             ],
             landing: Landing {
                 target,
@@ -172,7 +172,7 @@ fn overshoots(from: Fine, speed: Speed, standstill: Fine, target: Fine) -> bool 
 /// The highest speed of a move of `length` position units entered at `entry`.
 ///
 /// With `w = length / qc_per_turn`, the move's work: `(peak^2 - entry^2) / a + peak^2 / d <= w`.
-fn peak(length: i128, entry: Speed, limits: Limits, qc_per_turn: u32) -> Speed {
+fn peak(length: i128, entry: Speed, limits: MotionLimits, qc_per_turn: u32) -> Speed {
     let (a, d) = (
         i128::from(limits.acceleration),
         i128::from(limits.deceleration),

@@ -6,12 +6,12 @@ use proptest::prelude::*;
 
 use super::super::fixed::{FINE_PER_QC, MAX_QC_PER_TURN, MS, Speed, WORLD_END, fine};
 use super::super::generator::Generator;
-use super::{Limits, Profile, Unusable};
+use super::{MotionLimits, TrapezoidalProfile, Unusable};
 
 const QC_PER_TURN: u32 = 2000;
 
-fn limits(speed_rpm: i32, acceleration: u32, deceleration: u32) -> Limits {
-    Limits {
+fn limits(speed_rpm: i32, acceleration: u32, deceleration: u32) -> MotionLimits {
+    MotionLimits {
         speed: Speed::from_rpm(speed_rpm),
         acceleration,
         deceleration,
@@ -29,7 +29,7 @@ struct Textbook {
 }
 
 impl Textbook {
-    fn new(from: f64, to: f64, l: Limits, qc_per_turn: u32) -> Self {
+    fn new(from: f64, to: f64, l: MotionLimits, qc_per_turn: u32) -> Self {
         let per_rpm = f64::from(qc_per_turn) / 60.0;
         let a = f64::from(l.acceleration) * per_rpm;
         let d = f64::from(l.deceleration) * per_rpm;
@@ -81,7 +81,7 @@ fn qc(position: i64) -> f64 {
 fn run(
     generator: &mut Generator,
     target: i64,
-    l: Limits,
+    l: MotionLimits,
     most_ms: usize,
     mut each: impl FnMut(usize, f64),
 ) -> usize {
@@ -133,7 +133,8 @@ fn the_papers_sweep() {
 #[test]
 fn no_distance_takes_no_time() {
     let profile =
-        Profile::plan(fine(5), Speed::ZERO, fine(5), limits(1, 1, 1), QC_PER_TURN).unwrap();
+        TrapezoidalProfile::plan(fine(5), Speed::ZERO, fine(5), limits(1, 1, 1), QC_PER_TURN)
+            .unwrap();
     assert_eq!((profile.duration(), profile.at(0)), (0, None));
 }
 
@@ -146,13 +147,13 @@ fn what_never_ends_is_refused() {
         limits(-5, 1, 1),
     ] {
         assert_eq!(
-            Profile::plan(0, Speed::ZERO, fine(1), l, QC_PER_TURN),
+            TrapezoidalProfile::plan(0, Speed::ZERO, fine(1), l, QC_PER_TURN),
             Err(Unusable)
         );
     }
     // The whole range at 1 rpm: 2 years.
     assert_eq!(
-        Profile::plan(
+        TrapezoidalProfile::plan(
             fine(-(1 << 30)),
             Speed::ZERO,
             fine(1 << 30),
@@ -202,7 +203,7 @@ fn degenerate_profiles() {
     }
 }
 
-fn any_limits() -> impl Strategy<Value = Limits> {
+fn any_limits() -> impl Strategy<Value = MotionLimits> {
     // Log-uniform, so that slow and fast are equally likely.
     let power = |bits: u32| {
         (0..=bits, any::<u32>()).prop_map(move |(b, r)| (1u32 << b).max(r & ((2u32 << b) - 1)))
@@ -212,7 +213,7 @@ fn any_limits() -> impl Strategy<Value = Limits> {
 }
 
 /// A length the limits get over in some thousand milliseconds, so that 10,000 cases are a matter of seconds.
-fn shorten(length: i64, l: Limits) -> i64 {
+fn shorten(length: i64, l: MotionLimits) -> i64 {
     let per_rpm = f64::from(QC_PER_TURN) / 60.0;
     let slowest = f64::from(l.acceleration.min(l.deceleration)) * per_rpm;
     let v = f64::from(l.speed.to_rpm()) * per_rpm;
@@ -264,7 +265,7 @@ proptest! {
         for _ in 0..after {
             generator.step();
         }
-        let l = Limits { speed: l.speed.min(Speed::from_rpm(slower)), ..l };
+        let l = MotionLimits { speed: l.speed.min(Speed::from_rpm(slower)), ..l };
         generator.go_to(fine(second), l).unwrap();
         run(&mut generator, fine(second), l, 10_000_000, |_, _| {});
     }
@@ -297,7 +298,7 @@ proptest! {
 
 #[derive(Clone, Copy, Debug)]
 enum Order {
-    GoTo(i64, Limits),
+    GoTo(i64, MotionLimits),
     RunAt(i32, u32),
     Steps(u16),
 }

@@ -3,32 +3,32 @@
 //!
 //! Wire time at the baud rate belongs to the link, not here.
 
-use protocol::epos2::message::{Nmt, Request, SendCanFrame};
+use protocol::epos2::message::{GatewayNmt, SendCanFrame, SerialRequest};
 use protocol::epos2::rs232::{BodyDecoder, Bytes, FAILED, OKAY, encode_body};
-use protocol::epos2::{Frame, objects};
+use protocol::epos2::{SerialFrame, objects};
 
-use super::bus::Bus;
+use super::bus::CanBus;
 use super::node::Node;
-use super::service::Service;
+use super::service::CommandService;
 
 /// The RS232 side of a unit.
 #[derive(Clone, Debug)]
 pub struct Rs232Server {
-    turn: Turn,
-    service: Service,
+    turn: HandshakeState,
+    service: CommandService,
     /// When the last byte came.
     heard_us: u64,
 }
 
 /// Whose turn it is and for what.
 #[derive(Clone, Debug)]
-enum Turn {
+enum HandshakeState {
     /// The master's: an opcode.
     Opcode,
     /// The master's: the rest of its request.
     Body(BodyDecoder),
     /// The master's: whether it is ready for the answer.
-    Ready(Frame),
+    Ready(SerialFrame),
     /// The master's: whether it has understood the answer.
     Receipt,
 }
@@ -38,8 +38,8 @@ impl Rs232Server {
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self {
-            turn: Turn::Opcode,
-            service: Service::new(seed),
+            turn: HandshakeState::Opcode,
+            service: CommandService::new(seed),
             heard_us: 0,
         }
     }
@@ -55,78 +55,78 @@ impl Rs232Server {
     pub fn input_with_bus(
         &mut self,
         node: &mut Node,
-        bus: &mut impl Bus,
+        bus: &mut impl CanBus,
         bytes: &[u8],
         out: &mut impl FnMut(&[u8]),
     ) {
         let now_us = node.time_us();
         let timeout_us = 1000 * u64::from(node.dictionary.get(objects::RS232_FRAME_TIMEOUT));
         if now_us.saturating_sub(self.heard_us) > timeout_us {
-            self.turn = Turn::Opcode;
+            self.turn = HandshakeState::Opcode;
         }
         self.heard_us = now_us;
         for &byte in bytes {
-            let turn = core::mem::replace(&mut self.turn, Turn::Opcode);
+            let turn = core::mem::replace(&mut self.turn, HandshakeState::Opcode);
             self.turn = self.take(turn, byte, node, bus, out);
         }
     }
 
     fn take(
         &mut self,
-        turn: Turn,
+        turn: HandshakeState,
         byte: u8,
         node: &mut Node,
-        bus: &mut impl Bus,
+        bus: &mut impl CanBus,
         out: &mut impl FnMut(&[u8]),
-    ) -> Turn {
+    ) -> HandshakeState {
         match turn {
-            Turn::Opcode if Request::OPCODES.contains(&byte) => {
+            HandshakeState::Opcode if SerialRequest::OPCODES.contains(&byte) => {
                 out(&[OKAY]);
-                Turn::Body(BodyDecoder::new(byte))
+                HandshakeState::Body(BodyDecoder::new(byte))
             }
-            Turn::Opcode => {
+            HandshakeState::Opcode => {
                 out(&[FAILED]);
-                Turn::Opcode
+                HandshakeState::Opcode
             }
-            Turn::Body(mut decoder) => match decoder.push(byte) {
-                None => Turn::Body(decoder),
+            HandshakeState::Body(mut decoder) => match decoder.push(byte) {
+                None => HandshakeState::Body(decoder),
                 Some(Ok(request)) => {
                     out(&[OKAY]);
                     self.answer(&request, node, bus, out)
                 }
                 Some(Err(_)) => {
                     out(&[FAILED]);
-                    Turn::Opcode
+                    HandshakeState::Opcode
                 }
             },
-            Turn::Ready(answer) if byte == OKAY => {
+            HandshakeState::Ready(answer) if byte == OKAY => {
                 let mut body = Bytes::new();
                 // An answer always has words.
                 if encode_body(&answer, &mut body).is_err() {
-                    return Turn::Opcode;
+                    return HandshakeState::Opcode;
                 }
                 out(&body);
-                Turn::Receipt
+                HandshakeState::Receipt
             }
             // Refused, understood or not: the next byte is an opcode.
-            Turn::Ready(_) | Turn::Receipt => Turn::Opcode,
+            HandshakeState::Ready(_) | HandshakeState::Receipt => HandshakeState::Opcode,
         }
     }
 
     /// NMT and "send CAN frame" have no answer on RS232.
     fn answer(
         &mut self,
-        request: &Frame,
+        request: &SerialFrame,
         node: &mut Node,
-        bus: &mut impl Bus,
+        bus: &mut impl CanBus,
         out: &mut impl FnMut(&[u8]),
-    ) -> Turn {
+    ) -> HandshakeState {
         let answer = self.service.execute(node, bus, request);
-        if [Nmt::OPCODE, SendCanFrame::OPCODE].contains(&request.opcode) {
-            return Turn::Opcode;
+        if [GatewayNmt::OPCODE, SendCanFrame::OPCODE].contains(&request.opcode) {
+            return HandshakeState::Opcode;
         }
-        out(&[Frame::ANSWER]);
-        Turn::Ready(answer)
+        out(&[SerialFrame::ANSWER]);
+        HandshakeState::Ready(answer)
     }
 }
 

@@ -5,9 +5,9 @@ use std::vec::Vec;
 
 use proptest::prelude::*;
 use protocol::canopen::nmt::NmtCommand;
-use protocol::epos2::message::{Nmt, ReadObject, WriteObject};
+use protocol::epos2::message::{GatewayNmt, ReadObject, WriteObject};
 use protocol::epos2::rs232::{BodyDecoder, encode_body};
-use protocol::epos2::{DeviceError, Frame, objects};
+use protocol::epos2::{DeviceError, SerialFrame, objects};
 
 use super::super::{Node, NodeConfig};
 use super::Rs232Server;
@@ -28,7 +28,7 @@ fn send(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// The master's side of one exchange.
-fn ask(server: &mut Rs232Server, node: &mut Node, request: &Frame) -> Frame {
+fn ask(server: &mut Rs232Server, node: &mut Node, request: &SerialFrame) -> SerialFrame {
     assert_eq!(send(server, node, &[request.opcode]), b"O");
     let mut body = Vec::new();
     encode_body(request, &mut body).unwrap();
@@ -109,7 +109,7 @@ fn unknown_opcodes_and_damaged_bodies_are_refused() {
 #[test]
 fn network_management_has_no_answer() {
     let (mut server, mut node) = (Rs232Server::new(4), node());
-    let request = Nmt {
+    let request = GatewayNmt {
         node: 1,
         specifier: NmtCommand::Start.to_u8().into(),
     }

@@ -4,24 +4,25 @@
 
 use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, ReadSegment, Request,
-    RequestCanFrame, SegmentedRead, SegmentedWrite, WriteObject, WriteSegment,
+    GatewayNmt, InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, ReadSegment,
+    RequestCanFrame, SegmentedRead, SegmentedWrite, SerialAnswer, SerialRequest, WriteObject,
+    WriteSegment,
 };
 use protocol::epos2::objects::Address;
-use protocol::epos2::{Bounded, CommError, Frame};
+use protocol::epos2::{Bounded, CommError, SerialFrame};
 
 use super::Abort;
-use super::bus::Bus;
+use super::bus::CanBus;
 use super::dictionary::Dictionary;
 use super::gateway;
-use super::junk::Junk;
+use super::junk::GarbageGenerator;
 use super::node::Node;
-use super::value::{LONGEST, Value};
+use super::value::{LONGEST, ObjectValue};
 
 /// A serial interface's state between commands.
 #[derive(Clone, Debug)]
-pub(super) struct Service {
-    junk: Junk,
+pub(super) struct CommandService {
+    junk: GarbageGenerator,
     upload: Option<Upload>,
     download: Option<Download>,
 }
@@ -29,7 +30,7 @@ pub(super) struct Service {
 /// A segmented read under way. No value here is longer than a segment.
 #[derive(Clone, Copy, Debug)]
 struct Upload {
-    value: Value,
+    value: ObjectValue,
 }
 
 /// A segmented write under way.
@@ -42,41 +43,46 @@ struct Download {
     bytes: Bounded<u8, LONGEST>,
 }
 
-impl Service {
+impl CommandService {
     pub const fn new(seed: u64) -> Self {
         Self {
-            junk: Junk::new(seed),
+            junk: GarbageGenerator::new(seed),
             upload: None,
             download: None,
         }
     }
 
     /// Executes a request and returns its answer.
-    pub fn execute(&mut self, node: &mut Node, bus: &mut impl Bus, frame: &Frame) -> Frame {
-        let request = match Request::parse(frame) {
+    pub fn execute(
+        &mut self,
+        node: &mut Node,
+        bus: &mut impl CanBus,
+        frame: &SerialFrame,
+    ) -> SerialFrame {
+        let request = match SerialRequest::parse(frame) {
             Ok(Some(request)) => request,
             Ok(None) => return self.refuse(CommError::ILLEGAL_COMMAND),
             // The guide names no code for a known command of a wrong length.
             Err(_) => return self.refuse(CommError::LENGTH),
         };
         match request {
-            Request::ReadObject(it) => self.read(node, bus, it),
-            Request::WriteObject(it) => match write(node, bus, it) {
+            SerialRequest::ReadObject(it) => self.read(node, bus, it),
+            SerialRequest::WriteObject(it) => match write(node, bus, it) {
                 Ok(()) => WriteObject::answer(Ok(())),
                 Err(error) => self.refuse(error),
             },
-            Request::InitiateSegmentedRead(it) => self.begin_read(node, bus, it),
-            Request::SegmentedRead(it) => self.read_segment(it),
-            Request::InitiateSegmentedWrite(it) => self.begin_write(node, it),
-            Request::SegmentedWrite(SegmentedWrite(segment)) => {
+            SerialRequest::InitiateSegmentedRead(it) => self.begin_read(node, bus, it),
+            SerialRequest::SegmentedRead(it) => self.read_segment(it),
+            SerialRequest::InitiateSegmentedWrite(it) => self.begin_write(node, it),
+            SerialRequest::SegmentedWrite(SegmentedWrite(segment)) => {
                 self.write_segment(node, bus, &segment)
             }
-            Request::Nmt(it) => nmt(node, bus, it),
-            Request::SendCanFrame(it) => match gateway::send(bus, &it) {
-                Ok(()) => Answer::bare(CommError::NONE).to_frame(),
+            SerialRequest::GatewayNmt(it) => nmt(node, bus, it),
+            SerialRequest::SendCanFrame(it) => match gateway::send(bus, &it) {
+                Ok(()) => SerialAnswer::bare(CommError::NONE).to_frame(),
                 Err(error) => self.refuse(error),
             },
-            Request::RequestCanFrame(it) => match gateway::request(bus, &it) {
+            SerialRequest::RequestCanFrame(it) => match gateway::request(bus, &it) {
                 Ok(data) => RequestCanFrame::answer(Ok(data)),
                 Err(error) => self.refuse(error),
             },
@@ -84,8 +90,8 @@ impl Service {
     }
 
     /// The answer to a request that is not carried out, two words or four.
-    pub fn refuse(&mut self, error: CommError) -> Frame {
-        let mut answer = Answer::bare(error);
+    pub fn refuse(&mut self, error: CommError) -> SerialFrame {
+        let mut answer = SerialAnswer::bare(error);
         let junk = self.junk.next();
         if junk & 1 != 0 {
             answer
@@ -95,7 +101,7 @@ impl Service {
         answer.to_frame()
     }
 
-    fn read(&mut self, node: &Node, bus: &mut impl Bus, request: ReadObject) -> Frame {
+    fn read(&mut self, node: &Node, bus: &mut impl CanBus, request: ReadObject) -> SerialFrame {
         let outcome = read(node, bus, request.node, request.address);
         // A value longer than the answer has room for: the length of the parameter is the reason.
         match outcome.and_then(|value| Ok((value.raw().ok_or(Abort::TOO_LONG)?, value))) {
@@ -111,20 +117,20 @@ impl Service {
     fn begin_read(
         &mut self,
         node: &Node,
-        bus: &mut impl Bus,
+        bus: &mut impl CanBus,
         request: InitiateSegmentedRead,
-    ) -> Frame {
+    ) -> SerialFrame {
         self.upload = None;
         match read(node, bus, request.node, request.address) {
             Ok(value) => {
                 self.upload = Some(Upload { value });
-                Answer::bare(CommError::NONE).to_frame()
+                SerialAnswer::bare(CommError::NONE).to_frame()
             }
             Err(error) => self.refuse(error),
         }
     }
 
-    fn read_segment(&mut self, request: SegmentedRead) -> Frame {
+    fn read_segment(&mut self, request: SegmentedRead) -> SerialFrame {
         let Some(upload) = self.upload.take() else {
             return self.refuse(CommError::COMMAND);
         };
@@ -141,7 +147,7 @@ impl Service {
         }))
     }
 
-    fn begin_write(&mut self, node: &Node, request: InitiateSegmentedWrite) -> Frame {
+    fn begin_write(&mut self, node: &Node, request: InitiateSegmentedWrite) -> SerialFrame {
         self.download = None;
         // Another node is asked when all is there.
         let outcome = if is_local(node, request.node) {
@@ -160,7 +166,7 @@ impl Service {
                     toggle: false,
                     bytes: Bounded::new(),
                 });
-                Answer::bare(CommError::NONE).to_frame()
+                SerialAnswer::bare(CommError::NONE).to_frame()
             }
             Err(error) => self.refuse(error),
         }
@@ -169,9 +175,9 @@ impl Service {
     fn write_segment(
         &mut self,
         node: &mut Node,
-        bus: &mut impl Bus,
+        bus: &mut impl CanBus,
         segment: &WriteSegment,
-    ) -> Frame {
+    ) -> SerialFrame {
         let Some(mut download) = self.download.take() else {
             return self.refuse(CommError::COMMAND);
         };
@@ -205,7 +211,12 @@ const fn is_local(node: &Node, id: u8) -> bool {
     id == 0 || id == node.node_id()
 }
 
-fn read(node: &Node, bus: &mut impl Bus, id: u8, address: Address) -> Result<Value, Abort> {
+fn read(
+    node: &Node,
+    bus: &mut impl CanBus,
+    id: u8,
+    address: Address,
+) -> Result<ObjectValue, Abort> {
     if is_local(node, id) {
         node.read(address)
     } else {
@@ -215,7 +226,7 @@ fn read(node: &Node, bus: &mut impl Bus, id: u8, address: Address) -> Result<Val
 
 /// The command says nothing about the length of a value. For another node the unit needs to know it: what its own dictionary has,
 /// else four bytes.
-fn write(node: &mut Node, bus: &mut impl Bus, request: WriteObject) -> Result<(), Abort> {
+fn write(node: &mut Node, bus: &mut impl CanBus, request: WriteObject) -> Result<(), Abort> {
     let WriteObject {
         node: id,
         address,
@@ -231,7 +242,7 @@ fn write(node: &mut Node, bus: &mut impl Bus, request: WriteObject) -> Result<()
 }
 
 /// Network management is broadcast on the bus and has no errors. The unit hears what it says itself.
-fn nmt(node: &mut Node, bus: &mut impl Bus, request: Nmt) -> Frame {
+fn nmt(node: &mut Node, bus: &mut impl CanBus, request: GatewayNmt) -> SerialFrame {
     if let Ok(specifier) = u8::try_from(request.specifier) {
         let command = NmtCommand::from_u8(specifier);
         gateway::nmt(bus, request.node, command);
@@ -239,5 +250,5 @@ fn nmt(node: &mut Node, bus: &mut impl Bus, request: Nmt) -> Frame {
             node.nmt(command);
         }
     }
-    Answer::bare(CommError::NONE).to_frame()
+    SerialAnswer::bare(CommError::NONE).to_frame()
 }

@@ -14,7 +14,7 @@ const FASTEST_RPM: i64 = 26_000;
 
 /// Shaft, motor and encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Shaft {
+pub(super) struct MotorShaft {
     position: Fine,
     /// Where it would be if nothing held it; `None`: where its demand is.
     servo: Option<Follower>,
@@ -29,7 +29,7 @@ pub(super) struct Shaft {
     held: bool,
 }
 
-impl Shaft {
+impl MotorShaft {
     pub const fn new(position: Fine, stops: [Option<i32>; 2], servo: Option<Servo>) -> Self {
         let servo = match servo {
             Some(servo) => Some(Follower::new(servo, position)),
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn it_follows_until_a_stop_and_comes_back_from_it() {
-        let mut shaft = Shaft::new(0, [Some(-10), Some(10)], None);
+        let mut shaft = MotorShaft::new(0, [Some(-10), Some(10)], None);
         shaft.follow(fine(7), 2000);
         assert_eq!((shaft.position(), shaft.is_behind()), (fine(7), false));
         shaft.follow(fine(15), 2000);
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_jam_lets_go_no_faster_than_a_motor_turns() {
-        let mut shaft = Shaft::new(0, [None; 2], None);
+        let mut shaft = MotorShaft::new(0, [None; 2], None);
         shaft.jam(true);
         shaft.follow(fine(100_000), 2000);
         assert_eq!(shaft.position(), 0);
@@ -179,7 +179,7 @@ mod tests {
             natural_millihertz: 15_000,
             damping_permille: 800,
         };
-        let mut shaft = Shaft::new(0, [None, Some(7_000)], Some(servo));
+        let mut shaft = MotorShaft::new(0, [None, Some(7_000)], Some(servo));
         for ms in 1..=200 {
             shaft.follow(fine(37 * ms), 2000);
         }

@@ -5,7 +5,7 @@
 
 use protocol::canopen::CanFrame;
 use protocol::canopen::CanId;
-use protocol::canopen::slcan::{Command, CommandDecoder, Line, Reply};
+use protocol::canopen::slcan::{CommandDecoder, Line, SlcanCommand, SlcanReply};
 use protocol::epos2::Bounded;
 
 use super::can::CanServer;
@@ -20,14 +20,14 @@ const LONGEST_REPLY: usize = 128;
 #[derive(Clone, Debug, Default)]
 pub struct SlcanServer {
     decoder: CommandDecoder,
-    channel: Channel,
+    channel: AdapterChannel,
     stamps: bool,
     can: CanServer,
 }
 
 /// Whether frames pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Channel {
+enum AdapterChannel {
     #[default]
     Closed,
     /// From the bus only.
@@ -48,7 +48,7 @@ impl SlcanServer {
             match self.decoder.push(byte) {
                 None => {}
                 Some(Ok(command)) => self.execute(node, &command, out),
-                Some(Err(_)) => reply(&Reply::Refused, out),
+                Some(Err(_)) => reply(&SlcanReply::Refused, out),
             }
         }
     }
@@ -61,45 +61,45 @@ impl SlcanServer {
             .poll(node, &mut |frame| receive(channel, frame, stamp_ms, out));
     }
 
-    fn execute(&mut self, node: &mut Node, command: &Command, out: &mut impl FnMut(&[u8])) {
-        let closed = self.channel == Channel::Closed;
+    fn execute(&mut self, node: &mut Node, command: &SlcanCommand, out: &mut impl FnMut(&[u8])) {
+        let closed = self.channel == AdapterChannel::Closed;
         let answer = match command {
-            Command::Empty => Reply::Done,
-            Command::Bitrate(_) if closed => Reply::Done,
-            Command::Stamps(on) if closed => {
+            SlcanCommand::Empty => SlcanReply::Done,
+            SlcanCommand::Bitrate(_) if closed => SlcanReply::Done,
+            SlcanCommand::Stamps(on) if closed => {
                 self.stamps = *on;
-                Reply::Done
+                SlcanReply::Done
             }
-            Command::Open if closed => self.switch(Channel::Open),
-            Command::OpenListening if closed => self.switch(Channel::Listening),
-            Command::Close if !closed => self.switch(Channel::Closed),
-            Command::Status if !closed => Reply::Status(0),
-            Command::Version => Reply::Version(line(b"1013")),
-            Command::SerialNumber => Reply::SerialNumber(line(b"EPOS")),
-            Command::Transmit(frame) if self.channel == Channel::Open => {
+            SlcanCommand::Open if closed => self.switch(AdapterChannel::Open),
+            SlcanCommand::OpenListening if closed => self.switch(AdapterChannel::Listening),
+            SlcanCommand::Close if !closed => self.switch(AdapterChannel::Closed),
+            SlcanCommand::Status if !closed => SlcanReply::Status(0),
+            SlcanCommand::Version => SlcanReply::Version(line(b"1013")),
+            SlcanCommand::SerialNumber => SlcanReply::SerialNumber(line(b"EPOS")),
+            SlcanCommand::Transmit(frame) if self.channel == AdapterChannel::Open => {
                 reply(
                     match frame.id() {
-                        CanId::Standard(_) => &Reply::Sent,
-                        CanId::Extended(_) => &Reply::SentExtended,
+                        CanId::Standard(_) => &SlcanReply::Sent,
+                        CanId::Extended(_) => &SlcanReply::SentExtended,
                     },
                     out,
                 );
                 return self.transmit(node, frame, out);
             }
-            _ => Reply::Refused,
+            _ => SlcanReply::Refused,
         };
         reply(&answer, out);
     }
 
-    fn switch(&mut self, channel: Channel) -> Reply {
+    fn switch(&mut self, channel: AdapterChannel) -> SlcanReply {
         self.channel = channel;
-        Reply::Done
+        SlcanReply::Done
     }
 
     fn transmit(&mut self, node: &mut Node, frame: &CanFrame, out: &mut impl FnMut(&[u8])) {
         let stamp_ms = self.stamp_ms(node);
         self.can.input(node, frame, &mut |frame| {
-            receive(Channel::Open, frame, stamp_ms, out);
+            receive(AdapterChannel::Open, frame, stamp_ms, out);
         });
     }
 
@@ -111,14 +111,19 @@ impl SlcanServer {
 }
 
 /// A frame came from the bus.
-fn receive(channel: Channel, frame: &CanFrame, stamp_ms: Option<u16>, out: &mut impl FnMut(&[u8])) {
-    if channel != Channel::Closed {
+fn receive(
+    channel: AdapterChannel,
+    frame: &CanFrame,
+    stamp_ms: Option<u16>,
+    out: &mut impl FnMut(&[u8]),
+) {
+    if channel != AdapterChannel::Closed {
         let frame = *frame;
-        reply(&Reply::Received { frame, stamp_ms }, out);
+        reply(&SlcanReply::Received { frame, stamp_ms }, out);
     }
 }
 
-fn reply(reply: &Reply, out: &mut impl FnMut(&[u8])) {
+fn reply(reply: &SlcanReply, out: &mut impl FnMut(&[u8])) {
     let mut bytes = Bounded::<u8, LONGEST_REPLY>::new();
     reply.encode(&mut bytes);
     out(&bytes);

@@ -3,17 +3,17 @@
 //! Its timing (the FTDI's latency timer, the frames of USB) belongs to the link, not here.
 
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
-use protocol::epos2::{CommError, FrameError, objects};
+use protocol::epos2::{CommError, SerialFrameError, objects};
 
-use super::bus::Bus;
+use super::bus::CanBus;
 use super::node::Node;
-use super::service::Service;
+use super::service::CommandService;
 
 /// The USB side of a unit.
 #[derive(Clone, Debug)]
 pub struct UsbServer {
     decoder: UsbDecoder,
-    service: Service,
+    service: CommandService,
     /// When the frame under way last had a byte.
     heard_us: u64,
 }
@@ -24,7 +24,7 @@ impl UsbServer {
     pub fn new(seed: u64) -> Self {
         Self {
             decoder: UsbDecoder::new(),
-            service: Service::new(seed),
+            service: CommandService::new(seed),
             heard_us: 0,
         }
     }
@@ -41,7 +41,7 @@ impl UsbServer {
     pub fn input_with_bus(
         &mut self,
         node: &mut Node,
-        bus: &mut impl Bus,
+        bus: &mut impl CanBus,
         bytes: &[u8],
         out: &mut impl FnMut(&[u8]),
     ) {
@@ -54,7 +54,7 @@ impl UsbServer {
         for &byte in bytes {
             let answer = match self.decoder.push(byte) {
                 Some(Ok(request)) => self.service.execute(node, bus, &request),
-                Some(Err(FrameError::Crc { .. })) => self.service.refuse(CommError::CRC),
+                Some(Err(SerialFrameError::Crc { .. })) => self.service.refuse(CommError::CRC),
                 Some(Err(_)) | None => continue,
             };
             out(&to_bytes(&answer));

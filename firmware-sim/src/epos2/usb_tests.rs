@@ -6,12 +6,12 @@ use std::vec::Vec;
 use proptest::prelude::*;
 use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, RequestCanFrame,
-    SegmentedRead, SegmentedWrite, SendCanFrame, WriteObject, WriteSegment,
+    GatewayNmt, InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, RequestCanFrame,
+    SegmentedRead, SegmentedWrite, SendCanFrame, SerialAnswer, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
-use protocol::epos2::{Bounded, CommError, DeviceError, Frame};
+use protocol::epos2::{Bounded, CommError, DeviceError, SerialFrame};
 
 use super::super::{Node, NodeConfig};
 use super::UsbServer;
@@ -29,7 +29,7 @@ fn send(server: &mut UsbServer, node: &mut Node, bytes: &[u8]) -> Vec<Vec<u8>> {
     out
 }
 
-fn decode(bytes: &[u8]) -> Frame {
+fn decode(bytes: &[u8]) -> SerialFrame {
     let mut decoder = UsbDecoder::new();
     let mut frames: Vec<_> = bytes
         .iter()
@@ -40,18 +40,18 @@ fn decode(bytes: &[u8]) -> Frame {
 }
 
 /// Asks and returns the one answer.
-fn ask(server: &mut UsbServer, node: &mut Node, request: &Frame) -> Frame {
+fn ask(server: &mut UsbServer, node: &mut Node, request: &SerialFrame) -> SerialFrame {
     let answers = send(server, node, &to_bytes(request));
     assert_eq!(answers.len(), 1);
     decode(&answers[0])
 }
 
-fn read(id: u8, address: Address) -> Frame {
+fn read(id: u8, address: Address) -> SerialFrame {
     ReadObject { node: id, address }.to_frame()
 }
 
-fn refusal(frame: &Frame) -> CommError {
-    let answer = Answer::parse(frame).unwrap();
+fn refusal(frame: &SerialFrame) -> CommError {
+    let answer = SerialAnswer::parse(frame).unwrap();
     assert!(
         matches!(answer.data.len(), 0 | 2),
         "an error comes in two words or four"
@@ -129,10 +129,13 @@ fn errors_carry_their_codes_in_two_words_or_four() {
             CommError::TOO_HIGH,
         ),
         (
-            Frame::new(0x60, &[1, 2]).unwrap(),
+            SerialFrame::new(0x60, &[1, 2]).unwrap(),
             CommError::ILLEGAL_COMMAND,
         ),
-        (Frame::new(0x10, &[1, 2, 3]).unwrap(), CommError::LENGTH),
+        (
+            SerialFrame::new(0x10, &[1, 2, 3]).unwrap(),
+            CommError::LENGTH,
+        ),
         (
             SegmentedRead { toggle: false }.to_frame(),
             CommError::COMMAND,
@@ -267,7 +270,7 @@ fn a_number_is_written_in_segments() {
 #[test]
 fn network_management_and_can_frames_are_answered_on_usb() {
     let (mut server, mut node) = (UsbServer::new(7), node());
-    let start = Nmt {
+    let start = GatewayNmt {
         node: 0,
         specifier: NmtCommand::Start.to_u8().into(),
     }
@@ -280,7 +283,7 @@ fn network_management_and_can_frames_are_answered_on_usb() {
         node.read(objects::STATUSWORD.address).unwrap().raw(),
         Some(0x0340)
     );
-    let other = Nmt {
+    let other = GatewayNmt {
         node: 9,
         specifier: NmtCommand::Stop.to_u8().into(),
     }
@@ -338,7 +341,7 @@ proptest! {
         for answer in send(&mut server, &mut node, &junk) {
             decode(&answer);
         }
-        for answer in send(&mut server, &mut node, &to_bytes(&Frame::new(opcode, &words).unwrap())) {
+        for answer in send(&mut server, &mut node, &to_bytes(&SerialFrame::new(opcode, &words).unwrap())) {
             decode(&answer);
         }
         node.tick();

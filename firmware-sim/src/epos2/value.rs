@@ -7,13 +7,13 @@ pub(super) const LONGEST: usize = 8;
 
 /// A value, low byte first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Value {
+pub struct ObjectValue {
     bytes: [u8; LONGEST],
     len: usize,
 }
 
-impl Value {
-    /// The low bytes of `raw` that a number of type `ty` has; strings are [`Value::text`].
+impl ObjectValue {
+    /// The low bytes of `raw` that a number of type `ty` has; strings are [`ObjectValue::text`].
     pub(super) const fn number(ty: Type, raw: u64) -> Self {
         Self {
             bytes: raw.to_le_bytes(),
@@ -72,15 +72,15 @@ mod tests {
 
     #[test]
     fn numbers_have_their_types_width() {
-        let value = Value::number(Type::I16, 0xFFFF_FFFF_FFFF_FFFE);
+        let value = ObjectValue::number(Type::I16, 0xFFFF_FFFF_FFFF_FFFE);
         assert_eq!(value.bytes(), [0xFE, 0xFF]);
         assert_eq!(value.raw(), Some(0xFFFE));
-        assert_eq!(Value::number(Type::U64, 1).raw(), None);
+        assert_eq!(ObjectValue::number(Type::U64, 1).raw(), None);
     }
 
     #[test]
     fn text_is_its_letters() {
-        assert_eq!(Value::text("EPOS2").bytes(), b"EPOS2");
-        assert_eq!(Value::text("EPOS2").raw(), None);
+        assert_eq!(ObjectValue::text("EPOS2").bytes(), b"EPOS2");
+        assert_eq!(ObjectValue::text("EPOS2").raw(), None);
     }
 }

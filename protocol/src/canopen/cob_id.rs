@@ -108,7 +108,7 @@ impl PdoNumber {
 
 /// Whose message an identifier carries; sending and receiving are seen from the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Channel {
+pub enum CommunicationObject {
     /// 000: commands to nodes.
     Nmt,
     /// 080: synchronisation.
@@ -131,7 +131,7 @@ pub enum Channel {
     Other(CobId),
 }
 
-impl Channel {
+impl CommunicationObject {
     /// The channel of an identifier.
     #[must_use]
     pub const fn of(id: CobId) -> Self {
@@ -188,7 +188,7 @@ mod tests {
     fn every_identifier_has_one_channel_and_back() {
         for id in 0..=0x7FF {
             let id = CobId::new(id).unwrap();
-            assert_eq!(Channel::of(id).cob_id(), id);
+            assert_eq!(CommunicationObject::of(id).cob_id(), id);
         }
         assert_eq!(CobId::new(0x800), None);
     }
@@ -203,24 +203,42 @@ mod tests {
     fn the_predefined_set_of_node_1() {
         let node = NodeId::new(1).unwrap();
         let expected = [
-            (0x000, Channel::Nmt),
-            (0x080, Channel::Sync),
-            (0x081, Channel::Emergency(node)),
-            (0x100, Channel::Time),
-            (0x181, Channel::TransmitPdo(PdoNumber::One, node)),
-            (0x201, Channel::ReceivePdo(PdoNumber::One, node)),
-            (0x281, Channel::TransmitPdo(PdoNumber::Two, node)),
-            (0x301, Channel::ReceivePdo(PdoNumber::Two, node)),
-            (0x381, Channel::TransmitPdo(PdoNumber::Three, node)),
-            (0x401, Channel::ReceivePdo(PdoNumber::Three, node)),
-            (0x481, Channel::TransmitPdo(PdoNumber::Four, node)),
-            (0x501, Channel::ReceivePdo(PdoNumber::Four, node)),
-            (0x581, Channel::SdoAnswer(node)),
-            (0x601, Channel::SdoRequest(node)),
-            (0x701, Channel::Heartbeat(node)),
+            (0x000, CommunicationObject::Nmt),
+            (0x080, CommunicationObject::Sync),
+            (0x081, CommunicationObject::Emergency(node)),
+            (0x100, CommunicationObject::Time),
+            (
+                0x181,
+                CommunicationObject::TransmitPdo(PdoNumber::One, node),
+            ),
+            (0x201, CommunicationObject::ReceivePdo(PdoNumber::One, node)),
+            (
+                0x281,
+                CommunicationObject::TransmitPdo(PdoNumber::Two, node),
+            ),
+            (0x301, CommunicationObject::ReceivePdo(PdoNumber::Two, node)),
+            (
+                0x381,
+                CommunicationObject::TransmitPdo(PdoNumber::Three, node),
+            ),
+            (
+                0x401,
+                CommunicationObject::ReceivePdo(PdoNumber::Three, node),
+            ),
+            (
+                0x481,
+                CommunicationObject::TransmitPdo(PdoNumber::Four, node),
+            ),
+            (
+                0x501,
+                CommunicationObject::ReceivePdo(PdoNumber::Four, node),
+            ),
+            (0x581, CommunicationObject::SdoAnswer(node)),
+            (0x601, CommunicationObject::SdoRequest(node)),
+            (0x701, CommunicationObject::Heartbeat(node)),
         ];
         for (id, channel) in expected {
-            assert_eq!(Channel::of(CobId::new(id).unwrap()), channel);
+            assert_eq!(CommunicationObject::of(CobId::new(id).unwrap()), channel);
             assert_eq!(channel.cob_id().get(), id);
         }
     }

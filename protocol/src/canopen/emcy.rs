@@ -1,8 +1,8 @@
 //! Emergency messages (CiA 301, "Emergency object"): a node reports an error when it occurs, and
 //! its end. The meaning of most codes depends on the device.
 
-use super::cob_id::{Channel, NodeId};
-use super::error::{Layer, MessageError};
+use super::cob_id::{CommunicationObject, NodeId};
+use super::error::{MessageError, MessageKind};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 
@@ -37,7 +37,7 @@ impl Emergency {
         let [low, high] = self.code.to_le_bytes();
         let [a, b, c, d, e] = self.vendor;
         CanFrame::of(
-            Channel::Emergency(self.node).cob_id(),
+            CommunicationObject::Emergency(self.node).cob_id(),
             [low, high, self.register, a, b, c, d, e],
         )
     }
@@ -47,8 +47,10 @@ impl Emergency {
     /// # Errors
     /// [`MessageError`].
     pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
-        let layer = Layer::Emergency;
-        let Some(Channel::Emergency(node)) = frame.cob_id().map(Channel::of) else {
+        let layer = MessageKind::Emergency;
+        let Some(CommunicationObject::Emergency(node)) =
+            frame.cob_id().map(CommunicationObject::of)
+        else {
             return Err(wrong_id(layer, "081 to 0FF", frame));
         };
         let [low, high, register, vendor @ ..] = *bytes::<8>(layer, frame)?;

@@ -6,7 +6,7 @@ use super::frame::{CanFrame, CanId};
 
 /// Which service's message an error was found in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layer {
+pub enum MessageKind {
     /// Network management.
     Nmt,
     /// Synchronisation.
@@ -23,7 +23,7 @@ pub enum Layer {
     Heartbeat,
 }
 
-impl core::fmt::Display for Layer {
+impl core::fmt::Display for MessageKind {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::Nmt => "NMT message",
@@ -39,7 +39,7 @@ impl core::fmt::Display for Layer {
 
 /// Why bytes are no CAN frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum FrameError {
+pub enum CanFrameError {
     /// More data than a classic frame has, or a data length code above 8.
     #[error("CAN frame: length at byte {offset} is {got}, expected at most {max}")]
     TooLong {
@@ -91,7 +91,7 @@ pub enum MessageError {
     #[error("{layer}: CAN id {got}, expected {expected}")]
     Id {
         /// The service.
-        layer: Layer,
+        layer: MessageKind,
         /// Its identifiers.
         expected: &'static str,
         /// The frame's.
@@ -101,13 +101,13 @@ pub enum MessageError {
     #[error("{layer}: a remote frame, expected data")]
     Remote {
         /// The service.
-        layer: Layer,
+        layer: MessageKind,
     },
     /// Another number of data bytes than the message has.
     #[error("{layer}: {got} data bytes, expected {expected}")]
     Length {
         /// The service.
-        layer: Layer,
+        layer: MessageKind,
         /// The number it has.
         expected: usize,
         /// The number in the frame.
@@ -117,7 +117,7 @@ pub enum MessageError {
     #[error("{layer}: data byte {offset} is {got:02X}, expected {expected}")]
     Value {
         /// The service.
-        layer: Layer,
+        layer: MessageKind,
         /// Which data byte.
         offset: usize,
         /// What may stand there.
@@ -129,7 +129,7 @@ pub enum MessageError {
 
 /// The data of a frame that must have `N` bytes of it.
 pub(super) fn data<const N: usize>(
-    layer: Layer,
+    layer: MessageKind,
     frame: &CanFrame,
 ) -> Result<&[u8; N], MessageError> {
     if frame.is_remote() {
@@ -143,7 +143,11 @@ pub(super) fn data<const N: usize>(
 }
 
 /// The error of a frame with the identifier of another service.
-pub(super) fn wrong_id(layer: Layer, expected: &'static str, frame: &CanFrame) -> MessageError {
+pub(super) fn wrong_id(
+    layer: MessageKind,
+    expected: &'static str,
+    frame: &CanFrame,
+) -> MessageError {
     MessageError::Id {
         layer,
         expected,

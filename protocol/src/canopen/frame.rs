@@ -6,7 +6,7 @@
 use core::fmt;
 
 use super::cob_id::CobId;
-use super::error::FrameError;
+use super::error::CanFrameError;
 
 /// Bytes of a `struct can_frame`: identifier and flags, length, three others, eight of data.
 pub const SOCKETCAN_LEN: usize = 16;
@@ -106,8 +106,8 @@ impl CanFrame {
     /// A data frame.
     ///
     /// # Errors
-    /// [`FrameError::TooLong`] beyond eight bytes.
-    pub fn new(id: impl Into<CanId>, data: &[u8]) -> Result<Self, FrameError> {
+    /// [`CanFrameError::TooLong`] beyond eight bytes.
+    pub fn new(id: impl Into<CanId>, data: &[u8]) -> Result<Self, CanFrameError> {
         let mut frame = Self::empty(id.into(), false, data.len())?;
         copy(data, &mut frame.data);
         Ok(frame)
@@ -129,14 +129,14 @@ impl CanFrame {
     /// A remote frame that asks for `len` bytes.
     ///
     /// # Errors
-    /// [`FrameError::TooLong`] beyond eight.
-    pub fn remote(id: impl Into<CanId>, len: u8) -> Result<Self, FrameError> {
+    /// [`CanFrameError::TooLong`] beyond eight.
+    pub fn remote(id: impl Into<CanId>, len: u8) -> Result<Self, CanFrameError> {
         Self::empty(id.into(), true, usize::from(len))
     }
 
-    fn empty(id: CanId, remote: bool, len: usize) -> Result<Self, FrameError> {
+    fn empty(id: CanId, remote: bool, len: usize) -> Result<Self, CanFrameError> {
         if len > MAX_DATA {
-            return Err(FrameError::TooLong {
+            return Err(CanFrameError::TooLong {
                 offset: 4,
                 max: MAX_DATA,
                 got: len,
@@ -200,30 +200,30 @@ impl CanFrame {
     /// The frame in a log's record. Bytes behind its data may be missing; if they are there they do not count.
     ///
     /// # Errors
-    /// [`FrameError`]: too short for its head or its length, longer than a classic frame, an identifier that is none,
+    /// [`CanFrameError`]: too short for its head or its length, longer than a classic frame, an identifier that is none,
     /// CAN FD, an error report.
-    pub fn from_socketcan(bytes: &[u8]) -> Result<Self, FrameError> {
+    pub fn from_socketcan(bytes: &[u8]) -> Result<Self, CanFrameError> {
         let Some((&[a, b, c, d, len, flags, _, _], rest)) =
             bytes.split_first_chunk::<DATA_OFFSET>()
         else {
-            return Err(FrameError::Short {
+            return Err(CanFrameError::Short {
                 expected: DATA_OFFSET,
                 got: bytes.len(),
             });
         };
         let word = u32::from_be_bytes([a, b, c, d]);
         if word & REPORT != 0 {
-            return Err(FrameError::Report { got: word });
+            return Err(CanFrameError::Report { got: word });
         }
         if flags & FD != 0 {
-            return Err(FrameError::Fd {
+            return Err(CanFrameError::Fd {
                 offset: 5,
                 got: flags,
             });
         }
         let mut frame = Self::empty(parse_id(word)?, word & REMOTE != 0, usize::from(len))?;
         if !frame.remote {
-            let data = rest.get(..usize::from(len)).ok_or(FrameError::Short {
+            let data = rest.get(..usize::from(len)).ok_or(CanFrameError::Short {
                 expected: DATA_OFFSET + usize::from(len),
                 got: bytes.len(),
             })?;
@@ -233,7 +233,7 @@ impl CanFrame {
     }
 }
 
-fn parse_id(word: u32) -> Result<CanId, FrameError> {
+fn parse_id(word: u32) -> Result<CanId, CanFrameError> {
     if word & EXTENDED != 0 {
         return Ok(CanId::Extended(ExtendedId::masked(word)));
     }
@@ -242,7 +242,7 @@ fn parse_id(word: u32) -> Result<CanId, FrameError> {
         .ok()
         .and_then(CobId::new)
         .map(CanId::Standard)
-        .ok_or(FrameError::Id { got: word })
+        .ok_or(CanFrameError::Id { got: word })
 }
 
 fn copy(from: &[u8], to: &mut [u8; MAX_DATA]) {
@@ -320,7 +320,7 @@ mod tests {
     fn what_is_no_classic_frame_is_refused() {
         let mut bytes = CanFrame::of(id(1), [1, 2, 3]).to_socketcan();
         bytes[4] = 9;
-        let too_long = FrameError::TooLong {
+        let too_long = CanFrameError::TooLong {
             offset: 4,
             max: 8,
             got: 9,
@@ -330,24 +330,24 @@ mod tests {
         assert_eq!(CanFrame::remote(id(1), 9), Err(too_long));
         bytes[4] = 3;
         for (len, expected) in [(7, 8), (8, 11), (10, 11)] {
-            let short = FrameError::Short { expected, got: len };
+            let short = CanFrameError::Short { expected, got: len };
             assert_eq!(CanFrame::from_socketcan(&bytes[..len]), Err(short));
         }
         bytes[0] = 0x20;
         assert_eq!(
             CanFrame::from_socketcan(&bytes),
-            Err(FrameError::Report { got: 0x2000_0001 })
+            Err(CanFrameError::Report { got: 0x2000_0001 })
         );
         bytes[0] = 0x01;
         assert_eq!(
             CanFrame::from_socketcan(&bytes),
-            Err(FrameError::Id { got: 0x0100_0001 })
+            Err(CanFrameError::Id { got: 0x0100_0001 })
         );
         bytes[0] = 0;
         bytes[5] = 0x04;
         assert_eq!(
             CanFrame::from_socketcan(&bytes),
-            Err(FrameError::Fd { offset: 5, got: 4 })
+            Err(CanFrameError::Fd { offset: 5, got: 4 })
         );
     }
 

@@ -5,8 +5,8 @@
 
 use units::{Host, Span, Stamp};
 
-use super::cob_id::{Channel, NodeId};
-use super::error::{Layer, MessageError};
+use super::cob_id::{CommunicationObject, NodeId};
+use super::error::{MessageError, MessageKind};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 use super::nmt::NmtState;
@@ -24,7 +24,10 @@ impl Heartbeat {
     /// The sign as a frame.
     #[must_use]
     pub fn to_frame(&self) -> CanFrame {
-        CanFrame::of(Channel::Heartbeat(self.node).cob_id(), [self.state.to_u8()])
+        CanFrame::of(
+            CommunicationObject::Heartbeat(self.node).cob_id(),
+            [self.state.to_u8()],
+        )
     }
 
     /// The sign in `frame`.
@@ -32,8 +35,10 @@ impl Heartbeat {
     /// # Errors
     /// [`MessageError`].
     pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
-        let layer = Layer::Heartbeat;
-        let Some(Channel::Heartbeat(node)) = frame.cob_id().map(Channel::of) else {
+        let layer = MessageKind::Heartbeat;
+        let Some(CommunicationObject::Heartbeat(node)) =
+            frame.cob_id().map(CommunicationObject::of)
+        else {
             return Err(wrong_id(layer, "701 to 77F", frame));
         };
         let [state] = *bytes::<1>(layer, frame)?;

@@ -1,6 +1,6 @@
 //! Any message of the predefined connection set: for whoever looks on at a bus or reads a log.
 
-use super::cob_id::{Channel, CobId, NodeId, PdoNumber};
+use super::cob_id::{CobId, CommunicationObject, NodeId, PdoNumber};
 use super::emcy::Emergency;
 use super::error::MessageError;
 pub(super) use super::error::{data as bytes, wrong_id};
@@ -8,19 +8,19 @@ use super::frame::CanFrame;
 use super::heartbeat::Heartbeat;
 use super::nmt::Nmt;
 use super::sdo::{Answer, Request};
-use super::sync::Sync;
+use super::sync::SyncMessage;
 use crate::Bounded;
 
 /// A frame with its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Message {
+pub enum BusMessage {
     /// A command to nodes.
     Nmt(Nmt),
     /// A beat.
-    Sync(Sync),
+    Sync(SyncMessage),
     /// What went wrong at a node.
     Emergency(Emergency),
-    /// Process data from a node; what it means is in the node's mapping ([`super::pdo::Layout`]).
+    /// Process data from a node; what it means is in the node's mapping ([`super::pdo::PdoLayout`]).
     TransmitPdo(PdoNumber, NodeId, Bounded<u8, 8>),
     /// Process data to a node.
     ReceivePdo(PdoNumber, NodeId, Bounded<u8, 8>),
@@ -34,7 +34,7 @@ pub enum Message {
     Other(CanFrame),
 }
 
-impl Message {
+impl BusMessage {
     /// The message in `frame`.
     ///
     /// # Errors
@@ -44,22 +44,22 @@ impl Message {
             return Ok(Self::Other(*frame));
         };
         let data = frame.data().iter().copied().collect();
-        Ok(match Channel::of(id) {
-            Channel::Nmt => Self::Nmt(Nmt::parse(frame)?),
-            Channel::Sync => Self::Sync(Sync::parse(frame)?),
-            Channel::Emergency(_) => Self::Emergency(Emergency::parse(frame)?),
-            Channel::TransmitPdo(number, node) => Self::TransmitPdo(number, node, data),
-            Channel::ReceivePdo(number, node) => Self::ReceivePdo(number, node, data),
-            Channel::SdoRequest(_) => {
+        Ok(match CommunicationObject::of(id) {
+            CommunicationObject::Nmt => Self::Nmt(Nmt::parse(frame)?),
+            CommunicationObject::Sync => Self::Sync(SyncMessage::parse(frame)?),
+            CommunicationObject::Emergency(_) => Self::Emergency(Emergency::parse(frame)?),
+            CommunicationObject::TransmitPdo(number, node) => Self::TransmitPdo(number, node, data),
+            CommunicationObject::ReceivePdo(number, node) => Self::ReceivePdo(number, node, data),
+            CommunicationObject::SdoRequest(_) => {
                 let (node, request) = Request::parse(frame)?;
                 Self::SdoRequest(node, request)
             }
-            Channel::SdoAnswer(_) => {
+            CommunicationObject::SdoAnswer(_) => {
                 let (node, answer) = Answer::parse(frame)?;
                 Self::SdoAnswer(node, answer)
             }
-            Channel::Heartbeat(_) => Self::Heartbeat(Heartbeat::parse(frame)?),
-            Channel::Time | Channel::Other(_) => Self::Other(*frame),
+            CommunicationObject::Heartbeat(_) => Self::Heartbeat(Heartbeat::parse(frame)?),
+            CommunicationObject::Time | CommunicationObject::Other(_) => Self::Other(*frame),
         })
     }
 
@@ -70,12 +70,14 @@ impl Message {
             Self::Nmt(message) => message.to_frame(),
             Self::Sync(message) => message.to_frame(),
             Self::Emergency(message) => message.to_frame(),
-            Self::TransmitPdo(number, node, data) => {
-                pdo(Channel::TransmitPdo(*number, *node).cob_id(), data)
-            }
-            Self::ReceivePdo(number, node, data) => {
-                pdo(Channel::ReceivePdo(*number, *node).cob_id(), data)
-            }
+            Self::TransmitPdo(number, node, data) => pdo(
+                CommunicationObject::TransmitPdo(*number, *node).cob_id(),
+                data,
+            ),
+            Self::ReceivePdo(number, node, data) => pdo(
+                CommunicationObject::ReceivePdo(*number, *node).cob_id(),
+                data,
+            ),
             Self::SdoRequest(node, request) => request.to_frame(*node),
             Self::SdoAnswer(node, answer) => answer.to_frame(*node),
             Self::Heartbeat(message) => message.to_frame(),

@@ -19,11 +19,11 @@ pub mod sdo;
 pub mod slcan;
 pub mod sync;
 
-pub use cob_id::{Channel, CobId, NodeId, PdoNumber};
-pub use error::{FrameError, Layer, MessageError};
+pub use cob_id::{CobId, CommunicationObject, CommunicationObject as Channel, NodeId, PdoNumber};
+pub use error::{CanFrameError, MessageError, MessageKind};
 pub use frame::{CanFrame, CanId, ExtendedId, SOCKETCAN_LEN};
-pub use message::Message;
-pub use object::{Address, Object, Scalar};
+pub use message::{BusMessage, BusMessage as Message};
+pub use object::{Address, Scalar, TypedObject, TypedObject as Object};
 
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@
 use core::fmt;
 
 use super::cob_id::{CobId, NodeId};
-use super::error::{Layer, MessageError};
+use super::error::{MessageError, MessageKind};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 use crate::codes::byte_codes;
@@ -48,7 +48,7 @@ impl Nmt {
     /// # Errors
     /// [`MessageError`]; a node above 127 is [`MessageError::Value`].
     pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
-        let layer = Layer::Nmt;
+        let layer = MessageKind::Nmt;
         if frame.cob_id() != Some(CobId::NMT) {
             return Err(wrong_id(layer, "000", frame));
         }
@@ -127,7 +127,7 @@ mod tests {
         assert_eq!(
             Nmt::parse(&frame),
             Err(MessageError::Value {
-                layer: Layer::Nmt,
+                layer: MessageKind::Nmt,
                 offset: 1,
                 expected: "0 to 127",
                 got: 128
@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(
             Nmt::parse(&CanFrame::of(CobId::NMT, [1])),
             Err(MessageError::Length {
-                layer: Layer::Nmt,
+                layer: MessageKind::Nmt,
                 expected: 2,
                 got: 1
             })

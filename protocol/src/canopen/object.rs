@@ -53,7 +53,7 @@ macro_rules! scalar {
 scalar!(u8, u16, u32, i8, i16, i32);
 
 /// An entry with its type.
-pub struct Object<T> {
+pub struct TypedObject<T> {
     /// Where it stands.
     pub address: Address,
     /// The specification's name.
@@ -61,7 +61,7 @@ pub struct Object<T> {
     value: PhantomData<fn() -> T>,
 }
 
-impl<T> Object<T> {
+impl<T> TypedObject<T> {
     /// The entry `index`:`sub`.
     #[must_use]
     pub const fn new(index: u16, sub: u8, name: &'static str) -> Self {
@@ -73,7 +73,7 @@ impl<T> Object<T> {
     }
 }
 
-impl<T: Scalar> Object<T> {
+impl<T: Scalar> TypedObject<T> {
     /// The value in an answer's data.
     #[must_use]
     pub fn decode(&self, raw: u32) -> T {
@@ -88,13 +88,13 @@ impl<T: Scalar> Object<T> {
 }
 
 // Derives would ask for `T: Clone` and so on; the type is only a name.
-impl<T> Clone for Object<T> {
+impl<T> Clone for TypedObject<T> {
     fn clone(&self) -> Self {
         *self
     }
 }
-impl<T> Copy for Object<T> {}
-impl<T> fmt::Debug for Object<T> {
+impl<T> Copy for TypedObject<T> {}
+impl<T> fmt::Debug for TypedObject<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.address, self.name)
     }

@@ -3,18 +3,18 @@
 //! Who beats, and how evenly, is the caller's business.
 
 use super::cob_id::CobId;
-use super::error::{Layer, MessageError};
+use super::error::{MessageError, MessageKind};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 
 /// A beat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sync {
+pub struct SyncMessage {
     /// CiA 301 4.2 lets the producer count beats, 1 to 240. The EPOS2 knows no counter (it has no object 1019): `None`.
     pub counter: Option<u8>,
 }
 
-impl Sync {
+impl SyncMessage {
     /// The beat as a frame.
     #[must_use]
     pub fn to_frame(&self) -> CanFrame {
@@ -29,7 +29,7 @@ impl Sync {
     /// # Errors
     /// [`MessageError`].
     pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
-        let layer = Layer::Sync;
+        let layer = MessageKind::Sync;
         if frame.cob_id() != Some(CobId::SYNC) {
             return Err(wrong_id(layer, "080", frame));
         }

@@ -9,11 +9,13 @@ use proptest::prelude::*;
 use super::emcy::Emergency;
 use super::heartbeat::Heartbeat;
 use super::nmt::{Nmt, NmtCommand, NmtState};
-use super::object::{Address, Object};
+use super::object::{Address, TypedObject};
 use super::pdo::{CommunicationId, TransmissionType};
 use super::sdo::{Answer, Expedited, Initiate, Request, Segment};
-use super::sync::Sync;
-use super::{CanFrame, CanId, CobId, ExtendedId, Layer, Message, MessageError, NodeId, PdoNumber};
+use super::sync::SyncMessage;
+use super::{
+    BusMessage, CanFrame, CanId, CobId, ExtendedId, MessageError, MessageKind, NodeId, PdoNumber,
+};
 use crate::Bounded;
 use crate::epos2::CommError;
 
@@ -49,10 +51,13 @@ pub(super) fn any_frame() -> impl Strategy<Value = CanFrame> {
 
 /// Objects of CiA 301 and CiA 402 that the tests name.
 const NAME: Address = Address::new(0x1008, 0);
-pub(super) const TIMESTAMP: Object<u32> = Object::new(0x1013, 0, "High Resolution Time Stamp");
-pub(super) const STATUSWORD: Object<u16> = Object::new(0x6041, 0, "Statusword");
-pub(super) const MODE_DISPLAY: Object<i8> = Object::new(0x6061, 0, "Modes of Operation Display");
-pub(super) const POSITION_ACTUAL: Object<i32> = Object::new(0x6064, 0, "Position Actual Value");
+pub(super) const TIMESTAMP: TypedObject<u32> =
+    TypedObject::new(0x1013, 0, "High Resolution Time Stamp");
+pub(super) const STATUSWORD: TypedObject<u16> = TypedObject::new(0x6041, 0, "Statusword");
+pub(super) const MODE_DISPLAY: TypedObject<i8> =
+    TypedObject::new(0x6061, 0, "Modes of Operation Display");
+pub(super) const POSITION_ACTUAL: TypedObject<i32> =
+    TypedObject::new(0x6064, 0, "Position Actual Value");
 
 fn upload(address: Address, data: &[u8]) -> Answer {
     let transfer = Initiate::Expedited(Expedited::new(data).unwrap());
@@ -74,9 +79,9 @@ fn segment(toggle: bool, last: bool, bytes: &[u8]) -> Segment {
 }
 
 /// EPOS2 Communication Guide, "SDO communication" (node 1); the segments are those of reading the device name.
-fn sdo_messages() -> Vec<(&'static str, Message)> {
-    let ask = |request| Message::SdoRequest(node(1), request);
-    let say = |answer| Message::SdoAnswer(node(1), answer);
+fn sdo_messages() -> Vec<(&'static str, BusMessage)> {
+    let ask = |request| BusMessage::SdoRequest(node(1), request);
+    let say = |answer| BusMessage::SdoAnswer(node(1), answer);
     let address = STATUSWORD.address;
     let six = Address::new(0x2080, 3);
     std::vec![
@@ -208,10 +213,10 @@ fn sdo_messages() -> Vec<(&'static str, Message)> {
 }
 
 /// CiA 301: NMT, boot-up, heartbeat, SYNC; EPOS2 Communication Guide: EMCY of node 1.
-fn other_messages() -> Vec<(&'static str, Message)> {
-    let nmt = |node, command| Message::Nmt(Nmt { node, command });
+fn other_messages() -> Vec<(&'static str, BusMessage)> {
+    let nmt = |node, command| BusMessage::Nmt(Nmt { node, command });
     let heart = |state| {
-        Message::Heartbeat(Heartbeat {
+        BusMessage::Heartbeat(Heartbeat {
             node: node(1),
             state,
         })
@@ -236,31 +241,34 @@ fn other_messages() -> Vec<(&'static str, Message)> {
         ("701#05", heart(NmtState::Operational)),
         ("701#7F", heart(NmtState::PreOperational)),
         ("701#85", heart(NmtState::Unknown(0x85))),
-        ("080#", Message::Sync(Sync::default())),
-        ("080#F0", Message::Sync(Sync { counter: Some(240) })),
+        ("080#", BusMessage::Sync(SyncMessage::default())),
+        (
+            "080#F0",
+            BusMessage::Sync(SyncMessage { counter: Some(240) })
+        ),
         (
             "081#1186200000000000",
-            Message::Emergency(Emergency::new(node(1), 0x8611, 0x20))
+            BusMessage::Emergency(Emergency::new(node(1), 0x8611, 0x20))
         ),
         (
             "081#0000000000000000",
-            Message::Emergency(Emergency::new(node(1), 0, 0))
+            BusMessage::Emergency(Emergency::new(node(1), 0, 0))
         ),
         (
             "181#3703",
-            Message::TransmitPdo(PdoNumber::One, node(1), process)
+            BusMessage::TransmitPdo(PdoNumber::One, node(1), process)
         ),
         (
             "201#3703",
-            Message::ReceivePdo(PdoNumber::One, node(1), process)
+            BusMessage::ReceivePdo(PdoNumber::One, node(1), process)
         ),
         (
             "100#000000000000",
-            Message::Other(frame("100#000000000000"))
+            BusMessage::Other(frame("100#000000000000"))
         ),
         (
             "7E5#0400000000000000",
-            Message::Other(frame("7E5#0400000000000000"))
+            BusMessage::Other(frame("7E5#0400000000000000"))
         ),
     ]
 }
@@ -269,7 +277,7 @@ fn other_messages() -> Vec<(&'static str, Message)> {
 fn golden_messages_both_ways() {
     for (text, message) in sdo_messages().into_iter().chain(other_messages()) {
         assert_eq!(message.to_frame().to_string(), text);
-        assert_eq!(Message::parse(&frame(text)), Ok(message), "{text}");
+        assert_eq!(BusMessage::parse(&frame(text)), Ok(message), "{text}");
     }
 }
 
@@ -307,14 +315,14 @@ fn another_length_and_another_service_are_refused() {
         })
     };
     for (text, error) in [
-        ("581#4B416000400100", length(Layer::SdoAnswer, 8, 7)),
-        ("601#", length(Layer::SdoRequest, 8, 0)),
-        ("701#0500", length(Layer::Heartbeat, 1, 2)),
-        ("080#0000", length(Layer::Sync, 0, 2)),
-        ("081#11862000", length(Layer::Emergency, 8, 4)),
-        ("000#", length(Layer::Nmt, 2, 0)),
+        ("581#4B416000400100", length(MessageKind::SdoAnswer, 8, 7)),
+        ("601#", length(MessageKind::SdoRequest, 8, 0)),
+        ("701#0500", length(MessageKind::Heartbeat, 1, 2)),
+        ("080#0000", length(MessageKind::Sync, 0, 2)),
+        ("081#11862000", length(MessageKind::Emergency, 8, 4)),
+        ("000#", length(MessageKind::Nmt, 2, 0)),
     ] {
-        assert_eq!(Message::parse(&frame(text)), error, "{text}");
+        assert_eq!(BusMessage::parse(&frame(text)), error, "{text}");
     }
     let other = frame("581#4B41600040010000");
     let got = other.id();
@@ -323,19 +331,22 @@ fn another_length_and_another_service_are_refused() {
         expected,
         got,
     };
-    assert_eq!(Nmt::parse(&other), Err(id(Layer::Nmt, "000")));
-    assert_eq!(Sync::parse(&other), Err(id(Layer::Sync, "080")));
+    assert_eq!(Nmt::parse(&other), Err(id(MessageKind::Nmt, "000")));
+    assert_eq!(
+        SyncMessage::parse(&other),
+        Err(id(MessageKind::Sync, "080"))
+    );
     assert_eq!(
         Emergency::parse(&other),
-        Err(id(Layer::Emergency, "081 to 0FF"))
+        Err(id(MessageKind::Emergency, "081 to 0FF"))
     );
     assert_eq!(
         Heartbeat::parse(&other),
-        Err(id(Layer::Heartbeat, "701 to 77F"))
+        Err(id(MessageKind::Heartbeat, "701 to 77F"))
     );
     assert_eq!(
         Request::parse(&other),
-        Err(id(Layer::SdoRequest, "601 to 67F"))
+        Err(id(MessageKind::SdoRequest, "601 to 67F"))
     );
     // A 29-bit identifier with the same number is no message of CANopen.
     let extended = CanFrame::new(ExtendedId::new(0x581).unwrap(), other.data()).unwrap();
@@ -343,26 +354,29 @@ fn another_length_and_another_service_are_refused() {
         Answer::parse(&extended),
         Err(MessageError::Id { .. })
     ));
-    assert_eq!(Message::parse(&extended), Ok(Message::Other(extended)));
+    assert_eq!(
+        BusMessage::parse(&extended),
+        Ok(BusMessage::Other(extended))
+    );
 }
 
 #[test]
 fn a_remote_frame_is_no_message() {
     let id = CobId::new(0x701).unwrap();
     let guard = CanFrame::remote(id, 1).unwrap();
-    let layer = Layer::Heartbeat;
+    let layer = MessageKind::Heartbeat;
     assert_eq!(
         Heartbeat::parse(&guard),
         Err(MessageError::Remote { layer })
     );
-    assert_eq!(Message::parse(&guard), Ok(Message::Other(guard)));
+    assert_eq!(BusMessage::parse(&guard), Ok(BusMessage::Other(guard)));
 }
 
 proptest! {
     #[test]
     fn any_frame_is_a_message_or_an_error(frame in any_frame()) {
-        if let Ok(message) = Message::parse(&frame) {
-            prop_assert_eq!(Message::parse(&message.to_frame()), Ok(message));
+        if let Ok(message) = BusMessage::parse(&frame) {
+            prop_assert_eq!(BusMessage::parse(&message.to_frame()), Ok(message));
         }
     }
 
@@ -373,11 +387,11 @@ proptest! {
         data in prop::collection::vec(any::<u8>(), 0..=8),
     ) {
         let frame = CanFrame::new(CobId::new(base + id).unwrap(), &data).unwrap();
-        if let Ok(message) = Message::parse(&frame) {
+        if let Ok(message) = BusMessage::parse(&frame) {
             let again = message.to_frame();
             prop_assert_eq!(again.id(), frame.id());
             prop_assert_eq!(again.dlc(), frame.dlc());
-            prop_assert_eq!(Message::parse(&again), Ok(message));
+            prop_assert_eq!(BusMessage::parse(&again), Ok(message));
         }
     }
 }

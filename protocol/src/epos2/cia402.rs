@@ -6,7 +6,7 @@ use core::fmt;
 /// A device state; the discriminant is its pattern in the statusword.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u16)]
-pub enum State {
+pub enum DeviceState {
     /// Boot-up.
     Start = 0x0000,
     /// Current offset is being measured.
@@ -33,31 +33,33 @@ pub enum State {
     Fault = 0x0108,
 }
 
+pub use DeviceState as State;
+
 /// Bits of the statusword that identify the state.
 const MASK: u16 = 0x417F;
 
-const STATES: [(State, &str); 12] = [
-    (State::Start, "start"),
-    (State::NotReadyToSwitchOn, "not ready to switch on"),
-    (State::SwitchOnDisabled, "switch-on disabled"),
-    (State::ReadyToSwitchOn, "ready to switch on"),
-    (State::SwitchedOn, "switched on"),
-    (State::Refresh, "refresh"),
-    (State::MeasureInit, "measure init"),
-    (State::OperationEnabled, "operation enabled"),
-    (State::QuickStopActive, "quick stop active"),
+const STATES: [(DeviceState, &str); 12] = [
+    (DeviceState::Start, "start"),
+    (DeviceState::NotReadyToSwitchOn, "not ready to switch on"),
+    (DeviceState::SwitchOnDisabled, "switch-on disabled"),
+    (DeviceState::ReadyToSwitchOn, "ready to switch on"),
+    (DeviceState::SwitchedOn, "switched on"),
+    (DeviceState::Refresh, "refresh"),
+    (DeviceState::MeasureInit, "measure init"),
+    (DeviceState::OperationEnabled, "operation enabled"),
+    (DeviceState::QuickStopActive, "quick stop active"),
     (
-        State::FaultReactionDisabled,
+        DeviceState::FaultReactionDisabled,
         "fault reaction active (disabled)",
     ),
     (
-        State::FaultReactionEnabled,
+        DeviceState::FaultReactionEnabled,
         "fault reaction active (enabled)",
     ),
-    (State::Fault, "fault"),
+    (DeviceState::Fault, "fault"),
 ];
 
-impl State {
+impl DeviceState {
     /// The state of a statusword; `None` where its bits match none.
     #[must_use]
     pub fn from_statusword(statusword: u16) -> Option<Self> {
@@ -72,7 +74,7 @@ impl State {
     }
 }
 
-impl fmt::Display for State {
+impl fmt::Display for DeviceState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = STATES.iter().find(|(state, _)| state == self);
         f.write_str(name.map_or("", |(_, name)| name))
@@ -164,25 +166,25 @@ mod tests {
             let pattern = state.pattern();
             assert_eq!(pattern & !MASK, 0);
             for other in [0x0000, 0x0200, 0x8480, 0xBE80] {
-                assert_eq!(State::from_statusword(pattern | other), Some(state));
+                assert_eq!(DeviceState::from_statusword(pattern | other), Some(state));
             }
         }
     }
 
     #[test]
     fn only_the_bits_of_the_pattern_count() {
-        assert_eq!(State::from_statusword(0x0237), None); // bit 8 missing
+        assert_eq!(DeviceState::from_statusword(0x0237), None); // bit 8 missing
         assert_eq!(
-            State::from_statusword(0x0337),
-            Some(State::OperationEnabled)
+            DeviceState::from_statusword(0x0337),
+            Some(DeviceState::OperationEnabled)
         );
         assert_eq!(
-            State::from_statusword(0x9737),
-            Some(State::OperationEnabled)
+            DeviceState::from_statusword(0x9737),
+            Some(DeviceState::OperationEnabled)
         );
         assert_eq!(
-            State::from_statusword(0x0140),
-            Some(State::SwitchOnDisabled)
+            DeviceState::from_statusword(0x0140),
+            Some(DeviceState::SwitchOnDisabled)
         );
     }
 }

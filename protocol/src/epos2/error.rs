@@ -4,7 +4,7 @@ use thiserror::Error;
 
 /// Where in the stack of formats an error was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layer {
+pub enum SerialLayer {
     /// `90 02` framing with byte stuffing.
     Usb,
     /// RS232 body after its handshake.
@@ -13,7 +13,7 @@ pub enum Layer {
     Message,
 }
 
-impl core::fmt::Display for Layer {
+impl core::fmt::Display for SerialLayer {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::Usb => "EPOS2 USB frame",
@@ -25,12 +25,12 @@ impl core::fmt::Display for Layer {
 
 /// Why bytes are no frame, or a frame is not the message it was taken for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum FrameError {
+pub enum SerialFrameError {
     /// The checksum does not match.
     #[error("{layer}: CRC at byte {offset} is {got:04X}, the content gives {expected:04X}")]
     Crc {
         /// USB or RS232.
-        layer: Layer,
+        layer: SerialLayer,
         /// Bytes of the frame before the CRC, without stuffing.
         offset: usize,
         /// The checksum of the content.
@@ -42,7 +42,7 @@ pub enum FrameError {
     #[error("{layer}: broken off after {got} bytes of {expected}")]
     BrokenOff {
         /// USB.
-        layer: Layer,
+        layer: SerialLayer,
         /// Bytes it should have had, without stuffing; 4 where its length had not come yet.
         expected: usize,
         /// Bytes that came, without stuffing.
@@ -52,7 +52,7 @@ pub enum FrameError {
     #[error("{layer}: 90 at byte {offset} is followed by {got:02X} instead of 90 or 02")]
     Stuffing {
         /// USB.
-        layer: Layer,
+        layer: SerialLayer,
         /// Bytes before it, without stuffing.
         offset: usize,
         /// What followed.
@@ -62,7 +62,7 @@ pub enum FrameError {
     #[error("{layer}: length at byte {offset} says {got} words, frames have at most {max}")]
     TooLong {
         /// USB, RS232 or message.
-        layer: Layer,
+        layer: SerialLayer,
         /// Where the length stands, without stuffing.
         offset: usize,
         /// The longest there is.
@@ -74,7 +74,7 @@ pub enum FrameError {
     #[error("{layer}: {got} words, expected {expected}")]
     WordCount {
         /// Message.
-        layer: Layer,
+        layer: SerialLayer,
         /// The number this command has (the smallest, if it varies).
         expected: usize,
         /// The number in the frame.
@@ -84,7 +84,7 @@ pub enum FrameError {
     #[error("{layer}: opcode {got:02X}, expected {expected:02X}")]
     Opcode {
         /// Message.
-        layer: Layer,
+        layer: SerialLayer,
         /// Opcode of the message asked for.
         expected: u8,
         /// Opcode in the frame.

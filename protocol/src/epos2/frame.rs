@@ -1,7 +1,7 @@
 //! A frame without its framing: an opcode and words, the same on USB and RS232.
 
 use super::crc::crc16;
-use super::error::{FrameError, Layer};
+use super::error::{SerialFrameError, SerialLayer};
 use crate::Bounded;
 
 /// Largest number of words accepted in a frame. The longest frame of the Communication Guide, the
@@ -13,24 +13,24 @@ pub type Words = Bounded<u16, MAX_WORDS>;
 
 /// A request (opcode of a command) or an answer (opcode 00).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Frame {
-    /// Command, or [`Frame::ANSWER`].
+pub struct SerialFrame {
+    /// Command, or [`SerialFrame::ANSWER`].
     pub opcode: u8,
     /// The data words.
     pub words: Words,
 }
 
-impl Frame {
+impl SerialFrame {
     /// Opcode of every answer.
     pub const ANSWER: u8 = 0x00;
 
     /// A frame of `words`.
     ///
     /// # Errors
-    /// [`FrameError::TooLong`] above [`MAX_WORDS`].
-    pub fn new(opcode: u8, words: &[u16]) -> Result<Self, FrameError> {
-        let words = Words::from_slice(words).map_err(|full| FrameError::TooLong {
-            layer: Layer::Message,
+    /// [`SerialFrameError::TooLong`] above [`MAX_WORDS`].
+    pub fn new(opcode: u8, words: &[u16]) -> Result<Self, SerialFrameError> {
+        let words = Words::from_slice(words).map_err(|full| SerialFrameError::TooLong {
+            layer: SerialLayer::Message,
             offset: 1,
             max: full.capacity,
             got: words.len(),
@@ -46,21 +46,21 @@ impl Frame {
     }
 
     /// The words, if this is `opcode` with exactly `N` of them.
-    pub(super) fn exactly<const N: usize>(&self, opcode: u8) -> Result<[u16; N], FrameError> {
+    pub(super) fn exactly<const N: usize>(&self, opcode: u8) -> Result<[u16; N], SerialFrameError> {
         self.expect_opcode(opcode)?;
-        <[u16; N]>::try_from(self.words.as_slice()).map_err(|_| FrameError::WordCount {
-            layer: Layer::Message,
+        <[u16; N]>::try_from(self.words.as_slice()).map_err(|_| SerialFrameError::WordCount {
+            layer: SerialLayer::Message,
             expected: N,
             got: self.words.len(),
         })
     }
 
-    pub(super) fn expect_opcode(&self, opcode: u8) -> Result<(), FrameError> {
+    pub(super) fn expect_opcode(&self, opcode: u8) -> Result<(), SerialFrameError> {
         if self.opcode == opcode {
             return Ok(());
         }
-        Err(FrameError::Opcode {
-            layer: Layer::Message,
+        Err(SerialFrameError::Opcode {
+            layer: SerialLayer::Message,
             expected: opcode,
             got: self.opcode,
         })
@@ -76,12 +76,12 @@ impl Frame {
 /// A frame being received: words and CRC, byte by byte, after a header of opcode and length.
 #[derive(Clone, Debug)]
 pub(super) struct PartialFrame {
-    layer: Layer,
+    layer: SerialLayer,
     /// Bytes of the layer before the first word.
     offset: usize,
     /// The header as the checksum takes it.
     header: [u8; 2],
-    frame: Frame,
+    frame: SerialFrame,
     /// Words announced.
     len: usize,
     /// First byte of the word being received.
@@ -91,14 +91,14 @@ pub(super) struct PartialFrame {
 impl PartialFrame {
     /// A frame of which `offset` bytes have arrived, the last of them its length.
     pub fn new(
-        layer: Layer,
+        layer: SerialLayer,
         offset: usize,
         header: [u8; 2],
         opcode: u8,
         len: usize,
-    ) -> Result<Self, FrameError> {
+    ) -> Result<Self, SerialFrameError> {
         if len > MAX_WORDS {
-            return Err(FrameError::TooLong {
+            return Err(SerialFrameError::TooLong {
                 layer,
                 offset: offset - 1,
                 max: MAX_WORDS,
@@ -109,7 +109,7 @@ impl PartialFrame {
             layer,
             offset,
             header,
-            frame: Frame::of(opcode, []),
+            frame: SerialFrame::of(opcode, []),
             len,
             low: None,
         })
@@ -126,7 +126,7 @@ impl PartialFrame {
     }
 
     /// Takes one byte; the last completes the frame.
-    pub fn push(&mut self, byte: u8) -> Option<Result<Frame, FrameError>> {
+    pub fn push(&mut self, byte: u8) -> Option<Result<SerialFrame, SerialFrameError>> {
         let Some(low) = self.low.take() else {
             self.low = Some(byte);
             return None;
@@ -140,7 +140,7 @@ impl PartialFrame {
         Some(if got == expected {
             Ok(self.frame)
         } else {
-            Err(FrameError::Crc {
+            Err(SerialFrameError::Crc {
                 layer: self.layer,
                 offset: self.received(),
                 expected,

@@ -18,8 +18,8 @@ pub mod usb;
 pub use crate::{Bounded, Full};
 pub use comm_error::CommError;
 pub use device_error::DeviceError;
-pub use error::{FrameError, Layer};
-pub use frame::{Frame, MAX_WORDS, Words};
+pub use error::{SerialFrameError, SerialFrameError as FrameError, SerialLayer};
+pub use frame::{MAX_WORDS, SerialFrame, SerialFrame as Frame, Words};
 
 #[cfg(test)]
 mod tests;

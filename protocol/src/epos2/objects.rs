@@ -7,7 +7,7 @@ pub use crate::canopen::{Address, Object, Scalar};
 
 /// An entry of [`ALL`], without its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Named {
+pub struct NamedObject {
     /// Where it stands.
     pub address: Address,
     /// The specification's name.
@@ -29,7 +29,7 @@ macro_rules! objects {
         $($(#[doc = $doc])+ pub const $name: Object<$t> = Object::new($index, $sub, $text);)*
 
         /// Every entry with a name here.
-        pub const ALL: &[Named] = &[$(Named {
+        pub const ALL: &[NamedObject] = &[$(NamedObject {
             address: Address::new($index, $sub),
             name: $text,
             bytes: <$t as Scalar>::BYTES,
@@ -71,9 +71,9 @@ objects! {
     /// Hardware version, BCD (0x6420).
     HARDWARE_VERSION: u16 = 0x2003, 2, "Hardware Version";
     /// Milliseconds, 500 by default.
-    RS232_FRAME_TIMEOUT: u16 = 0x2005, 0, "RS232 Frame Timeout";
+    RS232_FRAME_TIMEOUT: u16 = 0x2005, 0, "RS232 SerialFrame Timeout";
     /// Milliseconds, 500 by default.
-    USB_FRAME_TIMEOUT: u16 = 0x2006, 0, "USB Frame Timeout";
+    USB_FRAME_TIMEOUT: u16 = 0x2006, 0, "USB SerialFrame Timeout";
     /// Averaged velocity, rpm.
     VELOCITY_AVERAGED: i32 = 0x2028, 0, "Velocity Actual Value Averaged";
     /// Purpose of digital input 6 (0 negative limit by default).

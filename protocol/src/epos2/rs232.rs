@@ -5,8 +5,8 @@
 //! covers OpCode and Len-1 (one word, **OpCode** in the high byte: the other order than on USB) and
 //! the data. This module has the body; client and device conduct the handshake and its timeout.
 
-use super::error::{FrameError, Layer};
-use super::frame::{Frame, MAX_WORDS, PartialFrame};
+use super::error::{SerialFrameError, SerialLayer};
+use super::frame::{MAX_WORDS, PartialFrame, SerialFrame};
 use crate::Bounded;
 
 /// Handshake: go on.
@@ -24,12 +24,12 @@ pub type Bytes = Bounded<u8, MAX_BYTES>;
 /// Writes the body of `frame` (without the opcode, which precedes it) to `out`.
 ///
 /// # Errors
-/// [`FrameError::WordCount`] for a frame without words, which Len-1 cannot express; nothing is
+/// [`SerialFrameError::WordCount`] for a frame without words, which Len-1 cannot express; nothing is
 /// written.
-pub fn encode_body(frame: &Frame, out: &mut impl Extend<u8>) -> Result<(), FrameError> {
+pub fn encode_body(frame: &SerialFrame, out: &mut impl Extend<u8>) -> Result<(), SerialFrameError> {
     let Some(len_1) = frame.words.len().checked_sub(1) else {
-        return Err(FrameError::WordCount {
-            layer: Layer::Rs232,
+        return Err(SerialFrameError::WordCount {
+            layer: SerialLayer::Rs232,
             expected: 1,
             got: 0,
         });
@@ -60,11 +60,11 @@ impl BodyDecoder {
 
     /// Takes one byte; the frame or an error comes out with the last. Afterwards the decoder awaits
     /// another body of the same opcode.
-    pub fn push(&mut self, byte: u8) -> Option<Result<Frame, FrameError>> {
+    pub fn push(&mut self, byte: u8) -> Option<Result<SerialFrame, SerialFrameError>> {
         let opcode = self.opcode;
         let Some(frame) = &mut self.frame else {
             let (header, len) = ([opcode, byte], usize::from(byte) + 1);
-            return match PartialFrame::new(Layer::Rs232, 1, header, opcode, len) {
+            return match PartialFrame::new(SerialLayer::Rs232, 1, header, opcode, len) {
                 Ok(frame) => {
                     self.frame = Some(frame);
                     None

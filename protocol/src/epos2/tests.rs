@@ -6,13 +6,14 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::message::{
-    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, Nmt, ReadObject, ReadSegment, Request,
-    RequestCanFrame, SegmentedRead, SegmentedWrite, SendCanFrame, WriteObject, WriteSegment,
+    GatewayNmt, InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, ReadSegment,
+    RequestCanFrame, SegmentedRead, SegmentedWrite, SendCanFrame, SerialAnswer, SerialRequest,
+    WriteObject, WriteSegment,
 };
 use super::objects::{self, Address};
 use super::rs232::{self, BodyDecoder};
 use super::usb::{self, UsbDecoder};
-use super::{Bounded, CommError, Frame, FrameError, Layer, MAX_WORDS};
+use super::{Bounded, CommError, MAX_WORDS, SerialFrame, SerialFrameError, SerialLayer};
 
 fn hex(text: &str) -> Vec<u8> {
     text.split_whitespace()
@@ -20,7 +21,7 @@ fn hex(text: &str) -> Vec<u8> {
         .collect()
 }
 
-fn decode_all(bytes: &[u8]) -> Vec<Result<Frame, FrameError>> {
+fn decode_all(bytes: &[u8]) -> Vec<Result<SerialFrame, SerialFrameError>> {
     let mut decoder = UsbDecoder::new();
     bytes
         .iter()
@@ -28,18 +29,18 @@ fn decode_all(bytes: &[u8]) -> Vec<Result<Frame, FrameError>> {
         .collect()
 }
 
-fn read(address: Address) -> Frame {
+fn read(address: Address) -> SerialFrame {
     ReadObject { node: 1, address }.to_frame()
 }
 
-fn answer(value: u32) -> Frame {
+fn answer(value: u32) -> SerialFrame {
     ReadObject::answer(Ok(value))
 }
 
 /// Each golden USB frame with the message it is.
-fn usb_frames() -> Vec<(&'static str, Frame)> {
+fn usb_frames() -> Vec<(&'static str, SerialFrame)> {
     let refused = CommError::NO_OBJECT;
-    let mut in_four = Answer::bare(refused);
+    let mut in_four = SerialAnswer::bare(refused);
     in_four.data.extend([0, 0]);
     std::vec![
         (
@@ -146,7 +147,7 @@ fn an_escape_byte_may_stand_anywhere() {
                     .chunks(2)
                     .map(|b| u16::from_le_bytes([b[0], b[1]]))
                     .collect();
-                let frame = Frame::new(opcode, &words).unwrap();
+                let frame = SerialFrame::new(opcode, &words).unwrap();
                 let bytes = usb::to_bytes(&frame);
                 assert_eq!(decode_all(&bytes), [Ok(frame)]);
                 let [.., a, b] = bytes.as_slice() else {
@@ -188,7 +189,7 @@ fn a_sync_pair_restarts_a_frame_at_any_point() {
             assert_eq!(last, Some(Ok(frame)), "cut at {cut} of {bytes}");
             assert!(
                 got.iter()
-                    .all(|e| matches!(e, Err(FrameError::BrokenOff { .. })))
+                    .all(|e| matches!(e, Err(SerialFrameError::BrokenOff { .. })))
             );
             assert_eq!(got.len(), usize::from(cut > 1));
         }
@@ -203,7 +204,10 @@ fn decoder_after(bytes: &[u8]) -> Option<UsbDecoder> {
     }
     let mut probe = decoder.clone();
     let open = probe.is_within_frame()
-        && matches!(probe.push(0x55), Some(Err(FrameError::Stuffing { .. })));
+        && matches!(
+            probe.push(0x55),
+            Some(Err(SerialFrameError::Stuffing { .. }))
+        );
     (!open).then_some(decoder)
 }
 
@@ -211,8 +215,8 @@ fn decoder_after(bytes: &[u8]) -> Option<UsbDecoder> {
 fn errors_say_where_and_what() {
     assert_eq!(
         decode_all(&hex("90 02 10 02 41 60 00 01 64 CE")),
-        [Err(FrameError::Crc {
-            layer: Layer::Usb,
+        [Err(SerialFrameError::Crc {
+            layer: SerialLayer::Usb,
             offset: 6,
             expected: 0xCF64,
             got: 0xCE64
@@ -220,8 +224,8 @@ fn errors_say_where_and_what() {
     );
     assert_eq!(
         decode_all(&hex("90 02 10 41")),
-        [Err(FrameError::TooLong {
-            layer: Layer::Usb,
+        [Err(SerialFrameError::TooLong {
+            layer: SerialLayer::Usb,
             offset: 1,
             max: MAX_WORDS,
             got: 0x41
@@ -229,39 +233,39 @@ fn errors_say_where_and_what() {
     );
     assert_eq!(
         decode_all(&hex("90 02 10 02 41 90 41")),
-        [Err(FrameError::Stuffing {
-            layer: Layer::Usb,
+        [Err(SerialFrameError::Stuffing {
+            layer: SerialLayer::Usb,
             offset: 3,
             got: 0x41
         })]
     );
     assert_eq!(
-        Answer::parse(&read(objects::STATUSWORD.address)),
-        Err(FrameError::Opcode {
-            layer: Layer::Message,
+        SerialAnswer::parse(&read(objects::STATUSWORD.address)),
+        Err(SerialFrameError::Opcode {
+            layer: SerialLayer::Message,
             expected: 0,
             got: 0x10
         })
     );
     assert_eq!(
         ReadObject::parse_answer(&WriteObject::answer(Ok(()))),
-        Err(FrameError::WordCount {
-            layer: Layer::Message,
+        Err(SerialFrameError::WordCount {
+            layer: SerialLayer::Message,
             expected: 4,
             got: 2
         })
     );
     assert_eq!(
-        Frame::new(0, &[0; MAX_WORDS + 1]),
-        Err(FrameError::TooLong {
-            layer: Layer::Message,
+        SerialFrame::new(0, &[0; MAX_WORDS + 1]),
+        Err(SerialFrameError::TooLong {
+            layer: SerialLayer::Message,
             offset: 1,
             max: MAX_WORDS,
             got: MAX_WORDS + 1
         })
     );
     let mut out = Vec::new();
-    assert!(rs232::encode_body(&Frame::new(0x10, &[]).unwrap(), &mut out).is_err());
+    assert!(rs232::encode_body(&SerialFrame::new(0x10, &[]).unwrap(), &mut out).is_err());
     assert!(out.is_empty());
 }
 
@@ -273,43 +277,44 @@ fn segment_bytes() -> impl Strategy<Value = Bounded<u8, 63>> {
     prop::collection::vec(any::<u8>(), 0..=63).prop_map(|b| Bounded::from_slice(&b).unwrap())
 }
 
-fn request() -> impl Strategy<Value = Request> {
+fn request() -> impl Strategy<Value = SerialRequest> {
     prop_oneof![
         (any::<u8>(), address())
-            .prop_map(|(node, address)| Request::ReadObject(ReadObject { node, address })),
+            .prop_map(|(node, address)| SerialRequest::ReadObject(ReadObject { node, address })),
         (any::<u8>(), address(), any::<u32>()).prop_map(|(node, address, value)| {
-            Request::WriteObject(WriteObject {
+            SerialRequest::WriteObject(WriteObject {
                 node,
                 address,
                 value,
             })
         }),
-        (any::<u8>(), address()).prop_map(|(node, address)| Request::InitiateSegmentedRead(
+        (any::<u8>(), address()).prop_map(|(node, address)| SerialRequest::InitiateSegmentedRead(
             InitiateSegmentedRead { node, address }
         )),
         (any::<u8>(), address(), any::<u32>()).prop_map(|(node, address, len)| {
-            Request::InitiateSegmentedWrite(InitiateSegmentedWrite { node, address, len })
+            SerialRequest::InitiateSegmentedWrite(InitiateSegmentedWrite { node, address, len })
         }),
-        any::<bool>().prop_map(|toggle| Request::SegmentedRead(SegmentedRead { toggle })),
-        (any::<bool>(), segment_bytes()).prop_map(|(toggle, bytes)| Request::SegmentedWrite(
+        any::<bool>().prop_map(|toggle| SerialRequest::SegmentedRead(SegmentedRead { toggle })),
+        (any::<bool>(), segment_bytes()).prop_map(|(toggle, bytes)| SerialRequest::SegmentedWrite(
             SegmentedWrite(WriteSegment { toggle, bytes })
         )),
-        (any::<u16>(), any::<u16>()).prop_map(|(node, cs)| Request::Nmt(Nmt {
+        (any::<u16>(), any::<u16>()).prop_map(|(node, cs)| SerialRequest::GatewayNmt(GatewayNmt {
             node,
             specifier: cs
         })),
         (any::<u16>(), any::<u16>(), any::<[u8; 8]>()).prop_map(|(cob_id, len, data)| {
-            Request::SendCanFrame(SendCanFrame { cob_id, len, data })
+            SerialRequest::SendCanFrame(SendCanFrame { cob_id, len, data })
         }),
-        (any::<u16>(), any::<u16>())
-            .prop_map(|(cob_id, len)| Request::RequestCanFrame(RequestCanFrame { cob_id, len })),
+        (any::<u16>(), any::<u16>()).prop_map(|(cob_id, len)| SerialRequest::RequestCanFrame(
+            RequestCanFrame { cob_id, len }
+        )),
     ]
 }
 
 proptest! {
     #[test]
     fn usb_decodes_what_it_encodes(opcode: u8, words in prop::collection::vec(any::<u16>(), 0..=MAX_WORDS)) {
-        let frame = Frame::new(opcode, &words).unwrap();
+        let frame = SerialFrame::new(opcode, &words).unwrap();
         prop_assert_eq!(decode_all(&usb::to_bytes(&frame)), [Ok(frame)]);
     }
 
@@ -319,13 +324,13 @@ proptest! {
         bytes in prop::collection::vec(prop::sample::select(&[0x90u8, 0x02, 0x00][..]), 0..=2 * MAX_WORDS),
     ) {
         let words: Vec<u16> = bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect();
-        let frame = Frame::new(opcode, &words).unwrap();
+        let frame = SerialFrame::new(opcode, &words).unwrap();
         prop_assert_eq!(decode_all(&usb::to_bytes(&frame)), [Ok(frame)]);
     }
 
     #[test]
     fn rs232_decodes_what_it_encodes(opcode: u8, words in prop::collection::vec(any::<u16>(), 1..=MAX_WORDS)) {
-        let frame = Frame::new(opcode, &words).unwrap();
+        let frame = SerialFrame::new(opcode, &words).unwrap();
         let mut bytes = Vec::new();
         rs232::encode_body(&frame, &mut bytes).unwrap();
         let mut decoder = BodyDecoder::new(opcode);
@@ -338,7 +343,7 @@ proptest! {
         junk in prop::collection::vec(prop_oneof![3 => any::<u8>(), 1 => Just(0x90), 1 => Just(0x02)], 0..600),
         words in prop::collection::vec(any::<u16>(), 0..8),
     ) {
-        let frame = Frame::new(0, &words).unwrap();
+        let frame = SerialFrame::new(0, &words).unwrap();
         let mut stream = junk;
         stream.extend_from_slice(&usb::to_bytes(&frame));
         stream.extend_from_slice(&usb::to_bytes(&frame));
@@ -351,7 +356,7 @@ proptest! {
         words in prop::collection::vec(any::<u16>(), 1..8),
         bit in any::<prop::sample::Index>(),
     ) {
-        let frame = Frame::new(0, &words).unwrap();
+        let frame = SerialFrame::new(0, &words).unwrap();
         let mut bytes = usb::to_bytes(&frame).to_vec();
         // Behind the length: a shorter or longer frame is anybody's guess once in 65536.
         let bit = 32 + bit.index(8 * (bytes.len() - 4));
@@ -361,13 +366,13 @@ proptest! {
 
     #[test]
     fn requests_read_back(request in request()) {
-        prop_assert_eq!(Request::parse(&request.to_frame()), Ok(Some(request)));
+        prop_assert_eq!(SerialRequest::parse(&request.to_frame()), Ok(Some(request)));
     }
 
     #[test]
     fn any_frame_parses_or_says_why(opcode: u8, words in prop::collection::vec(any::<u16>(), 0..=MAX_WORDS)) {
-        let frame = Frame::new(opcode, &words).unwrap();
-        if let Ok(Some(request)) = Request::parse(&frame) {
+        let frame = SerialFrame::new(opcode, &words).unwrap();
+        if let Ok(Some(request)) = SerialRequest::parse(&frame) {
             prop_assert_eq!(request.to_frame().opcode, opcode);
         }
         let _ = (

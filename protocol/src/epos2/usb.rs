@@ -5,8 +5,8 @@
 //! new frame at any point. The CRC covers Len and OpCode (one word, Len in the high byte) and the
 //! data, without stuffing. The caller times out unfinished frames ([`UsbDecoder::reset`]).
 
-use super::error::{FrameError, Layer};
-use super::frame::{Frame, MAX_WORDS, PartialFrame};
+use super::error::{SerialFrameError, SerialLayer};
+use super::frame::{MAX_WORDS, PartialFrame, SerialFrame};
 use crate::Bounded;
 
 /// Data link escape: begins a frame, doubled inside.
@@ -21,7 +21,7 @@ pub type Bytes = Bounded<u8, MAX_BYTES>;
 
 /// `frame` as on the wire, stuffed and with its CRC.
 #[must_use]
-pub fn to_bytes(frame: &Frame) -> Bytes {
+pub fn to_bytes(frame: &SerialFrame) -> Bytes {
     let len = frame.words.len() as u8;
     let crc = frame.crc([len, frame.opcode]);
     let words = frame.words.iter().copied().chain([crc]);
@@ -40,13 +40,13 @@ pub fn to_bytes(frame: &Frame) -> Bytes {
 /// Decodes a stream of bytes into frames.
 #[derive(Clone, Debug, Default)]
 pub struct UsbDecoder {
-    state: State,
+    state: DecoderState,
     /// The last byte was a [`DLE`]; the next decides its meaning.
     escaped: bool,
 }
 
 #[derive(Clone, Debug, Default)]
-enum State {
+enum DecoderState {
     /// Between frames.
     #[default]
     Hunting,
@@ -72,32 +72,32 @@ impl UsbDecoder {
     /// Whether a frame has begun and is not complete.
     #[must_use]
     pub const fn is_within_frame(&self) -> bool {
-        !matches!(self.state, State::Hunting)
+        !matches!(self.state, DecoderState::Hunting)
     }
 
     /// Takes one byte; a frame or an error comes out with the byte that completes it.
     ///
     /// After an error the decoder waits for the next sync pair, except that
-    /// [`FrameError::BrokenOff`] comes out with the second byte of a sync pair and the new frame
+    /// [`SerialFrameError::BrokenOff`] comes out with the second byte of a sync pair and the new frame
     /// has then begun.
-    pub fn push(&mut self, byte: u8) -> Option<Result<Frame, FrameError>> {
+    pub fn push(&mut self, byte: u8) -> Option<Result<SerialFrame, SerialFrameError>> {
         let escaped = core::mem::take(&mut self.escaped);
         match (&self.state, escaped, byte) {
             // A false start after a doubled 90 ends at the next sync pair; a missed frame is lost.
-            (State::Hunting, true, STX) => {
-                self.state = State::Opcode;
+            (DecoderState::Hunting, true, STX) => {
+                self.state = DecoderState::Opcode;
                 None
             }
-            (State::Hunting, ..) | (_, false, DLE) => {
+            (DecoderState::Hunting, ..) | (_, false, DLE) => {
                 self.escaped = byte == DLE;
                 None
             }
             (_, false, _) | (_, true, DLE) => self.unstuffed(byte),
             (_, true, STX) => {
                 let (expected, got) = self.progress();
-                self.state = State::Opcode;
-                Some(Err(FrameError::BrokenOff {
-                    layer: Layer::Usb,
+                self.state = DecoderState::Opcode;
+                Some(Err(SerialFrameError::BrokenOff {
+                    layer: SerialLayer::Usb,
                     expected,
                     got,
                 }))
@@ -105,8 +105,8 @@ impl UsbDecoder {
             (_, true, _) => {
                 let (_, offset) = self.progress();
                 self.reset();
-                Some(Err(FrameError::Stuffing {
-                    layer: Layer::Usb,
+                Some(Err(SerialFrameError::Stuffing {
+                    layer: SerialLayer::Usb,
                     offset,
                     got: byte,
                 }))
@@ -118,30 +118,30 @@ impl UsbDecoder {
     /// stuffing.
     fn progress(&self) -> (usize, usize) {
         match &self.state {
-            State::Hunting | State::Opcode => (4, 0),
-            State::Length { .. } => (4, 1),
-            State::Content(frame) => (frame.expected(), frame.received()),
+            DecoderState::Hunting | DecoderState::Opcode => (4, 0),
+            DecoderState::Length { .. } => (4, 1),
+            DecoderState::Content(frame) => (frame.expected(), frame.received()),
         }
     }
 
-    fn unstuffed(&mut self, byte: u8) -> Option<Result<Frame, FrameError>> {
+    fn unstuffed(&mut self, byte: u8) -> Option<Result<SerialFrame, SerialFrameError>> {
         let outcome = match &mut self.state {
-            State::Hunting => None,
-            State::Opcode => {
-                self.state = State::Length { opcode: byte };
+            DecoderState::Hunting => None,
+            DecoderState::Opcode => {
+                self.state = DecoderState::Length { opcode: byte };
                 None
             }
-            State::Length { opcode } => {
+            DecoderState::Length { opcode } => {
                 let header = [byte, *opcode];
-                match PartialFrame::new(Layer::Usb, 2, header, *opcode, byte.into()) {
+                match PartialFrame::new(SerialLayer::Usb, 2, header, *opcode, byte.into()) {
                     Ok(frame) => {
-                        self.state = State::Content(frame);
+                        self.state = DecoderState::Content(frame);
                         None
                     }
                     Err(error) => Some(Err(error)),
                 }
             }
-            State::Content(frame) => frame.push(byte),
+            DecoderState::Content(frame) => frame.push(byte),
         };
         if outcome.is_some() {
             self.reset();

@@ -40,11 +40,11 @@ pub struct DataPacket<'a> {
 
 /// One block of a data packet.
 #[derive(Clone, Copy, Debug)]
-pub struct Block<'a>(&'a [u8; BLOCK_LEN]);
+pub struct DataBlock<'a>(&'a [u8; BLOCK_LEN]);
 
 /// One channel of a block: the measurement of one laser in one firing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Channel {
+pub struct ChannelReturn {
     /// Distance in the model's unit (2 or 4 mm); 0 without a return.
     pub distance_raw: u16,
     /// Calibrated reflectivity: 0 to 100 diffuse, 101 to 255 retroreflective.
@@ -133,13 +133,13 @@ impl<'a> DataPacket<'a> {
 
     /// Block `i` in wire order; `None` from 12 on.
     #[must_use]
-    pub fn block(&self, i: usize) -> Option<Block<'a>> {
-        self.blocks.get(i).map(Block)
+    pub fn block(&self, i: usize) -> Option<DataBlock<'a>> {
+        self.blocks.get(i).map(DataBlock)
     }
 
     /// The twelve blocks in wire order.
-    pub fn blocks(&self) -> impl ExactSizeIterator<Item = Block<'a>> + Clone + use<'a> {
-        self.blocks.iter().map(Block)
+    pub fn blocks(&self) -> impl ExactSizeIterator<Item = DataBlock<'a>> + Clone + use<'a> {
+        self.blocks.iter().map(DataBlock)
     }
 
     /// Start of the first firing of the first block in microseconds past the hour: 0 to 3,599,999,999 by
@@ -163,7 +163,7 @@ impl<'a> DataPacket<'a> {
     }
 }
 
-impl<'a> Block<'a> {
+impl<'a> DataBlock<'a> {
     fn is_valid(self) -> bool {
         (self.flag() == FLAG) & (self.azimuth_cdeg() <= REVOLUTION_CDEG)
     }
@@ -183,16 +183,22 @@ impl<'a> Block<'a> {
 
     /// Channel `i` in wire order; `None` from 32 on.
     #[must_use]
-    pub fn channel(self, i: usize) -> Option<Channel> {
-        self.raw_channels().get(i).copied().map(Channel::from_bytes)
+    pub fn channel(self, i: usize) -> Option<ChannelReturn> {
+        self.raw_channels()
+            .get(i)
+            .copied()
+            .map(ChannelReturn::from_bytes)
     }
 
     /// The 32 channels in wire order.
-    pub fn channels(self) -> impl Iterator<Item = Channel> + Clone + use<'a> {
-        self.raw_channels().iter().copied().map(Channel::from_bytes)
+    pub fn channels(self) -> impl Iterator<Item = ChannelReturn> + Clone + use<'a> {
+        self.raw_channels()
+            .iter()
+            .copied()
+            .map(ChannelReturn::from_bytes)
     }
 
-    /// The 32 channels as on the wire, three bytes each, for [`Channel::from_bytes`].
+    /// The 32 channels as on the wire, three bytes each, for [`ChannelReturn::from_bytes`].
     #[inline]
     #[must_use]
     pub fn raw_channels(self) -> &'a [[u8; CHANNEL_LEN]; CHANNELS] {
@@ -202,7 +208,7 @@ impl<'a> Block<'a> {
     }
 }
 
-impl Channel {
+impl ChannelReturn {
     /// Reads a channel's three bytes.
     #[must_use]
     pub const fn from_bytes([lo, hi, reflectivity]: [u8; CHANNEL_LEN]) -> Self {
@@ -311,7 +317,7 @@ mod tests {
             match DataPacket::new(&bytes) {
                 Ok(packet) => {
                     prop_assert!(!in_flag);
-                    prop_assert_eq!(packet.blocks().flat_map(Block::channels).count(), 384);
+                    prop_assert_eq!(packet.blocks().flat_map(DataBlock::channels).count(), 384);
                 }
                 Err(error) => prop_assert!(
                     in_flag || matches!(error, PacketError::Azimuth { .. }), "{}", error

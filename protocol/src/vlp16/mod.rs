@@ -11,7 +11,8 @@ mod nmea;
 mod position;
 
 pub use data::{
-    BLOCK_LEN, BLOCKS, Block, CHANNELS, Channel, DATA_LEN, DataPacket, Product, ReturnMode,
+    BLOCK_LEN, BLOCKS, CHANNELS, ChannelReturn, DATA_LEN, DataBlock, DataPacket, Product,
+    ReturnMode,
 };
 pub use error::PacketError;
 pub use models::{Laser, Model};

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use firmware_sim::epos2::{Brake, CanServer, Node, NodeConfig, Rs232Server, Servo, UsbServer};
+use firmware_sim::epos2::{BrakeState, CanServer, Node, NodeConfig, Rs232Server, Servo, UsbServer};
 use protocol::canopen::CanFrame;
 use protocol::epos2::cia402::State;
 use protocol::epos2::objects::Address;
@@ -272,12 +272,12 @@ fn connect_home_sweep_brake() {
     };
     assert_eq!(connected.history.first(), Some(&DeviceError::CAN_PASSIVE));
     assert_eq!(connected.identity.serial, 1);
-    assert_eq!(world.node.brake(), Brake::Closed);
+    assert_eq!(world.node.brake(), BrakeState::Closed);
     let Ok(Outcome::Homed { angle, .. }) = world.run(Command::Home) else {
         panic!("{:?}", world.events.last())
     };
     assert!((angle.0 + 60.0).abs() < 0.01, "{angle:?}");
-    assert_eq!(world.node.brake(), Brake::Open);
+    assert_eq!(world.node.brake(), BrakeState::Open);
     world.events.clear();
     let Ok(Outcome::Arrived(arrived)) = world.run(Command::Sweep(to(-15.0))) else {
         panic!("{:?}", world.events.last())
@@ -294,7 +294,7 @@ fn connect_home_sweep_brake() {
         panic!("{:?}", world.events.last())
     };
     assert_eq!((stopped.position.0, stopped.fault), (-10_000, false));
-    assert_eq!(world.node.brake(), Brake::Closed);
+    assert_eq!(world.node.brake(), BrakeState::Closed);
     assert_eq!(world.client.link_stats().lost, 0);
     assert_eq!(world.client.link_stats().strays, 0);
 }
@@ -357,7 +357,7 @@ fn stop_in_mid_sweep_keeps_the_position() {
         panic!("{:?}", world.events.last())
     };
     assert!(stopped.angle.is_some());
-    assert_eq!(world.node.brake(), Brake::Closed);
+    assert_eq!(world.node.brake(), BrakeState::Closed);
     // 1125 rpm at 20,000 rpm/s take 56 ms to stop; then 50 ms of standstill, the brake, and some round trips.
     assert!(world.now - asked < Span::from_millis(200));
     // And it goes on from there.
@@ -606,7 +606,7 @@ fn a_servo_that_lags_is_home_and_arrives() {
                 panic!("{slept:?}")
             };
             assert!(!stopped.fault && stopped.position.0.abs_diff(-10_000) <= 1);
-            assert_eq!(world.node.brake(), Brake::Closed);
+            assert_eq!(world.node.brake(), BrakeState::Closed);
         }
     }
 }

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use protocol::canopen::CanFrame;
-use protocol::canopen::slcan::{Bitrate, Command, Line, Reply, ReplyDecoder};
+use protocol::canopen::slcan::{Bitrate, Line, ReplyDecoder, SlcanCommand, SlcanReply};
 use units::{Host, Span, Stamp};
 
 use super::{CanError, CanPort};
@@ -29,7 +29,7 @@ pub struct Slcan<P: Port> {
     port: P,
     decoder: ReplyDecoder,
     /// Decoded, but not yet processed.
-    replies: VecDeque<(Reply, Stamp<Host>)>,
+    replies: VecDeque<(SlcanReply, Stamp<Host>)>,
     /// Received frames and refusals that the caller has not read.
     received: VecDeque<Result<(CanFrame, Stamp<Host>), CanError>>,
     answers: bool,
@@ -69,14 +69,14 @@ impl<P: Port> Slcan<P> {
             dropped: 0,
         };
         // The empty line ends a partial one. An adapter may refuse to close a closed channel.
-        channel.send(&Command::Empty)?;
-        channel.send(&Command::Close)?;
+        channel.send(&SlcanCommand::Empty)?;
+        channel.send(&SlcanCommand::Close)?;
         channel.drain()?;
-        channel.command(&Command::Bitrate(bitrate))?;
+        channel.command(&SlcanCommand::Bitrate(bitrate))?;
         // Frames that arrived before the channel was closed.
         channel.replies.clear();
         channel.received.clear();
-        channel.command(&Command::Open)?;
+        channel.command(&SlcanCommand::Open)?;
         if channel.answers {
             channel.status.next = Some(channel.port.now().saturating_add(STATUS_PERIOD));
         }
@@ -117,7 +117,7 @@ impl<P: Port> Slcan<P> {
         due
     }
 
-    fn send(&mut self, command: &Command) -> Result<Stamp<Host>, CanError> {
+    fn send(&mut self, command: &SlcanCommand) -> Result<Stamp<Host>, CanError> {
         let mut line = Line::new();
         command.encode(&mut line);
         Ok(self.port.write_frame(&line)?)
@@ -128,7 +128,7 @@ impl<P: Port> Slcan<P> {
         let begin = self.port.now();
         while self.since(begin) < DRAIN_TIMEOUT && self.receive(QUIET)? {
             while let Some((reply, _)) = self.replies.pop_front() {
-                self.answers |= matches!(reply, Reply::Done | Reply::Refused);
+                self.answers |= matches!(reply, SlcanReply::Done | SlcanReply::Refused);
             }
         }
         self.decoder = ReplyDecoder::new();
@@ -137,7 +137,7 @@ impl<P: Port> Slcan<P> {
     }
 
     /// Sends a command and waits for the answer, which some adapters omit.
-    fn command(&mut self, command: &Command) -> Result<(), CanError> {
+    fn command(&mut self, command: &SlcanCommand) -> Result<(), CanError> {
         self.send(command)?;
         let begin = self.port.now();
         while self.since(begin) < ANSWER_TIMEOUT
@@ -145,11 +145,11 @@ impl<P: Port> Slcan<P> {
         {
             while let Some((reply, host)) = self.replies.pop_front() {
                 match reply {
-                    Reply::Done => {
+                    SlcanReply::Done => {
                         self.answers = true;
                         return Ok(());
                     }
-                    Reply::Refused => {
+                    SlcanReply::Refused => {
                         return Err(CanError::Refused {
                             command: name(command),
                         });
@@ -179,27 +179,27 @@ impl<P: Port> Slcan<P> {
     }
 
     /// Processes a reply on an open channel.
-    fn process(&mut self, reply: Reply, host: Stamp<Host>) {
+    fn process(&mut self, reply: SlcanReply, host: Stamp<Host>) {
         match reply {
-            Reply::Received { frame, .. } => self.received.push_back(Ok((frame, host))),
-            Reply::Done | Reply::Sent | Reply::SentExtended => self.frame_answered(),
+            SlcanReply::Received { frame, .. } => self.received.push_back(Ok((frame, host))),
+            SlcanReply::Done | SlcanReply::Sent | SlcanReply::SentExtended => self.frame_answered(),
             // Reading clears the flags, so each set flag is a new loss, of an unknown number of
             // frames.
-            Reply::Status(flags) => {
+            SlcanReply::Status(flags) => {
                 self.status.answers_before = None;
                 self.dropped += u64::from(flags & LOST != 0);
             }
             // An adapter without status flags is not queried again.
-            Reply::Refused if self.status.answers_before == Some(0) => {
+            SlcanReply::Refused if self.status.answers_before == Some(0) => {
                 self.status = StatusQuery::default()
             }
-            Reply::Refused if self.answers && self.unanswered > 0 => {
+            SlcanReply::Refused if self.answers && self.unanswered > 0 => {
                 self.frame_answered();
                 self.received.push_back(Err(CanError::NotSent));
             }
-            Reply::Refused | Reply::Unknown(_) => self.noise += 1,
+            SlcanReply::Refused | SlcanReply::Unknown(_) => self.noise += 1,
             // Answers to commands that are never sent.
-            Reply::Version(_) | Reply::SerialNumber(_) => {}
+            SlcanReply::Version(_) | SlcanReply::SerialNumber(_) => {}
         }
     }
 
@@ -214,11 +214,11 @@ impl<P: Port> Slcan<P> {
 
 impl<P: Port> CanPort for Slcan<P> {
     fn write_frame(&mut self, frame: &CanFrame) -> Result<Stamp<Host>, CanError> {
-        let host = self.send(&Command::Transmit(*frame))?;
+        let host = self.send(&SlcanCommand::Transmit(*frame))?;
         self.unanswered = self.unanswered.saturating_add(1);
         if self.is_status_due() {
             // This frame is sent; a failing port reports the error with the next one.
-            drop(self.send(&Command::Status));
+            drop(self.send(&SlcanCommand::Status));
         }
         Ok(host)
     }
@@ -259,12 +259,12 @@ impl<P: Port> CanPort for Slcan<P> {
 impl<P: Port> Drop for Slcan<P> {
     fn drop(&mut self) {
         // The port may be disconnected, which is no error here.
-        drop(self.send(&Command::Close));
+        drop(self.send(&SlcanCommand::Close));
     }
 }
 
 /// The command as sent.
-fn name(command: &Command) -> String {
+fn name(command: &SlcanCommand) -> String {
     let mut line = Line::new();
     command.encode(&mut line);
     String::from_utf8_lossy(&line).trim_end().to_owned()

@@ -1,7 +1,7 @@
 //! Error control: the node's own heartbeat (1017), the heartbeats it listens for (1016), and answers to guarding requests.
 
 use protocol::canopen::heartbeat::ConsumerEntry;
-use protocol::canopen::{CanFrame, Channel, NodeId};
+use protocol::canopen::{CanFrame, CommunicationObject, NodeId};
 use protocol::epos2::DeviceError;
 use protocol::epos2::objects::{self, Address};
 
@@ -9,12 +9,12 @@ use crate::epos2::node::Node;
 
 /// The node's heartbeat.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Beat {
+pub(super) struct HeartbeatTimer {
     period_ms: u16,
     last_us: u64,
 }
 
-impl Beat {
+impl HeartbeatTimer {
     /// The first is a period after the boot-up message.
     pub fn from_now(node: &Node) -> Self {
         Self {
@@ -40,11 +40,11 @@ impl Beat {
 
 /// Node guarding: the toggle bit of the next answer.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Guarding {
+pub(super) struct NodeGuarding {
     toggle: bool,
 }
 
-impl Guarding {
+impl NodeGuarding {
     /// The answer to a request; none where the heartbeat is on, which excludes guarding.
     pub fn answer(&mut self, node: &Node, id: NodeId) -> Option<CanFrame> {
         if node.dictionary.get(objects::PRODUCER_HEARTBEAT) != 0 {
@@ -54,7 +54,7 @@ impl Guarding {
         self.toggle = !self.toggle;
         let state = node.nmt_state().to_u8();
         Some(CanFrame::of(
-            Channel::Heartbeat(id).cob_id(),
+            CommunicationObject::Heartbeat(id).cob_id(),
             [state | toggle],
         ))
     }
@@ -62,13 +62,13 @@ impl Guarding {
 
 /// One entry of 1016 at work.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Listener {
+pub(super) struct HeartbeatWatch {
     entry: Option<ConsumerEntry>,
     /// When the last heartbeat came; the first begins the watch.
     last_us: Option<u64>,
 }
 
-impl Listener {
+impl HeartbeatWatch {
     pub fn hear(&mut self, node: &Node, sub: u8, from: NodeId, now_us: u64) {
         self.look(node, sub);
         if self.entry.is_some_and(|entry| entry.node == from) {

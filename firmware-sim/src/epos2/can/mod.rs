@@ -13,11 +13,11 @@ use protocol::canopen::emcy::Emergency;
 use protocol::canopen::heartbeat::Heartbeat;
 use protocol::canopen::nmt::{Nmt, NmtState};
 use protocol::canopen::sdo::Request;
-use protocol::canopen::sync::Sync;
-use protocol::canopen::{CanFrame, Channel, CobId, NodeId, PdoNumber};
+use protocol::canopen::sync::SyncMessage;
+use protocol::canopen::{CanFrame, CobId, CommunicationObject, NodeId, PdoNumber};
 use protocol::epos2::objects::Address;
 
-use self::guard::{Beat, Guarding, Listener};
+use self::guard::{HeartbeatTimer, HeartbeatWatch, NodeGuarding};
 use self::receive::ReceivePdo;
 use self::sdo::SdoServer;
 use self::transmit::TransmitPdo;
@@ -33,9 +33,9 @@ pub struct CanServer {
     started: Option<u32>,
     /// The NMT state when it was last looked at.
     state: Option<NmtState>,
-    beat: Beat,
-    guarding: Guarding,
-    listeners: [Listener; 2],
+    beat: HeartbeatTimer,
+    guarding: NodeGuarding,
+    listeners: [HeartbeatWatch; 2],
     sdo: SdoServer,
     transmit: [TransmitPdo; 4],
     receive: [ReceivePdo; 4],
@@ -100,7 +100,7 @@ impl CanServer {
         if self.started != Some(starts) {
             *self = Self {
                 started: Some(starts),
-                beat: Beat::from_now(node),
+                beat: HeartbeatTimer::from_now(node),
                 ..Self::default()
             };
             out(&life_sign(id, NmtState::BootUp));
@@ -120,7 +120,7 @@ impl CanServer {
 
     /// A remote frame.
     fn asked(&mut self, node: &Node, id: NodeId, cob_id: CobId, out: &mut impl FnMut(&CanFrame)) {
-        if cob_id == Channel::Heartbeat(id).cob_id() {
+        if cob_id == CommunicationObject::Heartbeat(id).cob_id() {
             if let Some(answer) = self.guarding.answer(node, id) {
                 out(&answer);
             }
@@ -140,21 +140,23 @@ impl CanServer {
         out: &mut impl FnMut(&CanFrame),
     ) {
         let now_us = node.time_us();
-        match frame.cob_id().map(Channel::of) {
-            Some(Channel::Nmt) => {
+        match frame.cob_id().map(CommunicationObject::of) {
+            Some(CommunicationObject::Nmt) => {
                 if let Ok(command) = Nmt::parse(frame)
                     && command.is_for(id)
                 {
                     node.nmt(command.command);
                 }
             }
-            Some(Channel::Sync) if Sync::parse(frame).is_ok() => self.sync(node, out),
-            Some(Channel::Heartbeat(other)) => {
+            Some(CommunicationObject::Sync) if SyncMessage::parse(frame).is_ok() => {
+                self.sync(node, out)
+            }
+            Some(CommunicationObject::Heartbeat(other)) => {
                 for (sub, listener) in (1..).zip(&mut self.listeners) {
                     listener.hear(node, sub, other, now_us);
                 }
             }
-            Some(Channel::SdoRequest(to)) if to == id => {
+            Some(CommunicationObject::SdoRequest(to)) if to == id => {
                 if node.nmt_state() != NmtState::Stopped
                     && let Ok((_, request)) = Request::parse(frame)
                     && let Some(answer) = self.sdo.execute(node, &request, now_us)

@@ -1,6 +1,6 @@
 //! Process data to the node: RPDO 1 to 4 (1400, 1600 and on), in effect at once or at the next SYNC.
 
-use protocol::canopen::pdo::{Layout, MAX_ENTRIES, TransmissionType};
+use protocol::canopen::pdo::{MAX_ENTRIES, PdoLayout, TransmissionType};
 use protocol::canopen::{CanFrame, PdoNumber};
 use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, DeviceError};
@@ -54,7 +54,7 @@ impl ReceivePdo {
 }
 
 /// Writes the values in the order of the mapping. A PDO has no way to say that one was refused.
-fn apply(node: &mut Node, layout: &Layout, values: &[u64]) {
+fn apply(node: &mut Node, layout: &PdoLayout, values: &[u64]) {
     for (entry, value) in layout.entries().iter().zip(values) {
         let bytes = value.to_le_bytes();
         let len = usize::from(entry.bits / 8);

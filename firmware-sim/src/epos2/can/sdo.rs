@@ -7,7 +7,7 @@ use protocol::epos2::{Bounded, CommError};
 use crate::epos2::Abort;
 use crate::epos2::dictionary::Dictionary;
 use crate::epos2::node::Node;
-use crate::epos2::value::Value;
+use crate::epos2::value::ObjectValue;
 
 /// How long a client may be silent in the middle of a transfer. The time of a real unit is not documented.
 const PATIENCE_US: u64 = 1_000_000;
@@ -17,17 +17,17 @@ const LONGEST: usize = 8;
 /// The server of one channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SdoServer {
-    transfer: Option<Transfer>,
+    transfer: Option<ServerTransfer>,
     /// When the client was last heard.
     heard_us: u64,
 }
 
 /// A segmented transfer under way.
 #[derive(Clone, Copy, Debug)]
-enum Transfer {
+enum ServerTransfer {
     Upload {
         address: Address,
-        value: Value,
+        value: ObjectValue,
         sent: usize,
         toggle: bool,
     },
@@ -40,7 +40,7 @@ enum Transfer {
     },
 }
 
-impl Transfer {
+impl ServerTransfer {
     const fn address(&self) -> Address {
         match self {
             Self::Upload { address, .. } | Self::Download { address, .. } => *address,
@@ -86,7 +86,7 @@ impl SdoServer {
         let transfer = match Expedited::new(value.bytes()) {
             Some(data) => Initiate::Expedited(data),
             None => {
-                self.transfer = Some(Transfer::Upload {
+                self.transfer = Some(ServerTransfer::Upload {
                     address,
                     value,
                     sent: 0,
@@ -100,8 +100,8 @@ impl SdoServer {
         Ok(Answer::InitiateUpload { address, transfer })
     }
 
-    fn give(&mut self, under_way: Option<Transfer>, asked: bool) -> Result<Answer, Abort> {
-        let Some(Transfer::Upload {
+    fn give(&mut self, under_way: Option<ServerTransfer>, asked: bool) -> Result<Answer, Abort> {
+        let Some(ServerTransfer::Upload {
             address,
             value,
             sent,
@@ -115,7 +115,7 @@ impl SdoServer {
         }
         let segment = Segment::cut(value.bytes(), sent, toggle);
         if !segment.last {
-            self.transfer = Some(Transfer::Upload {
+            self.transfer = Some(ServerTransfer::Upload {
                 address,
                 value,
                 sent: sent + segment.bytes.len(),
@@ -144,7 +144,7 @@ impl SdoServer {
                     Some(size) => node.check_download(address, *size as usize)?,
                     None => Dictionary::entry(address)?.check_access()?,
                 }
-                self.transfer = Some(Transfer::Download {
+                self.transfer = Some(ServerTransfer::Download {
                     address,
                     bytes: Bounded::new(),
                     size: *size,
@@ -158,10 +158,10 @@ impl SdoServer {
     fn take(
         &mut self,
         node: &mut Node,
-        under_way: Option<Transfer>,
+        under_way: Option<ServerTransfer>,
         segment: &Segment,
     ) -> Result<Answer, Abort> {
-        let Some(Transfer::Download {
+        let Some(ServerTransfer::Download {
             address,
             mut bytes,
             size,
@@ -184,7 +184,7 @@ impl SdoServer {
             }
             node.write_bytes(address, &bytes)?;
         } else {
-            self.transfer = Some(Transfer::Download {
+            self.transfer = Some(ServerTransfer::Download {
                 address,
                 bytes,
                 size,

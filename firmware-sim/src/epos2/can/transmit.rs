@@ -2,7 +2,7 @@
 //!
 //! Each value is read at the instant of the SYNC or event: a position and a time stamp (1013) in one PDO belong together.
 
-use protocol::canopen::pdo::{CommunicationId, Layout, MAX_ENTRIES, TransmissionType};
+use protocol::canopen::pdo::{CommunicationId, MAX_ENTRIES, PdoLayout, TransmissionType};
 use protocol::canopen::{CanFrame, CanId, CobId, PdoNumber};
 use protocol::epos2::Bounded;
 use protocol::epos2::objects::Address;
@@ -33,7 +33,7 @@ pub(super) struct TransmitPdo {
 struct Configured {
     id: CommunicationId,
     kind: TransmissionType,
-    layout: Layout,
+    layout: PdoLayout,
     inhibit_us: u64,
 }
 

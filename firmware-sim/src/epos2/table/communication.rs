@@ -1,11 +1,11 @@
 //! Communication objects, 1000 to 1FFF (CiA 301).
 
-use super::super::entry::Access::{Const, Ro, Rw, Rww};
+use super::super::entry::EntryAccess::{Const, Ro, Rw, Rww};
 use super::super::entry::Type::{Text, U8, U16, U32};
-use super::super::entry::{Entry, entry};
+use super::super::entry::{DictionaryEntry, entry};
 
 #[rustfmt::skip]
-pub(super) const ENTRIES: &[Entry] = &[
+pub(super) const ENTRIES: &[DictionaryEntry] = &[
     entry(0x1000, 0, U32, Ro, 0x0002_0192), // Device Type
     entry(0x1001, 0, U8, Ro, 0), // Error Register
     entry(0x1003, 0, U8, Rw, 0), // Number of Errors

@@ -1,11 +1,11 @@
 //! Objects of the device profile, 6000 to 6FFF (CiA 402).
 
-use super::super::entry::Access::{Const, Ro, Rw, Rww, Wo};
+use super::super::entry::EntryAccess::{Const, Ro, Rw, Rww, Wo};
 use super::super::entry::Type::{I8, I16, I32, U8, U16, U32};
-use super::super::entry::{Entry, entry};
+use super::super::entry::{DictionaryEntry, entry};
 
 #[rustfmt::skip]
-pub(super) const ENTRIES: &[Entry] = &[
+pub(super) const ENTRIES: &[DictionaryEntry] = &[
     entry(0x6007, 0, I16, Rw, 3), // Abort Connection Option Code
     entry(0x6040, 0, U16, Rww, 0).mappable(), // Controlword
     entry(0x6041, 0, U16, Ro, 0).mappable(), // Statusword

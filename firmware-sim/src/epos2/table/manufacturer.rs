@@ -1,11 +1,11 @@
 //! maxon's own objects, 2000 to 2FFF.
 
-use super::super::entry::Access::{Const, Ro, Rw, Rww, Wo};
+use super::super::entry::EntryAccess::{Const, Ro, Rw, Rww, Wo};
 use super::super::entry::Type::{Domain, I8, I16, I32, U8, U16, U32, U64};
-use super::super::entry::{Entry, entry};
+use super::super::entry::{DictionaryEntry, entry};
 
 #[rustfmt::skip]
-pub(super) const ENTRIES: &[Entry] = &[
+pub(super) const ENTRIES: &[DictionaryEntry] = &[
     entry(0x2000, 0, U8, Rw, 0).plus_node_id(), // Node ID
     entry(0x2001, 0, U16, Rw, 2).within(0, 7), // CAN Bitrate
     entry(0x2002, 0, U16, Rw, 5).within(0, 5), // RS232 Baudrate

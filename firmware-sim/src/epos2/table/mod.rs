@@ -10,19 +10,19 @@ mod communication;
 mod device;
 mod manufacturer;
 
-use super::entry::Entry;
+use super::entry::DictionaryEntry;
 
 /// The number of entries in the device description.
 pub(super) const COUNT: usize = 430;
 
-const PARTS: [&[Entry]; 3] = [
+const PARTS: [&[DictionaryEntry]; 3] = [
     communication::ENTRIES,
     manufacturer::ENTRIES,
     device::ENTRIES,
 ];
 
 /// All entries, one per subindex, in order for binary search.
-pub(super) static TABLE: [Entry; COUNT] = {
+pub(super) static TABLE: [DictionaryEntry; COUNT] = {
     let mut all = [PARTS[0][0]; COUNT];
     let (mut part, mut to, mut last) = (0, 0, 0);
     while part < PARTS.len() {

@@ -4,7 +4,7 @@ use protocol::epos2::cia402::control;
 use protocol::epos2::objects::{self, Address};
 
 use super::super::Abort;
-use super::super::entry::{Access, Type};
+use super::super::entry::{EntryAccess, Type};
 use super::super::table::TABLE;
 use super::{command, enabled, get, healthy, set, ticks};
 
@@ -71,7 +71,7 @@ fn every_object_that_the_protocol_names_exists_in_its_width() {
     }
     for entry in &TABLE {
         let expected = match (entry.access, entry.ty) {
-            (Access::Wo, _) => Some(Abort::WRITE_ONLY),
+            (EntryAccess::Wo, _) => Some(Abort::WRITE_ONLY),
             (_, Type::Domain) => Some(Abort::STATE),
             _ => None,
         };

@@ -4,7 +4,7 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{State, control};
 use protocol::epos2::objects;
 
-use super::super::{Brake, Node, NodeConfig, Region, Switch};
+use super::super::{BrakeState, Node, NodeConfig, Region, Switch};
 use super::{
     arrive, command, enable, enabled, get, go, healthy, position, set, state, ticks, until,
 };
@@ -121,21 +121,25 @@ fn software_limits_refuse_targets_and_stop_an_axis_that_crosses_them() {
 #[test]
 fn the_brake_opens_before_and_closes_after() {
     let mut node = healthy();
-    assert_eq!(node.brake(), Brake::Absent);
+    assert_eq!(node.brake(), BrakeState::Absent);
     set(&mut node, objects::OUTPUT_1, objects::OUTPUT_BRAKE);
-    assert_eq!(node.brake(), Brake::Absent, "the output mask holds it back");
+    assert_eq!(
+        node.brake(),
+        BrakeState::Absent,
+        "the output mask holds it back"
+    );
     set(&mut node, objects::OUTPUT_MASK, 1 << 2);
     set(&mut node, objects::BRAKE_RISE, 50);
     set(&mut node, objects::BRAKE_FALL, 30);
     assert_eq!(
         (node.brake(), get(&node, objects::OUTPUT_STATE)),
-        (Brake::Closed, 4)
+        (BrakeState::Closed, 4)
     );
     command(&mut node, control::SHUTDOWN);
     command(&mut node, control::ENABLE_OPERATION);
     assert_eq!(
         (node.brake(), get(&node, objects::OUTPUT_STATE)),
-        (Brake::Open, 0)
+        (BrakeState::Open, 0)
     );
     let took = until(&mut node, 200, |node| {
         state(node) == State::OperationEnabled
@@ -144,7 +148,7 @@ fn the_brake_opens_before_and_closes_after() {
     go(&mut node, 100_000, control::START_ABSOLUTE);
     ticks(&mut node, 300);
     command(&mut node, control::SWITCH_ON);
-    let ramp = until(&mut node, 200, |node| node.brake() == Brake::Closed);
+    let ramp = until(&mut node, 200, |node| node.brake() == BrakeState::Closed);
     // 100 ms of ramp, then 50 ms of standstill.
     assert!((150..154).contains(&ramp), "{ramp}");
     assert_eq!(get(&node, objects::VELOCITY_ACTUAL), 0);
@@ -166,7 +170,7 @@ fn a_standstill_that_is_not_found_is_not_waited_for_beyond_its_timeout() {
     set(&mut node, objects::STANDSTILL_TIMEOUT, 200);
     enable(&mut node);
     command(&mut node, control::SWITCH_ON);
-    let took = until(&mut node, 1_000, |node| node.brake() == Brake::Closed);
+    let took = until(&mut node, 1_000, |node| node.brake() == BrakeState::Closed);
     assert!((200..203).contains(&took), "{took}");
     // A fault reaction that ramps takes the same way.
     until(&mut node, 100, |node| state(node) == State::SwitchedOn);

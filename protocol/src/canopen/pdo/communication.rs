@@ -101,7 +101,7 @@ impl TransmissionType {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canopen::{Channel, NodeId, PdoNumber};
+    use crate::canopen::{CommunicationObject, NodeId, PdoNumber};
     use proptest::prelude::*;
 
     /// Defaults of the unit's own device description for node 1: TPDO1 in use, TPDO2 to 4 not, remote frames nowhere.
@@ -113,7 +113,9 @@ mod tests {
             let id = CommunicationId {
                 valid: number == PdoNumber::One,
                 remote: false,
-                id: Channel::TransmitPdo(number, node).cob_id().into(),
+                id: CommunicationObject::TransmitPdo(number, node)
+                    .cob_id()
+                    .into(),
             };
             assert_eq!(id.to_u32(), value);
             assert_eq!(CommunicationId::from_u32(value), id);

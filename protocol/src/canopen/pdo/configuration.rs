@@ -3,8 +3,8 @@
 //! The node must be pre-operational meanwhile, and be started afterwards; that is the caller's business.
 
 use super::communication::{CommunicationId, TransmissionType};
-use super::layout::Layout;
-use crate::canopen::cob_id::{Channel, NodeId, PdoNumber};
+use super::layout::PdoLayout;
+use crate::canopen::cob_id::{CommunicationObject, NodeId, PdoNumber};
 use crate::canopen::object::{Address, Scalar};
 use crate::canopen::sdo::Expedited;
 
@@ -38,10 +38,10 @@ impl Pdo {
 
     /// Its identifier in the predefined connection set.
     #[must_use]
-    pub const fn channel(self, node: NodeId) -> Channel {
+    pub const fn channel(self, node: NodeId) -> CommunicationObject {
         match self {
-            Self::Receive(number) => Channel::ReceivePdo(number, node),
-            Self::Transmit(number) => Channel::TransmitPdo(number, node),
+            Self::Receive(number) => CommunicationObject::ReceivePdo(number, node),
+            Self::Transmit(number) => CommunicationObject::TransmitPdo(number, node),
         }
     }
 }
@@ -56,7 +56,7 @@ pub struct Configuration {
     /// a fast SYNC.
     pub inhibit_100us: Option<u16>,
     /// What it carries.
-    pub layout: Layout,
+    pub layout: PdoLayout,
 }
 
 /// One object to write.
@@ -114,7 +114,7 @@ mod tests {
     extern crate std;
 
     use super::*;
-    use crate::canopen::pdo::Mapping;
+    use crate::canopen::pdo::MappedObject;
     use crate::canopen::sdo::{Initiate, Request};
     use crate::canopen::tests::{POSITION_ACTUAL, TIMESTAMP};
     use std::vec::Vec;
@@ -123,7 +123,11 @@ mod tests {
         Configuration {
             transmission: TransmissionType::EACH_SYNC,
             inhibit_100us: Some(0),
-            layout: Layout::new(&[Mapping::of(POSITION_ACTUAL), Mapping::of(TIMESTAMP)]).unwrap(),
+            layout: PdoLayout::new(&[
+                MappedObject::of(POSITION_ACTUAL),
+                MappedObject::of(TIMESTAMP),
+            ])
+            .unwrap(),
         }
     }
 

@@ -7,7 +7,7 @@ use core::fmt;
 use thiserror::Error;
 
 use crate::Bounded;
-use crate::canopen::object::{Address, Object, Scalar};
+use crate::canopen::object::{Address, Scalar, TypedObject};
 
 /// Entries a mapping of the EPOS2 has room for.
 pub const MAX_ENTRIES: usize = 8;
@@ -16,17 +16,17 @@ const MAX_BITS: usize = 64;
 
 /// An object in a PDO.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
-pub struct Mapping {
+pub struct MappedObject {
     /// The object.
     pub address: Address,
     /// Its length in bits.
     pub bits: u8,
 }
 
-impl Mapping {
+impl MappedObject {
     /// The entry of a whole object.
     #[must_use]
-    pub const fn of<T: Scalar>(object: Object<T>) -> Self {
+    pub const fn of<T: Scalar>(object: TypedObject<T>) -> Self {
         Self {
             address: object.address,
             bits: 8 * T::BYTES,
@@ -51,7 +51,7 @@ impl Mapping {
 }
 
 /// As in the object: `60640020`.
-impl fmt::Debug for Mapping {
+impl fmt::Debug for MappedObject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:08X}", self.to_u32())
     }
@@ -107,16 +107,16 @@ pub enum PdoError {
 
 /// The entries of a PDO that fit a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Layout {
-    entries: Bounded<Mapping, MAX_ENTRIES>,
+pub struct PdoLayout {
+    entries: Bounded<MappedObject, MAX_ENTRIES>,
 }
 
-impl Layout {
+impl PdoLayout {
     /// The layout of `entries`.
     ///
     /// # Errors
     /// [`LayoutError`].
-    pub fn new(entries: &[Mapping]) -> Result<Self, LayoutError> {
+    pub fn new(entries: &[MappedObject]) -> Result<Self, LayoutError> {
         let layout = Self {
             entries: Bounded::from_slice(entries).map_err(|full| LayoutError::TooMany {
                 max: full.capacity,
@@ -134,7 +134,7 @@ impl Layout {
 
     /// The entries in their order.
     #[must_use]
-    pub fn entries(&self) -> &[Mapping] {
+    pub fn entries(&self) -> &[MappedObject] {
         &self.entries
     }
 
@@ -197,9 +197,13 @@ impl Layout {
     ///
     /// # Errors
     /// [`PdoError::Short`].
-    pub fn get<T: Scalar>(&self, object: Object<T>, data: &[u8]) -> Result<Option<T>, PdoError> {
+    pub fn get<T: Scalar>(
+        &self,
+        object: TypedObject<T>,
+        data: &[u8],
+    ) -> Result<Option<T>, PdoError> {
         let packed = self.word(data)?;
-        let wanted = Mapping::of(object);
+        let wanted = MappedObject::of(object);
         let place = self.places().find(|(entry, ..)| *entry == wanted);
         Ok(place.map(|(_, shift, mask)| object.decode((packed >> shift & mask) as u32)))
     }
@@ -215,7 +219,7 @@ impl Layout {
     }
 
     /// Each entry with the bit at which it begins (0 to 63) and the mask of its length.
-    fn places(&self) -> impl Iterator<Item = (Mapping, u32, u64)> + '_ {
+    fn places(&self) -> impl Iterator<Item = (MappedObject, u32, u64)> + '_ {
         self.entries.iter().scan(0, |next, entry| {
             let shift = *next;
             *next += u32::from(entry.bits);
@@ -233,8 +237,8 @@ mod tests {
     use crate::canopen::tests::{MODE_DISPLAY, POSITION_ACTUAL, STATUSWORD, TIMESTAMP};
     use proptest::prelude::*;
 
-    fn entry(bits: u8) -> Mapping {
-        Mapping {
+    fn entry(bits: u8) -> MappedObject {
+        MappedObject {
             address: Address::new(0x2000, bits),
             bits,
         }
@@ -243,9 +247,15 @@ mod tests {
     /// The stream of the tilt angle: position and time stamp in one frame.
     #[test]
     fn the_angle_stream() {
-        let entries = [Mapping::of(POSITION_ACTUAL), Mapping::of(TIMESTAMP)];
-        assert_eq!(entries.map(Mapping::to_u32), [0x6064_0020, 0x1013_0020]);
-        let layout = Layout::new(&entries).unwrap();
+        let entries = [
+            MappedObject::of(POSITION_ACTUAL),
+            MappedObject::of(TIMESTAMP),
+        ];
+        assert_eq!(
+            entries.map(MappedObject::to_u32),
+            [0x6064_0020, 0x1013_0020]
+        );
+        let layout = PdoLayout::new(&entries).unwrap();
         let data = [0xD0, 0x8A, 0xFF, 0xFF, 0x78, 0x56, 0x34, 0x12];
         assert_eq!(layout.get(POSITION_ACTUAL, &data), Ok(Some(-30_000)));
         assert_eq!(layout.get(TIMESTAMP, &data), Ok(Some(0x1234_5678)));
@@ -263,8 +273,8 @@ mod tests {
     /// A real unit's TPDO1 (1A00): an analogue value, statusword, mode.
     #[test]
     fn values_follow_one_another_without_gaps() {
-        let entries = [0x20C4_0110, 0x6041_0010, 0x6061_0008].map(Mapping::from_u32);
-        let layout = Layout::new(&entries).unwrap();
+        let entries = [0x20C4_0110, 0x6041_0010, 0x6061_0008].map(MappedObject::from_u32);
+        let layout = PdoLayout::new(&entries).unwrap();
         assert_eq!((layout.bits(), layout.len()), (40, 5));
         // A longer frame is taken, what is behind does not count.
         let data = [0x11, 0x22, 0x37, 0x03, 0xFF, 0xEE];
@@ -284,7 +294,7 @@ mod tests {
 
     #[test]
     fn lengths_need_no_whole_bytes() {
-        let layout = Layout::new(&[entry(1), entry(12), entry(3)]).unwrap();
+        let layout = PdoLayout::new(&[entry(1), entry(12), entry(3)]).unwrap();
         let packed = layout.pack(&[1, 0xABC, 0b101]).unwrap();
         assert_eq!(
             u16::from_le_bytes([packed[0], packed[1]]),
@@ -299,23 +309,23 @@ mod tests {
     #[test]
     fn what_fits_no_frame_is_refused() {
         assert_eq!(
-            Layout::new(&[entry(32), entry(33)]),
+            PdoLayout::new(&[entry(32), entry(33)]),
             Err(LayoutError::TooLong { max: 64, got: 65 })
         );
         assert_eq!(
-            Layout::new(&[entry(1); 9]),
+            PdoLayout::new(&[entry(1); 9]),
             Err(LayoutError::TooMany { max: 8, got: 9 })
         );
         assert_eq!(
-            Layout::new(&[entry(1), entry(0)]),
+            PdoLayout::new(&[entry(1), entry(0)]),
             Err(LayoutError::Empty { entry: 2 })
         );
         assert_eq!(
-            Layout::new(&[entry(255); 8]),
+            PdoLayout::new(&[entry(255); 8]),
             Err(LayoutError::TooLong { max: 64, got: 2040 })
         );
-        assert!(Layout::new(&[entry(64)]).is_ok());
-        assert_eq!(Layout::default().pack(&[]).unwrap().as_slice(), []);
+        assert!(PdoLayout::new(&[entry(64)]).is_ok());
+        assert_eq!(PdoLayout::default().pack(&[]).unwrap().as_slice(), []);
     }
 
     proptest! {
@@ -328,7 +338,7 @@ mod tests {
                 .collect();
             let entries: std::vec::Vec<_> = parts.iter().map(|(bits, _)| entry(*bits)).collect();
             let values: std::vec::Vec<_> = parts.iter().map(|(bits, value)| value & (u64::MAX >> (64 - bits))).collect();
-            let layout = Layout::new(&entries).unwrap();
+            let layout = PdoLayout::new(&entries).unwrap();
             let data = layout.pack(&values).unwrap();
             prop_assert_eq!(data.len(), layout.len());
             let unpacked = layout.unpack(&data).unwrap();
@@ -337,7 +347,7 @@ mod tests {
 
         #[test]
         fn entries_read_back(value in any::<u32>()) {
-            prop_assert_eq!(Mapping::from_u32(value).to_u32(), value);
+            prop_assert_eq!(MappedObject::from_u32(value).to_u32(), value);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! PDO, process data objects (CiA 301, "PDO services"): objects of a node sent in one frame, by what is configured beforehand.
 //!
-//! Here are the values of the configuring objects ([`CommunicationId`], [`TransmissionType`], [`Mapping`]), the order in
-//! which they are to be written ([`configuration`]), and the packing of a frame's data by its mapping ([`Layout`]).
+//! Here are the values of the configuring objects ([`CommunicationId`], [`TransmissionType`], [`MappedObject`]), the order in
+//! which they are to be written ([`configuration`]), and the packing of a frame's data by its mapping ([`PdoLayout`]).
 
 mod communication;
 mod configuration;
@@ -9,4 +9,7 @@ mod layout;
 
 pub use communication::{CommunicationId, TransmissionType};
 pub use configuration::{Configuration, Pdo, Write, configuration};
-pub use layout::{Layout, LayoutError, MAX_ENTRIES, Mapping, PdoError};
+pub use layout::{
+    LayoutError, MAX_ENTRIES, MappedObject, MappedObject as Mapping, PdoError, PdoLayout,
+    PdoLayout as Layout,
+};

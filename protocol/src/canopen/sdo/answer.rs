@@ -2,8 +2,8 @@
 
 use super::transfer::{Initiate, Segment, TOGGLE, toggle_bit};
 use super::{ABORT, LEN, address, command, message};
-use crate::canopen::cob_id::{Channel, NodeId};
-use crate::canopen::error::{Layer, MessageError};
+use crate::canopen::cob_id::{CommunicationObject, NodeId};
+use crate::canopen::error::{MessageError, MessageKind};
 use crate::canopen::frame::CanFrame;
 use crate::canopen::message::{bytes, wrong_id};
 use crate::epos2::CommError;
@@ -99,7 +99,10 @@ impl Answer {
     /// The answer of `node` as a frame.
     #[must_use]
     pub fn to_frame(&self, node: NodeId) -> CanFrame {
-        CanFrame::of(Channel::SdoAnswer(node).cob_id(), self.to_bytes())
+        CanFrame::of(
+            CommunicationObject::SdoAnswer(node).cob_id(),
+            self.to_bytes(),
+        )
     }
 
     /// The node that answers, and the answer in `frame`.
@@ -107,8 +110,10 @@ impl Answer {
     /// # Errors
     /// [`MessageError`]; an SDO message has eight bytes whatever it uses of them.
     pub fn parse(frame: &CanFrame) -> Result<(NodeId, Self), MessageError> {
-        let layer = Layer::SdoAnswer;
-        let Some(Channel::SdoAnswer(node)) = frame.cob_id().map(Channel::of) else {
+        let layer = MessageKind::SdoAnswer;
+        let Some(CommunicationObject::SdoAnswer(node)) =
+            frame.cob_id().map(CommunicationObject::of)
+        else {
             return Err(wrong_id(layer, "581 to 5FF", frame));
         };
         Ok((node, Self::from_bytes(*bytes(layer, frame)?)))

@@ -9,7 +9,7 @@ use units::{Host, Span, Stamp};
 use super::outcome::{Handled, Outcome, StartError, TransferError, Value};
 use super::step::{Next, Step, Transfer, advance};
 use super::{Access, Answer, Expedited, Initiate, Request};
-use crate::canopen::cob_id::{Channel, NodeId};
+use crate::canopen::cob_id::{CommunicationObject, NodeId};
 use crate::canopen::frame::CanFrame;
 use crate::epos2::Bounded;
 use crate::epos2::objects::{Address, Scalar};
@@ -172,7 +172,7 @@ impl<const N: usize> SdoClient<N> {
 
     /// Takes any frame of the bus.
     pub fn handle_frame(&mut self, frame: &CanFrame) -> Handled {
-        if frame.cob_id() != Some(Channel::SdoAnswer(self.node).cob_id()) {
+        if frame.cob_id() != Some(CommunicationObject::SdoAnswer(self.node).cob_id()) {
             return Handled::Foreign;
         }
         // Not asked yet, so this answers nothing, however well it would fit.

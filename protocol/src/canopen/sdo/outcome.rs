@@ -75,7 +75,7 @@ pub enum TransferError {
     Cancelled,
     /// A frame on the answer's identifier that is no SDO message.
     #[error(transparent)]
-    Message(#[from] MessageError),
+    BusMessage(#[from] MessageError),
 }
 
 impl TransferError {
@@ -91,7 +91,7 @@ impl TransferError {
             Self::OtherObject { .. }
             | Self::Unexpected { .. }
             | Self::EmptySegment
-            | Self::Message(_) => Some(CommError::COMMAND),
+            | Self::BusMessage(_) => Some(CommError::COMMAND),
         }
     }
 
@@ -103,7 +103,7 @@ impl TransferError {
                 | Self::OtherObject { .. }
                 | Self::Unexpected { .. }
                 | Self::Cancelled
-                | Self::Message(_)
+                | Self::BusMessage(_)
         )
     }
 }

@@ -2,8 +2,8 @@
 
 use super::transfer::{Initiate, Segment, TOGGLE, toggle_bit};
 use super::{ABORT, LEN, address, command, message};
-use crate::canopen::cob_id::{Channel, NodeId};
-use crate::canopen::error::{Layer, MessageError};
+use crate::canopen::cob_id::{CommunicationObject, NodeId};
+use crate::canopen::error::{MessageError, MessageKind};
 use crate::canopen::frame::CanFrame;
 use crate::canopen::message::{bytes, wrong_id};
 use crate::epos2::CommError;
@@ -97,7 +97,10 @@ impl Request {
     /// The request to `node` as a frame.
     #[must_use]
     pub fn to_frame(&self, node: NodeId) -> CanFrame {
-        CanFrame::of(Channel::SdoRequest(node).cob_id(), self.to_bytes())
+        CanFrame::of(
+            CommunicationObject::SdoRequest(node).cob_id(),
+            self.to_bytes(),
+        )
     }
 
     /// The node asked, and the request in `frame`.
@@ -105,8 +108,10 @@ impl Request {
     /// # Errors
     /// [`MessageError`]; an SDO message has eight bytes whatever it uses of them.
     pub fn parse(frame: &CanFrame) -> Result<(NodeId, Self), MessageError> {
-        let layer = Layer::SdoRequest;
-        let Some(Channel::SdoRequest(node)) = frame.cob_id().map(Channel::of) else {
+        let layer = MessageKind::SdoRequest;
+        let Some(CommunicationObject::SdoRequest(node)) =
+            frame.cob_id().map(CommunicationObject::of)
+        else {
             return Err(wrong_id(layer, "601 to 67F", frame));
         };
         Ok((node, Self::from_bytes(*bytes(layer, frame)?)))

@@ -268,7 +268,7 @@ fn a_damaged_answer_is_typed() {
     assert_eq!(client.handle_frame(&short), Handled::Taken);
     assert!(matches!(
         client.poll_outcome().unwrap().result,
-        Err(TransferError::Message(MessageError::Length {
+        Err(TransferError::BusMessage(MessageError::Length {
             expected: 8,
             got: 6,
             ..

@@ -2,7 +2,7 @@
 
 use super::error::SlcanError;
 use super::frame::{parse_frame, write_frame};
-use super::line::{CR, Event, Line, Lines, length};
+use super::line::{CR, Line, LineAssembler, LineEvent, length};
 use crate::canopen::frame::CanFrame;
 
 /// The nine bit rates that have a number.
@@ -76,7 +76,7 @@ impl Bitrate {
 
 /// A line from host to adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Command {
+pub enum SlcanCommand {
     /// CR alone: ends whatever stood in the adapter's buffer.
     Empty,
     /// `S`: sets the bit rate; the channel must be closed.
@@ -101,7 +101,7 @@ pub enum Command {
     Unknown(Line),
 }
 
-impl Command {
+impl SlcanCommand {
     /// Writes the line, its CR included.
     pub fn encode(&self, out: &mut impl Extend<u8>) {
         match self {
@@ -162,7 +162,7 @@ impl Command {
 /// The adapter's side: takes the bytes of a stream one by one and gives commands back.
 #[derive(Clone, Debug, Default)]
 pub struct CommandDecoder {
-    lines: Lines,
+    lines: LineAssembler,
 }
 
 impl CommandDecoder {
@@ -173,12 +173,12 @@ impl CommandDecoder {
     }
 
     /// Takes one byte; a command, or why there is none, comes out with the byte that completes the line.
-    pub fn push(&mut self, byte: u8) -> Option<Result<Command, SlcanError>> {
+    pub fn push(&mut self, byte: u8) -> Option<Result<SlcanCommand, SlcanError>> {
         match self.lines.push(byte)? {
-            Event::Line(line) => Some(Command::parse(&line)),
-            Event::Dropped(error) => Some(Err(error)),
+            LineEvent::Line(line) => Some(SlcanCommand::parse(&line)),
+            LineEvent::Dropped(error) => Some(Err(error)),
             // No host says it: noise.
-            Event::Bell => None,
+            LineEvent::Bell => None,
         }
     }
 }

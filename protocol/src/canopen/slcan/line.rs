@@ -17,7 +17,7 @@ pub type Line = Bounded<u8, MAX_LINE>;
 
 /// What a byte completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Event {
+pub(super) enum LineEvent {
     /// A line without its CR, perhaps empty.
     Line(Line),
     Bell,
@@ -26,19 +26,19 @@ pub(super) enum Event {
 
 /// Gathers bytes to lines.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Lines {
+pub(super) struct LineAssembler {
     line: Line,
     /// The line has become too long; its end is waited for.
     skipping: bool,
 }
 
-impl Lines {
-    pub(super) fn push(&mut self, byte: u8) -> Option<Event> {
+impl LineAssembler {
+    pub(super) fn push(&mut self, byte: u8) -> Option<LineEvent> {
         match byte {
             CR => Some(self.end()),
             BEL => {
                 *self = Self::default();
-                Some(Event::Bell)
+                Some(LineEvent::Bell)
             }
             LF => None,
             // Between lines anything else than text is noise of the line or of a port just opened.
@@ -47,7 +47,7 @@ impl Lines {
                 let got = self.line.len();
                 *self = Self::default();
                 self.line.extend([byte]);
-                Some(Event::Dropped(SlcanError::BrokenOff { got }))
+                Some(LineEvent::Dropped(SlcanError::BrokenOff { got }))
             }
             _ => {
                 self.skipping |= self.line.push(byte).is_err();
@@ -56,12 +56,12 @@ impl Lines {
         }
     }
 
-    fn end(&mut self) -> Event {
+    fn end(&mut self) -> LineEvent {
         let Self { line, skipping } = core::mem::take(self);
         if skipping {
-            Event::Dropped(SlcanError::TooLong { max: MAX_LINE })
+            LineEvent::Dropped(SlcanError::TooLong { max: MAX_LINE })
         } else {
-            Event::Line(line)
+            LineEvent::Line(line)
         }
     }
 

@@ -1,7 +1,7 @@
 //! SLCAN, the Lawicel ASCII protocol (LAWICEL CAN232 and CANUSB manuals): CAN frames as lines of text on a serial port.
 //!
 //! A line is a letter with its arguments and ends with CR; an adapter refuses with BEL. Both sides are here: a host
-//! writes [`Command`]s and reads [`Reply`]s, an adapter the other way round. Adapters differ: CANUSB answers each command
+//! writes [`SlcanCommand`]s and reads [`SlcanReply`]s, an adapter the other way round. Adapters differ: CANUSB answers each command
 //! with CR, a frame with `z` CR or `Z` CR, some firmware (CANable) answers nothing. That is no matter here, and neither
 //! are timeouts. Register settings, filters and CAN FD extensions are left out: their lines are `Unknown`.
 
@@ -11,10 +11,10 @@ mod frame;
 mod line;
 mod reply;
 
-pub use command::{Bitrate, Command, CommandDecoder};
+pub use command::{Bitrate, CommandDecoder, SlcanCommand};
 pub use error::SlcanError;
 pub use line::{BEL, CR, Line, MAX_LINE};
-pub use reply::{Reply, ReplyDecoder};
+pub use reply::{ReplyDecoder, SlcanReply};
 
 #[cfg(test)]
 mod tests;

@@ -2,12 +2,12 @@
 
 use super::error::SlcanError;
 use super::frame::{parse_frame, write_frame};
-use super::line::{BEL, CR, Event, Line, Lines, length, number, text, write_number};
+use super::line::{BEL, CR, Line, LineAssembler, LineEvent, length, number, text, write_number};
 use crate::canopen::frame::CanFrame;
 
 /// A line from adapter to host, or BEL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reply {
+pub enum SlcanReply {
     /// CR alone: done.
     Done,
     /// BEL: not done.
@@ -33,7 +33,7 @@ pub enum Reply {
     Unknown(Line),
 }
 
-impl Reply {
+impl SlcanReply {
     /// Writes the line with its CR, or BEL.
     pub fn encode(&self, out: &mut impl Extend<u8>) {
         match self {
@@ -90,7 +90,7 @@ fn prefixed(letter: u8, text: &Line, out: &mut impl Extend<u8>) {
 /// The host's side: takes the bytes of a stream one by one and gives replies back.
 #[derive(Clone, Debug, Default)]
 pub struct ReplyDecoder {
-    lines: Lines,
+    lines: LineAssembler,
 }
 
 impl ReplyDecoder {
@@ -103,11 +103,11 @@ impl ReplyDecoder {
     /// Takes one byte; a reply, or why there is none, comes out with the byte that completes the line.
     ///
     /// BEL in the middle of a line ends it: what stood there is dropped.
-    pub fn push(&mut self, byte: u8) -> Option<Result<Reply, SlcanError>> {
+    pub fn push(&mut self, byte: u8) -> Option<Result<SlcanReply, SlcanError>> {
         Some(match self.lines.push(byte)? {
-            Event::Line(line) => Reply::parse(&line),
-            Event::Bell => Ok(Reply::Refused),
-            Event::Dropped(error) => Err(error),
+            LineEvent::Line(line) => SlcanReply::parse(&line),
+            LineEvent::Bell => Ok(SlcanReply::Refused),
+            LineEvent::Dropped(error) => Err(error),
         })
     }
 }

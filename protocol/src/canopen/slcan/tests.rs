@@ -21,16 +21,16 @@ fn extended(id: u32, data: &[u8]) -> CanFrame {
     CanFrame::new(ExtendedId::new(id).unwrap(), data).unwrap()
 }
 
-fn received(frame: CanFrame, stamp_ms: Option<u16>) -> Reply {
-    Reply::Received { frame, stamp_ms }
+fn received(frame: CanFrame, stamp_ms: Option<u16>) -> SlcanReply {
+    SlcanReply::Received { frame, stamp_ms }
 }
 
-fn commands(bytes: &[u8]) -> Vec<Result<Command, SlcanError>> {
+fn commands(bytes: &[u8]) -> Vec<Result<SlcanCommand, SlcanError>> {
     let mut decoder = CommandDecoder::new();
     bytes.iter().filter_map(|&b| decoder.push(b)).collect()
 }
 
-fn replies(bytes: &[u8]) -> Vec<Result<Reply, SlcanError>> {
+fn replies(bytes: &[u8]) -> Vec<Result<SlcanReply, SlcanError>> {
     let mut decoder = ReplyDecoder::new();
     bytes.iter().filter_map(|&b| decoder.push(b)).collect()
 }
@@ -44,33 +44,33 @@ fn encoded(encode: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
 #[test]
 fn golden_commands_both_ways() {
     let request = standard(0x601, &[0x40, 0x41, 0x60, 0, 0, 0, 0, 0]);
-    let golden: [(&str, Command); 17] = [
-        ("\r", Command::Empty),
-        ("S0\r", Command::Bitrate(Bitrate::Kbit10)),
-        ("S8\r", Command::Bitrate(Bitrate::Kbit1000)),
-        ("O\r", Command::Open),
-        ("L\r", Command::OpenListening),
-        ("C\r", Command::Close),
-        ("V\r", Command::Version),
-        ("N\r", Command::SerialNumber),
-        ("F\r", Command::Status),
-        ("Z1\r", Command::Stamps(true)),
-        ("t60184041600000000000\r", Command::Transmit(request)),
-        ("t0800\r", Command::Transmit(standard(0x080, &[]))),
+    let golden: [(&str, SlcanCommand); 17] = [
+        ("\r", SlcanCommand::Empty),
+        ("S0\r", SlcanCommand::Bitrate(Bitrate::Kbit10)),
+        ("S8\r", SlcanCommand::Bitrate(Bitrate::Kbit1000)),
+        ("O\r", SlcanCommand::Open),
+        ("L\r", SlcanCommand::OpenListening),
+        ("C\r", SlcanCommand::Close),
+        ("V\r", SlcanCommand::Version),
+        ("N\r", SlcanCommand::SerialNumber),
+        ("F\r", SlcanCommand::Status),
+        ("Z1\r", SlcanCommand::Stamps(true)),
+        ("t60184041600000000000\r", SlcanCommand::Transmit(request)),
+        ("t0800\r", SlcanCommand::Transmit(standard(0x080, &[]))),
         (
             "T000001232AABB\r",
-            Command::Transmit(extended(0x123, &[0xAA, 0xBB])),
+            SlcanCommand::Transmit(extended(0x123, &[0xAA, 0xBB])),
         ),
         (
             "r7011\r",
-            Command::Transmit(CanFrame::remote(CobId::new(0x701).unwrap(), 1).unwrap()),
+            SlcanCommand::Transmit(CanFrame::remote(CobId::new(0x701).unwrap(), 1).unwrap()),
         ),
         (
             "R1FFFFFFF8\r",
-            Command::Transmit(CanFrame::remote(ExtendedId::MAX, 8).unwrap()),
+            SlcanCommand::Transmit(CanFrame::remote(ExtendedId::MAX, 8).unwrap()),
         ),
-        ("M00000000\r", Command::Unknown(line("M00000000"))),
-        ("s031C\r", Command::Unknown(line("s031C"))),
+        ("M00000000\r", SlcanCommand::Unknown(line("M00000000"))),
+        ("s031C\r", SlcanCommand::Unknown(line("s031C"))),
     ];
     for (text, command) in golden {
         assert_eq!(
@@ -85,11 +85,11 @@ fn golden_commands_both_ways() {
 #[test]
 fn golden_replies_both_ways() {
     let answer = standard(0x581, &[0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0]);
-    let golden: [(&str, Reply); 10] = [
-        ("\r", Reply::Done),
-        ("\x07", Reply::Refused),
-        ("z\r", Reply::Sent),
-        ("Z\r", Reply::SentExtended),
+    let golden: [(&str, SlcanReply); 10] = [
+        ("\r", SlcanReply::Done),
+        ("\x07", SlcanReply::Refused),
+        ("z\r", SlcanReply::Sent),
+        ("Z\r", SlcanReply::SentExtended),
         ("t58184B41600040010000\r", received(answer, None)),
         (
             "t58184B4160004001000012C7\r",
@@ -102,9 +102,9 @@ fn golden_replies_both_ways() {
                 Some(1),
             ),
         ),
-        ("V1013\r", Reply::Version(line("1013"))),
-        ("NA123\r", Reply::SerialNumber(line("A123"))),
-        ("F08\r", Reply::Status(8)),
+        ("V1013\r", SlcanReply::Version(line("1013"))),
+        ("NA123\r", SlcanReply::SerialNumber(line("A123"))),
+        ("F08\r", SlcanReply::Status(8)),
     ];
     for (text, reply) in golden {
         assert_eq!(encoded(|out| reply.encode(out)), text.as_bytes(), "{text}");
@@ -115,7 +115,10 @@ fn golden_replies_both_ways() {
 #[test]
 fn bit_rates_have_their_numbers() {
     for (digit, rate) in (b'0'..).zip(Bitrate::ALL) {
-        assert_eq!(commands(&[b'S', digit, CR]), [Ok(Command::Bitrate(rate))]);
+        assert_eq!(
+            commands(&[b'S', digit, CR]),
+            [Ok(SlcanCommand::Bitrate(rate))]
+        );
         assert_eq!(Bitrate::from_bit_s(rate.bit_s()), Some(rate));
     }
     assert_eq!(Bitrate::from_bit_s(83_300), None);
@@ -137,11 +140,11 @@ fn small_letters_line_feeds_and_versions_of_any_length_are_taken() {
     assert_eq!(replies(b"t7ab1cd\r\n"), [Ok(received(frame, None))]);
     assert_eq!(
         commands(b"C\r\nt7ab1Cd\r\n"),
-        [Ok(Command::Close), Ok(Command::Transmit(frame))]
+        [Ok(SlcanCommand::Close), Ok(SlcanCommand::Transmit(frame))]
     );
     let version = "CANable slcan Rev 2, https://example.org";
     let reply = [b"V", version.as_bytes(), b"\r"].concat();
-    assert_eq!(replies(&reply), [Ok(Reply::Version(line(version)))]);
+    assert_eq!(replies(&reply), [Ok(SlcanReply::Version(line(version)))]);
 }
 
 #[test]
@@ -199,9 +202,9 @@ fn noise_costs_at_most_the_line_it_is_in() {
     assert_eq!(replies(b"t58\xE31101\rt581101\r")[1..], [Ok(good)]);
     assert_eq!(
         replies(b"t5811\x07t581101\r"),
-        [Ok(Reply::Refused), Ok(good)]
+        [Ok(SlcanReply::Refused), Ok(good)]
     );
-    assert_eq!(commands(b"\x07C\x07O\r"), [Ok(Command::Open)]);
+    assert_eq!(commands(b"\x07C\x07O\r"), [Ok(SlcanCommand::Open)]);
     // Without any CR.
     let long = [&[b'x'; 500][..], b"\rt581101\r"].concat();
     let max = MAX_LINE;
@@ -214,10 +217,10 @@ proptest! {
         let mut to_adapter = Vec::new();
         let mut to_host = Vec::new();
         for (frame, stamp_ms) in &frames {
-            Command::Transmit(*frame).encode(&mut to_adapter);
+            SlcanCommand::Transmit(*frame).encode(&mut to_adapter);
             received(*frame, *stamp_ms).encode(&mut to_host);
         }
-        let sent: Vec<_> = frames.iter().map(|(frame, _)| Ok(Command::Transmit(*frame))).collect();
+        let sent: Vec<_> = frames.iter().map(|(frame, _)| Ok(SlcanCommand::Transmit(*frame))).collect();
         prop_assert_eq!(commands(&to_adapter), sent);
         let heard: Vec<_> = frames.iter().map(|(frame, stamp)| Ok(received(*frame, *stamp))).collect();
         prop_assert_eq!(replies(&to_host), heard);
@@ -238,6 +241,6 @@ proptest! {
         }
         let good = [&bytes[..], b"\rt601140\r"].concat();
         prop_assert_eq!(replies(&good).pop(), Some(Ok(received(frame, None))));
-        prop_assert_eq!(commands(&good).pop(), Some(Ok(Command::Transmit(frame))));
+        prop_assert_eq!(commands(&good).pop(), Some(Ok(SlcanCommand::Transmit(frame))));
     }
 }

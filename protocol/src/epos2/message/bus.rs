@@ -1,12 +1,12 @@
 //! NMT service, send and request CAN frame, opcodes 0E, 20 and 21: the CAN bus through the unit as
 //! gateway.
 
-use super::{Answer, command, word_count};
-use crate::epos2::{CommError, Frame, FrameError};
+use super::{SerialAnswer, command, word_count};
+use crate::epos2::{CommError, SerialFrame, SerialFrameError};
 
 /// A network management command to one node or to all. Over RS232 it has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Nmt {
+pub struct GatewayNmt {
     /// Node id; 0 is all nodes.
     pub node: u16,
     /// Command specifier, see [`NmtCommand`](crate::canopen::nmt::NmtCommand).
@@ -14,7 +14,7 @@ pub struct Nmt {
 }
 
 command!(
-    Nmt = 0x0E,
+    GatewayNmt = 0x0E,
     |it: &Self| [it.node, it.specifier],
     |[node, specifier]: [u16; 2]| Self { node, specifier }
 );
@@ -60,17 +60,19 @@ command!(
 impl RequestCanFrame {
     /// The answer to it.
     #[must_use]
-    pub fn answer(outcome: Result<[u8; 8], CommError>) -> Frame {
-        Answer::of(outcome.map(to_words))
+    pub fn answer(outcome: Result<[u8; 8], CommError>) -> SerialFrame {
+        SerialAnswer::of(outcome.map(to_words))
     }
 
     /// The data in its answer.
     ///
     /// # Errors
-    /// [`FrameError::Opcode`], [`FrameError::WordCount`] if `frame` is no such answer; the inner
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer; the inner
     /// error is what the unit reports.
-    pub fn parse_answer(frame: &Frame) -> Result<Result<[u8; 8], CommError>, FrameError> {
-        Answer::read(frame, |answer| match answer.data.first_chunk() {
+    pub fn parse_answer(
+        frame: &SerialFrame,
+    ) -> Result<Result<[u8; 8], CommError>, SerialFrameError> {
+        SerialAnswer::read(frame, |answer| match answer.data.first_chunk() {
             Some(words) => Ok(from_words(*words)),
             None => Err(word_count(6, 2 + answer.data.len())),
         })

@@ -8,7 +8,8 @@ mod bus;
 mod object;
 mod segmented;
 
-pub use bus::{Nmt, RequestCanFrame, SendCanFrame};
+pub use self::{SerialAnswer as Answer, SerialRequest as Request};
+pub use bus::{GatewayNmt, RequestCanFrame, SendCanFrame};
 pub use object::{ReadObject, WriteObject};
 pub use segmented::{
     InitiateSegmentedRead, InitiateSegmentedWrite, ReadSegment, SegmentedRead, SegmentedWrite,
@@ -16,8 +17,8 @@ pub use segmented::{
 };
 
 use super::comm_error::CommError;
-use super::error::{FrameError, Layer};
-use super::frame::{Frame, Words};
+use super::error::{SerialFrameError, SerialLayer};
+use super::frame::{SerialFrame, Words};
 use crate::canopen::Address;
 
 /// Implements a command of fixed length: its opcode, its words, and the command of these words.
@@ -29,16 +30,18 @@ macro_rules! command {
 
             /// The request as a frame.
             #[must_use]
-            pub fn to_frame(&self) -> crate::epos2::Frame {
-                crate::epos2::Frame::of(Self::OPCODE, $words(self))
+            pub fn to_frame(&self) -> crate::epos2::SerialFrame {
+                crate::epos2::SerialFrame::of(Self::OPCODE, $words(self))
             }
 
             /// The request in `frame`.
             ///
             /// # Errors
-            /// [`FrameError::Opcode`](crate::epos2::FrameError::Opcode),
-            /// [`FrameError::WordCount`](crate::epos2::FrameError::WordCount).
-            pub fn parse(frame: &crate::epos2::Frame) -> Result<Self, crate::epos2::FrameError> {
+            /// [`SerialFrameError::Opcode`](crate::epos2::FrameError::Opcode),
+            /// [`SerialFrameError::WordCount`](crate::epos2::FrameError::WordCount).
+            pub fn parse(
+                frame: &crate::epos2::SerialFrame,
+            ) -> Result<Self, crate::epos2::SerialFrameError> {
                 frame.exactly(Self::OPCODE).map($parse)
             }
         }
@@ -51,19 +54,19 @@ macro_rules! requests {
     ($($name:ident),*) => {
         /// Any request that a unit knows.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum Request {
+        pub enum SerialRequest {
             $(#[doc = concat!("[`", stringify!($name), "`].")] $name($name),)*
         }
 
-        impl Request {
+        impl SerialRequest {
             /// The opcodes of all requests.
             pub const OPCODES: [u8; 9] = [$($name::OPCODE),*];
 
             /// The request in `frame`; `None` for an opcode that the guide does not list.
             ///
             /// # Errors
-            /// [`FrameError::WordCount`] where the command has another number of words.
-            pub fn parse(frame: &Frame) -> Result<Option<Self>, FrameError> {
+            /// [`SerialFrameError::WordCount`] where the command has another number of words.
+            pub fn parse(frame: &SerialFrame) -> Result<Option<Self>, SerialFrameError> {
                 Ok(Some(match frame.opcode {
                     $($name::OPCODE => Self::$name($name::parse(frame)?),)*
                     _ => return Ok(None),
@@ -72,7 +75,7 @@ macro_rules! requests {
 
             /// The request as a frame.
             #[must_use]
-            pub fn to_frame(&self) -> Frame {
+            pub fn to_frame(&self) -> SerialFrame {
                 match self {
                     $(Self::$name(request) => request.to_frame(),)*
                 }
@@ -87,21 +90,21 @@ requests!(
     InitiateSegmentedWrite,
     SegmentedRead,
     SegmentedWrite,
-    Nmt,
+    GatewayNmt,
     SendCanFrame,
     RequestCanFrame
 );
 
 /// An answer to any command: an error code, then the command's data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Answer {
+pub struct SerialAnswer {
     /// Whether the command was carried out.
     pub error: CommError,
     /// The words after the error code, garbage included.
     pub data: Words,
 }
 
-impl Answer {
+impl SerialAnswer {
     /// An answer without data.
     #[must_use]
     pub fn bare(error: CommError) -> Self {
@@ -112,10 +115,10 @@ impl Answer {
     /// The answer in `frame`.
     ///
     /// # Errors
-    /// [`FrameError::Opcode`] for a request (an echo, for instance), [`FrameError::WordCount`] below
+    /// [`SerialFrameError::Opcode`] for a request (an echo, for instance), [`SerialFrameError::WordCount`] below
     /// two words.
-    pub fn parse(frame: &Frame) -> Result<Self, FrameError> {
-        frame.expect_opcode(Frame::ANSWER)?;
+    pub fn parse(frame: &SerialFrame) -> Result<Self, SerialFrameError> {
+        frame.expect_opcode(SerialFrame::ANSWER)?;
         let [low, high, data @ ..] = frame.words.as_slice() else {
             return Err(word_count(2, frame.words.len()));
         };
@@ -127,8 +130,8 @@ impl Answer {
 
     /// The answer as a frame; data that does not fit is cut off.
     #[must_use]
-    pub fn to_frame(&self) -> Frame {
-        let mut frame = Frame::of(Frame::ANSWER, self.error.to_words());
+    pub fn to_frame(&self) -> SerialFrame {
+        let mut frame = SerialFrame::of(SerialFrame::ANSWER, self.error.to_words());
         frame.words.extend(self.data);
         frame
     }
@@ -137,8 +140,8 @@ impl Answer {
     /// the width of the object are garbage.
     ///
     /// # Errors
-    /// [`FrameError::WordCount`] below two data words.
-    pub fn value(&self) -> Result<u32, FrameError> {
+    /// [`SerialFrameError::WordCount`] below two data words.
+    pub fn value(&self) -> Result<u32, SerialFrameError> {
         match self.data.as_slice() {
             [low, high, ..] => Ok(dword(*low, *high)),
             short => Err(word_count(4, 2 + short.len())),
@@ -146,7 +149,7 @@ impl Answer {
     }
 
     /// The frame that answers with the data of a success, or with the error of a failure.
-    fn of<D: IntoIterator<Item = u16>>(outcome: Result<D, CommError>) -> Frame {
+    fn of<D: IntoIterator<Item = u16>>(outcome: Result<D, CommError>) -> SerialFrame {
         let mut answer = Self::bare(CommError::NONE);
         match outcome {
             Ok(data) => answer.data.extend(data),
@@ -157,9 +160,9 @@ impl Answer {
 
     /// What `read` finds in an answer of success; the inner error is what the unit reports.
     fn read<T>(
-        frame: &Frame,
-        read: impl FnOnce(&Self) -> Result<T, FrameError>,
-    ) -> Result<Result<T, CommError>, FrameError> {
+        frame: &SerialFrame,
+        read: impl FnOnce(&Self) -> Result<T, SerialFrameError>,
+    ) -> Result<Result<T, CommError>, SerialFrameError> {
         let answer = Self::parse(frame)?;
         if answer.error.is_none() {
             read(&answer).map(Ok)
@@ -169,9 +172,9 @@ impl Answer {
     }
 }
 
-fn word_count(expected: usize, got: usize) -> FrameError {
-    FrameError::WordCount {
-        layer: Layer::Message,
+fn word_count(expected: usize, got: usize) -> SerialFrameError {
+    SerialFrameError::WordCount {
+        layer: SerialLayer::Message,
         expected,
         got,
     }

@@ -1,8 +1,8 @@
 //! ReadObject and WriteObject, opcodes 10 and 11: objects of up to 32 bits.
 
-use super::{Answer, command, dword, parse_target, target, target_and_number};
+use super::{SerialAnswer, command, dword, parse_target, target, target_and_number};
 use crate::canopen::Address;
-use crate::epos2::{CommError, Frame, FrameError};
+use crate::epos2::{CommError, SerialFrame, SerialFrameError};
 
 /// Reads the value of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,18 +25,18 @@ command!(
 impl ReadObject {
     /// The answer to it: the value in the low bytes, or an error in two words.
     #[must_use]
-    pub fn answer(outcome: Result<u32, CommError>) -> Frame {
-        Answer::of(outcome.map(|value| CommError(value).to_words()))
+    pub fn answer(outcome: Result<u32, CommError>) -> SerialFrame {
+        SerialAnswer::of(outcome.map(|value| CommError(value).to_words()))
     }
 
     /// The value in its answer; the bits above the width of the object are garbage. An error comes
     /// in two words or in four.
     ///
     /// # Errors
-    /// [`FrameError::Opcode`], [`FrameError::WordCount`] if `frame` is no such answer; the inner
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer; the inner
     /// error is what the unit reports.
-    pub fn parse_answer(frame: &Frame) -> Result<Result<u32, CommError>, FrameError> {
-        Answer::read(frame, Answer::value)
+    pub fn parse_answer(frame: &SerialFrame) -> Result<Result<u32, CommError>, SerialFrameError> {
+        SerialAnswer::read(frame, SerialAnswer::value)
     }
 }
 
@@ -68,16 +68,16 @@ command!(
 impl WriteObject {
     /// The answer to it.
     #[must_use]
-    pub fn answer(outcome: Result<(), CommError>) -> Frame {
-        Answer::of(outcome.map(|()| []))
+    pub fn answer(outcome: Result<(), CommError>) -> SerialFrame {
+        SerialAnswer::of(outcome.map(|()| []))
     }
 
     /// Whether it was carried out.
     ///
     /// # Errors
-    /// [`FrameError::Opcode`], [`FrameError::WordCount`] if `frame` is no answer; the inner error is
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no answer; the inner error is
     /// what the unit reports.
-    pub fn parse_answer(frame: &Frame) -> Result<Result<(), CommError>, FrameError> {
-        Answer::read(frame, |_| Ok(()))
+    pub fn parse_answer(frame: &SerialFrame) -> Result<Result<(), CommError>, SerialFrameError> {
+        SerialAnswer::read(frame, |_| Ok(()))
     }
 }

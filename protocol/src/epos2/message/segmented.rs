@@ -1,9 +1,9 @@
 //! Segmented read and write, opcodes 12 to 15: objects of any length, such as the device name.
 
-use super::{Answer, command, dword, parse_target, target, target_and_number, word_count};
+use super::{SerialAnswer, command, dword, parse_target, target, target_and_number, word_count};
 use crate::Bounded;
 use crate::canopen::Address;
-use crate::epos2::{CommError, Frame, FrameError, Words};
+use crate::epos2::{CommError, SerialFrame, SerialFrameError, Words};
 
 /// Toggle bit of a control byte.
 const TOGGLE: u8 = 1 << 6;
@@ -82,8 +82,8 @@ pub struct ReadSegment {
 impl SegmentedRead {
     /// The answer to it.
     #[must_use]
-    pub fn answer(outcome: &Result<ReadSegment, CommError>) -> Frame {
-        Answer::of(outcome.as_ref().map_err(|error| *error).map(|segment| {
+    pub fn answer(outcome: &Result<ReadSegment, CommError>) -> SerialFrame {
+        SerialAnswer::of(outcome.as_ref().map_err(|error| *error).map(|segment| {
             let more = if segment.more { MORE } else { 0 };
             pack(toggle_bit(segment.toggle) | more, &segment.bytes)
         }))
@@ -92,10 +92,12 @@ impl SegmentedRead {
     /// The segment in its answer.
     ///
     /// # Errors
-    /// [`FrameError::Opcode`], [`FrameError::WordCount`] if `frame` is no such answer or holds fewer
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer or holds fewer
     /// bytes than it announces; the inner error is what the unit reports.
-    pub fn parse_answer(frame: &Frame) -> Result<Result<ReadSegment, CommError>, FrameError> {
-        Answer::read(frame, |answer| {
+    pub fn parse_answer(
+        frame: &SerialFrame,
+    ) -> Result<Result<ReadSegment, CommError>, SerialFrameError> {
+        SerialAnswer::read(frame, |answer| {
             let (control, bytes) = unpack(&answer.data, 2)?;
             Ok(ReadSegment {
                 toggle: control & TOGGLE != 0,
@@ -125,8 +127,8 @@ impl SegmentedWrite {
 
     /// The request as a frame.
     #[must_use]
-    pub fn to_frame(&self) -> Frame {
-        let mut frame = Frame::of(Self::OPCODE, []);
+    pub fn to_frame(&self) -> SerialFrame {
+        let mut frame = SerialFrame::of(Self::OPCODE, []);
         frame.words = pack(toggle_bit(self.0.toggle), &self.0.bytes);
         frame
     }
@@ -134,9 +136,9 @@ impl SegmentedWrite {
     /// The request in `frame`.
     ///
     /// # Errors
-    /// [`FrameError::Opcode`]; [`FrameError::WordCount`] where it holds fewer bytes than it
+    /// [`SerialFrameError::Opcode`]; [`SerialFrameError::WordCount`] where it holds fewer bytes than it
     /// announces.
-    pub fn parse(frame: &Frame) -> Result<Self, FrameError> {
+    pub fn parse(frame: &SerialFrame) -> Result<Self, SerialFrameError> {
         frame.expect_opcode(Self::OPCODE)?;
         let (control, bytes) = unpack(&frame.words, 0)?;
         let toggle = control & TOGGLE != 0;
@@ -145,17 +147,17 @@ impl SegmentedWrite {
 
     /// The answer to it: the toggle bit as received.
     #[must_use]
-    pub fn answer(outcome: Result<bool, CommError>) -> Frame {
-        Answer::of(outcome.map(|toggle| [u16::from(toggle_bit(toggle))]))
+    pub fn answer(outcome: Result<bool, CommError>) -> SerialFrame {
+        SerialAnswer::of(outcome.map(|toggle| [u16::from(toggle_bit(toggle))]))
     }
 
     /// The toggle bit in its answer.
     ///
     /// # Errors
-    /// [`FrameError::Opcode`], [`FrameError::WordCount`] if `frame` is no such answer; the inner
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer; the inner
     /// error is what the unit reports.
-    pub fn parse_answer(frame: &Frame) -> Result<Result<bool, CommError>, FrameError> {
-        Answer::read(frame, |answer| {
+    pub fn parse_answer(frame: &SerialFrame) -> Result<Result<bool, CommError>, SerialFrameError> {
+        SerialAnswer::read(frame, |answer| {
             let control = answer.data.first().ok_or(word_count(3, 2))?;
             Ok(has_toggle(*control))
         })
@@ -184,7 +186,7 @@ fn pack(flags: u8, bytes: &[u8]) -> Words {
 }
 
 /// The control byte and the bytes it announces; `before` words of the frame precede.
-fn unpack(words: &[u16], before: usize) -> Result<(u8, Bounded<u8, MAX_BYTES>), FrameError> {
+fn unpack(words: &[u16], before: usize) -> Result<(u8, Bounded<u8, MAX_BYTES>), SerialFrameError> {
     let mut all = words.iter().flat_map(|word| word.to_le_bytes());
     let control = all.next().ok_or(word_count(before + 1, before))?;
     let len = usize::from(control & LENGTH);

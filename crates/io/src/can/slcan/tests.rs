@@ -28,12 +28,12 @@ enum Behaviour {
 /// An adapter on a pseudo-terminal, with a node on its bus that returns each frame with an
 /// identifier lower by 080.
 struct Adapter {
-    thread: JoinHandle<Vec<Command>>,
+    thread: JoinHandle<Vec<SlcanCommand>>,
     end: mpsc::Sender<()>,
     path: std::path::PathBuf,
 }
 
-fn bytes(replies: &[Reply]) -> Vec<u8> {
+fn bytes(replies: &[SlcanReply]) -> Vec<u8> {
     let mut out = Vec::new();
     for reply in replies {
         reply.encode(&mut out);
@@ -41,24 +41,24 @@ fn bytes(replies: &[Reply]) -> Vec<u8> {
     out
 }
 
-fn echo(frame: &CanFrame) -> Reply {
+fn echo(frame: &CanFrame) -> SlcanReply {
     let id = frame.cob_id().unwrap().get() - 0x80;
-    Reply::Received {
+    SlcanReply::Received {
         frame: CanFrame::new(CobId::new(id).unwrap(), frame.data()).unwrap(),
         stamp_ms: None,
     }
 }
 
-fn answer(behaviour: Behaviour, command: &Command) -> Vec<Reply> {
+fn answer(behaviour: Behaviour, command: &SlcanCommand) -> Vec<SlcanReply> {
     match (behaviour, command) {
-        (Behaviour::Silent, Command::Transmit(frame)) => vec![echo(frame)],
+        (Behaviour::Silent, SlcanCommand::Transmit(frame)) => vec![echo(frame)],
         (Behaviour::Silent, _) => vec![],
-        (Behaviour::NoBitrate, Command::Bitrate(_)) => vec![Reply::Refused],
-        (Behaviour::NoFrames, Command::Transmit(_)) => vec![Reply::Refused],
-        (_, Command::Transmit(frame)) => vec![Reply::Sent, echo(frame)],
+        (Behaviour::NoBitrate, SlcanCommand::Bitrate(_)) => vec![SlcanReply::Refused],
+        (Behaviour::NoFrames, SlcanCommand::Transmit(_)) => vec![SlcanReply::Refused],
+        (_, SlcanCommand::Transmit(frame)) => vec![SlcanReply::Sent, echo(frame)],
         // CANUSB refuses to close a closed channel.
-        (_, Command::Empty | Command::Close) => vec![Reply::Refused],
-        (_, _) => vec![Reply::Done],
+        (_, SlcanCommand::Empty | SlcanCommand::Close) => vec![SlcanReply::Refused],
+        (_, _) => vec![SlcanReply::Done],
     }
 }
 
@@ -86,7 +86,7 @@ impl Adapter {
                 for command in buffer[..n].iter().filter_map(|&b| decoder.push(b)) {
                     let command = command.unwrap();
                     let mut out = bytes(&answer(behaviour, &command));
-                    if command == Command::Open {
+                    if command == SlcanCommand::Open {
                         out.extend(&on_open);
                     }
                     got.push(command);
@@ -102,7 +102,7 @@ impl Adapter {
     }
 
     /// Stops the adapter and returns the commands it received.
-    fn stop(self) -> Vec<Command> {
+    fn stop(self) -> Vec<SlcanCommand> {
         self.end.send(()).unwrap();
         self.thread.join().unwrap()
     }
@@ -141,16 +141,16 @@ fn the_channel_is_configured_opened_and_closed() {
         drop(can);
         let mut commands = adapter.stop();
         // On a slow machine a status query may occur.
-        commands.retain(|command| *command != Command::Status);
+        commands.retain(|command| *command != SlcanCommand::Status);
         assert_eq!(
             commands,
             [
-                Command::Empty,
-                Command::Close,
-                Command::Bitrate(Bitrate::Kbit1000),
-                Command::Open,
-                Command::Transmit(request()),
-                Command::Close,
+                SlcanCommand::Empty,
+                SlcanCommand::Close,
+                SlcanCommand::Bitrate(Bitrate::Kbit1000),
+                SlcanCommand::Open,
+                SlcanCommand::Transmit(request()),
+                SlcanCommand::Close,
             ]
         );
     }
@@ -158,7 +158,7 @@ fn the_channel_is_configured_opened_and_closed() {
 
 #[test]
 fn frames_during_opening_are_kept() {
-    let boot = bytes(&[Reply::Received {
+    let boot = bytes(&[SlcanReply::Received {
         frame: boot_up(),
         stamp_ms: None,
     }]);
@@ -285,10 +285,10 @@ impl Port for Scripted {
     fn write_frame(&mut self, line: &[u8]) -> Result<Stamp<Host>, PortError> {
         self.written.extend(line);
         let reply = match (line[0], self.flags) {
-            (b't', _) => Reply::Sent,
-            (b'F', None) => Reply::Refused,
-            (b'F', Some(flags)) => Reply::Status(flags),
-            _ => Reply::Done,
+            (b't', _) => SlcanReply::Sent,
+            (b'F', None) => SlcanReply::Refused,
+            (b'F', Some(flags)) => SlcanReply::Status(flags),
+            _ => SlcanReply::Done,
         };
         reply.encode(&mut self.answers);
         Ok(self.now())
