@@ -11,11 +11,13 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sim::effects::{Asked, Effects, OnFirings, Wishes};
-use sim::motion::{Motion, Sweeps};
+use sim::HeadRotation;
+use sim::effect_models::EffectsConfig;
+use sim::effects::{ConfiguredEffects, Effects, FiringEffectSet};
+use sim::motion::{AxisMotion, Sweeps};
 use sim::scenes;
-use sim::sensor::{ReturnMode, Sensor};
-use sim::simulate::{Event, Mount, Out, Polls, Simulation, Spin};
+use sim::sensor::{LidarMount, LidarSensor, ReturnMode};
+use sim::simulate::{Polls, Simulation, SimulationEvent, SimulationSink};
 use units::{Gearing, Stamp};
 
 /// First argument of the process that callgrind watches.
@@ -52,8 +54,8 @@ const TABLES: [(&str, &str); 18] = [
 /// Takes everything and keeps nothing.
 struct Nowhere;
 
-impl Out for Nowhere {
-    fn event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+impl SimulationSink for Nowhere {
+    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
         std::hint::black_box(event);
         ControlFlow::Continue(())
     }
@@ -61,7 +63,7 @@ impl Out for Nowhere {
 
 /// The rig's sweep, down at full speed.
 fn sweep() -> Simulation {
-    let motion = Motion::sweeps(&Sweeps {
+    let motion = AxisMotion::sweeps(&Sweeps {
         from_deg: 0.0,
         to_deg: -45.0,
         speed_deg_s: 56.25,
@@ -72,13 +74,13 @@ fn sweep() -> Simulation {
     });
     Simulation {
         scene: Arc::new(scenes::hall()),
-        sensor: Sensor::vlp16(),
+        sensor: LidarSensor::vlp16(),
         returns: ReturnMode::Strongest,
-        spin: Spin {
+        rotation: HeadRotation {
             rpm: 600,
             start_deg: 0.0,
         },
-        mount: Mount::above(0.06),
+        mount: LidarMount::above(0.06),
         motion: motion.expect("a sweep"),
         polls: Some(Polls {
             period_ns: 2_500_000,
@@ -91,7 +93,7 @@ fn sweep() -> Simulation {
 }
 
 /// The tables of an effect, of `all`, or of `none`.
-fn wishes(name: &str) -> Wishes {
+fn wishes(name: &str) -> EffectsConfig {
     let asked = TABLES
         .iter()
         .filter(|(other, _)| name == "all" || *other == name);
@@ -102,12 +104,16 @@ fn wishes(name: &str) -> Wishes {
 }
 
 /// A run; what it gives is how often effects acted.
-fn run(simulation: &Simulation, name: &str) -> Asked {
-    let mut asked = wishes(name).make(1, None).expect("settings as they are");
+fn run(simulation: &Simulation, name: &str) -> ConfiguredEffects {
+    let mut asked = wishes(name).build(1, None).expect("settings as they are");
     let one = NonZeroUsize::MIN;
     let ran = match name {
         // The engine that has no effects in it, as for a scene that asks for none.
-        "none" => simulation.run(&mut Effects::<OnFirings>::default(), one, &mut Nowhere),
+        "none" => simulation.run(
+            &mut Effects::<FiringEffectSet>::default(),
+            one,
+            &mut Nowhere,
+        ),
         _ => simulation.run(&mut asked, one, &mut Nowhere),
     };
     ran.expect("a run");
@@ -157,10 +163,10 @@ fn main() {
         let acted = match *name {
             "none" | "all" => String::new(),
             name => run(&simulation, name)
-                .used()
+                .usage()
                 .iter()
                 .fold(String::new(), |_, used| {
-                    let share = 100.0 * used.usage.acted as f64 / used.usage.asked.max(1) as f64;
+                    let share = 100.0 * used.counts.acted as f64 / used.counts.calls.max(1) as f64;
                     format!("{share:.1} % of {}", used.each)
                 }),
         };

@@ -21,8 +21,8 @@ use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
 use scanner::trajectory::Method;
 use scanner::{Accuracy, TiltSource};
-use sim::Attached;
-use sim::effects::GearRipple;
+use sim::Attachment;
+use sim::GearRipple;
 use units::{DegPerS2, Degrees};
 use velomotion_tests::capture::{Captured, Setting};
 
@@ -37,7 +37,7 @@ fn main() {
         "{:<24}{:>10}{:>16}{:>10}{:>10}  best / linear",
         "", "points", "best by", "linear", "best"
     );
-    for attached in [Attached::Usb, Attached::Can] {
+    for attached in [Attachment::Usb, Attachment::Can] {
         for real in [false, true] {
             let captured = Captured::new(setting(attached, real));
             let name = if real { "real drive" } else { "ideal drive" };
@@ -46,7 +46,7 @@ fn main() {
     }
 }
 
-fn setting(attached: Attached, real: bool) -> Setting {
+fn setting(attached: Attachment, real: bool) -> Setting {
     let mut setting = Setting::over(attached);
     setting.wish.acceleration = DegPerS2(500.0);
     if real {

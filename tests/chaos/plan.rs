@@ -1,7 +1,7 @@
 //! What a seed stands for: which fault, when, in which capture.
 
 use engine::capture::moves::SweepRequest;
-use sim::Attached;
+use sim::Attachment;
 use units::{DegPerS, DegPerS2, Degrees, Span};
 use velomotion_tests::capture::PacketLoss;
 use velomotion_tests::inject::Fault;
@@ -61,7 +61,7 @@ pub struct Plan {
     /// How long until what is mended is mended.
     pub mended_after: Span,
     /// How the drive is attached, in virtual time.
-    pub attached: Attached,
+    pub attached: Attachment,
 }
 
 /// In which time a capture is made.
@@ -97,10 +97,10 @@ impl Plan {
     pub fn new(seed: u64) -> Self {
         let mut random = Random(seed);
         let attached = [
-            Attached::Usb,
-            Attached::Rs232,
-            Attached::Slcan,
-            Attached::Can,
+            Attachment::Usb,
+            Attachment::Rs232,
+            Attachment::Slcan,
+            Attachment::Can,
         ];
         let attached = attached[usize::try_from(seed / 20 + seed % 20).unwrap() % 4];
         // The homing, the ramps and all of the sweep.

@@ -149,7 +149,7 @@ fn rests(plan: &Plan, captured: &Captured, ended: &Result<(), SessionError>) -> 
             "the axis went on for {went_on:?}, and no word of it: {ended:?}"
         ));
     }
-    let heartbeat = matches!(plan.attached, sim::Attached::Slcan | sim::Attached::Can);
+    let heartbeat = matches!(plan.attached, sim::Attachment::Slcan | sim::Attachment::Can);
     if heartbeat && went_on > ALONE {
         return Err(format!(
             "without a heartbeat the axis went on for {went_on:?}"

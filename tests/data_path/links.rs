@@ -1,13 +1,13 @@
 //! The same scan over every way to the drive.
 
-use sim::Attached;
+use sim::Attachment;
 use velomotion_tests::capture::{Captured, Setting};
 
-const WAYS: [Attached; 4] = [
-    Attached::Usb,
-    Attached::Rs232,
-    Attached::Slcan,
-    Attached::Can,
+const WAYS: [Attachment; 4] = [
+    Attachment::Usb,
+    Attachment::Rs232,
+    Attachment::Slcan,
+    Attachment::Can,
 ];
 
 #[test]

@@ -4,7 +4,7 @@ use cloud::{Fields, Points};
 use engine::reconstruct::source::Source;
 use io::recording::Recording;
 use scanner::Live;
-use sim::Attached;
+use sim::Attachment;
 use units::Span;
 use velomotion_tests::capture::{Captured, Setting};
 
@@ -14,10 +14,10 @@ const MOST_LAG: Span = Span::from_millis(50);
 #[test]
 fn the_live_cloud_is_close_behind_and_a_replay_is_at_least_as_good() {
     for attached in [
-        Attached::Usb,
-        Attached::Rs232,
-        Attached::Slcan,
-        Attached::Can,
+        Attachment::Usb,
+        Attachment::Rs232,
+        Attachment::Slcan,
+        Attachment::Can,
     ] {
         let captured = Captured::new(Setting::over(attached));
         let (from, to) = captured.sweep_span();

@@ -6,8 +6,8 @@
 
 use cloud::Points;
 use firmware_sim::epos2::Servo;
-use sim::Attached;
-use sim::effects::GearRipple;
+use sim::Attachment;
+use sim::GearRipple;
 use sim::link::LinkModel;
 use units::{DegPerS2, Degrees, Span};
 use velomotion_tests::capture::{Captured, Setting};
@@ -36,7 +36,7 @@ fn second_order(damping_permille: u32) -> Servo {
     }
 }
 
-fn setting(attached: Attached, seed: u64) -> Setting {
+fn setting(attached: Attachment, seed: u64) -> Setting {
     let mut setting = Setting::over(attached);
     setting.wish.acceleration = DegPerS2(500.0);
     setting.links.request = HALF;
@@ -124,14 +124,14 @@ fn as_true_as_its_gear(day: impl Fn(u64) -> Setting, servo: Servo) {
 #[test]
 fn a_real_drive_over_usb_is_as_true_as_its_gear() {
     for servo in [FIRST_ORDER, second_order(700), second_order(1_000)] {
-        as_true_as_its_gear(|day| setting(Attached::Usb, day), servo);
+        as_true_as_its_gear(|day| setting(Attachment::Usb, day), servo);
     }
 }
 
 #[test]
 fn a_real_drive_over_can_is_as_true_as_its_gear() {
     for servo in [FIRST_ORDER, second_order(700), second_order(1_000)] {
-        as_true_as_its_gear(|day| setting(Attached::Can, day), servo);
+        as_true_as_its_gear(|day| setting(Attachment::Can, day), servo);
     }
 }
 
@@ -140,8 +140,8 @@ fn a_real_drive_over_can_is_as_true_as_its_gear() {
 fn a_real_drive_over_a_quick_can_is_as_true_as_its_gear() {
     let usual = |day| Setting {
         poll_period: None,
-        links: Links::usual(Attached::Can, 1_000 * day + 3),
-        ..setting(Attached::Can, day)
+        links: Links::usual(Attachment::Can, 1_000 * day + 3),
+        ..setting(Attachment::Can, day)
     };
     as_true_as_its_gear(usual, second_order(700));
 }

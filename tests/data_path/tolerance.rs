@@ -5,7 +5,7 @@ use engine::reconstruct::source::Source;
 use io::recording::Recording;
 use scanner::trajectory::Method;
 use scanner::{Accuracy, Alignment, Placer, ScanError, Survey, TiltSource, Tolerance};
-use sim::Attached;
+use sim::Attachment;
 use velomotion_tests::capture::{Captured, Setting};
 
 fn solve(captured: &Captured, tolerance: &str) -> Result<Alignment, ScanError> {
@@ -25,7 +25,7 @@ const RANGES_M: f64 = 2e-3;
 
 #[test]
 fn the_cheapest_method_that_is_good_enough_is_taken_and_is() {
-    let captured = Captured::new(Setting::over(Attached::Can));
+    let captured = Captured::new(Setting::over(Attachment::Can));
     let (mut methods, at_m) = (Vec::new(), 10.0);
     for tolerance in ["200mm@10m", "20mm@10m", "3mm@10m"] {
         let alignment = solve(&captured, tolerance).unwrap();
@@ -74,7 +74,7 @@ fn the_cheapest_method_that_is_good_enough_is_taken_and_is() {
 
 #[test]
 fn where_no_method_is_good_enough_it_is_said_what_would_be() {
-    let captured = Captured::new(Setting::over(Attached::Usb));
+    let captured = Captured::new(Setting::over(Attachment::Usb));
     let Err(ScanError::UnreachableTolerance(out)) = solve(&captured, "1mm@100m") else {
         panic!("polls of a millisecond and more cannot be that accurate");
     };

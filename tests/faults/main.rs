@@ -9,7 +9,7 @@ use std::fmt::Write;
 use drive::DriveError;
 use engine::devices::drive_session::SessionError;
 use protocol::epos2::DeviceError;
-use sim::Attached;
+use sim::Attachment;
 use units::{DegPerS, DegPerS2, Span, Stamp};
 use velomotion_tests::capture::{Captured, Setting};
 use velomotion_tests::inject::Fault;
@@ -176,20 +176,20 @@ const FAULTS: [(&str, Fault, Must); 33] = [
     ("CAN overrun", Fault::Device(DeviceError::CAN_OVERRUN), SEEN),
 ];
 
-const WAYS: [(Attached, &str); 4] = [
-    (Attached::Usb, "USB"),
-    (Attached::Rs232, "RS232"),
-    (Attached::Slcan, "SLCAN"),
-    (Attached::Can, "SocketCAN"),
+const WAYS: [(Attachment, &str); 4] = [
+    (Attachment::Usb, "USB"),
+    (Attachment::Rs232, "RS232"),
+    (Attachment::Slcan, "SLCAN"),
+    (Attachment::Can, "SocketCAN"),
 ];
 
 /// What a way to the drive cannot do as well as the others.
-fn must(attached: Attached, fault: Fault, must: Must) -> Must {
+fn must(attached: Attachment, fault: Fault, must: Must) -> Must {
     match (attached, fault) {
         // A dialogue of single bytes without frame starts: what is doubled or put in between for ever cannot be told from it.
-        (Attached::Rs232, Fault::AnswersDoubled(_) | Fault::Noise(_)) => Must::End,
+        (Attachment::Rs232, Fault::AnswersDoubled(_) | Fault::Noise(_)) => Must::End,
         // What is late holds up what follows: for as long neither positions nor heartbeats come.
-        (Attached::Slcan | Attached::Can, Fault::AnswersLate(_, late)) if late > ms(100) => {
+        (Attachment::Slcan | Attachment::Can, Fault::AnswersLate(_, late)) if late > ms(100) => {
             Must::SurviveOrStop
         }
         _ => must,
@@ -197,7 +197,7 @@ fn must(attached: Attached, fault: Fault, must: Must) -> Must {
 }
 
 /// A sweep of 1.5 s in the middle of which things go wrong.
-fn setting(attached: Attached) -> Setting {
+fn setting(attached: Attachment) -> Setting {
     let mut setting = Setting::over(attached);
     setting.wish.speed = DegPerS(30.0);
     setting.wish.acceleration = DegPerS2(500.0);
@@ -216,7 +216,7 @@ struct Cell {
 /// However the polls were hurt, no point of the cloud may be farther than this from the truth without a warning.
 const WORST_MM: f64 = 20.0;
 
-fn try_out(attached: Attached, name: &str, fault: Fault, expected: Must, at: Span) -> Cell {
+fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: Span) -> Cell {
     let name = format!("{name} over {attached:?}");
     let begin = setting(attached).start + at;
     let (captured, ended) = Captured::run(Setting {
@@ -303,7 +303,7 @@ fn stands(captured: &Captured) -> bool {
 }
 
 /// Every fault over one way to the drive, 0.7 s into the sweep.
-fn column(attached: Attached) -> Vec<Cell> {
+fn column(attached: Attachment) -> Vec<Cell> {
     let usual = Captured::new(setting(attached));
     let at = usual.sweep_span().0 - setting(attached).start + ms(700);
     let cell = |(name, fault, must)| try_out(attached, name, fault, must, at);
@@ -347,7 +347,7 @@ fn no_fault_at_any_moment_hangs_or_leaves_the_axis_on_its_own() {
 }
 
 /// Whatever came of the fault, the axis does not move any more, or it is said that it may.
-fn is_left_at_rest(attached: Attached, name: &str, fault: Fault, after: Span) {
+fn is_left_at_rest(attached: Attachment, name: &str, fault: Fault, after: Span) {
     let (captured, ended) = Captured::run(Setting {
         fault: Some((fault, after)),
         ..setting(attached)
@@ -397,11 +397,10 @@ fn cell(cell: &Cell) -> String {
 fn page(columns: &[Vec<Cell>]) -> String {
     let mut page = String::from(
         "# Faults\n\n\
-         Faults that occur 0.7 s into a sweep of 45 degrees at 30 deg/s with ramps of 500 deg/s2, on each link to the drive. In every\n\
-         case the log and the cloud of the part already swept are saved. *Stop* is the time from the fault to the client's quick stop;\n\
-         then follows the worst point error of the cloud against the simulated truth. *Warned*: the report warns of uncertain angles\n\
-         and gives a bound.\n\n\
-         A CAN controller discards damaged frames and repeats them: what corrupts a serial line only delays CAN.\n\n",
+         What becomes of a sweep when something goes wrong 0.7 s into it: 45 degrees at 30 deg/s with ramps of 500 deg/s2, over each way to the drive.\n\
+         In every case the log and the cloud of what was swept are saved. The stop is the quick stop sent by the client, counted from the beginning of the\n\
+         fault; then the worst point of the cloud against the simulated truth. *Warned*: the report says that angles may be off, and by how much.\n\n\
+         A CAN controller lets no damaged frame through, but destroys it on the bus and has it sent again: there, what a serial line would corrupt comes late.\n\n",
     );
     page.push_str("| fault |");
     for (_, name) in WAYS {
@@ -415,19 +414,19 @@ fn page(columns: &[Vec<Cell>]) -> String {
         }
         page.push('\n');
     }
-    page.push_str("\n## Messages\n\n| fault | over | message |\n|---|---|---|\n");
+    page.push_str("\n## What is said\n\n| fault | over | message |\n|---|---|---|\n");
     for (row, (name, _, _)) in FAULTS.iter().enumerate() {
         for (message, over) in messages(columns, row) {
             writeln!(page, "| {name} | {} | {message} |", over.join(", ")).unwrap();
         }
     }
     page.push_str(
-        "\nMade by `VELOMOTION_BLESS=1 cargo test -p velomotion-tests --test faults`, in virtual time.\nThe test fails if the page differs from the result.\n",
+        "\nMade by `VELOMOTION_BLESS=1 cargo test -p velomotion-tests --test faults`, in virtual time; the test fails where the page is not what happens.\n",
     );
     page
 }
 
-/// Messages of a fault, each with the links that report it.
+/// What is said of a fault, with the ways over which it is.
 fn messages(columns: &[Vec<Cell>], row: usize) -> Vec<(&str, Vec<&'static str>)> {
     let mut messages: Vec<(&str, Vec<&'static str>)> = Vec::new();
     for (column, (_, way)) in columns.iter().zip(WAYS) {

@@ -18,7 +18,7 @@ use engine::devices::simulated;
 use engine::devices::simulated_drive::{self as software_drive, Interface};
 use firmware_sim::epos2::SlcanServer;
 use serde_json::Value;
-use sim::Attached;
+use sim::Attachment;
 use velomotion_tests::capture::{Captured, Setting};
 
 /// Runs a program that must succeed, and returns what it printed.
@@ -115,7 +115,7 @@ fn tshark_reads_our_log_without_a_malformed_record() {
 #[test]
 #[ignore = "needs tshark"]
 fn tshark_reads_the_can_traffic_of_a_capture_as_canopen() {
-    let scan = Captured::new(Setting::over(Attached::Can));
+    let scan = Captured::new(Setting::over(Attachment::Can));
     let tshark = |arguments: &[&str]| {
         let mut command = Command::new("tshark");
         command

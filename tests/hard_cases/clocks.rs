@@ -1,7 +1,7 @@
 //! Clocks: set in mid-sweep, begun anew, and times at which arithmetic is hard.
 
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
-use sim::Attached;
+use sim::Attachment;
 use units::{Host, Lidar, Span, Stamp};
 use velomotion_tests::capture::{Captured, Setting};
 
@@ -15,7 +15,7 @@ fn mid_sweep(setting: Setting) -> Span {
 /// rest, and the pairing of requests and answers sees time go back. The cloud must be as good as any.
 #[test]
 fn the_hosts_clock_is_set_in_mid_sweep() {
-    for attached in [Attached::Usb, Attached::Rs232, Attached::Can] {
+    for attached in [Attachment::Usb, Attachment::Rs232, Attachment::Can] {
         let usual = Setting::over(attached);
         let (undisturbed, points) = {
             let captured = Captured::new(usual);

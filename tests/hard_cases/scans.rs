@@ -9,7 +9,7 @@ use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
 use scanner::TiltSource;
-use sim::Attached;
+use sim::Attachment;
 use units::{DegPerS2, Degrees, Span, Stamp};
 use velomotion_tests::capture::{Captured, Setting};
 
@@ -42,7 +42,7 @@ fn a_scan_into_the_year_2100() {
 /// beyond them are no faults, and the points at both ends are there and true.
 #[test]
 fn gamma_at_both_limits() {
-    for attached in [Attached::Usb, Attached::Can] {
+    for attached in [Attachment::Usb, Attachment::Can] {
         let mut setting = Setting::over(attached);
         setting.wish.acceleration = DegPerS2(500.0);
         setting.wish.sweeps = 2;
@@ -73,7 +73,7 @@ fn gamma_at_both_limits() {
 /// it is said that the sweep was cut short.
 #[test]
 fn a_log_that_ends_in_mid_sweep() {
-    for attached in [Attached::Usb, Attached::Can] {
+    for attached in [Attachment::Usb, Attachment::Can] {
         let captured = Captured::new(Setting::over(attached));
         let (from, to) = captured.sweep_span();
         let (_, whole) = captured.scan();

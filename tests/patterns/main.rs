@@ -4,10 +4,10 @@ use analysis::density::{
     Counts, Icosahedron, Locator, Statistics, TOLERANCE_RAD, bands, holes, largest_hole, rows,
 };
 use glam::DVec3;
-use sim::patterns::{AXIS, Pattern, Wish};
+use sim::patterns::{AXIS, Pattern, PatternRequest};
 
 fn pattern(text: &str) -> Pattern {
-    Wish::parse(text).unwrap().build().unwrap()
+    PatternRequest::parse(text).unwrap().build().unwrap()
 }
 
 fn statistics(directions: &[DVec3]) -> Statistics {

@@ -33,7 +33,7 @@ use protocol::epos2::message::WriteObject;
 use protocol::epos2::rs232;
 use protocol::record::{DriveLink, Record, Wire};
 use scanner::TiltSource;
-use sim::{Attached, Rig};
+use sim::{Attachment, Rig};
 use tempfile::TempDir;
 use units::{Degrees, Host, Span, Stamp};
 
@@ -46,11 +46,11 @@ pub use rejoin::Rejoined;
 pub use setting::{PacketLoss, Setting};
 
 /// How the log calls a way to the drive.
-fn link(attached: Attached) -> DriveLink {
+fn link(attached: Attachment) -> DriveLink {
     match attached {
-        Attached::Usb => DriveLink::Usb,
-        Attached::Rs232 => DriveLink::Rs232,
-        Attached::Slcan | Attached::Can => DriveLink::Can,
+        Attachment::Usb => DriveLink::Usb,
+        Attachment::Rs232 => DriveLink::Rs232,
+        Attachment::Slcan | Attachment::Can => DriveLink::Can,
     }
 }
 
@@ -102,13 +102,14 @@ impl Captured {
         axis.timing.poll_period = setting.poll_period.unwrap_or(axis.timing.poll_period);
         let steps = motion::steps(&setting.wish, &axis, Degrees(0.0)).unwrap();
         let mut config = scan_config(&Config::default(), "sim", true, &setting.wish, &steps);
-        config.rs232_baud = (setting.links.attached == Attached::Rs232).then_some(115_200);
+        config.rs232_baud = (setting.links.attached == Attachment::Rs232).then_some(115_200);
         let mut rig = simulated::rig(&axis, &config, setting.start);
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;
         rig.attached = setting.links.attached;
         rig.drive.servo = setting.servo;
         rig.ripple = setting.ripple;
-        if setting.links.attached != Attached::Usb && setting.links.attached != Attached::Rs232 {
+        if setting.links.attached != Attachment::Usb && setting.links.attached != Attachment::Rs232
+        {
             // A unit on a CAN bus has nothing to complain of at power-on.
             rig.drive.fault_at_power_on = DeviceError::NONE;
         }
@@ -128,8 +129,8 @@ impl Captured {
         );
         let link = link(setting.links.attached);
         let line: Box<dyn Port> = match setting.links.attached {
-            Attached::Slcan => Box::new(BusLine(Slcan::open(hurt, Bitrate::Kbit1000).unwrap())),
-            Attached::Usb | Attached::Rs232 | Attached::Can => Box::new(hurt),
+            Attachment::Slcan => Box::new(BusLine(Slcan::open(hurt, Bitrate::Kbit1000).unwrap())),
+            Attachment::Usb | Attachment::Rs232 | Attachment::Can => Box::new(hurt),
         };
         let recorder = RecordingPort::new(line, link, move |record: &Record<'_>| {
             if let Wire::Drive {

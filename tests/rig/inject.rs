@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use io::port::{Port, PortError};
 use protocol::canopen::{CanFrame, CobId};
 use protocol::epos2::DeviceError;
-use sim::Attached;
+use sim::Attachment;
 use units::{Host, Span, Stamp};
 
 use crate::port::VirtualPort;
@@ -70,7 +70,7 @@ impl FaultInjector {
     #[must_use]
     pub fn new(
         port: VirtualPort,
-        attached: Attached,
+        attached: Attachment,
         fault: Fault,
         from: Stamp<Host>,
         seed: u64,
@@ -81,7 +81,7 @@ impl FaultInjector {
             from,
             done: false,
             pending: VecDeque::new(),
-            bus: attached == Attached::Can,
+            bus: attached == Attachment::Can,
             last_answer: Vec::new(),
             random: seed | 1,
         }

@@ -10,14 +10,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use io::port::{Port, PortError};
 use sim::link::{Link, LinkModel};
-use sim::{Attached, Datagram, Rig};
+use sim::{Attachment, Datagram, Rig};
 use units::{Host, Span, Stamp};
 
 /// How the drive is attached, and the delays of the three links.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Links {
     /// What the host speaks with the drive.
-    pub attached: Attached,
+    pub attached: Attachment,
     /// Wire time of a byte to or from the drive.
     pub byte: Span,
     /// Requests to the drive.
@@ -33,14 +33,14 @@ pub struct Links {
 impl Links {
     /// Usual delays of a way to the drive; the lidar's over Ethernet.
     #[must_use]
-    pub fn usual(attached: Attached, seed: u64) -> Self {
+    pub fn usual(attached: Attachment, seed: u64) -> Self {
         let (model, byte_ns) = match attached {
             // USB, and an adapter on USB.
-            Attached::Usb | Attached::Slcan => (LinkModel::USB, 0),
+            Attachment::Usb | Attachment::Slcan => (LinkModel::USB, 0),
             // A UART of the machine itself at 115,200 baud: ten bits a byte.
-            Attached::Rs232 => (QUICK, 86_806),
+            Attachment::Rs232 => (QUICK, 86_806),
             // A controller of the machine itself at 1 Mbit/s: eight bits a byte, and the rest of the frame.
-            Attached::Can => (QUICK, 8_000),
+            Attachment::Can => (QUICK, 8_000),
         };
         Self {
             attached,
@@ -192,7 +192,7 @@ impl Links {
         let times =
             |count: usize| Span::from_nanos(self.byte.as_nanos() * i64::try_from(count).unwrap());
         match self.attached {
-            Attached::Can => EMPTY_CAN_FRAME + times(bytes[CAN_LENGTH_AT].into()),
+            Attachment::Can => EMPTY_CAN_FRAME + times(bytes[CAN_LENGTH_AT].into()),
             _ => times(bytes.len()),
         }
     }

@@ -15,8 +15,9 @@ use engine::reconstruct::replay;
 use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
 use scanner::TiltSource;
-use sim::scene_file::Scene;
-use sim::simulate::{Event, Out, TruePoint};
+use sim::TruePoint;
+use sim::scene_file::SceneFile;
+use sim::simulate::{SimulationEvent, SimulationSink};
 use tempfile::TempDir;
 use velomotion::cli::Common;
 use velomotion::commands::simulate;
@@ -34,8 +35,8 @@ struct Simulated {
 #[derive(Default)]
 struct Truth(Vec<TruePoint>);
 
-impl Out for Truth {
-    fn event(&mut self, _: &Event<'_>) -> ControlFlow<()> {
+impl SimulationSink for Truth {
+    fn event(&mut self, _: &SimulationEvent<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
@@ -51,7 +52,7 @@ impl Out for Truth {
 
 impl Simulated {
     /// Simulates it twice: into a log, and for the truth alone. `more` adds to the scene.
-    fn new(text: &str, more: impl Fn(&mut Scene)) -> Self {
+    fn new(text: &str, more: impl Fn(&mut SceneFile)) -> Self {
         let read = || {
             let mut scene = simulate::read("test", text, None, None).unwrap();
             more(&mut scene);

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use scanner::TiltSource;
-use sim::effects::{Beam, Effect, Listed};
+use sim::effects::{BeamEffect, Effect, Listed};
+use sim::firing::{Echo, Echoes, Firing, Surroundings};
 use sim::scene_file::EffectLine;
-use sim::simulate::{Echo, Echoes, Firing, Surroundings};
 
 use crate::{Simulated, replayed};
 
@@ -28,11 +28,11 @@ impl Effect for Pane {
     }
 }
 
-impl Beam for Pane {
+impl BeamEffect for Pane {
     fn receive(&self, firing: &Firing, _: &Surroundings, echoes: &mut Echoes) -> u32 {
         let both = echoes.strongest.iter().zip(&mut echoes.other);
         for (strongest, other) in both.take(firing.lasers) {
-            if strongest.is_there() {
+            if strongest.is_present() {
                 *other = Echo {
                     range_m: 0.5 * strongest.range_m,
                     true_range_m: 0.5 * strongest.range_m,

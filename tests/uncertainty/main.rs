@@ -10,7 +10,7 @@ use firmware_sim::epos2::Servo;
 use scanner::clock::Moment;
 use scanner::trajectory::Method;
 use scanner::{Accuracy, Survey, TiltSource};
-use sim::Attached;
+use sim::Attachment;
 use units::{DegPerS, DegPerS2, Degrees, Span};
 use velomotion_tests::capture::{Captured, Setting};
 
@@ -22,11 +22,11 @@ const EVERY: usize = 37;
 const NEAR_M: f64 = 5.0;
 const FAR_M: f64 = 12.0;
 
-fn capture(attached: Attached, sweep: (f64, f64), seed: u64) -> Captured {
+fn capture(attached: Attachment, sweep: (f64, f64), seed: u64) -> Captured {
     Captured::new(setting(attached, sweep, seed))
 }
 
-fn setting(attached: Attached, (speed, to): (f64, f64), seed: u64) -> Setting {
+fn setting(attached: Attachment, (speed, to): (f64, f64), seed: u64) -> Setting {
     let mut setting = Setting::over(attached);
     setting.links.seed = 1_000 * seed + 7;
     // Another day: other phases of polls, rotor and control cycle.
@@ -111,7 +111,7 @@ fn normalised(seen: &[Seen], pick: impl Fn(&Seen) -> bool) -> (f64, usize) {
     ((sum / count as f64).sqrt(), count)
 }
 
-fn points_are_off_by_what_sd_says(attached: Attached, servo: Option<Servo>) {
+fn points_are_off_by_what_sd_says(attached: Attachment, servo: Option<Servo>) {
     let mut seen = Vec::new();
     for (case, sweep) in SWEEPS.into_iter().enumerate() {
         for seed in 0..SEEDS {
@@ -146,12 +146,12 @@ fn points_are_off_by_what_sd_says(attached: Attached, servo: Option<Servo>) {
 
 #[test]
 fn points_are_off_by_what_sd_says_over_usb() {
-    points_are_off_by_what_sd_says(Attached::Usb, None);
+    points_are_off_by_what_sd_says(Attachment::Usb, None);
 }
 
 #[test]
 fn points_are_off_by_what_sd_says_over_can() {
-    points_are_off_by_what_sd_says(Attached::Can, None);
+    points_are_off_by_what_sd_says(Attachment::Can, None);
 }
 
 /// A servo of 15 Hz that overshoots, on both links. The gear is true: what it adds no encoder sees, and sd cannot hold.
@@ -161,7 +161,7 @@ fn points_are_off_by_what_sd_says_behind_a_servo_that_lags() {
         natural_millihertz: 15_000,
         damping_permille: 700,
     };
-    for attached in [Attached::Usb, Attached::Can] {
+    for attached in [Attachment::Usb, Attachment::Can] {
         points_are_off_by_what_sd_says(attached, Some(servo));
     }
 }
@@ -174,7 +174,7 @@ fn angles_are_off_by_what_their_pieces_say() {
         for (case, sweep) in SWEEPS.into_iter().enumerate() {
             for seed in 0..SEEDS / 3 {
                 seen.extend(angles(
-                    &capture(Attached::Usb, sweep, seed),
+                    &capture(Attachment::Usb, sweep, seed),
                     method,
                     case,
                     seed,

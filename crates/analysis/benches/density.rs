@@ -1,6 +1,6 @@
 //! How long the density of a scan takes, by its points; and its largest hole.
 //!
-//! `cargo bench -p velomotion-analysis --bench density` prints the table of docs/src/patterns.md: the least of `-- --rounds N` (5). `RAYON_NUM_THREADS=1` keeps it to one core.
+//! `cargo bench -p analysis --bench density` prints the table of docs/src/patterns.md: the least of `-- --rounds N` (5). `RAYON_NUM_THREADS=1` keeps it to one core.
 //! The largest scan has the points of the 2018 paper's slow one. Left out: making the points.
 
 #![allow(
@@ -13,7 +13,7 @@ use std::env;
 use std::time::{Duration, Instant};
 
 use analysis::density::{Counts, Icosahedron, Locator, TOLERANCE_RAD, largest_hole};
-use sim::patterns::Wish;
+use sim::patterns::PatternRequest;
 
 const PATTERNS: [&str; 4] = [
     "vlp16",
@@ -34,7 +34,7 @@ fn main() {
     println!("| pattern | points | density | largest hole |");
     println!("|---|---|---|---|");
     for text in PATTERNS {
-        let pattern = Wish::parse(text)
+        let pattern = PatternRequest::parse(text)
             .and_then(|wish| wish.build())
             .expect("a pattern");
         let directions = pattern.directions();

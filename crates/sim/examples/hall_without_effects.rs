@@ -8,11 +8,12 @@ use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use sim::effects::{Effects, OnFirings};
-use sim::motion::{Motion, Sweeps};
+use sim::HeadRotation;
+use sim::effects::{Effects, FiringEffectSet};
+use sim::motion::{AxisMotion, Sweeps};
 use sim::scenes;
-use sim::sensor::{ReturnMode, Sensor};
-use sim::simulate::{Event, Mount, Out, Polls, Simulation, Spin};
+use sim::sensor::{LidarMount, LidarSensor, ReturnMode};
+use sim::simulate::{Polls, Simulation, SimulationEvent, SimulationSink};
 use units::{Gearing, Stamp};
 
 /// FNV-1a over everything that reaches the host.
@@ -26,15 +27,15 @@ impl Checksum {
     }
 }
 
-impl Out for Checksum {
-    fn event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+impl SimulationSink for Checksum {
+    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
         match event {
-            Event::Datagram { at, payload, .. } => {
+            SimulationEvent::Datagram { at, payload, .. } => {
                 self.add(&at.as_nanos().to_le_bytes());
                 self.add(payload);
             }
-            Event::Request { at, .. } => self.add(&at.as_nanos().to_le_bytes()),
-            Event::Answer {
+            SimulationEvent::Request { at, .. } => self.add(&at.as_nanos().to_le_bytes()),
+            SimulationEvent::Answer {
                 at, position_qc, ..
             } => {
                 self.add(&at.as_nanos().to_le_bytes());
@@ -55,18 +56,18 @@ fn main() -> ExitCode {
         both_ways: false,
         rest_s: 0.05,
     };
-    let (Ok(motion), Ok(gearing)) = (Motion::sweeps(&sweeps), Gearing::new(500, 120, 1)) else {
+    let (Ok(motion), Ok(gearing)) = (AxisMotion::sweeps(&sweeps), Gearing::new(500, 120, 1)) else {
         return ExitCode::FAILURE;
     };
     let simulation = Simulation {
         scene: Arc::new(scenes::hall()),
-        sensor: Sensor::vlp16(),
+        sensor: LidarSensor::vlp16(),
         returns: ReturnMode::Strongest,
-        spin: Spin {
+        rotation: HeadRotation {
             rpm: 600,
             start_deg: 0.0,
         },
-        mount: Mount::above(0.06),
+        mount: LidarMount::above(0.06),
         motion,
         polls: Some(Polls {
             period_ns: 2_500_000,
@@ -77,7 +78,7 @@ fn main() -> ExitCode {
         clock_at_start_us: 0,
     };
     let mut out = Checksum(0xCBF2_9CE4_8422_2325);
-    let mut effects = Effects::<OnFirings>::default();
+    let mut effects = Effects::<FiringEffectSet>::default();
     match simulation.run(&mut effects, NonZeroUsize::MIN, &mut out) {
         Ok(summary) => println!("{} shots {:016x}", summary.shots, out.0),
         Err(error) => {

@@ -1,4 +1,4 @@
-//! How many points the shipped scenes give, beside Table 4 of the paper: `cargo run --release -p velomotion-sim --example scan_counts`.
+//! How many points the shipped scenes give, beside Table 4 of the paper: `cargo run --release -p sim --example scan_counts`.
 //!
 //! The simulator's engine makes them, with all effects that the scene files ask for. What decides whether a beam returns is light
 //! (`reflectance`), the scanner's own frame and tripod (`own_shadow`), and the sensor's 1 to 100 m.
@@ -7,10 +7,10 @@ use std::error::Error;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
-use sim::motion::{Motion, Sweeps};
-use sim::scene_file::Scene;
+use sim::motion::{AxisMotion, Sweeps};
+use sim::scene_file::SceneFile;
 use sim::scenery::shipped;
-use sim::simulate::{Event, Out};
+use sim::simulate::{SimulationEvent, SimulationSink};
 
 /// A scene of ours, the paper's place, and its points: VLP-16 level for 0.1 s, velomotion's fast scan in 0.8 s.
 const PLACES: [(&str, &str, u64, u64); 3] = [
@@ -41,8 +41,8 @@ impl Count {
 /// Takes everything and keeps nothing.
 struct Nowhere;
 
-impl Out for Nowhere {
-    fn event(&mut self, _: &Event<'_>) -> ControlFlow<()> {
+impl SimulationSink for Nowhere {
+    fn event(&mut self, _: &SimulationEvent<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
@@ -81,12 +81,15 @@ fn papers(level: u64, fast: u64) -> [Count; 2] {
 /// A scene as the level sensor sees it, and as the fast scan does.
 fn counts(name: &str) -> Result<[Count; 2], Box<dyn Error>> {
     let fast = scan_down(FAST_DEG_S)?;
-    Ok([scan(name, Motion::fixed(0.0, TURN_S)?)?, scan(name, fast)?])
+    Ok([
+        scan(name, AxisMotion::fixed(0.0, TURN_S)?)?,
+        scan(name, fast)?,
+    ])
 }
 
 /// Down from level to -45 degrees, at one speed from beginning to end.
-fn scan_down(speed_deg_s: f64) -> Result<Motion, Box<dyn Error>> {
-    Ok(Motion::sweeps(&Sweeps {
+fn scan_down(speed_deg_s: f64) -> Result<AxisMotion, Box<dyn Error>> {
+    Ok(AxisMotion::sweeps(&Sweeps {
         from_deg: 0.0,
         to_deg: -45.0,
         speed_deg_s,
@@ -98,8 +101,8 @@ fn scan_down(speed_deg_s: f64) -> Result<Motion, Box<dyn Error>> {
 }
 
 /// A shipped scene, all of it but for its motion.
-fn scan(name: &str, motion: Motion) -> Result<Count, Box<dyn Error>> {
-    let mut scene = Scene::parse(shipped(name).ok_or(name)?, None, None)?;
+fn scan(name: &str, motion: AxisMotion) -> Result<Count, Box<dyn Error>> {
+    let mut scene = SceneFile::parse(shipped(name).ok_or(name)?, None, None)?;
     scene.simulation.motion = motion;
     scene.simulation.polls = None;
     let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
@@ -138,9 +141,9 @@ mod tests {
             assert!((end_s - 45.0 / speed_deg_s).abs() < 1e-12);
             assert_eq!((end_s * 100.0 + 1e-9).floor(), hundredths);
         }
-        let hall = Scene::parse(shipped("hall").unwrap(), None, None).unwrap();
-        assert_eq!(60.0 / f64::from(hall.simulation.spin.rpm), TURN_S);
-        let level = scan("hall", Motion::fixed(0.0, TURN_S).unwrap()).unwrap();
+        let hall = SceneFile::parse(shipped("hall").unwrap(), None, None).unwrap();
+        assert_eq!(60.0 / f64::from(hall.simulation.rotation.rpm), TURN_S);
+        let level = scan("hall", AxisMotion::fixed(0.0, TURN_S).unwrap()).unwrap();
         assert_eq!(level.shots, TURN_S * PAPERS_SHOTS_PER_S);
     }
 }

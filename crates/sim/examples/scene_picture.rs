@@ -1,4 +1,4 @@
-//! A picture of a scene, PNG on standard output: `cargo run --release -p velomotion-sim --example scene_picture -- hall > hall.png`.
+//! A picture of a scene, PNG on standard output: `cargo run --release -p sim --example scene_picture -- hall > hall.png`.
 //!
 //! Above, the scene from outside in sunlight, with what a level VLP-16 at the origin meets in one turn; nearer walls and the
 //! ceiling of what encloses the scanner are cut away. Below, all that can be seen from the scanner, 360 by 105 degrees: nearer is brighter and
@@ -9,10 +9,9 @@ use std::error::Error;
 use std::io::{Write, stdout};
 
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
-use sim::Head;
 use sim::cast::{Caster, Cylinder, Hit, Object, Ray, Reach, Surface};
 use sim::scenery::{Placed, Scenery, no_files, shipped};
-use units::{Degrees, Metres};
+use sim::sensor::{LidarMount, LidarSensor};
 
 /// Pixels of the view, and of the panorama beneath it.
 const WIDTH: usize = 880;
@@ -211,12 +210,10 @@ impl Seen<'_> {
 
     /// What a level VLP-16 meets, where the camera sees it too.
     fn dots(&self, camera: &Camera, image: &mut [DVec3]) -> Result<(), Box<dyn Error>> {
-        let head = Head::new(Metres(0.0));
+        let (sensor, mount) = (LidarSensor::vlp16(), LidarMount::above(0.0));
         for azimuth in (0..1_200).map(|step| f64::from(step) * 0.3) {
             for laser in 0..16 {
-                let (from, direction) = head
-                    .beam(laser, Degrees(azimuth), Degrees(0.0))
-                    .ok_or("laser")?;
+                let (from, direction) = sensor.ray(laser, azimuth, 0.0, &mount).ok_or("laser")?;
                 let hit = self
                     .caster
                     .nearest::<()>(&Ray::new(from, direction)?, Reach::up_to(100.0));

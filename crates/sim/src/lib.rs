@@ -1,21 +1,40 @@
-//! Scenes, ray casting, the tilted lidar and what truly happened: both devices of the scanner in one virtual world.
+//! Scenes, ray casting, the tilted lidar and ground truth: both devices of the scanner in one virtual
+//! world.
 //!
-//! [`Rig`] makes the bytes that the devices would send, [`Truth`] keeps where every beam really met the scene. The
-//! geometry is stated here in its own way, by composing rigid motions, and nothing of the scanner's own code is used,
-//! so that the two agreeing is evidence. There is no I/O, no clock and no global randomness: time and seeds are
-//! arguments, and one seed gives one result.
+//! [`Rig`] runs both devices with the drive's firmware, driven by bytes and time; [`Truth`] tells
+//! where every beam met the scene. [`simulate`] runs whole scenes for every lidar model as fast as
+//! possible, without the drive's firmware. Both make packets by the same computation. Effects
+//! ([`effects`]) are absent unless configured, and cost nothing then.
 //!
-//! [`simulate`] is the other way to make bytes: whole scenes, every model of lidar, as fast as the machine goes, without the firmware of the
-//! drive. [`effects`] are absent unless asked for, and cost nothing then.
+//! The geometry is stated independently, as a composition of rigid motions, and nothing of the
+//! scanner's code is used, so that agreement is evidence. There is no I/O, no clock and no global
+//! randomness: time and seeds are arguments, and one seed gives one result.
+//!
+//! ```
+//! use sim::{DATA_PORT, Rig, RigConfig};
+//! use units::{Span, Stamp};
+//!
+//! let start = Stamp::from_nanos(1_790_000_000_000_000_000);
+//! let mut rig = Rig::new(RigConfig::new(start));
+//! rig.advance(start + Span::from_millis(10));
+//! let datagram = rig.poll_datagram().ok_or("no datagram in 10 ms")?;
+//! assert_eq!((datagram.port, datagram.payload.len()), (DATA_PORT, 1206));
+//! let first_laser = rig.truth().point(1_234_567_890_000, 0);
+//! assert!(first_laser.is_some());
+//! # Ok::<(), &str>(())
+//! ```
 
-mod attached;
 pub mod cast;
-mod clock;
+#[cfg(feature = "effects")]
+pub mod effect_models;
 pub mod effects;
-mod head;
+pub mod firing;
+mod gear_ripple;
+mod lidar_clock;
 pub mod link;
 pub mod motion;
 pub mod packet_clock;
+mod packet_maker;
 pub mod patterns;
 pub mod random;
 mod rig;
@@ -25,15 +44,10 @@ pub mod scene_file;
 pub mod scenery;
 pub mod scenes;
 pub mod sensor;
-mod shaft;
 pub mod simulate;
-mod spinning;
-mod truth;
-mod world;
 
-pub use attached::Attached;
 pub use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT};
-pub use head::{Head, LASERS, Laser, MAX_RANGE_M, MIN_RANGE_M};
-pub use rig::{Datagram, LidarConfig, Rig, RigConfig, Sent};
+pub use gear_ripple::GearRipple;
+pub use packet_maker::{HeadRotation, TruePoint};
+pub use rig::{Attachment, Datagram, DriveOutput, Rig, RigConfig, RigLidar, Truth};
 pub use scene::{Hit, Scene};
-pub use truth::Truth;

@@ -1,11 +1,13 @@
-//! Delays of a transport, drawn from a seed: for pumps that run in virtual time.
+//! Random delays of a transport, for pumps that run in virtual time.
 //!
-//! Most deliveries take between a least and a usual greatest time; some, with a given probability, meet a busy machine and take
-//! longer. Order is kept, as on a serial line and on a loopback socket. Left out: loss, duplication, batching.
+//! Most delays are uniform in a range; with a given probability a spike adds to them. Order is
+//! kept, as on a serial line and a loopback socket.
 
 use units::{Span, Stamp};
 
-/// How long deliveries take.
+use crate::random::Draws;
+
+/// Distribution of delays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkModel {
     /// The shortest delay.
@@ -27,7 +29,7 @@ impl LinkModel {
         spike: Span::ZERO,
     };
 
-    /// One way of a USB serial link: 0.3..1 ms, one in fifty up to 5 ms more.
+    /// One way of a USB serial link: 0.3 to 1 ms, one in fifty up to 5 ms more.
     pub const USB: Self = Self {
         min: Span::from_micros(300),
         max: Span::from_micros(1_000),
@@ -35,7 +37,7 @@ impl LinkModel {
         spike: Span::from_millis(5),
     };
 
-    /// UDP on a quiet Ethernet port: 40..130 us, one in five hundred up to 3 ms more.
+    /// UDP on a quiet Ethernet port: 40 to 130 us, one in five hundred up to 3 ms more.
     pub const ETHERNET: Self = Self {
         min: Span::from_micros(40),
         max: Span::from_micros(130),
@@ -48,22 +50,22 @@ impl LinkModel {
 #[derive(Clone, Debug)]
 pub struct Link {
     model: LinkModel,
-    random: Random,
+    random: Draws,
     last_ns: i64,
 }
 
 impl Link {
-    /// A link whose delays follow from `seed` and the number of deliveries so far.
+    /// A link whose delays follow from `seed` and the number of deliveries.
     #[must_use]
     pub const fn new(model: LinkModel, seed: u64) -> Self {
         Self {
             model,
-            random: Random::new(seed),
+            random: Draws::new(seed),
             last_ns: i64::MIN,
         }
     }
 
-    /// When what is sent at `sent` arrives: not before it was sent, and not before what was sent earlier.
+    /// Time of arrival of a message: not before `sent`, and not before earlier messages.
     pub fn deliver<C>(&mut self, sent: Stamp<C>) -> Stamp<C> {
         let LinkModel {
             min,
@@ -73,7 +75,7 @@ impl Link {
         } = self.model;
         let usual = min.as_nanos().max(0);
         let spread = max.as_nanos().saturating_sub(usual).max(0);
-        // Three draws a delivery whatever comes of them, so that one parameter does not shift the draws of another.
+        // Always three draws, so that one parameter does not shift the draws of another.
         let (extent, chance, height) = (self.random.unit(), self.random.unit(), self.random.unit());
         let mut delay = usual.saturating_add((extent * spread as f64) as i64);
         if chance < spike_probability {
@@ -81,31 +83,6 @@ impl Link {
         }
         self.last_ns = self.last_ns.max(sent.as_nanos().saturating_add(delay));
         Stamp::from_nanos(self.last_ns)
-    }
-}
-
-/// SplitMix64 (Steele, Lea and Flood 2014): enough for delays, and the same on every machine.
-#[derive(Clone, Debug)]
-pub(crate) struct Random {
-    state: u64,
-}
-
-impl Random {
-    pub const fn new(seed: u64) -> Self {
-        Self { state: seed }
-    }
-
-    pub fn next(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.state ^ (self.state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in 0..1.
-    pub fn unit(&mut self) -> f64 {
-        const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
-        (self.next() >> 11) as f64 * STEP
     }
 }
 
@@ -117,14 +94,6 @@ mod tests {
 
     fn at(ns: i64) -> Stamp<Host> {
         Stamp::from_nanos(ns)
-    }
-
-    #[test]
-    fn the_generator_is_splitmix64() {
-        // First outputs for seed 1234567 (Vigna's reference implementation).
-        let mut random = Random { state: 1_234_567 };
-        assert_eq!(random.next(), 6_457_827_717_110_365_317);
-        assert_eq!(random.next(), 3_203_168_211_198_807_973);
     }
 
     #[test]
@@ -152,7 +121,8 @@ mod tests {
             .map(|i| 10_000_000 * i)
             .filter(|&sent| link.deliver(at(sent)).as_nanos() - sent > 1_000_000)
             .count();
-        // 2 % spikes; those too small to carry a short delay past 1 ms do not show: 2 % x (1 - 0.35/5).
+        // 2 % spikes; those too small to lift a short delay above 1 ms do not show: 2 % x (1 -
+        // 0.35/5).
         assert!((1_720..2_000).contains(&late), "{late}");
     }
 

@@ -1,52 +1,56 @@
-//! Packets of a free-running device over three kinds of link: what a clock estimate is measured with.
+//! Packets of a free-running device over three kinds of link, for measurements of clock estimates.
 //!
-//! An oscillator a constant rate off the host's and wandering slowly, packets at the VLP-16's spacing, and a link that
-//! delivers each of them late. The true times stand beside. Left out: what the packets hold, loss, and clocks that are set.
+//! An oscillator with a constant rate and a slow wander, packets at the VLP-16's period, and a link
+//! that delays each of them. The true times are included.
 
 use units::{Host, Lidar, Stamp};
 
-use crate::link::Random;
+use crate::random::Draws;
 
-/// Spacing of a VLP-16's packets in single return: 24 firings of 55.296 us (manual, section 9.3).
+/// Period of a VLP-16's packets in single-return mode: 24 firings of 55.296 us (manual, section
+/// 9.3).
 pub const PACKET_NS: i64 = 1_327_104;
 
-/// How late packets arrive.
+/// Kinds of link by their delays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrivalLink {
-    /// An Ethernet port of its own: 22 us on average, one packet in a thousand up to 17 ms more.
+    /// A dedicated Ethernet port: 22 us on average, one packet in a thousand up to 17 ms more.
     QuietNic,
-    /// The same behind interrupt coalescing: arrivals are seen every 125 us, one in a thousand up to 16 ms later.
+    /// The same with interrupt coalescing: arrivals every 125 us, one in a thousand up to 16 ms
+    /// later.
     Coalescing,
-    /// An adapter on a busy USB: polled every millisecond, then 105 us on average, one in 250 up to 20 ms more.
+    /// An adapter on a busy USB: polled every millisecond, then 105 us on average, one in 250 up to
+    /// 20 ms more.
     BusyUsb,
 }
 
 /// The device's oscillator against the host's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oscillator {
-    /// Constant part of the rate, parts per million; positive where the device's seconds are long.
+    /// Constant part of the rate, parts per million; positive where the device is slow.
     pub drift_ppm: f64,
-    /// Times the usual wander: +-45 us over 700 s and +-12 us over 160 s, at most 0.9 ppm together.
+    /// Multiple of the usual wander: +-45 us over 700 s and +-12 us over 160 s, at most 0.9 ppm
+    /// together.
     pub wander: f64,
 }
 
-/// A packet.
+/// Times of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedPacket {
-    /// What the device's clock read.
+    /// Reading of the device's clock.
     pub device: Stamp<Lidar>,
-    /// The host's time then, to which the link's least delay counts.
+    /// Host time at that reading, the minimum delay of the link included.
     pub truth: Stamp<Host>,
-    /// When it arrived.
+    /// Time of arrival.
     pub arrival: Stamp<Host>,
 }
 
-/// Packets of a device, without an end.
+/// An endless series of packets.
 #[derive(Clone, Debug)]
 pub struct PacketClock {
     link: ArrivalLink,
     oscillator: Oscillator,
-    random: Random,
+    random: Draws,
     phases: [f64; 2],
     tick: f64,
     begin: (i64, i64),
@@ -62,7 +66,7 @@ impl ArrivalLink {
     /// All three.
     pub const ALL: [Self; 3] = [Self::QuietNic, Self::Coalescing, Self::BusyUsb];
 
-    /// What reports call it.
+    /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -72,7 +76,7 @@ impl ArrivalLink {
         }
     }
 
-    /// Chance of a spike and how far it reaches, nanoseconds.
+    /// Probability of a spike and its largest delay, nanoseconds.
     const fn spike(self) -> (f64, f64) {
         match self {
             Self::QuietNic => (0.001, 17e6),
@@ -83,7 +87,8 @@ impl ArrivalLink {
 }
 
 impl PacketClock {
-    /// Packets from `begin` of the host's clock on, when the device's read `device`; all else follows from `seed`.
+    /// Packets from host time `begin`, when the device reads `device`; everything else follows from
+    /// `seed`.
     #[must_use]
     pub fn new(
         link: ArrivalLink,
@@ -92,7 +97,7 @@ impl PacketClock {
         begin: Stamp<Host>,
         seed: u64,
     ) -> Self {
-        let mut random = Random::new(seed);
+        let mut random = Draws::new(seed);
         let turn = core::f64::consts::TAU;
         let phases = [turn * random.unit(), turn * random.unit()];
         Self {
@@ -107,7 +112,7 @@ impl PacketClock {
         }
     }
 
-    /// How far the host's clock is ahead of the device's, `since_ns` into it.
+    /// Lead of the host's clock over the device's, `since_ns` after the start.
     fn ahead_ns(&self, since_ns: f64) -> f64 {
         let wander = WANDER_S_US.iter().zip(self.phases);
         let wander_us: f64 = wander
@@ -121,7 +126,7 @@ impl PacketClock {
 
     fn delay_ns(&mut self, ready_ns: f64) -> f64 {
         let (chance, height) = self.link.spike();
-        // Four draws a packet whatever comes of them.
+        // Always four draws per packet.
         let (extent, tail, spiked, high) = (
             self.random.unit(),
             -(1.0 - self.random.unit()).ln(),
@@ -182,7 +187,7 @@ mod tests {
 
     #[test]
     fn delays_are_the_links() {
-        // Mean and greatest delay, with what a spike holds up behind it.
+        // Mean and largest delay, including packets held up by a spike.
         for (link, mean_us, worst_us) in [
             (ArrivalLink::QuietNic, 66.0, 17_000.0),
             (ArrivalLink::Coalescing, 125.0, 16_100.0),

@@ -1,29 +1,30 @@
-//! Random numbers by key instead of by turn: the seed, an effect's name, a firing and a channel give a draw, whoever asks first.
+//! Reproducible random numbers: by key (seed, effect name, firing, channel) or in sequence.
 //!
-//! So one more effect leaves the draws of the others as they were, and any number of threads gives the same bytes. The mixing is that of
-//! SplitMix64 (Steele, Lea and Flood 2014), a bijection of 64 bits, once for each part of the key. Left out: security.
+//! Keys make effects independent of each other and of the number of threads. The mixing function is
+//! that of SplitMix64 (Steele, Lea and Flood 2014), a bijection of 64 bits, applied once per part of
+//! the key; a sequence is SplitMix64 itself. Not for cryptography.
 
 use core::f64::consts::TAU;
 
 /// The odd number next to 2^64 divided by the golden ratio.
-const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+pub(crate) const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 /// Another odd number with as little structure (from the same paper's second mixer).
 const SECOND: u64 = 0xD605_BBB5_8C8A_BC03;
 
-/// Where one effect's draws come from.
+/// The source of one effect's draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source {
     key: u64,
 }
 
-/// The draws of one key, one after the other.
+/// A sequence of draws.
 #[derive(Clone, Copy, Debug)]
 pub struct Draws {
     state: u64,
 }
 
 impl Source {
-    /// The source of the effect `name` in a run with `seed`.
+    /// The source of effect `name` in a run with `seed`.
     #[must_use]
     pub fn new(seed: u64, name: &str) -> Self {
         let key = name.bytes().fold(mix(seed ^ GOLDEN), |key, byte| {
@@ -32,7 +33,7 @@ impl Source {
         Self { key }
     }
 
-    /// The draws of a channel at an index: of a firing, a packet, a poll.
+    /// The draws of a channel at an index (of a firing, packet or poll).
     #[inline]
     #[must_use]
     pub const fn at(self, index: u64, channel: u32) -> Draws {
@@ -44,6 +45,12 @@ impl Source {
 }
 
 impl Draws {
+    /// SplitMix64 with this seed.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
     /// 64 random bits.
     #[inline]
     pub const fn bits(&mut self) -> u64 {
@@ -51,13 +58,23 @@ impl Draws {
         mix(self.state)
     }
 
-    /// From 0 to below 1, in steps of 2^-53.
+    /// Uniform from 0 to below 1, in steps of 2^-53.
     #[inline]
     pub const fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+        unit(self.bits())
     }
 
-    /// Two independent draws of the normal distribution with mean 0 and standard deviation 1 (Box and Muller 1958).
+    /// Uniform between two numbers.
+    pub(crate) const fn between(&mut self, [from, to]: [f64; 2]) -> f64 {
+        from + (to - from) * self.unit()
+    }
+
+    /// Uniform among 0..count; 0 for a count of 0.
+    pub(crate) const fn below(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
+    }
+
+    /// Two independent draws of the standard normal distribution (Box and Muller 1958).
     #[inline]
     pub fn normals(&mut self) -> [f64; 2] {
         // Above 0, so that its logarithm is finite: at most 8.6 standard deviations.
@@ -66,15 +83,22 @@ impl Draws {
         [radius * cos, radius * sin]
     }
 
-    /// One of them.
+    /// A draw of the standard normal distribution.
     #[inline]
     pub fn normal(&mut self) -> f64 {
         self.normals()[0]
     }
 }
 
-/// A bijection that spreads every bit over all others.
-const fn mix(mut z: u64) -> u64 {
+/// The upper 53 bits as a number from 0 to below 1.
+#[inline]
+pub(crate) const fn unit(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+}
+
+/// A bijection in which every output bit depends on every input bit.
+#[inline]
+pub(crate) const fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
@@ -85,7 +109,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_key_gives_its_draws_whatever_was_asked_before() {
+    fn a_key_gives_the_same_draws_in_any_order() {
         let source = Source::new(7, "range noise");
         let once = source.at(12, 3).bits();
         let _ = source.at(12, 4).bits();
@@ -100,15 +124,18 @@ mod tests {
         }
     }
 
-    /// SplitMix64 as its authors print it, seeded with 0: the first output.
+    /// First outputs of Vigna's reference implementation for seeds 0 and 1234567.
     #[test]
-    fn the_mixer_is_the_published_one() {
-        assert_eq!(mix(GOLDEN), 0xE220_A839_7B1D_CDAF);
+    fn sequences_are_splitmix64() {
+        assert_eq!(Draws::new(0).bits(), 0xE220_A839_7B1D_CDAF);
+        let mut draws = Draws::new(1_234_567);
+        assert_eq!(draws.bits(), 6_457_827_717_110_365_317);
+        assert_eq!(draws.bits(), 3_203_168_211_198_807_973);
     }
 
     /// Means, variances and correlations of 2^18 draws, each with its own standard error.
     #[test]
-    fn neighbouring_keys_are_strangers() {
+    fn neighbouring_keys_are_uncorrelated() {
         let source = Source::new(1, "x");
         let n = 1 << 18;
         let draws: Vec<f64> = (0..n)

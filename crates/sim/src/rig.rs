@@ -1,64 +1,73 @@
-//! Both devices of the scanner in one virtual world.
+//! Both devices of the scanner in one virtual world, the drive with its firmware.
 //!
-//! The host's time is true time. At the beginning of every millisecond the drive's control cycle settles how the shaft moves
-//! until the next; a lidar packet is made when its last firing has ended, each laser with the shaft's angle at its own
-//! instant. What comes out depends on the configuration and on which bytes came in when, never on the steps of
-//! [`Rig::advance`]. Left out: the transports' delays ([`crate::link`] has them for whoever pumps the bytes).
+//! Host time is true time. Each control cycle of the drive (1 ms) fixes the motion of the shaft until
+//! the next. A lidar packet is made when its last firing ends, by the same
+//! [`packet_maker`](crate::packet_maker) as in [`crate::simulate`]. The output depends on the
+//! configuration and on the input bytes and their times, not on the steps of [`Rig::advance`]. Delays
+//! of the transports are not included; [`crate::link`] has them.
+
+mod attachment;
+mod shaft;
+mod truth;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 
 use firmware_sim::epos2::{Node, NodeConfig};
-use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT};
+use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT, firing_blocks};
 use units::{Degrees, Gearing, Host, Metres, Span, Stamp};
 
-use crate::attached::{Attached, Server};
-use crate::clock::LidarClock;
-use crate::effects::GearRipple;
+use crate::effects::{ClockEffect, FiringEffectSet};
+use crate::firing::Surroundings;
+use crate::gear_ripple::GearRipple;
+use crate::lidar_clock::LidarClock;
+use crate::packet_maker::{HeadRotation, Lidar, PacketMaker};
 use crate::scene::Scene;
 use crate::scenes;
-use crate::shaft::{CYCLE, Shaft};
-use crate::spinning::Spinning;
-use crate::truth::Truth;
-use crate::world::{Spin, World};
+use crate::sensor::{LidarMount, LidarSensor, ReturnMode};
+use attachment::DriveServer;
+use shaft::{CYCLE, ShaftCourse};
 
-/// What the virtual world is made of.
+pub use attachment::Attachment;
+pub use truth::Truth;
+
+/// Configuration of the virtual world.
 #[derive(Clone, Debug)]
 pub struct RigConfig {
-    /// What the beams meet.
+    /// What beams meet.
     pub scene: Arc<Scene>,
     /// Height of the lidar's origin above the tilt axis (d of Eq. 4-6).
     pub mount: Metres,
     /// The drive.
     pub drive: NodeConfig,
-    /// How the host reaches it.
-    pub attached: Attached,
-    /// From the motor's shaft to the platform; tilt 0 (level) is the shaft's position 0.
+    /// The interface between host and drive.
+    pub attached: Attachment,
+    /// From motor shaft to platform; tilt 0 (level) is position 0 of the shaft.
     pub gearing: Gearing,
-    /// What the gear adds to that; `None`: nothing.
+    /// Ripple of the gear.
     pub ripple: Option<GearRipple>,
     /// The lidar.
-    pub lidar: LidarConfig,
+    pub lidar: RigLidar,
     /// Host time at which both devices are switched on.
     pub start: Stamp<Host>,
-    /// Decides whatever the devices leave to chance.
+    /// Seed of everything that the devices leave undefined.
     pub seed: u64,
 }
 
-/// How the lidar runs.
+/// Configuration of the rig's lidar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LidarConfig {
-    /// Turns of the head a minute, in the lidar's own time (300..=1200 on the real one).
+pub struct RigLidar {
+    /// Revolutions per minute in the lidar's own time (300..=1200 on the real one).
     pub rpm: u32,
-    /// Azimuth of the very first firing.
+    /// Azimuth of the first firing.
     pub azimuth_at_start: Degrees,
     /// The lidar's clock at the start, microseconds past the hour.
     pub clock_at_start_us: u32,
-    /// How much faster than the host's the lidar's clock runs, parts per million.
+    /// Drift of the lidar's clock against the host's, parts per million; positive is fast.
     pub drift_ppm: f64,
 }
 
-impl Default for LidarConfig {
+impl Default for RigLidar {
     /// 600 rpm (10 Hz), 20 minutes past the hour, 12 ppm fast.
     fn default() -> Self {
         Self {
@@ -71,106 +80,124 @@ impl Default for LidarConfig {
 }
 
 impl RigConfig {
-    /// The paper's scanner in the hall: lidar 0.06 m above the axis, 500-line encoder, gear of 120:1, 10 Hz.
+    /// The paper's scanner in the hall: lidar 0.06 m above the axis, 500-line encoder, gear of 120:1,
+    /// 10 Hz.
     #[must_use]
     pub fn new(start: Stamp<Host>) -> Self {
         Self {
             scene: Arc::new(scenes::hall()),
             mount: Metres(0.06),
             drive: NodeConfig::default(),
-            attached: Attached::Usb,
+            attached: Attachment::Usb,
             gearing: GEARING,
             ripple: None,
-            lidar: LidarConfig::default(),
+            lidar: RigLidar::default(),
             start,
             seed: 0,
         }
     }
 }
 
-/// 500 lines, 120:1: 0.0015 deg a quadcount.
+/// 500 lines, 120:1: 0.0015 deg per quadcount.
 const GEARING: Gearing = match Gearing::new(500, 120, 1) {
     Ok(gearing) => gearing,
     Err(_) => unreachable!(),
 };
 
-/// A UDP datagram that a device sent.
+/// A UDP datagram of the lidar.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Datagram {
     /// When it left the lidar.
     pub at: Stamp<Host>,
-    /// The port it is sent to: [`DATA_PORT`] or [`POSITION_PORT`].
+    /// The destination port: [`DATA_PORT`] or [`POSITION_PORT`].
     pub port: u16,
     /// The UDP payload.
     pub payload: Vec<u8>,
 }
 
-/// Bytes that the drive sent: a frame, a handshake, a line of its adapter.
+/// Bytes from the drive: a frame, a handshake or a line of its adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sent {
+pub struct DriveOutput {
     /// When they left the drive.
     pub at: Stamp<Host>,
     /// The bytes.
     pub bytes: Vec<u8>,
 }
 
+/// The effects of the rig: the lidar's clock alone.
+type RigEffects = FiringEffectSet<(), (), (), (), LidarClock>;
+
+const fn clock_effect(clock: LidarClock) -> RigEffects {
+    FiringEffectSet {
+        objects: (),
+        view: (),
+        beam: (),
+        surface: (),
+        clock,
+    }
+}
+
 /// The two devices and the world around them.
 ///
-/// Whoever pumps it calls [`Rig::advance`] with the time, hands over what the host sent, and takes what the devices sent.
-/// Datagrams and answers wait until they are taken; nothing is dropped.
+/// The caller calls [`Rig::advance`] with the time, passes on the host's bytes and takes the devices'
+/// bytes. Datagrams and answers are kept until they are taken.
 #[derive(Debug)]
 pub struct Rig {
-    world: World,
-    shaft: Shaft,
+    lidar: Lidar,
+    surroundings: Surroundings,
+    maker: PacketMaker<RigEffects>,
+    /// Data packets so far.
+    packets: u64,
+    shaft: ShaftCourse,
     node: Node,
-    server: Server,
-    lidar: Spinning,
+    server: DriveServer,
     now: Stamp<Host>,
     datagrams: VecDeque<Datagram>,
-    sent: VecDeque<Sent>,
+    sent: VecDeque<DriveOutput>,
 }
 
 impl Rig {
     /// Both devices at the moment of being switched on.
     #[must_use]
     pub fn new(config: RigConfig) -> Self {
-        let RigConfig {
-            scene,
-            mount,
-            drive,
-            attached,
-            gearing,
-            ripple,
-            lidar,
-            start,
-            seed,
-        } = config;
+        let RigConfig { start, lidar, .. } = config;
         let clock = LidarClock::new(start, lidar.clock_at_start_us, lidar.drift_ppm);
-        let spin = Spin {
-            rpm: lidar.rpm,
-            at_start: lidar.azimuth_at_start,
-        };
-        let node = Node::new(drive);
+        let lidar = Lidar::new(
+            LidarSensor::vlp16(),
+            ReturnMode::Strongest,
+            HeadRotation {
+                rpm: lidar.rpm,
+                start_deg: lidar.azimuth_at_start.0,
+            },
+            LidarMount::above(config.mount.0),
+            start,
+            clock.clone(),
+        );
+        let surroundings = Surroundings::new(config.scene, lidar.sensor.range(), true);
+        let effects = clock_effect(clock);
+        let node = Node::new(config.drive);
         let mut rig = Self {
-            world: World::new(scene, mount, clock, spin),
-            shaft: Shaft::new(start, gearing, node.segment().start).with_ripple(ripple),
+            maker: PacketMaker::new(&lidar, effects, surroundings.clone()),
+            lidar,
+            surroundings,
+            packets: 0,
+            shaft: ShaftCourse::new(config.gearing, node.segment().start, config.ripple),
             node,
-            server: Server::new(attached, seed),
-            lidar: Spinning::default(),
+            server: DriveServer::new(config.attached, config.seed),
             now: start,
             datagrams: VecDeque::new(),
             sent: VecDeque::new(),
         };
-        // The first control cycle begins at the start, whether or not anyone advances to it.
+        // The first control cycle begins at the start.
         rig.cycle();
         rig
     }
 
-    /// Lets time pass until `to`. An instant that is past already changes nothing.
+    /// Advances the time to `to`. A time in the past changes nothing.
     pub fn advance(&mut self, to: Stamp<Host>) {
         loop {
-            let (cycle, packet) = (self.shaft.end(), self.lidar.release(&self.world));
-            // The drive first: a packet needs the shaft's motion up to its release.
+            let (cycle, packet) = (self.cycle_end(), self.next_packet());
+            // The drive first: a packet needs the shaft's motion up to its end.
             if cycle.min(packet) > to {
                 break;
             } else if cycle <= packet {
@@ -184,11 +211,11 @@ impl Rig {
         self.now = self.now.max(to);
     }
 
-    /// The bytes that the host sends to the drive, whole frames or not, arrive now.
+    /// Passes bytes from the host to the drive, whole frames or not; they arrive now.
     ///
     /// The drive reads its encoder now and acts from its next control cycle on.
     pub fn drive_input(&mut self, bytes: &[u8]) {
-        let cycle_began = self.shaft.end() - CYCLE;
+        let cycle_began = self.cycle_end() - CYCLE;
         let phase_us = self.now.saturating_since(cycle_began).as_nanos() / 1_000;
         // Between two cycles, so below 1000.
         self.node
@@ -197,81 +224,102 @@ impl Rig {
         self.server
             .input(&mut self.node, bytes, &mut |bytes: &[u8]| {
                 let bytes = bytes.to_vec();
-                sent.push_back(Sent { at, bytes });
+                sent.push_back(DriveOutput { at, bytes });
             });
     }
 
-    /// The next bytes that the drive sent, if any: answers, and on a CAN bus what it sends by itself.
-    pub fn drive_output(&mut self) -> Option<Sent> {
+    /// The next bytes from the drive, if any: answers, and on a CAN bus unsolicited frames.
+    pub fn drive_output(&mut self) -> Option<DriveOutput> {
         self.sent.pop_front()
     }
 
-    /// The next datagram that the lidar has sent, if any.
+    /// The next datagram from the lidar, if any.
     pub fn poll_datagram(&mut self) -> Option<Datagram> {
         self.datagrams.pop_front()
     }
 
-    /// Until when nothing comes out of the devices by itself; now, if something is waiting to be taken.
+    /// The time before which the devices send nothing unsolicited; now if output is waiting.
     #[must_use]
     pub fn next_event(&self) -> Stamp<Host> {
         if self.datagrams.is_empty() && self.sent.is_empty() {
-            self.lidar.release(&self.world)
+            self.next_packet()
         } else {
             self.now
         }
     }
 
-    /// The drive, to do things to it that no client can: block its motor, cut its power, give it an error.
+    /// The drive, for faults that no client can cause: a blocked motor, a power cut, an error.
     pub const fn drive_mut(&mut self) -> &mut Node {
         &mut self.node
     }
 
-    /// The time that the world has reached.
+    /// The current time.
     #[must_use]
     pub const fn now(&self) -> Stamp<Host> {
         self.now
     }
 
-    /// Forgets the shaft's motion before `host`, for a world that is to go on for days: its truth begins there. The last second is kept,
-    /// of which packets are made.
+    /// Drops the shaft's motion before `host`, so that a run of days needs bounded memory; the truth
+    /// begins there. The last second is kept, because packets need it.
     pub fn forget_before(&mut self, host: Stamp<Host>) {
         let last_second = self.now.saturating_add(-Span::from_secs(1));
-        self.shaft.forget_before(host.min(last_second));
+        let since = host.min(last_second).saturating_since(self.lidar.start);
+        self.shaft.forget_before(since.as_nanos());
     }
 
-    /// What truly happened so far.
+    /// The ground truth so far.
     #[must_use]
     pub fn truth(&self) -> Truth {
-        Truth::new(self.world.clone(), self.shaft.clone())
+        Truth::new(
+            self.lidar.clone(),
+            self.surroundings.clone(),
+            self.shaft.clone(),
+        )
     }
 
-    /// One control cycle of the drive: settles the motion of the coming millisecond.
+    /// End of the current control cycle.
+    fn cycle_end(&self) -> Stamp<Host> {
+        let since = Span::from_nanos(self.shaft.end_ns());
+        self.lidar.start.saturating_add(since)
+    }
+
+    /// When the next data packet leaves.
+    fn next_packet(&self) -> Stamp<Host> {
+        let firings = (self.packets + 1).saturating_mul(self.maker.firings() as u64);
+        let since_ns = self.lidar.clock.host_ns(self.lidar.device_ns(firings));
+        (self.lidar.start).saturating_add(Span::from_nanos(since_ns))
+    }
+
+    /// Runs a control cycle of the drive, which fixes the motion of the coming millisecond.
     fn cycle(&mut self) {
         self.node.tick();
         self.shaft.push(self.node.segment().end);
         let (at, sent) = (self.now, &mut self.sent);
         self.server.poll(&mut self.node, &mut |bytes: &[u8]| {
             let bytes = bytes.to_vec();
-            sent.push_back(Sent { at, bytes });
+            sent.push_back(DriveOutput { at, bytes });
         });
     }
 
     fn send_packets(&mut self) {
+        let per_packet = firing_blocks(self.lidar.returns) as u64;
+        let first = self.packets.saturating_mul(per_packet);
+        let blocks = first..first.saturating_add(per_packet);
+        let packet = self.maker.packet(&self.lidar, &self.shaft, blocks, None);
+        self.packets += 1;
         let at = self.now;
-        let data = self.lidar.data_packet(&self.world, &self.shaft);
-        let position = self.lidar.position_packet(&self.world);
-        self.datagrams.push_back(Datagram {
-            at,
-            port: DATA_PORT,
-            payload: data.to_vec(),
-        });
-        self.datagrams.extend(position.map(|payload| Datagram {
-            at,
-            port: POSITION_PORT,
-            payload: payload.to_vec(),
-        }));
+        let mut send = |port, payload: &[u8]| {
+            let payload = payload.to_vec();
+            (self.datagrams).push_back(Datagram { at, port, payload });
+        };
+        send(DATA_PORT, &packet.payload);
+        if let Some(payload) = packet.position_packet(self.packets) {
+            send(POSITION_PORT, &payload);
+        }
     }
 }
 
+#[cfg(test)]
+mod packet_tests;
 #[cfg(test)]
 mod tests;

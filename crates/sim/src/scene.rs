@@ -1,12 +1,12 @@
-//! A scene: objects that rays are cast at, and what they are made of.
+//! A scene: objects to cast rays at, and their materials.
 //!
-//! Coordinates are f64 metres in the frame of the platform's base: origin on the tilt axis, z up, the lidar's forward direction along y. Left out: how rays
-//! are cast ([`crate::cast`]), how a scene is described ([`crate::scenery`]), what moves.
+//! Coordinates are f64 metres in the frame of the platform's base: origin on the tilt axis, z up,
+//! the lidar's forward direction along y.
 
 use glam::DVec3;
 
 use crate::cast::{CastError, Caster, Hit as CastHit, Normal, Object, Ray, Reach};
-use crate::scenery::{Coat, Material, Placed};
+use crate::scenery::{Material, MaterialAssignment, Placed};
 
 /// Objects and materials.
 #[derive(Clone, Debug, Default)]
@@ -15,12 +15,13 @@ pub struct Scene {
     caster: Caster,
 }
 
-/// Where a ray met the scene.
+/// Where a ray meets the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance along the ray in metres.
+    /// Distance along the ray, metres.
     pub range_m: f64,
-    /// Calibrated reflectivity of what it met: 0..=100 diffuse, above that retroreflecting (manual 63-9243).
+    /// Calibrated reflectivity of the surface: 0..=100 diffuse, above that retroreflecting (manual
+    /// 63-9243).
     pub reflectivity: u8,
 }
 
@@ -31,22 +32,24 @@ impl Scene {
         Self::default()
     }
 
-    /// What a scene file places.
+    /// The scene of placed objects.
     ///
     /// # Errors
-    /// [`CastError`] for what cannot be cast at.
+    /// [`CastError`] for invalid geometry.
     pub fn of(placed: Placed) -> Result<Self, CastError> {
         let caster = placed.caster()?;
         Ok(Self { placed, caster })
     }
 
-    /// The scene with one more object, of one calibrated reflectivity all over.
+    /// The scene with another object of one reflectivity.
     ///
     /// # Errors
-    /// [`CastError`] for what cannot be cast at.
+    /// [`CastError`] for invalid geometry.
     pub fn with(self, object: Object, reflectivity: u8) -> Result<Self, CastError> {
         let mut placed = self.placed;
-        placed.coats.push(Coat::One(placed.materials.len() as u32));
+        placed
+            .assignments
+            .push(MaterialAssignment::One(placed.materials.len() as u32));
         placed.materials.push(Material {
             reflectivity,
             ..Material::plain()
@@ -56,25 +59,26 @@ impl Scene {
         Self::of(placed)
     }
 
-    /// Objects and materials as they were placed.
+    /// The placed objects and materials.
     #[must_use]
     pub const fn placed(&self) -> &Placed {
         &self.placed
     }
 
-    /// The objects, to cast rays at.
+    /// The objects as a caster.
     #[must_use]
     pub const fn caster(&self) -> &Caster {
         &self.caster
     }
 
-    /// What a hit of the caster is made of.
+    /// The material at a hit of the caster.
     #[inline]
     pub(crate) fn material<N>(&self, hit: &CastHit<N>) -> Option<&Material> {
         self.placed.material(hit.object.index(), hit.primitive)
     }
 
-    /// The nearest surface ahead of `origin_m` along `direction` no farther than `up_to_m`, whatever it is made of. What is no ray meets nothing.
+    /// The nearest surface ahead of `origin_m` in `direction` no farther than `up_to_m`, of any
+    /// material. `None` for an invalid ray.
     pub(crate) fn nearest<N: Normal>(
         &self,
         origin_m: DVec3,
@@ -86,10 +90,11 @@ impl Scene {
         Some((hit, self.material(&hit)?))
     }
 
-    /// The nearest surface ahead of `origin_m` along `direction` (length 1), if it lies within `min_m..=max_m`.
+    /// The nearest surface ahead of `origin_m` in `direction` (length 1), if it is within
+    /// `min_m..=max_m`.
     ///
-    /// A surface nearer than `min_m` blocks the ray and does not return it, as does one that absorbs. A ray that starts on a surface does not
-    /// meet it there. What is not finite meets nothing.
+    /// A surface nearer than `min_m` or an absorbing one blocks the ray without a return. A ray
+    /// that starts on a surface does not meet it there. `None` for numbers that are not finite.
     #[must_use]
     pub fn cast(&self, origin_m: DVec3, direction: DVec3, min_m: f64, max_m: f64) -> Option<Hit> {
         let (hit, material) = self.nearest::<()>(origin_m, direction, max_m)?;

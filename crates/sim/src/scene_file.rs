@@ -1,241 +1,232 @@
 //! Scene files: TOML in, a [`Simulation`] and its effects out.
 //!
-//! Every key of `[effects]` is a table of its own and the name of one file in [`crate::effects`]; a scene file without it has no such effect, and
-//! without any there is none at all. What stands around the scanner is [`crate::scenery`]'s, of the file itself or of a scene that comes with the simulator
-//! (`scene = "hall"`). Keys that are not known are errors, and errors name the line. Left out: reading files.
+//! Each key of `[effects]` is a table named after an effect of [`crate::effect_models`]; an effect
+//! without a table is absent. The surroundings are the file's own objects or a shipped scene
+//! (`scene = "hall"`), see [`crate::scenery`]. Unknown keys are errors, and errors name the line.
 
-mod around;
-mod drive;
-mod effects;
-mod motion;
-mod sensor;
+mod sections;
+mod surroundings;
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::sync::Arc;
 
-use glam::DVec3;
 use serde::Deserialize;
 use thiserror::Error;
 use toml::Spanned;
 use units::{Host, Stamp};
 
-use crate::effects::{MovingObjects, Wishes};
-pub use crate::scenery::SHIPPED;
-use crate::scenery::{MaterialTable, ObjectTable, no_files, rotation};
-use crate::simulate::{Mount, Simulation};
-pub use effects::{AskedFor, EffectLine};
+use crate::effect_models::{EffectsConfig, MovingObjects};
+use crate::effects::{ConfiguredEffects, Listed, Stopwatch};
+use crate::scenery::{MaterialTable, ObjectTable, line_of_value, no_files};
+use crate::simulate::Simulation;
+use sections::{DriveSection, InvalidValue, MotionSection, MountSection, SensorSection, invalid};
 
-/// What a scene file asks for.
+pub use crate::scenery::SHIPPED;
+
+/// A scene file that is read.
 #[derive(Debug)]
-pub struct Scene {
-    /// What is to be simulated.
+#[non_exhaustive]
+pub struct SceneFile {
+    /// The simulation.
     pub simulation: Simulation,
-    /// The effects and the lines that ask for them.
-    pub effects: AskedFor,
-    /// What draws depend on.
+    /// The effects and the lines that configure them.
+    pub effects: SceneEffects,
+    /// Seed of all random draws.
     pub seed: u64,
 }
 
-/// What is wrong with a scene file.
+/// The effects of a scene.
+#[derive(Debug, Default)]
+pub struct SceneEffects {
+    /// All of them, as [`Simulation::run`] takes them.
+    pub effects: ConfiguredEffects,
+    /// The line that configures each, in the order in which they act.
+    pub lines: Vec<EffectLine>,
+}
+
+/// The line of a scene file that configures an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EffectLine {
+    /// Name of the effect.
+    pub name: &'static str,
+    /// The line, from 1.
+    pub line: usize,
+}
+
+/// An invalid scene file.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("line {line}: {what}")]
-pub struct SceneError {
-    /// Which line, from 1.
+pub struct SceneFileError {
+    /// The line, from 1.
     pub line: usize,
     /// What is wrong there.
     pub what: String,
 }
 
-/// The file as it is written.
+/// The sections of the file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
-    /// What draws depend on.
+struct Sections {
+    /// Seed of all random draws.
     #[serde(default)]
     seed: u64,
     /// Host time of the start, Unix seconds.
     #[serde(default = "default_start")]
-    start_unix_s: Spanned<f64>,
-    /// What the lidar's clock shows then, microseconds past the hour.
+    start_unix_s: f64,
+    /// The lidar's clock at the start, microseconds past the hour.
     #[serde(default)]
     lidar_clock_us: u32,
-    /// What it shows, for people.
+    /// A description for people.
     #[serde(default, rename = "about")]
     _about: String,
-    /// What stands around, by the name of a scene that comes with the simulator; else the next two say it.
-    scene: Option<Spanned<String>>,
-    /// What things are made of.
+    /// The name of a shipped scene, instead of materials and objects.
+    scene: Option<String>,
     #[serde(default)]
     materials: BTreeMap<Spanned<String>, Spanned<MaterialTable>>,
-    /// What there is.
     #[serde(default)]
     objects: Vec<Spanned<ObjectTable>>,
     #[serde(default)]
-    sensor: sensor::Section,
-    motion: Spanned<motion::Section>,
+    sensor: SensorSection,
+    motion: MotionSection,
     #[serde(default)]
     mount: MountSection,
     #[serde(default)]
-    drive: drive::Section,
+    drive: DriveSection,
     #[serde(default)]
-    effects: Wishes,
-}
-
-/// `[mount]`.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MountSection {
-    /// Height of the lidar's origin above the tilt axis, metres (d of Eq. 4-6).
-    #[serde(default)]
-    d_m: Option<Spanned<f64>>,
-    /// How far it is moved beside that, metres in the frame of the platform: x right, y along the axis, z up.
-    position_m: Option<Spanned<[f64; 3]>>,
-    /// How it is turned about x, then y, then z of the platform, degrees.
-    rotation_deg: Option<Spanned<[f64; 3]>>,
-}
-
-impl MountSection {
-    fn build(&self) -> Result<Mount, Wrong> {
-        let d_m = match &self.d_m {
-            Some(d_m) => finite(d_m, "a height in metres")?,
-            None => 0.0,
-        };
-        let three = |key: &Option<Spanned<[f64; 3]>>| match key {
-            Some(three) if three.get_ref().iter().all(|number| number.is_finite()) => {
-                Ok(*three.get_ref())
-            }
-            Some(three) => {
-                let what = format!("expected three numbers, got {:?}", three.get_ref());
-                Err(Wrong::new(three.span(), what))
-            }
-            None => Ok([0.0; 3]),
-        };
-        let mut mount = Mount::above(d_m);
-        mount.at_m += DVec3::from_array(three(&self.position_m)?);
-        mount.turn = rotation(three(&self.rotation_deg)?);
-        Ok(mount)
-    }
+    effects: EffectsConfig,
 }
 
 /// A time in November 2026.
-fn default_start() -> Spanned<f64> {
-    Spanned::new(0..0, 1_795_226_733.0)
+const fn default_start() -> f64 {
+    1_795_226_733.0
 }
 
-/// Something wrong at a place in the file, before its line is known.
-struct Wrong {
-    at: Range<usize>,
-    what: String,
-}
+impl SceneEffects {
+    /// Whether no effect is configured.
+    #[must_use]
+    pub const fn is_none(&self) -> bool {
+        self.lines.is_empty()
+    }
 
-impl Wrong {
-    fn new(at: Range<usize>, what: impl Into<String>) -> Self {
-        Self {
-            at,
-            what: what.into(),
+    /// Removes effects by name. The others keep their random draws.
+    pub fn leave_out(&mut self, is_out: impl Fn(&str) -> bool) {
+        self.effects.retain(|name| !is_out(name));
+        self.lines.retain(|line| !is_out(line.name));
+    }
+
+    /// Sets all moving objects, those of the scene and those of the effect's table. Without a table,
+    /// `line` configures the effect.
+    fn set_moving_objects(&mut self, all: MovingObjects, line: usize, stopwatch: Stopwatch) {
+        let name = MovingObjects::NAME;
+        // No other effect moves objects.
+        self.effects.firings.objects = vec![Listed::new(Arc::new(all), stopwatch)];
+        if self.lines.iter().any(|other| other.name == name) {
+            return;
         }
-    }
-
-    fn in_file(self, text: &str) -> SceneError {
-        SceneError {
-            line: line_of(text, self.at.start),
-            what: self.what,
-        }
+        let rank = |name: &str| EffectsConfig::NAMES.iter().position(|known| *known == name);
+        let place = (self.lines).partition_point(|other| rank(other.name) < rank(name));
+        self.lines.insert(place, EffectLine { name, line });
     }
 }
 
-/// A number that must be finite.
-fn finite(number: &Spanned<f64>, what: &str) -> Result<f64, Wrong> {
-    let got = *number.get_ref();
-    match got.is_finite() {
-        true => Ok(got),
-        false => Err(Wrong::new(
-            number.span(),
-            format!("expected {what}, got {got}"),
-        )),
-    }
-}
-
-/// The line of a byte, from 1.
-fn line_of(text: &str, at: usize) -> usize {
-    let before = text.as_bytes().get(..at).unwrap_or_default();
-    before.iter().filter(|&&byte| byte == b'\n').count() + 1
-}
-
-impl Scene {
-    /// Reads a scene file. Another seed than the file's may be given; `clock` (nanoseconds from any beginning) measures what effects cost.
+impl SceneFile {
+    /// Reads a scene file. `seed` replaces the file's seed; `stopwatch` measures the cost of effects.
     ///
     /// # Errors
-    /// [`SceneError`] for what is no TOML, has keys that are not known, lacks some or has values that cannot be.
+    /// [`SceneFileError`] for text that is not TOML, unknown or missing keys and invalid values.
     pub fn parse(
         text: &str,
         seed: Option<u64>,
-        clock: Option<fn() -> u64>,
-    ) -> Result<Self, SceneError> {
-        Self::parse_with(text, seed, clock, &mut no_files)
+        stopwatch: Stopwatch,
+    ) -> Result<Self, SceneFileError> {
+        Self::parse_with(text, seed, stopwatch, &mut no_files)
     }
 
-    /// The same for a scene that names mesh files: `files` gives the bytes of each by its name in the scene, or says why it cannot.
+    /// Reads a scene file with mesh files. `files` returns the bytes of a file by its name in the
+    /// scene, or the reason why it cannot.
     ///
     /// # Errors
-    /// [`SceneError`], for files that cannot be had too.
+    /// As [`SceneFile::parse`], and for missing files.
     pub fn parse_with(
         text: &str,
         seed: Option<u64>,
-        clock: Option<fn() -> u64>,
+        stopwatch: Stopwatch,
         files: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
-    ) -> Result<Self, SceneError> {
-        let file: File = toml::from_str(text).map_err(|error| SceneError {
-            line: error.span().map_or(1, |at| line_of(text, at.start)),
+    ) -> Result<Self, SceneFileError> {
+        let sections: Sections = toml::from_str(text).map_err(|error| SceneFileError {
+            line: (error.span()).map_or(1, |span| line_of(text, span.start)),
             what: error.message().to_owned(),
         })?;
-        let seed = seed.unwrap_or(file.seed);
-        let mut scene = Self::new(&file, text, seed, clock).map_err(|wrong| wrong.in_file(text))?;
-        let boxes = file.effects.moving_objects.clone().map(Spanned::into_inner);
-        let around = around::build(text, file, seed, files)?;
-        scene.simulation.scene = around.scene;
-        scene.effects.find_lines(|at| line_of(text, at));
-        if let Some(line) = around.line {
-            let all =
-                MovingObjects::of(&boxes.unwrap_or_default()).map(|boxes| boxes.and(around.movers));
-            let all = all.map_err(|unfit| SceneError {
-                line,
-                what: unfit.to_string(),
+        let seed = seed.unwrap_or(sections.seed);
+        let mut scene =
+            Self::new(&sections, text, seed, stopwatch).map_err(|error| SceneFileError {
+                line: line_of_value(text, &error.path),
+                what: error.what,
             })?;
-            scene.effects.move_objects(all, line, clock);
+        let boxes = sections.effects.moving_objects.clone().unwrap_or_default();
+        let surroundings = surroundings::build(text, sections, seed, files)?;
+        scene.simulation.scene = surroundings.scene;
+        if let Some(line) = surroundings.first_mover_line {
+            let boxes = MovingObjects::of(&boxes).map_err(|error| SceneFileError {
+                line,
+                what: error.to_string(),
+            })?;
+            let all = boxes.and(surroundings.movers);
+            scene.effects.set_moving_objects(all, line, stopwatch);
         }
         Ok(scene)
     }
 
-    fn new(file: &File, text: &str, seed: u64, clock: Option<fn() -> u64>) -> Result<Self, Wrong> {
-        let (sensor, returns, spin) = file.sensor.build()?;
-        let motion = file.motion.get_ref().build(file.motion.span())?;
+    fn new(
+        sections: &Sections,
+        text: &str,
+        seed: u64,
+        stopwatch: Stopwatch,
+    ) -> Result<Self, InvalidValue> {
+        let (sensor, returns, rotation) = sections.sensor.build()?;
+        let motion = sections.motion.build()?;
         let polls = match motion.is_fixed() {
             true => None,
-            false => Some(file.drive.build()?),
+            false => Some(sections.drive.build()?),
         };
-        let start_s = finite(&file.start_unix_s, "Unix seconds")?;
+        let start_s = sections.start_unix_s;
         if !(0.0..1e10).contains(&start_s) {
             let what = format!("expected Unix seconds from 0 to 1e10, got {start_s}");
-            return Err(Wrong::new(file.start_unix_s.span(), what));
+            return Err(invalid("start_unix_s", what));
         }
+        let effects = sections.effects.build(seed, stopwatch).map_err(|error| {
+            let path = format!("effects.{}.{}", error.effect, error.setting);
+            invalid(path, error.to_string())
+        })?;
+        let lines = sections.effects.configured().map(|name| EffectLine {
+            name,
+            line: line_of_value(text, &format!("effects.{name}")),
+        });
         Ok(Self {
             simulation: Simulation {
                 scene: Arc::default(),
                 sensor,
                 returns,
-                spin,
-                mount: file.mount.build()?,
+                rotation,
+                mount: sections.mount.build()?,
                 motion,
                 polls,
                 start: Stamp::<Host>::from_nanos((start_s * 1e9).round() as i64),
-                clock_at_start_us: file.lidar_clock_us,
+                clock_at_start_us: sections.lidar_clock_us,
             },
-            effects: AskedFor::new(&file.effects, text, seed, clock)?,
+            effects: SceneEffects {
+                effects,
+                lines: lines.collect(),
+            },
             seed,
         })
     }
+}
+
+/// The line of a byte of the text, from 1.
+fn line_of(text: &str, offset: usize) -> usize {
+    let before = text.as_bytes().get(..offset).unwrap_or_default();
+    before.iter().filter(|&&byte| byte == b'\n').count() + 1
 }
 
 #[cfg(test)]

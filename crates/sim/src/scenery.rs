@@ -6,18 +6,19 @@
 //!
 //! Left out: the other sections of a scene file; what light does with materials, and moving what moves (effects); files.
 
-mod coats;
 mod error;
 mod generators;
+mod materials;
 mod meshes;
 mod moving;
 mod objects;
 mod place;
 mod shipped;
 
-pub use coats::{Coat, Material, Placed};
-pub use error::{At, SceneryError};
+pub(crate) use error::line_of_value;
+pub use error::{FilePosition, SceneryError};
 pub use generators::{ParkedCars, Quarry, Trees};
+pub use materials::{Material, MaterialAssignment, Placed};
 pub use meshes::{MeshFileError, MeshFormat};
 pub use moving::{Moving, Travel};
 pub use objects::{
@@ -32,65 +33,64 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-/// What a scene file says of what stands around the scanner.
+/// The materials and objects of a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenery {
-    /// What things are made of, in the order of their names.
+    /// Materials in the order of their names.
     pub materials: Vec<Material>,
-    /// What there is, each with where it stands in the file.
-    pub objects: Vec<(At, ObjectTable)>,
+    /// Objects, each with its position in the file.
+    pub objects: Vec<(FilePosition, ObjectTable)>,
 }
 
-/// The two sections as they stand, for a document that has others too.
+/// The two sections of a scene file that also has others.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
-pub(crate) struct Sections {
+pub(crate) struct ScenerySections {
     pub materials: BTreeMap<Spanned<String>, Spanned<MaterialTable>>,
     pub objects: Vec<Spanned<ObjectTable>>,
 }
 
 impl Scenery {
-    /// Reads `[materials]` and `[[objects]]` of a scene file and passes over its other sections.
+    /// Reads `[materials]` and `[[objects]]` of a scene file and ignores its other sections.
     ///
     /// # Errors
-    /// [`SceneryError`] with line and column, for text that is no TOML, a key that is not known, a value out of its range, or a material
-    /// that is not there.
+    /// [`SceneryError`] with line and column, for text that is not TOML, an unknown key, a value out
+    /// of range or an unknown material.
     pub fn parse(text: &str) -> Result<Self, SceneryError> {
-        let sections: Sections =
+        let sections: ScenerySections =
             toml::from_str(text).map_err(|error| SceneryError::toml(text, &error))?;
         Self::new(text, sections)
     }
 
-    /// Of sections that were read from this text.
-    pub(crate) fn new(text: &str, sections: Sections) -> Result<Self, SceneryError> {
-        let at = |span: std::ops::Range<usize>| At::of(text, span.start);
+    /// From sections that were read from this text.
+    pub(crate) fn new(text: &str, sections: ScenerySections) -> Result<Self, SceneryError> {
         let mut materials = Vec::new();
         for (name, table) in sections.materials {
             let begin = name.span().start;
-            let material = Material::new(name.into_inner(), table.get_ref(), &At::of(text, begin));
-            materials.push(material.map_err(|error| error.at_its_value(text, begin))?);
+            let material = Material::new(name.into_inner(), table.get_ref());
+            materials.push(material.map_err(|error| error.in_text(text, begin))?);
         }
         let mut objects = Vec::new();
         for object in sections.objects {
-            let span = object.span();
-            let (begin, at, object) = (span.start, at(span), object.into_inner());
-            (object.check(&at, &materials)).map_err(|error| error.at_its_value(text, begin))?;
-            objects.push((at, object));
+            let begin = object.span().start;
+            let object = object.into_inner();
+            (object.check(&materials)).map_err(|error| error.in_text(text, begin))?;
+            objects.push((FilePosition::of(text, begin), object));
         }
         Ok(Self { materials, objects })
     }
 
-    /// Makes what rays are cast at. What is made up depends on `seed`; `file` gives the bytes of a mesh file by its name in the scene, or
-    /// says why it cannot.
+    /// Places the objects that rays are cast at. `seed` decides generated geometry; `files` returns
+    /// the bytes of a mesh file by its name in the scene, or the reason why it cannot.
     ///
     /// # Errors
-    /// [`SceneryError`] for a mesh that cannot be had or is none, and for geometry that cannot be.
+    /// [`SceneryError`] for a mesh file that is missing or invalid, and for invalid geometry.
     pub fn place(
         &self,
         seed: u64,
-        file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+        files: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Placed, SceneryError> {
-        place::place(self, seed, file)
+        place::place(self, seed, files)
     }
 }
 

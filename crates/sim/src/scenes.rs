@@ -1,4 +1,4 @@
-//! The scene that the rig stands in. Left out: the others that come with the simulator ([`crate::scenery::SHIPPED`]).
+//! The scene of the rig; [`crate::scenery::SHIPPED`] has the others.
 
 use crate::scene::Scene;
 use crate::scenery::{Scenery, no_files, shipped};
@@ -8,11 +8,11 @@ pub const TRIPOD_M: f64 = 1.2;
 
 /// A building hall of 30 x 20 x 6 m with six pillars, crates, a cabinet and a retroreflecting sign.
 ///
-/// The scanner stands near the middle, its tilt axis at the origin and the floor [`TRIPOD_M`] below. The hall is closed, and
-/// every surface is farther than 1 m and nearer than 20 m, so that every firing returns.
+/// The scanner is near the middle, its tilt axis at the origin and the floor [`TRIPOD_M`] below.
+/// Every surface is from 1 m to 20 m away, so every firing returns.
 #[must_use]
 pub fn hall() -> Scene {
-    // A test holds that it is there.
+    // A test checks that the scene exists.
     let placed =
         shipped("hall").and_then(|text| Scenery::parse(text).ok()?.place(0, &mut no_files).ok());
     placed
@@ -25,28 +25,26 @@ mod tests {
     use std::collections::BTreeSet;
 
     use glam::DVec3;
-    use units::{Degrees, Metres};
 
     use super::*;
-    use crate::head::{Head, MAX_RANGE_M, MIN_RANGE_M};
+    use crate::sensor::{LidarMount, LidarSensor};
 
     #[test]
     fn every_firing_in_the_hall_returns_from_within_20_m_whatever_the_tilt() {
-        let (scene, head) = (hall(), Head::new(Metres(0.06)));
+        let (scene, sensor, mount) = (hall(), LidarSensor::vlp16(), LidarMount::above(0.06));
         let mut seen = BTreeSet::new();
-        for tilt in (-90..=0).map(|half| Degrees(f64::from(half) / 2.0)) {
-            for azimuth in (0..1_800).map(|i| Degrees(f64::from(i) / 5.0)) {
+        for tilt in (-90..=0).map(|half| f64::from(half) / 2.0) {
+            for azimuth in (0..1_800).map(|i| f64::from(i) / 5.0) {
                 for laser in 0..16 {
-                    let (origin, direction) = head.beam(laser, azimuth, tilt).unwrap();
-                    let hit = scene
-                        .cast(origin, direction, MIN_RANGE_M, MAX_RANGE_M)
-                        .unwrap();
+                    let (origin, direction) = sensor.ray(laser, azimuth, tilt, &mount).unwrap();
+                    let hit = scene.cast(origin, direction, 1.0, 100.0).unwrap();
                     assert!((1.2..20.0).contains(&hit.range_m), "{hit:?}");
                     seen.insert(hit.reflectivity);
                 }
             }
         }
-        // Floor, both kinds of wall, ceiling, pillars, cardboard, wood, steel and the sign all show.
+        // Floor, both kinds of wall, ceiling, pillars, cardboard, wood, steel and the sign are all
+        // met.
         assert_eq!(
             seen.into_iter().collect::<Vec<_>>(),
             [12, 22, 28, 33, 35, 40, 45, 62, 210]

@@ -12,8 +12,8 @@ use analysis::tradeoff::{
     Work, in_rounds,
 };
 use protocol::vlp16::models::VLP_16;
-use sim::{MAX_RANGE_M, MIN_RANGE_M, scenes};
-use units::{Degrees, Metres};
+use sim::scenes;
+use sim::sensor::{LidarMount, LidarSensor};
 
 use crate::granularity::place_packets;
 use crate::workload::{Ray, Workload};
@@ -128,12 +128,12 @@ fn about(points: usize) -> Vec<String> {
 /// The first seconds of a sweep in the simulator's hall, as velomotion places them.
 fn hall(seconds: f64) -> Result<Points, StudyError> {
     let scene = scenes::hall();
-    let head = sim::Head::new(Metres(0.06));
+    let (sensor, mount) = (LidarSensor::vlp16(), LidarMount::above(0.06));
+    let range = sensor.range();
     let mut noise = SeededNoise(1);
     let answer = |ray: &Ray| {
-        let (azimuth, tilt) = (Degrees(ray.azimuth_deg), Degrees(ray.tilt_deg));
-        let beam = head.beam(ray.laser, azimuth, tilt);
-        let hit = beam.and_then(|(origin, way)| scene.cast(origin, way, MIN_RANGE_M, MAX_RANGE_M));
+        let beam = sensor.ray(ray.laser, ray.azimuth_deg, ray.tilt_deg, &mount);
+        let hit = beam.and_then(|(origin, way)| scene.cast(origin, way, range.min_m, range.max_m));
         hit.map_or((0, 0), |hit| {
             let range_m = hit.range_m + NOISE_M * noise.normal();
             let count = (range_m / VLP_16.distance_unit_m).round();

@@ -8,11 +8,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use analysis::tradeoff::StudyError;
 use protocol::vlp16::models::VLP_16;
-use sim::effects::{Absorb, Beam, Effect, Effects, OnFirings};
-use sim::scene_file::Scene;
+use sim::effects::{BeamEffect, Effect, Effects, FiringEffectSet};
+use sim::firing::{Echoes, Firing, Surroundings};
+use sim::scene_file::SceneFile;
 use sim::scenery::shipped;
 use sim::sensor::ReturnMode;
-use sim::simulate::{Echoes, Event, Firing, Out, Surroundings};
+use sim::simulate::{SimulationEvent, SimulationSink};
 
 /// Firings that stay together: as many as are cast together.
 const TOGETHER: u64 = 8;
@@ -32,7 +33,7 @@ impl Shots {
     pub fn of(name: &str, firings: usize) -> Result<Self, StudyError> {
         let text = shipped(name)
             .ok_or_else(|| StudyError::workload(format!("there is no scene {name}")))?;
-        let scene = Scene::parse(text, None, None).map_err(StudyError::workload)?;
+        let scene = SceneFile::parse(text, None, None).map_err(StudyError::workload)?;
         let mut simulation = scene.simulation;
         simulation.returns = ReturnMode::Dual;
         let all = simulation.motion.end_s() * 1e9 / f64::from(VLP_16.firing_period_ns);
@@ -41,7 +42,7 @@ impl Shots {
             every: ((all / firings.max(1) as f64) as u64).max(1),
             taken: Arc::clone(&taken),
         };
-        let firings = OnFirings {
+        let firings = FiringEffectSet {
             objects: (),
             view: (),
             beam: take,
@@ -52,7 +53,7 @@ impl Shots {
             firings,
             mechanism: (),
             encoder: (),
-            wire: (),
+            link: (),
         };
         simulation
             .run(&mut effects, NonZeroUsize::MIN, &mut Nobody)
@@ -97,9 +98,7 @@ impl Effect for Take {
     }
 }
 
-impl Absorb for Take {}
-
-impl Beam for Take {
+impl BeamEffect for Take {
     fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
         if (firing.number / TOGETHER).is_multiple_of(self.every) {
             let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
@@ -116,8 +115,8 @@ impl Beam for Take {
 /// Takes no notice of packets.
 struct Nobody;
 
-impl Out for Nobody {
-    fn event(&mut self, _: &Event<'_>) -> ControlFlow<()> {
+impl SimulationSink for Nobody {
+    fn event(&mut self, _: &SimulationEvent<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
@@ -140,7 +139,7 @@ mod tests {
                 let met = shots.surroundings.meet(from, way).unwrap();
                 let off_m = met.range_m - echoes.strongest[laser].range_m;
                 assert!(off_m.abs() < 1e-9, "{off_m}");
-                assert!(!echoes.other[laser].is_there());
+                assert!(!echoes.other[laser].is_present());
             }
         }
         assert!(Shots::of("nowhere", 1).is_err());

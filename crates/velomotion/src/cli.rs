@@ -179,7 +179,7 @@ pub const ALL: &str = "all";
 
 /// Names of the effects, and [`ALL`].
 fn effect_or_all() -> PossibleValuesParser {
-    let names = sim::effects::Wishes::NAMES.iter().copied();
+    let names = sim::effect_models::EffectsConfig::NAMES.iter().copied();
     PossibleValuesParser::new(names.chain([ALL]))
 }
 

@@ -9,7 +9,7 @@ use io::can::Slcan;
 use io::port::Port;
 use protocol::canopen::slcan::Bitrate;
 use protocol::record::DriveLink;
-use sim::Attached;
+use sim::Attachment;
 use units::Span;
 
 use crate::port::VirtualPort;
@@ -34,7 +34,7 @@ const QUIET: Span = Span::from_millis(100);
 pub(super) fn rejoin(
     port: &VirtualPort,
     (axis, link): (AxisConfig, DriveLink),
-    attached: Attached,
+    attached: Attachment,
     after: Span,
 ) -> Rejoined {
     let mut quiet = port.clone();
@@ -53,10 +53,10 @@ pub(super) fn rejoin(
         // Answers on a serial line do not say what they answer: what is late is let pass.
         while link != DriveLink::Can && quiet.read(&mut [0; 512], QUIET).unwrap().is_some() {}
         let line: Box<dyn Port> = match attached {
-            Attached::Slcan => Box::new(BusLine(
+            Attachment::Slcan => Box::new(BusLine(
                 Slcan::open(port.clone(), Bitrate::Kbit1000).unwrap(),
             )),
-            Attached::Usb | Attached::Rs232 | Attached::Can => Box::new(port.clone()),
+            Attachment::Usb | Attachment::Rs232 | Attachment::Can => Box::new(port.clone()),
         };
         let client = Client::with_link(axis.clone(), link);
         let mut session = Session::new(client, line, Arc::default());

@@ -2,8 +2,8 @@
 
 use engine::capture::moves::SweepRequest;
 use firmware_sim::epos2::Servo;
-use sim::Attached;
-use sim::effects::GearRipple;
+use sim::Attachment;
+use sim::GearRipple;
 use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
 
 use crate::inject::Fault;
@@ -94,7 +94,7 @@ impl Default for Setting {
                 sweeps: 1,
                 both_ways: false,
             },
-            links: Links::usual(Attached::Usb, 1),
+            links: Links::usual(Attachment::Usb, 1),
             start: Stamp::from_nanos(1_795_226_733_000_000_000),
             lidar_clock_us: 1_234_567_890,
             fault: None,
@@ -113,7 +113,7 @@ impl Default for Setting {
 impl Setting {
     /// The card's command over another way to the drive.
     #[must_use]
-    pub fn over(attached: Attached) -> Self {
+    pub fn over(attached: Attachment) -> Self {
         Self {
             links: Links::usual(attached, 1),
             ..Self::default()

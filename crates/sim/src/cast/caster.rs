@@ -211,7 +211,7 @@ impl Caster {
     }
 
     /// The middle and radius of a ball around all objects, metres; none if one is endless.
-    pub(crate) fn ball(&self) -> Option<(DVec3, f64)> {
+    pub(crate) fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
         let mut whole = Bounds::EMPTY;
         for object in &self.objects {
             whole.join(&object.bounds().ok()??);

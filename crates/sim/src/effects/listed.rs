@@ -1,152 +1,129 @@
-//! What a scene file asks for: lists of effects that are not known beforehand, each with a count of what it did and what it cost.
+//! Lists of effects that are known only at run time, each with counts of its work and its cost.
 //!
-//! Time is measured only where a clock is given; this crate has none of its own. Left out: how a file asks for them.
+//! Costs are measured only where a stopwatch is given; this crate has no clock.
 
 use std::cell::Cell;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use units::{Degrees, Gearing};
 
 use super::{
-    Absorb, Axis, Beam, Clock, Effect, Effects, Encoder, Mechanism, Needs, Objects, OnFirings,
-    Parcel, Surface, View, Wire,
+    AxisAngles, BeamEffect, ClockEffect, Effect, Effects, EncoderEffect, FiringEffectSet,
+    LinkEffect, LinkMessage, MechanismEffect, Needs, ObjectsEffect, SurfaceEffect, ViewEffect,
 };
-use crate::simulate::{Echoes, Firing, Surroundings};
+use crate::firing::{Echoes, Firing, Surroundings};
+
+/// A clock in nanoseconds from any origin that measures the cost of effects.
+pub type Stopwatch = Option<fn() -> u64>;
 
 /// A list of effects that threads share.
 type Shared<T> = Vec<Listed<Arc<T>>>;
 /// A list of effects of one thread.
 type Owned<T> = Vec<Listed<Box<T>>>;
 
-/// Any effects in any number.
-pub type Asked = Effects<
-    OnFirings<
-        Shared<dyn Objects + Send + Sync>,
-        Shared<dyn View + Send + Sync>,
-        Shared<dyn Beam + Send + Sync>,
-        Shared<dyn Surface + Send + Sync>,
-        Shared<dyn Clock + Send + Sync>,
+/// Any number of effects of any type.
+pub type ConfiguredEffects = Effects<
+    FiringEffectSet<
+        Shared<dyn ObjectsEffect + Send + Sync>,
+        Shared<dyn ViewEffect + Send + Sync>,
+        Shared<dyn BeamEffect + Send + Sync>,
+        Shared<dyn SurfaceEffect + Send + Sync>,
+        Shared<dyn ClockEffect + Send + Sync>,
     >,
-    Owned<dyn Mechanism + Send>,
-    Owned<dyn Encoder + Send>,
-    Owned<dyn Wire + Send>,
+    Owned<dyn MechanismEffect + Send>,
+    Owned<dyn EncoderEffect + Send>,
+    Owned<dyn LinkEffect + Send>,
 >;
 
-/// How often an effect was asked and acted, and how long that took.
+/// How often an effect was called and acted, and the time it took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Usage {
-    /// How often it was asked.
-    pub asked: u64,
-    /// How often that changed anything.
+pub struct UsageCounts {
+    /// Calls.
+    pub calls: u64,
+    /// Calls that changed anything.
     pub acted: u64,
-    /// How much it changed: lasers, steps, parcels.
+    /// Changes in all: lasers, steps, messages.
     pub changed: u64,
-    /// Nanoseconds in it, all threads together; 0 where no clock was given.
+    /// Nanoseconds in all threads; 0 without a stopwatch.
     pub spent_ns: u64,
 }
 
-/// An effect of a run, and what it did.
+/// An effect of a run and its counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Used {
-    /// What the scene file calls it.
+pub struct EffectUsage {
+    /// Its key in the scene file.
     pub name: &'static str,
-    /// What it is asked for each of: firings, polls...
+    /// What it is called for: firings, polls...
     pub each: &'static str,
-    /// What it did.
-    pub usage: Usage,
-    /// Why it was not needed, if it never acted.
-    pub why_idle: &'static str,
+    /// Its counts.
+    pub counts: UsageCounts,
+    /// Explanation for an effect that never acted.
+    pub idle_reason: &'static str,
 }
 
-impl Asked {
-    /// Leaves out the effects whose names do not fit.
+/// Calls a macro with each list and the unit of its calls, in the order in which effects act.
+macro_rules! for_each_list {
+    ($effects:ident, $call:ident) => {
+        $call!($effects.firings.objects, "firings");
+        $call!($effects.firings.view, "firings");
+        $call!($effects.firings.beam, "firings");
+        $call!($effects.firings.surface, "firings");
+        $call!($effects.firings.clock, "readings");
+        $call!($effects.mechanism, "steps");
+        $call!($effects.encoder, "polls");
+        $call!($effects.link, "messages");
+    };
+}
+
+impl ConfiguredEffects {
+    /// Removes the effects whose names `keep` rejects.
     pub fn retain(&mut self, keep: impl Fn(&str) -> bool) {
-        let OnFirings {
-            objects,
-            view,
-            beam,
-            surface,
-            clock,
-        } = &mut self.firings;
-        objects.retain(|listed| keep(listed.effect.name()));
-        view.retain(|listed| keep(listed.effect.name()));
-        beam.retain(|listed| keep(listed.effect.name()));
-        surface.retain(|listed| keep(listed.effect.name()));
-        clock.retain(|listed| keep(listed.effect.name()));
-        self.mechanism.retain(|listed| keep(listed.effect.name()));
-        self.encoder.retain(|listed| keep(listed.effect.name()));
-        self.wire.retain(|listed| keep(listed.effect.name()));
-    }
-
-    /// All effects of the lists and what they did, in the order in which they act.
-    #[must_use]
-    pub fn used(&self) -> Vec<Used> {
-        let mut used = Vec::new();
-        let OnFirings {
-            objects,
-            view,
-            beam,
-            surface,
-            clock,
-        } = &self.firings;
-        note(&mut used, "firings", objects);
-        for listed in view {
-            let each = match listed.effect.needs().azimuths {
-                true => "blocks",
-                false => "firings",
+        macro_rules! retain {
+            ($list:expr, $each:literal) => {
+                $list.retain(|listed| keep(listed.effect.name()))
             };
-            note(&mut used, each, core::slice::from_ref(listed));
         }
-        note(&mut used, "firings", beam);
-        note(&mut used, "firings", surface);
-        note(&mut used, "readings", clock);
-        note(&mut used, "steps", &self.mechanism);
-        note(&mut used, "polls", &self.encoder);
-        note(&mut used, "parcels", &self.wire);
-        used
+        for_each_list!(self, retain);
+    }
+
+    /// All effects and their counts, in the order in which they act.
+    #[must_use]
+    pub fn usage(&self) -> Vec<EffectUsage> {
+        let mut usage = Vec::new();
+        macro_rules! collect {
+            ($list:expr, $each:literal) => {
+                usage.extend($list.iter().map(|listed| listed.effect_usage($each)))
+            };
+        }
+        for_each_list!(self, collect);
+        usage
     }
 }
 
-fn note<P>(used: &mut Vec<Used>, each: &'static str, list: &[Listed<P>])
-where
-    P: core::ops::Deref<Target: Effect>,
-{
-    used.extend(list.iter().map(|listed| Used {
-        name: listed.effect.name(),
-        each,
-        usage: listed.usage(),
-        why_idle: listed.effect.why_idle(),
-    }));
-}
-
-/// An effect in a list. `P` is an `Arc` or a `Box` of one.
+/// An effect in a list. `P` is an `Arc` or a `Box` of it.
 #[derive(Debug)]
 pub struct Listed<P> {
     effect: P,
-    usage: Cell<Usage>,
-    clock: Option<fn() -> u64>,
+    counts: Cell<UsageCounts>,
+    stopwatch: Stopwatch,
 }
 
 impl<P: Clone> Clone for Listed<P> {
-    /// A copy has been asked nothing yet, so that its counts can be added to those of the original.
+    /// A copy starts with counts of zero, so that they can be added to those of the original.
     fn clone(&self) -> Self {
-        Self::new(self.effect.clone(), self.clock)
+        Self::new(self.effect.clone(), self.stopwatch)
     }
 }
 
 impl<P> Listed<P> {
-    /// An effect that has not been asked yet; `clock` gives nanoseconds from any beginning.
+    /// An effect without any calls.
     #[must_use]
-    pub const fn new(effect: P, clock: Option<fn() -> u64>) -> Self {
+    pub fn new(effect: P, stopwatch: Stopwatch) -> Self {
         Self {
             effect,
-            usage: Cell::new(Usage {
-                asked: 0,
-                acted: 0,
-                changed: 0,
-                spent_ns: 0,
-            }),
-            clock,
+            counts: Cell::default(),
+            stopwatch,
         }
     }
 
@@ -155,36 +132,40 @@ impl<P> Listed<P> {
         &self.effect
     }
 
-    /// What it did so far.
+    /// Its counts so far.
     #[must_use]
-    pub fn usage(&self) -> Usage {
-        self.usage.get()
+    pub fn counts(&self) -> UsageCounts {
+        self.counts.get()
     }
 
-    /// Asks the effect and counts. `changed` says how much an answer changed.
+    /// Calls the effect and counts; `changed` gives the number of changes of a result.
     #[inline]
-    fn ask<T>(&self, ask: impl FnOnce(&P) -> T, changed: impl FnOnce(&T) -> u32) -> T {
-        let begun = self.clock.map(|clock| clock());
-        let answer = ask(&self.effect);
-        self.count(begun, changed(&answer));
-        answer
+    fn call<T>(&self, call: impl FnOnce(&P) -> T, changed: impl FnOnce(&T) -> u32) -> T {
+        let begun = self.stopwatch.map(|now| now());
+        let result = call(&self.effect);
+        self.count(begun, changed(&result));
+        result
     }
 
-    /// The same of an effect that remembers.
+    /// As [`Listed::call`] for an effect with state.
     #[inline]
-    fn ask_mut<T>(&mut self, ask: impl FnOnce(&mut P) -> T, changed: impl FnOnce(&T) -> u32) -> T {
-        let begun = self.clock.map(|clock| clock());
-        let answer = ask(&mut self.effect);
-        self.count(begun, changed(&answer));
-        answer
+    fn call_mut<T>(
+        &mut self,
+        call: impl FnOnce(&mut P) -> T,
+        changed: impl FnOnce(&T) -> u32,
+    ) -> T {
+        let begun = self.stopwatch.map(|now| now());
+        let result = call(&mut self.effect);
+        self.count(begun, changed(&result));
+        result
     }
 
     #[inline]
     fn count(&self, begun: Option<u64>, changed: u32) {
-        let ended = self.clock.map(|clock| clock());
+        let ended = self.stopwatch.map(|now| now());
         let spent_ns = begun.zip(ended).map_or(0, |(a, b)| b.saturating_sub(a));
-        self.add(Usage {
-            asked: 1,
+        self.add(UsageCounts {
+            calls: 1,
             acted: u64::from(changed > 0),
             changed: u64::from(changed),
             spent_ns,
@@ -192,134 +173,133 @@ impl<P> Listed<P> {
     }
 
     #[inline]
-    fn add(&self, more: Usage) {
-        let usage = self.usage.get();
-        self.usage.set(Usage {
-            asked: usage.asked.saturating_add(more.asked),
-            acted: usage.acted.saturating_add(more.acted),
-            changed: usage.changed.saturating_add(more.changed),
-            spent_ns: usage.spent_ns.saturating_add(more.spent_ns),
+    fn add(&self, more: UsageCounts) {
+        let counts = self.counts.get();
+        self.counts.set(UsageCounts {
+            calls: counts.calls.saturating_add(more.calls),
+            acted: counts.acted.saturating_add(more.acted),
+            changed: counts.changed.saturating_add(more.changed),
+            spent_ns: counts.spent_ns.saturating_add(more.spent_ns),
         });
     }
 }
 
-/// The answer is the count.
-const fn as_said(count: &u32) -> u32 {
-    *count
-}
-
-/// Whether an answer differs from what it was asked of.
-fn differs<T: PartialEq + Copy>(from: T) -> impl FnOnce(&T) -> u32 {
-    move |to| u32::from(*to != from)
-}
-
-impl<T: Effect + ?Sized> Effect for Vec<Listed<Arc<T>>> {
-    fn name(&self) -> &'static str {
-        "list"
-    }
-
-    fn needs(&self) -> Needs {
-        self.iter().fold(Needs::NOTHING, |needs, listed| {
-            needs.and(listed.effect.needs())
-        })
-    }
-}
-
-impl<T: Effect + ?Sized> Effect for Vec<Listed<Box<T>>> {
-    fn name(&self) -> &'static str {
-        "list"
-    }
-
-    fn needs(&self) -> Needs {
-        self.iter().fold(Needs::NOTHING, |needs, listed| {
-            needs.and(listed.effect.needs())
-        })
-    }
-}
-
-impl<P> Absorb for Vec<Listed<P>> {
-    fn absorb(&mut self, copy: &Self) {
-        for (mine, theirs) in self.iter().zip(copy) {
-            mine.add(theirs.usage());
+impl<P: Deref<Target: Effect>> Listed<P> {
+    fn effect_usage(&self, each: &'static str) -> EffectUsage {
+        EffectUsage {
+            name: self.effect.name(),
+            each: if self.effect.needs().azimuths {
+                "blocks"
+            } else {
+                each
+            },
+            counts: self.counts(),
+            idle_reason: self.effect.idle_reason(),
         }
     }
 }
 
-impl<T: Objects + ?Sized> Objects for Vec<Listed<Arc<T>>> {
-    fn place(&self, at_s: f64, surroundings: &mut Surroundings) -> u32 {
+/// The number of changes of a result that is that number.
+const fn count(count: &u32) -> u32 {
+    *count
+}
+
+/// One change where a result differs from the input.
+fn differs<T: PartialEq + Copy>(from: T) -> impl FnOnce(&T) -> u32 {
+    move |to| u32::from(*to != from)
+}
+
+impl<P: Deref<Target: Effect> + std::fmt::Debug> Effect for Vec<Listed<P>> {
+    fn name(&self) -> &'static str {
+        "list"
+    }
+
+    fn needs(&self) -> Needs {
+        self.iter().fold(Needs::NOTHING, |needs, listed| {
+            needs.and(listed.effect.needs())
+        })
+    }
+
+    fn absorb(&mut self, copy: &Self) {
+        for (mine, theirs) in self.iter().zip(copy) {
+            mine.add(theirs.counts());
+        }
+    }
+}
+
+impl<T: ObjectsEffect + ?Sized> ObjectsEffect for Shared<T> {
+    fn place(&self, time_s: f64, surroundings: &mut Surroundings) -> u32 {
         self.iter()
-            .map(|listed| listed.ask(|effect| effect.place(at_s, surroundings), as_said))
+            .map(|listed| listed.call(|effect| effect.place(time_s, surroundings), count))
             .sum()
     }
 }
 
-impl<T: View + ?Sized> View for Vec<Listed<Arc<T>>> {
+impl<T: ViewEffect + ?Sized> ViewEffect for Shared<T> {
     fn fires(&self, azimuth_deg: f64) -> bool {
-        self.iter().all(|listed| {
-            !listed.effect.needs().azimuths
-                || listed.ask(
-                    |effect| effect.fires(azimuth_deg),
-                    |fires| u32::from(!fires),
-                )
+        let mut views = self.iter().filter(|listed| listed.effect.needs().azimuths);
+        views.all(|listed| {
+            listed.call(
+                |effect| effect.fires(azimuth_deg),
+                |fires| u32::from(!fires),
+            )
         })
     }
 
-    fn look(&self, firing: &mut Firing) -> u32 {
-        // Who says which azimuths fire has been asked for all of them beforehand.
+    fn hide(&self, firing: &mut Firing) -> u32 {
+        // Effects that choose azimuths have chosen for the whole run beforehand.
         self.iter()
             .filter(|listed| !listed.effect.needs().azimuths)
-            .map(|listed| listed.ask(|effect| effect.look(firing), as_said))
+            .map(|listed| listed.call(|effect| effect.hide(firing), count))
             .sum()
     }
 }
 
-impl<T: Beam + ?Sized> Beam for Vec<Listed<Arc<T>>> {
+impl<T: BeamEffect + ?Sized> BeamEffect for Shared<T> {
     fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
         self.iter()
-            .map(|listed| {
-                listed.ask(
-                    |effect| effect.receive(firing, surroundings, echoes),
-                    as_said,
-                )
-            })
+            .map(|listed| listed.call(|effect| effect.receive(firing, surroundings, echoes), count))
             .sum()
     }
 }
 
-impl<T: Surface + ?Sized> Surface for Vec<Listed<Arc<T>>> {
+impl<T: SurfaceEffect + ?Sized> SurfaceEffect for Shared<T> {
     fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
         self.iter()
-            .map(|listed| listed.ask(|effect| effect.reflect(firing, echoes), as_said))
+            .map(|listed| listed.call(|effect| effect.reflect(firing, echoes), count))
             .sum()
     }
 }
 
-impl<T: Clock + ?Sized> Clock for Vec<Listed<Arc<T>>> {
+impl<T: ClockEffect + ?Sized> ClockEffect for Shared<T> {
     fn host_ns(&self, device_ns: i64) -> i64 {
         self.iter().fold(device_ns, |ns, listed| {
-            listed.ask(|effect| effect.host_ns(ns), differs(ns))
+            listed.call(|effect| effect.host_ns(ns), differs(ns))
         })
     }
 }
 
-impl<T: Mechanism + ?Sized> Mechanism for Vec<Listed<Box<T>>> {
-    fn is_there(&self) -> bool {
+impl<T: MechanismEffect + ?Sized> MechanismEffect for Owned<T> {
+    fn is_present(&self) -> bool {
         !self.is_empty()
     }
 
-    fn step(&mut self, at_s: f64, axis: &mut Axis) -> bool {
+    fn step(&mut self, time_s: f64, axis: &mut AxisAngles) -> bool {
         let mut any = false;
         for listed in self {
-            any |= listed.ask_mut(|effect| effect.step(at_s, axis), |acted| u32::from(*acted));
+            any |= listed.call_mut(
+                |effect| effect.step(time_s, axis),
+                |acted| u32::from(*acted),
+            );
         }
         any
     }
 }
 
-impl<T: Encoder + ?Sized> Encoder for Vec<Listed<Box<T>>> {
+impl<T: EncoderEffect + ?Sized> EncoderEffect for Owned<T> {
     fn read(&mut self, poll: u64, shaft: Degrees) -> Degrees {
         self.iter_mut().fold(shaft, |shaft, listed| {
-            listed.ask_mut(|effect| effect.read(poll, shaft), differs(shaft))
+            listed.call_mut(|effect| effect.read(poll, shaft), differs(shaft))
         })
     }
 
@@ -328,31 +308,31 @@ impl<T: Encoder + ?Sized> Encoder for Vec<Listed<Box<T>>> {
     }
 }
 
-impl<T: Wire + ?Sized> Wire for Vec<Listed<Box<T>>> {
-    fn deliver(&mut self, parcel: Parcel, arrive: &mut dyn FnMut(Parcel)) -> u32 {
-        through(self, parcel, arrive)
+impl<T: LinkEffect + ?Sized> LinkEffect for Owned<T> {
+    fn deliver(&mut self, message: LinkMessage, arrive: &mut dyn FnMut(LinkMessage)) -> u32 {
+        deliver_through(self, message, arrive)
     }
 }
 
-/// Through the first link and what it hands on through the rest. As deep as there are effects.
-fn through<T: Wire + ?Sized>(
+/// Passes a message through the first link and its results through the rest.
+fn deliver_through<T: LinkEffect + ?Sized>(
     links: &mut [Listed<Box<T>>],
-    parcel: Parcel,
-    arrive: &mut dyn FnMut(Parcel),
+    message: LinkMessage,
+    arrive: &mut dyn FnMut(LinkMessage),
 ) -> u32 {
     let Some((first, rest)) = links.split_first_mut() else {
-        arrive(parcel);
+        arrive(message);
         return 0;
     };
-    // Its own time only: what it hands on waits until it is done.
-    let mut onward = Vec::new();
-    let acted = first.ask_mut(
-        |effect| effect.deliver(parcel, &mut |parcel| onward.push(parcel)),
-        as_said,
+    // Collected first, so that the measured time is that of this link alone.
+    let mut delivered = Vec::new();
+    let acted = first.call_mut(
+        |effect| effect.deliver(message, &mut |message| delivered.push(message)),
+        count,
     );
-    onward
+    delivered
         .into_iter()
-        .map(|parcel| through(rest, parcel, arrive))
+        .map(|message| deliver_through(rest, message, arrive))
         .sum::<u32>()
         + acted
 }

@@ -1,3 +1,7 @@
+use crate::effects::{Effects, FiringEffectSet};
+use crate::packet_maker::{HeadRotation, TruePoint};
+use crate::sensor::{LidarMount, LidarSensor, ReturnMode};
+use crate::simulate::{Simulation, SimulationEvent, SimulationSink};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -7,14 +11,11 @@ use units::Stamp;
 
 use super::*;
 use crate::cast::{Object, Sphere};
-use crate::effects::{Effects, OnFirings};
-use crate::motion::{Motion, Sweeps};
+use crate::motion::{AxisMotion, Sweeps};
 use crate::scene::Scene;
-use crate::sensor::ReturnMode;
-use crate::simulate::{Event, Out, Simulation, Spin, TruePoint};
 
 fn pattern(text: &str) -> Pattern {
-    Wish::parse(text).unwrap().build().unwrap()
+    PatternRequest::parse(text).unwrap().build().unwrap()
 }
 
 #[test]
@@ -35,7 +36,7 @@ fn the_papers_counts() {
         assert_eq!(pattern.frames(), frames, "{text}");
         let directions = pattern.directions();
         assert_eq!(directions.len(), points, "{text}");
-        assert!(pattern.turns().is_some(), "{text}");
+        assert!(pattern.frame_rotation().is_some(), "{text}");
         let off = directions.iter().map(|d| (d.length() - 1.0).abs());
         assert!(off.fold(0.0, f64::max) < 1e-15, "{text}");
     }
@@ -52,10 +53,10 @@ fn each_frame_is_the_first_turned() {
         "rmbl:7,frames=5",
     ] {
         let pattern = pattern(text);
-        let turns = pattern.turns().unwrap();
+        let rotation = pattern.frame_rotation().unwrap();
         let first = pattern.frame(0);
-        for number in [1, 2, turns.frames - 1] {
-            let turn = DMat3::from_axis_angle(turns.axis, f64::from(number) * turns.step_rad);
+        for number in [1, 2, rotation.frames - 1] {
+            let turn = DMat3::from_axis_angle(rotation.axis, f64::from(number) * rotation.step_rad);
             let frame = pattern.frame(number);
             assert_eq!(frame.len(), first.len());
             let off = first
@@ -65,8 +66,8 @@ fn each_frame_is_the_first_turned() {
             let off = off.fold(0.0, f64::max);
             assert!(off < 1e-14, "{text} {number}: {off}");
         }
-        assert!(pattern.frame(turns.frames).is_empty());
-        let all: usize = (0..turns.frames).map(|k| pattern.frame(k).len()).sum();
+        assert!(pattern.frame(rotation.frames).is_empty());
+        let all: usize = (0..rotation.frames).map(|k| pattern.frame(k).len()).sum();
         assert_eq!(all, pattern.directions().len());
     }
 }
@@ -76,7 +77,7 @@ fn a_sweep_that_is_no_whole_number_of_frames_ends_in_its_last() {
     // 45 deg at 13 deg/s and 20 Hz: 69.23 frames.
     let cut = pattern("velomotion16:13");
     assert_eq!(cut.frames(), 70);
-    assert!(cut.turns().is_none());
+    assert!(cut.frame_rotation().is_none());
     // 69.23 frames of 900 steps, and the firings at the seams.
     let steps: f64 = 900.0 * 45.0 / (13.0 / 20.0);
     let expected = 16 * (69 + (steps.floor() as usize) + 1);
@@ -114,8 +115,8 @@ fn beside_the_axis_rays_meet_the_sphere_where_the_equation_says() {
 #[derive(Default)]
 struct Truth(Vec<TruePoint>);
 
-impl Out for Truth {
-    fn event(&mut self, _: &Event<'_>) -> ControlFlow<()> {
+impl SimulationSink for Truth {
+    fn event(&mut self, _: &SimulationEvent<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
@@ -129,11 +130,11 @@ impl Out for Truth {
     }
 }
 
-/// The simulation's own points, on the hollow sphere, of a frame that begins at a tilt.
-fn simulated(sensor: Sensor, from_deg: f64, speed_deg_s: f64, d_m: f64) -> Vec<TruePoint> {
+/// Points of the simulation on the hollow sphere, of a frame that begins at a tilt.
+fn simulated(sensor: LidarSensor, from_deg: f64, speed_deg_s: f64, d_m: f64) -> Vec<TruePoint> {
     let motion = match speed_deg_s {
-        0.0 => Motion::fixed(from_deg, 0.05).unwrap(),
-        _ => Motion::sweeps(&Sweeps {
+        0.0 => AxisMotion::fixed(from_deg, 0.05).unwrap(),
+        _ => AxisMotion::sweeps(&Sweeps {
             from_deg,
             to_deg: from_deg + 0.05 * speed_deg_s,
             speed_deg_s: speed_deg_s.abs(),
@@ -152,11 +153,11 @@ fn simulated(sensor: Sensor, from_deg: f64, speed_deg_s: f64, d_m: f64) -> Vec<T
         ),
         sensor: sensor.ideal(),
         returns: ReturnMode::Strongest,
-        spin: Spin {
+        rotation: HeadRotation {
             rpm: 1_200,
             start_deg: 90.0,
         },
-        mount: Mount::above(d_m),
+        mount: LidarMount::above(d_m),
         motion,
         polls: None,
         start: Stamp::from_nanos(1_790_000_000_000_000_000),
@@ -165,21 +166,22 @@ fn simulated(sensor: Sensor, from_deg: f64, speed_deg_s: f64, d_m: f64) -> Vec<T
     let mut truth = Truth::default();
     let one = NonZeroUsize::MIN;
     simulation
-        .run(&mut Effects::<OnFirings>::default(), one, &mut truth)
+        .run(&mut Effects::<FiringEffectSet>::default(), one, &mut truth)
         .unwrap();
     truth.0
 }
 
 #[test]
 fn the_simulation_sees_the_same_directions() {
-    // A VLP-16 fires every 55.296 us, an HDL-32E every 46.08 us: so far its head turns at 7200 deg/s.
+    // Rotation of the head at 7200 deg/s during a firing: 55.296 us for a VLP-16, 46.08 us for an
+    // HDL-32E.
     let (vlp, hdl) = (7_200.0 * 55.296e-6, 7_200.0 * 46.08e-6);
-    let heads: [(&str, Sensor, f64); 5] = [
-        ("vlp16,", Sensor::vlp16(), vlp),
-        ("hdl32e,", Sensor::hdl32e(), hdl),
-        ("velomotion16:50,", Sensor::vlp16(), vlp),
-        ("velomotion16:50,d=0.06,", Sensor::vlp16(), vlp),
-        ("rsbl:50,", Sensor::hdl32e().only(15), hdl),
+    let heads: [(&str, LidarSensor, f64); 5] = [
+        ("vlp16,", LidarSensor::vlp16(), vlp),
+        ("hdl32e,", LidarSensor::hdl32e(), hdl),
+        ("velomotion16:50,", LidarSensor::vlp16(), vlp),
+        ("velomotion16:50,d=0.06,", LidarSensor::vlp16(), vlp),
+        ("rsbl:50,", LidarSensor::hdl32e().only(15), hdl),
     ];
     for (text, sensor, step_deg) in heads {
         let pattern = pattern(&format!("{text}frames=3,step={step_deg}"));
@@ -225,7 +227,7 @@ fn what_a_scan_sees_lies_in_its_view_and_fills_it() {
         assert!(least > -1e-7, "{text}: {least}");
         // The outermost rays are on its edge.
         let [low, high] = pattern.elevations_deg();
-        let way = pattern.settings().tilting;
+        let way = pattern.settings().tilt;
         let whole = (way.to_deg - way.from_deg).abs() + high - low >= 180.0;
         assert!(whole || least < 1e-3, "{text}: {least}");
         // It changes no faster than the direction.
@@ -247,7 +249,7 @@ fn what_a_scan_sees_lies_in_its_view_and_fills_it() {
 #[test]
 fn what_is_no_pattern_is_said() {
     let wrong = |text: &str| {
-        let built = Wish::parse(text).and_then(|wish| wish.build());
+        let built = PatternRequest::parse(text).and_then(|request| request.build());
         built.unwrap_err().to_string()
     };
     for (text, words) in [
@@ -295,7 +297,7 @@ fn what_is_no_pattern_is_said() {
 
 #[test]
 fn what_is_no_number_is_not_set_as_one() {
-    let mut wish = Wish::parse("velomotion16:50").unwrap();
+    let mut request = PatternRequest::parse("velomotion16:50").unwrap();
     for (key, words) in [
         (
             "tilt",
@@ -304,10 +306,10 @@ fn what_is_no_number_is_not_set_as_one() {
         ("seam", "expected seam=once or seam=twice"),
         ("colour", "a number: rpm, step, start"),
     ] {
-        let said = wish.set_number(key, 1.0).unwrap_err().to_string();
+        let said = request.set_number(key, 1.0).unwrap_err().to_string();
         assert!(said.contains(words), "{key}: {said}");
     }
-    // A number that stands in the name may be set anew.
-    wish.set_number("speed", 10.0).unwrap();
-    assert_eq!(wish.build().unwrap().settings().tilting.speed_deg_s, 10.0);
+    // An option that is part of the name may be set again.
+    request.set_number("speed", 10.0).unwrap();
+    assert_eq!(request.build().unwrap().settings().tilt.speed_deg_s, 10.0);
 }

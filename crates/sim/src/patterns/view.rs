@@ -1,24 +1,29 @@
-//! What a tilted lidar can see: the directions that lie between its lowest and its highest laser at some tilt.
+//! The field of view of a tilted lidar: directions between its lowest and highest laser at some
+//! tilt.
 //!
-//! Directions are from the origin of the base, on the tilt axis, as all that is said of points is. A sensor beside the axis sees a point under another elevation than
-//! the origin does, by as much as the point is near: so a view is of the distances at which points are. Left out: what stands in the way, and sensors that look to some sides only.
+//! Directions are from the origin of the base, on the tilt axis. A sensor off the axis sees a point
+//! under another elevation, the more the nearer the point, so a view is for a range of distances.
+//! Occlusion and limited azimuths are not included.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-/// What a scan can see.
+/// The field of view of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// Lowest and highest elevation above the tilted horizontal, seen from the origin, radians. The lowest is above the highest where nothing is seen at all distances.
+pub struct FieldOfView {
+    /// Lowest and highest elevation above the tilted horizontal, seen from the origin, radians. The
+    /// lowest is above the highest where nothing is visible at all distances.
     elevations_rad: [f64; 2],
     /// Least and greatest tilt, radians.
     tilt_rad: [f64; 2],
 }
 
-impl View {
-    /// Of a sensor whose outermost lasers have these elevations in its own frame (degrees, the lowest first), tilted from one angle to another (degrees, either first),
-    /// whose rays start `d_m` above the axis: what it sees at all distances from the first of `range_m` to the last, metres from the origin of the base. On the axis, distances do not matter.
+impl FieldOfView {
+    /// The view of a sensor with these extreme elevations in its own frame (degrees, the lowest
+    /// first), a range of tilts (degrees, in any order) and ray origins `d_m` above the axis: what
+    /// is visible at all distances from the first of `range_m` to the last, metres from the origin
+    /// of the base. On the axis, distances do not matter.
     #[must_use]
     pub fn new(
         elevations_deg: [f64; 2],
@@ -29,7 +34,8 @@ impl View {
         let [low, high] = elevations_deg.map(f64::to_radians);
         let [a, b] = tilt_deg.map(f64::to_radians);
         let [near, far] = range_m;
-        // What the sensor's height moves grows steadily with its share of the distance: the nearest and the farthest decide.
+        // The effect of the sensor's height is monotonic in the distance: the nearest and farthest
+        // decide.
         let at = |elevation: f64, d_m: f64| {
             [near, far].map(|range| from_axis_rad(elevation, d_m / range))
         };
@@ -41,8 +47,8 @@ impl View {
         }
     }
 
-    /// How deep a direction (length 1) is in it, from its lowest to its highest laser at every tilt on the way: radians, negative
-    /// outside. It changes by no more than the direction does.
+    /// Depth of a direction (length 1) in the view, from the lowest to the highest laser over all
+    /// tilts: radians, negative outside. It changes by no more than the direction.
     #[must_use]
     pub fn depth_rad(&self, direction: DVec3) -> f64 {
         let [from, to] = self.tilt_rad;
@@ -70,7 +76,8 @@ impl View {
     }
 }
 
-/// The elevation under which the origin sees where a laser meets a sphere about it; the sensor is `share` of the sphere's radius above the origin, at most all of it.
+/// The elevation, seen from the origin, of the point where a laser meets a sphere about the origin;
+/// the sensor is `share` (-1..=1) of the radius above the origin.
 fn from_axis_rad(elevation_rad: f64, share: f64) -> f64 {
     let e = if share.is_finite() {
         share.clamp(-1.0, 1.0)
@@ -86,9 +93,10 @@ fn from_axis_rad(elevation_rad: f64, share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::patterns::Wish;
+    use crate::patterns::PatternRequest;
 
-    /// Everything that a pattern's rays meet is in its view, and what they do not come near is not: wherever the sensor is.
+    /// All rays of a pattern are in its view, and the view ends at the outermost rays, wherever the
+    /// sensor is.
     #[test]
     fn the_view_is_that_of_the_sensor_where_it_is() {
         for text in [
@@ -102,12 +110,12 @@ mod tests {
             "velomotion16:50,d=3",
             "rmbl:120,to=90,d=-1",
         ] {
-            let pattern = Wish::parse(text).unwrap().build().unwrap();
+            let pattern = PatternRequest::parse(text).unwrap().build().unwrap();
             let view = pattern.view();
             let directions = pattern.directions();
             let depths = directions.iter().map(|d| view.depth_rad(*d));
             let least = depths.fold(f64::INFINITY, f64::min);
-            // All of it is seen, and its edge is where the outermost rays are.
+            // All rays are visible, and the edge is at the outermost ones.
             assert!((-1e-7..1e-3).contains(&least), "{text}: {least}");
         }
     }
@@ -132,7 +140,7 @@ mod tests {
 
     #[test]
     fn what_is_seen_from_near_to_far_is_what_is_seen_at_each_distance() {
-        let view = |range_m| View::new([-15.0, 15.0], [0.0, 0.0], [0.5; 2], range_m);
+        let view = |range_m| FieldOfView::new([-15.0, 15.0], [0.0, 0.0], [0.5; 2], range_m);
         let (near, far, both) = (view([1.0; 2]), view([50.0; 2]), view([1.0, 50.0]));
         for k in -90..=90 {
             let (sin, cos) = f64::from(k).to_radians().sin_cos();
@@ -140,7 +148,7 @@ mod tests {
             let least = near.depth_rad(direction).min(far.depth_rad(direction));
             assert!((both.depth_rad(direction) - least).abs() < 1e-12);
         }
-        // Nothing is known of a distance of nought, and nothing panics.
+        // A distance of zero is undefined and does not panic.
         assert!(view([0.0; 2]).depth_rad(DVec3::X).is_finite());
     }
 }

@@ -173,9 +173,9 @@ fn datagrams_leave_when_their_last_sequence_has_ended() {
 #[test]
 fn a_packet_that_ends_with_a_control_cycle_leaves_all_the_same() {
     // 3 x 1327.104 us on a clock that is slow by as much as makes them 4 ms.
-    let lidar = LidarConfig {
+    let lidar = RigLidar {
         drift_ppm: -4_672.0,
-        ..LidarConfig::default()
+        ..RigLidar::default()
     };
     let mut rig = Rig::new(RigConfig {
         lidar,
@@ -226,7 +226,7 @@ fn the_seed_decides_the_garbage_of_the_drive_and_nothing_of_the_lidar() {
 }
 
 /// Answers to a position request each 1.1 ms of a move, lidar packets, and the truth in the end.
-fn moved(config: RigConfig) -> (Vec<Sent>, Vec<Datagram>, Truth) {
+fn moved(config: RigConfig) -> (Vec<DriveOutput>, Vec<Datagram>, Truth) {
     let mut rig = Rig::new(config);
     for request in motion(-9_000) {
         rig.advance(rig.now() + Span::from_millis(1));
@@ -291,7 +291,7 @@ fn outcome(
     inputs: &[(i64, Vec<u8>)],
     stops: &[i64],
     end: i64,
-) -> (Vec<Sent>, Vec<Datagram>, String, f64) {
+) -> (Vec<DriveOutput>, Vec<Datagram>, String, f64) {
     let mut rig = Rig::new(RigConfig {
         seed: 5,
         ..RigConfig::new(START)

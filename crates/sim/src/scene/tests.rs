@@ -211,7 +211,7 @@ fn each_face_of_a_box_has_its_own_reflectivity_from_both_sides() {
             ..Material::plain()
         })
         .collect();
-    placed.coats = vec![Coat::Faces([0, 1, 2, 3, 4, 5])];
+    placed.assignments = vec![MaterialAssignment::Faces([0, 1, 2, 3, 4, 5])];
     let scene = Scene::of(placed).unwrap();
     let axes = [
         -DVec3::X,

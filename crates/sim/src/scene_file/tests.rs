@@ -1,23 +1,23 @@
 use super::*;
+use crate::effects::SurfaceEffect;
+use crate::sensor::{LidarMount, PacketModel, ReturnMode};
 
 mod moving;
-use crate::effects::Surface;
-use crate::sensor::{PacketModel, ReturnMode};
 
 const LEAST: &str = "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 1.0\n";
 
 fn error(text: &str) -> (usize, String) {
-    let error = Scene::parse(text, None, None).unwrap_err();
+    let error = SceneFile::parse(text, None, None).unwrap_err();
     (error.line, error.what)
 }
 
 #[test]
 fn the_least_scene_is_a_vlp16_that_stands_without_effects() {
-    let scene = Scene::parse(LEAST, None, None).unwrap();
+    let scene = SceneFile::parse(LEAST, None, None).unwrap();
     let simulation = &scene.simulation;
     assert_eq!(simulation.sensor.model(), PacketModel::Vlp16);
     assert_eq!(simulation.returns, ReturnMode::Strongest);
-    assert_eq!(simulation.spin.rpm, 600);
+    assert_eq!(simulation.rotation.rpm, 600);
     assert!(simulation.polls.is_none());
     assert!(scene.effects.is_none());
     assert!(scene.effects.effects.firings.surface.is_empty());
@@ -39,7 +39,7 @@ fn a_motion_that_cannot_be_is_told_with_the_values_line() {
         (
             "speed_deg_s = 5\ncount = 0",
             7,
-            "count: expected a sweep at least, got 0",
+            "count: expected one sweep or more, got 0",
         ),
         ("speed_deg_s = 5\ncount = 10001", 7, "at most 10000 sweeps"),
         (
@@ -64,7 +64,7 @@ fn a_motion_that_cannot_be_is_told_with_the_values_line() {
 #[test]
 fn shipped_scenes_are_sound() {
     for (name, text) in SHIPPED {
-        let scene = Scene::parse(text, None, None);
+        let scene = SceneFile::parse(text, None, None);
         assert!(scene.is_ok(), "{name}: {scene:?}");
     }
 }
@@ -75,13 +75,13 @@ fn everything_said_is_heard() {
         "seed = 7\nlidar_clock_us = 5\nstart_unix_s = 10.5\n{LEAST}[sensor]\nmodel = \"hdl32e\"\nreturns = \"dual\"\nrpm = 1200\n\
          start_deg = 90.0\nonly_laser = 15\n[mount]\nd_m = 0.25\n\n[effects.range_noise]\nsd_m = 0.02\n"
     );
-    let scene = Scene::parse(&text, Some(9), None).unwrap();
+    let scene = SceneFile::parse(&text, Some(9), None).unwrap();
     assert_eq!(scene.seed, 9);
     let simulation = &scene.simulation;
     assert_eq!(simulation.sensor.used(), 1 << 15);
     assert_eq!(simulation.returns, ReturnMode::Dual);
-    assert_eq!(simulation.spin.rpm, 1_200);
-    assert_eq!(simulation.mount, Mount::above(0.25));
+    assert_eq!(simulation.rotation.rpm, 1_200);
+    assert_eq!(simulation.mount, LidarMount::above(0.25));
     assert_eq!(simulation.start.as_nanos(), 10_500_000_000);
     let line = text
         .lines()
@@ -94,17 +94,17 @@ fn everything_said_is_heard() {
         panic!()
     };
     assert_eq!(listed.effect().name(), name);
-    let _: &dyn Surface = &**listed.effect();
+    let _: &dyn SurfaceEffect = &**listed.effect();
 }
 
 /// The real places ask for what a real scanner makes of them, the ideal ones for nothing; what is left out is as if nobody asked.
 #[test]
 fn effects_of_shipped_scenes_can_be_left_out() {
     for (name, text) in SHIPPED {
-        let mut scene = Scene::parse(text, None, None).unwrap();
+        let mut scene = SceneFile::parse(text, None, None).unwrap();
         let real = ["hall", "parking", "quarry"].contains(&name);
         assert_eq!(scene.effects.is_none(), !real, "{name}");
-        let before = scene.effects.effects.used().len();
+        let before = scene.effects.effects.usage().len();
         assert_eq!(before, scene.effects.lines.len());
         scene
             .effects
@@ -112,7 +112,7 @@ fn effects_of_shipped_scenes_can_be_left_out() {
         let left: Vec<_> = scene
             .effects
             .effects
-            .used()
+            .usage()
             .iter()
             .map(|u| u.name)
             .collect();
@@ -122,7 +122,7 @@ fn effects_of_shipped_scenes_can_be_left_out() {
                 .all(|left| scene.effects.lines.iter().any(|line| line.name == *left))
         );
         scene.effects.leave_out(|_| true);
-        assert!(scene.effects.is_none() && scene.effects.effects.used().is_empty());
+        assert!(scene.effects.is_none() && scene.effects.effects.usage().is_empty());
     }
 }
 
@@ -136,10 +136,12 @@ fn errors_name_the_line_and_what_is_wrong() {
     assert!(line == 6 && what.contains("range_nois"), "{line} {what}");
     let (line, what) = error(&with("[effects.range_noise]\nsd_m = -0.1"));
     assert!(line == 6 && what.contains("-0.1"), "{line} {what}");
+    let (line, what) = error(&with("[effects]\n\nrange_noise = { sd_m = -0.1 }"));
+    assert!(line == 7 && what.contains("-0.1"), "{line} {what}");
     let (line, what) = error(&with("[sensor]\nrpm = 0"));
     assert!(line == 6 && what.contains("1 to 2400"), "{line} {what}");
     let (line, what) = error(&with("[sensor]\nonly_laser = 16"));
-    assert!(line == 6 && what.contains("16"), "{line} {what}");
+    assert!(line == 6 && what.contains("got 16"), "{line} {what}");
     let (line, what) = error(&LEAST.replace("hall", "castle"));
     assert!(line == 1 && what.contains("castle"), "{line} {what}");
     let (line, what) = error(&with("from_deg = 1.0"));
@@ -155,7 +157,7 @@ fn errors_name_the_line_and_what_is_wrong() {
 fn any_text_is_read_or_refused() {
     let whole = SHIPPED[0].1;
     for end in 0..whole.len() {
-        let _ = Scene::parse(&whole[..end], None, None);
+        let _ = SceneFile::parse(&whole[..end], None, None);
     }
 }
 
@@ -164,7 +166,7 @@ fn what_stands_around_is_the_files_own_or_a_shipped_scene() {
     let own = LEAST.replace("scene = \"hall\"", "about = \"a ball\"")
         + "[materials]\ndull = { reflectivity = 7 }\n[[objects]]\nmaterial = \"dull\"\nsphere = { radius_m = 4 }\n";
     let look = |text: &str| {
-        let scene = Scene::parse(text, None, None).unwrap();
+        let scene = SceneFile::parse(text, None, None).unwrap();
         let hit = scene
             .simulation
             .scene
@@ -193,7 +195,7 @@ fn ideal_sensors_other_ranges_and_mounts_in_general() {
         "{LEAST}[sensor]\nmodel = \"vlp32c\"\nideal = true\nrange_m = [0.5, 20]\n[mount]\nd_m = 0.1\nposition_m = [0.2, 0, 0.3]\n\
          rotation_deg = [0, 0, 90]\n"
     );
-    let simulation = Scene::parse(&text, None, None).unwrap().simulation;
+    let simulation = SceneFile::parse(&text, None, None).unwrap().simulation;
     let beams = simulation.sensor.beams();
     assert!(
         beams
@@ -202,13 +204,13 @@ fn ideal_sensors_other_ranges_and_mounts_in_general() {
     );
     assert_eq!(
         (
-            simulation.sensor.reach().min_m,
-            simulation.sensor.reach().max_m
+            simulation.sensor.range().min_m,
+            simulation.sensor.range().max_m
         ),
         (0.5, 20.0)
     );
-    assert_eq!(simulation.mount.at_m, glam::DVec3::new(0.2, 0.0, 0.4));
-    assert_eq!(simulation.mount.turn * glam::DVec3::X, glam::DVec3::Y);
+    assert_eq!(simulation.mount.position_m, glam::DVec3::new(0.2, 0.0, 0.4));
+    assert_eq!(simulation.mount.rotation * glam::DVec3::X, glam::DVec3::Y);
     let (line, what) = error(&text.replace("0.5, 20", "5, 2"));
     assert!(
         line == 8 && what.contains("0 <= from < to"),
@@ -227,7 +229,7 @@ fn the_example_of_the_documentation_is_a_scene() {
     let page = include_str!("../../../../docs/src/scenes.md");
     let example = page.split("```toml\n").nth(1).unwrap();
     let example = example.split("```").next().unwrap();
-    let scene = Scene::parse(example, None, None).unwrap();
+    let scene = SceneFile::parse(example, None, None).unwrap();
     assert_eq!(scene.simulation.scene.caster().objects().len(), 1);
     assert_eq!(scene.effects.lines.len(), 1);
 }

@@ -1,23 +1,25 @@
-//! What can be wrong with a scene, and where it says so.
+//! Errors of scene files and their positions.
 
 use std::fmt;
+use std::ops::{Range, RangeInclusive};
 
 use thiserror::Error;
-use toml::de::DeTable;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 use super::meshes::MeshFileError;
 
-/// A place in a scene file.
+/// A position in a scene file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct At {
+pub struct FilePosition {
     /// From 1.
     pub line: usize,
     /// From 1, in characters.
     pub column: usize,
 }
 
-impl At {
-    /// The place of a byte of the text.
+impl FilePosition {
+    /// The position of a byte of the text.
     pub(super) fn of(text: &str, offset: usize) -> Self {
         let before = text.get(..offset).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -28,159 +30,179 @@ impl At {
     }
 }
 
-impl fmt::Display for At {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "line {}, column {}", self.line, self.column)
     }
 }
 
-/// What is no scene.
+/// An invalid scene.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SceneryError {
-    /// No TOML, a key that is not known, or a value of another kind.
+    /// No TOML, an unknown key or a value of another type.
     #[error("sim: scene, {at}: {message}")]
     Toml {
-        /// Where.
-        at: At,
-        /// What, and what was expected instead.
+        /// The position.
+        at: FilePosition,
+        /// What is wrong, and what was expected.
         message: String,
     },
-    /// A value that cannot be.
-    #[error("sim: scene, {at}: {what}: expected {expected}, got {got}")]
+    /// An invalid value.
+    #[error("sim: scene, {at}: {what}")]
     Value {
-        /// Where it stands; where the table begins that has it, if it is of several.
-        at: At,
-        /// Which value.
+        /// The position of the value, or of its table where several values are involved.
+        at: FilePosition,
+        /// Which value, what was expected, and the value.
         what: String,
-        /// What it may be.
-        expected: String,
-        /// What it is.
-        got: String,
     },
-    /// A mesh that cannot be had.
+    /// A mesh that cannot be read.
     #[error("sim: scene, {at}: mesh {file}")]
     Mesh {
-        /// Where the object stands.
-        at: At,
-        /// The file by its name in the scene.
+        /// The position of the object.
+        at: FilePosition,
+        /// Name of the file in the scene.
         file: String,
-        /// Why.
+        /// The reason.
         source: MeshFileError,
     },
 }
 
 impl SceneryError {
-    /// Where the scene file is wrong.
+    /// The position of the error.
     #[must_use]
-    pub const fn at(&self) -> At {
+    pub const fn at(&self) -> FilePosition {
         match self {
             Self::Toml { at, .. } | Self::Value { at, .. } | Self::Mesh { at, .. } => *at,
         }
     }
 
-    /// What is wrong there, without the place.
+    /// What is wrong, without the position.
     #[must_use]
     pub fn what(&self) -> String {
         match self {
             Self::Toml { message, .. } => message.clone(),
-            Self::Value {
-                what,
-                expected,
-                got,
-                ..
-            } => format!("{what}: expected {expected}, got {got}"),
+            Self::Value { what, .. } => what.clone(),
             Self::Mesh { file, source, .. } => format!("mesh {file}: {source}"),
         }
     }
 
-    /// The same, said of the value itself instead of the table that begins (or whose name does) at a byte of the text.
-    pub(super) fn at_its_value(mut self, text: &str, begin: usize) -> Self {
-        if let Self::Value { at, what, .. } = &mut self
-            && let Ok(file) = DeTable::parse(text)
-            && let Some(value) = find(file.get_ref(), begin, what)
-        {
-            *at = At::of(text, value);
-        }
-        self
-    }
-
     pub(super) fn toml(text: &str, error: &toml::de::Error) -> Self {
         Self::Toml {
-            at: At::of(text, error.span().map_or(0, |span| span.start)),
+            at: FilePosition::of(text, error.span().map_or(0, |span| span.start)),
             message: error.message().trim().replace('\n', ", "),
         }
     }
 }
 
-/// Where the value begins that a dotted name leads to, as far as it does, from the material or object at `begin`; `None` where not even its
-/// first part is a key there.
-fn find(file: &DeTable<'_>, begin: usize, name: &str) -> Option<usize> {
-    let objects = file.get("objects").and_then(|all| all.get_ref().as_array());
-    let object = objects.and_then(|all| all.iter().find(|object| object.span().start == begin));
-    let materials = file
-        .get("materials")
-        .and_then(|all| all.get_ref().as_table());
-    let material = || {
-        let mut all = materials?.iter();
-        all.find(|(name, _)| name.span().start == begin)
-            .map(|(_, material)| material)
-    };
-    let mut value = object.or_else(material)?;
-    let mut found = None;
-    for part in name.split('.') {
-        let Some(next) = value.get_ref().get(part) else {
-            break;
-        };
-        value = next;
-        found = Some(value.span().start);
-    }
-    found
+/// An invalid value of an object or material, before its position is known.
+#[derive(Debug)]
+pub(super) struct InvalidField {
+    /// Its keys within the table, joined by dots.
+    field: String,
+    expected: String,
+    got: String,
 }
 
-/// A check that fails with these words.
-pub(super) fn wrong(
-    at: &At,
-    what: impl Into<String>,
+impl InvalidField {
+    /// The error at a position.
+    pub fn at(self, at: FilePosition) -> SceneryError {
+        SceneryError::Value {
+            at,
+            what: format!(
+                "{}: expected {}, got {}",
+                self.field, self.expected, self.got
+            ),
+        }
+    }
+
+    /// The error at the value in the material or object that begins at a byte of the text, else at
+    /// that byte.
+    pub fn in_text(self, text: &str, begin: usize) -> SceneryError {
+        let offset = offset_of_field(text, begin, &self.field).unwrap_or(begin);
+        self.at(FilePosition::of(text, offset))
+    }
+}
+
+fn offset_of_field(text: &str, begin: usize, field: &str) -> Option<usize> {
+    let file = DeTable::parse(text).ok()?;
+    let objects = file.get_ref().get("objects");
+    let mut objects = objects
+        .and_then(|all| all.get_ref().as_array())
+        .into_iter()
+        .flatten();
+    let table = match objects.find(|object| object.span().start == begin) {
+        Some(object) => object,
+        None => {
+            let materials = file.get_ref().get("materials")?.get_ref().as_table()?;
+            let mut materials = materials.iter();
+            materials.find(|(name, _)| name.span().start == begin)?.1
+        }
+    };
+    Some(deepest_span(table, field)?.start)
+}
+
+/// The span of the value that dotted keys lead to, as far as they exist.
+fn deepest_span(table: &Spanned<DeValue<'_>>, path: &str) -> Option<Range<usize>> {
+    let (mut value, mut span) = (table, None);
+    for key in path.split('.') {
+        let Some(next) = value.get_ref().get(key) else {
+            break;
+        };
+        (value, span) = (next, Some(next.span()));
+    }
+    span
+}
+
+/// The line (from 1) of the value that dotted keys lead to, as far as they exist.
+pub(crate) fn line_of_value(text: &str, path: &str) -> usize {
+    let (first, rest) = path.split_once('.').unwrap_or((path, ""));
+    let offset = DeTable::parse(text).ok().and_then(|file| {
+        let value = file.get_ref().get(first)?;
+        Some(deepest_span(value, rest).unwrap_or(value.span()).start)
+    });
+    FilePosition::of(text, offset.unwrap_or(0)).line
+}
+
+pub(super) fn invalid(
+    field: impl Into<String>,
     expected: impl Into<String>,
     got: impl fmt::Debug,
-) -> SceneryError {
-    SceneryError::Value {
-        at: *at,
-        what: what.into(),
+) -> InvalidField {
+    InvalidField {
+        field: field.into(),
         expected: expected.into(),
         got: format!("{got:?}"),
     }
 }
 
-/// All finite.
-pub(super) fn finite(at: &At, what: &str, values: &[f64]) -> Result<(), SceneryError> {
+/// Checks that all values are finite.
+pub(super) fn finite(field: &str, values: &[f64]) -> Result<(), InvalidField> {
     match values.iter().all(|value| value.is_finite()) {
         true => Ok(()),
-        false => Err(wrong(at, what, "finite numbers", values)),
+        false => Err(invalid(field, "finite numbers", values)),
     }
 }
 
-/// Finite and above zero.
-pub(super) fn above_0(at: &At, what: &str, value: f64) -> Result<(), SceneryError> {
+/// Checks that a value is finite and above zero.
+pub(super) fn above_0(field: &str, value: f64) -> Result<(), InvalidField> {
     match value > 0.0 && value.is_finite() {
         true => Ok(()),
-        false => Err(wrong(at, what, "a number above 0", value)),
+        false => Err(invalid(field, "a number above 0", value)),
     }
 }
 
-/// Within, ends included.
+/// Checks that a value is within a range, ends included.
 pub(super) fn within(
-    at: &At,
-    what: &str,
+    field: &str,
     value: f64,
-    range: std::ops::RangeInclusive<f64>,
-) -> Result<(), SceneryError> {
+    range: RangeInclusive<f64>,
+) -> Result<(), InvalidField> {
     match range.contains(&value) {
         true => Ok(()),
         false => {
             let expected = format!("{} to {}", range.start(), range.end());
-            Err(wrong(at, what, expected, value))
+            Err(invalid(field, expected, value))
         }
     }
 }

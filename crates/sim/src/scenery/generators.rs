@@ -8,7 +8,7 @@ mod parked_cars;
 mod quarry;
 mod trees;
 
-pub(super) use draws::{Draws, seed};
+pub(super) use draws::seed;
 pub(super) use facade::facade;
 pub use parked_cars::ParkedCars;
 pub(super) use parked_cars::parked_cars;
@@ -19,24 +19,25 @@ pub(super) use trees::trees;
 
 use glam::{DMat3, DVec3};
 
-use super::coats::Coat;
+use super::materials::MaterialAssignment;
 use crate::cast::{Cuboid, Surface};
+use crate::random::Draws;
 
 /// A surface of what a table stands for, in the table's own frame.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct ObjectPart {
     pub surface: Surface,
-    pub coat: Coat,
+    pub assignment: MaterialAssignment,
     pub rotation: DMat3,
     pub position_m: DVec3,
 }
 
-impl Part {
+impl ObjectPart {
     /// At the table's origin.
-    pub fn new(surface: impl Into<Surface>, coat: Coat) -> Self {
+    pub fn new(surface: impl Into<Surface>, assignment: MaterialAssignment) -> Self {
         Self {
             surface: surface.into(),
-            coat,
+            assignment,
             rotation: DMat3::IDENTITY,
             position_m: DVec3::ZERO,
         }
@@ -44,7 +45,10 @@ impl Part {
 
     /// A box between two corners, of one material.
     fn cuboid(from_m: [f64; 3], to_m: [f64; 3], material: u32) -> Self {
-        Self::new(Cuboid::new(from_m.into(), to_m.into()), Coat::One(material))
+        Self::new(
+            Cuboid::new(from_m.into(), to_m.into()),
+            MaterialAssignment::One(material),
+        )
     }
 
     /// Moved and not turned, metres.

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::coats::Placed;
-use super::error::At;
+use super::error::FilePosition;
+use super::materials::Placed;
 use crate::cast::{Object, Placement, PlacementError};
 
 /// How something moves: its origin along a line, the thing about its origin.
@@ -42,7 +42,7 @@ pub struct Moving {
     /// How they move together.
     pub travel: Travel,
     /// Which line of the scene asks for it.
-    pub at: At,
+    pub at: FilePosition,
 }
 
 impl Placed {
@@ -76,13 +76,17 @@ impl Placed {
             ..Self::default()
         };
         for at in objects {
-            let all = (self.objects.get(at), self.coats.get(at), self.lines.get(at));
-            let (Some(object), Some(coat), Some(line)) = all else {
+            let all = (
+                self.objects.get(at),
+                self.assignments.get(at),
+                self.lines.get(at),
+            );
+            let (Some(object), Some(assignment), Some(line)) = all else {
                 continue;
             };
             let placement = object.placement().moved(-from_m)?;
             only.objects.push(Object::clone(object).placed(placement));
-            only.coats.push(*coat);
+            only.assignments.push(*assignment);
             only.lines.push(*line);
         }
         Ok(only)

@@ -2,9 +2,9 @@
 
 use serde::Deserialize;
 
-use super::coats::Material;
-use super::error::{At, SceneryError, above_0, finite, wrong};
+use super::error::{InvalidField, above_0, finite, invalid};
 use super::generators::{ParkedCars, Quarry, Trees};
+use super::materials::Material;
 
 /// `[materials.NAME]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
@@ -196,12 +196,12 @@ impl ObjectTable {
         .collect()
     }
 
-    pub(super) fn check(&self, at: &At, materials: &[Material]) -> Result<(), SceneryError> {
+    pub(super) fn check(&self, materials: &[Material]) -> Result<(), InvalidField> {
         let shapes = self.shapes();
         if shapes.len() != 1 {
             let expected = "exactly one of sphere, plane, box, cylinder, mesh, height_field, facade, \
                             parked_cars, trees";
-            return Err(wrong(at, "object", expected, shapes));
+            return Err(invalid("object", expected, shapes));
         }
         for name in self.materials() {
             if !materials.iter().any(|material| &material.name == name) {
@@ -210,15 +210,15 @@ impl ObjectTable {
                     [] => "a name of [materials], where none is".to_owned(),
                     names => format!("one of {}", names.join(", ")),
                 };
-                return Err(wrong(at, "material", expected, name));
+                return Err(invalid("material", expected, name));
             }
         }
-        finite(at, "position_m", &self.position_m)?;
-        finite(at, "rotation_deg", &self.rotation_deg)?;
-        finite(at, "velocity_m_s", &self.velocity_m_s)?;
-        finite(at, "turn_deg_s", &self.turn_deg_s)?;
-        self.copies.check(at)?;
-        self.check_shape(at)
+        finite("position_m", &self.position_m)?;
+        finite("rotation_deg", &self.rotation_deg)?;
+        finite("velocity_m_s", &self.velocity_m_s)?;
+        finite("turn_deg_s", &self.turn_deg_s)?;
+        self.copies.check()?;
+        self.check_shape()
     }
 
     /// All materials that it names.
@@ -235,36 +235,36 @@ impl ObjectTable {
             .chain(self.trees.iter().map(|trees| &trees.foliage))
     }
 
-    fn check_shape(&self, at: &At) -> Result<(), SceneryError> {
+    fn check_shape(&self) -> Result<(), InvalidField> {
         if let Some(sphere) = &self.sphere {
-            above_0(at, "sphere.radius_m", sphere.radius_m)?;
+            above_0("sphere.radius_m", sphere.radius_m)?;
         }
         if let Some(cylinder) = &self.cylinder {
-            above_0(at, "cylinder.radius_m", cylinder.radius_m)?;
-            above_0(at, "cylinder.height_m", cylinder.height_m)?;
-            finite(at, "cylinder.bottom_m", &[cylinder.bottom_m])?;
+            above_0("cylinder.radius_m", cylinder.radius_m)?;
+            above_0("cylinder.height_m", cylinder.height_m)?;
+            finite("cylinder.bottom_m", &[cylinder.bottom_m])?;
         }
         if let Some(cuboid) = &self.cuboid {
-            cuboid.corners(at)?;
+            cuboid.corners()?;
         }
         if let Some(mesh) = &self.mesh {
-            above_0(at, "mesh.unit_m", mesh.unit_m)?;
+            above_0("mesh.unit_m", mesh.unit_m)?;
         }
         if let Some(facade) = &self.facade {
-            facade.check(at)?;
+            facade.check()?;
         }
         if let Some(cars) = &self.parked_cars {
-            cars.check(at)?;
+            cars.check()?;
         }
         if let Some(trees) = &self.trees {
-            trees.check(at)?;
+            trees.check()?;
         }
         if let Some(quarry) = self
             .height_field
             .as_ref()
             .and_then(|field| field.quarry.as_ref())
         {
-            quarry.check(at)?;
+            quarry.check()?;
         }
         Ok(())
     }
@@ -274,9 +274,9 @@ impl Copies {
     /// The most that one object may be copied.
     const MOST: u64 = 100_000;
 
-    fn check(&self, at: &At) -> Result<(), SceneryError> {
-        finite(at, "copies.at_m", self.at_m.as_flattened())?;
-        finite(at, "copies.step_m", &self.step_m)?;
+    fn check(&self) -> Result<(), InvalidField> {
+        finite("copies.at_m", self.at_m.as_flattened())?;
+        finite("copies.step_m", &self.step_m)?;
         let counts = self.counts.unwrap_or([1; 3]).map(u64::from);
         let all = counts
             .iter()
@@ -284,7 +284,7 @@ impl Copies {
         let all = all.saturating_mul(self.at_m.len().max(1) as u64);
         match (1..=Self::MOST).contains(&all) {
             true => Ok(()),
-            false => Err(wrong(at, "copies", format!("1 to {}", Self::MOST), all)),
+            false => Err(invalid("copies", format!("1 to {}", Self::MOST), all)),
         }
     }
 
@@ -313,25 +313,25 @@ impl Copies {
 
 impl BoxShape {
     /// Its two corners, metres.
-    pub(super) fn corners(&self, at: &At) -> Result<[[f64; 3]; 2], SceneryError> {
+    pub(super) fn corners(&self) -> Result<[[f64; 3]; 2], InvalidField> {
         let corners = match (self.size_m, self.from_m, self.to_m) {
             (Some(size), None, None) => [size.map(|edge| -0.5 * edge), size.map(|edge| 0.5 * edge)],
             (None, Some(from), Some(to)) => [from, to],
             _ => {
                 let expected = "either size_m, or from_m and to_m";
-                return Err(wrong(at, "box", expected, self));
+                return Err(invalid("box", expected, self));
             }
         };
-        finite(at, "box", corners.as_flattened())?;
+        finite("box", corners.as_flattened())?;
         let [from, to] = corners;
         if from.iter().zip(&to).any(|(from, to)| from == to) {
-            return Err(wrong(at, "box", "edges longer than 0", corners));
+            return Err(invalid("box", "edges longer than 0", corners));
         }
         if self
             .size_m
             .is_some_and(|size| size.iter().any(|edge| *edge <= 0.0))
         {
-            return Err(wrong(at, "box.size_m", "edges longer than 0", self.size_m));
+            return Err(invalid("box.size_m", "edges longer than 0", self.size_m));
         }
         Ok(corners)
     }
@@ -346,11 +346,11 @@ impl HeightFieldShape {
 }
 
 impl Facade {
-    fn check(&self, at: &At) -> Result<(), SceneryError> {
-        above_0(at, "facade.width_m", self.width_m)?;
-        above_0(at, "facade.height_m", self.height_m)?;
-        above_0(at, "facade.depth_m", self.depth_m)?;
-        above_0(at, "facade.sill_m", self.sill_m)?;
+    fn check(&self) -> Result<(), InvalidField> {
+        above_0("facade.width_m", self.width_m)?;
+        above_0("facade.height_m", self.height_m)?;
+        above_0("facade.depth_m", self.depth_m)?;
+        above_0("facade.sill_m", self.sill_m)?;
         let [width, height] = self.window_m;
         let room = self.columns <= 1_000
             && self.storeys <= 1_000
@@ -360,7 +360,7 @@ impl Facade {
             && self.sill_m + f64::from(self.storeys) * height < self.height_m;
         match room {
             true => Ok(()),
-            false => Err(wrong(at, "facade", "room for its windows", self)),
+            false => Err(invalid("facade", "room for its windows", self)),
         }
     }
 }

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::Scenery;
-use super::coats::{Coat, Material, Placed};
-use super::error::{At, SceneryError, wrong};
-use super::generators::{self, Part};
+use super::error::{FilePosition, InvalidField, SceneryError, invalid};
+use super::generators::{self, ObjectPart};
+use super::materials::{Material, MaterialAssignment, Placed};
 use super::meshes::{self, MeshFileError, MeshFormat};
 use super::moving::{Moving, Travel};
 use super::objects::{HeightFieldShape, MeshShape, ObjectTable};
@@ -42,20 +42,25 @@ pub(super) fn place(
         meshes: BTreeMap::new(),
         placed: Placed {
             objects: Vec::new(),
-            coats: Vec::new(),
+            assignments: Vec::new(),
             materials,
             moving: Vec::new(),
             lines: Vec::new(),
         },
     };
     for (number, (at, object)) in scenery.objects.iter().enumerate() {
-        builder.object(number as u64, at, object)?;
+        builder.object(number as u64, *at, object)?;
     }
     Ok(builder.placed)
 }
 
 impl Builder<'_> {
-    fn object(&mut self, number: u64, at: &At, table: &ObjectTable) -> Result<(), SceneryError> {
+    fn object(
+        &mut self,
+        number: u64,
+        at: FilePosition,
+        table: &ObjectTable,
+    ) -> Result<(), SceneryError> {
         let parts = self.parts(number, at, table)?;
         let turn = rotation(table.rotation_deg);
         for offset_m in table.copies.offsets_m() {
@@ -65,16 +70,11 @@ impl Builder<'_> {
                 let rotation = turn * part.rotation;
                 let position_m = origin_m + turn * part.position_m;
                 let placement = Placement::new(rotation, position_m).map_err(|error| {
-                    wrong(
-                        at,
-                        "placement",
-                        "coordinates within 1e15 m",
-                        error.to_string(),
-                    )
+                    invalid("placement", "coordinates within 1e15 m", error.to_string()).at(at)
                 })?;
                 let object = Object::new(part.surface.clone()).placed(placement);
                 self.placed.objects.push(object);
-                self.placed.coats.push(part.coat);
+                self.placed.assignments.push(part.assignment);
                 self.placed.lines.push(at.line);
             }
             if table.is_moving() {
@@ -85,7 +85,7 @@ impl Builder<'_> {
                         velocity_m_s: table.velocity_m_s.into(),
                         turn_deg_s: table.turn_deg_s.into(),
                     },
-                    at: *at,
+                    at,
                 });
             }
         }
@@ -96,9 +96,9 @@ impl Builder<'_> {
     fn parts(
         &mut self,
         number: u64,
-        at: &At,
+        at: FilePosition,
         table: &ObjectTable,
-    ) -> Result<Vec<Part>, SceneryError> {
+    ) -> Result<Vec<ObjectPart>, SceneryError> {
         let seed = generators::seed(self.seed, number);
         let named = |name: &str| material(&self.placed.materials, name);
         let own = table.material.as_deref().map_or_else(|| named(""), named);
@@ -117,30 +117,32 @@ impl Builder<'_> {
             .and_then(|field| field.made_up())
         {
             let field = generators::quarry(quarry, seed).and_then(|field| field.mesh());
-            let mesh = field.map_err(|error| no_heights(at, &error))?;
+            let mesh = field.map_err(|error| no_heights(&error).at(at))?;
             let corner_m = DVec3::new(-quarry.half_m(), -quarry.half_m(), 0.0);
-            return Ok(vec![Part::new(mesh, Coat::One(own)).moved(corner_m)]);
+            return Ok(vec![
+                ObjectPart::new(mesh, MaterialAssignment::One(own)).moved(corner_m),
+            ]);
         }
-        let coat = match table
+        let assignment = match table
             .cuboid
             .as_ref()
             .and_then(|cuboid| cuboid.faces.as_ref())
         {
-            Some(faces) => Coat::Faces(faces.each_ref().map(|name| named(name))),
-            None => Coat::One(own),
+            Some(faces) => MaterialAssignment::Faces(faces.each_ref().map(|name| named(name))),
+            None => MaterialAssignment::One(own),
         };
         let surface = self.surface(at, table)?;
-        Ok(vec![Part::new(surface, coat)])
+        Ok(vec![ObjectPart::new(surface, assignment)])
     }
 
     /// One of the shapes that are one surface.
-    fn surface(&mut self, at: &At, table: &ObjectTable) -> Result<Surface, SceneryError> {
+    fn surface(&mut self, at: FilePosition, table: &ObjectTable) -> Result<Surface, SceneryError> {
         if let Some(sphere) = &table.sphere {
             let radius_m = sphere.radius_m;
             return Ok(Sphere { radius_m }.into());
         }
         if let Some(cuboid) = &table.cuboid {
-            let [from, to] = cuboid.corners(at)?;
+            let [from, to] = cuboid.corners().map_err(|error| error.at(at))?;
             return Ok(Cuboid::new(from.into(), to.into()).into());
         }
         if let Some(cylinder) = &table.cylinder {
@@ -156,13 +158,13 @@ impl Builder<'_> {
             return Ok(self.mesh(at, mesh)?.into());
         }
         if let Some(field) = &table.height_field {
-            return height_field(field, at);
+            return height_field(field).map_err(|error| error.at(at));
         }
         Ok(Plane.into())
     }
 
     /// A mesh from its file, read once.
-    fn mesh(&mut self, at: &At, shape: &MeshShape) -> Result<Arc<Mesh>, SceneryError> {
+    fn mesh(&mut self, at: FilePosition, shape: &MeshShape) -> Result<Arc<Mesh>, SceneryError> {
         let key = (shape.file.clone(), shape.unit_m.to_bits(), shape.y_up);
         if let Some(mesh) = self.meshes.get(&key) {
             return Ok(Arc::clone(mesh));
@@ -179,7 +181,7 @@ impl Builder<'_> {
                 .mesh()
         };
         let mesh = read().map_err(|source| SceneryError::Mesh {
-            at: *at,
+            at,
             file: shape.file.clone(),
             source,
         })?;
@@ -204,24 +206,24 @@ fn material(materials: &[Material], name: &str) -> u32 {
 }
 
 /// A grid of heights that the scene itself gives.
-fn height_field(shape: &HeightFieldShape, at: &At) -> Result<Surface, SceneryError> {
+fn height_field(shape: &HeightFieldShape) -> Result<Surface, InvalidField> {
     match (shape.columns, shape.spacing_m, &shape.heights_m) {
         (Some(columns), Some(spacing_m), Some(heights_m)) => {
             let field = HeightField::new(columns, heights_m.clone(), spacing_m);
             let mesh = field.and_then(|field| field.mesh());
-            Ok(mesh.map_err(|error| no_heights(at, &error))?.into())
+            Ok(mesh.map_err(|error| no_heights(&error))?.into())
         }
         _ => {
             let expected = "columns, spacing_m and heights_m, or quarry";
-            Err(wrong(at, "height_field", expected, shape))
+            Err(invalid("height_field", expected, shape))
         }
     }
 }
 
-fn no_heights(at: &At, error: &HeightFieldError) -> SceneryError {
+fn no_heights(error: &HeightFieldError) -> InvalidField {
     let got =
         std::error::Error::source(error).map_or_else(|| error.to_string(), ToString::to_string);
-    wrong(at, "height_field", "a grid of finite heights", got)
+    invalid("height_field", "a grid of finite heights", got)
 }
 
 /// Turned about x, then y, then z of the outer frame, degrees.

@@ -39,7 +39,7 @@ fn every_shipped_scene_can_be_cast_at() {
     for (name, text) in SHIPPED {
         let placed = placed(text);
         let caster = placed.caster().unwrap();
-        assert_eq!(placed.objects.len(), placed.coats.len());
+        assert_eq!(placed.objects.len(), placed.assignments.len());
         assert_eq!(placed.objects.len(), placed.lines.len());
         let down = hit(&placed, &caster, DVec3::ZERO, -DVec3::Z).unwrap();
         assert!((1.0..=10.0).contains(&down.0), "{}: {down:?}", name);
@@ -55,7 +55,10 @@ fn every_shipped_scene_can_be_cast_at() {
 fn the_hall_is_the_rigs() {
     let [hall, rig] = ["hall", "rig"].map(|name| placed(shipped(name).unwrap()));
     assert_eq!(format!("{:?}", hall.objects), format!("{:?}", rig.objects));
-    assert_eq!((&hall.coats, &hall.materials), (&rig.coats, &rig.materials));
+    assert_eq!(
+        (&hall.assignments, &hall.materials),
+        (&rig.assignments, &rig.materials)
+    );
     let caster = hall.caster().unwrap();
     for (from, to, range_m, reflectivity) in [
         ([0.0, 0.0, 0.0], [0.0, 0.0, -1.0], 1.2, 28),

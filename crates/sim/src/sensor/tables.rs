@@ -3,10 +3,10 @@
 //! Written down by what orders them, the place from below and the order of firing, and by the crossing of the beams where there is one.
 //! Left out: azimuths and ranges of single units.
 
-use super::Beam;
+use super::LaserBeam;
 
-/// VLP-16: fires low and high laser in turn, 2.304 us apart (63-9243, "Sensor operation").
-pub(super) fn vlp16() -> Vec<Beam> {
+/// VLP-16: fires low and high lasers alternately, 2.304 us apart (63-9243, "Sensor operation").
+pub(super) fn vlp16() -> Vec<LaserBeam> {
     // All beams cross 41.91 mm from the axis; the manual prints where they start to 0.1 mm.
     let beam = |ring: f64| {
         let elevation_deg = -15.0 + 2.0 * ring;
@@ -16,7 +16,7 @@ pub(super) fn vlp16() -> Vec<Beam> {
 }
 
 /// Puck Hi-Res: the same with 4/3 of a degree between lasers, and origins as the manual prints them.
-pub(super) fn hi_res() -> Vec<Beam> {
+pub(super) fn hi_res() -> Vec<LaserBeam> {
     // By distance from the horizon: elevation in hundredths of a degree, start in tenths of a millimetre below the middle.
     const ABOVE: [(i32, i32); 8] = [
         (67, 9),
@@ -45,7 +45,7 @@ pub(super) fn hi_res() -> Vec<Beam> {
 
 /// HDL-32E: low and high laser in turn, 1.152 us apart; 4/3 of a degree between lasers, printed to 0.01; beams cross 28.95 mm from the axis
 /// (drawing 86-0106, revision B), printed to 0.01 mm.
-pub(super) fn hdl32e() -> Vec<Beam> {
+pub(super) fn hdl32e() -> Vec<LaserBeam> {
     in_turn(32, 1_152, |ring| {
         let exact_deg = (4.0 * f64::from(ring) - 92.0) / 3.0;
         let printed_deg = (exact_deg * 100.0).round() / 100.0;
@@ -54,7 +54,7 @@ pub(super) fn hdl32e() -> Vec<Beam> {
 }
 
 /// VLP-32C: sixteen pairs 2.304 us apart (63-9325, section 9.5). Where its rays start is not published: all in one point.
-pub(super) fn vlp32c() -> Vec<Beam> {
+pub(super) fn vlp32c() -> Vec<LaserBeam> {
     // Thousandths of a degree of elevation, and tenths of azimuth; the two of a pair beside each other.
     const PAIRS: [[(i32, i32); 2]; 16] = [
         [(-25_000, 14), (-1_000, -42)],
@@ -78,7 +78,7 @@ pub(super) fn vlp32c() -> Vec<Beam> {
         .iter()
         .zip(0..)
         .flat_map(|(pair, number)| {
-            pair.map(|(elevation, azimuth)| Beam {
+            pair.map(|(elevation, azimuth)| LaserBeam {
                 elevation_deg: f64::from(elevation) / 1_000.0,
                 origin_m: 0.0,
                 azimuth_deg: f64::from(azimuth) / 10.0,
@@ -89,12 +89,12 @@ pub(super) fn vlp32c() -> Vec<Beam> {
 }
 
 /// Lasers that fire by turns from the lower and the upper half, from below; elevation (deg) and start (mm) by place.
-fn in_turn(count: i32, period_ns: i64, of_ring: impl Fn(i32) -> (f64, f64)) -> Vec<Beam> {
+fn in_turn(count: i32, period_ns: i64, of_ring: impl Fn(i32) -> (f64, f64)) -> Vec<LaserBeam> {
     (0..count)
         .map(|number| {
             let ring = number / 2 + if number % 2 == 1 { count / 2 } else { 0 };
             let (elevation_deg, origin_mm) = of_ring(ring);
-            Beam {
+            LaserBeam {
                 elevation_deg,
                 origin_m: origin_mm / 1e3,
                 azimuth_deg: 0.0,

@@ -1,12 +1,19 @@
 use super::*;
-use crate::effects::{
-    Absorb, Asked, Axis, Clock, Effect, Listed, Needs, OnFirings, Parcel, RangeNoise, Surface, View,
+use super::{
+    DriveRequest, Polls, SimulateError, Simulation, SimulationEvent, SimulationSink,
+    SimulationSummary,
 };
-use crate::head::Head;
+use crate::effect_models::RangeNoise;
+use crate::effects::{
+    AxisAngles, ClockEffect, ConfiguredEffects, Effect, Effects, FiringEffectSet, FiringEffects,
+    LinkEffect, LinkMessage, Listed, MechanismEffect, Needs, SurfaceEffect, ViewEffect,
+};
+use crate::firing::{Echoes, Firing};
 use crate::motion::Sweeps;
+use crate::packet_maker::{HeadRotation, TruePoint};
 use crate::scenes;
+use crate::sensor::{LidarMount, LidarSensor, ReturnMode};
 use firmware_sim::vlp16::DATA_PORT;
-use units::{Degrees, Metres};
 
 /// What a run gave.
 #[derive(Default)]
@@ -14,28 +21,28 @@ struct Taken {
     times: Vec<i64>,
     datagrams: Vec<(u16, Vec<u8>)>,
     answers: Vec<(Stamp<Host>, i32)>,
-    commands: Vec<Ask>,
+    commands: Vec<DriveRequest>,
     points: Vec<TruePoint>,
     stop_after: Option<usize>,
-    markers: usize,
+    probes: usize,
 }
 
-impl Out for Taken {
-    fn event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+impl SimulationSink for Taken {
+    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
         let at = match event {
-            Event::Datagram { at, port, payload } => {
+            SimulationEvent::Datagram { at, port, payload } => {
                 self.datagrams.push((*port, payload.to_vec()));
                 at
             }
-            Event::Request { at, .. } => at,
-            Event::Answer {
+            SimulationEvent::Request { at, .. } => at,
+            SimulationEvent::Answer {
                 at,
-                ask,
+                request,
                 position_qc,
             } => {
-                match ask {
-                    Ask::Position => self.answers.push((*at, *position_qc)),
-                    Ask::Marker(_) => self.markers += 1,
+                match request {
+                    DriveRequest::Position => self.answers.push((*at, *position_qc)),
+                    DriveRequest::Probe(_) => self.probes += 1,
                     other => self.commands.push(*other),
                 }
                 at
@@ -60,8 +67,8 @@ impl Out for Taken {
 
 const START: Stamp<Host> = Stamp::from_nanos(1_795_226_733_000_000_000);
 
-fn hall(sensor: Sensor) -> Simulation {
-    let motion = Motion::sweeps(&Sweeps {
+fn hall(sensor: LidarSensor) -> Simulation {
+    let motion = AxisMotion::sweeps(&Sweeps {
         from_deg: 0.0,
         to_deg: -45.0,
         speed_deg_s: 300.0,
@@ -74,11 +81,11 @@ fn hall(sensor: Sensor) -> Simulation {
         scene: Arc::new(scenes::hall()),
         sensor,
         returns: ReturnMode::Strongest,
-        spin: Spin {
+        rotation: HeadRotation {
             rpm: 600,
             start_deg: 200.0,
         },
-        mount: Mount::above(0.06),
+        mount: LidarMount::above(0.06),
         motion: motion.unwrap(),
         polls: Some(Polls {
             period_ns: 2_500_000,
@@ -94,55 +101,54 @@ fn threads(count: usize) -> NonZeroUsize {
     NonZeroUsize::new(count).unwrap()
 }
 
-fn run(simulation: &Simulation, count: usize) -> (Taken, Summary) {
+fn run(simulation: &Simulation, count: usize) -> (Taken, SimulationSummary) {
     let mut taken = Taken::default();
     let summary = simulation.run(
-        &mut Effects::<OnFirings>::default(),
+        &mut Effects::<FiringEffectSet>::default(),
         threads(count),
         &mut taken,
     );
     (taken, summary.unwrap())
 }
 
-/// The rig's way, laser by laser with one matrix each, against the firing's.
+/// The plain definition of a ray against the rays of a firing.
 #[test]
-fn points_are_where_the_rigs_head_sees_them() {
-    let simulation = hall(Sensor::vlp16());
-    let head = Head::new(Metres(0.06));
+fn points_are_where_plain_rays_meet_the_scene() {
+    let simulation = hall(LidarSensor::vlp16());
     let (taken, summary) = run(&simulation, 1);
     assert_eq!(taken.points.len() as u64, summary.returned);
     assert_eq!(summary.returned, summary.shots, "every beam meets the hall");
-    let mut elsewhere = 0;
+    let mut different = 0;
     for point in &taken.points {
         let since_s = (point.host - START).as_secs_f64();
         let commanded = simulation.motion.at(since_s);
-        // The platform turns evenly while a firing lasts: 35 us at 5000 deg/s2.
+        // The platform moves at constant speed during a firing: 35 us at 5000 deg/s2.
         assert!((point.tilt_deg - commanded.angle_deg).abs() < 3.1e-6);
-        let azimuth = simulation.spin.start_deg + 3_600.0 * 1e-9 * point.device_ns as f64;
-        let turned = (point.azimuth_deg - azimuth).rem_euclid(360.0);
-        assert!(!(1e-9..=360.0 - 1e-9).contains(&turned), "{turned}");
+        let azimuth = simulation.rotation.start_deg + 3_600.0 * 1e-9 * point.device_ns as f64;
+        let off = (point.azimuth_deg - azimuth).rem_euclid(360.0);
+        assert!(!(1e-9..=360.0 - 1e-9).contains(&off), "{off}");
         let laser = usize::from(point.laser);
-        let beam = head.beam(laser, Degrees(azimuth), Degrees(point.tilt_deg));
-        let (origin, direction) = beam.unwrap();
+        let ray = (simulation.sensor).ray(laser, azimuth, point.tilt_deg, &simulation.mount);
+        let (origin, direction) = ray.unwrap();
         let seen = origin + point.range_m * direction;
         assert!(seen.distance(point.position_m) < 1e-11, "{point:?}");
         let hit = simulation.scene.cast(origin, direction, 1.0, 100.0);
         let same = hit.is_some_and(|hit| (hit.range_m - point.range_m).abs() < 1e-9);
-        elsewhere += u32::from(!same);
+        different += u32::from(!same);
     }
-    // Beside an edge the last bit of a direction decides between two surfaces.
-    assert!(elsewhere < 3, "{elsewhere}");
+    // At an edge the last bit of a direction decides between two surfaces.
+    assert!(different < 3, "{different}");
 }
 
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
-    for sensor in [Sensor::vlp16(), Sensor::hdl32e()] {
+    for sensor in [LidarSensor::vlp16(), LidarSensor::hdl32e()] {
         let simulation = hall(sensor);
         let mut runs = Vec::new();
         for count in [1, 2, 5] {
             let noise = RangeNoise::new(0.02, 7);
             let mut effects = Effects::<_> {
-                firings: OnFirings::<(), (), (), _, ()> {
+                firings: FiringEffectSet::<(), (), (), _, ()> {
                     objects: (),
                     view: (),
                     beam: (),
@@ -151,7 +157,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
                 },
                 mechanism: (),
                 encoder: (),
-                wire: (),
+                link: (),
             };
             let mut taken = Taken::default();
             let summary = simulation.run(&mut effects, threads(count), &mut taken);
@@ -169,21 +175,21 @@ fn any_number_of_threads_gives_the_same_bytes() {
 
 #[test]
 fn events_come_in_order_and_a_break_ends_them() {
-    let simulation = hall(Sensor::vlp16());
+    let simulation = hall(LidarSensor::vlp16());
     let (taken, summary) = run(&simulation, 2);
     assert!(taken.times.is_sorted());
-    assert!(!summary.broken_off);
+    assert!(!summary.stopped);
     // 0.17 s: 0.15 s of cruise, one ramp of 0.06 s less what it saves.
-    let lasted = summary.lasted.as_secs_f64();
+    let lasted = summary.duration.as_secs_f64();
     assert_eq!(summary.packets, (lasted / 1_327.104e-6) as u64);
     assert_eq!((taken.answers.len() + 6) as u64, summary.polls);
     let commanded = [
-        Ask::Target(-30_000),
-        Ask::Speed(300.0),
-        Ask::Acceleration(5_000.0),
-        Ask::Deceleration(5_000.0),
-        Ask::Ready,
-        Ask::Go,
+        DriveRequest::Target(-30_000),
+        DriveRequest::Speed(300.0),
+        DriveRequest::Acceleration(5_000.0),
+        DriveRequest::Deceleration(5_000.0),
+        DriveRequest::Ready,
+        DriveRequest::Go,
     ];
     assert_eq!(taken.commands, commanded);
     assert_eq!(summary.polls, (lasted / 2.5e-3) as u64 + 1);
@@ -194,19 +200,19 @@ fn events_come_in_order_and_a_break_ends_them() {
         };
         let summary = simulation
             .run(
-                &mut Effects::<OnFirings>::default(),
+                &mut Effects::<FiringEffectSet>::default(),
                 threads(count),
                 &mut taken,
             )
             .unwrap();
-        assert!(summary.broken_off);
+        assert!(summary.stopped);
         assert_eq!(taken.times.len(), 50);
     }
 }
 
 #[test]
 fn the_drive_says_where_its_shaft_was_in_the_middle() {
-    let simulation = hall(Sensor::vlp16());
+    let simulation = hall(LidarSensor::vlp16());
     let (taken, _) = run(&simulation, 1);
     for (at, position_qc) in taken.answers {
         let read_s = (at - START).as_secs_f64() - 0.0005;
@@ -232,17 +238,15 @@ impl Effect for Window {
     }
 }
 
-impl Absorb for Window {}
-
-impl View for Window {
+impl ViewEffect for Window {
     fn fires(&self, azimuth_deg: f64) -> bool {
         (90.0..180.0).contains(&azimuth_deg)
     }
 }
 
-fn with<V, S, C>(view: V, surface: S, clock: C) -> Effects<OnFirings<(), V, (), S, C>> {
+fn with<V, S, C>(view: V, surface: S, clock: C) -> Effects<FiringEffectSet<(), V, (), S, C>> {
     Effects {
-        firings: OnFirings {
+        firings: FiringEffectSet {
             objects: (),
             view,
             beam: (),
@@ -251,14 +255,14 @@ fn with<V, S, C>(view: V, surface: S, clock: C) -> Effects<OnFirings<(), V, (), 
         },
         mechanism: (),
         encoder: (),
-        wire: (),
+        link: (),
     }
 }
 
-fn run_with<F: FiringEffects, M: Mechanism, E: Encoder, W: Wire>(
+fn run_with<F: FiringEffects, M: MechanismEffect, E: EncoderEffect, L: LinkEffect>(
     simulation: &Simulation,
-    effects: &mut Effects<F, M, E, W>,
-) -> (Taken, Summary) {
+    effects: &mut Effects<F, M, E, L>,
+) -> (Taken, SimulationSummary) {
     let mut taken = Taken::default();
     let summary = simulation.run(effects, threads(2), &mut taken);
     (taken, summary.unwrap())
@@ -266,8 +270,8 @@ fn run_with<F: FiringEffects, M: Mechanism, E: Encoder, W: Wire>(
 
 #[test]
 fn a_window_leaves_blocks_out_and_packets_straddle_the_gap() {
-    let mut simulation = hall(Sensor::vlp16());
-    simulation.motion = Motion::fixed(0.0, 0.5).unwrap();
+    let mut simulation = hall(LidarSensor::vlp16());
+    simulation.motion = AxisMotion::fixed(0.0, 0.5).unwrap();
     simulation.polls = None;
     let (taken, summary) = run_with(&simulation, &mut with(Window, (), ()));
     // A quarter of five turns.
@@ -306,16 +310,30 @@ impl Effect for Dim {
     }
 }
 
-impl Absorb for Dim {}
-
-impl Surface for Dim {
+impl SurfaceEffect for Dim {
     fn reflect(&self, _: &Firing, echoes: &mut Echoes) -> u32 {
         let mut acted = 0;
-        for echo in echoes.all_mut().flatten().filter(|echo| echo.is_there()) {
+        for echo in echoes.all_mut().flatten().filter(|echo| echo.is_present()) {
             echo.reflectivity *= 0.5;
             acted += 1;
         }
         acted
+    }
+}
+
+/// One effect, then another.
+#[derive(Clone, Debug)]
+struct Both<A, B>(A, B);
+
+impl<A: Effect, B: Effect> Effect for Both<A, B> {
+    fn name(&self) -> &'static str {
+        "both"
+    }
+}
+
+impl<A: SurfaceEffect, B: SurfaceEffect> SurfaceEffect for Both<A, B> {
+    fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
+        self.0.reflect(firing, echoes) + self.1.reflect(firing, echoes)
     }
 }
 
@@ -336,10 +354,10 @@ fn distances(taken: &Taken) -> Vec<u16> {
 
 #[test]
 fn one_more_effect_leaves_the_draws_of_the_others_as_they_were() {
-    let simulation = hall(Sensor::vlp16());
+    let simulation = hall(LidarSensor::vlp16());
     let noise = RangeNoise::new(0.05, 3);
     let (alone, _) = run_with(&simulation, &mut with((), noise, ()));
-    let (both, _) = run_with(&simulation, &mut with((), (Dim, noise), ()));
+    let (both, _) = run_with(&simulation, &mut with((), Both(Dim, noise), ()));
     assert_eq!(distances(&alone), distances(&both));
     assert_ne!(alone.datagrams, both.datagrams);
     let (none, _) = run(&simulation, 1);
@@ -347,11 +365,11 @@ fn one_more_effect_leaves_the_draws_of_the_others_as_they_were() {
 }
 
 #[test]
-fn lists_do_what_pairs_do_and_count_it() {
-    let simulation = hall(Sensor::hdl32e());
+fn lists_act_in_order_and_count() {
+    let simulation = hall(LidarSensor::hdl32e());
     let noise = RangeNoise::new(0.05, 3);
-    let (pair, summary) = run_with(&simulation, &mut with((), (noise, Dim), ()));
-    let mut asked = Asked::default();
+    let (pair, summary) = run_with(&simulation, &mut with((), Both(noise, Dim), ()));
+    let mut asked = ConfiguredEffects::default();
     let surface = &mut asked.firings.surface;
     surface.push(Listed::new(Arc::new(noise), None));
     surface.push(Listed::new(Arc::new(Dim), Some(|| 5)));
@@ -359,9 +377,9 @@ fn lists_do_what_pairs_do_and_count_it() {
         let (list, _) = run_with(&simulation, &mut asked);
         assert_eq!(list.datagrams, pair.datagrams);
         for listed in &asked.firings.surface {
-            let usage = listed.usage();
-            assert_eq!(usage.asked, times * summary.shots / 32);
-            assert_eq!(usage.acted, usage.asked);
+            let usage = listed.counts();
+            assert_eq!(usage.calls, times * summary.shots / 32);
+            assert_eq!(usage.acted, usage.calls);
             assert_eq!(usage.changed, times * summary.returns);
             assert_eq!(usage.spent_ns, 0);
         }
@@ -378,8 +396,8 @@ impl Effect for Ahead {
     }
 }
 
-impl Mechanism for Ahead {
-    fn step(&mut self, _: f64, axis: &mut Axis) -> bool {
+impl MechanismEffect for Ahead {
+    fn step(&mut self, _: f64, axis: &mut AxisAngles) -> bool {
         axis.platform_deg += 1.0;
         true
     }
@@ -387,15 +405,15 @@ impl Mechanism for Ahead {
 
 #[test]
 fn a_mechanism_stands_between_encoder_and_platform() {
-    let simulation = hall(Sensor::vlp16());
+    let simulation = hall(LidarSensor::vlp16());
     let (ideal, _) = run(&simulation, 1);
     let mut effects = Effects {
-        firings: OnFirings::default(),
+        firings: FiringEffectSet::default(),
         mechanism: Ahead,
         encoder: (),
-        wire: (),
+        link: (),
     };
-    let (ahead, _) = run_with::<OnFirings, _, _, _>(&simulation, &mut effects);
+    let (ahead, _) = run_with::<FiringEffectSet, _, _, _>(&simulation, &mut effects);
     let apart = ideal.answers.iter().zip(&ahead.answers);
     assert!(apart.clone().count() > 50);
     for ((_, ideal), (_, ahead)) in apart {
@@ -408,7 +426,7 @@ fn a_mechanism_stands_between_encoder_and_platform() {
     }
 }
 
-/// Every third parcel is lost, every fifth comes twice, and all are late by up to 4 ms, so that they overtake each other.
+/// Every third message is lost, every fifth comes twice, and all are late by up to 4 ms, so that they overtake each other.
 #[derive(Debug)]
 struct Bad(crate::random::Source);
 
@@ -418,19 +436,19 @@ impl Effect for Bad {
     }
 }
 
-impl Wire for Bad {
-    fn deliver(&mut self, parcel: Parcel, arrive: &mut dyn FnMut(Parcel)) -> u32 {
-        let times = match (parcel.number % 3, parcel.number % 5) {
+impl LinkEffect for Bad {
+    fn deliver(&mut self, message: LinkMessage, arrive: &mut dyn FnMut(LinkMessage)) -> u32 {
+        let times = match (message.number % 3, message.number % 5) {
             (0, _) => 0,
             (_, 0) => 2,
             _ => 1,
         };
-        let mut draws = self.0.at(parcel.number, parcel.kind as u32);
+        let mut draws = self.0.at(message.number, message.kind as u32);
         for _ in 0..times {
             let late_ns = (4e6 * draws.unit()) as i64;
-            arrive(Parcel {
-                leaves_ns: parcel.leaves_ns + late_ns,
-                ..parcel
+            arrive(LinkMessage {
+                time_ns: message.time_ns + late_ns,
+                ..message
             });
         }
         1
@@ -439,14 +457,14 @@ impl Wire for Bad {
 
 #[test]
 fn whatever_a_link_does_events_come_in_order_and_moves_are_commanded() {
-    let simulation = hall(Sensor::vlp16());
+    let simulation = hall(LidarSensor::vlp16());
     let mut effects = Effects {
-        firings: OnFirings::default(),
+        firings: FiringEffectSet::default(),
         mechanism: (),
         encoder: (),
-        wire: (Bad(crate::random::Source::new(1, "bad")), ()),
+        link: Bad(crate::random::Source::new(1, "bad")),
     };
-    let (taken, summary) = run_with::<OnFirings, _, _, _>(&simulation, &mut effects);
+    let (taken, summary) = run_with::<FiringEffectSet, _, _, _>(&simulation, &mut effects);
     assert!(taken.times.is_sorted());
     let numbers = 0..summary.packets;
     let expected: u64 = numbers
@@ -472,7 +490,7 @@ fn whatever_a_link_does_events_come_in_order_and_moves_are_commanded() {
     let mut commands = taken.commands.clone();
     commands.dedup();
     assert_eq!(commands.len(), 6, "{commands:?}");
-    assert!(taken.markers > 0, "nothing was given up: the test is blind");
+    assert!(taken.probes > 0, "nothing was given up: the test is blind");
     // The truth does not care.
     assert_eq!(taken.points.len() as u64, summary.returns);
 }
@@ -487,9 +505,7 @@ impl Effect for Fast {
     }
 }
 
-impl Absorb for Fast {}
-
-impl Clock for Fast {
+impl ClockEffect for Fast {
     fn host_ns(&self, device_ns: i64) -> i64 {
         device_ns - device_ns / 1_001
     }
@@ -497,7 +513,7 @@ impl Clock for Fast {
 
 #[test]
 fn the_lidars_clock_decides_when_it_fires() {
-    let simulation = hall(Sensor::vlp16());
+    let simulation = hall(LidarSensor::vlp16());
     let (taken, _) = run_with(&simulation, &mut with((), (), Fast));
     let last = taken.points.last().unwrap();
     let host_ns = (last.host - START).as_nanos();
@@ -508,8 +524,8 @@ fn the_lidars_clock_decides_when_it_fires() {
 
 #[test]
 fn a_laser_that_is_covered_never_fires() {
-    let mut simulation = hall(Sensor::single_beam());
-    simulation.motion = Motion::fixed(0.0, 0.1).unwrap();
+    let mut simulation = hall(LidarSensor::single_beam());
+    simulation.motion = AxisMotion::fixed(0.0, 0.1).unwrap();
     let (taken, summary) = run(&simulation, 1);
     assert_eq!(summary.shots, 24 * summary.packets);
     assert_eq!(summary.returned, summary.shots);
@@ -518,12 +534,12 @@ fn a_laser_that_is_covered_never_fires() {
 
 #[test]
 fn what_cannot_be_run_is_refused() {
-    let mut simulation = hall(Sensor::vlp16());
-    simulation.motion = Motion::fixed(0.0, 86_401.0).unwrap();
-    let mut none = Effects::<OnFirings>::default();
+    let mut simulation = hall(LidarSensor::vlp16());
+    simulation.motion = AxisMotion::fixed(0.0, 86_401.0).unwrap();
+    let mut none = Effects::<FiringEffectSet>::default();
     let refused = simulation.run(&mut none, threads(1), &mut Taken::default());
     assert!(matches!(refused, Err(SimulateError::TooLong { .. })));
-    simulation.motion = Motion::fixed(0.0, 1e-4).unwrap();
+    simulation.motion = AxisMotion::fixed(0.0, 1e-4).unwrap();
     simulation.polls = simulation.polls.map(|polls| Polls {
         period_ns: 0,
         ..polls

@@ -7,8 +7,9 @@ use std::hint::black_box;
 use analysis::tradeoff::{
     Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
 };
-use sim::effects::{Beam, Divergence, DivergenceSettings};
-use sim::simulate::{Echo, Echoes, Firing};
+use sim::effect_models::{Divergence, DivergenceSettings};
+use sim::effects::BeamEffect;
+use sim::firing::{Echo, Echoes, Firing};
 
 use crate::shots::Shots;
 use reference::Footprint;

@@ -1,9 +1,9 @@
-//! A beam's footprint by any number of sub-rays, one after the other: what `sim::effects::Divergence` does, said again.
+//! A beam's footprint by any number of sub-rays, one after the other: what `sim::effect_models::Divergence` does, said again.
 //!
 //! Left out: reflectivities of returns, normals, and looking for edges.
 
 use glam::DVec3;
-use sim::simulate::{Firing, Met, Surroundings};
+use sim::firing::{Firing, Met, Surroundings};
 
 /// Half of what the beam widens along the scan and across it (63-9243, appendix F).
 const HALF: [f64; 2] = [1.5e-3, 0.75e-3];

@@ -125,7 +125,7 @@ fn bins_whose_edges_pairs_lie_on_are_warned_of() {
 #[test]
 fn a_pattern_its_clouds_and_its_log_are_analysed_alike() {
     let place = Place::new();
-    let pattern = sim::patterns::Wish::parse("velomotion16:500,step=0.8")
+    let pattern = sim::patterns::PatternRequest::parse("velomotion16:500,step=0.8")
         .unwrap()
         .build()
         .unwrap();
@@ -295,7 +295,7 @@ fn a_sweep_and_a_report_tell_the_same_of_a_pattern() {
 #[test]
 fn a_cloud_far_from_its_origin_is_warned_of_and_can_be_moved() {
     let place = Place::new();
-    let pattern = sim::patterns::Wish::parse("velomotion16:500,step=0.8").unwrap();
+    let pattern = sim::patterns::PatternRequest::parse("velomotion16:500,step=0.8").unwrap();
     let pattern = pattern.build().unwrap();
     let text = |x: f64, y: f64| -> String {
         let rows = pattern.directions().into_iter();

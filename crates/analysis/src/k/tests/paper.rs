@@ -9,7 +9,10 @@ use crate::k::{Edges, KCurve, Sampling, estimate};
 const TOLERANCE: f64 = 2e-5;
 
 fn curve(name: &str, tolerance: f64) -> KCurve {
-    let pattern = sim::patterns::Wish::parse(name).unwrap().build().unwrap();
+    let pattern = sim::patterns::PatternRequest::parse(name)
+        .unwrap()
+        .build()
+        .unwrap();
     let edges = Edges::equal(151).unwrap();
     let wish = Sampling {
         tolerance,

@@ -1,13 +1,14 @@
 //! Objects of a scene file that move, through the whole simulation: where the truth has them at each firing.
 
+use crate::effect_models::Explanation;
+use crate::packet_maker::TruePoint;
+use crate::simulate::{SimulationEvent, SimulationSink};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
 use glam::{DMat3, DVec3};
 
 use super::*;
-use crate::effects::Explanation;
-use crate::simulate::{Event, Out, TruePoint};
 
 /// Bytes and points of a run.
 #[derive(Default, PartialEq)]
@@ -16,9 +17,9 @@ struct Taken {
     points: Vec<TruePoint>,
 }
 
-impl Out for Taken {
-    fn event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
-        if let Event::Datagram { payload, .. } = event {
+impl SimulationSink for Taken {
+    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
+        if let SimulationEvent::Datagram { payload, .. } = event {
             self.bytes.extend_from_slice(payload);
         }
         ControlFlow::Continue(())
@@ -46,15 +47,15 @@ const BOX: &str = "[[objects]]\nname = \"trolley\"\nposition_m = [1, 4, 0]\nvelo
 const MESH: &str = "[[objects]]\nmaterial = \"plate\"\nposition_m = [-4, -3, 0]\nrotation_deg = [0, 0, 20]\nturn_deg_s = [0, 0, 120]\n\
                     velocity_m_s = [1, 0, 0.1]\nmesh = { file = \"plate.obj\" }\n";
 
-fn read(text: &str) -> Scene {
+fn read(text: &str) -> SceneFile {
     let mut files = |name: &str| match name {
         "plate.obj" => Ok(PLATE.as_bytes().to_vec()),
         other => Err(format!("no {other}")),
     };
-    Scene::parse_with(text, None, None, &mut files).unwrap()
+    SceneFile::parse_with(text, None, None, &mut files).unwrap()
 }
 
-fn run(text: &str, threads: usize) -> (Taken, Scene) {
+fn run(text: &str, threads: usize) -> (Taken, SceneFile) {
     let (mut scene, mut taken) = (read(text), Taken::default());
     let threads = NonZeroUsize::new(threads).unwrap();
     let effects = &mut scene.effects.effects;
@@ -108,7 +109,7 @@ fn a_box_at_2_m_s_is_at_each_firing_where_it_went() {
     let line = BEFORE.lines().count() + 1;
     let name = "moving_objects";
     assert_eq!(scene.effects.lines, [EffectLine { name, line }]);
-    let explained = Explanation::new(&scene.effects.effects.used(), &[(name, line)], 0);
+    let explained = Explanation::new(&scene.effects.effects.usage(), &[(name, line)], 0);
     let [on] = &explained.on[..] else { panic!() };
     assert_eq!(
         (on.effect, on.line, on.not_needed),

@@ -3,9 +3,9 @@
 use glam::{DMat3, DVec3, dvec3};
 use serde::Deserialize;
 
-use super::super::coats::Coat;
-use super::super::error::{At, SceneryError, above_0, within, wrong};
-use super::{Draws, Part};
+use super::super::error::{InvalidField, above_0, invalid, within};
+use super::super::materials::MaterialAssignment;
+use super::{Draws, ObjectPart};
 use crate::cast::Cylinder;
 
 /// `parked_cars = { bays = N, .. }`: bays beside one another from the origin along x, cars along y with their middles at y = 0, either way round.
@@ -39,13 +39,12 @@ impl ParkedCars {
         self.paints.iter().chain(others)
     }
 
-    pub(in super::super) fn check(&self, at: &At) -> Result<(), SceneryError> {
-        above_0(at, "parked_cars.pitch_m", self.pitch_m)?;
-        within(at, "parked_cars.share", self.share, 0.0..=1.0)?;
-        within(at, "parked_cars.bays", f64::from(self.bays), 1.0..=1_000.0)?;
+    pub(in super::super) fn check(&self) -> Result<(), InvalidField> {
+        above_0("parked_cars.pitch_m", self.pitch_m)?;
+        within("parked_cars.share", self.share, 0.0..=1.0)?;
+        within("parked_cars.bays", f64::from(self.bays), 1.0..=1_000.0)?;
         match self.paints.is_empty() {
-            true => Err(wrong(
-                at,
+            true => Err(invalid(
                 "parked_cars.paints",
                 "one material at least",
                 &self.paints,
@@ -57,7 +56,7 @@ impl ParkedCars {
 
 /// Materials of one car.
 #[derive(Clone, Copy)]
-struct Looks {
+struct CarMaterials {
     paint: u32,
     glass: u32,
     tyre: u32,
@@ -65,22 +64,22 @@ struct Looks {
 }
 
 pub(in super::super) fn parked_cars(
-    wish: &ParkedCars,
+    config: &ParkedCars,
     seed: u64,
     material: &dyn Fn(&str) -> u32,
-) -> Vec<Part> {
+) -> Vec<ObjectPart> {
     let mut draws = Draws::new(seed);
     let mut parts = Vec::new();
-    for bay in (0..wish.bays).map(f64::from) {
-        let taken = draws.unit() < wish.share;
-        let paint = wish.paints.get(draws.below(wish.paints.len()));
-        let looks = Looks {
+    for bay in (0..config.bays).map(f64::from) {
+        let taken = draws.unit() < config.share;
+        let paint = config.paints.get(draws.below(config.paints.len()));
+        let looks = CarMaterials {
             paint: paint.map_or(0, |name| material(name)),
-            glass: material(&wish.glass),
-            tyre: material(&wish.tyres),
-            plate: material(&wish.plates),
+            glass: material(&config.glass),
+            tyre: material(&config.tyres),
+            plate: material(&config.plates),
         };
-        let middle_m = dvec3((bay + 0.5) * wish.pitch_m, 0.0, 0.0);
+        let middle_m = dvec3((bay + 0.5) * config.pitch_m, 0.0, 0.0);
         let off_m = dvec3(
             draws.between([-0.15, 0.15]),
             draws.between([-0.3, 0.3]),
@@ -101,7 +100,7 @@ pub(in super::super) fn parked_cars(
 }
 
 /// A car along y, its nose at +y, its wheels on z = 0.
-fn car(draws: &mut Draws, looks: Looks) -> Vec<Part> {
+fn car(draws: &mut Draws, looks: CarMaterials) -> Vec<ObjectPart> {
     let length = draws.between([3.7, 4.8]);
     let width = draws.between([1.68, 1.86]);
     let height = draws.between([1.42, 1.62]);
@@ -109,7 +108,7 @@ fn car(draws: &mut Draws, looks: Looks) -> Vec<Part> {
     let wheel_m = 0.32;
     let (cabin_back, cabin_front) = (-0.42 * length, 0.2 * length);
     let box_of = |x: f64, y: [f64; 2], z: [f64; 2], material| {
-        Part::cuboid([-x, y[0], z[0]], [x, y[1], z[1]], material)
+        ObjectPart::cuboid([-x, y[0], z[0]], [x, y[1], z[1]], material)
     };
     let mut parts = vec![
         box_of(half, [-front, front], [0.22, belt], looks.paint),
@@ -136,9 +135,9 @@ fn car(draws: &mut Draws, looks: Looks) -> Vec<Part> {
     };
     for (side, along) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
         let at_m = DVec3::new(side * (half - 0.08), along * 0.31 * length, wheel_m);
-        parts.push(Part {
+        parts.push(ObjectPart {
             rotation: DMat3::from_rotation_y(std::f64::consts::FRAC_PI_2),
-            ..Part::new(wheel, Coat::One(looks.tyre)).moved(at_m)
+            ..ObjectPart::new(wheel, MaterialAssignment::One(looks.tyre)).moved(at_m)
         });
     }
     parts

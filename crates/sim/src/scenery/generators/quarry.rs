@@ -3,7 +3,7 @@
 use glam::{DVec2, dvec2};
 use serde::Deserialize;
 
-use super::super::error::{At, SceneryError, above_0, finite, within, wrong};
+use super::super::error::{InvalidField, above_0, finite, invalid, within};
 use super::Draws;
 use super::draws::{noise, rough};
 use crate::cast::{HeightField, HeightFieldError};
@@ -69,24 +69,24 @@ struct Heap {
 }
 
 impl Quarry {
-    pub(in super::super) fn check(&self, at: &At) -> Result<(), SceneryError> {
-        above_0(at, "quarry.size_m", self.size_m)?;
-        above_0(at, "quarry.spacing_m", self.spacing_m)?;
-        above_0(at, "quarry.floor_m", self.floor_m)?;
-        finite(at, "quarry.middle_m", &self.middle_m)?;
-        within(at, "quarry.winding", self.winding, 0.0..=0.9)?;
-        within(at, "quarry.face_deg", self.face_deg, 1.0..=89.0)?;
-        within(at, "quarry.berm_m", self.berm_m, 0.0..=10_000.0)?;
-        within(at, "quarry.rough_m", self.rough_m, 0.0..=100.0)?;
-        within(at, "quarry.heaps", f64::from(self.heaps), 0.0..=1_000.0)?;
-        finite(at, "quarry.way_out_deg", &self.way_out_deg)?;
+    pub(in super::super) fn check(&self) -> Result<(), InvalidField> {
+        above_0("quarry.size_m", self.size_m)?;
+        above_0("quarry.spacing_m", self.spacing_m)?;
+        above_0("quarry.floor_m", self.floor_m)?;
+        finite("quarry.middle_m", &self.middle_m)?;
+        within("quarry.winding", self.winding, 0.0..=0.9)?;
+        within("quarry.face_deg", self.face_deg, 1.0..=89.0)?;
+        within("quarry.berm_m", self.berm_m, 0.0..=10_000.0)?;
+        within("quarry.rough_m", self.rough_m, 0.0..=100.0)?;
+        within("quarry.heaps", f64::from(self.heaps), 0.0..=1_000.0)?;
+        finite("quarry.way_out_deg", &self.way_out_deg)?;
         for height in self.faces_m.iter().chain(&self.heap_m) {
-            above_0(at, "quarry.faces_m and heap_m", *height)?;
+            above_0("quarry.faces_m and heap_m", *height)?;
         }
         let columns = self.size_m / self.spacing_m;
         match (2.0..=5_000.0).contains(&columns) {
             true => Ok(()),
-            false => Err(wrong(at, "quarry", "2 to 5000 spacings in a size", columns)),
+            false => Err(invalid("quarry", "2 to 5000 spacings in a size", columns)),
         }
     }
 
@@ -156,16 +156,19 @@ impl Quarry {
 }
 
 /// The pit, from the corner of its square with the least x and y on.
-pub(in super::super) fn quarry(wish: &Quarry, seed: u64) -> Result<HeightField, HeightFieldError> {
-    let (columns, half_m) = (wish.columns(), wish.half_m());
-    let heaps = wish.heaps(seed);
-    let level_m = wish.height_m(seed, &heaps, DVec2::ZERO);
-    let along = |step: usize| step as f64 * wish.spacing_m - half_m;
+pub(in super::super) fn quarry(
+    config: &Quarry,
+    seed: u64,
+) -> Result<HeightField, HeightFieldError> {
+    let (columns, half_m) = (config.columns(), config.half_m());
+    let heaps = config.heaps(seed);
+    let level_m = config.height_m(seed, &heaps, DVec2::ZERO);
+    let along = |step: usize| step as f64 * config.spacing_m - half_m;
     let heights_m = (0..columns)
         .flat_map(|row| (0..columns).map(move |column| (column, row)))
         .map(|(column, row)| {
-            wish.height_m(seed, &heaps, dvec2(along(column), along(row))) - level_m
+            config.height_m(seed, &heaps, dvec2(along(column), along(row))) - level_m
         })
         .collect();
-    HeightField::new(columns, heights_m, [wish.spacing_m; 2])
+    HeightField::new(columns, heights_m, [config.spacing_m; 2])
 }

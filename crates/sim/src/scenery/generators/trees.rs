@@ -3,9 +3,9 @@
 use glam::dvec3;
 use serde::Deserialize;
 
-use super::super::coats::Coat;
-use super::super::error::{At, SceneryError, finite, within, wrong};
-use super::{Draws, Part};
+use super::super::error::{InvalidField, finite, invalid, within};
+use super::super::materials::MaterialAssignment;
+use super::{Draws, ObjectPart};
 use crate::cast::{Cylinder, Sphere};
 
 /// `trees = { count = N, from_m = [x, y], to_m = [x, y], .. }`: anywhere in a rectangle, their feet at z = 0.
@@ -32,16 +32,15 @@ const fn usual_spread() -> f64 {
 }
 
 impl Trees {
-    pub(in super::super) fn check(&self, at: &At) -> Result<(), SceneryError> {
-        finite(at, "trees.from_m", &self.from_m)?;
-        finite(at, "trees.to_m", &self.to_m)?;
-        within(at, "trees.count", f64::from(self.count), 1.0..=10_000.0)?;
-        within(at, "trees.spread", self.spread, 0.05..=3.0)?;
+    pub(in super::super) fn check(&self) -> Result<(), InvalidField> {
+        finite("trees.from_m", &self.from_m)?;
+        finite("trees.to_m", &self.to_m)?;
+        within("trees.count", f64::from(self.count), 1.0..=10_000.0)?;
+        within("trees.spread", self.spread, 0.05..=3.0)?;
         let [low, high] = self.height_m;
         match 0.0 < low && low <= high && high.is_finite() {
             true => Ok(()),
-            false => Err(wrong(
-                at,
+            false => Err(invalid(
                 "trees.height_m",
                 "[least, greatest] above 0",
                 self.height_m,
@@ -53,21 +52,26 @@ impl Trees {
 /// Balls of a crown.
 const BALLS: u32 = 9;
 
-pub(in super::super) fn trees(wish: &Trees, seed: u64, bark: u32, foliage: u32) -> Vec<Part> {
+pub(in super::super) fn trees(
+    config: &Trees,
+    seed: u64,
+    bark: u32,
+    foliage: u32,
+) -> Vec<ObjectPart> {
     let mut draws = Draws::new(seed);
-    let ([x0, y0], [x1, y1]) = (wish.from_m, wish.to_m);
+    let ([x0, y0], [x1, y1]) = (config.from_m, config.to_m);
     let mut parts = Vec::new();
-    for _ in 0..wish.count {
+    for _ in 0..config.count {
         let foot_m = dvec3(draws.between([x0, x1]), draws.between([y0, y1]), 0.0);
-        let height = draws.between(wish.height_m);
-        let crown_m = 0.5 * wish.spread * height;
+        let height = draws.between(config.height_m);
+        let crown_m = 0.5 * config.spread * height;
         let trunk = Cylinder {
             radius_m: 0.02 * height + 0.03,
             bottom_m: 0.0,
             top_m: 0.7 * height,
             capped: false,
         };
-        parts.push(Part::new(trunk, Coat::One(bark)).moved(foot_m));
+        parts.push(ObjectPart::new(trunk, MaterialAssignment::One(bark)).moved(foot_m));
         for _ in 0..BALLS {
             let radius_m = crown_m * draws.between([0.42, 0.62]);
             let angle = draws.between([0.0, std::f64::consts::TAU]);
@@ -76,7 +80,8 @@ pub(in super::super) fn trees(wish: &Trees, seed: u64, bark: u32, foliage: u32) 
             let up = draws.between([0.34 * height + radius_m, height - radius_m]);
             let at_m = dvec3(out * angle.cos(), out * angle.sin(), up);
             let ball = Sphere { radius_m };
-            parts.push(Part::new(ball, Coat::One(foliage)).moved(foot_m + at_m));
+            parts
+                .push(ObjectPart::new(ball, MaterialAssignment::One(foliage)).moved(foot_m + at_m));
         }
     }
     parts

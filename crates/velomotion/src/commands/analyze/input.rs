@@ -13,7 +13,7 @@ use cloud::{Fields, Points, Sink, SinkError, TiltTrack};
 use glam::DVec3;
 use protocol::record::Wire;
 use scanner::{Accuracy, TiltSource};
-use sim::patterns::{Pattern, PatternError, Wish};
+use sim::patterns::{Pattern, PatternError, PatternRequest};
 
 use super::report::DeviceReport;
 use super::view::{Outside, Seen};
@@ -62,8 +62,8 @@ impl<'a> Named<'a> {
     /// # Errors
     /// [`Kind::Usage`] for patterns that cannot be, [`Kind::BadInput`] for files that are not there.
     pub fn new(argument: &'a str) -> Result<Self, Failure> {
-        if Wish::is_one(argument) {
-            let pattern = Wish::parse(argument).and_then(|wish| wish.build());
+        if PatternRequest::is_one(argument) {
+            let pattern = PatternRequest::parse(argument).and_then(|wish| wish.build());
             return Ok(Self::Pattern(Box::new(
                 pattern.map_err(|e| pattern_failure(&e))?,
             )));
@@ -135,18 +135,18 @@ fn of_pattern(pattern: &Pattern) -> Input {
 
 /// What the mount makes of the sensor of a pattern that is tilted.
 pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
-    let (settings, reach) = (pattern.settings(), pattern.reach());
-    let tilting = settings.tilting;
-    if tilting.speed_deg_s == 0.0 {
+    let (settings, range) = (pattern.settings(), pattern.range());
+    let tilt = settings.tilt;
+    if tilt.speed_deg_s == 0.0 {
         return None;
     }
     let device = Device {
-        reach_m: [reach.min_m, reach.max_m],
+        reach_m: [range.min_m, range.max_m],
         elevations_deg: pattern.elevations_deg(),
         d_m: settings.d_m,
         tilt_deg: [
-            tilting.from_deg.min(tilting.to_deg),
-            tilting.from_deg.max(tilting.to_deg),
+            tilt.from_deg.min(tilt.to_deg),
+            tilt.from_deg.max(tilt.to_deg),
         ],
     };
     let view = device.view();
@@ -155,7 +155,7 @@ pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
     Some(DeviceReport {
         view,
         mean_vertical_resolution_deg: vertical_resolution_deg(high - low, pattern.lasers(), frames),
-        tilt_per_turn_deg: tilting.speed_deg_s * 60.0 / settings.rpm,
+        tilt_per_turn_deg: tilt.speed_deg_s * 60.0 / settings.rpm,
     })
 }
 

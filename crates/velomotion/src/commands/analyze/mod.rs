@@ -23,7 +23,7 @@ use analysis::density::{
 use analysis::figures::SPHERE_M;
 use analysis::k::{self, Edges, Estimate, KCurve, Sampling, Turning};
 use glam::DVec3;
-use sim::patterns::{AXIS, Pattern, View};
+use sim::patterns::{AXIS, FieldOfView, Pattern};
 
 pub use report::{
     BinReport, Blind, Density, DeviceReport, Gaps, HoleReport, KReport, PatternReport, Report,
@@ -241,13 +241,13 @@ impl Measure {
     }
 
     /// Of each bin, whether its middle is in view.
-    fn in_view(&self, view: &View) -> Vec<bool> {
+    fn in_view(&self, view: &FieldOfView) -> Vec<bool> {
         let depths = self.places.iter().map(|place| view.depth_rad(*place));
         depths.map(|depth| depth >= 0.0).collect()
     }
 
     fn k(&self, input: &Input) -> Result<(KReport, Vec<String>), Failure> {
-        let turns = input.pattern.as_ref().and_then(Pattern::turns);
+        let turns = input.pattern.as_ref().and_then(Pattern::frame_rotation);
         let turning = turns.filter(|turns| turns.frames > 1).map(|turns| Turning {
             axis: turns.axis,
             step_rad: turns.step_rad,

@@ -11,7 +11,7 @@ use analysis::density::{Counts, DensityError, TOLERANCE_RAD, gaps, largest_hole_
 use analysis::tradeoff::front::front;
 use glam::DVec3;
 use serde::Serialize;
-use sim::patterns::{Pattern, Wish};
+use sim::patterns::{Pattern, PatternRequest};
 
 use super::input::pattern_failure;
 use super::text::number;
@@ -181,7 +181,8 @@ impl Sweep {
             );
             return Err(Failure::new(Kind::Usage, what).help(EXAMPLE));
         };
-        let wish = Wish::parse(name).map_err(|error| pattern_failure(&error).help(EXAMPLE))?;
+        let wish =
+            PatternRequest::parse(name).map_err(|error| pattern_failure(&error).help(EXAMPLE))?;
         // All are checked before the first is made.
         let patterns = self.patterns(&wish)?;
         let mut settings = Vec::with_capacity(patterns.len());
@@ -202,7 +203,7 @@ impl Sweep {
         })
     }
 
-    fn patterns(&self, wish: &Wish) -> Result<Vec<(Vec<f64>, Pattern)>, Failure> {
+    fn patterns(&self, wish: &PatternRequest) -> Result<Vec<(Vec<f64>, Pattern)>, Failure> {
         let all: usize = self.ranges.iter().map(|range| range.steps).product();
         (0..all)
             .map(|mut number| {

@@ -1,13 +1,13 @@
 //! What a scan can see: of patterns by their settings, of logs by their lidar, sweeps and mount. And whether a cloud's origin is in the cloud at all.
 //!
-//! Left out: the geometry of it, which is `sim`'s ([`View`]), and clouds: nothing in them says how they were scanned.
+//! Left out: the geometry of it, which is `sim`'s ([`FieldOfView`]), and clouds: nothing in them says how they were scanned.
 
 use cloud::TiltTrack;
 use glam::DVec3;
 use protocol::vlp16::Laser;
 use protocol::vlp16::models::ALL;
 use serde::Serialize;
-use sim::patterns::{Pattern, SPHERE_M, View};
+use sim::patterns::{FieldOfView, Pattern, SPHERE_M};
 
 use engine::reconstruct::report::ScanReport;
 
@@ -16,7 +16,7 @@ use engine::reconstruct::report::ScanReport;
 pub struct Seen {
     /// The directions.
     #[serde(skip)]
-    pub view: View,
+    pub view: FieldOfView,
     /// Lowest and highest laser above the sensor's own horizontal, degrees.
     pub elevations_deg: [f64; 2],
     /// Least and greatest tilt, degrees.
@@ -68,7 +68,7 @@ impl Seen {
         let elevations_deg = [low.elevation_deg, high.elevation_deg];
         let heights_m = [low, high].map(|laser| d_m + laser.vertical_offset_m);
         Some(Self {
-            view: View::new(elevations_deg, tilt_deg, heights_m, distance_m),
+            view: FieldOfView::new(elevations_deg, tilt_deg, heights_m, distance_m),
             elevations_deg,
             tilt_deg,
             d_m,

@@ -15,8 +15,9 @@ use protocol::epos2::{Frame, usb};
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use scanner::config::{AxisConfig, MountConfig};
 use scanner::{LidarConfig, ScanConfig, SweepPlan};
-use sim::scene_file::Scene;
-use sim::simulate::{Ask, Event, Out, Simulation, TruePoint};
+use sim::TruePoint;
+use sim::scene_file::SceneFile;
+use sim::simulate::{DriveRequest, Simulation, SimulationEvent, SimulationSink};
 use units::{Degrees, Gearing, Host, Lidar, Span, Stamp};
 
 use crate::terminal::Progress;
@@ -133,10 +134,10 @@ impl<'a> Log<'a> {
     }
 }
 
-impl Out for Log<'_> {
-    fn event(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+impl SimulationSink for Log<'_> {
+    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
         match *event {
-            Event::Datagram { at, port, payload } => {
+            SimulationEvent::Datagram { at, port, payload } => {
                 self.progress.ran((at - self.began).as_secs_f64());
                 self.last = at;
                 if self.interrupt.load(Ordering::Relaxed) {
@@ -156,20 +157,23 @@ impl Out for Log<'_> {
                     },
                 })
             }
-            Event::Request { at, ask } => {
-                let frame = self.gearing.map(|gearing| request(ask, gearing));
+            SimulationEvent::Request {
+                at,
+                request: drive_request,
+            } => {
+                let frame = self.gearing.map(|gearing| request(drive_request, gearing));
                 frame.map_or(ControlFlow::Continue(()), |frame| {
                     self.frame(at, Direction::ToDevice, &frame)
                 })
             }
-            Event::Answer {
+            SimulationEvent::Answer {
                 at,
-                ask,
+                request: drive_request,
                 position_qc,
             } => {
-                let answer = match ask {
-                    Ask::Position => ReadObject::answer(Ok(position_qc as u32)),
-                    Ask::Marker(which) => ReadObject::answer(Err(marker(which).1)),
+                let answer = match drive_request {
+                    DriveRequest::Position => ReadObject::answer(Ok(position_qc as u32)),
+                    DriveRequest::Probe(which) => ReadObject::answer(Err(marker(which).1)),
                     _ => WriteObject::answer(Ok(())),
                 };
                 self.frame(at, Direction::FromDevice, &answer)
@@ -222,7 +226,7 @@ fn rings(simulation: &Simulation) -> Vec<u8> {
 }
 
 /// Frame of a request to the drive.
-fn request(ask: Ask, gearing: Gearing) -> Frame {
+fn request(drive_request: DriveRequest, gearing: Gearing) -> Frame {
     let write = |address: Address, value: u32| {
         let write = WriteObject {
             node: NODE,
@@ -239,18 +243,22 @@ fn request(ask: Ask, gearing: Gearing) -> Frame {
         };
         read.to_frame()
     };
-    match ask {
-        Ask::Position => read(objects::POSITION_ACTUAL.address),
-        Ask::Marker(which) => read(marker(which).0),
-        Ask::Target(qc) => write(objects::TARGET_POSITION.address, qc as u32),
-        Ask::Speed(deg_s) => write(objects::PROFILE_VELOCITY.address, rpm(deg_s)),
-        Ask::Acceleration(deg_s2) => write(objects::PROFILE_ACCELERATION.address, rpm(deg_s2)),
-        Ask::Deceleration(deg_s2) => write(objects::PROFILE_DECELERATION.address, rpm(deg_s2)),
-        Ask::Ready => write(
+    match drive_request {
+        DriveRequest::Position => read(objects::POSITION_ACTUAL.address),
+        DriveRequest::Probe(which) => read(marker(which).0),
+        DriveRequest::Target(qc) => write(objects::TARGET_POSITION.address, qc as u32),
+        DriveRequest::Speed(deg_s) => write(objects::PROFILE_VELOCITY.address, rpm(deg_s)),
+        DriveRequest::Acceleration(deg_s2) => {
+            write(objects::PROFILE_ACCELERATION.address, rpm(deg_s2))
+        }
+        DriveRequest::Deceleration(deg_s2) => {
+            write(objects::PROFILE_DECELERATION.address, rpm(deg_s2))
+        }
+        DriveRequest::Ready => write(
             objects::CONTROLWORD.address,
             u32::from(control::ENABLE_OPERATION),
         ),
-        Ask::Go => write(
+        DriveRequest::Go => write(
             objects::CONTROLWORD.address,
             u32::from(control::ENABLE_OPERATION | NEW_SETPOINT | AT_ONCE),
         ),
@@ -269,7 +277,7 @@ const NEW_SETPOINT: u16 = 0x0010;
 const AT_ONCE: u16 = 0x0020;
 
 /// Configuration stored in the log.
-pub(super) fn scan_config(scene: &Scene, gearing: Option<Gearing>) -> ScanConfig {
+pub(super) fn scan_config(scene: &SceneFile, gearing: Option<Gearing>) -> ScanConfig {
     let simulation = &scene.simulation;
     let step_m = f64::from(simulation.sensor.model().distance_unit_mm()) * 1e-3;
     let axis = gearing.map_or_else(AxisConfig::default, |gearing| AxisConfig {
@@ -281,7 +289,7 @@ pub(super) fn scan_config(scene: &Scene, gearing: Option<Gearing>) -> ScanConfig
         device: "simulate".to_owned(),
         simulated: true,
         mount: MountConfig {
-            d_m: simulation.mount.at_m.z,
+            d_m: simulation.mount.position_m.z,
         },
         lidar: LidarConfig {
             range_sd_m: step_m / f64::sqrt(12.0),
@@ -294,7 +302,7 @@ pub(super) fn scan_config(scene: &Scene, gearing: Option<Gearing>) -> ScanConfig
 
 /// The planned sweeps of the motion.
 fn plan(simulation: &Simulation) -> Option<SweepPlan> {
-    let sweeps = || simulation.motion.legs().iter().filter(|leg| leg.sweep);
+    let sweeps = || simulation.motion.moves().iter().filter(|next| next.sweep);
     let first = sweeps().next()?;
     let speed = first.cruise_deg_s.abs();
     Some(SweepPlan {

@@ -16,9 +16,10 @@ use glam::{DMat3, DVec2};
 use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
 use serde::Serialize;
-use sim::effects::{Effects, Explanation, OnFirings, Stopwatch};
-use sim::scene_file::{SHIPPED, Scene};
-use sim::simulate::{SimulateError, Summary};
+use sim::effect_models::Explanation;
+use sim::effects::{Effects, FiringEffectSet, Stopwatch};
+use sim::scene_file::{SHIPPED, SceneFile};
+use sim::simulate::{SimulateError, SimulationSummary};
 use units::Metres;
 
 use super::CommandOutput;
@@ -183,7 +184,12 @@ fn nanoseconds() -> u64 {
 ///
 /// # Errors
 /// [`Kind::BadInput`] with the line.
-pub fn read(name: &str, text: &str, seed: Option<u64>, clock: Stopwatch) -> Result<Scene, Failure> {
+pub fn read(
+    name: &str,
+    text: &str,
+    seed: Option<u64>,
+    clock: Stopwatch,
+) -> Result<SceneFile, Failure> {
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     let mut meshes = |file: &str| {
         let path = folder.join(file);
@@ -193,7 +199,7 @@ pub fn read(name: &str, text: &str, seed: Option<u64>, clock: Stopwatch) -> Resu
         }
         std::fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))
     };
-    Scene::parse_with(text, seed, clock, &mut meshes).map_err(|error| {
+    SceneFile::parse_with(text, seed, clock, &mut meshes).map_err(|error| {
         Failure::new(Kind::BadInput, format!("scene {name}, {error}"))
             .help("correct the scene file there; docs: Scenes")
     })
@@ -214,7 +220,10 @@ fn stem(name: &str) -> &str {
 ///
 /// # Errors
 /// [`Failure`] without a log.
-pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Failure>), Failure> {
+pub fn make(
+    mut scene: SceneFile,
+    request: Request<'_>,
+) -> Result<(Report, Option<Failure>), Failure> {
     let Request {
         name,
         log: path,
@@ -226,7 +235,7 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
         progress,
     } = request;
     let gearing = scene.simulation.polls.map(|polls| {
-        use sim::effects::Encoder;
+        use sim::effects::EncoderEffect;
         let encoder = &scene.effects.effects.encoder;
         encoder.gearing().unwrap_or(polls.gearing)
     });
@@ -270,7 +279,7 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
     // Separate instances, so that a scene without effects pays nothing for them.
     let summary = match scene.effects.is_none() {
         true => {
-            let mut none = Effects::<OnFirings>::default();
+            let mut none = Effects::<FiringEffectSet>::default();
             scene.simulation.run(&mut none, threads, &mut out)
         }
         false => {
@@ -287,7 +296,7 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
         let lines: Vec<_> = lines.map(|asked| (asked.name, asked.line)).collect();
         let busy_ns = took.as_nanos().saturating_mul(threads.get() as u128);
         let busy_ns = u64::try_from(busy_ns).unwrap_or(u64::MAX);
-        Explanation::new(&scene.effects.effects.used(), &lines, busy_ns)
+        Explanation::new(&scene.effects.effects.usage(), &lines, busy_ns)
     });
     let report = Report {
         effects,
@@ -313,8 +322,8 @@ pub fn make(mut scene: Scene, request: Request<'_>) -> Result<(Report, Option<Fa
 }
 
 impl Report {
-    fn new(scene: String, summary: &Summary, took: Duration) -> Self {
-        let (duration_s, took_s) = (summary.lasted.as_secs_f64(), took.as_secs_f64());
+    fn new(scene: String, summary: &SimulationSummary, took: Duration) -> Self {
+        let (duration_s, took_s) = (summary.duration.as_secs_f64(), took.as_secs_f64());
         Self {
             scene,
             seed: 0,
@@ -398,13 +407,13 @@ impl Report {
 }
 
 /// Mount settings of the scene that a log cannot store: its rotation and horizontal offset.
-fn beyond_the_log(scene: &Scene) -> Option<String> {
+fn beyond_the_log(scene: &SceneFile) -> Option<String> {
     let mount = &scene.simulation.mount;
-    let told = mount.turn == DMat3::IDENTITY && mount.at_m.truncate() == DVec2::ZERO;
+    let told = mount.rotation == DMat3::IDENTITY && mount.position_m.truncate() == DVec2::ZERO;
     (!told).then(|| {
         format!(
             "a log stores only the height of the mount, {} m: replay ignores the scene's position_m and rotation_deg, the truth includes them",
-            mount.at_m.z
+            mount.position_m.z
         )
     })
 }

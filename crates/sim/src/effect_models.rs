@@ -1,0 +1,162 @@
+//! The effects, one file each, and the configuration that a scene file's `[effects]` maps to.
+//!
+//! Effects act in the order of [`EffectsConfig`], whatever the file's order: light before noise, the
+//! servo before the gear. A new effect needs a file and a line in the list below.
+
+/// Implements what the effects have in common: the name, the reason for inactivity, and the settings
+/// that add the effect to its list.
+macro_rules! effect {
+    ($effect:ident, $settings:ident, $($list:ident).+: $pointer:ident, $name:literal,
+     idle: $idle:literal, $(needs: $needs:expr,)? new: $new:expr) => {
+        impl $effect {
+            /// The key in the scene file's `[effects]`.
+            pub const NAME: &'static str = $name;
+        }
+
+        impl crate::effects::Effect for $effect {
+            fn name(&self) -> &'static str {
+                Self::NAME
+            }
+
+            $(fn needs(&self) -> crate::effects::Needs {
+                let needs: fn(&Self) -> crate::effects::Needs = $needs;
+                needs(self)
+            })?
+
+            fn idle_reason(&self) -> &'static str {
+                $idle
+            }
+        }
+
+        impl super::settings::EffectSettings for $settings {
+            fn add(
+                &self,
+                seed: u64,
+                stopwatch: crate::effects::Stopwatch,
+                effects: &mut crate::effects::ConfiguredEffects,
+            ) -> Result<(), super::settings::InvalidSetting> {
+                let new: fn(&Self, u64) -> Result<$effect, super::settings::InvalidSetting> = $new;
+                let effect = $pointer::new(new(self, seed)?);
+                effects.$($list).+.push(crate::effects::Listed::new(effect, stopwatch));
+                Ok(())
+            }
+        }
+    };
+}
+
+mod backlash;
+mod batching;
+mod divergence;
+mod duplicate;
+mod encoder_quantisation;
+mod explain;
+mod gear_ripple;
+mod lidar_clock;
+mod light;
+mod limited_field_of_view;
+mod link_jitter;
+mod loss;
+mod moving_objects;
+mod own_shadow;
+mod range_noise;
+mod reflectance;
+mod reorder;
+mod returns;
+mod selection;
+mod servo_lag;
+mod settings;
+#[cfg(test)]
+mod testing;
+mod tilt_limits;
+mod weather;
+
+use serde::Deserialize;
+
+use crate::effects::{ConfiguredEffects, Stopwatch};
+use settings::EffectSettings;
+
+pub use self::{
+    backlash::{Backlash, BacklashSettings},
+    batching::{Batching, BatchingSettings},
+    divergence::{Divergence, DivergenceSettings},
+    duplicate::{Duplicate, DuplicateSettings},
+    encoder_quantisation::{EncoderQuantisation, EncoderQuantisationSettings},
+    explain::{EffectExplanation, Explanation},
+    gear_ripple::{GearRippleSettings, UnevenGear},
+    lidar_clock::{DriftingClock, LidarClockSettings},
+    limited_field_of_view::{LimitedFieldOfView, LimitedFieldOfViewSettings},
+    link_jitter::{LinkJitter, LinkJitterSettings},
+    loss::{Loss, LossSettings},
+    moving_objects::{Mover, MovingBox, MovingObjects, MovingObjectsSettings},
+    own_shadow::{OwnShadow, OwnShadowSettings, ShadowSector},
+    range_noise::{RangeNoise, RangeNoiseSettings},
+    reflectance::{Reflectance, ReflectanceSettings},
+    reorder::{Reorder, ReorderSettings},
+    servo_lag::{ServoLag, ServoLagSettings},
+    settings::InvalidSetting,
+    tilt_limits::{TiltLimits, TiltLimitsSettings},
+    weather::{Weather, WeatherSettings},
+};
+
+macro_rules! effects_config {
+    ($($name:ident: $settings:ty,)*) => {
+        /// `[effects]`: one table per configured effect.
+        #[derive(Clone, Debug, Default, Deserialize)]
+        #[serde(deny_unknown_fields, default)]
+        pub struct EffectsConfig {
+            $(#[doc = concat!("`[effects.", stringify!($name), "]`.")]
+            pub $name: Option<$settings>,)*
+        }
+
+        impl EffectsConfig {
+            /// All names, in the order in which effects act.
+            pub const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
+
+            /// Names of the configured effects, in the order in which they act.
+            pub fn configured(&self) -> impl Iterator<Item = &'static str> {
+                let names = [$(self.$name.is_some().then_some(stringify!($name))),*];
+                names.into_iter().flatten()
+            }
+
+            /// Creates the configured effects for a run with `seed`. `stopwatch` measures their cost.
+            ///
+            /// # Errors
+            /// [`InvalidSetting`] for the first setting that is invalid.
+            pub fn build(
+                &self,
+                seed: u64,
+                stopwatch: Stopwatch,
+            ) -> Result<ConfiguredEffects, InvalidSetting> {
+                let mut effects = ConfiguredEffects::default();
+                $(if let Some(settings) = &self.$name {
+                    settings.add(seed, stopwatch, &mut effects)?;
+                })*
+                Ok(effects)
+            }
+        }
+    };
+}
+
+effects_config! {
+    limited_field_of_view: LimitedFieldOfViewSettings,
+    own_shadow: OwnShadowSettings,
+    moving_objects: MovingObjectsSettings,
+    divergence: DivergenceSettings,
+    weather: WeatherSettings,
+    reflectance: ReflectanceSettings,
+    range_noise: RangeNoiseSettings,
+    lidar_clock: LidarClockSettings,
+    servo_lag: ServoLagSettings,
+    tilt_limits: TiltLimitsSettings,
+    gear_ripple: GearRippleSettings,
+    backlash: BacklashSettings,
+    encoder_quantisation: EncoderQuantisationSettings,
+    duplicate: DuplicateSettings,
+    loss: LossSettings,
+    link_jitter: LinkJitterSettings,
+    reorder: ReorderSettings,
+    batching: BatchingSettings,
+}
+
+#[cfg(test)]
+mod tests;

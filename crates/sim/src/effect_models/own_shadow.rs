@@ -1,0 +1,170 @@
+//! View: parts of the scanner block its view. Its frame hides azimuths of the lidar, at all tilts
+//! or at some; its base hides everything below.
+//!
+//! A hidden beam fires but never returns, because the frame is nearer than the minimum range (1 m,
+//! 63-9243). Sectors are in the lidar's own azimuths, as the frame tilts with it. Scattered light
+//! of the frame is not included.
+
+use crate::effects::ViewEffect;
+use crate::firing::Firing;
+use std::sync::Arc;
+
+use serde::Deserialize;
+
+use super::settings::{InvalidSetting, SettingCheck};
+
+/// `[effects.own_shadow]`.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct OwnShadowSettings {
+    /// Sectors that the frame hides.
+    pub sectors: Vec<ShadowSector>,
+    /// Beams below this angle to the horizon in the frame of the base are hidden, degrees; absent:
+    /// none.
+    pub below_deg: Option<f64>,
+}
+
+/// A hidden part of the view.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ShadowSector {
+    /// Azimuth of its begin, 0 to 360 degrees, clockwise.
+    pub azimuth_from_deg: f64,
+    /// Azimuth of its end, exclusive; across 0 where it is less than the begin.
+    pub azimuth_to_deg: f64,
+    /// Lowest tilt at which it is hidden, degrees; default -360.
+    #[serde(default = "all_the_way_down")]
+    pub tilt_from_deg: f64,
+    /// Highest tilt, degrees; default 360.
+    #[serde(default = "all_the_way_up")]
+    pub tilt_to_deg: f64,
+}
+
+const fn all_the_way_down() -> f64 {
+    -360.0
+}
+
+const fn all_the_way_up() -> f64 {
+    360.0
+}
+
+/// The scanner's shadow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnShadow {
+    sectors: Vec<ShadowSector>,
+    /// Sine of the elevation below which beams are hidden.
+    below: Option<f64>,
+}
+
+impl OwnShadow {
+    /// With these settings.
+    ///
+    /// # Errors
+    /// [`InvalidSetting`] for angles out of range.
+    pub fn new(settings: &OwnShadowSettings) -> Result<Self, InvalidSetting> {
+        let check = SettingCheck(Self::NAME);
+        for sector in &settings.sectors {
+            check.within("azimuth_from_deg", sector.azimuth_from_deg, 0.0..=360.0)?;
+            check.within("azimuth_to_deg", sector.azimuth_to_deg, 0.0..=360.0)?;
+            check.within("tilt_from_deg", sector.tilt_from_deg, -360.0..=360.0)?;
+            let tilts = sector.tilt_from_deg..=360.0;
+            check.within("tilt_to_deg", sector.tilt_to_deg, tilts)?;
+        }
+        let below = match settings.below_deg {
+            Some(deg) => Some(check.within("below_deg", deg, -90.0..=90.0)?),
+            None => None,
+        };
+        Ok(Self {
+            sectors: settings.sectors.clone(),
+            below: below.map(|deg| deg.to_radians().sin()),
+        })
+    }
+}
+
+impl ShadowSector {
+    fn hides(&self, azimuth_deg: f64, tilt_deg: f64) -> bool {
+        let width_deg = (self.azimuth_to_deg - self.azimuth_from_deg).rem_euclid(360.0);
+        (self.tilt_from_deg..=self.tilt_to_deg).contains(&tilt_deg)
+            && (azimuth_deg - self.azimuth_from_deg).rem_euclid(360.0) < width_deg
+    }
+}
+
+effect! {
+    OwnShadow, OwnShadowSettings, firings.view: Arc, "own_shadow",
+    idle: "no beam goes where the scanner stands in its way",
+    new: |settings, _| OwnShadow::new(settings)
+}
+
+impl ViewEffect for OwnShadow {
+    fn hide(&self, firing: &mut Firing) -> u32 {
+        let before = firing.alive;
+        let (azimuth, tilt) = (firing.azimuth_deg, firing.tilt.angle_deg);
+        if self
+            .sectors
+            .iter()
+            .any(|sector| sector.hides(azimuth, tilt))
+        {
+            firing.alive = 0;
+        } else if let Some(below) = self.below {
+            let lasers = firing.directions.iter().enumerate().take(firing.lasers);
+            let hidden = lasers.filter(|(_, direction)| direction.z < below);
+            firing.alive &= !hidden.fold(0, |bits, (laser, _)| bits | 1 << laser);
+        }
+        (before & !firing.alive).count_ones()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect_models::testing::firing;
+
+    #[test]
+    fn a_sector_hides_its_azimuths_at_its_tilts() {
+        let sector = ShadowSector {
+            azimuth_from_deg: 350.0,
+            azimuth_to_deg: 10.0,
+            tilt_from_deg: -45.0,
+            tilt_to_deg: -30.0,
+        };
+        let shadow = OwnShadow::new(&OwnShadowSettings {
+            sectors: vec![sector],
+            below_deg: None,
+        })
+        .unwrap();
+        for (azimuth, tilt, hidden) in [
+            (350.0, -40.0, 16),
+            (0.0, -30.0, 16),
+            (9.9, -45.0, 16),
+            (10.0, -40.0, 0),
+            (180.0, -40.0, 0),
+            (0.0, -29.9, 0),
+        ] {
+            let mut firing = firing(azimuth, tilt);
+            assert_eq!(shadow.hide(&mut firing), hidden, "{azimuth} {tilt}");
+            assert_eq!(firing.alive.count_ones(), 16 - hidden);
+        }
+    }
+
+    #[test]
+    fn what_it_stands_on_hides_what_is_below() {
+        let shadow = OwnShadow::new(&OwnShadowSettings {
+            sectors: Vec::new(),
+            below_deg: Some(-40.0),
+        })
+        .unwrap();
+        // Level: no beam is below -15 degrees. At -45 degrees of tilt the beams to one side go down
+        // 30 to 60 degrees.
+        assert_eq!(shadow.hide(&mut firing(90.0, 0.0)), 0);
+        let mut steep = firing(270.0, -45.0);
+        let lower = |firing: &Firing| {
+            let down = |laser: &usize| firing.directions[*laser].z < (-40.0_f64).to_radians().sin();
+            firing.alive().filter(down).count()
+        };
+        let hidden = lower(&steep) as u32 + lower(&firing(90.0, -45.0)) as u32;
+        let mut other = firing(90.0, -45.0);
+        assert!(hidden > 8);
+        assert_eq!(shadow.hide(&mut steep) + shadow.hide(&mut other), hidden);
+        assert_eq!(lower(&steep), 0);
+    }
+}

@@ -1,0 +1,213 @@
+//! What rays meet: the only place where the simulation calls the ray caster.
+//!
+//! Static objects are cast for a whole packet at once (`batch`), moving objects per firing; the
+//! nearer counts. Effects cast further rays one by one ([`Surroundings::meet`]) or several from one
+//! origin ([`Surroundings::meet_fan`]); the results are the same, bit for bit. Each thread has its
+//! own surroundings, in which moving objects are placed.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::body::Body;
+use super::echo::{Echo, Echoes};
+use super::{Firing, batch};
+use crate::cast::Hit;
+use crate::scene::Scene;
+use crate::scenery::Material;
+use crate::sensor::DetectionRange;
+
+/// The scene around the scanner at the moment.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    pub(super) scene: Arc<Scene>,
+    pub(super) range: DetectionRange,
+    pub(super) normals: bool,
+    /// Whether nothing ever moves.
+    pub(super) is_static: bool,
+    bodies: Vec<Body>,
+}
+
+/// The surface that a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// Distance, metres.
+    pub range_m: f64,
+    /// Calibrated reflectivity: 0..=100 diffuse, above that retroreflecting.
+    pub reflectivity: f64,
+    /// The surface's normal, length 1, on either side; 0 where no effect needs it.
+    pub normal: DVec3,
+    /// Share of specularly reflected light, 0..=1. The normal decides whether it comes back.
+    pub specular: f64,
+}
+
+/// The first surface along a ray, whether it returns or not.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FirstSurface {
+    pub met: Met,
+    /// Whether nothing comes back.
+    absorbing: bool,
+}
+
+impl FirstSurface {
+    #[inline]
+    pub fn new(hit: &Hit<DVec3>, material: &Material) -> Self {
+        Self {
+            met: Met {
+                range_m: hit.range_m,
+                reflectivity: f64::from(material.reflectivity),
+                normal: hit.normal,
+                specular: material.specular,
+            },
+            absorbing: material.absorbing,
+        }
+    }
+
+    /// The first surface of a scene no farther than `max_m`.
+    pub fn of_scene(
+        scene: &Scene,
+        origin_m: DVec3,
+        direction: DVec3,
+        max_m: f64,
+        normals: bool,
+    ) -> Option<Self> {
+        if normals {
+            let (hit, material) = scene.nearest::<DVec3>(origin_m, direction, max_m)?;
+            return Some(Self::new(&hit, material));
+        }
+        let (hit, material) = scene.nearest::<()>(origin_m, direction, max_m)?;
+        Some(Self::new(&hit.with_normal(DVec3::ZERO), material))
+    }
+}
+
+impl Surroundings {
+    /// A scene within a sensor's range; `is_static` if nothing in it ever moves.
+    pub(crate) const fn new(scene: Arc<Scene>, range: DetectionRange, is_static: bool) -> Self {
+        Self {
+            scene,
+            range,
+            normals: false,
+            is_static,
+            bodies: Vec::new(),
+        }
+    }
+
+    /// The same with or without normals of surfaces.
+    pub(crate) fn with_normals(self, normals: bool) -> Self {
+        Self { normals, ..self }
+    }
+
+    /// The sensor's range of detection.
+    #[must_use]
+    pub const fn range(&self) -> DetectionRange {
+        self.range
+    }
+
+    /// The first surface within the sensor's range along a ray from `origin_m` in `direction` (length
+    /// 1), in the frame of the base. A nearer surface blocks the ray.
+    #[must_use]
+    pub fn meet(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+        let first = self.first_static(origin_m, direction);
+        self.with_moving(origin_m, direction, first)
+    }
+
+    /// As [`Surroundings::meet`], without moving objects.
+    #[must_use]
+    pub fn meet_static(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+        self.returning(self.first_static(origin_m, direction)?)
+    }
+
+    /// As [`Surroundings::meet`] for each direction, up to the length of the shorter list.
+    pub fn meet_fan(&self, origin_m: DVec3, directions: &[DVec3], mets: &mut [Option<Met>]) {
+        batch::fan(self, origin_m, directions, &mut |ray, first| {
+            if let (Some(met), Some(direction)) = (mets.get_mut(ray), directions.get(ray)) {
+                *met = self.with_moving(origin_m, *direction, first);
+            }
+        });
+    }
+
+    /// As [`Surroundings::meet_static`] for each direction, up to the length of the shorter list.
+    pub fn meet_fan_static(&self, origin_m: DVec3, directions: &[DVec3], mets: &mut [Option<Met>]) {
+        batch::fan(self, origin_m, directions, &mut |ray, first| {
+            if let Some(met) = mets.get_mut(ray) {
+                *met = first.and_then(|first| self.returning(first));
+            }
+        });
+    }
+
+    /// The static surfaces that all lasers of consecutive firings meet; there are no second returns,
+    /// and none for lasers that do not fire.
+    pub(crate) fn meet_all(&self, firings: &[Firing], echoes: &mut [Echoes]) {
+        batch::firings(self, firings, echoes);
+    }
+
+    /// Replaces static surfaces, as [`Surroundings::meet_all`] found them, by moving ones before them.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn meet_bodies(&self, firing: &Firing, echoes: &mut Echoes) {
+        let lasers = echoes.strongest.iter_mut().zip(&echoes.static_m);
+        let rays = firing.origins_m.iter().zip(&firing.directions);
+        for (laser, ((echo, max_m), (origin, direction))) in lasers.zip(rays).enumerate() {
+            if firing.is_alive(laser)
+                && let Some(first) = self.first_moving(*origin, *direction, *max_m)
+            {
+                *echo = Echo::from_met(self.returning(first));
+            }
+        }
+    }
+
+    /// Whether a moving object may be within a cone about a ray, `half_width` radians (well below 1)
+    /// from its axis to its side. May be true without one.
+    #[must_use]
+    pub fn may_move_near(&self, origin_m: DVec3, direction: DVec3, half_width: f64) -> bool {
+        let near = |body: &Body| body.may_be_near(origin_m, direction, half_width);
+        self.bodies.iter().any(near)
+    }
+
+    /// The moving objects at their present positions. Empty unless an effect fills it.
+    pub const fn bodies_mut(&mut self) -> &mut Vec<Body> {
+        &mut self.bodies
+    }
+
+    /// What returns of the first static surface, or of a moving one before it.
+    #[inline]
+    fn with_moving(
+        &self,
+        origin_m: DVec3,
+        direction: DVec3,
+        first: Option<FirstSurface>,
+    ) -> Option<Met> {
+        if self.bodies.is_empty() {
+            return self.returning(first?);
+        }
+        let max_m = first.map_or(self.range.max_m, |first| first.met.range_m);
+        let moving = self.first_moving(origin_m, direction, max_m);
+        self.returning(moving.or(first)?)
+    }
+
+    /// What returns of the first surface: nothing if it is too near or absorbing.
+    #[inline]
+    pub(super) fn returning(&self, first: FirstSurface) -> Option<Met> {
+        let returns = first.met.range_m >= self.range.min_m && !first.absorbing;
+        returns.then_some(first.met)
+    }
+
+    fn first_static(&self, origin_m: DVec3, direction: DVec3) -> Option<FirstSurface> {
+        let max_m = self.range.max_m;
+        FirstSurface::of_scene(&self.scene, origin_m, direction, max_m, self.normals)
+    }
+
+    /// The first moving surface no farther than `max_m`.
+    fn first_moving(&self, origin_m: DVec3, direction: DVec3, max_m: f64) -> Option<FirstSurface> {
+        let mut nearest: Option<FirstSurface> = None;
+        for body in &self.bodies {
+            let max_m = nearest.map_or(max_m, |first| first.met.range_m);
+            if let Some(first) = body.first(origin_m, direction, max_m, self.normals)
+                && nearest.is_none_or(|nearest| first.met.range_m < nearest.met.range_m)
+            {
+                nearest = Some(first);
+            }
+        }
+        nearest
+    }
+}

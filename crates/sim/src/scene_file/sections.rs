@@ -1,0 +1,316 @@
+//! `[sensor]`, `[motion]`, `[mount]` and `[drive]`.
+
+use std::ops::RangeInclusive;
+
+use glam::DVec3;
+use serde::Deserialize;
+use units::Gearing;
+
+use crate::motion::{AxisMotion, MotionError, Sweeps};
+use crate::packet_maker::HeadRotation;
+use crate::scenery::rotation;
+use crate::sensor::{DetectionRange, LidarMount, LidarSensor, ReturnMode};
+use crate::simulate::Polls;
+
+/// An invalid value.
+#[derive(Debug)]
+pub(super) struct InvalidValue {
+    /// Its keys, joined by dots.
+    pub path: String,
+    /// What is wrong with it.
+    pub what: String,
+}
+
+pub(super) fn invalid(path: impl Into<String>, what: impl Into<String>) -> InvalidValue {
+    InvalidValue {
+        path: path.into(),
+        what: what.into(),
+    }
+}
+
+/// `[sensor]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct SensorSection {
+    model: SensorName,
+    /// Number of the only active laser in firing order; absent: all.
+    only_laser: Option<usize>,
+    /// Whether all lasers of a firing start from one point at one instant.
+    ideal: bool,
+    /// Range of detection, metres; absent: the model's.
+    range_m: Option<[f64; 2]>,
+    returns: ReturnsName,
+    /// Revolutions per minute.
+    rpm: u32,
+    /// Azimuth of the first firing, degrees.
+    start_deg: f64,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum SensorName {
+    #[default]
+    Vlp16,
+    HiRes,
+    Hdl32e,
+    Vlp32c,
+    SingleBeam,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum ReturnsName {
+    #[default]
+    Strongest,
+    Last,
+    Dual,
+}
+
+/// Up to twice the maximum of real heads (63-9243: 300 to 1200).
+const RPM: RangeInclusive<u32> = 1..=2_400;
+
+impl Default for SensorSection {
+    fn default() -> Self {
+        Self {
+            model: SensorName::default(),
+            only_laser: None,
+            ideal: false,
+            range_m: None,
+            returns: ReturnsName::default(),
+            rpm: 600,
+            start_deg: 0.0,
+        }
+    }
+}
+
+impl SensorSection {
+    pub fn build(&self) -> Result<(LidarSensor, ReturnMode, HeadRotation), InvalidValue> {
+        let mut sensor = match self.model {
+            SensorName::Vlp16 => LidarSensor::vlp16(),
+            SensorName::HiRes => LidarSensor::hi_res(),
+            SensorName::Hdl32e => LidarSensor::hdl32e(),
+            SensorName::Vlp32c => LidarSensor::vlp32c(),
+            SensorName::SingleBeam => LidarSensor::single_beam(),
+        };
+        if let Some(laser) = self.only_laser {
+            sensor = sensor.only(laser);
+            if sensor.used() == 0 {
+                let what = format!("expected a laser of this sensor, got {laser}");
+                return Err(invalid("sensor.only_laser", what));
+            }
+        }
+        if self.ideal {
+            sensor = sensor.ideal();
+        }
+        if let Some([min_m, max_m]) = self.range_m {
+            if !(0.0 <= min_m && min_m < max_m && max_m.is_finite()) {
+                let what = format!("expected 0 <= from < to in metres, got {min_m} and {max_m}");
+                return Err(invalid("sensor.range_m", what));
+            }
+            sensor = sensor.with_range(DetectionRange { min_m, max_m });
+        }
+        let returns = match self.returns {
+            ReturnsName::Strongest => ReturnMode::Strongest,
+            ReturnsName::Last => ReturnMode::Last,
+            ReturnsName::Dual => ReturnMode::Dual,
+        };
+        let (rpm, start_deg) = (self.rpm, self.start_deg);
+        if !RPM.contains(&rpm) {
+            let what = format!("expected 1 to 2400 revolutions per minute, got {rpm}");
+            return Err(invalid("sensor.rpm", what));
+        }
+        finite("sensor.start_deg", "an azimuth in degrees", start_deg)?;
+        Ok((sensor, returns, HeadRotation { rpm, start_deg }))
+    }
+}
+
+/// `[motion]`. The keys of each kind are checked here, because serde would lose the line.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MotionSection {
+    kind: MotionKind,
+    /// Fixed: the angle, degrees.
+    angle_deg: Option<f64>,
+    /// Fixed: the duration, seconds.
+    duration_s: Option<f64>,
+    /// Sweeps: the first angle, degrees.
+    from_deg: Option<f64>,
+    /// Sweeps: the last angle, degrees.
+    to_deg: Option<f64>,
+    /// Sweeps: speed, degrees per second.
+    speed_deg_s: Option<f64>,
+    /// Sweeps: acceleration; absent: infinite, as in ideal scan patterns.
+    accel_deg_s2: Option<f64>,
+    /// Sweeps: their number.
+    count: Option<u32>,
+    /// Sweeps: whether the way back is a sweep too.
+    both_ways: Option<bool>,
+    /// Sweeps: rest before, between and after, seconds.
+    rest_s: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum MotionKind {
+    Fixed,
+    Sweeps,
+}
+
+/// Time to poll the drive at rest and to command it, seconds.
+const REST_S: f64 = 0.1;
+
+impl MotionSection {
+    pub fn build(&self) -> Result<AxisMotion, InvalidValue> {
+        let motion = match self.kind {
+            MotionKind::Fixed => self.fixed()?,
+            MotionKind::Sweeps => self.sweeps()?,
+        };
+        motion.map_err(|error| {
+            let key = match error {
+                MotionError::TooManySweeps { .. } => "count",
+                MotionError::Number { key, .. } => key,
+            };
+            invalid(format!("motion.{key}"), error.to_string())
+        })
+    }
+
+    fn fixed(&self) -> Result<Result<AxisMotion, MotionError>, InvalidValue> {
+        reject(
+            "an axis that stands has no such key",
+            &[
+                ("from_deg", self.from_deg.is_some()),
+                ("to_deg", self.to_deg.is_some()),
+                ("speed_deg_s", self.speed_deg_s.is_some()),
+                ("accel_deg_s2", self.accel_deg_s2.is_some()),
+                ("count", self.count.is_some()),
+                ("both_ways", self.both_ways.is_some()),
+                ("rest_s", self.rest_s.is_some()),
+            ],
+        )?;
+        let duration_s = required(self.duration_s, "duration_s")?;
+        let angle_deg = self.angle_deg.unwrap_or(0.0);
+        Ok(AxisMotion::fixed(angle_deg, duration_s))
+    }
+
+    fn sweeps(&self) -> Result<Result<AxisMotion, MotionError>, InvalidValue> {
+        reject(
+            "sweeps have no such key: their duration follows from the speed",
+            &[
+                ("angle_deg", self.angle_deg.is_some()),
+                ("duration_s", self.duration_s.is_some()),
+            ],
+        )?;
+        let both_ways = self.both_ways.unwrap_or(false);
+        let sweeps = Sweeps {
+            from_deg: required(self.from_deg, "from_deg")?,
+            to_deg: required(self.to_deg, "to_deg")?,
+            speed_deg_s: required(self.speed_deg_s, "speed_deg_s")?,
+            accel_deg_s2: self.accel_deg_s2,
+            count: self.count.unwrap_or(if both_ways { 2 } else { 1 }),
+            both_ways,
+            rest_s: self.rest_s.unwrap_or(REST_S),
+        };
+        if sweeps.count == 0 {
+            let what = "count: expected one sweep or more, got 0";
+            return Err(invalid("motion.count", what));
+        }
+        Ok(AxisMotion::sweeps(&sweeps))
+    }
+}
+
+/// Rejects the first of these keys of `[motion]` that is present.
+fn reject(why: &str, keys: &[(&str, bool)]) -> Result<(), InvalidValue> {
+    match keys.iter().find(|(_, present)| *present) {
+        Some((key, _)) => Err(invalid(format!("motion.{key}"), why)),
+        None => Ok(()),
+    }
+}
+
+fn required(value: Option<f64>, key: &str) -> Result<f64, InvalidValue> {
+    value.ok_or_else(|| invalid("motion", format!("[motion] lacks {key}")))
+}
+
+/// `[mount]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct MountSection {
+    /// Height of the lidar's origin above the tilt axis, metres (d of Eq. 4-6).
+    d_m: f64,
+    /// Offset from that, metres in the frame of the platform: x right, y along the axis, z up.
+    position_m: [f64; 3],
+    /// Rotation about x, then y, then z of the platform, degrees.
+    rotation_deg: [f64; 3],
+}
+
+impl MountSection {
+    pub fn build(&self) -> Result<LidarMount, InvalidValue> {
+        finite("mount.d_m", "a height in metres", self.d_m)?;
+        for (path, three) in [
+            ("mount.position_m", self.position_m),
+            ("mount.rotation_deg", self.rotation_deg),
+        ] {
+            if !three.iter().all(|number| number.is_finite()) {
+                let what = format!("expected three numbers, got {three:?}");
+                return Err(invalid(path, what));
+            }
+        }
+        let mut mount = LidarMount::above(self.d_m);
+        mount.position_m += DVec3::from_array(self.position_m);
+        mount.rotation = rotation(self.rotation_deg);
+        Ok(mount)
+    }
+}
+
+/// `[drive]`: the polling of the drive. The encoder is ideal unless an effect replaces it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct DriveSection {
+    /// Requests per second.
+    poll_hz: f64,
+    /// From a request to its answer, milliseconds.
+    answer_ms: f64,
+}
+
+impl Default for DriveSection {
+    fn default() -> Self {
+        Self {
+            poll_hz: 400.0,
+            answer_ms: 1.0,
+        }
+    }
+}
+
+/// An ideal encoder: 30,000 lines behind 12,000:1 are 2.5e-7 degrees per count and 0.0005 deg/s per
+/// rpm, and 32 bits of counts hold 536 degrees.
+const IDEAL_ENCODER: Gearing = match Gearing::new(30_000, 12_000, 1) {
+    Ok(gearing) => gearing,
+    Err(_) => unreachable!(),
+};
+
+impl DriveSection {
+    pub fn build(&self) -> Result<Polls, InvalidValue> {
+        let (poll_hz, answer_ms) = (self.poll_hz, self.answer_ms);
+        for (path, got, range, unit) in [
+            ("drive.poll_hz", poll_hz, 0.1..=20_000.0, "polls per second"),
+            ("drive.answer_ms", answer_ms, 0.0..=10_000.0, "milliseconds"),
+        ] {
+            if !range.contains(&got) {
+                let (low, high) = (range.start(), range.end());
+                let what = format!("expected {low} to {high} {unit}, got {got}");
+                return Err(invalid(path, what));
+            }
+        }
+        Ok(Polls {
+            period_ns: (1e9 / poll_hz).round() as i64,
+            answer_ns: (answer_ms * 1e6).round() as i64,
+            gearing: IDEAL_ENCODER,
+        })
+    }
+}
+
+fn finite(path: &str, what: &str, got: f64) -> Result<(), InvalidValue> {
+    match got.is_finite() {
+        true => Ok(()),
+        false => Err(invalid(path, format!("expected {what}, got {got}"))),
+    }
+}

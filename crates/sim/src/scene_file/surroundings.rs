@@ -1,0 +1,68 @@
+//! `scene`, `[materials]` and `[[objects]]`: what surrounds the scanner.
+
+use std::sync::Arc;
+
+use super::{SHIPPED, SceneFileError, Sections};
+use crate::effect_models::Mover;
+use crate::scene::Scene;
+use crate::scenery::{Scenery, ScenerySections, line_of_value, shipped};
+
+type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
+
+/// The static scene and the moving objects.
+#[derive(Debug, Default)]
+pub(super) struct SceneObjects {
+    pub scene: Arc<Scene>,
+    pub movers: Vec<Mover>,
+    /// The line of the first moving object.
+    pub first_mover_line: Option<usize>,
+}
+
+pub(super) fn build(
+    text: &str,
+    file: Sections,
+    seed: u64,
+    files: Files<'_>,
+) -> Result<SceneObjects, SceneFileError> {
+    let error = |line: usize, what: String| SceneFileError { line, what };
+    let own = ScenerySections {
+        materials: file.materials,
+        objects: file.objects,
+    };
+    let (line, scenery) = match file.scene {
+        None if own.objects.is_empty() => return Ok(SceneObjects::default()),
+        None => (1, Scenery::new(text, own)),
+        Some(name) => {
+            let line = line_of_value(text, "scene");
+            if !own.objects.is_empty() {
+                let what = "expected either a scene or objects of the file itself, got both";
+                return Err(error(line, what.to_owned()));
+            }
+            let Some(text) = shipped(&name) else {
+                let known = SHIPPED.map(|(name, _)| name).join(", ");
+                let what = format!("expected a known scene ({known}), got {name:?}");
+                return Err(error(line, what));
+            };
+            (line, Scenery::parse(text))
+        }
+    };
+    let placed = scenery
+        .and_then(|scenery| scenery.place(seed, files))
+        .map_err(|invalid| error(invalid.at().line, invalid.what()))?;
+    let (fixed, moving) = (placed.divided()).map_err(|invalid| error(line, invalid.to_string()))?;
+    let scene = Scene::of(fixed).map_err(|invalid| error(line, invalid.to_string()))?;
+    let mut objects = SceneObjects {
+        scene: Arc::new(scene),
+        first_mover_line: moving.first().map(|(moving, _)| moving.at.line),
+        ..SceneObjects::default()
+    };
+    for (moving, body) in moving {
+        let scene = Scene::of(body);
+        let scene = scene.map_err(|invalid| error(moving.at.line, invalid.to_string()))?;
+        objects.movers.push(Mover {
+            scene: Arc::new(scene),
+            travel: moving.travel,
+        });
+    }
+    Ok(objects)
+}

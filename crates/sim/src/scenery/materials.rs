@@ -1,0 +1,94 @@
+//! Materials, and their assignment to objects.
+
+use super::error::{InvalidField, invalid, within};
+use super::moving::Moving;
+use super::objects::MaterialTable;
+use crate::cast::{CastError, Caster, Object};
+
+/// A material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Its name in the scene.
+    pub name: String,
+    /// Calibrated reflectivity as the VLP-16 reports it (63-9243): 0..=100 the percentage of diffusely
+    /// reflected light, 101..=255 retroreflecting.
+    pub reflectivity: u8,
+    /// Share of specularly reflected light, 0..=1.
+    pub specular: f64,
+    /// Whether nothing comes back of a beam, as of an opening.
+    pub absorbing: bool,
+}
+
+impl Material {
+    /// The material of objects without one.
+    #[must_use]
+    pub fn plain() -> Self {
+        Self {
+            name: String::new(),
+            reflectivity: 50,
+            specular: 0.0,
+            absorbing: false,
+        }
+    }
+
+    pub(super) fn new(name: String, table: &MaterialTable) -> Result<Self, InvalidField> {
+        within("specular", table.specular, 0.0..=1.0)?;
+        if table.reflectivity.is_none() && !table.absorbing {
+            let field = format!("materials.{name}");
+            let expected = "reflectivity, or absorbing = true";
+            return Err(invalid(field, expected, "neither"));
+        }
+        Ok(Self {
+            reflectivity: table.reflectivity.unwrap_or(0),
+            specular: table.specular,
+            absorbing: table.absorbing,
+            name,
+        })
+    }
+}
+
+/// The material of an object, by its index among the materials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MaterialAssignment {
+    /// One material for all surfaces.
+    One(u32),
+    /// One for each face of a box: -x, +x, -y, +y, -z, +z.
+    Faces([u32; 6]),
+}
+
+/// A scene to cast rays at: its objects and, by the same index, their materials.
+#[derive(Clone, Debug, Default)]
+pub struct Placed {
+    /// The objects.
+    pub objects: Vec<Object>,
+    /// The material of each object.
+    pub assignments: Vec<MaterialAssignment>,
+    /// All materials.
+    pub materials: Vec<Material>,
+    /// The moving objects.
+    pub moving: Vec<Moving>,
+    /// The line of the scene file of each object.
+    pub lines: Vec<usize>,
+}
+
+impl Placed {
+    /// The material at a hit, by the index of the object and its primitive (see
+    /// [`crate::cast::Hit`]).
+    #[inline]
+    #[must_use]
+    pub fn material(&self, object: usize, primitive: u32) -> Option<&Material> {
+        let number = match self.assignments.get(object)? {
+            MaterialAssignment::One(number) => number,
+            MaterialAssignment::Faces(faces) => faces.get(primitive as usize)?,
+        };
+        self.materials.get(*number as usize)
+    }
+
+    /// The objects as a caster.
+    ///
+    /// # Errors
+    /// [`CastError`] for invalid geometry.
+    pub fn caster(&self) -> Result<Caster, CastError> {
+        Caster::new(self.objects.iter().cloned())
+    }
+}

@@ -1,0 +1,232 @@
+//! Lidar models: direction, origin and time of each laser, and the range of detection.
+//!
+//! The tables are the simulator's own, laser by laser, so that a receiver's tables that agree are
+//! evidence. A single-beam 2D scanner is a sensor with one active laser ([`LidarSensor::only`]).
+
+mod tables;
+
+pub use firmware_sim::vlp16::{PacketModel, ReturnMode};
+use glam::{DMat3, DVec3};
+
+/// The most lasers of any sensor.
+pub const MAX_LASERS: usize = 32;
+
+/// One laser, in firing order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaserBeam {
+    /// Angle above the sensor's horizontal, degrees.
+    pub elevation_deg: f64,
+    /// Height of the rays' origin above the sensor's origin, metres.
+    pub origin_m: f64,
+    /// Offset from the azimuth of the firing, degrees.
+    pub azimuth_deg: f64,
+    /// Delay after the beginning of the firing, nanoseconds.
+    pub delay_ns: i64,
+}
+
+/// Distances at which a sensor detects surfaces, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DetectionRange {
+    /// A nearer surface blocks the beam without a return.
+    pub min_m: f64,
+    /// A farther surface does not return.
+    pub max_m: f64,
+}
+
+/// A lidar model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LidarSensor {
+    model: PacketModel,
+    beams: Vec<LaserBeam>,
+    /// Active lasers, one bit each.
+    used: u32,
+    range: DetectionRange,
+}
+
+/// Mounting of the lidar on the tilt axis: from its own frame (x right, y forward, z up) to the
+/// platform's, whose y is the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LidarMount {
+    /// Rotation.
+    pub rotation: DMat3,
+    /// Position of the lidar's origin, metres.
+    pub position_m: DVec3,
+}
+
+impl LidarMount {
+    /// Upright, its origin `d_m` metres above the axis (d of Eq. 4-6).
+    #[must_use]
+    pub const fn above(d_m: f64) -> Self {
+        Self {
+            rotation: DMat3::IDENTITY,
+            position_m: DVec3::new(0.0, 0.0, d_m),
+        }
+    }
+}
+
+impl LidarSensor {
+    /// VLP-16 and Puck LITE (manual 63-9243): 16 lasers from -15 to 15 degrees, 1 to 100 m.
+    #[must_use]
+    pub fn vlp16() -> Self {
+        Self::new(PacketModel::Vlp16, tables::vlp16(), 100.0)
+    }
+
+    /// Puck Hi-Res (manual 63-9243): 16 lasers from -10 to 10 degrees, 1 to 100 m.
+    #[must_use]
+    pub fn hi_res() -> Self {
+        Self::new(PacketModel::PuckHiRes, tables::hi_res(), 100.0)
+    }
+
+    /// HDL-32E (its manual; drawing 86-0106 revision B): 32 lasers from -30.67 to 10.67 degrees, 1 to
+    /// 70 m as in the paper's Table 3.
+    #[must_use]
+    pub fn hdl32e() -> Self {
+        Self::new(PacketModel::Hdl32e, tables::hdl32e(), 70.0)
+    }
+
+    /// VLP-32C (manual 63-9325): 32 lasers from -25 to 15 degrees, 1 to 200 m.
+    #[must_use]
+    pub fn vlp32c() -> Self {
+        Self::new(PacketModel::Vlp32c, tables::vlp32c(), 200.0)
+    }
+
+    /// A 2D scanner: a VLP-16 of which only laser 14 is active, 1 degree below level. Its packets are
+    /// those of a VLP-16 whose other lasers never return, so any reader places its points correctly.
+    #[must_use]
+    pub fn single_beam() -> Self {
+        Self::vlp16().only(14)
+    }
+
+    /// The same sensor with one active laser, by its number in firing order. Laser 15 of the HDL-32E
+    /// is exactly level.
+    #[must_use]
+    pub fn only(mut self, laser: usize) -> Self {
+        let bit = u32::try_from(laser)
+            .ok()
+            .and_then(|laser| 1_u32.checked_shl(laser));
+        self.used &= bit.unwrap_or(0);
+        self
+    }
+
+    /// The same sensor as theoretical scan patterns have it: all lasers of a firing start from one
+    /// point, at one azimuth and one instant.
+    #[must_use]
+    pub fn ideal(mut self) -> Self {
+        for beam in &mut self.beams {
+            beam.origin_m = 0.0;
+            beam.azimuth_deg = 0.0;
+            beam.delay_ns = 0;
+        }
+        self
+    }
+
+    fn new(model: PacketModel, beams: Vec<LaserBeam>, max_m: f64) -> Self {
+        let used = u32::MAX >> (MAX_LASERS - beams.len().clamp(1, MAX_LASERS));
+        let range = DetectionRange { min_m: 1.0, max_m };
+        Self {
+            model,
+            beams,
+            used,
+            range,
+        }
+    }
+
+    /// The same sensor with another range of detection, limited by its packets.
+    #[must_use]
+    pub fn with_range(self, range: DetectionRange) -> Self {
+        Self { range, ..self }
+    }
+
+    /// The packet format.
+    #[must_use]
+    pub const fn model(&self) -> PacketModel {
+        self.model
+    }
+
+    /// The lasers in firing order.
+    #[must_use]
+    pub fn beams(&self) -> &[LaserBeam] {
+        &self.beams
+    }
+
+    /// The active lasers, one bit each, bit 0 for the first.
+    #[must_use]
+    pub const fn used(&self) -> u32 {
+        self.used
+    }
+
+    /// The range of detection, at most the largest distance of the packets.
+    #[must_use]
+    pub fn range(&self) -> DetectionRange {
+        let wire_m = f64::from(u16::MAX) * f64::from(self.model.distance_unit_mm()) * 1e-3;
+        DetectionRange {
+            min_m: self.range.min_m,
+            max_m: self.range.max_m.min(wire_m),
+        }
+    }
+
+    /// Origin (metres) and direction (length 1) of a laser's ray in the frame of the platform's base:
+    /// origin on the tilt axis, x right, y forward, z up. `azimuth_deg` is the head's azimuth when the
+    /// laser fires; `None` where there is no such laser.
+    ///
+    /// The plain definition of a ray, a composition of rigid motions: the direction is raised about x
+    /// by the elevation and rotated about the vertical by the azimuth (clockwise seen from above, y
+    /// to x), the head is moved onto its mount, and the platform tilts about y (z to x).
+    #[must_use]
+    pub fn ray(
+        &self,
+        laser: usize,
+        azimuth_deg: f64,
+        tilt_deg: f64,
+        mount: &LidarMount,
+    ) -> Option<(DVec3, DVec3)> {
+        let beam = self.beams.get(laser)?;
+        let head = DMat3::from_rotation_z(-(azimuth_deg + beam.azimuth_deg).to_radians());
+        let platform = DMat3::from_rotation_y(tilt_deg.to_radians());
+        let raised = DMat3::from_rotation_x(beam.elevation_deg.to_radians()) * DVec3::Y;
+        let origin_m = mount.rotation * (beam.origin_m * DVec3::Z) + mount.position_m;
+        Some((
+            platform * origin_m,
+            platform * (mount.rotation * (head * raised)),
+        ))
+    }
+}
+
+/// The lasers of a rotating head relative to the azimuth of the first, constant over all firings.
+#[derive(Clone, Debug)]
+pub(crate) struct RayTable {
+    /// Directions when the first laser fires at azimuth 0, the rotation during the delay included.
+    pub directions: [DVec3; MAX_LASERS],
+    /// Heights of the origins, metres.
+    pub heights_m: [f64; MAX_LASERS],
+    /// Delays after the first laser, seconds.
+    pub delays_s: [f64; MAX_LASERS],
+    pub count: usize,
+}
+
+impl RayTable {
+    /// The rays of a head that rotates at `deg_per_s`.
+    pub fn new(sensor: &LidarSensor, deg_per_s: f64) -> Self {
+        let mut rays = Self {
+            directions: [DVec3::Y; MAX_LASERS],
+            heights_m: [0.0; MAX_LASERS],
+            delays_s: [0.0; MAX_LASERS],
+            count: sensor.beams.len().min(MAX_LASERS),
+        };
+        let directions = rays.directions.iter_mut();
+        let places = directions.zip(&mut rays.heights_m).zip(&mut rays.delays_s);
+        for (((direction, height_m), delay_s), beam) in places.zip(&sensor.beams) {
+            *delay_s = beam.delay_ns as f64 * 1e-9;
+            *height_m = beam.origin_m;
+            let ahead_deg = beam.azimuth_deg + deg_per_s * *delay_s;
+            // Raised about x, rotated clockwise about the vertical.
+            *direction = DMat3::from_rotation_z(-ahead_deg.to_radians())
+                * DMat3::from_rotation_x(beam.elevation_deg.to_radians())
+                * DVec3::Y;
+        }
+        rays
+    }
+}
+
+#[cfg(test)]
+mod tests;
