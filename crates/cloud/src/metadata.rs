@@ -29,7 +29,7 @@ impl Metadata {
     pub fn lines(&self) -> Vec<String> {
         let mut text = Vec::new();
         if self.simulated {
-            text.push("SIMULATED: simulated devices, not a real scan".to_owned());
+            text.push("SIMULATED: software devices, not a scan of anything real".to_owned());
         }
         let named = [
             ("software", &self.software),
