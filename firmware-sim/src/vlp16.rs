@@ -49,8 +49,8 @@ pub const TURN_CDEG: u16 = 36_000;
 /// Microseconds of an hour: timestamps are below this.
 pub const HOUR_US: u32 = 3_600_000_000;
 
-/// The returns of one firing sequence, laser 0 first: distance in units of 2 mm (0 for no return) and
-/// calibrated reflectivity (0..=100 diffuse, above that retroreflective).
+/// The returns of one firing sequence, laser 0 first: distance in units of 2 mm (0 for no return)
+/// and calibrated reflectivity (0..=100 diffuse, above that retroreflective).
 pub type Returns = [(u16, u8); LASERS];
 
 /// Bytes of a block: flag, azimuth, 32 channels.
@@ -82,7 +82,8 @@ mod tests {
 
     #[test]
     fn the_manuals_arithmetic() {
-        // 63-9243, "Firing sequence timing": 24 sequences of 55.296 us fill a packet in 1327.104 us, 754 packets a second.
+        // 63-9243, "Firing sequence timing": 24 sequences of 55.296 us fill a packet in 1327.104
+        // us, 754 packets a second.
         assert_eq!(24 * 55_296, PACKET_PERIOD_NS);
         assert_eq!(16 * 2_304 + 18_432, 55_296);
         assert_eq!(

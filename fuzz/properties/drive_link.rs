@@ -1,10 +1,12 @@
-//! The drive's client on a bad link: a script says what is started, how far time goes, and what is delivered, late, lost or forged.
+//! The drive's client on a bad link: a script says what is started, how far time goes, and what is
+//! delivered, late, lost or forged.
 //!
-//! Behind the link is the simulated unit. A sample must have been carried by the bytes that completed it, whatever those
-//! were; and as long as nothing was forged, it must be where the shaft was at a time between its stamps, even though requests and
-//! answers are lost and late. So that one look cannot be taken for another, each may see a position of its own ([`Marks`]). A listener that
-//! looks on must not say otherwise. Left out: bytes that a line flips by itself, as a script finds the
-//! one flip in 65536 that a checksum misses.
+//! Behind the link is the simulated unit. A sample must have been carried by the bytes that
+//! completed it, whatever those were; and as long as nothing was forged, it must be where the shaft
+//! was at a time between its stamps, even though requests and answers are lost and late. So that
+//! one look cannot be taken for another, each may see a position of its own ([`Marks`]). A listener
+//! that looks on must not say otherwise. Left out: bytes that a line flips by itself, as a script
+//! finds the one flip in 65536 that a checksum misses.
 
 use std::collections::VecDeque;
 
@@ -112,8 +114,9 @@ impl World {
         }
     }
 
-    /// How long bytes may be under way in one direction. The client counts on it: on USB it expects no answer after two
-    /// seconds, on RS232 none after a quiet of 20 ms, on CAN none to a SYNC of 100 ms ago.
+    /// How long bytes may be under way in one direction. The client counts on it: on USB it expects
+    /// no answer after two seconds, on RS232 none after a quiet of 20 ms, on CAN none to a SYNC of
+    /// 100 ms ago.
     fn patience(&self) -> Span {
         Span::from_millis(match self.link {
             DriveLink::Usb => 900,
@@ -286,7 +289,8 @@ impl World {
             .extend(said.into_iter().map(|bytes| (self.now, bytes)));
     }
 
-    /// The host reads up to `len` bytes of what is next, or on CAN, whose frames come whole, all of it.
+    /// The host reads up to `len` bytes of what is next, or on CAN, whose frames come whole, all of
+    /// it.
     fn reach_host(&mut self, len: usize) {
         let all = len == usize::MAX;
         while let Some((since, mut bytes)) = self.to_host.pop_front() {

@@ -1,7 +1,8 @@
 //! The listener on a log of anything: records of any link, direction, content and time.
 //!
-//! It says at most what the records can carry: a sample's stamps are those of a record to the drive and of one from it (the one at
-//! hand, but on RS232 that of the announcement), and its value is in the bytes that came from it.
+//! It says at most what the records can carry: a sample's stamps are those of a record to the drive
+//! and of one from it (the one at hand, but on RS232 that of the announcement), and its value is in
+//! the bytes that came from it.
 
 use std::collections::BTreeSet;
 

@@ -1,6 +1,8 @@
-//! Positions that no two looks share: what the unit says of its shaft is replaced by a number that counts the looks.
+//! Positions that no two looks share: what the unit says of its shaft is replaced by a number that
+//! counts the looks.
 //!
-//! A shaft at rest hides an answer that was taken for another's; a number does not. Left out: everything else that the unit says.
+//! A shaft at rest hides an answer that was taken for another's; a number does not. Left out:
+//! everything else that the unit says.
 
 use protocol::canopen::sdo::{Answer as SdoAnswer, Expedited, Initiate};
 use protocol::canopen::{CanFrame, Channel, NodeId, PdoNumber};

@@ -1,4 +1,5 @@
-//! Reads a fuzz input front to back as numbers and byte strings; beyond its end everything is zero or empty.
+//! Reads a fuzz input front to back as numbers and byte strings; beyond its end everything is zero
+//! or empty.
 
 /// The rest of an input.
 #[derive(Clone, Copy, Debug)]

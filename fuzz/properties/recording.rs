@@ -1,5 +1,6 @@
-//! Recordings of any bytes: reading ends, says how, yields no more than the file holds, and counts all of it. How the bytes arrive is
-//! no matter, and a file cut off in the middle says the same up to there.
+//! Recordings of any bytes: reading ends, says how, yields no more than the file holds, and counts
+//! all of it. How the bytes arrive is no matter, and a file cut off in the middle says the same up
+//! to there.
 
 use std::io::Read;
 

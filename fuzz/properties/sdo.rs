@@ -1,5 +1,5 @@
-//! SDO on both ends: the client takes only what answers its question, the simulated unit answers what it is asked, and both survive any
-//! frame of the bus at any time.
+//! SDO on both ends: the client takes only what answers its question, the simulated unit answers
+//! what it is asked, and both survive any frame of the bus at any time.
 
 use firmware_sim::epos2::{CanServer, Node, NodeConfig, UsbServer};
 use protocol::canopen::sdo::{
@@ -20,7 +20,8 @@ use super::input::Input;
 const ROOM: usize = 24;
 const TIMEOUT: Span = Span::from_millis(20);
 
-/// Mode 0: the client and a script of answers. 1: the unit and any frames. Else the client and the unit, beside its USB side.
+/// Mode 0: the client and a script of answers. 1: the unit and any frames. Else the client and the
+/// unit, beside its USB side.
 pub fn holds(data: &[u8]) {
     let mut input = Input::new(data);
     match input.u8() % 3 {
@@ -322,7 +323,8 @@ impl Asked {
 fn server(input: &mut Input<'_>) {
     let mut node = Node::new(NodeConfig::default());
     let mut server = CanServer::new();
-    // Other services may be put on the identifier of the answers; from there on they cannot be told apart.
+    // Other services may be put on the identifier of the answers; from there on they cannot be told
+    // apart.
     let mut told_apart = true;
     while !input.is_empty() {
         match input.u8() % 4 {
@@ -444,7 +446,8 @@ fn ask(node: &mut Node, server: &mut CanServer, request: &Request, told_apart: &
     }
 }
 
-/// The client and the unit with nothing between them: each object is what the unit's USB side says it is.
+/// The client and the unit with nothing between them: each object is what the unit's USB side says
+/// it is.
 fn dialogue(input: &mut Input<'_>) {
     let mut node = Node::new(NodeConfig::default());
     let mut server = CanServer::new();

@@ -1,6 +1,6 @@
-//! EPOS2 frames on serial lines: what is encoded decodes to itself, noise costs at most one frame, the simulated unit answers with whole
-//! frames whatever it is told, and client and listener keep to what passed on the wire ([`super::drive_link`],
-//! [`super::drive_log`]).
+//! EPOS2 frames on serial lines: what is encoded decodes to itself, noise costs at most one frame,
+//! the simulated unit answers with whole frames whatever it is told, and client and listener keep
+//! to what passed on the wire ([`super::drive_link`], [`super::drive_log`]).
 
 use firmware_sim::epos2::{Node, NodeConfig, Rs232Server, UsbServer};
 use protocol::epos2::message::{Answer, Request};
@@ -55,7 +55,8 @@ fn usb_bytes(bytes: &[u8]) {
     }
 }
 
-/// Whatever a frame holds, reading it as a message ends well, and an answer is written as it was read.
+/// Whatever a frame holds, reading it as a message ends well, and an answer is written as it was
+/// read.
 fn read_message(frame: &Frame) {
     if let Ok(answer) = Answer::parse(frame) {
         assert_eq!(answer.to_frame(), *frame);
@@ -68,7 +69,8 @@ fn read_message(frame: &Frame) {
     }
 }
 
-/// Noise may end in the first half of a pair and so swallow the beginning of one frame, never of two.
+/// Noise may end in the first half of a pair and so swallow the beginning of one frame, never of
+/// two.
 fn usb_frame_behind_noise(input: &mut Input<'_>) {
     let frame = frame(input);
     let whole = usb::to_bytes(&frame);
@@ -82,7 +84,8 @@ fn usb_frame_behind_noise(input: &mut Input<'_>) {
     }
 }
 
-/// Any bytes as bodies of one opcode: a frame is the bytes it came from, and what is none is passed over.
+/// Any bytes as bodies of one opcode: a frame is the bytes it came from, and what is none is passed
+/// over.
 fn rs232_bytes(input: &mut Input<'_>) {
     let opcode = input.u8();
     let bytes = input.rest();

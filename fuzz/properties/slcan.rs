@@ -1,5 +1,5 @@
-//! SLCAN lines in both directions, and the simulated adapter: what was decoded encodes to itself, noise never costs a frame
-//! behind a CR, and every command has its answer.
+//! SLCAN lines in both directions, and the simulated adapter: what was decoded encodes to itself,
+//! noise never costs a frame behind a CR, and every command has its answer.
 
 use firmware_sim::epos2::{Node, NodeConfig, SlcanServer};
 use protocol::canopen::slcan::{CommandDecoder, ReplyDecoder, SlcanCommand, SlcanReply};
@@ -7,7 +7,8 @@ use protocol::canopen::slcan::{CommandDecoder, ReplyDecoder, SlcanCommand, Slcan
 use super::can_frames::frame;
 use super::input::Input;
 
-/// Mode 0: any bytes to both decoders. 1: a frame behind any bytes. Else the adapter with a unit behind it.
+/// Mode 0: any bytes to both decoders. 1: a frame behind any bytes. Else the adapter with a unit
+/// behind it.
 pub fn holds(data: &[u8]) {
     let mut input = Input::new(data);
     match input.u8() % 3 {

@@ -1,5 +1,5 @@
-//! The data packet and the decoder: whatever packets come in whatever order, their firings come out in the order of time, within the
-//! circle, and every packet is accounted for.
+//! The data packet and the decoder: whatever packets come in whatever order, their firings come out
+//! in the order of time, within the circle, and every packet is accounted for.
 
 use std::collections::BTreeSet;
 
@@ -208,7 +208,8 @@ impl Decoding {
             self.untold += u64::from(!self.fired.contains(&first.start.as_nanos()));
             assert!(self.untold <= self.untimed, "{first:?}");
         }
-        // Within a packet, and from packet to packet. Packets that overlap (two sensors on one port) interleave.
+        // Within a packet, and from packet to packet. Packets that overlap (two sensors on one
+        // port) interleave.
         let mut ascending = seen.iter().zip(seen.iter().skip(1));
         assert!(ascending.all(|(a, b)| a.start < b.start), "{seen:?}");
         if let Some(first) = seen.first() {

@@ -1,4 +1,5 @@
-//! The position packet: what is read is what stands there, whatever stands there; a sentence's time is read a second way.
+//! The position packet: what is read is what stands there, whatever stands there; a sentence's time
+//! is read a second way.
 
 use firmware_sim::vlp16::position_packet;
 use lidar::{Decoder, Options};
@@ -7,8 +8,8 @@ use units::Stamp;
 
 use super::input::Input;
 
-/// Mode 0: any payload, read a second way and counted once. 1: a packet of our own making, read back. 2: any sentence with a checksum
-/// that holds. Else a sentence of any date and time.
+/// Mode 0: any payload, read a second way and counted once. 1: a packet of our own making, read
+/// back. 2: any sentence with a checksum that holds. Else a sentence of any date and time.
 pub fn holds(data: &[u8]) {
     let mut input = Input::new(data);
     match input.u8() % 4 {

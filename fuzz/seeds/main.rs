@@ -1,6 +1,8 @@
-//! Writes the first inputs of every target to `corpus/TARGET`, made by our own encoders and simulated devices.
+//! Writes the first inputs of every target to `corpus/TARGET`, made by our own encoders and
+//! simulated devices.
 //!
-//! `cargo run --release --bin seeds` in this directory; what is there already stays. Nothing here is a recording of anybody's.
+//! `cargo run --release --bin seeds` in this directory; what is there already stays. Nothing here
+//! is a recording of anybody's.
 
 mod recording;
 mod sdo;

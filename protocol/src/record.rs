@@ -1,10 +1,10 @@
-//! One piece of wire traffic with the host time at which it passed: what a log is made of.
+//! Records of a log: wire traffic with its host time.
 //!
-//! Everything after the log is a pure function of its records in their order.
+//! All processing after the log is a pure function of its records in their order.
 
 use units::{Host, Stamp};
 
-/// Which way drive traffic went.
+/// Direction of drive traffic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// From the host to the device.
@@ -13,25 +13,26 @@ pub enum Direction {
     FromDevice,
 }
 
-/// How the drive is attached; says how the bytes of a drive record are framed.
+/// Connection of the drive; it determines the framing of drive records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriveLink {
-    /// EPOS2 USB frames (`90 02 ...`), one whole frame a record.
+    /// EPOS2 USB frames (`90 02 ...`), one per record.
     Usb,
     /// EPOS2 RS232 frames and their handshake bytes.
     Rs232,
-    /// CANopen: one SocketCAN `struct can_frame` (16 bytes, id big-endian as in LINKTYPE_CAN_SOCKETCAN) a record.
+    /// CANopen: one SocketCAN `struct can_frame` per record (16 bytes, id big-endian as in
+    /// LINKTYPE_CAN_SOCKETCAN).
     Can,
 }
 
-/// What passed on one of the two interfaces.
+/// Traffic of one of the two interfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
     /// A UDP datagram from the lidar.
     Lidar {
-        /// IPv4 address it came from, network order.
+        /// Source IPv4 address, network order.
         source: [u8; 4],
-        /// UDP port it was sent to (2368 data, 8308 position, unless configured otherwise).
+        /// Destination UDP port (by default 2368 data, 8308 position).
         port: u16,
         /// The UDP payload.
         payload: &'a [u8],
@@ -40,7 +41,7 @@ pub enum Wire<'a> {
     Drive {
         /// How the bytes are framed.
         link: DriveLink,
-        /// Which way they went.
+        /// Its direction.
         direction: Direction,
         /// One frame as on the wire, stuffing included.
         frame: &'a [u8],
@@ -50,8 +51,9 @@ pub enum Wire<'a> {
 /// One record of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Record<'a> {
-    /// For the lidar the kernel's receive time; for the drive when the frame was handed to, or wholly read from, the port.
+    /// For the lidar the kernel's receive time; for the drive the time at which the frame was
+    /// passed to the port, or read completely.
     pub host: Stamp<Host>,
-    /// What passed.
+    /// The traffic.
     pub wire: Wire<'a>,
 }

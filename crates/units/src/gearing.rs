@@ -1,4 +1,4 @@
-//! Motor-side integers (quadcounts, rpm) and the gearing that turns them into degrees of tilt.
+//! Motor-side integers (quadcounts, rpm) and the gearing that converts them to degrees of tilt.
 
 use core::fmt;
 
@@ -24,7 +24,7 @@ pub struct Gearing {
     axis_turns: u32,
 }
 
-/// A gearing that cannot exist, or a quantity that does not fit the drive's integers.
+/// An impossible gearing, or a quantity that exceeds the drive's integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GearingError {
     /// One of the gearing's numbers is zero.
@@ -51,7 +51,8 @@ impl fmt::Display for GearingError {
 impl core::error::Error for GearingError {}
 
 impl Gearing {
-    /// A gear of `motor_turns` : `axis_turns` behind an encoder of `encoder_lines` lines per turn.
+    /// A gear of `motor_turns` : `axis_turns` after an encoder of `encoder_lines` lines per
+    /// revolution.
     ///
     /// # Errors
     /// [`GearingError::Zero`] if any of the three is zero or the encoder has more than 2^30 lines.
@@ -70,13 +71,13 @@ impl Gearing {
         })
     }
 
-    /// Quadcounts in one turn of the motor.
+    /// Quadcounts in one revolution of the motor.
     #[must_use]
     pub const fn qc_per_motor_turn(self) -> u32 {
         self.qc_per_turn
     }
 
-    /// Turns of the motor for so many turns of the axis, as they were given: `[120, 1]` is 120:1.
+    /// The gear ratio as given, motor first: `[120, 1]` is 120:1.
     #[must_use]
     pub const fn turns(self) -> [u32; 2] {
         [self.motor_turns, self.axis_turns]
@@ -89,7 +90,7 @@ impl Gearing {
             / (f64::from(self.qc_per_turn) * f64::from(self.motor_turns))
     }
 
-    /// Degrees per second of tilt in one rpm of the motor (0.05 behind 120:1).
+    /// Degrees per second of tilt in one rpm of the motor (0.05 with a gear of 120:1).
     #[must_use]
     pub fn deg_s_per_rpm(self) -> f64 {
         6.0 * f64::from(self.axis_turns) / f64::from(self.motor_turns)
@@ -120,7 +121,7 @@ impl Gearing {
         DegPerS(f64::from(speed.0) * self.deg_s_per_rpm())
     }
 
-    /// The whole motor rpm nearest to a tilt rate's magnitude; 0 for what is not a number.
+    /// The whole motor rpm nearest to the magnitude of a tilt rate; 0 for NaN.
     #[must_use]
     pub fn rpm(self, rate: DegPerS) -> Rpm {
         Rpm(round(rate.0.abs() / self.deg_s_per_rpm()) as u32)
@@ -132,7 +133,7 @@ impl Gearing {
         DegPerS2(f64::from(acceleration.0) * self.deg_s_per_rpm())
     }
 
-    /// The whole motor rpm/s nearest to a tilt acceleration's magnitude; 0 for what is not a number.
+    /// The whole motor rpm/s nearest to the magnitude of a tilt acceleration; 0 for NaN.
     #[must_use]
     pub fn rpm_per_s(self, acceleration: DegPerS2) -> RpmPerS {
         RpmPerS(round(acceleration.0.abs() / self.deg_s_per_rpm()) as u32)

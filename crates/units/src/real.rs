@@ -1,10 +1,11 @@
-//! What formulas ask of numbers, so that one formula serves a single point and a register full of them.
+//! The arithmetic that formulas need, so that one formula serves a single point and a SIMD
+//! register.
 //!
-//! Left out: any function beyond sums and products. Those are the same to the bit however many numbers go at a time.
+//! Only sums and products: they are bit-identical for one value and for several.
 
 use core::ops::{Add, Mul, Sub};
 
-/// An `f64`, or several of them with which one computes as with one.
+/// An `f64`, or a register of several.
 pub trait Real:
     Copy
     + Add<Output = Self>

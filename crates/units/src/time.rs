@@ -17,13 +17,13 @@ pub enum Host {}
 
 /// An instant of clock `C` in nanoseconds since that clock's epoch.
 ///
-/// Stamps of different clocks do not compare or subtract; only a clock model turns one into another.
+/// Stamps of different clocks do not compare or subtract; only a clock model converts between them.
 pub struct Stamp<C> {
     ns: i64,
     clock: PhantomData<fn() -> C>,
 }
 
-/// A signed length of time in nanoseconds.
+/// A signed duration in nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
     ns: i64,
@@ -51,13 +51,13 @@ impl<C> Stamp<C> {
         self.ns as f64 * 1e-9
     }
 
-    /// This instant moved by `span`, held at the ends of the range instead of wrapping.
+    /// This instant moved by `span`, saturating.
     #[must_use]
     pub const fn saturating_add(self, span: Span) -> Self {
         Self::from_nanos(self.ns.saturating_add(span.ns))
     }
 
-    /// The time from `earlier` to this instant, held at the ends of the range instead of wrapping.
+    /// The time from `earlier` to this instant, saturating.
     #[must_use]
     pub const fn saturating_since(self, earlier: Self) -> Span {
         Span {
@@ -67,7 +67,7 @@ impl<C> Stamp<C> {
 }
 
 impl Span {
-    /// No time at all.
+    /// The empty span.
     pub const ZERO: Self = Self { ns: 0 };
 
     /// A span of nanoseconds.
@@ -96,7 +96,7 @@ impl Span {
         }
     }
 
-    /// A span of `s` seconds, to the nearest nanosecond; held at the ends of the range.
+    /// A span of `s` seconds, rounded to the nearest nanosecond, saturating.
     #[must_use]
     pub fn from_secs_f64(s: f64) -> Self {
         let ns = s * 1e9;
@@ -127,7 +127,7 @@ impl Span {
         self.ns as f64 * 1e-3
     }
 
-    /// The two spans one after the other, held at the ends of the range instead of wrapping.
+    /// The sum of the two spans, saturating.
     #[must_use]
     pub const fn saturating_add(self, other: Self) -> Self {
         Self {
@@ -135,7 +135,7 @@ impl Span {
         }
     }
 
-    /// What is left of the span without `other`, held at the ends of the range instead of wrapping.
+    /// The difference of the two spans, saturating.
     #[must_use]
     pub const fn saturating_sub(self, other: Self) -> Self {
         Self {
@@ -150,7 +150,7 @@ impl Span {
     }
 }
 
-// Derives would ask for `C: Clone` and so on; the clock is only a name.
+// Derives would require `C: Clone`; `C` is only a marker.
 impl<C> Clone for Stamp<C> {
     fn clone(&self) -> Self {
         *self

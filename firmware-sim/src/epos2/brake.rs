@@ -1,18 +1,19 @@
-//! The holding brake on a digital output: purpose 2 in 2079, looked at only with bit 2 of the output mask (2078:2).
+//! The holding brake on a digital output: purpose 2 in 2079, enabled by bit 2 of the output mask
+//! (2078:2).
 //!
-//! Opens before the motion and closes after it with the reaction times of 2100, while the motor holds. It closes when the shaft has
-//! been slower than the standstill window for its time, or after the standstill timeout (2101). No output is the brake from the
-//! factory, and then nothing here happens, nor is a standstill waited for. The brake timeout (2100:3) is plain storage: what it
-//! limits is not documented.
+//! The brake opens before a motion and closes after it with the reaction times of 2100, while the
+//! motor holds. It closes when the shaft has been slower than the standstill window for its time,
+//! or after the standstill timeout (2101). The factory setting has no brake: nothing waits for a
+//! standstill then. The brake timeout (2100:3) is plain storage, as its effect is not documented.
 
 use protocol::epos2::objects::{self, Address};
 
 use super::node::Node;
 
-/// The holding brake as the axis feels it.
+/// State of the holding brake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BrakeState {
-    /// No output feeds a brake.
+    /// No output is configured as a brake.
     Absent,
     /// The shaft is held.
     Closed,
@@ -20,7 +21,7 @@ pub enum BrakeState {
     Open,
 }
 
-/// How long the shaft has been slow, and how long that has been waited for.
+/// Duration of slow motion, and of the wait for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct StandstillTimer {
     still_ms: u16,
@@ -40,7 +41,7 @@ const OUTPUTS: u8 = 5;
 const BRAKE_BIT: u16 = 1 << objects::OUTPUT_BRAKE;
 
 impl Node {
-    /// What the brake does.
+    /// State of the brake.
     #[must_use]
     pub fn brake(&self) -> BrakeState {
         match (self.has_brake(), self.brake_released) {
@@ -57,7 +58,7 @@ impl Node {
         wired && self.dictionary.get(objects::OUTPUT_MASK) & BRAKE_BIT != 0
     }
 
-    /// Milliseconds the brake takes to open.
+    /// Opening time of the brake in milliseconds; 0 without a brake.
     pub(super) fn brake_rise_ms(&self) -> u16 {
         if self.has_brake() {
             self.dictionary.get(objects::BRAKE_RISE)
@@ -66,7 +67,7 @@ impl Node {
         }
     }
 
-    /// Milliseconds the brake takes to close.
+    /// Closing time of the brake in milliseconds; 0 without a brake.
     pub(super) fn brake_fall_ms(&self) -> u16 {
         if self.has_brake() {
             self.dictionary.get(objects::BRAKE_FALL)
@@ -75,8 +76,8 @@ impl Node {
         }
     }
 
-    /// One millisecond of waiting for the shaft to stand; whether the brake may close.
-    pub(super) fn stands(&self, standstill: &mut StandstillTimer) -> bool {
+    /// Advances the wait for standstill by one millisecond; returns whether the brake may close.
+    pub(super) fn is_at_standstill(&self, standstill: &mut StandstillTimer) -> bool {
         if !self.has_brake() {
             return true;
         }
@@ -92,8 +93,8 @@ impl Node {
             || standstill.waited_ms > self.dictionary.get(objects::STANDSTILL_TIMEOUT)
     }
 
-    /// 2078:1: what was written, but the brake's bit belongs to the unit. Set is closed: the specification calls the output
-    /// active then, and does not say more.
+    /// 2078:1: the value written, but with the bit of the brake controlled by the unit. A set bit
+    /// is a closed brake: the specification only calls the output active then.
     pub(super) fn output_state(&self) -> u16 {
         let written = self.dictionary.get(objects::OUTPUT_STATE) & !BRAKE_BIT;
         if self.brake() == BrakeState::Closed {

@@ -1,4 +1,4 @@
-//! What a unit's CAN connector leads to, as its serial interfaces need it for their gateway.
+//! The CAN bus of a unit, as its serial interfaces need it for their gateway.
 
 use protocol::canopen::CanFrame;
 
@@ -7,7 +7,7 @@ use super::node::Node;
 
 /// The other nodes on a unit's CAN bus. `()` is a bus without any, a pair is the nodes of both.
 pub trait CanBus {
-    /// Puts a frame on the bus; what the others send because of it goes to `answers`.
+    /// Sends a frame on the bus; the frames it triggers go to `answers`.
     fn send(&mut self, frame: &CanFrame, answers: &mut dyn FnMut(&CanFrame));
 }
 

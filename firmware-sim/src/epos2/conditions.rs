@@ -1,4 +1,4 @@
-//! When a write is refused although type, access and limits would allow it.
+//! Conditions of a write beyond type, access and limits.
 
 use protocol::canopen::nmt::NmtState;
 use protocol::epos2::cia402::mode;
@@ -15,12 +15,12 @@ use super::storage::{RESTORE_COB_IDS, check_signature};
 /// Firmware download.
 const DOWNLOAD: u16 = 0x2FFF;
 
-/// Modes that are simulated; the others of a real unit are out of range here.
+/// Simulated modes; the other modes of a real unit are out of range.
 const MODES: [i8; 3] = [mode::PROFILE_POSITION, mode::PROFILE_VELOCITY, mode::HOMING];
 
 impl Node {
-    /// Entries that nothing can be stored in: a download needs the service mode, which the unit never enters; the interpolation
-    /// buffer and the recorder's need a mode that is not simulated.
+    /// Rejects entries that cannot store a value: a download needs the service mode, which the unit
+    /// never enters; the buffers of interpolation and recorder need modes that are not simulated.
     pub(super) fn check_storable(&self, entry: &DictionaryEntry) -> Result<(), Abort> {
         if entry.address.index == DOWNLOAD {
             Err(Abort::SERVICE_MODE)
@@ -33,7 +33,8 @@ impl Node {
 
     /// Conditions beyond type and limits.
     pub(super) fn check(&self, address: Address, number: i64) -> Result<(), Abort> {
-        // "Changes only in disable state": the specification does not give the code; this one exists for nothing else.
+        // "Changes only in disable state": the specification gives no code, and this one has no
+        // other use.
         if self.is_powered() && needs_power_off(address) {
             return Err(Abort::STATE);
         }
@@ -73,7 +74,7 @@ impl Node {
         }
     }
 
-    /// Whether a write of so many bytes may begin; what the value must be is looked at when it is there.
+    /// Whether a write of this length may begin; the value is checked when it is complete.
     pub(super) fn check_download(&self, address: Address, bytes: usize) -> Result<(), Abort> {
         let entry = Dictionary::entry(address)?;
         entry.check_access()?;
@@ -81,7 +82,7 @@ impl Node {
     }
 }
 
-/// Configuration that a unit takes only while its power stage is off: 1011, 2008, 2210, 6402, 6410.
+/// Configuration that can only change while the power stage is off.
 fn needs_power_off(address: Address) -> bool {
     [0x1011, 0x2008, 0x2210, 0x6402, 0x6410].contains(&address.index)
 }

@@ -1,13 +1,13 @@
-//! What is fixed about a simulated unit: who it is, and the mechanics it is built into.
+//! Configuration of a simulated unit: its identity and the mechanics of its axis.
 //!
-//! Positions here are world positions: quadcounts of the motor shaft from a zero that never moves, whatever the drive
-//! believes after power-on or homing.
+//! Positions are world positions: quadcounts of the motor shaft from a fixed zero, independent of
+//! power-on and homing.
 
 use protocol::epos2::DeviceError;
 
 pub use super::servo::Servo;
 
-/// The most switches an axis has.
+/// Largest number of switches.
 pub const MAX_SWITCHES: usize = 4;
 
 /// A unit and its axis.
@@ -15,43 +15,44 @@ pub const MAX_SWITCHES: usize = 4;
 pub struct NodeConfig {
     /// CANopen node id, 1..=127.
     pub node_id: u8,
-    /// What the unit says about itself.
+    /// Identity data in the dictionary.
     pub identity: UnitIdentity,
-    /// Quadcounts in a turn of the motor (four per encoder line), up to 10,000,000; also what 2210:1 has at first.
+    /// Quadcounts in one revolution of the motor (four per encoder line), up to 10,000,000; the
+    /// initial value of 2210:1 follows from it.
     pub qc_per_turn: u32,
-    /// Where the shaft is at power-on, world qc. The unit calls that place 0.
+    /// Position of the shaft at power-on, world qc. The unit counts from there.
     pub initial_position: i32,
-    /// World position of one of the encoder's index pulses, qc; the others are whole turns away.
+    /// World position of one index pulse of the encoder, qc; the others are whole revolutions away.
     pub index_position: i32,
-    /// Where the mechanics end, world qc: below, above. The shaft goes no farther, whatever its demand does.
+    /// Hard stops, world qc: below, above. They stop the shaft, not its demand.
     pub hard_stops: [Option<i32>; 2],
-    /// How the shaft follows its demand; `None`: exactly.
+    /// Model of the servo; `None`: the shaft follows exactly.
     pub servo: Option<Servo>,
     /// The switches on the digital inputs.
     pub switches: [Option<Switch>; MAX_SWITCHES],
-    /// The error that the unit has at power-on, such as [`DeviceError::CAN_PASSIVE`] where no CAN bus is connected.
+    /// Error at power-on, such as [`DeviceError::CAN_PASSIVE`] without a CAN bus.
     pub fault_at_power_on: DeviceError,
 }
 
-/// What the unit says about itself.
+/// Identity data in the dictionary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnitIdentity {
     /// 1018:2; its high word is the hardware version (2003:2).
     pub product_code: u32,
     /// 1018:3; its high word is the software version (2003:1).
     pub revision: u32,
-    /// 2004, its low half also 1018:4.
+    /// 2004; the low half is also 1018:4.
     pub serial_number: u64,
 }
 
 /// A switch on the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Switch {
-    /// The digital input it is wired to, 1..=9.
+    /// Number of its digital input, 1..=9.
     pub input: u8,
-    /// Where the axis presses it.
+    /// Positions at which the axis actuates it.
     pub pressed: Region,
-    /// Whether the input is low while the switch is pressed, rather than high.
+    /// Whether the input is low while the switch is actuated.
     pub normally_closed: bool,
 }
 
@@ -67,7 +68,7 @@ pub enum Region {
 }
 
 impl Region {
-    /// Whether a position, world qc, lies in it.
+    /// Whether a position, world qc, is in the region.
     #[must_use]
     pub fn contains(self, position: i64) -> bool {
         match self {
@@ -79,7 +80,7 @@ impl Region {
 }
 
 impl Default for UnitIdentity {
-    /// An EPOS2 70/10, hardware 6420, software 2126; the serial number is the simulator's own.
+    /// An EPOS2 70/10, hardware 6420, software 2126; the serial number marks a simulator.
     fn default() -> Self {
         Self {
             product_code: 0x6420_0000,
@@ -90,9 +91,10 @@ impl Default for UnitIdentity {
 }
 
 impl Default for NodeConfig {
-    /// A tilt axis of 500 lines behind 120:1 (0.0015 deg/qc) whose world zero is level: limit switches 65 degrees either side on the
-    /// inputs that are the factory's choice (6 negative, 5 positive), no hard stops, no lag, 4.5 degrees down at power-on, and the fault of
-    /// a unit that is used over USB alone.
+    /// A tilt axis with 500 encoder lines and a gear of 120:1 (0.0015 deg/qc), level at world zero:
+    /// limit switches at 65 degrees on either side on their factory inputs (6 negative, 5
+    /// positive), no hard stops, no lag, 4.5 degrees down at power-on, and the fault of a unit used
+    /// over USB alone.
     fn default() -> Self {
         let limit = |input, pressed| {
             Some(Switch {

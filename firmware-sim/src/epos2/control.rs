@@ -1,6 +1,7 @@
-//! Device control: the CiA 402 state machine between controlword and power stage (Firmware Specification, "Device Control").
+//! Device control: the CiA 402 state machine between controlword and power stage (Firmware
+//! Specification, "Device Control").
 //!
-//! Commands without a ramp act when they are written, the others from the next control cycle on.
+//! Commands without a ramp act when they are written, others from the next control cycle on.
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{State, control, mode};
@@ -11,27 +12,27 @@ use super::brake::StandstillTimer;
 use super::node::Node;
 use super::position_mode::PositionMode;
 
-/// Something that takes the state machine time.
+/// A state transition that takes time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sequence {
     Idle,
-    /// Current comes up and the brake opens, then operation is enabled.
+    /// The current rises and the brake opens; then operation is enabled.
     Enabling {
         left_ms: u16,
     },
-    /// The demand comes to rest, then the shaft, the brake closes, then the power goes off.
+    /// Demand and shaft come to rest, the brake closes, the power is switched off.
     Leaving {
         to: State,
         step: LeavingStep,
     },
 }
 
-/// What a [`Sequence::Leaving`] waits for.
+/// Steps of [`Sequence::Leaving`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LeavingStep {
-    /// The shaft to stand: how long it has, and how long that was waited for.
-    StandstillTimer(StandstillTimer),
-    /// The brake to close.
+    /// Waits for the standstill of the shaft.
+    Standstill(StandstillTimer),
+    /// Waits for the brake to close.
     Brake { left_ms: u16 },
 }
 
@@ -39,12 +40,12 @@ impl Sequence {
     const fn leaving(to: State) -> Self {
         Self::Leaving {
             to,
-            step: LeavingStep::StandstillTimer(StandstillTimer::NONE),
+            step: LeavingStep::Standstill(StandstillTimer::NONE),
         }
     }
 }
 
-/// Milliseconds of "measure init"; the specification gives none.
+/// Duration of "measure init" in milliseconds; not specified.
 const MEASURE_MS: u16 = 2;
 
 /// The commands of the controlword.
@@ -58,7 +59,7 @@ enum ControlCommand {
 }
 
 impl ControlCommand {
-    /// Bits 0 to 3; `None` with bit 7 set, which is "fault reset" alone.
+    /// Bits 0 to 3; `None` with bit 7, which is "fault reset" alone.
     fn of(word: u16) -> Option<Self> {
         let has = |bits| word & bits == bits;
         if has(control::FAULT_RESET) {
@@ -78,7 +79,7 @@ impl ControlCommand {
 }
 
 impl Node {
-    /// A controlword was written.
+    /// Handles a write of the controlword.
     pub(super) fn command(&mut self, word: u16) {
         let old = core::mem::replace(&mut self.controlword, word);
         if self.state == State::Fault {
@@ -95,7 +96,7 @@ impl Node {
         if self.state == State::OperationEnabled && self.sequence == Sequence::Idle {
             match self.mode {
                 mode::HOMING => self.homing_command(old, word),
-                // The mode looks at the halt bit itself.
+                // The mode reads the halt bit itself.
                 mode::PROFILE_VELOCITY => {}
                 _ => self.position_command(old, word),
             }
@@ -131,7 +132,7 @@ impl Node {
         }
     }
 
-    /// Through "measure init" to "operation enabled".
+    /// Starts "measure init", which ends in "operation enabled".
     fn enable(&mut self) {
         self.state = State::MeasureInit;
         self.brake_released = true;
@@ -141,7 +142,8 @@ impl Node {
         self.sequence = Sequence::Enabling { left_ms };
     }
 
-    /// Out of "operation enabled" by its option code: 1 is the slow-down ramp, anything else stops the drive function at once.
+    /// Leaves "operation enabled" by its option code: 1 ramps down, other values stop the drive
+    /// function at once.
     fn leave(&mut self, to: State, option: Object<i16>) {
         if matches!(self.sequence, Sequence::Leaving { .. }) {
             return;
@@ -155,7 +157,7 @@ impl Node {
         self.sequence = Sequence::leaving(to);
     }
 
-    /// From "operation enabled".
+    /// Quick stop from "operation enabled".
     pub(super) fn quick_stop(&mut self) {
         self.abandon_motion();
         self.sequence = Sequence::Idle;
@@ -163,8 +165,8 @@ impl Node {
         self.state = State::QuickStopActive;
     }
 
-    /// Power off now. The shaft stays where it is: without friction or load there is nothing else for it to do. The demand is
-    /// where the shaft is from now on.
+    /// Switches the power off. The shaft stays in place, as neither friction nor load is simulated,
+    /// and the demand equals its position.
     fn power_off(&mut self, to: State) {
         self.abandon_motion();
         self.shaft.rest();
@@ -174,27 +176,27 @@ impl Node {
         self.state = to;
     }
 
-    /// Neither setpoint nor homing is under way any more; what the shaft does is the caller's next line.
+    /// Ends setpoints and homing; the caller stops the shaft.
     fn abandon_motion(&mut self) {
         self.position_mode.abandon();
         self.velocity_mode.abandon();
         self.homing.abandon();
     }
 
-    /// Comes to rest at a deceleration, within the largest there is (60C5).
+    /// Ramps to rest at a deceleration, limited by 60C5.
     pub(super) fn ramp_down(&mut self, deceleration: Object<u32>) {
         let rate = self.acceleration(deceleration);
         self.generator.stop(rate);
     }
 
-    /// An acceleration within the largest there is (60C5).
+    /// An acceleration, limited by 60C5.
     pub(super) fn acceleration(&self, object: Object<u32>) -> u32 {
         self.dictionary
             .get(object)
             .min(self.dictionary.get(objects::MAX_ACCELERATION))
     }
 
-    /// A device error happens: history, register and its reaction.
+    /// Raises a device error: history, register and reaction.
     pub(super) fn fail(&mut self, error: DeviceError) {
         if error.is_none() {
             return;
@@ -215,7 +217,7 @@ impl Node {
             Reaction::QuickStop => self.fault_ramp(),
         };
         let Some(ramp) = ramp else {
-            // One control cycle of "fault reaction", then fault.
+            // One control cycle of fault reaction, then fault.
             self.power_off(State::FaultReactionDisabled);
             self.sequence = Sequence::Leaving {
                 to: State::Fault,
@@ -229,7 +231,8 @@ impl Node {
         self.sequence = Sequence::leaving(State::Fault);
     }
 
-    /// The ramp of the fault reaction option code (605E): 0 none, 1 slow-down, 2 quick stop; others are taken for 2.
+    /// The ramp of the fault reaction option code (605E): 0 none, 1 slow-down, 2 and others quick
+    /// stop.
     fn fault_ramp(&self) -> Option<Object<u32>> {
         match self.dictionary.get(objects::FAULT_OPTION) {
             0 => None,
@@ -238,7 +241,7 @@ impl Node {
         }
     }
 
-    /// One millisecond of what is under way.
+    /// Advances the sequence by one millisecond.
     pub(super) fn advance_sequence(&mut self) {
         match self.sequence {
             Sequence::Idle => {}
@@ -254,16 +257,16 @@ impl Node {
             Sequence::Leaving { .. } if self.generator.is_moving() => {}
             Sequence::Leaving {
                 to,
-                step: LeavingStep::StandstillTimer(mut standstill),
+                step: LeavingStep::Standstill(mut standstill),
             } => {
-                let step = if self.stands(&mut standstill) {
+                let step = if self.is_at_standstill(&mut standstill) {
                     self.brake_released = false;
                     match self.brake_fall_ms() {
                         0 => return self.power_off(to),
                         fall => LeavingStep::Brake { left_ms: fall - 1 },
                     }
                 } else {
-                    LeavingStep::StandstillTimer(standstill)
+                    LeavingStep::Standstill(standstill)
                 };
                 self.sequence = Sequence::Leaving { to, step };
             }
@@ -284,7 +287,7 @@ impl Node {
         }
     }
 
-    /// 6060 was written: the mode changes at once, and what the old one had under way ends in a ramp.
+    /// Handles a write of 6060: the mode changes at once, and a motion of the old mode ramps down.
     pub(super) fn set_mode(&mut self, mode: i8) {
         if mode == self.mode {
             return;

@@ -1,6 +1,5 @@
-//! The object dictionary: one static table of entries ([`super::table`]) and the stored values beside it.
-//!
-//! Here are existence and storage. What a write does, and which values are computed on read, is the node's.
+//! The object dictionary: the static table of entries ([`super::table`]) and their stored values.
+//! Effects of writes and computed values are in the node.
 
 use protocol::epos2::objects::{Address, Object, Scalar};
 
@@ -8,14 +7,14 @@ use super::Abort;
 use super::entry::DictionaryEntry;
 use super::table::{COUNT, TABLE};
 
-/// Stored values, one an entry; the entries that are computed have one too, unused.
+/// Stored values, one per entry; those of computed entries are unused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Dictionary {
     values: [u32; COUNT],
 }
 
 impl Dictionary {
-    /// Everything as from the factory.
+    /// The factory values.
     pub fn factory(node_id: u8) -> Self {
         let mut dictionary = Self { values: [0; COUNT] };
         for (value, entry) in dictionary.values.iter_mut().zip(&TABLE) {
@@ -24,7 +23,7 @@ impl Dictionary {
         dictionary
     }
 
-    /// The entries from index `first` to `last` become those of `other`.
+    /// Copies the entries of indices `first` to `last` from `other`.
     pub fn copy_range(&mut self, other: &Self, first: u16, last: u16) {
         for ((value, entry), from) in self.values.iter_mut().zip(&TABLE).zip(&other.values) {
             if (first..=last).contains(&entry.address.index) {
@@ -33,7 +32,7 @@ impl Dictionary {
         }
     }
 
-    /// An entry becomes what it was from the factory.
+    /// Restores the factory value of an entry.
     pub fn reset(&mut self, address: Address, node_id: u8) {
         if let Ok((i, entry)) = Self::place(address)
             && let Some(value) = self.values.get_mut(i)
@@ -49,7 +48,8 @@ impl Dictionary {
 
     fn place(address: Address) -> Result<(usize, &'static DictionaryEntry), Abort> {
         let found = TABLE.binary_search_by_key(&address, |entry| entry.address);
-        // Not found, it would stand behind the other subindices of its index, of which each has 0.
+        // An address that is missing sorts after the other subindices of its index; each index has
+        // subindex 0.
         let before = found.unwrap_or_else(|at| at.saturating_sub(1));
         match (found, TABLE.get(before)) {
             (Ok(i), Some(entry)) => Ok((i, entry)),
@@ -58,7 +58,7 @@ impl Dictionary {
         }
     }
 
-    /// The stored value of an entry; 0 where there is none.
+    /// The stored value of an entry; 0 if it does not exist.
     pub fn raw(&self, address: Address) -> u32 {
         Self::place(address)
             .ok()
@@ -117,7 +117,7 @@ mod tests {
                 .iter()
                 .find(|e| e.address == Address { index, sub: 0 })
                 .unwrap();
-            // The history and the mappings count what is in use.
+            // The history and the mappings count the entries in use.
             let holds = matches!(index, 0x1003 | 0x1600..=0x1603 | 0x1A00..=0x1A03)
                 || count.default >= i64::from(entry.address.sub);
             assert!(holds, "{}", entry.address);

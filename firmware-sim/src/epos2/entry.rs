@@ -1,4 +1,4 @@
-//! What is fixed about an entry of the object dictionary: type, access, limits, factory value, whether a PDO may carry it.
+//! The fixed properties of a dictionary entry: type, access, limits, factory value, PDO mapping.
 
 use protocol::epos2::objects::Address;
 
@@ -19,7 +19,7 @@ pub(super) enum Type {
 }
 
 impl Type {
-    /// Bytes of a number of this type; 0 for texts and domains, which have no fixed length.
+    /// Bytes of a number of this type; 0 for texts and domains, whose length varies.
     pub const fn bytes(self) -> usize {
         match self {
             Self::U8 | Self::I8 => 1,
@@ -43,16 +43,16 @@ impl Type {
     }
 }
 
-/// Who may do what with an entry.
+/// Access rights of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EntryAccess {
-    /// Read; never changes.
+    /// Read, constant.
     Const,
     /// Read.
     Ro,
     /// Read and write.
     Rw,
-    /// Read and write, the writing by PDO too.
+    /// Read and write, by PDO too.
     Rww,
     /// Write.
     Wo,
@@ -66,17 +66,17 @@ pub(super) struct DictionaryEntry {
     pub last_sub: u8,
     pub ty: Type,
     pub access: EntryAccess,
-    /// As from the factory.
+    /// Factory value.
     pub default: i64,
-    /// The factory value has the node id added.
+    /// Adds the node id to the factory value.
     pub plus_node_id: bool,
     pub low: i64,
     pub high: i64,
-    /// A PDO may carry it.
+    /// Permits mapping to a PDO.
     pub mappable: bool,
 }
 
-/// An entry without limits of its own.
+/// An entry without limits.
 pub(super) const fn entry(
     index: u16,
     sub: u8,
@@ -140,10 +140,10 @@ impl DictionaryEntry {
         }
     }
 
-    /// Whether so many bytes are a value of this entry.
+    /// Checks the length of a value.
     pub fn check_length(&self, bytes: usize) -> Result<(), Abort> {
         match self.ty.bytes() {
-            // Of texts and domains none is written; they are refused for other reasons.
+            // Texts and domains are rejected elsewhere.
             0 => Ok(()),
             wanted if bytes > wanted => Err(Abort::TOO_LONG),
             wanted if bytes < wanted => Err(Abort::TOO_SHORT),
@@ -151,7 +151,7 @@ impl DictionaryEntry {
         }
     }
 
-    /// Whether the low bytes of `raw` may be written.
+    /// Checks access and limits of a write; bits above the type are ignored.
     pub fn check_write(&self, raw: u32) -> Result<(), Abort> {
         self.check_access()?;
         let value = self.ty.number(raw);
@@ -164,12 +164,12 @@ impl DictionaryEntry {
         }
     }
 
-    /// Whether a PDO that the node sends may carry it.
+    /// Whether a transmit PDO may carry it.
     pub const fn is_sendable(&self) -> bool {
         self.mappable && !matches!(self.access, EntryAccess::Wo)
     }
 
-    /// Whether a PDO that the node receives may carry it.
+    /// Whether a receive PDO may carry it.
     pub const fn is_receivable(&self) -> bool {
         self.mappable && matches!(self.access, EntryAccess::Rww | EntryAccess::Wo)
     }

@@ -1,13 +1,13 @@
-//! The error register (1001), the error history (1003), and what of them the CAN bus has not been told.
+//! The error register (1001), the error history (1003), and pending emergency messages.
 
 use protocol::epos2::DeviceError;
 
 /// Depth of the history.
 const DEPTH: usize = 5;
-/// Emergency messages kept for the bus.
-const UNTOLD: usize = 8;
+/// Capacity of pending emergency messages.
+const PENDING: usize = 8;
 
-/// What went wrong and when it was cleared.
+/// Errors of the unit.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Errors {
     register: u8,
@@ -15,11 +15,12 @@ pub(super) struct Errors {
     history: [u32; DEPTH],
     count: usize,
     /// Oldest first.
-    untold: [PendingEmergency; UNTOLD],
-    untold_count: usize,
+    pending: [PendingEmergency; PENDING],
+    pending_count: usize,
 }
 
-/// What an emergency message tells: an error, or with none that all are gone; and the register after it.
+/// An emergency message to send: the error ([`DeviceError::NONE`] if all are gone) and the register
+/// after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct PendingEmergency {
     pub error: DeviceError,
@@ -29,7 +30,7 @@ pub(super) struct PendingEmergency {
 impl Errors {
     pub fn push(&mut self, error: DeviceError) {
         self.register |= register_bits(error);
-        self.tell(error);
+        self.queue(error);
         self.history.copy_within(..DEPTH - 1, 1);
         self.history[0] = error.0.into();
         self.count = (self.count + 1).min(DEPTH);
@@ -39,30 +40,30 @@ impl Errors {
         self.register
     }
 
-    /// Fault reset: no error is active any more, the history stays.
+    /// Fault reset: no error is active any more; the history remains.
     pub fn acknowledge(&mut self) {
         self.register = 0;
-        self.tell(DeviceError::NONE);
+        self.queue(DeviceError::NONE);
     }
 
-    /// The oldest news are dropped where nobody fetches them.
-    fn tell(&mut self, error: DeviceError) {
-        if self.untold_count == UNTOLD {
-            self.next_news();
+    /// Queues an emergency message; a full queue drops its oldest.
+    fn queue(&mut self, error: DeviceError) {
+        if self.pending_count == PENDING {
+            self.next_pending();
         }
         let register = self.register;
-        if let Some(free) = self.untold.get_mut(self.untold_count) {
+        if let Some(free) = self.pending.get_mut(self.pending_count) {
             *free = PendingEmergency { error, register };
-            self.untold_count += 1;
+            self.pending_count += 1;
         }
     }
 
-    /// The next that the bus has not been told.
-    pub fn next_news(&mut self) -> Option<PendingEmergency> {
-        let news = *self.untold.first().filter(|_| self.untold_count > 0)?;
-        self.untold.rotate_left(1);
-        self.untold_count -= 1;
-        Some(news)
+    /// Takes the oldest pending emergency message.
+    pub fn next_pending(&mut self) -> Option<PendingEmergency> {
+        let pending = *self.pending.first().filter(|_| self.pending_count > 0)?;
+        self.pending.rotate_left(1);
+        self.pending_count -= 1;
+        Some(pending)
     }
 
     pub fn clear_history(&mut self) {
@@ -70,7 +71,7 @@ impl Errors {
         self.count = 0;
     }
 
-    /// 1003: the number of entries at sub 0, the entries from 1 on; entries that do not exist yet read as 0.
+    /// 1003: the number of entries at subindex 0, the entries from 1 on; unused entries are 0.
     pub fn history(&self, sub: u8) -> u32 {
         match usize::from(sub).checked_sub(1) {
             None => self.count as u32,
@@ -79,8 +80,8 @@ impl Errors {
     }
 }
 
-/// Bits of the error register: CiA 301 for those it knows; bit 7 is maxon's "motion error". Which errors are motion errors is
-/// not said; here those of switches and limits.
+/// Bits of the error register as in CiA 301; bit 7 is maxon's "motion error". The specification
+/// does not list motion errors; here they are the errors of switches and limits.
 const fn register_bits(error: DeviceError) -> u8 {
     const GENERIC: u8 = 1 << 0;
     GENERIC
@@ -123,10 +124,10 @@ mod tests {
         errors.acknowledge();
         let mut told = [0; 8];
         for told in &mut told {
-            *told = errors.next_news().unwrap().error.0;
+            *told = errors.next_pending().unwrap().error.0;
         }
         assert_eq!(told, [3, 4, 5, 6, 7, 8, 9, 0]);
-        assert_eq!(errors.next_news(), None);
+        assert_eq!(errors.next_pending(), None);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! The numbers the motion is computed in: all integers, all exact at whole milliseconds.
+//! Number formats of the motion: integers, exact at whole milliseconds.
 //!
-//! An acceleration is whole rpm/s, so a speed changes by a whole number of millirpm a millisecond, and in one millisecond at
-//! `v` millirpm the shaft turns `v * qc_per_turn / 60e6` qc. Positions are therefore kept in units of 1/120e6 qc
-//! (the 2 makes room for the half in `a t^2 / 2`), in which no step leaves a remainder. Instants between two milliseconds, where
-//! the phases of a profile meet, have 32 fractional bits.
+//! An acceleration in whole rpm/s changes the speed by whole millirpm per millisecond, and in one
+//! millisecond at `v` millirpm the shaft moves `v * qc_per_turn / 60e6` qc. Positions have units of
+//! 1/120e6 qc (the 2 is for the half in `a t^2 / 2`), in which no step leaves a remainder. Instants
+//! between two milliseconds, where the phases of a profile meet, have 32 fractional bits.
 
 /// Position units in one quadcount.
 pub(super) const FINE_PER_QC: i64 = 120_000_000;
@@ -11,9 +11,9 @@ pub(super) const FINE_PER_QC: i64 = 120_000_000;
 pub(super) const BITS: u32 = 32;
 /// One millisecond.
 pub(super) const MS: i128 = 1 << BITS;
-/// The most qc per turn that the arithmetic has room for (2,500,000 lines are the drive's own limit).
+/// Largest number of qc per revolution in this arithmetic (the drive permits 2,500,000 lines).
 pub(super) const MAX_QC_PER_TURN: u32 = 10_000_000;
-/// The farthest a shaft is simulated from the world's zero, so that Q32.32 holds it.
+/// Largest distance from the world zero; Q32.32 can hold it.
 pub(super) const WORLD_END: i64 = (i32::MAX as i64) * FINE_PER_QC;
 
 /// A position in 1/120e6 qc.
@@ -26,7 +26,7 @@ pub(super) struct Speed(pub i64);
 impl Speed {
     pub const ZERO: Self = Self(0);
 
-    /// Whole rpm; the drive's highest limit, 25000 rpm (607F), leaves 6 bits of room.
+    /// From whole rpm; the limit of the drive, 25000 rpm (607F), leaves 6 bits.
     pub const fn from_rpm(rpm: i32) -> Self {
         Self((rpm as i64 * 1000) << BITS)
     }
@@ -42,12 +42,12 @@ impl Speed {
     }
 }
 
-/// The position of a count.
+/// The position of an encoder count.
 pub(super) const fn fine(qc: i64) -> Fine {
     qc.saturating_mul(FINE_PER_QC)
 }
 
-/// The count at a position: what an encoder would show.
+/// The encoder count at a position.
 pub(super) const fn floor_qc(position: Fine) -> i64 {
     position.div_euclid(FINE_PER_QC)
 }
@@ -57,7 +57,8 @@ pub(super) const fn q32(position: Fine) -> i64 {
     (((position as i128) << 32).div_euclid(FINE_PER_QC as i128)) as i64
 }
 
-/// Position units covered by `work` (millirpm times ms, with 64 fractional bits), held far above any distance that is used.
+/// Position units covered by `work` (millirpm times ms, with 64 fractional bits), clamped far above
+/// any distance in use.
 pub(super) fn distance(work: i128, qc_per_turn: u32) -> Fine {
     const MOST: i128 = 4 * WORLD_END as i128;
     match work.checked_mul(i128::from(qc_per_turn)) {

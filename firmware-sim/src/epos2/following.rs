@@ -1,4 +1,5 @@
-//! Where the shaft is not where its demand is: following error (6065, 20F4, error 8611), speed and current of the motor.
+//! Deviation of the shaft from its demand: following error (6065, 20F4, error 8611), speed and
+//! current of the motor.
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{State, mode};
@@ -7,7 +8,7 @@ use protocol::epos2::objects;
 use super::node::Node;
 
 impl Node {
-    /// More than 6065 between demand and shaft is an error wherever the position is controlled.
+    /// A deviation above 6065 is an error in all modes with position control.
     pub(super) fn watch_following(&mut self) {
         let controlled = matches!(self.state, State::OperationEnabled | State::QuickStopActive)
             && self.mode != mode::PROFILE_VELOCITY;
@@ -18,7 +19,7 @@ impl Node {
         }
     }
 
-    /// A velocity controller has no position to return to: a shaft that is held takes its demand with it.
+    /// A velocity controller has no target position: a blocked shaft keeps its demand with it.
     pub(super) fn follow_shaft(&mut self) {
         if self.mode == mode::PROFILE_VELOCITY && self.shaft.is_held() {
             let behind = self.shaft.give_way(self.generator.position());
@@ -40,7 +41,8 @@ impl Node {
         self.following_error().clamp(-most - 1, most) as i16
     }
 
-    /// 606C: while the shaft follows exactly, the speed of the demand at the end of the control cycle.
+    /// 606C: the speed of the demand at the end of the control cycle while the shaft follows
+    /// exactly.
     pub(super) fn velocity_actual_rpm(&self) -> i32 {
         if self.shaft.is_behind() || self.velocity_mode.held != 0 {
             self.shaft.speed(self.generator.qc_per_turn()).to_rpm()
@@ -49,7 +51,7 @@ impl Node {
         }
     }
 
-    /// 6078. A velocity controller whose shaft is held ends at its limit (6410:2).
+    /// 6078. A velocity controller with a blocked shaft reaches its limit (6410:2).
     pub(super) fn current_actual_ma(&self) -> i16 {
         let most = self.dictionary.get(objects::OUTPUT_CURRENT);
         match (self.is_powered(), self.velocity_mode.held) {

@@ -1,7 +1,8 @@
-//! The gateway: what a serial interface is asked about other nodes goes to the CAN bus (Communication Guide, "Gateway").
+//! The gateway: requests of a serial interface to other nodes go to the CAN bus (Communication
+//! Guide, "Gateway").
 //!
-//! A node that does not answer is a timeout. How long a real unit waits for one is the link's business: here the answer to the
-//! serial request comes at once.
+//! A node that does not answer is a timeout. The answer to the serial request is immediate: the
+//! link models the delay.
 
 use protocol::canopen::nmt::{Nmt, NmtCommand};
 use protocol::canopen::sdo::{Outcome, SdoClient, TransferError};
@@ -14,10 +15,10 @@ use super::Abort;
 use super::bus::CanBus;
 use super::value::{LONGEST, ObjectValue};
 
-/// The client has no clock of its own: it waits until the bus has nothing more to say.
+/// The client has no clock: it waits until no frame is pending.
 type Client = SdoClient<LONGEST>;
-const NOW: Stamp<Host> = Stamp::from_nanos(0);
-const WAITED: Stamp<Host> = Stamp::from_nanos(1);
+const START: Stamp<Host> = Stamp::from_nanos(0);
+const EXPIRED: Stamp<Host> = Stamp::from_nanos(1);
 
 /// Reads an object of another node.
 pub(super) fn read(
@@ -53,25 +54,25 @@ fn transfer(
     if !begin(&mut client) {
         return Err(Abort::TOO_LONG);
     }
-    // Each frame that is answered leads to the next one or to the end; segments may be empty, so there is a bound.
+    // Each answer leads to the next frame or to the end; empty segments make a bound necessary.
     for _ in 0..=2 * LONGEST {
-        let Some(frame) = client.poll_transmit(NOW) else {
+        let Some(frame) = client.poll_transmit(START) else {
             break;
         };
         bus.send(&frame, &mut |answer| {
             client.handle_frame(answer);
         });
     }
-    client.handle_timeout(WAITED);
+    client.handle_timeout(EXPIRED);
     let outcome = client.poll_outcome();
-    // A transfer that failed on this side is aborted.
-    if let Some(frame) = client.poll_transmit(NOW) {
+    // Aborts a transfer that failed on this side.
+    if let Some(frame) = client.poll_transmit(START) {
         bus.send(&frame, &mut |_| {});
     }
     outcome.ok_or(Abort::TIMEOUT)
 }
 
-/// What the serial client is told of a failed transfer.
+/// The error code of a failed transfer in the serial answer.
 fn code(error: TransferError) -> Abort {
     match error {
         TransferError::Aborted(code) => code,
@@ -92,7 +93,7 @@ pub(super) fn nmt(bus: &mut impl CanBus, node: u16, command: NmtCommand) {
     }
 }
 
-/// Puts a frame on the bus; what comes back because of it nobody has asked for.
+/// Sends a frame on the bus; frames that it triggers are ignored.
 pub(super) fn send(bus: &mut impl CanBus, request: &SendCanFrame) -> Result<(), Abort> {
     let id = CobId::new(request.cob_id).ok_or(Abort::CAN_ID)?;
     let data = request.data.get(..usize::from(request.len));
@@ -103,7 +104,7 @@ pub(super) fn send(bus: &mut impl CanBus, request: &SendCanFrame) -> Result<(), 
     Ok(())
 }
 
-/// Asks for a frame and returns its data, filled up with zeros.
+/// Requests a frame by a remote frame and returns its data, padded with zeros.
 pub(super) fn request(bus: &mut impl CanBus, request: &RequestCanFrame) -> Result<[u8; 8], Abort> {
     let id = CobId::new(request.cob_id).ok_or(Abort::CAN_ID)?;
     let frame = u8::try_from(request.len)

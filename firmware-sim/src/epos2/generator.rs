@@ -1,12 +1,10 @@
-//! The demand, millisecond by millisecond: at rest, on a position profile, or at a speed reached by a ramp.
-//!
-//! What the shaft makes of the demand is the shaft's business.
+//! The demand, per millisecond: at rest, on a position profile, or at a speed reached by a ramp.
 
 use super::fixed::{Fine, MS, Speed, WORLD_END};
 use super::leg::ProfileLeg;
-use super::profile::{MotionLimits, TrapezoidalProfile, Unusable};
+use super::profile::{MotionLimits, TrapezoidalProfile, UnusableParameters};
 
-/// The demand and where it goes.
+/// The demand and its motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Generator {
     qc_per_turn: u32,
@@ -21,7 +19,7 @@ pub(super) struct Generator {
 enum DemandMotion {
     Rest,
     TrapezoidalProfile(TrapezoidalProfile),
-    /// To zero if the direction changes, to the speed; then on at this speed.
+    /// To zero if the direction changes, to the speed, then constant.
     Ramp([ProfileLeg; 2]),
 }
 
@@ -36,7 +34,7 @@ impl Generator {
         }
     }
 
-    /// The demand at the end of the millisecond under way.
+    /// The demand at the end of the present millisecond.
     pub const fn position(&self) -> Fine {
         self.position
     }
@@ -49,20 +47,21 @@ impl Generator {
         !matches!(self.motion, DemandMotion::Rest)
     }
 
-    /// Stands still at once, wherever it is.
+    /// Stops at once at the present position.
     pub fn freeze(&mut self) {
         self.speed = Speed::ZERO;
         self.motion = DemandMotion::Rest;
         self.time = 0;
     }
 
-    /// Rests at `position`: without power the demand is where the shaft is.
+    /// Rests at `position`: without power the demand equals the position of the shaft.
     pub fn rest_at(&mut self, position: Fine) {
         self.freeze();
         self.position = position;
     }
 
-    /// Moves what is under way as a whole, speeds unchanged. A profile, which ends at a place, stays.
+    /// Shifts the motion as a whole, speeds unchanged. A profile, which has a fixed target, is not
+    /// shifted.
     pub fn shift(&mut self, by: Fine) {
         match &mut self.motion {
             DemandMotion::TrapezoidalProfile(_) => return,
@@ -80,13 +79,13 @@ impl Generator {
         self.qc_per_turn
     }
 
-    /// The encoder's resolution has been configured anew. Only while nothing moves.
+    /// Changes the resolution of the encoder; only at rest.
     pub fn set_qc_per_turn(&mut self, qc_per_turn: u32) {
         self.qc_per_turn = qc_per_turn;
     }
 
-    /// Goes to `target`, from whatever it is doing now.
-    pub fn go_to(&mut self, target: Fine, limits: MotionLimits) -> Result<(), Unusable> {
+    /// Moves to `target` from the present motion.
+    pub fn go_to(&mut self, target: Fine, limits: MotionLimits) -> Result<(), UnusableParameters> {
         let target = target.clamp(-WORLD_END, WORLD_END);
         let profile =
             TrapezoidalProfile::plan(self.position, self.speed, target, limits, self.qc_per_turn)?;
@@ -94,12 +93,12 @@ impl Generator {
         Ok(())
     }
 
-    /// Comes to rest.
+    /// Ramps to rest.
     pub fn stop(&mut self, deceleration: u32) {
         self.run_at(Speed::ZERO, deceleration, deceleration);
     }
 
-    /// Ramps to `speed` and keeps it; speed zero is a stop.
+    /// Ramps to `speed` and holds it; speed zero is a stop.
     pub fn run_at(&mut self, speed: Speed, acceleration: u32, deceleration: u32) {
         if speed == Speed::ZERO && self.speed == Speed::ZERO {
             self.freeze();
@@ -124,7 +123,7 @@ impl Generator {
         self.time = 0;
     }
 
-    /// One millisecond.
+    /// Advances by one millisecond.
     pub fn step(&mut self) {
         self.time += MS;
         let (position, speed) = match &self.motion {

@@ -1,4 +1,5 @@
-//! Moves that begin in motion (new targets, halts, new speeds) against an independent closed form in f64.
+//! Moves that begin in motion (new targets, halts, new speeds) against an independent closed form
+//! in f64.
 
 extern crate std;
 use std::vec::Vec;
@@ -125,7 +126,8 @@ fn speed(generator: &Generator) -> f64 {
     generator.speed().0 as f64 / MS as f64 / 1000.0 * PER_RPM
 }
 
-/// Rates in the order of what is met: from slow to brutal, so that a case takes some thousand milliseconds at most.
+/// Rates in the order of what is met: from slow to brutal, so that a case takes some thousand
+/// milliseconds at most.
 fn rate() -> impl Strategy<Value = u32> {
     (5u32..31, any::<u32>()).prop_map(|(bits, r)| (1 << bits) | (r & ((1 << bits) - 1)))
 }

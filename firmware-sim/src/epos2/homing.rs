@@ -1,8 +1,9 @@
 //! Homing mode (Firmware Specification, "Homing Mode"; methods as in CiA 402).
 //!
-//! What a [`HomingMethod`] looks for is found here: the edge of a switch, seen once a control cycle; a mechanical stop, where the current
-//! reaches its threshold (2080); the index pulse beyond either, which is latched exactly. After detection the axis moves by the
-//! home offset (607C) from the reference, and that place gets the position 2081.
+//! A [`HomingMethod`] detects the edge of a switch once per control cycle; a mechanical stop, where
+//! the current reaches its threshold (2080); or the next index pulse, which is latched exactly.
+//! After detection the axis moves by the home offset (607C) from the reference, and that position
+//! becomes 2081.
 
 use protocol::epos2::cia402::{control, status};
 use protocol::epos2::objects::{self, input};
@@ -12,14 +13,14 @@ use super::homing_method::{HomingMethod, ReferenceSearch, method};
 use super::node::Node;
 use super::profile::MotionLimits;
 
-/// What homing has under way and how the last one ended.
+/// State of the present homing and result of the last one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct HomingState {
     phase: Phase,
     method: HomingMethod,
     attained: bool,
     failed: bool,
-    /// Bit 10: standing still after homing or its interruption.
+    /// Bit 10: at rest after homing or its interruption.
     reached: bool,
     /// Count at the last control cycle, for index pulses.
     last: i64,
@@ -33,14 +34,14 @@ enum Phase {
     /// Interrupted: ramping down.
     Stopping,
     /// Towards the switch.
-    ReferenceSearch { direction: i32 },
+    Search { direction: i32 },
     /// Towards the mechanical stop.
     Press { direction: i32 },
-    /// A limit switch was met before the home switch: back, until the home switch is met from behind.
+    /// A limit switch came before the home switch: back to the other side of the home switch.
     Back { direction: i32 },
-    /// Slowly off the switch; `on` once it has been seen pressed while going this way.
+    /// Slowly off the switch; `on` once it was active in this direction.
     Leave { direction: i32, on: bool },
-    /// Slowly on to the index pulse.
+    /// Slowly to the index pulse.
     Index { direction: i32 },
     /// To the home offset from the reference (world qc).
     Return { reference: i64 },
@@ -67,15 +68,15 @@ impl HomingState {
         reached | attained | failed
     }
 
-    /// No homing any more.
+    /// Ends homing.
     pub fn abandon(&mut self) {
         self.phase = Phase::Idle;
     }
 }
 
 impl Node {
-    /// The controlword changed while operation is enabled: bit 4 starts on its rising edge and interrupts on its falling one, as does
-    /// a halt.
+    /// Handles a change of the controlword while operation is enabled: the rising edge of bit 4
+    /// starts, its falling edge or a halt interrupts.
     pub(super) fn homing_command(&mut self, old: u16, word: u16) {
         let (rising, falling) = (word & !old, old & !word);
         let interrupted = falling & control::HOMING_START != 0 || rising & control::HALT != 0;
@@ -111,7 +112,7 @@ impl Node {
             }
             (Some(ReferenceSearch::Switch { direction, .. }), _) => {
                 self.run(direction, true);
-                self.homing.phase = Phase::ReferenceSearch { direction };
+                self.homing.phase = Phase::Search { direction };
             }
             (Some(ReferenceSearch::Stop { direction }), _) => {
                 self.run(direction, true);
@@ -125,7 +126,7 @@ impl Node {
         }
     }
 
-    /// Methods without motion: 35 takes the present place for home, 0 wants no homing at all.
+    /// Methods without motion: 35 takes the present position as home, 0 does nothing.
     fn home_here(&mut self, reference: bool) {
         if reference {
             self.set_home(floor_qc(self.shaft.position()));
@@ -135,7 +136,7 @@ impl Node {
         }
     }
 
-    /// One millisecond of the mode.
+    /// Advances the mode by one millisecond.
     pub(super) fn advance_homing(&mut self) {
         let now = floor_qc(self.shaft.position());
         let last = core::mem::replace(&mut self.homing.last, now);
@@ -154,9 +155,9 @@ impl Node {
                     self.set_home(reference.saturating_add(offset.into()));
                 }
             }
-            // Only the end of the world stops the shaft in these.
+            // In these phases only the end of the simulated range stops the shaft.
             _ if !moving => self.fail_homing(),
-            Phase::ReferenceSearch { direction } => self.search(direction),
+            Phase::Search { direction } => self.search(direction),
             Phase::Press { direction } => self.watch_current(direction, now),
             Phase::Back { direction } => self.search_back(direction),
             Phase::Leave { direction, on } => self.watch_edge(direction, on, now),
@@ -191,8 +192,8 @@ impl Node {
         self.homing.phase = Phase::Leave { direction, on };
     }
 
-    /// The edge counts when the switch has been pressed on the way in this direction: a home switch may have been passed while
-    /// slowing down.
+    /// The edge counts if the switch was active in this direction: deceleration may have passed a
+    /// home switch.
     fn watch_edge(&mut self, direction: i32, on: bool, now: i64) {
         let switch = self.homing.method.switch_bit();
         let pressed = self.inputs & switch != 0;
@@ -212,7 +213,8 @@ impl Node {
         }
     }
 
-    /// The stop is where the shaft stands when the current reaches the threshold; from there on the demand is where the shaft is.
+    /// The stop is the position at which the current reaches the threshold; the demand continues
+    /// from there.
     fn watch_current(&mut self, direction: i32, now: i64) {
         let current = i32::from(self.current_actual_ma()) * direction;
         if current < i32::from(self.dictionary.get(objects::HOMING_CURRENT)) {
@@ -233,8 +235,8 @@ impl Node {
         let turn = i64::from(self.config.qc_per_turn.max(1));
         let first = i64::from(self.config.index_position);
         let pulse = |count: i64| first + (count - first).div_euclid(turn) * turn;
-        // The last pulse at or below the higher count is one that was passed if it is above the lower count; downwards the
-        // pulse at the lower count has been met, the one at the higher not again.
+        // Upwards, the last pulse at or below the higher count was passed if it is above the lower
+        // count; downwards, a pulse at the lower count was passed, one at the higher was not.
         let passed = if direction > 0 {
             Some(pulse(now)).filter(|&at| at > last)
         } else {
@@ -247,7 +249,8 @@ impl Node {
         }
     }
 
-    /// The reference is known: on to the home offset, at the speed of the switch search (which speed is not specified).
+    /// Moves from the reference to the home offset, at the speed of the switch search (the speed is
+    /// not specified).
     fn return_to(&mut self, reference: i64) {
         let offset = self.dictionary.get(objects::HOME_OFFSET);
         let acceleration = self.homing_acceleration();
@@ -264,7 +267,7 @@ impl Node {
         }
     }
 
-    /// The place `world` qc is home.
+    /// Makes the position `world` qc home.
     fn set_home(&mut self, world: i64) {
         let position = self.dictionary.get(objects::HOME_POSITION);
         self.origin = world.saturating_sub(position.into());
@@ -304,7 +307,7 @@ impl Node {
     }
 }
 
-/// The limit switch that lies in a direction.
+/// The limit switch in a direction.
 const fn limit_switch(direction: i32) -> u16 {
     if direction < 0 {
         input::NEGATIVE_LIMIT

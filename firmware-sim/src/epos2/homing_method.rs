@@ -1,27 +1,28 @@
-//! Homing methods (6098): what each looks for, in which direction (Firmware Specification, "Homing Mode"; numbers as in CiA 402).
+//! Homing methods (6098): reference and direction of each (Firmware Specification, "Homing Mode";
+//! numbers as in CiA 402).
 
 use protocol::epos2::objects::input;
 
-/// How a reference is found.
+/// A homing method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct HomingMethod {
-    /// What is looked for first.
+    /// The first reference.
     pub search: Option<ReferenceSearch>,
-    /// Direction of the way to the index pulse, which is the reference then.
+    /// Direction to the index pulse, which is then the reference.
     pub index: Option<i32>,
 }
 
-/// What is looked for; directions are 1 and -1.
+/// A reference to search; directions are 1 and -1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReferenceSearch {
-    /// A switch: its bit in 2071. Its edge is met on the way back.
+    /// A switch: its bit in 2071. Its edge is detected on the way back.
     Switch { bit: u16, direction: i32 },
     /// A mechanical stop.
     Stop { direction: i32 },
 }
 
 impl HomingMethod {
-    /// The switch that is looked for; 0 for none.
+    /// Bit of the switch; 0 for none.
     pub const fn switch_bit(&self) -> u16 {
         match self.search {
             Some(ReferenceSearch::Switch { bit, .. }) => bit,
@@ -30,7 +31,7 @@ impl HomingMethod {
     }
 }
 
-/// The method of a number; `None` for one that the unit does not have.
+/// The method of a number; `None` if the unit does not have it.
 pub(super) fn method(number: i8) -> Option<HomingMethod> {
     let switch = |bit, direction| Some(ReferenceSearch::Switch { bit, direction });
     let stop = |direction| Some(ReferenceSearch::Stop { direction });

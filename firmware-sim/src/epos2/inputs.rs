@@ -1,4 +1,5 @@
-//! Digital inputs: switches to inputs, inputs to purposes (2070), mask, polarity and execution mask (2071).
+//! Digital inputs: switches to inputs, inputs to purposes (2070), mask, polarity and execution mask
+//! (2071).
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::State;
@@ -11,12 +12,13 @@ use super::node::Node;
 const INPUTS: u8 = 9;
 
 impl Node {
-    /// 2071:1 at the present position. A purpose that no input has stays inactive, whatever its polarity.
+    /// 2071:1 at the present position. A purpose without an input stays inactive, at either
+    /// polarity.
     pub(super) fn sense(&self) -> u16 {
         let position = floor_qc(self.shaft.position());
         let (mut high, mut assigned) = (0, 0);
         for number in 1..=INPUTS {
-            // 0..=15, as only that can be written.
+            // Only 0..=15 can be written.
             let purpose = self.dictionary.raw(Address::new(0x2070, number)) & 15;
             assigned |= 1u16 << purpose;
             if self.input_is_high(number, position) {
@@ -37,10 +39,11 @@ impl Node {
             .any(|switch| switch.pressed.contains(position) != switch.normally_closed)
     }
 
-    /// Looks at the inputs and runs the error routines of those that have one (2071:4).
+    /// Updates the inputs and runs the error routines that are enabled (2071:4).
     ///
-    /// A limit switch is an error when it becomes active and when the axis moves on into it, so that a unit whose fault has
-    /// been cleared can leave it; once while an error's ramp is under way. While homing no limit switch is an error: homing is what looks for them.
+    /// A limit switch is an error when it becomes active, and when the axis moves further into it,
+    /// so that a unit can leave it after a fault reset; during the ramp of a fault only once. While
+    /// homing, limit switches are no errors.
     pub(super) fn watch_inputs(&mut self) {
         let before = self.inputs;
         self.inputs = self.sense();

@@ -1,21 +1,21 @@
-//! A stretch of motion at constant acceleration, in closed form, so that nothing accumulates from millisecond to millisecond.
+//! Motion at constant acceleration in closed form, without accumulation over milliseconds.
 
 use super::fixed::{BITS, Fine, Speed, distance, div_ceil};
 
-/// Constant acceleration from `from` and `start` until `end` is reached.
+/// Constant acceleration from `from` and `start` to the speed `end`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct ProfileLeg {
     pub from: Fine,
     pub start: Speed,
     pub end: Speed,
-    /// rpm/s, which is millirpm/ms; without sign.
+    /// rpm/s, equal to millirpm/ms; unsigned.
     pub acceleration: u32,
     /// ms with 32 fractional bits.
     pub duration: i128,
 }
 
 impl ProfileLeg {
-    /// A change of speed. An acceleration of 0 is taken for 1.
+    /// A change of speed. An acceleration of 0 counts as 1.
     pub fn change(from: Fine, start: Speed, end: Speed, acceleration: u32) -> Self {
         let acceleration = acceleration.max(1);
         let change = i128::from(end.0) - i128::from(start.0);
@@ -52,13 +52,14 @@ impl ProfileLeg {
         (self.from.saturating_add(moved), Speed(speed as i64))
     }
 
-    /// Where a change of speed ends: from the squares of the speeds, so without the rounding of its duration.
+    /// Position at the end of a change of speed, from the squares of the speeds and so without the
+    /// rounding of its duration.
     pub fn finish(&self, qc_per_turn: u32) -> Fine {
         if self.acceleration == 0 {
             return self.at(self.duration, qc_per_turn).0;
         }
         let (high, low) = (self.start.squared(), self.end.squared());
-        // (end^2 - start^2) / a with the sign of the motion; legs that pass through zero are two legs.
+        // (end^2 - start^2) / a with the sign of the motion; a change of direction has two legs.
         let work = (high.max(low) - high.min(low)) / i128::from(self.acceleration);
         let forward = self.start.0 >= 0 && self.end.0 >= 0;
         let moved = distance(work, qc_per_turn);

@@ -1,8 +1,9 @@
-//! Configuration of process data: which writes to 140x, 160x, 180x and 1A0x are taken (CiA 301, "PDO mapping procedure").
+//! Configuration of process data: checks of writes to 140x, 160x, 180x and 1A0x (CiA 301, "PDO
+//! mapping procedure").
 //!
-//! A PDO must be out of use (bit 31 of its identifier) while its mapping changes, and the mapping's count must be 0 while its
-//! entries do; then the count puts them in force. Whether a real unit insists on the order is not documented; a client that
-//! keeps it works with both.
+//! A PDO must be disabled (bit 31 of its identifier) while its mapping changes, and the count of
+//! the mapping must be 0 while its entries change; the count then activates them. The strictness of
+//! a real unit is not documented.
 
 use protocol::canopen::CanId;
 use protocol::canopen::pdo::{CommunicationId, LayoutError, MAX_ENTRIES, MappedObject, PdoLayout};
@@ -12,7 +13,7 @@ use protocol::epos2::objects::Address;
 use super::Abort;
 use super::dictionary::Dictionary;
 
-/// First indices; each object is there four times.
+/// First indices; each object exists four times.
 const RECEIVE: u16 = 0x1400;
 const RECEIVE_MAPPING: u16 = 0x1600;
 const TRANSMIT: u16 = 0x1800;
@@ -25,12 +26,12 @@ pub(super) fn is_pdo(address: Address) -> bool {
     [RECEIVE, RECEIVE_MAPPING, TRANSMIT, TRANSMIT_MAPPING].contains(&(address.index & !3))
 }
 
-/// Identifier of the PDO whose parameters stand at `index`.
+/// Identifier of the PDO with parameters at `index`.
 pub(super) fn identifier(dictionary: &Dictionary, index: u16) -> CommunicationId {
     CommunicationId::from_u32(dictionary.raw(Address::new(index, 1)))
 }
 
-/// What the PDO whose parameters stand at `index` carries: nothing, if its entries do not go together.
+/// Layout of the PDO with parameters at `index`; empty if its entries are invalid.
 pub(super) fn layout(dictionary: &Dictionary, index: u16) -> PdoLayout {
     let mapping = index + TO_MAPPING;
     let count = dictionary.raw(Address::new(mapping, 0)) as u8;
@@ -44,7 +45,7 @@ fn entries(dictionary: &Dictionary, mapping: u16, count: u8) -> Bounded<MappedOb
     entries
 }
 
-/// Whether the value may be written to one of these objects.
+/// Checks a write to one of these objects.
 pub(super) fn check(dictionary: &Dictionary, address: Address, raw: u32) -> Result<(), Abort> {
     let Address { index, sub } = address;
     match (index & !3, sub) {
@@ -66,7 +67,8 @@ pub(super) fn check(dictionary: &Dictionary, address: Address, raw: u32) -> Resu
     }
 }
 
-/// While a PDO is in use its identifier does not change, and it is never one of those that CiA 301 keeps for other services.
+/// The identifier of a PDO in use does not change, and identifiers that CiA 301 reserves for other
+/// services are rejected.
 fn check_identifier(old: CommunicationId, raw: u32) -> Result<(), Abort> {
     let new = CommunicationId::from_u32(raw);
     let is_free = match new.id {
@@ -83,7 +85,7 @@ fn check_identifier(old: CommunicationId, raw: u32) -> Result<(), Abort> {
     }
 }
 
-/// Whether an object may be mapped, in its whole length; 0 is no object.
+/// Checks that an object may be mapped, in its whole length; 0 is no object.
 fn check_entry(mapping: MappedObject, sent: bool) -> Result<(), Abort> {
     if mapping.to_u32() == 0 {
         return Ok(());

@@ -1,12 +1,16 @@
-//! A maxon EPOS2 positioning controller with its motor, encoder, limit switches and brake, as a machine without I/O.
+//! A maxon EPOS2 positioning controller with its motor, encoder, limit switches and brake, as a
+//! state machine without I/O.
 //!
-//! [`Node`] is the unit: an object dictionary, the CiA 402 state machine and a profile generator that run at 1 kHz in integer
-//! arithmetic, one [`Node::tick`] a millisecond. [`UsbServer`] and [`Rs232Server`] answer the frames of its serial interfaces,
-//! [`CanServer`] those of a CAN bus, [`SlcanServer`] the same through a serial CAN adapter. A [`CanBus`] is what its gateway reaches.
-//! Facts are from the EPOS2 Firmware Specification and Communication Guide; where they are silent the choice is said in a comment.
+//! [`Node`] is the unit: an object dictionary, the CiA 402 state machine and a profile generator at
+//! 1 kHz in integer arithmetic, one [`Node::tick`] per millisecond. [`UsbServer`] and
+//! [`Rs232Server`] answer the frames of its serial interfaces, [`CanServer`] those of a CAN bus,
+//! [`SlcanServer`] the same through a serial CAN adapter. A [`CanBus`] connects the gateway to
+//! other nodes. Sources are the EPOS2 Firmware Specification and Communication Guide; comments mark
+//! behaviour that they leave open.
 //!
-//! Left out: the modes a tilt axis has no use for, and everything electrical. The shaft follows its demand exactly unless the
-//! configuration gives its servo a lag ([`Servo`]) or something holds it; an unpowered shaft stays where it is, brake or not.
+//! Not simulated: modes that a tilt axis does not use, and the electrical side. The shaft follows
+//! its demand exactly unless the configuration has a servo with a lag ([`Servo`]) or something
+//! blocks it; an unpowered shaft stays in place.
 
 mod brake;
 mod bus;
@@ -19,12 +23,12 @@ mod entry;
 mod errors;
 mod fixed;
 mod following;
+mod garbage;
 mod gateway;
 mod generator;
 mod homing;
 mod homing_method;
 mod inputs;
-mod junk;
 mod leg;
 mod mapping;
 mod network;
@@ -54,7 +58,7 @@ pub use slcan::SlcanServer;
 pub use usb::UsbServer;
 pub use value::ObjectValue;
 
-/// Why the dictionary refuses an access: the code that a serial answer or an SDO abort carries.
+/// Code of a rejected access, in a serial answer or an SDO abort.
 pub type Abort = protocol::epos2::CommError;
 
 #[cfg(test)]

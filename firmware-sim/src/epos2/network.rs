@@ -1,20 +1,20 @@
-//! Network management as the node sees it: its NMT state, and when it starts anew.
+//! Network management of the node: its NMT state and its restarts.
 
 use protocol::canopen::nmt::NmtCommand;
 use protocol::canopen::nmt::NmtState;
 
 use super::node::Node;
 
-/// Where in its life on the network a node is.
+/// NMT state and restarts of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct NetworkState {
     state: NmtState,
-    /// How often the communication has started, power-on included.
+    /// Number of starts of the communication, power-on included.
     starts: u32,
 }
 
 impl NetworkState {
-    /// Just switched on: nobody has started the node.
+    /// State after power-on.
     pub const fn at_power_on() -> Self {
         Self {
             state: NmtState::PreOperational,
@@ -22,7 +22,7 @@ impl NetworkState {
         }
     }
 
-    /// Started once more.
+    /// State after one more start.
     pub const fn restarted(self) -> Self {
         Self {
             state: NmtState::PreOperational,
@@ -42,8 +42,9 @@ impl Node {
         self.network.state
     }
 
-    /// Network management: the state shows in bit 9 of the statusword; a reset of the node is a power cycle, one of the communication
-    /// brings the saved objects 1000 to 1FFF back.
+    /// Executes a network management command: bit 9 of the statusword shows the state; a reset of
+    /// the node is a power cycle, a reset of the communication restores the saved objects 1000 to
+    /// 1FFF.
     pub fn nmt(&mut self, command: NmtCommand) {
         match command {
             NmtCommand::Start => self.network.state = NmtState::Operational,
@@ -58,7 +59,8 @@ impl Node {
         }
     }
 
-    /// A master that was listened for has gone: no process data any more (CiA 301, "Error behaviour", without object 1029).
+    /// A monitored master is lost: process data stops (CiA 301, "Error behaviour", without object
+    /// 1029).
     pub(super) fn leave_operational(&mut self) {
         if self.network.state == NmtState::Operational {
             self.network.state = NmtState::PreOperational;

@@ -1,4 +1,4 @@
-//! The unit as a whole: its parts, its clock, and its shaft.
+//! The whole unit: its parts, its clock, and its shaft.
 
 use protocol::canopen::nmt::NmtState;
 use protocol::epos2::DeviceError;
@@ -19,28 +19,29 @@ use super::shaft::MotorShaft;
 use super::storage::factory;
 use super::velocity_mode::VelocityMode;
 
-/// The shaft's way through one millisecond, a straight line; world positions in 2^-32 qc.
+/// Linear motion of the shaft during one millisecond; world positions in 2^-32 qc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaftSegment {
     /// At the beginning of the millisecond.
     pub start: i64,
-    /// At its end, which is the beginning of the next.
+    /// At its end, the beginning of the next.
     pub end: i64,
 }
 
 /// A simulated EPOS2 with its axis.
 ///
-/// Time passes in [`Node::tick`]; everything else happens at the present instant, which [`Node::set_phase_us`] refines.
+/// [`Node::tick`] advances time; all other methods act at the present instant, which
+/// [`Node::set_phase_us`] refines.
 #[derive(Clone, Debug)]
 pub struct Node {
     pub(super) config: NodeConfig,
     pub(super) dictionary: Dictionary,
-    /// What "save" keeps over power-off.
+    /// Parameters that survive power-off.
     pub(super) saved: Dictionary,
     pub(super) errors: Errors,
     /// The demand.
     pub(super) generator: Generator,
-    /// What follows it.
+    /// The shaft, which follows the demand.
     pub(super) shaft: MotorShaft,
     pub(super) state: State,
     pub(super) controlword: u16,
@@ -48,7 +49,7 @@ pub struct Node {
     pub(super) brake_released: bool,
     /// Mode in effect (6061).
     pub(super) mode: i8,
-    /// World qc of the place that the unit calls 0.
+    /// World qc of the unit's position 0.
     pub(super) origin: i64,
     pub(super) referenced: bool,
     /// Bit 13 in profile position mode: the last fault was a following error.
@@ -68,7 +69,7 @@ pub struct Node {
 }
 
 impl Node {
-    /// A unit that has just finished booting: "switch-on disabled", or "fault" with the configured error.
+    /// A unit after booting: "switch-on disabled", or "fault" with the configured error.
     #[must_use]
     pub fn new(config: NodeConfig) -> Self {
         let saved = factory(&config);
@@ -120,18 +121,18 @@ impl Node {
         node
     }
 
-    /// Power off and on: back to the saved parameters, the position is 0 again wherever the shaft is.
+    /// Power off and on: the saved parameters apply, and the present position becomes 0.
     pub fn power_cycle(&mut self) {
         let (config, saved) = (self.config.clone(), self.saved.clone());
         let network = self.network.restarted();
         *self = Self::boot(config, saved, self.shaft.at_power_on(), network);
     }
 
-    /// One control cycle: 1 ms. Settles what the shaft does in the coming millisecond.
+    /// One control cycle: 1 ms. Determines the motion of the coming millisecond.
     pub fn tick(&mut self) {
         self.ticks += 1;
         self.phase_us = 0;
-        // Sequences first: each state they lead to, and each fault reaction, lasts a cycle at least.
+        // Sequences first: each of their states and each fault reaction lasts at least one cycle.
         self.advance_sequence();
         self.watch_inputs();
         self.watch_software_limits();
@@ -152,13 +153,13 @@ impl Node {
         self.segment = ShaftSegment { start, end };
     }
 
-    /// The shaft's way in the millisecond that the last [`Node::tick`] began.
+    /// Motion of the shaft in the millisecond that the last [`Node::tick`] began.
     #[must_use]
     pub const fn segment(&self) -> ShaftSegment {
         self.segment
     }
 
-    /// Says how far into the millisecond it is, 0..1000 us; more is taken for 1000.
+    /// Sets the time since the last tick, 0..1000 us; larger values count as 1000.
     pub fn set_phase_us(&mut self, phase_us: u32) {
         self.phase_us = phase_us.min(1000);
     }
@@ -183,17 +184,17 @@ impl Node {
         self.state
     }
 
-    /// Makes a device error happen, as a fault of the world around the unit would.
+    /// Raises a device error, as a fault in the environment of the unit would.
     pub fn inject(&mut self, error: DeviceError) {
         self.fail(error);
     }
 
-    /// Jams the shaft where it is, whatever the motor does, until [`Node::unblock`]. Power-off does not free it.
+    /// Blocks the shaft in place until [`Node::unblock`], through power-off too.
     pub fn block(&mut self) {
         self.shaft.jam(true);
     }
 
-    /// Frees a jammed shaft.
+    /// Releases a blocked shaft.
     pub fn unblock(&mut self) {
         self.shaft.jam(false);
     }
@@ -212,13 +213,13 @@ impl Node {
             | of_mode
     }
 
-    /// 6064: the encoder's counter at this instant. The specification does not say whether a unit latches it once a control
-    /// cycle; a counter in hardware is read when it is asked for.
+    /// 6064: the encoder count at this instant. The specification does not say whether a unit
+    /// latches it once per control cycle; a hardware counter is read on request.
     pub(super) fn position_actual(&self) -> i32 {
         (self.world_count() - self.origin) as i32
     }
 
-    /// The encoder's count at this instant, world qc.
+    /// The encoder count at this instant, world qc.
     fn world_count(&self) -> i64 {
         let ShaftSegment { start, end } = self.segment;
         let moved = (i128::from(end) - i128::from(start)) * i128::from(self.phase_us) / 1000;
@@ -230,7 +231,7 @@ impl Node {
         (self.world_count() - i64::from(self.config.initial_position)) as u32
     }
 
-    /// 6062: where the demand will be at the end of this control cycle, and what relative moves count from.
+    /// 6062: the demand at the end of this control cycle, and the base of relative moves.
     pub(super) fn position_demand(&self) -> i32 {
         (floor_qc(self.generator.position()) - self.origin) as i32
     }

@@ -24,15 +24,16 @@ const FOLLOWING_ERROR: Address = Address::new(0x20F4, 0);
 const VELOCITY_SENSOR: Address = Address::new(0x6069, 0);
 /// 1010:1 reads as "saves on command" (CiA 301).
 const SAVES_ON_COMMAND: u32 = 1;
-/// 6502: of the modes of a real unit (003F0065) those simulated: profile position, profile velocity, homing.
+/// 6502: of the modes of a real unit (003F0065) those simulated: profile position, profile
+/// velocity, homing.
 const MODES: u32 = 1 << 0 | 1 << 2 | 1 << 5;
 
 impl Node {
     /// Reads an object.
     ///
     /// # Errors
-    /// [`Abort::NO_OBJECT`], [`Abort::NO_SUB`], [`Abort::WRITE_ONLY`]; [`Abort::STATE`] for the data recorder's buffer, as
-    /// nothing is ever recorded.
+    /// [`Abort::NO_OBJECT`], [`Abort::NO_SUB`], [`Abort::WRITE_ONLY`]; [`Abort::STATE`] for the
+    /// data recorder's buffer, as nothing is ever recorded.
     pub fn read(&self, address: Address) -> Result<ObjectValue, Abort> {
         let entry = Dictionary::entry(address)?;
         entry.check_read()?;
@@ -116,7 +117,8 @@ impl Node {
     /// Writes an object from bytes, low byte first.
     ///
     /// # Errors
-    /// As [`Node::write`]; [`Abort::TOO_LONG`], [`Abort::TOO_SHORT`] unless they are as many as the object has.
+    /// As [`Node::write`]; [`Abort::TOO_LONG`], [`Abort::TOO_SHORT`] unless they are as many as the
+    /// object has.
     pub fn write_bytes(&mut self, address: Address, bytes: &[u8]) -> Result<(), Abort> {
         let entry = Dictionary::entry(address)?;
         entry.check_access()?;

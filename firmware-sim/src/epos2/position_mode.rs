@@ -1,5 +1,5 @@
-//! Profile position mode: setpoints by the handshake of controlword bit 4 and statusword bit 12 (Firmware Specification,
-//! "Profile Position Mode").
+//! Profile position mode: setpoints by the handshake of controlword bit 4 and statusword bit 12
+//! (Firmware Specification, "Profile Position Mode").
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{State, control, mode, status};
@@ -9,23 +9,23 @@ use super::fixed::{Speed, fine, floor_qc};
 use super::node::Node;
 use super::profile::MotionLimits;
 
-/// What the mode has under way.
+/// State of the mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct PositionMode {
-    /// Bit 12: the generator has taken the setpoint, and bit 4 of the controlword is still set.
+    /// Bit 12: the generator has taken the setpoint and bit 4 of the controlword is still set.
     acknowledged: bool,
-    /// Bit 10. Before the first setpoint it is not set: no target, none reached.
+    /// Bit 10; not set before the first setpoint.
     reached: bool,
-    /// Waits for the present move to end.
+    /// Starts after the present move.
     queued: Option<Setpoint>,
-    /// The unit's qc; `None` while there is none to reach.
+    /// The target in qc of the unit.
     target: Option<i64>,
     in_window_ms: u16,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Setpoint {
-    /// 607A when bit 4 rose.
+    /// Value of 607A at the rising edge of bit 4.
     value: i32,
     relative: bool,
 }
@@ -45,17 +45,17 @@ impl PositionMode {
         reached | acknowledged
     }
 
-    /// No target any more.
+    /// Drops all targets.
     pub fn abandon(&mut self) {
         *self = Self::default();
     }
 }
 
 impl Node {
-    /// The controlword changed while operation is enabled.
+    /// Handles a change of the controlword while operation is enabled.
     ///
-    /// A halt gives the move up: the specification does not say whether it would go on afterwards, and an axis that starts by
-    /// itself is the worse surprise. With the halt bit set no setpoint is taken.
+    /// A halt cancels the move: the specification does not say whether it resumes, and an
+    /// unexpected start is the greater hazard. The halt bit blocks setpoints.
     pub(super) fn position_command(&mut self, old: u16, word: u16) {
         let rising = word & !old;
         if rising & control::HALT != 0 {
@@ -127,8 +127,8 @@ impl Node {
         (lowest..=highest).contains(&position)
     }
 
-    /// The axis goes on outwards beyond a software limit, as after a new target too close behind it. Off while homing; going
-    /// back inside is always allowed.
+    /// Error for motion outwards beyond a software limit, as after a new target close behind it.
+    /// Inactive while homing; motion inwards is always allowed.
     pub(super) fn watch_software_limits(&mut self) {
         if self.mode == mode::HOMING || self.state != State::OperationEnabled {
             return;
@@ -142,7 +142,7 @@ impl Node {
         }
     }
 
-    /// One millisecond of the mode.
+    /// Advances the mode by one millisecond.
     pub(super) fn advance_position_mode(&mut self) {
         let moving = self.generator.is_moving();
         if self.controlword & control::HALT != 0 {
@@ -162,7 +162,8 @@ impl Node {
         };
     }
 
-    /// Target reached: at the end of the profile if the window (6067) is FFFFFFFF, else after 6068 ms within it.
+    /// Whether the target is reached: at the end of the profile if the window (6067) is FFFFFFFF,
+    /// else after 6068 ms within it.
     fn is_in_window(&mut self, target: i64) -> bool {
         let window = self.dictionary.get(objects::POSITION_WINDOW);
         if window == u32::MAX {

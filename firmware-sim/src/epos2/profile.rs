@@ -1,8 +1,10 @@
-//! The trapezoidal position profile (Firmware Specification, "Profile Position Mode", "Motion Profile Type" 0).
+//! The trapezoidal position profile (Firmware Specification, "Profile Position Mode", "Motion
+//! Profile Type" 0).
 //!
-//! Planned once, then evaluated in closed form at each millisecond: brake if the target is behind, change to the
-//! cruise speed, cruise, and a landing counted backwards from the target, which is therefore met exactly. A move too short
-//! for the cruise speed becomes a triangle. Not here: the sinusoidal profile (type 1) and the limits' sources (607F, 60C5).
+//! Planned once, then evaluated in closed form at each millisecond: brake if the target is behind,
+//! change to the cruise speed, cruise, and a landing counted backwards from the target, which is
+//! therefore met exactly. A move too short for the cruise speed becomes a triangle. Not here: the
+//! sinusoidal profile (type 1) and the limits' sources (607F, 60C5).
 
 use super::fixed::{BITS, Fine, MS, Speed, distance, div_ceil};
 use super::leg::ProfileLeg;
@@ -18,10 +20,10 @@ pub(super) struct MotionLimits {
     pub deceleration: u32,
 }
 
-/// The generator cannot use the parameters: a limit is zero or the move would last longer than 2^31 ms. The drive's error for
-/// it is 6320, "too high target position with too low profile velocity".
+/// The generator cannot use the parameters: a limit is zero or the move would last longer than 2^31
+/// ms. The drive's error for it is 6320, "too high target position with too low profile velocity".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Unusable;
+pub(super) struct UnusableParameters;
 
 /// A move that ends at rest on its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,8 +41,8 @@ struct Landing {
     forward: bool,
     deceleration: u32,
     duration: i128,
-    /// Where it begins: its speed and what is left to go. The duration is rounded up, so its formula alone would begin a
-    /// fraction above both.
+    /// Where it begins: its speed and what is left to go. The duration is rounded up, so its
+    /// formula alone would begin a fraction above both.
     peak: Speed,
     length: Fine,
 }
@@ -56,9 +58,9 @@ impl TrapezoidalProfile {
         target: Fine,
         limits: MotionLimits,
         qc_per_turn: u32,
-    ) -> Result<Self, Unusable> {
+    ) -> Result<Self, UnusableParameters> {
         if limits.speed <= Speed::ZERO || limits.acceleration == 0 || limits.deceleration == 0 {
-            return Err(Unusable);
+            return Err(UnusableParameters);
         }
         let brake = ProfileLeg::change(from, speed, Speed::ZERO, limits.deceleration);
         let standstill = brake.finish(qc_per_turn);
@@ -69,12 +71,13 @@ impl TrapezoidalProfile {
         };
         let profile = Self::onward(brake, from, entry, target, limits, qc_per_turn);
         if profile.duration() > LONGEST {
-            return Err(Unusable);
+            return Err(UnusableParameters);
         }
         Ok(profile)
     }
 
-    /// The part after braking: `target` is ahead, far enough to stop from `entry`, a speed towards it.
+    /// The part after braking: `target` is ahead, far enough to stop from `entry`, a speed towards
+    /// it.
     fn onward(
         brake: ProfileLeg,
         from: Fine,

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::super::fixed::{FINE_PER_QC, MAX_QC_PER_TURN, MS, Speed, WORLD_END, fine};
 use super::super::generator::Generator;
-use super::{MotionLimits, TrapezoidalProfile, Unusable};
+use super::{MotionLimits, TrapezoidalProfile, UnusableParameters};
 
 const QC_PER_TURN: u32 = 2000;
 
@@ -77,7 +77,8 @@ fn qc(position: i64) -> f64 {
     position as f64 / FINE_PER_QC as f64
 }
 
-/// Steps a generator to the target and checks each step against the limits; returns the milliseconds it took.
+/// Steps a generator to the target and checks each step against the limits; returns the
+/// milliseconds it took.
 fn run(
     generator: &mut Generator,
     target: i64,
@@ -86,8 +87,8 @@ fn run(
     mut each: impl FnMut(usize, f64),
 ) -> usize {
     let mut steps = 0;
-    // Largest change of position in a ms, and of that change from one ms to the next; 1 unit each for rounding down, and
-    // 2^-32 ms at the joints.
+    // Largest change of position in a ms, and of that change from one ms to the next; 1 unit each
+    // for rounding down, and 2^-32 ms at the joints.
     let top = i128::from(l.speed.0.max(generator.speed().0.abs()));
     let most = ((top * 2 * i128::from(QC_PER_TURN)) >> 32) + 64;
     let steepest = i128::from(l.acceleration.max(l.deceleration));
@@ -148,7 +149,7 @@ fn what_never_ends_is_refused() {
     ] {
         assert_eq!(
             TrapezoidalProfile::plan(0, Speed::ZERO, fine(1), l, QC_PER_TURN),
-            Err(Unusable)
+            Err(UnusableParameters)
         );
     }
     // The whole range at 1 rpm: 2 years.
@@ -160,7 +161,7 @@ fn what_never_ends_is_refused() {
             limits(1, 1, 1),
             QC_PER_TURN
         ),
-        Err(Unusable)
+        Err(UnusableParameters)
     );
 }
 
@@ -193,7 +194,8 @@ fn degenerate_profiles() {
                     );
                 },
             );
-            // Phases are rounded up to 2^-32 ms, so a whole number of milliseconds may take one more.
+            // Phases are rounded up to 2^-32 ms, so a whole number of milliseconds may take one
+            // more.
             let expected = (textbook.duration() * 1e3 - 1e-6).ceil().max(1.0) as usize;
             assert!(
                 steps == expected || steps == expected + 1,
@@ -212,7 +214,8 @@ fn any_limits() -> impl Strategy<Value = MotionLimits> {
         .prop_map(|(v, a, d, same)| limits((v as i32).min(25_000), a, if same { a } else { d }))
 }
 
-/// A length the limits get over in some thousand milliseconds, so that 10,000 cases are a matter of seconds.
+/// A length the limits get over in some thousand milliseconds, so that 10,000 cases are a matter of
+/// seconds.
 fn shorten(length: i64, l: MotionLimits) -> i64 {
     let per_rpm = f64::from(QC_PER_TURN) / 60.0;
     let slowest = f64::from(l.acceleration.min(l.deceleration)) * per_rpm;

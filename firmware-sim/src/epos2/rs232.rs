@@ -1,7 +1,5 @@
-//! The unit's RS232 interface: request and answer with their handshake bytes, half duplex (Communication Guide, "RS232
-//! Communication").
-//!
-//! Wire time at the baud rate belongs to the link, not here.
+//! The RS232 interface of the unit: request and answer with their handshake bytes, half duplex
+//! (Communication Guide, "RS232 Communication"). The link models wire time.
 
 use protocol::epos2::message::{GatewayNmt, SendCanFrame, SerialRequest};
 use protocol::epos2::rs232::{BodyDecoder, Bytes, FAILED, OKAY, encode_body};
@@ -14,44 +12,46 @@ use super::service::CommandService;
 /// The RS232 side of a unit.
 #[derive(Clone, Debug)]
 pub struct Rs232Server {
-    turn: HandshakeState,
+    state: HandshakeState,
     service: CommandService,
-    /// When the last byte came.
-    heard_us: u64,
+    /// Time of the last byte.
+    last_byte_us: u64,
 }
 
-/// Whose turn it is and for what.
+/// What the master sends next.
 #[derive(Clone, Debug)]
 enum HandshakeState {
-    /// The master's: an opcode.
+    /// An opcode.
     Opcode,
-    /// The master's: the rest of its request.
+    /// The rest of its request.
     Body(BodyDecoder),
-    /// The master's: whether it is ready for the answer.
+    /// Whether it is ready for the answer.
     Ready(SerialFrame),
-    /// The master's: whether it has understood the answer.
+    /// Whether it has received the answer.
     Receipt,
 }
 
 impl Rs232Server {
-    /// An interface whose garbage in unused words follows from `seed`.
+    /// An interface; `seed` determines the garbage in unused words.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self {
-            turn: HandshakeState::Opcode,
+            state: HandshakeState::Opcode,
             service: CommandService::new(seed),
-            heard_us: 0,
+            last_byte_us: 0,
         }
     }
 
-    /// Takes bytes from the master at the node's present instant; what the unit sends goes to `out`.
+    /// Takes bytes from the master at the present instant of the node; the bytes of the unit go to
+    /// `out`.
     ///
-    /// A silence longer than the frame timeout (2005) ends whatever was under way. On the unit's CAN bus there is nobody else.
+    /// A silence above the frame timeout (2005) resets the handshake. The CAN bus of the unit has
+    /// no other nodes.
     pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
         self.input_with_bus(node, &mut (), bytes, out);
     }
 
-    /// As [`Rs232Server::input`], with other nodes on the unit's CAN bus for its gateway.
+    /// As [`Rs232Server::input`], with other nodes on the CAN bus for the gateway.
     pub fn input_with_bus(
         &mut self,
         node: &mut Node,
@@ -61,25 +61,25 @@ impl Rs232Server {
     ) {
         let now_us = node.time_us();
         let timeout_us = 1000 * u64::from(node.dictionary.get(objects::RS232_FRAME_TIMEOUT));
-        if now_us.saturating_sub(self.heard_us) > timeout_us {
-            self.turn = HandshakeState::Opcode;
+        if now_us.saturating_sub(self.last_byte_us) > timeout_us {
+            self.state = HandshakeState::Opcode;
         }
-        self.heard_us = now_us;
+        self.last_byte_us = now_us;
         for &byte in bytes {
-            let turn = core::mem::replace(&mut self.turn, HandshakeState::Opcode);
-            self.turn = self.take(turn, byte, node, bus, out);
+            let state = core::mem::replace(&mut self.state, HandshakeState::Opcode);
+            self.state = self.take(state, byte, node, bus, out);
         }
     }
 
     fn take(
         &mut self,
-        turn: HandshakeState,
+        state: HandshakeState,
         byte: u8,
         node: &mut Node,
         bus: &mut impl CanBus,
         out: &mut impl FnMut(&[u8]),
     ) -> HandshakeState {
-        match turn {
+        match state {
             HandshakeState::Opcode if SerialRequest::OPCODES.contains(&byte) => {
                 out(&[OKAY]);
                 HandshakeState::Body(BodyDecoder::new(byte))
@@ -108,7 +108,7 @@ impl Rs232Server {
                 out(&body);
                 HandshakeState::Receipt
             }
-            // Refused, understood or not: the next byte is an opcode.
+            // In either case the next byte is an opcode.
             HandshakeState::Ready(_) | HandshakeState::Receipt => HandshakeState::Opcode,
         }
     }

@@ -1,6 +1,8 @@
-//! Carries out the commands of the serial interfaces on a node, or through it on the CAN bus; framing is the servers' business.
+//! Executes the commands of the serial interfaces on the node, or on other nodes through the CAN
+//! bus.
 //!
-//! Words of an answer that a command does not use are garbage, as on a real unit, and an error is answered in two words or in four.
+//! Unused words of an answer are garbage, as on a real unit, and errors come in two words or in
+//! four.
 
 use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::message::{
@@ -14,20 +16,20 @@ use protocol::epos2::{Bounded, CommError, SerialFrame};
 use super::Abort;
 use super::bus::CanBus;
 use super::dictionary::Dictionary;
+use super::garbage::GarbageGenerator;
 use super::gateway;
-use super::junk::GarbageGenerator;
 use super::node::Node;
 use super::value::{LONGEST, ObjectValue};
 
-/// A serial interface's state between commands.
+/// State of a serial interface between commands.
 #[derive(Clone, Debug)]
 pub(super) struct CommandService {
-    junk: GarbageGenerator,
+    garbage: GarbageGenerator,
     upload: Option<Upload>,
     download: Option<Download>,
 }
 
-/// A segmented read under way. No value here is longer than a segment.
+/// A segmented read under way. No value is longer than one segment.
 #[derive(Clone, Copy, Debug)]
 struct Upload {
     value: ObjectValue,
@@ -46,7 +48,7 @@ struct Download {
 impl CommandService {
     pub const fn new(seed: u64) -> Self {
         Self {
-            junk: GarbageGenerator::new(seed),
+            garbage: GarbageGenerator::new(seed),
             upload: None,
             download: None,
         }
@@ -89,26 +91,26 @@ impl CommandService {
         }
     }
 
-    /// The answer to a request that is not carried out, two words or four.
+    /// The answer to a request that is not executed, two words or four.
     pub fn refuse(&mut self, error: CommError) -> SerialFrame {
         let mut answer = SerialAnswer::bare(error);
-        let junk = self.junk.next();
-        if junk & 1 != 0 {
+        let garbage = self.garbage.next();
+        if garbage & 1 != 0 {
             answer
                 .data
-                .extend([(junk >> 16) as u16, (junk >> 32) as u16]);
+                .extend([(garbage >> 16) as u16, (garbage >> 32) as u16]);
         }
         answer.to_frame()
     }
 
     fn read(&mut self, node: &Node, bus: &mut impl CanBus, request: ReadObject) -> SerialFrame {
         let outcome = read(node, bus, request.node, request.address);
-        // A value longer than the answer has room for: the length of the parameter is the reason.
+        // The value does not fit the answer.
         match outcome.and_then(|value| Ok((value.raw().ok_or(Abort::TOO_LONG)?, value))) {
             Ok((raw, value)) => {
                 let used = 8 * value.bytes().len() as u32;
                 let unused = u32::MAX.checked_shl(used).unwrap_or(0);
-                ReadObject::answer(Ok(raw | self.junk.next() as u32 & unused))
+                ReadObject::answer(Ok(raw | self.garbage.next() as u32 & unused))
             }
             Err(error) => self.refuse(error),
         }
@@ -135,7 +137,7 @@ impl CommandService {
             return self.refuse(CommError::COMMAND);
         };
         if request.toggle {
-            // The first segment, which is also the last, has the toggle bit clear.
+            // The first segment is also the last and has the toggle bit clear.
             return self.refuse(CommError::TOGGLE);
         }
         let mut bytes = Bounded::new();
@@ -149,7 +151,7 @@ impl CommandService {
 
     fn begin_write(&mut self, node: &Node, request: InitiateSegmentedWrite) -> SerialFrame {
         self.download = None;
-        // Another node is asked when all is there.
+        // The request to another node follows when the value is complete.
         let outcome = if is_local(node, request.node) {
             node.check_download(request.address, request.len as usize)
         } else if request.len as usize > LONGEST {
@@ -206,7 +208,7 @@ impl CommandService {
     }
 }
 
-/// Node 0 and the unit's own id are the unit; any other is looked for on the CAN bus.
+/// Node 0 and the id of the unit are the unit itself; others are on the CAN bus.
 const fn is_local(node: &Node, id: u8) -> bool {
     id == 0 || id == node.node_id()
 }
@@ -224,8 +226,8 @@ fn read(
     }
 }
 
-/// The command says nothing about the length of a value. For another node the unit needs to know it: what its own dictionary has,
-/// else four bytes.
+/// Writes an object. The command has no length: the unit's own dictionary gives that of another
+/// node's object, else four bytes.
 fn write(node: &mut Node, bus: &mut impl CanBus, request: WriteObject) -> Result<(), Abort> {
     let WriteObject {
         node: id,
@@ -241,7 +243,7 @@ fn write(node: &mut Node, bus: &mut impl CanBus, request: WriteObject) -> Result
     gateway::write(bus, id, address, bytes.get(..len).unwrap_or(&bytes))
 }
 
-/// Network management is broadcast on the bus and has no errors. The unit hears what it says itself.
+/// Network management is broadcast on the bus and has no errors; the unit receives it too.
 fn nmt(node: &mut Node, bus: &mut impl CanBus, request: GatewayNmt) -> SerialFrame {
     if let Ok(specifier) = u8::try_from(request.specifier) {
         let command = NmtCommand::from_u8(specifier);

@@ -1,39 +1,42 @@
-//! How the motor follows a demand that moves: a linear servo of first or second order, in integers.
+//! The response of the motor to a moving demand: a linear servo of first or second order, in
+//! integers.
 //!
-//! The demand is a line over each millisecond, taken in sixteen steps (semi-implicit Euler, so that it cannot gain energy). Left out:
-//! the current loop, saturation of the current, friction, and all that is not linear.
+//! The demand is linear within each millisecond, in sixteen steps (semi-implicit Euler, which
+//! cannot gain energy). Not simulated: the current loop, saturation of the current, friction and
+//! other nonlinear effects.
 
 use super::fixed::{FINE_PER_QC, Fine};
 
-/// The servo of a unit's position controller, as its shaft shows it.
+/// The servo of the position controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Servo {
     /// `x' = w (d - x)`
     FirstOrder {
-        /// Corner frequency, 1/1000 Hz. Below 0.1 Hz and above 200 Hz it is taken for these.
+        /// Corner frequency, 1/1000 Hz, limited to 0.1 Hz to 200 Hz.
         corner_millihertz: u32,
     },
     /// `x'' = w^2 (d - x) - 2 z w x'`
     SecondOrder {
-        /// Natural frequency, 1/1000 Hz. Below 0.1 Hz and above 200 Hz it is taken for these.
+        /// Natural frequency, 1/1000 Hz, limited to 0.1 Hz to 200 Hz.
         natural_millihertz: u32,
-        /// Damping ratio in thousandths; 1000 does not swing over. Below 100 and above 4000 it is taken for these.
+        /// Damping ratio in thousandths, limited to 100 to 4000; 1000 is critical damping.
         damping_permille: u32,
     },
 }
 
-/// Fractional bits of frequencies, in radians a millisecond.
+/// Fractional bits of frequencies, in radians per millisecond.
 const RATE_BITS: u32 = 32;
 /// Fractional bits of the state below a position unit.
 const STATE_BITS: u32 = 16;
-/// Steps in a millisecond.
+/// Steps per millisecond.
 const STEPS: i128 = 16;
 /// 2 pi with [`RATE_BITS`].
-const TURN: i128 = 26_986_075_409;
-/// Closer to a demand that rests, and slower in a millisecond, the shaft stands: a thousandth of a quadcount. Friction holds a real one.
-const STANDS: i128 = (FINE_PER_QC as i128 / 1_000) << STATE_BITS;
+const TWO_PI: i128 = 26_986_075_409;
+/// Largest distance from a resting demand, and speed per millisecond, at which the shaft comes to
+/// rest: a thousandth of a quadcount. In a real drive friction holds the shaft.
+const STANDSTILL: i128 = (FINE_PER_QC as i128 / 1_000) << STATE_BITS;
 
-/// A servo on its way. State in position units with [`STATE_BITS`], speed in the same a millisecond.
+/// State of a servo: position units with [`STATE_BITS`], speed in the same per millisecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Follower {
     servo: Servo,
@@ -52,24 +55,24 @@ impl Follower {
         }
     }
 
-    /// Stands at `position`, which is its demand as well.
+    /// Rests at `position`, which is also the demand.
     pub const fn rest_at(&mut self, position: Fine) {
         *self = Self::new(self.servo, position);
     }
 
-    /// Moves demand and shaft alike.
+    /// Shifts demand and shaft.
     pub fn shift(&mut self, by: Fine) {
         self.demand = self.demand.saturating_add(by);
         self.at += i128::from(by) << STATE_BITS;
     }
 
-    /// Where the shaft is if nothing holds it.
+    /// Position of the shaft without obstacles.
     pub const fn position(&self) -> Fine {
-        // Between positions that are one, so it fits.
+        // Between two positions, so it fits.
         (self.at >> STATE_BITS) as Fine
     }
 
-    /// One millisecond in which the demand goes to `demand`.
+    /// Advances by one millisecond, in which the demand moves to `demand`.
     pub fn follow(&mut self, demand: Fine) {
         let from = i128::from(self.demand) << STATE_BITS;
         let way = (i128::from(demand) << STATE_BITS) - from;
@@ -77,7 +80,7 @@ impl Follower {
             self.step(from + way * step / STEPS);
         }
         let ahead = (i128::from(demand) << STATE_BITS) - self.at;
-        if way == 0 && ahead.abs() < STANDS && self.speed.abs() < STANDS {
+        if way == 0 && ahead.abs() < STANDSTILL && self.speed.abs() < STANDSTILL {
             self.rest_at(demand);
         }
         self.demand = demand;
@@ -104,9 +107,9 @@ impl Follower {
     }
 }
 
-/// Radians a millisecond.
+/// Radians per millisecond.
 fn radians(millihertz: u32) -> i128 {
-    TURN * i128::from(millihertz.clamp(100, 200_000)) / 1_000_000
+    TWO_PI * i128::from(millihertz.clamp(100, 200_000)) / 1_000_000
 }
 
 #[cfg(test)]
@@ -147,7 +150,8 @@ mod tests {
             let closed = rate * (t - 1.0 / w + (-w * t).exp() / w);
             one.1 = one.1.max((qc(&one.0) - closed).abs());
         }
-        // Steps of 62.5 us: a lag of 637 qc (398 qc) to half a hundredth, half a step of the demand among it.
+        // Steps of 62.5 us: a lag of 637 qc (398 qc) to half a hundredth, half a step of the demand
+        // among it.
         assert!(second.1 < 3.0 && one.1 < 3.0, "{} {}", second.1, one.1);
         assert!((qc(&second.0) - 37.5 * 400.0 + 636.6).abs() < 3.0);
     }

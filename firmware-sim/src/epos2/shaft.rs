@@ -1,31 +1,33 @@
-//! The shaft behind the demand: an ideal servo that follows exactly, or one with a lag ([`Servo`]), until something is in its way.
+//! The shaft: it follows its demand exactly, or with the lag of a [`Servo`], unless something
+//! blocks it.
 //!
-//! A hard stop or a jam holds the shaft while the servo goes on; free again, it catches up no faster than any motor of this drive
-//! turns. The current follows the distance between the two, as that of a proportional position controller. Load, friction and
-//! ripple are left out.
+//! A hard stop or a jam holds the shaft while the servo continues; released, it catches up at a
+//! limited speed. The current is proportional to the distance between shaft and servo, as in a
+//! proportional position controller. Load, friction and ripple are not simulated.
 
 use super::fixed::{FINE_PER_QC, Fine, Speed, fine};
 use super::servo::{Follower, Servo};
 
-/// Current for each quadcount that the shaft is off its demand, mA.
+/// Current per quadcount of deviation, mA.
 const MA_PER_QC: i64 = 5;
-/// The fastest a shaft catches up, rpm: above what any demand has (607F), so that it never binds while nothing is in the way.
+/// Largest catch-up speed, rpm: above the limit of any demand (607F), so that it only acts after a
+/// blockage.
 const FASTEST_RPM: i64 = 26_000;
 
 /// Shaft, motor and encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MotorShaft {
     position: Fine,
-    /// Where it would be if nothing held it; `None`: where its demand is.
+    /// The servo without obstacles; `None`: it equals the demand.
     servo: Option<Follower>,
     jammed: bool,
     /// Hard stops, world qc: below, above.
     stops: [Option<i32>; 2],
     /// In the last millisecond.
     moved: Fine,
-    /// It is not where its demand is.
+    /// The shaft is not at its demand.
     behind: bool,
-    /// It could not follow its servo in the last millisecond, or has not caught up.
+    /// The shaft could not follow its servo in the last millisecond, or has not caught up.
     held: bool,
 }
 
@@ -46,7 +48,7 @@ impl MotorShaft {
         }
     }
 
-    /// The drive has lost its power; the mechanics have not changed.
+    /// State after a loss of power; the mechanics are unchanged.
     pub const fn at_power_on(self) -> Self {
         let mut shaft = Self {
             moved: 0,
@@ -58,19 +60,19 @@ impl MotorShaft {
         shaft
     }
 
-    /// Nothing drives it from now on: its demand is where it is.
+    /// Makes the demand equal to the position.
     pub const fn rest(&mut self) {
         if let Some(servo) = &mut self.servo {
             servo.rest_at(self.position);
         }
     }
 
-    /// Where it would be at this demand if nothing held it.
+    /// Position without obstacles at this demand.
     fn free(&self, demand: Fine) -> Fine {
         self.servo.map_or(demand, |servo| servo.position())
     }
 
-    /// How far it is off where it would be, once something has held it; the servo goes on from where the shaft is.
+    /// Distance from the position without obstacles; the servo continues from the shaft.
     pub fn give_way(&mut self, demand: Fine) -> Fine {
         let behind = self.position - self.free(demand);
         if let Some(servo) = &mut self.servo {
@@ -83,12 +85,12 @@ impl MotorShaft {
         self.position
     }
 
-    /// Whether it is off its demand, be it by the servo's lag.
+    /// Whether the shaft deviates from its demand, also by the lag of the servo.
     pub const fn is_behind(&self) -> bool {
         self.behind
     }
 
-    /// Whether something is, or was, in its way.
+    /// Whether something blocks the shaft, or it has not caught up.
     pub const fn is_held(&self) -> bool {
         self.held
     }
@@ -97,7 +99,7 @@ impl MotorShaft {
         self.jammed = jammed;
     }
 
-    /// One millisecond towards `demand`.
+    /// Advances by one millisecond towards `demand`.
     pub fn follow(&mut self, demand: Fine, qc_per_turn: u32) {
         let [low, high] = self.stops;
         let low = low.map_or(Fine::MIN, |qc| fine(qc.into()));
@@ -107,7 +109,7 @@ impl MotorShaft {
         }
         let free = self.free(demand);
         let wanted = free.max(low).min(high);
-        // A millirpm is twice the quadcounts of a turn, in position units a millisecond.
+        // One millirpm is twice the quadcounts of a revolution, in position units per millisecond.
         let most = FASTEST_RPM * 1000 * 2 * i64::from(qc_per_turn);
         self.moved = if self.jammed {
             0
@@ -122,16 +124,16 @@ impl MotorShaft {
     /// Speed in the last millisecond.
     pub fn speed(&self, qc_per_turn: u32) -> Speed {
         let per_rpm = 2000 * i64::from(qc_per_turn.max(1));
-        // Below the fastest, so far within an i32.
+        // Below the largest speed, so within an i32.
         Speed::from_rpm((self.moved / per_rpm) as i32)
     }
 
-    /// How far the demand is ahead, qc; its sign is the direction.
+    /// Distance of the demand, qc, with its direction as sign.
     pub const fn following_error(&self, demand: Fine) -> i64 {
         demand.saturating_sub(self.position) / FINE_PER_QC
     }
 
-    /// The current it takes to be held, mA, at most `most_ma`.
+    /// Current against the obstacle, mA, at most `most_ma`.
     pub fn current_ma(&self, demand: Fine, most_ma: u16) -> i16 {
         let most = i64::from(most_ma).min(i16::MAX.into());
         let wanted = self

@@ -1,7 +1,8 @@
 //! A serial CAN adapter (SLCAN, Lawicel ASCII) with the unit on its bus.
 //!
-//! Answers are those of a CANUSB: CR, BEL for a refusal, `z` for a frame that was taken. Nothing else is on the bus, and any bit rate
-//! is the unit's. Left out: filters, bit timing registers, the adapter's queue.
+//! Answers are those of a CANUSB: CR, BEL for a rejected command, `z` for a sent frame. The unit is
+//! alone on the bus and accepts any bit rate. Not simulated: filters, bit timing registers, the
+//! queue of the adapter.
 
 use protocol::canopen::CanFrame;
 use protocol::canopen::CanId;
@@ -11,7 +12,7 @@ use protocol::epos2::Bounded;
 use super::can::CanServer;
 use super::node::Node;
 
-/// Milliseconds after which an adapter's time stamps begin anew.
+/// Period of the time stamps of an adapter in milliseconds.
 const STAMP_PERIOD_MS: u64 = 60_000;
 /// Bytes of the longest reply: a line and its CR.
 const LONGEST_REPLY: usize = 128;
@@ -25,7 +26,7 @@ pub struct SlcanServer {
     can: CanServer,
 }
 
-/// Whether frames pass.
+/// State of the channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum AdapterChannel {
     #[default]
@@ -36,13 +37,15 @@ enum AdapterChannel {
 }
 
 impl SlcanServer {
-    /// An adapter whose channel is closed. Whatever the unit sends meanwhile, its boot-up message included, is lost.
+    /// An adapter with a closed channel. Frames that the unit sends meanwhile, such as its boot-up
+    /// message, are lost.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Takes bytes from the host at the node's present instant; each reply goes to `out` as one whole line.
+    /// Takes bytes from the host at the present instant of the node; each reply goes to `out` as
+    /// one line.
     pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
         for &byte in bytes {
             match self.decoder.push(byte) {
@@ -53,7 +56,8 @@ impl SlcanServer {
         }
     }
 
-    /// Passes on what the unit sends at its present instant. To be called after each [`Node::tick`].
+    /// Forwards the frames that the unit sends at its present instant. Call it after each
+    /// [`Node::tick`].
     pub fn poll(&mut self, node: &mut Node, out: &mut impl FnMut(&[u8])) {
         let stamp_ms = self.stamp_ms(node);
         let channel = self.channel;
@@ -104,13 +108,13 @@ impl SlcanServer {
     }
 
     fn stamp_ms(&self, node: &Node) -> Option<u16> {
-        // Below a minute, so below 16 bits.
+        // Below a minute, so it fits 16 bits.
         let ms = node.time_us() / 1000 % STAMP_PERIOD_MS;
         self.stamps.then_some(ms as u16)
     }
 }
 
-/// A frame came from the bus.
+/// Forwards a frame of the bus.
 fn receive(
     channel: AdapterChannel,
     frame: &CanFrame,

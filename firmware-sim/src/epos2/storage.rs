@@ -1,4 +1,4 @@
-//! What outlives power-off: save (1010) and the three ways of loading (1011).
+//! Parameters that survive power-off: save (1010) and the three restore commands (1011).
 
 use protocol::epos2::objects::{self, Address, Object};
 
@@ -13,7 +13,7 @@ pub(super) const RESTORE_FACTORY: Address = Address::new(0x1011, 4);
 /// Restore of the default PDO identifiers.
 pub(super) const RESTORE_COB_IDS: Address = Address::new(0x1011, 5);
 
-/// Process values: not parameters, so never saved.
+/// Process values, which are not saved.
 const VOLATILE: [Address; 8] = [
     objects::TIMESTAMP.address,
     CURRENT_SETTING.address,
@@ -28,7 +28,7 @@ const CURRENT_SETTING: Object<i16> = Object::new(0x2030, 0, "Current Mode Settin
 const POSITION_SETTING: Object<i32> = Object::new(0x2062, 0, "Position Mode Setting Value");
 const VELOCITY_SETTING: Object<i32> = Object::new(0x206B, 0, "Velocity Mode Setting Value");
 
-/// Factory values, with the encoder that the unit is built in with.
+/// Factory values, with the configured encoder.
 pub(super) fn factory(config: &NodeConfig) -> Dictionary {
     let mut dictionary = Dictionary::factory(config.node_id);
     let qc_per_turn = config.qc_per_turn.clamp(4, MAX_QC_PER_TURN);
@@ -36,7 +36,7 @@ pub(super) fn factory(config: &NodeConfig) -> Dictionary {
     dictionary
 }
 
-/// A write to one of the four objects takes a signature.
+/// Checks the signature in a write to one of these objects.
 pub(super) fn check_signature(address: Address, number: i64) -> Option<Result<(), Abort>> {
     const SAVES: Address = objects::STORE_ALL.address;
     const LOADS: [Address; 3] = [
@@ -65,8 +65,8 @@ impl Node {
         }
     }
 
-    /// 1011:1 and 1011:4: back to factory values, at once and for good. CiA 301 has them valid after the next reset, which what was
-    /// saved before must then not undo; that they are valid at once is this unit's reading, as the maxon guides do not say.
+    /// 1011:1 and 1011:4: restores factory values, saved ones too, at once. In CiA 301 they apply
+    /// after the next reset; the maxon guides do not say when.
     pub(super) fn restore(&mut self) {
         self.dictionary = factory(&self.config);
         self.saved = self.dictionary.clone();
@@ -75,7 +75,8 @@ impl Node {
         self.generator.set_qc_per_turn(lines.saturating_mul(4));
     }
 
-    /// 1011:5: the identifiers of all PDOs become those of the predefined connection set for the present node id.
+    /// 1011:5: restores the identifiers of all PDOs from the predefined connection set for the
+    /// present node id.
     pub(super) fn restore_cob_ids(&mut self) {
         let id = self.node_id();
         for index in (0x1400..0x1404).chain(0x1800..0x1804) {

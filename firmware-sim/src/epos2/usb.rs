@@ -1,6 +1,5 @@
-//! The unit's USB interface: one answer a request frame.
-//!
-//! Its timing (the FTDI's latency timer, the frames of USB) belongs to the link, not here.
+//! The USB interface of the unit: one answer per request frame. The link models the timing of FTDI
+//! chip and USB.
 
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
 use protocol::epos2::{CommError, SerialFrameError, objects};
@@ -14,30 +13,31 @@ use super::service::CommandService;
 pub struct UsbServer {
     decoder: UsbDecoder,
     service: CommandService,
-    /// When the frame under way last had a byte.
-    heard_us: u64,
+    /// Time of the last byte.
+    last_byte_us: u64,
 }
 
 impl UsbServer {
-    /// An interface whose garbage in unused words follows from `seed`.
+    /// An interface; `seed` determines the garbage in unused words.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self {
             decoder: UsbDecoder::new(),
             service: CommandService::new(seed),
-            heard_us: 0,
+            last_byte_us: 0,
         }
     }
 
-    /// Takes bytes from the host at the node's present instant; each answer goes to `out` as one whole frame.
+    /// Takes bytes from the host at the present instant of the node; each answer goes to `out` as
+    /// one frame.
     ///
-    /// A frame with a wrong checksum is answered with communication error 05040004; one that breaks off is forgotten, at the
-    /// latest after the frame timeout (2006). On the unit's CAN bus there is nobody else.
+    /// A frame with a wrong checksum is answered with communication error 05040004; an incomplete
+    /// frame is dropped after the frame timeout (2006). The CAN bus of the unit has no other nodes.
     pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
         self.input_with_bus(node, &mut (), bytes, out);
     }
 
-    /// As [`UsbServer::input`], with other nodes on the unit's CAN bus for its gateway.
+    /// As [`UsbServer::input`], with other nodes on the CAN bus for the gateway.
     pub fn input_with_bus(
         &mut self,
         node: &mut Node,
@@ -47,10 +47,10 @@ impl UsbServer {
     ) {
         let now_us = node.time_us();
         let timeout_us = 1000 * u64::from(node.dictionary.get(objects::USB_FRAME_TIMEOUT));
-        if now_us.saturating_sub(self.heard_us) > timeout_us {
+        if now_us.saturating_sub(self.last_byte_us) > timeout_us {
             self.decoder.reset();
         }
-        self.heard_us = now_us;
+        self.last_byte_us = now_us;
         for &byte in bytes {
             let answer = match self.decoder.push(byte) {
                 Some(Ok(request)) => self.service.execute(node, bus, &request),

@@ -1,4 +1,4 @@
-//! The value of a dictionary entry as bytes: what serial answers and SDOs are made of.
+//! The value of a dictionary entry as bytes, for serial answers and SDOs.
 
 use super::entry::Type;
 
@@ -13,7 +13,7 @@ pub struct ObjectValue {
 }
 
 impl ObjectValue {
-    /// The low bytes of `raw` that a number of type `ty` has; strings are [`ObjectValue::text`].
+    /// A number of type `ty`, from the low bytes of `raw`.
     pub(super) const fn number(ty: Type, raw: u64) -> Self {
         Self {
             bytes: raw.to_le_bytes(),

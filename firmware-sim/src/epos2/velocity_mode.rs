@@ -1,7 +1,9 @@
-//! Profile velocity mode (Firmware Specification, "Profile Velocity Mode"): a speed reached by a ramp and kept.
+//! Profile velocity mode (Firmware Specification, "Profile Velocity Mode"): a speed reached by a
+//! ramp and held.
 //!
-//! As in CiA 402 the target (60FF) is in effect as long as operation is enabled and the halt bit is clear. Whether a real unit
-//! waits for a controlword after a new target is not documented; clients write one, and find the same here.
+//! As in CiA 402 the target (60FF) applies while operation is enabled and the halt bit is clear.
+//! Whether a real unit waits for a controlword after a new target is not documented; clients write
+//! one.
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{control, status};
@@ -10,22 +12,22 @@ use protocol::epos2::objects::{self, Object};
 use super::fixed::Speed;
 use super::node::Node;
 
-/// How close to its target a speed counts as reached, rpm; FFFFFFFF: at the end of the ramp.
+/// Tolerance of the target speed, rpm; FFFFFFFF: reached at the end of the ramp.
 const VELOCITY_WINDOW: Object<u32> = Object::new(0x606D, 0, "Velocity Window");
-/// For how long it must be so close, ms.
+/// Time within the tolerance, ms.
 const VELOCITY_WINDOW_TIME: Object<u16> = Object::new(0x606E, 0, "Velocity Window Time");
-/// Bit 12 of the statusword in this mode: standing still.
+/// Bit 12 of the statusword in this mode: standstill.
 const SPEED_IS_ZERO: u16 = 1 << 12;
 
-/// What the mode has under way.
+/// State of the mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct VelocityMode {
-    /// The speed that is ramped to; `None` before the first.
+    /// The speed at the end of the ramp; `None` before the first.
     target: Option<Speed>,
     /// Bit 10.
     reached: bool,
     in_window_ms: u16,
-    /// The shaft could not turn in this direction in the last control cycle; 0 if it could.
+    /// The blocked direction in the last control cycle; 0 if the shaft could move.
     pub held: i16,
 }
 
@@ -40,14 +42,14 @@ impl VelocityMode {
         reached | zero
     }
 
-    /// No target any more.
+    /// Drops the target.
     pub fn abandon(&mut self) {
         *self = Self::default();
     }
 }
 
 impl Node {
-    /// One millisecond of the mode.
+    /// Advances the mode by one millisecond.
     pub(super) fn advance_velocity_mode(&mut self) {
         let target = self.velocity_target();
         if self.velocity_mode.target != Some(target) {
@@ -66,7 +68,7 @@ impl Node {
         self.velocity_mode.reached = self.is_at_speed(target);
     }
 
-    /// 60FF within its limits (607F, 6410:4), nothing at a halt.
+    /// 60FF within its limits (607F, 6410:4); zero at a halt.
     fn velocity_target(&self) -> Speed {
         if self.controlword & control::HALT != 0 {
             return Speed::ZERO;

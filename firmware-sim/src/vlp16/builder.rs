@@ -31,11 +31,11 @@ impl DataPacketBuilder {
         }
     }
 
-    /// Adds the next firing, whose first laser fired at `azimuth_cdeg` hundredths of a degree (modulo
-    /// a revolution).
+    /// Adds the next firing, whose first laser fired at `azimuth_cdeg` hundredths of a degree
+    /// (modulo a revolution).
     ///
-    /// `returns` has distance (in units of the model, 0 for no return) and calibrated reflectivity of
-    /// each laser in firing order. In dual return they are the last returns, and `others` the
+    /// `returns` has distance (in units of the model, 0 for no return) and calibrated reflectivity
+    /// of each laser in firing order. In dual return they are the last returns, and `others` the
     /// strongest, or the second strongest where the last is the strongest; other modes ignore
     /// `others`. The packet carries only the azimuth of the first firing of a block. Missing lasers
     /// have no return; surplus firings are dropped.
@@ -195,8 +195,8 @@ mod tests {
         assert!(!builder.is_full());
     }
 
-    /// The layout of the manual: block b at 100 b, azimuth at 2 in it, channel c at 4 + 3 c; mode and
-    /// product at the end.
+    /// The layout of the manual: block b at 100 b, azimuth at 2 in it, channel c at 4 + 3 c; mode
+    /// and product at the end.
     #[test]
     fn thirty_two_lasers_fill_a_block() {
         for (model, product) in [(PacketModel::Hdl32e, 0x21), (PacketModel::Vlp32c, 0x28)] {

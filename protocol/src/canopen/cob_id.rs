@@ -1,16 +1,17 @@
-//! Node ids, 11-bit identifiers, and which of them a service has by default (CiA 301, "Predefined connection set").
+//! Node ids, 11-bit identifiers, and their default assignment to services (CiA 301, "Predefined
+//! connection set").
 //!
-//! An object of the drive may move a service to another identifier (1005, 1014, 140x, 180x); who does that compares
-//! identifiers himself.
+//! Objects of a node can assign other identifiers (1005, 1014, 140x, 180x); the caller compares
+//! identifiers then.
 
 use core::fmt;
 
-/// A node's number, 1 to 127.
+/// A node id, 1 to 127.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(u8);
 
 impl NodeId {
-    /// The highest.
+    /// The highest node id.
     pub const MAX: Self = Self(127);
 
     /// The node `id`; `None` outside 1 to 127 (0 means "all nodes" where it is allowed).
@@ -46,7 +47,7 @@ impl CobId {
     pub const SYNC: Self = Self(0x080);
     /// Time stamp.
     pub const TIME: Self = Self(0x100);
-    /// The highest.
+    /// The highest identifier.
     pub const MAX: Self = Self(0x7FF);
 
     /// The identifier `id`; `None` above 11 bits.
@@ -77,7 +78,7 @@ impl fmt::Display for CobId {
     }
 }
 
-/// Which of a node's four PDOs of a direction.
+/// Number of a PDO in its direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PdoNumber {
     /// PDO 1.
@@ -94,7 +95,7 @@ impl PdoNumber {
     /// All four.
     pub const ALL: [Self; 4] = [Self::One, Self::Two, Self::Three, Self::Four];
 
-    /// 0 to 3: what is added to the index of PDO 1's objects.
+    /// 0 to 3: offset of its objects from those of PDO 1.
     #[must_use]
     pub const fn offset(self) -> u16 {
         match self {
@@ -106,14 +107,14 @@ impl PdoNumber {
     }
 }
 
-/// Whose message an identifier carries; sending and receiving are seen from the node.
+/// The communication object (CiA 301) of an identifier; directions are those of the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CommunicationObject {
     /// 000: commands to nodes.
     Nmt,
     /// 080: synchronisation.
     Sync,
-    /// 080 + node: what went wrong at a node.
+    /// 080 + node: errors of a node.
     Emergency(NodeId),
     /// 100: time stamp.
     Time,
@@ -127,12 +128,12 @@ pub enum CommunicationObject {
     SdoRequest(NodeId),
     /// 700 + node: boot-up and heartbeat of a node.
     Heartbeat(NodeId),
-    /// In no service's place.
+    /// Not in the predefined connection set.
     Other(CobId),
 }
 
 impl CommunicationObject {
-    /// The channel of an identifier.
+    /// The communication object of an identifier.
     #[must_use]
     pub const fn of(id: CobId) -> Self {
         match id {
@@ -161,7 +162,7 @@ impl CommunicationObject {
         }
     }
 
-    /// The identifier of the channel.
+    /// The identifier of the communication object.
     #[must_use]
     pub const fn cob_id(self) -> CobId {
         let (base, node) = match self {

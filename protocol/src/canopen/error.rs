@@ -1,10 +1,10 @@
-//! What can be wrong with a CAN frame or with the message in it.
+//! Errors of CAN frames and of the messages in them.
 
 use thiserror::Error;
 
 use super::frame::{CanFrame, CanId};
 
-/// Which service's message an error was found in.
+/// The kind of message in which an error was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MessageKind {
     /// Network management.
@@ -37,28 +37,28 @@ impl core::fmt::Display for MessageKind {
     }
 }
 
-/// Why bytes are no CAN frame.
+/// Why bytes are not a CAN frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum CanFrameError {
-    /// More data than a classic frame has, or a data length code above 8.
+    /// More data than in a classic frame, or a data length code above 8.
     #[error("CAN frame: length at byte {offset} is {got}, expected at most {max}")]
     TooLong {
-        /// Where the length stands in a `struct can_frame`.
+        /// Offset of the length in a `struct can_frame`.
         offset: usize,
         /// 8.
         max: usize,
         /// Bytes given or announced.
         got: usize,
     },
-    /// Fewer bytes than the frame announces or its head has.
+    /// Fewer bytes than the header or the announced data.
     #[error("CAN frame: {got} bytes, expected {expected}")]
     Short {
-        /// Bytes it should have.
+        /// Bytes of the whole frame.
         expected: usize,
-        /// Bytes there are.
+        /// Bytes given.
         got: usize,
     },
-    /// A frame with an 11-bit identifier has bits above these.
+    /// Bits above the 11 of a standard identifier are set.
     #[error(
         "CAN frame: identifier word at byte 0 is {got:08X}, expected 11 bits without the extended flag"
     )]
@@ -69,60 +69,60 @@ pub enum CanFrameError {
     /// A CAN FD frame.
     #[error("CAN frame: flags at byte {offset} are {got:02X}: CAN FD, expected a classic frame")]
     Fd {
-        /// Where the flags stand.
+        /// Offset of the flags.
         offset: usize,
         /// The flags.
         got: u8,
     },
-    /// The controller's report of an error on the bus, no frame from it.
+    /// An error report of the controller, not a frame of the bus.
     #[error(
         "CAN frame: identifier word at byte 0 is {got:08X}: an error report of the controller, expected a frame"
     )]
     Report {
-        /// The identifier word, flags included: its low bits are the class of the error.
+        /// The identifier word, flags included: its low bits are the error class.
         got: u32,
     },
 }
 
-/// Why a CAN frame is not the message it was taken for.
+/// Why a CAN frame is not a message of the expected kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum MessageError {
-    /// Another identifier than this service's.
+    /// The identifier belongs to another service.
     #[error("{layer}: CAN id {got}, expected {expected}")]
     Id {
         /// The service.
         layer: MessageKind,
         /// Its identifiers.
         expected: &'static str,
-        /// The frame's.
+        /// The identifier of the frame.
         got: CanId,
     },
-    /// A remote frame: it asks, where this service's message tells.
+    /// A remote frame; the service has data frames only.
     #[error("{layer}: a remote frame, expected data")]
     Remote {
         /// The service.
         layer: MessageKind,
     },
-    /// Another number of data bytes than the message has.
+    /// The number of data bytes is wrong.
     #[error("{layer}: {got} data bytes, expected {expected}")]
     Length {
         /// The service.
         layer: MessageKind,
-        /// The number it has.
+        /// The number of the message.
         expected: usize,
         /// The number in the frame.
         got: usize,
     },
-    /// A byte that has no meaning there.
+    /// A byte has no meaning.
     #[error("{layer}: data byte {offset} is {got:02X}, expected {expected}")]
     Value {
         /// The service.
         layer: MessageKind,
-        /// Which data byte.
+        /// Offset of the data byte.
         offset: usize,
-        /// What may stand there.
+        /// Permitted values.
         expected: &'static str,
-        /// What does.
+        /// The value.
         got: u8,
     },
 }

@@ -1,16 +1,17 @@
-//! A classic CAN frame, and its form in a log: the 16 bytes of SocketCAN's `struct can_frame` with the identifier
-//! big-endian (LINKTYPE_CAN_SOCKETCAN).
+//! A classic CAN frame, and its form in a log: the 16 bytes of SocketCAN's `struct can_frame` with
+//! a big-endian identifier (LINKTYPE_CAN_SOCKETCAN). CAN FD and error reports of the controller are
+//! rejected.
 //!
-//! CAN FD and the controller's error reports are refused: they are no frames of this bus.
+//! The traits of `embedded-can` are not implemented: they add conversions that nothing here uses.
 
 use core::fmt;
 
 use super::cob_id::CobId;
 use super::error::CanFrameError;
 
-/// Bytes of a `struct can_frame`: identifier and flags, length, three others, eight of data.
+/// Bytes of a `struct can_frame`: identifier and flags, length, three reserved, eight of data.
 pub const SOCKETCAN_LEN: usize = 16;
-/// Where the data begins in it.
+/// Offset of the data in it.
 const DATA_OFFSET: usize = 8;
 /// The most data bytes in a classic frame.
 const MAX_DATA: usize = 8;
@@ -21,12 +22,12 @@ const REPORT: u32 = 1 << 29;
 /// Flag of byte 5: the frame is CAN FD.
 const FD: u8 = 0x04;
 
-/// A 29-bit identifier. CANopen has none; a bus may.
+/// A 29-bit identifier, which CANopen does not use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ExtendedId(u32);
 
 impl ExtendedId {
-    /// The highest.
+    /// The highest identifier.
     pub const MAX: Self = Self(0x1FFF_FFFF);
 
     /// The identifier `id`; `None` above 29 bits.
@@ -61,7 +62,7 @@ pub enum CanId {
 }
 
 impl CanId {
-    /// The number, without a mark of its width.
+    /// The number, without its width.
     #[must_use]
     pub const fn raw(self) -> u32 {
         match self {
@@ -98,7 +99,7 @@ pub struct CanFrame {
     id: CanId,
     remote: bool,
     len: u8,
-    /// Zero beyond `len`, and throughout in a remote frame.
+    /// Zero after `len`, and in a remote frame.
     data: [u8; MAX_DATA],
 }
 
@@ -106,14 +107,14 @@ impl CanFrame {
     /// A data frame.
     ///
     /// # Errors
-    /// [`CanFrameError::TooLong`] beyond eight bytes.
+    /// [`CanFrameError::TooLong`] above eight bytes.
     pub fn new(id: impl Into<CanId>, data: &[u8]) -> Result<Self, CanFrameError> {
         let mut frame = Self::empty(id.into(), false, data.len())?;
         copy(data, &mut frame.data);
         Ok(frame)
     }
 
-    /// A data frame of few bytes: what does not fit is a compile-time error.
+    /// A data frame of a fixed number of bytes.
     pub fn of<const N: usize>(id: impl Into<CanId>, data: [u8; N]) -> Self {
         const { assert!(N <= MAX_DATA) };
         let mut frame = Self {
@@ -126,10 +127,10 @@ impl CanFrame {
         frame
     }
 
-    /// A remote frame that asks for `len` bytes.
+    /// A remote frame that requests `len` bytes.
     ///
     /// # Errors
-    /// [`CanFrameError::TooLong`] beyond eight.
+    /// [`CanFrameError::TooLong`] above eight.
     pub fn remote(id: impl Into<CanId>, len: u8) -> Result<Self, CanFrameError> {
         Self::empty(id.into(), true, usize::from(len))
     }
@@ -156,7 +157,7 @@ impl CanFrame {
         self.id
     }
 
-    /// The identifier, if it is one of 11 bits.
+    /// The identifier, if it has 11 bits.
     #[must_use]
     pub const fn cob_id(&self) -> Option<CobId> {
         match self.id {
@@ -165,26 +166,26 @@ impl CanFrame {
         }
     }
 
-    /// The data; of a remote frame none.
+    /// The data; empty for a remote frame.
     #[must_use]
     pub fn data(&self) -> &[u8] {
         let len = if self.remote { 0 } else { self.len };
         self.data.get(..usize::from(len)).unwrap_or_default()
     }
 
-    /// Data bytes, or bytes a remote frame asks for: 0 to 8.
+    /// Number of data bytes, or of bytes that a remote frame requests: 0 to 8.
     #[must_use]
     pub const fn dlc(&self) -> u8 {
         self.len
     }
 
-    /// Whether it asks for data instead of carrying it.
+    /// Whether it is a remote frame.
     #[must_use]
     pub const fn is_remote(&self) -> bool {
         self.remote
     }
 
-    /// The frame as it stands in a log.
+    /// The frame as in a log.
     #[must_use]
     pub fn to_socketcan(&self) -> [u8; SOCKETCAN_LEN] {
         let extended = match self.id {
@@ -197,11 +198,11 @@ impl CanFrame {
         [a, b, c, d, self.len, 0, 0, 0, e, f, g, h, i, j, k, l]
     }
 
-    /// The frame in a log's record. Bytes behind its data may be missing; if they are there they do not count.
+    /// The frame in a log's record. Bytes after its data are optional and ignored.
     ///
     /// # Errors
-    /// [`CanFrameError`]: too short for its head or its length, longer than a classic frame, an identifier that is none,
-    /// CAN FD, an error report.
+    /// [`CanFrameError`]: incomplete, longer than a classic frame, an invalid identifier, CAN FD,
+    /// an error report.
     pub fn from_socketcan(bytes: &[u8]) -> Result<Self, CanFrameError> {
         let Some((&[a, b, c, d, len, flags, _, _], rest)) =
             bytes.split_first_chunk::<DATA_OFFSET>()
@@ -251,7 +252,7 @@ fn copy(from: &[u8], to: &mut [u8; MAX_DATA]) {
     }
 }
 
-/// As candump writes it: `601#4041600000000000`, `701#R1`.
+/// In the notation of candump: `601#4041600000000000`, `701#R1`.
 impl fmt::Display for CanFrame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}#", self.id)?;
@@ -305,7 +306,7 @@ mod tests {
         for frame in [extended, remote] {
             assert_eq!(CanFrame::from_socketcan(&frame.to_socketcan()), Ok(frame));
         }
-        // A recorder may leave the asked-for bytes out, or junk in them.
+        // A recorder may omit the requested bytes, or leave garbage in them.
         assert_eq!(
             CanFrame::from_socketcan(&[0x40, 0, 7, 1, 1, 0, 0, 0]),
             Ok(remote)

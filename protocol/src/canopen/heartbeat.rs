@@ -1,7 +1,6 @@
-//! Heartbeat and boot-up (CiA 301, "Error control services"): a node says it lives, and in which state; a machine
-//! without I/O that notices when it no longer does; the consumer's object 1016.
-//!
-//! Node guarding, the older way with remote frames, is left out: CiA 301 advises against it.
+//! Heartbeat and boot-up (CiA 301, "Error control services"): the message, a consumer without I/O
+//! that detects its absence, and the consumer's object 1016. CiA 301 advises against the older node
+//! guarding by remote frames.
 
 use units::{Host, Span, Stamp};
 
@@ -11,17 +10,17 @@ use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 use super::nmt::NmtState;
 
-/// A sign of life. The first after a start has [`NmtState::BootUp`].
+/// A heartbeat. The first after a start has [`NmtState::BootUp`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Heartbeat {
-    /// Who lives.
+    /// The sending node.
     pub node: NodeId,
-    /// In which state.
+    /// Its state.
     pub state: NmtState,
 }
 
 impl Heartbeat {
-    /// The sign as a frame.
+    /// The heartbeat as a frame.
     #[must_use]
     pub fn to_frame(&self) -> CanFrame {
         CanFrame::of(
@@ -30,7 +29,7 @@ impl Heartbeat {
         )
     }
 
-    /// The sign in `frame`.
+    /// The heartbeat in `frame`.
     ///
     /// # Errors
     /// [`MessageError`].
@@ -49,12 +48,12 @@ impl Heartbeat {
     }
 }
 
-/// The value of an entry of 1016: whose heartbeat is expected how often, else error 8130 and its reaction.
+/// The value of an entry of 1016: the expected heartbeat of a node, whose absence is error 8130.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConsumerEntry {
-    /// Whose.
+    /// The monitored node.
     pub node: NodeId,
-    /// At least once in so many milliseconds; 0 switches the entry off.
+    /// Longest interval in milliseconds; 0 disables the entry.
     pub time_ms: u16,
 }
 
@@ -65,7 +64,7 @@ impl ConsumerEntry {
         (self.node.get() as u32) << 16 | self.time_ms as u32
     }
 
-    /// The entry of a value; `None` where it is switched off or names no node.
+    /// The entry of a value; `None` where it is disabled or names no node.
     #[must_use]
     pub const fn from_u32(value: u32) -> Option<Self> {
         let time_ms = value as u16;
@@ -76,28 +75,30 @@ impl ConsumerEntry {
     }
 }
 
-/// What a heartbeat, or its absence, says.
+/// An event of a monitored heartbeat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeartbeatEvent {
-    /// The node has just started: what it was told before, it has forgotten.
+    /// The node has restarted and lost its state.
     BootUp,
-    /// The node is in another state than before; `from` is `None` at the first heartbeat, and at the first after a loss.
+    /// The state of the node has changed; `from` is `None` at the first heartbeat, and at the first
+    /// after a loss.
     State {
-        /// Before.
+        /// The state before.
         from: Option<NmtState>,
-        /// Now.
+        /// The state now.
         to: NmtState,
     },
     /// No heartbeat for longer than the limit.
     Lost {
-        /// Since the last one.
+        /// Time since the last heartbeat.
         silence: Span,
     },
 }
 
-/// Listens to a node's heartbeat.
+/// Monitor of a node's heartbeat.
 ///
-/// It expects nothing before the first heartbeat, as CiA 301 has it: whether a node is there at all is asked otherwise.
+/// As in CiA 301 monitoring begins with the first heartbeat; the presence of a node is checked
+/// otherwise.
 #[derive(Clone, Copy, Debug)]
 pub struct HeartbeatConsumer {
     node: NodeId,
@@ -107,7 +108,8 @@ pub struct HeartbeatConsumer {
 }
 
 impl HeartbeatConsumer {
-    /// Listens to `node`, which is lost when it has been silent for `limit` (more than its producer time, 1017).
+    /// Monitors `node`, which is lost after a silence of `limit` (more than its producer time,
+    /// 1017).
     #[must_use]
     pub const fn new(node: NodeId, limit: Span) -> Self {
         Self {
@@ -118,13 +120,13 @@ impl HeartbeatConsumer {
         }
     }
 
-    /// The state it was last in; `None` before its first heartbeat and while it is lost.
+    /// The last state; `None` before the first heartbeat and while the node is lost.
     #[must_use]
     pub const fn state(&self) -> Option<NmtState> {
         self.state
     }
 
-    /// Takes any frame of the bus; those of others do nothing.
+    /// Takes any frame of the bus; frames of other nodes have no effect.
     pub fn handle_frame(&mut self, frame: &CanFrame, now: Stamp<Host>) -> Option<HeartbeatEvent> {
         let heartbeat = Heartbeat::parse(frame).ok()?;
         if heartbeat.node != self.node {
@@ -140,13 +142,13 @@ impl HeartbeatConsumer {
         }
     }
 
-    /// When the node is lost, unless a heartbeat comes.
+    /// Time at which the node is lost without a further heartbeat.
     #[must_use]
     pub fn poll_timeout(&self) -> Option<Stamp<Host>> {
         self.last.map(|last| last.saturating_add(self.limit))
     }
 
-    /// Whether the node is lost at `now`; told once.
+    /// Reports the loss of the node at `now`, once.
     pub fn handle_timeout(&mut self, now: Stamp<Host>) -> Option<HeartbeatEvent> {
         let last = self.last?;
         if now < last.saturating_add(self.limit) {
@@ -200,7 +202,7 @@ mod tests {
             hear(Operational, 110),
             Some(HeartbeatEvent::State { .. })
         ));
-        // Another node does not keep this one alive.
+        // Heartbeats of other nodes do not count.
         assert_eq!(consumer.handle_frame(&beat(2, Operational), at(150)), None);
         assert_eq!(consumer.poll_timeout(), Some(at(210)));
         assert_eq!(consumer.handle_timeout(at(209)), None);

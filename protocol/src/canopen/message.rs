@@ -1,4 +1,4 @@
-//! Any message of the predefined connection set: for whoever looks on at a bus or reads a log.
+//! Any message of the predefined connection set, for monitors of a bus and readers of logs.
 
 use super::cob_id::{CobId, CommunicationObject, NodeId, PdoNumber};
 use super::emcy::Emergency;
@@ -11,16 +11,16 @@ use super::sdo::{Answer, Request};
 use super::sync::SyncMessage;
 use crate::Bounded;
 
-/// A frame with its meaning.
+/// A decoded frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BusMessage {
     /// A command to nodes.
     Nmt(Nmt),
-    /// A beat.
+    /// Synchronisation.
     Sync(SyncMessage),
-    /// What went wrong at a node.
+    /// An error of a node, or its end.
     Emergency(Emergency),
-    /// Process data from a node; what it means is in the node's mapping ([`super::pdo::PdoLayout`]).
+    /// Process data from a node, in the layout of its mapping ([`super::pdo::PdoLayout`]).
     TransmitPdo(PdoNumber, NodeId, Bounded<u8, 8>),
     /// Process data to a node.
     ReceivePdo(PdoNumber, NodeId, Bounded<u8, 8>),
@@ -28,9 +28,9 @@ pub enum BusMessage {
     SdoRequest(NodeId, Request),
     /// An answer of a node's SDO server.
     SdoAnswer(NodeId, Answer),
-    /// A node's sign of life.
+    /// A heartbeat of a node.
     Heartbeat(Heartbeat),
-    /// A frame in no service's place, the time stamp, or a remote frame: not looked into.
+    /// A frame outside the services, a time stamp, or a remote frame: not decoded.
     Other(CanFrame),
 }
 
@@ -38,7 +38,7 @@ impl BusMessage {
     /// The message in `frame`.
     ///
     /// # Errors
-    /// [`MessageError`] where the identifier is a service's and the content is not.
+    /// [`MessageError`] where the identifier belongs to a service and the content is invalid.
     pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
         let Some(id) = frame.cob_id().filter(|_| !frame.is_remote()) else {
             return Ok(Self::Other(*frame));
@@ -88,6 +88,6 @@ impl BusMessage {
 
 /// Process data as a frame.
 pub(super) fn pdo(id: CobId, data: &Bounded<u8, 8>) -> CanFrame {
-    // Both hold eight bytes at most, so there is no error to take this way out.
+    // Both hold at most eight bytes, so the fallback is unreachable.
     CanFrame::new(id, data).unwrap_or_else(|_| CanFrame::of(id, []))
 }

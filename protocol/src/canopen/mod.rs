@@ -1,10 +1,9 @@
-//! CANopen as the tilt drive speaks it (CiA 301): CAN frames, the services carried by them, an SDO client without I/O,
-//! and SLCAN, by which a serial adapter carries the frames.
+//! CANopen (CiA 301), independent of any device: CAN frames, the services on them, an SDO client
+//! without I/O, and SLCAN for serial adapters.
 //!
-//! One file a service, encode and parse together. Identifiers are those of the predefined connection set. Objects and
-//! abort codes are the EPOS2's ([`crate::epos2::objects`], [`crate::epos2::CommError`]). Left out on purpose: SDO block
-//! transfer, which the EPOS2 does not have; LSS, which it is not configured by; the server's side of a transfer as a
-//! machine, which is a device's business.
+//! Each service has one file with encoder and parser. Identifiers are those of the predefined
+//! connection set. Not implemented: SDO block transfer, LSS, and the server side of an SDO
+//! transfer, which is part of a device.
 
 pub mod cob_id;
 pub mod emcy;

@@ -1,6 +1,6 @@
-//! Network management (CiA 301, "NMT services"): what nodes are told, and the states they tell of.
+//! Network management (CiA 301, "NMT services"): commands to nodes and the states of nodes.
 //!
-//! A node confirms nothing; whether it obeyed shows in its heartbeat.
+//! Commands are not confirmed; the heartbeat shows their effect.
 
 use core::fmt;
 
@@ -31,7 +31,7 @@ byte_codes! {
 pub struct Nmt {
     /// `None` is all nodes.
     pub node: Option<NodeId>,
-    /// What to do.
+    /// The command.
     pub command: NmtCommand,
 }
 
@@ -67,7 +67,7 @@ impl Nmt {
         })
     }
 
-    /// Whether `node` is meant.
+    /// Whether the command addresses `node`.
     #[must_use]
     pub fn is_for(&self, node: NodeId) -> bool {
         self.node.is_none_or(|meant| meant == node)

@@ -1,4 +1,5 @@
-//! Entries of an object dictionary (CiA 301, "Object dictionary"): addresses, value types, typed entries.
+//! Entries of an object dictionary (CiA 301, "Object dictionary"): addresses, value types, typed
+//! entries.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -26,13 +27,14 @@ impl fmt::Display for Address {
     }
 }
 
-/// A value type of up to 32 bits, as it stands in the data of a serial command or an expedited SDO.
+/// A value type of up to 32 bits in a serial command or an expedited SDO.
 pub trait Scalar: Copy {
     /// Bytes of the object.
     const BYTES: u8;
-    /// The value in the low bytes of `raw`; what stands above is ignored (a real unit leaves garbage there).
+    /// The value in the low bytes of `raw`; the others are ignored (a real unit leaves garbage
+    /// there).
     fn from_raw(raw: u32) -> Self;
-    /// The value in the low bytes, extended to 32 bits by its sign.
+    /// The value in the low bytes, sign-extended to 32 bits.
     fn to_raw(self) -> u32;
 }
 
@@ -44,7 +46,7 @@ macro_rules! scalar {
                 raw as $t
             }
             fn to_raw(self) -> u32 {
-                // Through i64 signed types extend by their sign, unsigned ones by zero.
+                // Signed types are sign-extended through i64, unsigned types zero-extended.
                 i64::from(self) as u32
             }
         }
@@ -54,9 +56,9 @@ scalar!(u8, u16, u32, i8, i16, i32);
 
 /// An entry with its type.
 pub struct TypedObject<T> {
-    /// Where it stands.
+    /// Its address.
     pub address: Address,
-    /// The specification's name.
+    /// Its name in the specification.
     pub name: &'static str,
     value: PhantomData<fn() -> T>,
 }
@@ -87,7 +89,7 @@ impl<T: Scalar> TypedObject<T> {
     }
 }
 
-// Derives would ask for `T: Clone` and so on; the type is only a name.
+// Derives would require `T: Clone`; `T` is only a marker.
 impl<T> Clone for TypedObject<T> {
     fn clone(&self) -> Self {
         *self

@@ -1,21 +1,20 @@
-//! SYNC (CiA 301, "Synchronisation object"): the beat on which nodes latch and send their process data.
-//!
-//! Who beats, and how evenly, is the caller's business.
+//! SYNC (CiA 301, "Synchronisation object"): nodes sample and send their process data on it.
 
 use super::cob_id::CobId;
 use super::error::{MessageError, MessageKind};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 
-/// A beat.
+/// A SYNC message.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SyncMessage {
-    /// CiA 301 4.2 lets the producer count beats, 1 to 240. The EPOS2 knows no counter (it has no object 1019): `None`.
+    /// Counter of the producer, 1 to 240 (CiA 301 4.2). `None` without object 1019, as in the
+    /// EPOS2.
     pub counter: Option<u8>,
 }
 
 impl SyncMessage {
-    /// The beat as a frame.
+    /// The message as a frame.
     #[must_use]
     pub fn to_frame(&self) -> CanFrame {
         match self.counter {
@@ -24,7 +23,7 @@ impl SyncMessage {
         }
     }
 
-    /// The beat in `frame`.
+    /// The message in `frame`.
     ///
     /// # Errors
     /// [`MessageError`].

@@ -78,7 +78,8 @@ fn segment(toggle: bool, last: bool, bytes: &[u8]) -> Segment {
     }
 }
 
-/// EPOS2 Communication Guide, "SDO communication" (node 1); the segments are those of reading the device name.
+/// EPOS2 Communication Guide, "SDO communication" (node 1); the segments are those of reading the
+/// device name.
 fn sdo_messages() -> Vec<(&'static str, BusMessage)> {
     let ask = |request| BusMessage::SdoRequest(node(1), request);
     let say = |answer| BusMessage::SdoAnswer(node(1), answer);

@@ -1,5 +1,5 @@
-//! Communication errors: the first two words of each answer, equal to SDO abort codes (Communication
-//! Guide, "Communication Errors").
+//! Communication errors: the first two words of each answer, equal to SDO abort codes
+//! (Communication Guide, "Communication Errors").
 
 use core::fmt;
 

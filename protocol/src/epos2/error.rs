@@ -1,8 +1,8 @@
-//! What can be wrong with a frame or with the message in it.
+//! Errors of a frame and of the message in it.
 
 use thiserror::Error;
 
-/// Where in the stack of formats an error was found.
+/// The layer in which an error was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SerialLayer {
     /// `90 02` framing with byte stuffing.
@@ -23,7 +23,7 @@ impl core::fmt::Display for SerialLayer {
     }
 }
 
-/// Why bytes are no frame, or a frame is not the message it was taken for.
+/// Why bytes are not a frame, or a frame is not the expected message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SerialFrameError {
     /// The checksum does not match.
@@ -43,49 +43,49 @@ pub enum SerialFrameError {
     BrokenOff {
         /// USB.
         layer: SerialLayer,
-        /// Bytes it should have had, without stuffing; 4 where its length had not come yet.
+        /// Bytes of the whole frame, without stuffing; 4 before its length is known.
         expected: usize,
-        /// Bytes that came, without stuffing.
+        /// Bytes received, without stuffing.
         got: usize,
     },
-    /// A 0x90 followed by something that is neither 0x90 (stuffing) nor 0x02 (a new frame).
+    /// 0x90 is followed by neither 0x90 (stuffing) nor 0x02 (a new frame).
     #[error("{layer}: 90 at byte {offset} is followed by {got:02X} instead of 90 or 02")]
     Stuffing {
         /// USB.
         layer: SerialLayer,
         /// Bytes before it, without stuffing.
         offset: usize,
-        /// What followed.
+        /// The byte that follows.
         got: u8,
     },
-    /// More words than any EPOS2 frame has.
+    /// More words than in any EPOS2 frame.
     #[error("{layer}: length at byte {offset} says {got} words, frames have at most {max}")]
     TooLong {
         /// USB, RS232 or message.
         layer: SerialLayer,
-        /// Where the length stands, without stuffing.
+        /// Offset of the length, without stuffing.
         offset: usize,
-        /// The longest there is.
+        /// The largest number of words.
         max: usize,
         /// Words announced or given.
         got: usize,
     },
-    /// Another number of words than this command has.
+    /// The number of words is wrong for this command.
     #[error("{layer}: {got} words, expected {expected}")]
     WordCount {
         /// Message.
         layer: SerialLayer,
-        /// The number this command has (the smallest, if it varies).
+        /// The correct number (the smallest, if it varies).
         expected: usize,
         /// The number in the frame.
         got: usize,
     },
-    /// Another command than the one expected.
+    /// The opcode is not the expected one.
     #[error("{layer}: opcode {got:02X}, expected {expected:02X}")]
     Opcode {
         /// Message.
         layer: SerialLayer,
-        /// Opcode of the message asked for.
+        /// The expected opcode.
         expected: u8,
         /// Opcode in the frame.
         got: u8,

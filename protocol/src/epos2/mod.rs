@@ -1,8 +1,10 @@
-//! maxon EPOS2: serial frames, the commands they carry, the objects a tilt axis needs, and what its codes mean.
+//! maxon EPOS2: serial frames, the commands they carry, the objects a tilt axis needs, and what its
+//! codes mean.
 //!
-//! Sources: maxon EPOS2 Communication Guide (framing, commands, communication errors) and EPOS2 Firmware Specification
-//! (objects, device control, device errors). The same objects over CANopen are framed elsewhere; here is neither a
-//! timeout nor a retry nor an opinion about what to ask the drive.
+//! Sources: maxon EPOS2 Communication Guide (framing, commands, communication errors) and EPOS2
+//! Firmware Specification (objects, device control, device errors). The same objects over CANopen
+//! are framed elsewhere; here is neither a timeout nor a retry nor an opinion about what to ask the
+//! drive.
 
 pub mod cia402;
 pub mod comm_error;

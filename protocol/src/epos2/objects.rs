@@ -1,34 +1,26 @@
-//! The object dictionary entries that a tilt axis needs, typed (Firmware Specification, "Object Dictionary"; types and
-//! defaults as in the unit's own device description).
+//! Typed object dictionary entries of a tilt axis (Firmware Specification, "Object Dictionary";
+//! types and defaults as in the device description).
 //!
-//! A name here is not a claim that a device has the object; access rights and limits are the device's to enforce.
+//! A device may lack an object; it enforces access rights and limits.
 
 pub use crate::canopen::{Address, Object, Scalar};
 
 /// An entry of [`ALL`], without its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NamedObject {
-    /// Where it stands.
+    /// Its address.
     pub address: Address,
-    /// The specification's name.
+    /// Its name in the specification.
     pub name: &'static str,
     /// Width of its value.
     pub bytes: u8,
-}
-
-/// The specification's name of an entry; `None` for one that is not in [`ALL`].
-#[must_use]
-pub fn name(address: Address) -> Option<&'static str> {
-    ALL.iter()
-        .find(|named| named.address == address)
-        .map(|named| named.name)
 }
 
 macro_rules! objects {
     ($($(#[doc = $doc:literal])+ $name:ident: $t:ty = $index:literal, $sub:literal, $text:literal;)*) => {
         $($(#[doc = $doc])+ pub const $name: Object<$t> = Object::new($index, $sub, $text);)*
 
-        /// Every entry with a name here.
+        /// All entries defined here.
         pub const ALL: &[NamedObject] = &[$(NamedObject {
             address: Address::new($index, $sub),
             name: $text,
@@ -40,7 +32,8 @@ macro_rules! objects {
 objects! {
     /// Constant 0x00020192: servo drive.
     DEVICE_TYPE: u32 = 0x1000, 0, "Device Type";
-    /// Error register: bit 0 generic, 1 current, 2 voltage, 3 temperature, 4 communication, 5 device profile, 7 motion.
+    /// Error register: bit 0 generic, 1 current, 2 voltage, 3 temperature, 4 communication, 5
+    /// device profile, 7 motion.
     ERROR_REGISTER: u8 = 0x1001, 0, "Error Register";
     /// Number of entries of the error history; writing 0 clears it.
     ERROR_COUNT: u8 = 0x1003, 0, "Number of Errors";
@@ -71,42 +64,42 @@ objects! {
     /// Hardware version, BCD (0x6420).
     HARDWARE_VERSION: u16 = 0x2003, 2, "Hardware Version";
     /// Milliseconds, 500 by default.
-    RS232_FRAME_TIMEOUT: u16 = 0x2005, 0, "RS232 SerialFrame Timeout";
+    RS232_FRAME_TIMEOUT: u16 = 0x2005, 0, "RS232 Frame Timeout";
     /// Milliseconds, 500 by default.
-    USB_FRAME_TIMEOUT: u16 = 0x2006, 0, "USB SerialFrame Timeout";
+    USB_FRAME_TIMEOUT: u16 = 0x2006, 0, "USB Frame Timeout";
     /// Averaged velocity, rpm.
     VELOCITY_AVERAGED: i32 = 0x2028, 0, "Velocity Actual Value Averaged";
     /// Purpose of digital input 6 (0 negative limit by default).
     INPUT_6: u16 = 0x2070, 6, "Configuration of Digital Input6";
-    /// Inputs after mask and polarity, one bit a purpose.
+    /// Inputs after mask and polarity, one bit per purpose.
     INPUT_STATE: u16 = 0x2071, 1, "Digital Input Functionalities State";
-    /// Which purposes are looked at.
+    /// Enabled purposes.
     INPUT_MASK: u16 = 0x2071, 2, "Digital Input Functionalities Mask";
     /// Bit set: active low.
     INPUT_POLARITY: u16 = 0x2071, 3, "Digital Input Functionalities Polarity";
-    /// Which purposes run their error routine: without its bit a limit switch does not stop the axis.
+    /// Purposes with an error routine: without its bit a limit switch does not stop the axis.
     INPUT_EXECUTION_MASK: u16 = 0x2071, 4, "Digital Input Functionalities Execution Mask";
-    /// Outputs, one bit a purpose.
+    /// Outputs, one bit per purpose.
     OUTPUT_STATE: u16 = 0x2078, 1, "Digital Output State";
-    /// Which outputs the state drives.
+    /// Outputs that the state controls.
     OUTPUT_MASK: u16 = 0x2078, 2, "Digital Output Mask";
     /// Purpose of digital output 1; [`OUTPUT_BRAKE`] makes it the holding brake.
     OUTPUT_1: u16 = 0x2079, 1, "Configuration of Digital Output1";
     /// Homing to a mechanical stop: mA.
     HOMING_CURRENT: u16 = 0x2080, 0, "Current Threshold for Homing Mode";
-    /// The position that home gets, qc.
+    /// The position of home, qc.
     HOME_POSITION: i32 = 0x2081, 0, "Home Position";
-    /// Milliseconds the brake needs to open.
+    /// Opening time of the brake in milliseconds.
     BRAKE_RISE: u16 = 0x2100, 1, "Brake Reaction Rise Time";
-    /// Milliseconds the brake needs to close.
+    /// Closing time of the brake in milliseconds.
     BRAKE_FALL: u16 = 0x2100, 2, "Brake Reaction Fall Time";
-    /// Standing still is below this, rpm.
+    /// Largest speed of a standstill, rpm.
     STANDSTILL_WINDOW: u16 = 0x2101, 1, "Standstill Window";
-    /// For this long, ms.
+    /// Duration of a standstill, ms.
     STANDSTILL_TIME: u16 = 0x2101, 2, "Standstill Window Time";
-    /// Give up waiting after this, ms.
+    /// Longest wait for a standstill, ms.
     STANDSTILL_TIMEOUT: u16 = 0x2101, 3, "Standstill Timeout";
-    /// Encoder lines per motor turn.
+    /// Encoder lines per revolution of the motor.
     ENCODER_LINES: u32 = 0x2210, 1, "Pulse Number Incremental Encoder 1";
     /// 1 incremental with index, 2 without.
     SENSOR_TYPE: u16 = 0x2210, 2, "Position Sensor Type";
@@ -118,11 +111,12 @@ objects! {
     SHUTDOWN_OPTION: i16 = 0x605B, 0, "Shutdown Option Code";
     /// How "disable operation" stops: 0 at once, 1 by the profile deceleration.
     DISABLE_OPTION: i16 = 0x605C, 0, "Disable Operation Option Code";
-    /// How a fault stops: 0 at once, 1 by the profile deceleration, 2 by the quick-stop deceleration.
+    /// How a fault stops: 0 at once, 1 by the profile deceleration, 2 by the quick-stop
+    /// deceleration.
     FAULT_OPTION: i16 = 0x605E, 0, "Fault Reaction Option Code";
     /// See [`crate::epos2::cia402::mode`].
     MODE: i8 = 0x6060, 0, "Modes of Operation";
-    /// The mode that is in effect.
+    /// The mode in effect.
     MODE_DISPLAY: i8 = 0x6061, 0, "Modes of Operation Display";
     /// Demand, qc.
     POSITION_DEMAND: i32 = 0x6062, 0, "Position Demand Value";
@@ -178,7 +172,7 @@ objects! {
     OUTPUT_CURRENT: u16 = 0x6410, 2, "Output Current Limit";
     /// rpm.
     MAX_MOTOR_SPEED: u32 = 0x6410, 4, "Maximal Motor Speed";
-    /// One bit a mode.
+    /// One bit per mode.
     SUPPORTED_MODES: u32 = 0x6502, 0, "Supported Drive Modes";
 }
 
@@ -187,12 +181,13 @@ pub const DEVICE_NAME: Address = Address::new(0x1008, 0);
 /// The whole serial number, 64 bits: segmented read only.
 pub const SERIAL_NUMBER_64: Address = Address::new(0x2004, 0);
 
-/// What [`STORE_ALL`] wants: "save", low byte first.
+/// Signature of [`STORE_ALL`]: "save", low byte first.
 pub const SAVE: u32 = u32::from_le_bytes(*b"save");
-/// What [`RESTORE_ALL`] wants: "load", low byte first.
+/// Signature of [`RESTORE_ALL`]: "load", low byte first.
 pub const LOAD: u32 = u32::from_le_bytes(*b"load");
 
-/// Bits of [`INPUT_STATE`], its mask, polarity and execution mask; a purpose in 2070 is the number of its bit.
+/// Bits of [`INPUT_STATE`], its mask, polarity and execution mask; a purpose in 2070 is the number
+/// of its bit.
 pub mod input {
     /// Negative limit switch.
     pub const NEGATIVE_LIMIT: u16 = 1 << 0;
@@ -207,7 +202,7 @@ pub mod input {
 /// Purpose of a digital output: holding brake (2079), and the number of its bit in 2078.
 pub const OUTPUT_BRAKE: u16 = 2;
 
-/// The error history's entry `n`, 1 to 5, latest first.
+/// Entry `n` of the error history, 1 to 5, latest first.
 #[must_use]
 pub const fn error_history(n: u8) -> Object<u32> {
     Object::new(0x1003, n, "Error History")
@@ -218,7 +213,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_address_stands_twice() {
+    fn addresses_are_unique() {
         for (i, named) in ALL.iter().enumerate() {
             let mut others = ALL.iter().skip(i + 1);
             assert!(
@@ -229,20 +224,14 @@ mod tests {
     }
 
     #[test]
-    fn entries_have_names() {
-        assert_eq!(name(STATUSWORD.address), Some("Statusword"));
-        assert_eq!(name(Address::new(0x5000, 0)), None);
-    }
-
-    #[test]
-    fn garbage_above_the_value_is_cut_off() {
+    fn garbage_above_the_value_is_ignored() {
         assert_eq!(STATUSWORD.decode(0xDEAD_0337), 0x0337);
         assert_eq!(MODE_DISPLAY.decode(0xDEAD_BEFF), -1);
         assert_eq!(POSITION_ACTUAL.decode(0xFFFF_8AD0), -30_000);
     }
 
     #[test]
-    fn negative_values_extend_their_sign() {
+    fn negative_values_are_sign_extended() {
         assert_eq!(HOMING_METHOD.encode(-3), 0xFFFF_FFFD);
         assert_eq!(CONTROLWORD.encode(0xFFFF), 0x0000_FFFF);
         assert_eq!(TARGET_POSITION.encode(-1), u32::MAX);

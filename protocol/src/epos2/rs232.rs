@@ -1,9 +1,9 @@
 //! EPOS2 frames on RS232: opcode, handshake, `Len-1 | words, low byte first | CRC low, high`,
 //! handshake (Communication Guide, "RS232 Frame Structure").
 //!
-//! There is no sync and no stuffing. [`OKAY`] or [`FAILED`] answers an opcode, and each body. The CRC
-//! covers OpCode and Len-1 (one word, **OpCode** in the high byte: the other order than on USB) and
-//! the data. This module has the body; client and device conduct the handshake and its timeout.
+//! There is no sync and no stuffing. [`OKAY`] or [`FAILED`] answers an opcode, and each body. The
+//! CRC covers OpCode and Len-1 (one word, **OpCode** in the high byte: the other order than on USB)
+//! and the data. This module has the body; client and device conduct the handshake and its timeout.
 
 use super::error::{SerialFrameError, SerialLayer};
 use super::frame::{MAX_WORDS, PartialFrame, SerialFrame};
@@ -24,8 +24,8 @@ pub type Bytes = Bounded<u8, MAX_BYTES>;
 /// Writes the body of `frame` (without the opcode, which precedes it) to `out`.
 ///
 /// # Errors
-/// [`SerialFrameError::WordCount`] for a frame without words, which Len-1 cannot express; nothing is
-/// written.
+/// [`SerialFrameError::WordCount`] for a frame without words, which Len-1 cannot express; nothing
+/// is written.
 pub fn encode_body(frame: &SerialFrame, out: &mut impl Extend<u8>) -> Result<(), SerialFrameError> {
     let Some(len_1) = frame.words.len().checked_sub(1) else {
         return Err(SerialFrameError::WordCount {

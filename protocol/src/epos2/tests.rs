@@ -1,4 +1,5 @@
-//! Frames captured from a real unit and from maxon's guide, both ways, and properties of the framing.
+//! Frames captured from a real unit and from maxon's guide, both ways, and properties of the
+//! framing.
 
 extern crate std;
 use std::vec::Vec;
@@ -136,7 +137,8 @@ fn golden_answers_mean_what_they_say() {
 
 #[test]
 fn an_escape_byte_may_stand_anywhere() {
-    // Opcode, length (0x90 words are too many, so not there), each data byte and both CRC bytes in turn.
+    // Opcode, length (0x90 words are too many, so not there), each data byte and both CRC bytes in
+    // turn.
     let mut seen_in_crc = [false; 2];
     for opcode in [0x10, 0x90] {
         for position in 0..8 {
@@ -170,7 +172,8 @@ fn a_sync_pair_restarts_a_frame_at_any_point() {
         let whole = hex(bytes);
         for cut in 0..whole.len() {
             let mut stream = whole[..cut].to_vec();
-            // Cut between an escape and its double, the new sync pair completes the double and cannot be told apart.
+            // Cut between an escape and its double, the new sync pair completes the double and
+            // cannot be told apart.
             let open_escape = decoder_after(&stream).is_none();
             stream.extend(&whole);
             let mut got = decode_all(&stream);

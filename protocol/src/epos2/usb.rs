@@ -1,8 +1,8 @@
-//! EPOS2 frames on USB: `90 02 | OpCode | Len | words, low byte first | CRC low, high` (Communication
-//! Guide, "USB Frame Structure").
+//! EPOS2 frames on USB: `90 02 | OpCode | Len | words, low byte first | CRC low, high`
+//! (Communication Guide, "USB Frame Structure").
 //!
-//! After the sync pair each 0x90 is doubled, in opcode, length, data and CRC alike. `90 02` begins a
-//! new frame at any point. The CRC covers Len and OpCode (one word, Len in the high byte) and the
+//! After the sync pair each 0x90 is doubled, in opcode, length, data and CRC alike. `90 02` begins
+//! a new frame at any point. The CRC covers Len and OpCode (one word, Len in the high byte) and the
 //! data, without stuffing. The caller times out unfinished frames ([`UsbDecoder::reset`]).
 
 use super::error::{SerialFrameError, SerialLayer};
@@ -78,8 +78,8 @@ impl UsbDecoder {
     /// Takes one byte; a frame or an error comes out with the byte that completes it.
     ///
     /// After an error the decoder waits for the next sync pair, except that
-    /// [`SerialFrameError::BrokenOff`] comes out with the second byte of a sync pair and the new frame
-    /// has then begun.
+    /// [`SerialFrameError::BrokenOff`] comes out with the second byte of a sync pair and the new
+    /// frame has then begun.
     pub fn push(&mut self, byte: u8) -> Option<Result<SerialFrame, SerialFrameError>> {
         let escaped = core::mem::take(&mut self.escaped);
         match (&self.state, escaped, byte) {

@@ -1,4 +1,5 @@
-//! The data packet: 12 blocks of an azimuth and 32 channels, a timestamp and the two factory bytes (manual 9.3.2).
+//! The data packet: 12 blocks of an azimuth and 32 channels, a timestamp and the two factory bytes
+//! (manual 9.3.2).
 //!
 //! A [`DataPacket`] is a view that is checked once; its accessors cannot fail. The model determines
 //! which laser a channel belongs to and when it fired.
@@ -22,7 +23,8 @@ const AZIMUTH_LEN: usize = 2;
 const CHANNEL_LEN: usize = 3;
 const TAIL_LEN: usize = 4 + 1 + 1;
 
-// Manual 9.3.2: flag, azimuth and 32 channels make a block; 12 blocks, timestamp and factory bytes a packet.
+// Manual 9.3.2: flag, azimuth and 32 channels make a block; 12 blocks, timestamp and factory bytes
+// a packet.
 const _: () = assert!(FLAG_LEN + AZIMUTH_LEN + CHANNELS * CHANNEL_LEN == BLOCK_LEN);
 const _: () = assert!(BLOCKS * BLOCK_LEN + TAIL_LEN == DATA_LEN);
 
@@ -142,8 +144,8 @@ impl<'a> DataPacket<'a> {
         self.blocks.iter().map(DataBlock)
     }
 
-    /// Start of the first firing of the first block in microseconds past the hour: 0 to 3,599,999,999 by
-    /// the manual; some devices run past it for a while.
+    /// Start of the first firing of the first block in microseconds past the hour: 0 to
+    /// 3,599,999,999 by the manual; some devices run past it for a while.
     #[must_use]
     pub const fn timestamp_us(&self) -> u32 {
         let [a, b, c, d, _, _] = *self.tail;
@@ -173,8 +175,8 @@ impl<'a> DataBlock<'a> {
         [a, b]
     }
 
-    /// Azimuth at the block's first firing in hundredths of a degree, clockwise from the y axis seen from
-    /// above: 0 to 36000. 36000 occurs on the wire and means 0.
+    /// Azimuth at the block's first firing in hundredths of a degree, clockwise from the y axis
+    /// seen from above: 0 to 36000. 36000 occurs on the wire and means 0.
     #[must_use]
     pub const fn azimuth_cdeg(self) -> u16 {
         let [_, _, lo, hi, ..] = *self.0;
@@ -229,8 +231,8 @@ mod tests {
 
     use super::*;
 
-    /// A packet written byte by byte from manual 9.3.2: block b has azimuth 100 b, channel c distance 256 b + c and
-    /// reflectivity c + 1.
+    /// A packet written byte by byte from manual 9.3.2: block b has azimuth 100 b, channel c
+    /// distance 256 b + c and reflectivity c + 1.
     fn golden() -> Vec<u8> {
         let mut bytes = Vec::new();
         for block in 0..12u8 {

@@ -1,19 +1,20 @@
-//! The models as tables: where each laser points, when it fires, how its distances are scaled.
+//! The models as tables: direction and firing time of each laser, scale of distances.
 //!
-//! Adding a model is adding a table; no decoder has a branch for one. Left out: what a single sensor's own calibration adds.
+//! A new model is a new table; decoders do not branch on models. The calibration of a single sensor
+//! is not included.
 
 use super::data::{BLOCKS, CHANNELS, Product, ReturnMode};
 
-/// One laser of a model, at its place in the firing order.
+/// One laser of a model, in firing order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Laser {
     /// Angle above the sensor's horizon in degrees.
     pub elevation_deg: f64,
-    /// How far above the sensor's origin its ray starts, in metres; added to z.
+    /// Height of the ray's origin above the sensor's origin in metres; added to z.
     pub vertical_offset_m: f64,
     /// Angle added to the azimuth of its firing, in degrees.
     pub azimuth_offset_deg: f64,
-    /// Place by elevation, 0 the lowest.
+    /// Rank by elevation, 0 the lowest.
     pub ring: u8,
     /// Time from the start of its firing in nanoseconds.
     pub delay_ns: u32,
@@ -22,9 +23,9 @@ pub struct Laser {
 /// A sensor model.
 #[derive(Debug, PartialEq)]
 pub struct Model {
-    /// The maker's name for it.
+    /// Name by the manufacturer.
     pub name: &'static str,
-    /// What its factory byte says.
+    /// Its factory byte.
     pub product: Product,
     /// Its lasers in firing order, which is also the order of the channels.
     pub lasers: &'static [Laser],
@@ -39,7 +40,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// The model that a factory byte names.
+    /// The model of a factory byte.
     #[must_use]
     pub fn of(product: Product) -> Option<&'static Self> {
         ALL.into_iter().find(|model| model.product == product)
@@ -51,13 +52,14 @@ impl Model {
         self.firing_period_ns * self.firings_per_block as u32
     }
 
-    /// Blocks of a packet that are of different firings: 12, or 6 where two returns are reported.
+    /// Blocks of a packet with different firings: 12, or 6 with dual returns.
     #[must_use]
     pub const fn firing_blocks(dual: bool) -> usize {
         if dual { BLOCKS / 2 } else { BLOCKS }
     }
 
-    /// Time from one packet to the next at a return mode, in nanoseconds; also how long a packet takes to fill.
+    /// Time from one packet to the next in a return mode, in nanoseconds; also the time to fill a
+    /// packet.
     #[must_use]
     pub const fn packet_period_ns(&self, dual: bool) -> u32 {
         self.block_period_ns() * Self::firing_blocks(dual) as u32
@@ -65,7 +67,7 @@ impl Model {
 }
 
 impl ReturnMode {
-    /// Whether two blocks share a firing; `None` where the byte does not say.
+    /// Whether two blocks share a firing; `None` for an unknown byte.
     #[must_use]
     pub const fn is_dual(self) -> Option<bool> {
         match self {
@@ -76,7 +78,7 @@ impl ReturnMode {
     }
 }
 
-/// Every model known here.
+/// All models.
 pub static ALL: [&Model; 4] = [&VLP_16, &PUCK_HI_RES, &HDL_32E, &VLP_32C];
 
 /// VLP-16 and Puck LITE (manual 63-9243, table 9-1 and figure 9-9).
@@ -101,12 +103,14 @@ pub static PUCK_HI_RES: Model = Model {
     distance_unit_m: 0.002,
 };
 
-/// HDL-32E (its manual, "Laser firing sequence"): 4/3 degree steps, printed to two decimals and used as printed; no azimuth offsets.
-/// Where its rays start is in the maker's drawing 86-0106 (revision B, sheet 2), not in the manual.
+/// HDL-32E (its manual, "Laser firing sequence"): 4/3 degree steps, printed to two decimals and
+/// used as printed; no azimuth offsets. Where its rays start is in the maker's drawing 86-0106
+/// (revision B, sheet 2), not in the manual.
 ///
-/// Appendix E of the manual's early editions gives a laser's time as -542.592 us + 46.08 us x block + 1.152 us x laser: one
-/// after the other, not in pairs, and from a timestamp written when the packet ended. The times here count from the first
-/// firing, like the other models' and as the maker's viewer has it.
+/// Appendix E of the manual's early editions gives a laser's time as -542.592 us + 46.08 us x block
+/// + 1.152 us x laser: one after the other, not in pairs, and from a timestamp written when the
+/// packet ended. The times here count from the first firing, like the other models' and as the
+/// maker's viewer has it.
 pub static HDL_32E: Model = Model {
     name: "HDL-32E",
     product: Product::Hdl32e,
@@ -117,11 +121,14 @@ pub static HDL_32E: Model = Model {
     distance_unit_m: 0.002,
 };
 
-/// VLP-32C (manual 63-9325, table 9-2, section 9.5): lasers fire in pairs, off the centre line by one of four angles.
+/// VLP-32C (manual 63-9325, table 9-2, section 9.5): lasers fire in pairs, off the centre line by
+/// one of four angles.
 ///
-/// The maker's XML calibration has the azimuth offsets with the opposite sign because VeloView subtracts them; here they are
-/// as in the manual and are added. Neither the manual nor that calibration says how high the rays start: all start in one point here. The manual's sample code multiplies the pair's time by the laser's number, which would
-/// make the last pair fire after the next firing began; pairs are counted here, as its figure 9-7 has it.
+/// The maker's XML calibration has the azimuth offsets with the opposite sign because VeloView
+/// subtracts them; here they are as in the manual and are added. Neither the manual nor that
+/// calibration says how high the rays start: all start in one point here. The manual's sample code
+/// multiplies the pair's time by the laser's number, which would make the last pair fire after the
+/// next firing began; pairs are counted here, as its figure 9-7 has it.
 pub static VLP_32C: Model = Model {
     name: "VLP-32C",
     product: Product::Vlp32c,
@@ -189,7 +196,7 @@ static VLP_32C_LASERS: [Laser; 32] = lasers(
     2,
 );
 
-/// Lasers from the manual's columns; rings and delays follow from them.
+/// Lasers from the columns of the manual; ring and delay are derived.
 const fn lasers<const N: usize>(
     elevations_deg: [f64; N],
     vertical_offsets_mm: [f64; N],
@@ -226,7 +233,7 @@ const fn lasers<const N: usize>(
     table
 }
 
-/// The recharge time that ends each firing is what the manuals print.
+/// Checks the firing period against the printed recharge time.
 const fn adds_up(model: &Model, groups: u32, recharge_ns: u32) -> bool {
     groups * model.laser_period_ns + recharge_ns == model.firing_period_ns
         && model.lasers.len() * model.firings_per_block == CHANNELS

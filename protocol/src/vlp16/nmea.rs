@@ -1,6 +1,7 @@
 //! Date and time of NMEA 0183 RMC sentences.
 //!
-//! The `nmea` crate needs `chrono` and `nom`, parses 30 kinds of sentences and rejects a leap second.
+//! The `nmea` crate needs `chrono` and `nom`, parses 30 kinds of sentences and rejects a leap
+//! second.
 
 use core::fmt;
 
@@ -13,8 +14,8 @@ const DAY_S: i64 = 86_400;
 /// Two-digit years from here on belong to the twentieth century: GPS time begins in 1980.
 const FIRST_YEAR: u16 = 80;
 
-/// Date, time and validity of an RMC sentence (`$GPRMC`, or of another talker such as `$GNRMC`), its
-/// checksum verified.
+/// Date, time and validity of an RMC sentence (`$GPRMC`, or of another talker such as `$GNRMC`),
+/// its checksum verified.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rmc {
     /// Whether the receiver declares the data valid: status A, not V.

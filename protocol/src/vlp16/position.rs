@@ -1,4 +1,5 @@
-//! The position packet: the sensor's own time, the state of its PPS input and the last NMEA sentence (manual 9.3.3).
+//! The position packet: the sensor's own time, the state of its PPS input and the last NMEA
+//! sentence (manual 9.3.3).
 //!
 //! Of the sentence, time, date and validity are read ([`Rmc`]); position and motion of the receiver
 //! and the inertial data of an HDL-32E (first 198 bytes) are not.
@@ -58,8 +59,8 @@ impl<'a> PositionPacket<'a> {
         Some(Self { status, sentence })
     }
 
-    /// Time at which the packet was assembled: microseconds past the hour. It may be out of order with
-    /// data packets.
+    /// Time at which the packet was assembled: microseconds past the hour. It may be out of order
+    /// with data packets.
     #[must_use]
     pub const fn timestamp_us(&self) -> u32 {
         let [a, b, c, d, ..] = *self.status;

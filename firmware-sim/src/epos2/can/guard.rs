@@ -1,4 +1,5 @@
-//! Error control: the node's own heartbeat (1017), the heartbeats it listens for (1016), and answers to guarding requests.
+//! Error control: the heartbeat of the node (1017), the heartbeats it monitors (1016), and answers
+//! to guarding requests.
 
 use protocol::canopen::heartbeat::ConsumerEntry;
 use protocol::canopen::{CanFrame, CommunicationObject, NodeId};
@@ -15,7 +16,7 @@ pub(super) struct HeartbeatTimer {
 }
 
 impl HeartbeatTimer {
-    /// The first is a period after the boot-up message.
+    /// The first heartbeat follows one period after the boot-up message.
     pub fn from_now(node: &Node) -> Self {
         Self {
             period_ms: node.dictionary.get(objects::PRODUCER_HEARTBEAT),
@@ -23,7 +24,8 @@ impl HeartbeatTimer {
         }
     }
 
-    /// Whether it is to be sent now: a period after the last, and at once when the period changes (CiA 301).
+    /// Whether a heartbeat is due: one period after the last, and at once when the period changes
+    /// (CiA 301).
     pub fn is_due(&mut self, node: &Node, now_us: u64) -> bool {
         let period_ms = node.dictionary.get(objects::PRODUCER_HEARTBEAT);
         let changed = core::mem::replace(&mut self.period_ms, period_ms) != period_ms;
@@ -31,9 +33,10 @@ impl HeartbeatTimer {
         if period_ms == 0 || !changed && now_us < next_us {
             return false;
         }
-        // From when it was due, so that no delay adds up, unless whole periods were missed.
-        let late = changed || now_us >= next_us + 1000 * u64::from(period_ms);
-        self.last_us = if late { now_us } else { next_us };
+        // Counted from the due time, so that delays do not add up, unless whole periods were
+        // missed.
+        let restart = changed || now_us >= next_us + 1000 * u64::from(period_ms);
+        self.last_us = if restart { now_us } else { next_us };
         true
     }
 }
@@ -45,7 +48,7 @@ pub(super) struct NodeGuarding {
 }
 
 impl NodeGuarding {
-    /// The answer to a request; none where the heartbeat is on, which excludes guarding.
+    /// The answer to a request; `None` while the heartbeat is on, which excludes guarding.
     pub fn answer(&mut self, node: &Node, id: NodeId) -> Option<CanFrame> {
         if node.dictionary.get(objects::PRODUCER_HEARTBEAT) != 0 {
             return None;
@@ -60,25 +63,25 @@ impl NodeGuarding {
     }
 }
 
-/// One entry of 1016 at work.
+/// Monitor of one entry of 1016.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct HeartbeatWatch {
+pub(super) struct HeartbeatMonitor {
     entry: Option<ConsumerEntry>,
-    /// When the last heartbeat came; the first begins the watch.
+    /// Time of the last heartbeat; the first starts the monitoring.
     last_us: Option<u64>,
 }
 
-impl HeartbeatWatch {
-    pub fn hear(&mut self, node: &Node, sub: u8, from: NodeId, now_us: u64) {
-        self.look(node, sub);
+impl HeartbeatMonitor {
+    pub fn on_heartbeat(&mut self, node: &Node, sub: u8, from: NodeId, now_us: u64) {
+        self.reload(node, sub);
         if self.entry.is_some_and(|entry| entry.node == from) {
             self.last_us = Some(now_us);
         }
     }
 
-    /// Error 8130 where the heartbeat has stopped: the drive ramps down and switches off.
+    /// Raises error 8130 when the heartbeat has stopped: the drive ramps down and switches off.
     pub fn watch(&mut self, node: &mut Node, sub: u8, now_us: u64) {
-        self.look(node, sub);
+        self.reload(node, sub);
         let (Some(entry), Some(last_us)) = (self.entry, self.last_us) else {
             return;
         };
@@ -89,8 +92,8 @@ impl HeartbeatWatch {
         }
     }
 
-    /// A changed entry begins anew.
-    fn look(&mut self, node: &Node, sub: u8) {
+    /// A changed entry restarts the monitoring.
+    fn reload(&mut self, node: &Node, sub: u8) {
         let index = objects::CONSUMER_HEARTBEAT.address.index;
         let entry = ConsumerEntry::from_u32(node.dictionary.raw(Address::new(index, sub)));
         if entry != self.entry {

@@ -1,8 +1,10 @@
-//! The unit's CAN interface: a CANopen slave without I/O (CiA 301; Communication Guide, "CANopen Communication").
+//! The CAN interface of the unit: a CANopen slave without I/O (CiA 301; Communication Guide,
+//! "CANopen Communication").
 //!
-//! [`CanServer`] joins the services, one file each: NMT and error control here and in [`guard`], SDO, transmit and receive PDOs. Left
-//! out: bit timing and arbitration, LSS, SDO block transfer, life guarding (100C, 100D; guarding requests are answered) and the
-//! abort connection option (6007): a lost master is error 8130 with the reaction that 605E gives.
+//! [`CanServer`] joins the services, one file each: NMT and error control, SDO, transmit and
+//! receive PDOs. Not simulated: bit timing and arbitration, LSS, SDO block transfer, life guarding
+//! (100C, 100D; guarding requests are answered) and the abort connection option (6007): a lost
+//! master is error 8130 with the reaction of 605E.
 
 mod guard;
 mod receive;
@@ -17,25 +19,25 @@ use protocol::canopen::sync::SyncMessage;
 use protocol::canopen::{CanFrame, CobId, CommunicationObject, NodeId, PdoNumber};
 use protocol::epos2::objects::Address;
 
-use self::guard::{HeartbeatTimer, HeartbeatWatch, NodeGuarding};
+use self::guard::{HeartbeatMonitor, HeartbeatTimer, NodeGuarding};
 use self::receive::ReceivePdo;
 use self::sdo::SdoServer;
 use self::transmit::TransmitPdo;
 use super::node::Node;
 
-/// Identifier of emergency messages; bit 31 set is out of use.
+/// Identifier of emergency messages; bit 31 disables them.
 const EMCY_ID: Address = Address::new(0x1014, 0);
 
 /// The CAN side of a unit.
 #[derive(Clone, Debug, Default)]
 pub struct CanServer {
-    /// Which start of the node the bus has been told of.
+    /// The start of the node that was last announced on the bus.
     started: Option<u32>,
-    /// The NMT state when it was last looked at.
+    /// The NMT state at the last call.
     state: Option<NmtState>,
-    beat: HeartbeatTimer,
+    heartbeat: HeartbeatTimer,
     guarding: NodeGuarding,
-    listeners: [HeartbeatWatch; 2],
+    monitors: [HeartbeatMonitor; 2],
     sdo: SdoServer,
     transmit: [TransmitPdo; 4],
     receive: [ReceivePdo; 4],
@@ -48,23 +50,24 @@ impl CanServer {
         Self::default()
     }
 
-    /// Sends what is due at the node's present instant: boot-up, emergency messages, heartbeat, process data that has changed, the
-    /// abort of a transfer whose client went away. To be called after each [`Node::tick`].
+    /// Sends what is due at the present instant of the node: boot-up, emergency messages,
+    /// heartbeat, changed process data, the abort of a transfer whose client is silent. Call it
+    /// after each [`Node::tick`].
     pub fn poll(&mut self, node: &mut Node, out: &mut impl FnMut(&CanFrame)) {
-        let Some(id) = self.attend(node, out) else {
+        let Some(id) = self.follow_restart(node, out) else {
             return;
         };
         let now_us = node.time_us();
-        for (sub, listener) in (1..).zip(&mut self.listeners) {
-            listener.watch(node, sub, now_us);
+        for (sub, monitor) in (1..).zip(&mut self.monitors) {
+            monitor.watch(node, sub, now_us);
         }
-        // A listener may have changed it.
-        self.note_state(node);
+        // A heartbeat monitor may have changed it.
+        self.follow_state(node);
         if node.nmt_state() != NmtState::Stopped {
-            tell_news(node, id, out);
+            send_emergencies(node, id, out);
         }
-        if self.beat.is_due(node, now_us) {
-            out(&life_sign(id, node.nmt_state()));
+        if self.heartbeat.is_due(node, now_us) {
+            out(&heartbeat(id, node.nmt_state()));
         }
         if let Some(abort) = self.sdo.expire(now_us) {
             out(&abort.to_frame(id));
@@ -76,41 +79,42 @@ impl CanServer {
         }
     }
 
-    /// Takes any frame of the bus at the node's present instant; what the unit sends goes to `out`.
+    /// Takes any frame of the bus at the present instant of the node; the frames of the unit go to
+    /// `out`.
     pub fn input(&mut self, node: &mut Node, frame: &CanFrame, out: &mut impl FnMut(&CanFrame)) {
-        let Some(id) = self.attend(node, out) else {
+        let Some(id) = self.follow_restart(node, out) else {
             return;
         };
         let Some(cob_id) = frame.cob_id() else {
             return;
         };
         if frame.is_remote() {
-            self.asked(node, id, cob_id, out);
+            self.on_remote_frame(node, id, cob_id, out);
         } else {
-            self.told(node, id, frame, out);
+            self.on_data_frame(node, id, frame, out);
         }
-        // What the frame did shows at once: boot-up, emergency, process data.
+        // Effects of the frame appear at once: boot-up, emergency, process data.
         self.poll(node, out);
     }
 
-    /// The node as it is now: after a start everything begins anew. `None` for a node without an id.
-    fn attend(&mut self, node: &Node, out: &mut impl FnMut(&CanFrame)) -> Option<NodeId> {
+    /// Resets the interface after a start of the node. `None` for a node without an id.
+    fn follow_restart(&mut self, node: &Node, out: &mut impl FnMut(&CanFrame)) -> Option<NodeId> {
         let id = NodeId::new(node.node_id())?;
         let starts = node.network.starts();
         if self.started != Some(starts) {
             *self = Self {
                 started: Some(starts),
-                beat: HeartbeatTimer::from_now(node),
+                heartbeat: HeartbeatTimer::from_now(node),
                 ..Self::default()
             };
-            out(&life_sign(id, NmtState::BootUp));
+            out(&heartbeat(id, NmtState::BootUp));
         }
-        self.note_state(node);
+        self.follow_state(node);
         Some(id)
     }
 
-    /// Process data begins anew when the node becomes operational.
-    fn note_state(&mut self, node: &Node) {
+    /// Resets process data when the NMT state changes.
+    fn follow_state(&mut self, node: &Node) {
         let state = node.nmt_state();
         if self.state.replace(state) != Some(state) {
             self.transmit = Default::default();
@@ -119,7 +123,13 @@ impl CanServer {
     }
 
     /// A remote frame.
-    fn asked(&mut self, node: &Node, id: NodeId, cob_id: CobId, out: &mut impl FnMut(&CanFrame)) {
+    fn on_remote_frame(
+        &mut self,
+        node: &Node,
+        id: NodeId,
+        cob_id: CobId,
+        out: &mut impl FnMut(&CanFrame),
+    ) {
         if cob_id == CommunicationObject::Heartbeat(id).cob_id() {
             if let Some(answer) = self.guarding.answer(node, id) {
                 out(&answer);
@@ -131,8 +141,8 @@ impl CanServer {
         }
     }
 
-    /// A data frame. What is no proper message of its service is ignored.
-    fn told(
+    /// A data frame; malformed messages are ignored.
+    fn on_data_frame(
         &mut self,
         node: &mut Node,
         id: NodeId,
@@ -152,8 +162,8 @@ impl CanServer {
                 self.sync(node, out)
             }
             Some(CommunicationObject::Heartbeat(other)) => {
-                for (sub, listener) in (1..).zip(&mut self.listeners) {
-                    listener.hear(node, sub, other, now_us);
+                for (sub, monitor) in (1..).zip(&mut self.monitors) {
+                    monitor.on_heartbeat(node, sub, other, now_us);
                 }
             }
             Some(CommunicationObject::SdoRequest(to)) if to == id => {
@@ -173,7 +183,7 @@ impl CanServer {
         }
     }
 
-    /// A beat: process data is sampled and sent first, then what came before it takes effect.
+    /// SYNC: transmit PDOs are sampled and sent first, then pending receive PDOs take effect.
     fn sync(&mut self, node: &mut Node, out: &mut impl FnMut(&CanFrame)) {
         if node.nmt_state() != NmtState::Operational {
             return;
@@ -187,16 +197,16 @@ impl CanServer {
     }
 }
 
-fn life_sign(node: NodeId, state: NmtState) -> CanFrame {
+fn heartbeat(node: NodeId, state: NmtState) -> CanFrame {
     Heartbeat { node, state }.to_frame()
 }
 
-/// Emergency messages of all that has happened since the last.
-fn tell_news(node: &mut Node, id: NodeId, out: &mut impl FnMut(&CanFrame)) {
+/// Sends the emergency messages that are pending.
+fn send_emergencies(node: &mut Node, id: NodeId, out: &mut impl FnMut(&CanFrame)) {
     const OUT_OF_USE: u32 = 1 << 31;
     let cob_id = node.dictionary.raw(EMCY_ID);
-    while let Some(news) = node.errors.next_news() {
-        let frame = Emergency::new(id, news.error.0, news.register).to_frame();
+    while let Some(pending) = node.errors.next_pending() {
+        let frame = Emergency::new(id, pending.error.0, pending.register).to_frame();
         let moved = u16::try_from(cob_id & 0x7FF).ok().and_then(CobId::new);
         if cob_id & OUT_OF_USE == 0
             && let Some(moved) = moved
@@ -207,7 +217,7 @@ fn tell_news(node: &mut Node, id: NodeId, out: &mut impl FnMut(&CanFrame)) {
     }
 }
 
-/// Index of a PDO's parameters.
+/// Index of the parameters of a PDO.
 const fn parameters(first: u16, number: PdoNumber) -> u16 {
     first + number.offset()
 }

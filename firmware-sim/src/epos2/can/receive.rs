@@ -1,4 +1,5 @@
-//! Process data to the node: RPDO 1 to 4 (1400, 1600 and on), in effect at once or at the next SYNC.
+//! Process data to the node: RPDO 1 to 4 (1400 to 1403, 1600 to 1603), applied at once or at the
+//! next SYNC.
 
 use protocol::canopen::pdo::{MAX_ENTRIES, PdoLayout, TransmissionType};
 use protocol::canopen::{CanFrame, PdoNumber};
@@ -9,21 +10,21 @@ use super::parameters;
 use crate::epos2::mapping;
 use crate::epos2::node::Node;
 
-/// Where the parameters of the first stand.
+/// Index of the parameters of RPDO 1.
 const FIRST: u16 = 0x1400;
 
 /// The values of a PDO.
 type Values = Bounded<u64, MAX_ENTRIES>;
 
-/// One of them.
+/// State of one receive PDO.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ReceivePdo {
-    /// Waits for the next SYNC.
+    /// Applied at the next SYNC.
     pending: Option<Values>,
 }
 
 impl ReceivePdo {
-    /// Any data frame of the bus. One that is shorter than what is mapped is error 8210.
+    /// Takes any data frame of the bus. A frame shorter than the mapping is error 8210.
     pub fn on_frame(&mut self, node: &mut Node, number: PdoNumber, frame: &CanFrame) {
         let index = parameters(FIRST, number);
         let id = mapping::identifier(&node.dictionary, index);
@@ -53,7 +54,7 @@ impl ReceivePdo {
     }
 }
 
-/// Writes the values in the order of the mapping. A PDO has no way to say that one was refused.
+/// Writes the values in the order of the mapping. A PDO cannot report a rejected value.
 fn apply(node: &mut Node, layout: &PdoLayout, values: &[u64]) {
     for (entry, value) in layout.entries().iter().zip(values) {
         let bytes = value.to_le_bytes();

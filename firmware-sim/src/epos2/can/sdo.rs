@@ -1,4 +1,5 @@
-//! The SDO server: reads and writes of the object dictionary, in one exchange or in segments (CiA 301, "SDO services").
+//! The SDO server: reads and writes of the object dictionary, in one exchange or in segments (CiA
+//! 301, "SDO services").
 
 use protocol::canopen::sdo::{Answer, Expedited, Initiate, Request, Segment};
 use protocol::epos2::objects::Address;
@@ -9,17 +10,17 @@ use crate::epos2::dictionary::Dictionary;
 use crate::epos2::node::Node;
 use crate::epos2::value::ObjectValue;
 
-/// How long a client may be silent in the middle of a transfer. The time of a real unit is not documented.
-const PATIENCE_US: u64 = 1_000_000;
+/// Longest silence of a client within a transfer; that of a real unit is not documented.
+const TRANSFER_TIMEOUT_US: u64 = 1_000_000;
 /// The longest value that can be written.
-const LONGEST: usize = 8;
+const MAX_BYTES: usize = 8;
 
-/// The server of one channel.
+/// SDO server of the unit.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SdoServer {
     transfer: Option<ServerTransfer>,
-    /// When the client was last heard.
-    heard_us: u64,
+    /// Time of the last request.
+    last_request_us: u64,
 }
 
 /// A segmented transfer under way.
@@ -33,7 +34,7 @@ enum ServerTransfer {
     },
     Download {
         address: Address,
-        bytes: Bounded<u8, LONGEST>,
+        bytes: Bounded<u8, MAX_BYTES>,
         /// Bytes announced.
         size: Option<u32>,
         toggle: bool,
@@ -51,18 +52,20 @@ impl ServerTransfer {
 impl SdoServer {
     /// Executes a request; an abort by the client has no answer.
     pub fn execute(&mut self, node: &mut Node, request: &Request, now_us: u64) -> Option<Answer> {
-        self.heard_us = now_us;
-        let under_way = self.transfer.take();
-        let at = under_way.map_or(Address::default(), |transfer| transfer.address());
+        self.last_request_us = now_us;
+        let transfer = self.transfer.take();
+        let current = transfer.map_or(Address::default(), |transfer| transfer.address());
         let (address, outcome) = match request {
             Request::InitiateUpload { address } => (*address, self.upload(node, *address)),
             Request::InitiateDownload { address, transfer } => {
                 (*address, self.download(node, *address, transfer))
             }
-            Request::UploadSegment { toggle } => (at, self.give(under_way, *toggle)),
-            Request::DownloadSegment(segment) => (at, self.take(node, under_way, segment)),
+            Request::UploadSegment { toggle } => (current, self.upload_segment(transfer, *toggle)),
+            Request::DownloadSegment(segment) => {
+                (current, self.download_segment(node, transfer, segment))
+            }
             Request::Abort { .. } => return None,
-            // Block transfer, which names its object where the others do.
+            // Block transfer has the address in the same place.
             Request::Unknown([_, low, high, sub, ..]) => {
                 let index = u16::from_le_bytes([*low, *high]);
                 (Address::new(index, *sub), Err(Abort::COMMAND))
@@ -71,9 +74,9 @@ impl SdoServer {
         Some(outcome.unwrap_or_else(|error| Answer::Abort { address, error }))
     }
 
-    /// Gives a transfer up whose client is silent.
+    /// Aborts a transfer whose client is silent.
     pub fn expire(&mut self, now_us: u64) -> Option<Answer> {
-        let silent = now_us.saturating_sub(self.heard_us) > PATIENCE_US;
+        let silent = now_us.saturating_sub(self.last_request_us) > TRANSFER_TIMEOUT_US;
         let transfer = self.transfer.take_if(|_| silent)?;
         Some(Answer::Abort {
             address: transfer.address(),
@@ -100,17 +103,21 @@ impl SdoServer {
         Ok(Answer::InitiateUpload { address, transfer })
     }
 
-    fn give(&mut self, under_way: Option<ServerTransfer>, asked: bool) -> Result<Answer, Abort> {
+    fn upload_segment(
+        &mut self,
+        transfer: Option<ServerTransfer>,
+        requested: bool,
+    ) -> Result<Answer, Abort> {
         let Some(ServerTransfer::Upload {
             address,
             value,
             sent,
             toggle,
-        }) = under_way
+        }) = transfer
         else {
             return Err(Abort::COMMAND);
         };
-        if asked != toggle {
+        if requested != toggle {
             return Err(Abort::TOGGLE);
         }
         let segment = Segment::cut(value.bytes(), sent, toggle);
@@ -133,7 +140,7 @@ impl SdoServer {
     ) -> Result<Answer, Abort> {
         match transfer {
             Initiate::Expedited(data) => node.write_bytes(address, data.as_slice())?,
-            // The object says how many of the four count.
+            // The type of the object determines how many of the four bytes count.
             Initiate::Unsized(bytes) => {
                 let len = Dictionary::entry(address)?.ty.bytes();
                 let bytes = bytes.get(..len).ok_or(Abort::TOO_SHORT)?;
@@ -155,10 +162,10 @@ impl SdoServer {
         Ok(Answer::InitiateDownload { address })
     }
 
-    fn take(
+    fn download_segment(
         &mut self,
         node: &mut Node,
-        under_way: Option<ServerTransfer>,
+        transfer: Option<ServerTransfer>,
         segment: &Segment,
     ) -> Result<Answer, Abort> {
         let Some(ServerTransfer::Download {
@@ -166,7 +173,7 @@ impl SdoServer {
             mut bytes,
             size,
             toggle,
-        }) = under_way
+        }) = transfer
         else {
             return Err(Abort::COMMAND);
         };
@@ -174,7 +181,7 @@ impl SdoServer {
             return Err(Abort::TOGGLE);
         }
         let len = bytes.len() + segment.bytes.len();
-        if len > size.map_or(LONGEST, |size| size as usize).min(LONGEST) {
+        if len > size.map_or(MAX_BYTES, |size| size as usize).min(MAX_BYTES) {
             return Err(Abort::TOO_LONG);
         }
         bytes.extend(segment.bytes.iter().copied());

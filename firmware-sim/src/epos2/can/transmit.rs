@@ -1,6 +1,8 @@
-//! Process data from the node: TPDO 1 to 4 (1800, 1A00 and on), by SYNC, by event or on request.
+//! Process data from the node: TPDO 1 to 4 (1800 to 1803, 1A00 to 1A03), by SYNC, by event or on
+//! request.
 //!
-//! Each value is read at the instant of the SYNC or event: a position and a time stamp (1013) in one PDO belong together.
+//! All values are read at the instant of the SYNC or event: position and time stamp (1013) in one
+//! PDO belong together.
 
 use protocol::canopen::pdo::{CommunicationId, MAX_ENTRIES, PdoLayout, TransmissionType};
 use protocol::canopen::{CanFrame, CanId, CobId, PdoNumber};
@@ -11,25 +13,25 @@ use super::parameters;
 use crate::epos2::mapping;
 use crate::epos2::node::Node;
 
-/// Where the parameters of the first stand.
+/// Index of the parameters of TPDO 1.
 const FIRST: u16 = 0x1800;
 
 /// The data of a PDO.
 type Data = Bounded<u8, 8>;
 
-/// One of them.
+/// State of one transmit PDO.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TransmitPdo {
-    /// Beats since the last that was sent.
-    beats: u8,
-    /// What was sent last; nothing since the node became operational.
+    /// SYNCs since the last transmission.
+    syncs: u8,
+    /// Data of the last transmission; `None` since the node became operational.
     sent: Option<Data>,
     sent_us: u64,
     /// Sampled at the last SYNC (type 252).
     latched: Option<Data>,
 }
 
-/// The PDO as it is configured, in use.
+/// The configuration of a PDO in use.
 struct Configured {
     id: CommunicationId,
     kind: TransmissionType,
@@ -84,9 +86,9 @@ impl TransmitPdo {
         };
         match configured.kind {
             TransmissionType::EverySync(every) => {
-                self.beats = self.beats.saturating_add(1);
-                if self.beats >= every {
-                    self.beats = 0;
+                self.syncs = self.syncs.saturating_add(1);
+                if self.syncs >= every {
+                    self.syncs = 0;
                     self.send(node, &configured, data, out);
                 }
             }
@@ -98,7 +100,7 @@ impl TransmitPdo {
         }
     }
 
-    /// Sends what has changed, not before the inhibit time (180x:3) is over.
+    /// Sends changed data, not before the inhibit time (180x:3) has elapsed.
     pub fn on_event(
         &mut self,
         node: &Node,
@@ -123,18 +125,18 @@ impl TransmitPdo {
         }
     }
 
-    /// A remote frame with identifier `asked`.
+    /// A remote frame with identifier `requested`.
     pub fn on_request(
         &mut self,
         node: &Node,
         number: PdoNumber,
-        asked: CobId,
+        requested: CobId,
         out: &mut impl FnMut(&CanFrame),
     ) {
         let Some(configured) = Configured::of(node, number) else {
             return;
         };
-        if configured.id.id != CanId::Standard(asked) || !configured.id.remote {
+        if configured.id.id != CanId::Standard(requested) || !configured.id.remote {
             return;
         }
         let data = match configured.kind {

@@ -2,9 +2,9 @@
 //! mappability, all 430 of them.
 //!
 //! They follow the device description (EDS) of an EPOS2 70/10 with firmware 2126h, in the order of
-//! addresses. Where it gives no factory value, the value of a real unit is used. Objects of functions
-//! that are not simulated (data recorder, interpolation buffer, autotuning, analogue inputs) are
-//! plain storage.
+//! addresses. Where it gives no factory value, the value of a real unit is used. Objects of
+//! functions that are not simulated (data recorder, interpolation buffer, autotuning, analogue
+//! inputs) are plain storage.
 
 mod communication;
 mod device;

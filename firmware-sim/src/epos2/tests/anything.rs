@@ -1,4 +1,5 @@
-//! Whatever is done to it, over whichever wire, the state machine moves only as the specification allows.
+//! Whatever is done to it, over whichever wire, the state machine moves only as the specification
+//! allows.
 
 extern crate std;
 use std::vec;
@@ -34,7 +35,8 @@ enum By {
 }
 use By::*;
 
-/// The legal transitions, as the Firmware Specification's figure and tables of "Device Control" have them.
+/// The legal transitions, as the Firmware Specification's figure and tables of "Device Control"
+/// have them.
 const LEGAL: [(State, By, State); 41] = [
     (SwitchOnDisabled, Shutdown, ReadyToSwitchOn),
     (ReadyToSwitchOn, SwitchOn, SwitchedOn),
@@ -79,7 +81,8 @@ const LEGAL: [(State, By, State); 41] = [
     (FaultReactionDisabled, PowerOn, SwitchOnDisabled),
 ];
 
-/// The command of a controlword: bits 7, 3, 2, 1, 0, as the table "Device Control Commands" masks them.
+/// The command of a controlword: bits 7, 3, 2, 1, 0, as the table "Device Control Commands" masks
+/// them.
 fn command_of(word: u32) -> By {
     const MASKS: [(u32, u32, By); 6] = [
         (0x80, 0x80, Reset),

@@ -1,6 +1,7 @@
-//! The object dictionary against the device description (EDS) of an EPOS2 70/10, entry by entry, as a client finds it: existence, type,
-//! access, factory value, limits and mappability, each with the abort code of its refusal. `objects.txt` is the description, without
-//! names; the dictionary's own table is not looked at here.
+//! The object dictionary against the device description (EDS) of an EPOS2 70/10, entry by entry, as
+//! a client finds it: existence, type, access, factory value, limits and mappability, each with the
+//! abort code of its refusal. `objects.txt` is the description, without names; the dictionary's own
+//! table is not looked at here.
 
 extern crate std;
 use std::collections::BTreeMap;
@@ -97,7 +98,8 @@ fn write(node: &mut Node, entry: &Described, number: i64, bytes: usize) -> Resul
     node.write_bytes(entry.address, &number.to_le_bytes()[..bytes])
 }
 
-/// What is refused although type, access and limits allow it: signatures, process data in use, what nothing can be stored in.
+/// What is refused although type, access and limits allow it: signatures, process data in use, what
+/// nothing can be stored in.
 fn needs_more(entry: &Described) -> bool {
     matches!(
         entry.address.index,

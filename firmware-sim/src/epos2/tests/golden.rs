@@ -1,5 +1,6 @@
-//! The serial interfaces against bytes that were not made here: frames of the Communication Guide's format as a real unit and its
-//! tools exchange them, and a checksum computed the slow way, bit by bit.
+//! The serial interfaces against bytes that were not made here: frames of the Communication Guide's
+//! format as a real unit and its tools exchange them, and a checksum computed the slow way, bit by
+//! bit.
 
 extern crate std;
 use std::vec::Vec;

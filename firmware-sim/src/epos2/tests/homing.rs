@@ -25,7 +25,8 @@ fn world(node: &Node) -> i64 {
     node.segment().end >> 32
 }
 
-/// A home switch between 5000 and 6000, limits at +-43334, index pulses at 700 + n 2000; starting at `at`.
+/// A home switch between 5000 and 6000, limits at +-43334, index pulses at 700 + n 2000; starting
+/// at `at`.
 fn with_home_switch(at: i32) -> Node {
     let mut config = NodeConfig {
         fault_at_power_on: DeviceError::NONE,
@@ -47,7 +48,8 @@ fn with_home_switch(at: i32) -> Node {
 
 #[test]
 fn homing_methods_find_their_reference() {
-    // Method, start, world position of the reference, tolerance (the edge is seen once a millisecond).
+    // Method, start, world position of the reference, tolerance (the edge is seen once a
+    // millisecond).
     let cases: [(i8, i32, i64, i64); 24] = [
         (17, 0, -43_333, 2),
         (17, -43_500, -43_333, 2),

@@ -1,9 +1,10 @@
-//! Communication parameters of a PDO: its identifier (140x:1, 180x:1) and when it is sent (140x:2, 180x:2).
+//! Communication parameters of a PDO: its identifier (140x:1, 180x:1) and its transmission type
+//! (140x:2, 180x:2).
 
 use crate::canopen::cob_id::CobId;
 use crate::canopen::frame::{CanId, ExtendedId};
 
-/// Bits of the identifier's value.
+/// Flags in the value of the identifier.
 const INVALID: u32 = 1 << 31;
 const NO_REMOTE: u32 = 1 << 30;
 const EXTENDED: u32 = 1 << 29;
@@ -13,14 +14,14 @@ const EXTENDED: u32 = 1 << 29;
 pub struct CommunicationId {
     /// The PDO is in use (bit 31 is clear).
     pub valid: bool,
-    /// It may be asked for by a remote frame (bit 30 is clear).
+    /// Remote frames may request it (bit 30 is clear).
     pub remote: bool,
     /// Its identifier (bit 29: 29 bits instead of 11).
     pub id: CanId,
 }
 
 impl CommunicationId {
-    /// The object's value.
+    /// The value of the object.
     #[must_use]
     pub const fn to_u32(self) -> u32 {
         let invalid = if self.valid { 0 } else { INVALID };
@@ -32,7 +33,7 @@ impl CommunicationId {
         invalid | no_remote | extended | self.id.raw()
     }
 
-    /// The meaning of the object's value; without bit 29 only the low 11 bits of the identifier count.
+    /// The meaning of the value; without bit 29 only the low 11 bits of the identifier count.
     #[must_use]
     pub const fn from_u32(value: u32) -> Self {
         Self {
@@ -52,15 +53,15 @@ impl CommunicationId {
 pub enum TransmissionType {
     /// 0: at the next SYNC after an event.
     SyncOnEvent,
-    /// 1 to 240: at every so-many-th SYNC. For a received PDO: at the next.
+    /// 1 to 240: at every n-th SYNC. For a received PDO: at the next.
     EverySync(u8),
-    /// 252: latched at SYNC, sent when asked for.
+    /// 252: sampled at SYNC, sent on request.
     RemoteLatched,
-    /// 253: sent when asked for.
+    /// 253: sent on request.
     Remote,
-    /// 254: at an event of the manufacturer's choice.
+    /// 254: at a manufacturer-specific event.
     Event,
-    /// 255: at an event of the device profile's choice (a change of a mapped value).
+    /// 255: at an event of the device profile (a change of a mapped value).
     ProfileEvent,
     /// 241 to 251.
     Reserved(u8),
@@ -70,7 +71,7 @@ impl TransmissionType {
     /// At every SYNC.
     pub const EACH_SYNC: Self = Self::EverySync(1);
 
-    /// The object's value. `EverySync` with a number it cannot have gives that number.
+    /// The value of the object, also for an `EverySync` out of range.
     #[must_use]
     pub const fn to_u8(self) -> u8 {
         match self {
@@ -83,7 +84,7 @@ impl TransmissionType {
         }
     }
 
-    /// The meaning of the object's value.
+    /// The meaning of the value.
     #[must_use]
     pub const fn from_u8(value: u8) -> Self {
         match value {
@@ -104,7 +105,8 @@ mod tests {
     use crate::canopen::{CommunicationObject, NodeId, PdoNumber};
     use proptest::prelude::*;
 
-    /// Defaults of the unit's own device description for node 1: TPDO1 in use, TPDO2 to 4 not, remote frames nowhere.
+    /// Defaults of the device description for node 1: TPDO1 in use, TPDO2 to 4 not, no remote
+    /// frames.
     #[test]
     fn the_epos2s_defaults() {
         let node = NodeId::new(1).unwrap();

@@ -1,6 +1,7 @@
-//! The writes that configure a PDO, in the order in which a node takes them (CiA 301, "PDO mapping procedure").
+//! The writes that configure a PDO, in the order that nodes require (CiA 301, "PDO mapping
+//! procedure").
 //!
-//! The node must be pre-operational meanwhile, and be started afterwards; that is the caller's business.
+//! The caller keeps the node pre-operational meanwhile and starts it afterwards.
 
 use super::communication::{CommunicationId, TransmissionType};
 use super::layout::PdoLayout;
@@ -8,7 +9,7 @@ use crate::canopen::cob_id::{CommunicationObject, NodeId, PdoNumber};
 use crate::canopen::object::{Address, Scalar};
 use crate::canopen::sdo::Expedited;
 
-/// One of a node's PDOs; the direction is seen from the node.
+/// One PDO of a node; directions are those of the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pdo {
     /// The node sends it.
@@ -46,20 +47,19 @@ impl Pdo {
     }
 }
 
-/// What a PDO is to become.
+/// The configuration of a PDO.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Configuration {
     /// When it is sent or takes effect.
     pub transmission: TransmissionType,
-    /// For a PDO the node sends: the shortest time between two, in 100 us (180x:3; the EPOS2 has 10 by default). `None`
-    /// leaves it. CiA 301 lets it hold back events only, not SYNC; whether the EPOS2 does is not documented, so set 0 for
-    /// a fast SYNC.
+    /// For a transmit PDO: the shortest interval in 100 us (180x:3). `None` leaves it unchanged. In
+    /// CiA 301 it delays events only, not SYNC; 0 is safe for a fast SYNC.
     pub inhibit_100us: Option<u16>,
-    /// What it carries.
+    /// The mapped objects.
     pub layout: PdoLayout,
 }
 
-/// One object to write.
+/// One write to an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Write {
     /// The object.
@@ -68,8 +68,8 @@ pub struct Write {
     pub data: Expedited,
 }
 
-/// The writes that make `pdo` of `node` what `configuration` says, and put it in use under its predefined identifier,
-/// without remote frames: out of use first, then type and inhibit time, mapping count 0, entries, count, into use last.
+/// The writes that configure `pdo` of `node` and enable it under its predefined identifier, without
+/// remote frames: disable, type, inhibit time, mapping count 0, entries, count, enable.
 pub fn configuration(
     pdo: Pdo,
     node: NodeId,

@@ -1,6 +1,6 @@
-//! What a PDO carries: its mapping entries (160x, 1A0x), and the packing of values by them.
+//! The content of a PDO: its mapping entries (160x, 1A0x), and the packing of values by them.
 //!
-//! Values stand one behind the other without gaps, each low byte first, low bit first where one has no whole bytes.
+//! Values are adjacent, low byte first, and low bit first where their length is not in whole bytes.
 
 use core::fmt;
 
@@ -9,12 +9,12 @@ use thiserror::Error;
 use crate::Bounded;
 use crate::canopen::object::{Address, Scalar, TypedObject};
 
-/// Entries a mapping of the EPOS2 has room for.
+/// Largest number of entries of an EPOS2 mapping.
 pub const MAX_ENTRIES: usize = 8;
 /// Bits in a frame.
 const MAX_BITS: usize = 64;
 
-/// An object in a PDO.
+/// A mapped object.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub struct MappedObject {
     /// The object.
@@ -33,7 +33,7 @@ impl MappedObject {
         }
     }
 
-    /// The entry's value: index, subindex, length, from the highest byte to the lowest.
+    /// The value of the entry: index, subindex, length, from the highest byte to the lowest.
     #[must_use]
     pub const fn to_u32(self) -> u32 {
         (self.address.index as u32) << 16 | (self.address.sub as u32) << 8 | self.bits as u32
@@ -57,7 +57,7 @@ impl fmt::Debug for MappedObject {
     }
 }
 
-/// Why entries make no PDO.
+/// Why entries do not form a PDO.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum LayoutError {
     /// More entries than a mapping holds.
@@ -79,23 +79,23 @@ pub enum LayoutError {
     /// An entry without a bit.
     #[error("PDO mapping: entry {entry} has no bits, expected 1 to 64")]
     Empty {
-        /// Which entry, counted from 1 as their subindices are.
+        /// Number of the entry, from 1 like its subindex.
         entry: usize,
     },
 }
 
-/// Why data does not go with a mapping.
+/// Why data does not match a mapping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum PdoError {
-    /// Fewer bytes than are mapped; a node answers it with error 8210.
+    /// Fewer bytes than mapped; a node reports error 8210.
     #[error("PDO: {got} data bytes, expected {expected}")]
     Short {
         /// Bytes mapped.
         expected: usize,
-        /// Bytes there are.
+        /// Bytes given.
         got: usize,
     },
-    /// Another number of values than entries.
+    /// The number of values differs from the number of entries.
     #[error("PDO: {got} values, expected {expected}")]
     Values {
         /// Entries.
@@ -105,7 +105,7 @@ pub enum PdoError {
     },
 }
 
-/// The entries of a PDO that fit a frame.
+/// Mapping entries that fit a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PdoLayout {
     entries: Bounded<MappedObject, MAX_ENTRIES>,
@@ -147,7 +147,7 @@ impl PdoLayout {
             .sum()
     }
 
-    /// Data bytes of the frame: the bits, filled up to whole bytes.
+    /// Data bytes of the frame.
     #[must_use]
     pub fn len(&self) -> usize {
         self.bits().div_ceil(8)
@@ -159,10 +159,10 @@ impl PdoLayout {
         self.entries.is_empty()
     }
 
-    /// The frame's data; of each value the low bits of its entry are taken.
+    /// The data of a frame, from the low bits of each value.
     ///
     /// # Errors
-    /// [`PdoError::Values`] unless there is a value for each entry.
+    /// [`PdoError::Values`] unless there is one value per entry.
     pub fn pack(&self, values: &[u64]) -> Result<Bounded<u8, 8>, PdoError> {
         if values.len() != self.entries.len() {
             return Err(PdoError::Values {
@@ -181,8 +181,8 @@ impl PdoLayout {
         Ok(data)
     }
 
-    /// The values in a frame's data, in the order of the entries, extended by zeros; bytes beyond the mapped ones do not
-    /// count (CiA 301).
+    /// The values in the data of a frame, in the order of the entries, zero-extended; surplus bytes
+    /// are ignored (CiA 301).
     ///
     /// # Errors
     /// [`PdoError::Short`].
@@ -193,7 +193,8 @@ impl PdoLayout {
         Ok(values)
     }
 
-    /// The value of `object` in a frame's data; `None` where it is not mapped in its whole length.
+    /// The value of `object` in the data of a frame; `None` where it is not mapped in its whole
+    /// length.
     ///
     /// # Errors
     /// [`PdoError::Short`].
@@ -218,7 +219,7 @@ impl PdoLayout {
         Ok(bytes.fold(0, |all, byte| all << 8 | u64::from(*byte)))
     }
 
-    /// Each entry with the bit at which it begins (0 to 63) and the mask of its length.
+    /// Each entry with its first bit (0 to 63) and the mask of its length.
     fn places(&self) -> impl Iterator<Item = (MappedObject, u32, u64)> + '_ {
         self.entries.iter().scan(0, |next, entry| {
             let shift = *next;
@@ -244,7 +245,7 @@ mod tests {
         }
     }
 
-    /// The stream of the tilt angle: position and time stamp in one frame.
+    /// Position and time stamp of the tilt axis in one frame.
     #[test]
     fn the_angle_stream() {
         let entries = [
@@ -270,13 +271,13 @@ mod tests {
         assert_eq!(layout.get(TIMESTAMP, &data[..7]), Err(short));
     }
 
-    /// A real unit's TPDO1 (1A00): an analogue value, statusword, mode.
+    /// TPDO1 of a real unit (1A00): an analogue value, statusword, mode.
     #[test]
     fn values_follow_one_another_without_gaps() {
         let entries = [0x20C4_0110, 0x6041_0010, 0x6061_0008].map(MappedObject::from_u32);
         let layout = PdoLayout::new(&entries).unwrap();
         assert_eq!((layout.bits(), layout.len()), (40, 5));
-        // A longer frame is taken, what is behind does not count.
+        // Surplus bytes are ignored.
         let data = [0x11, 0x22, 0x37, 0x03, 0xFF, 0xEE];
         assert_eq!(
             layout.unpack(&data).unwrap().as_slice(),

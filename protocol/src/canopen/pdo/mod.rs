@@ -1,7 +1,9 @@
-//! PDO, process data objects (CiA 301, "PDO services"): objects of a node sent in one frame, by what is configured beforehand.
+//! PDO, process data objects (CiA 301, "PDO services"): objects of a node in one frame, by a
+//! configured mapping.
 //!
-//! Here are the values of the configuring objects ([`CommunicationId`], [`TransmissionType`], [`MappedObject`]), the order in
-//! which they are to be written ([`configuration`]), and the packing of a frame's data by its mapping ([`PdoLayout`]).
+//! This module has the values of the configuration objects ([`CommunicationId`],
+//! [`TransmissionType`], [`MappedObject`]), the order of their writes ([`configuration`]), and the
+//! packing of data by a mapping ([`PdoLayout`]).
 
 mod communication;
 mod configuration;

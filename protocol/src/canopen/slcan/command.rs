@@ -1,11 +1,11 @@
-//! What a host tells an adapter.
+//! Commands of the host to an adapter.
 
 use super::error::SlcanError;
 use super::frame::{parse_frame, write_frame};
 use super::line::{CR, Line, LineAssembler, LineEvent, length};
 use crate::canopen::frame::CanFrame;
 
-/// The nine bit rates that have a number.
+/// The nine standard bit rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Bitrate {
     /// S0.
@@ -24,12 +24,12 @@ pub enum Bitrate {
     Kbit500,
     /// S7.
     Kbit800,
-    /// S8: the EPOS2 from the factory.
+    /// S8: the factory setting of an EPOS2.
     Kbit1000,
 }
 
 impl Bitrate {
-    /// All, in the order of their numbers.
+    /// All, in the order of their digits.
     pub const ALL: [Self; 9] = [
         Self::Kbit10,
         Self::Kbit20,
@@ -58,13 +58,13 @@ impl Bitrate {
         }
     }
 
-    /// The bit rate of so many bits per second, if it has a number.
+    /// The standard bit rate of this many bits per second.
     #[must_use]
     pub fn from_bit_s(bit_s: u32) -> Option<Self> {
         Self::ALL.into_iter().find(|rate| rate.bit_s() == bit_s)
     }
 
-    /// The digit behind `S`.
+    /// The digit after `S`.
     const fn digit(self) -> u8 {
         b'0' + self as u8
     }
@@ -77,7 +77,7 @@ impl Bitrate {
 /// A line from host to adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlcanCommand {
-    /// CR alone: ends whatever stood in the adapter's buffer.
+    /// CR alone: ends a partial line in the adapter.
     Empty,
     /// `S`: sets the bit rate; the channel must be closed.
     Bitrate(Bitrate),
@@ -87,13 +87,13 @@ pub enum SlcanCommand {
     OpenListening,
     /// `C`: closes the channel.
     Close,
-    /// `V`: asks for the version.
+    /// `V`: queries the version.
     Version,
-    /// `N`: asks for the serial number.
+    /// `N`: queries the serial number.
     SerialNumber,
-    /// `F`: asks for the status flags.
+    /// `F`: queries the status flags.
     Status,
-    /// `Z0`, `Z1`: time stamps behind received frames.
+    /// `Z0`, `Z1`: time stamps of received frames.
     Stamps(bool),
     /// `t`, `T`, `r`, `R`: sends a frame.
     Transmit(CanFrame),
@@ -123,7 +123,7 @@ impl SlcanCommand {
     /// The command of a line without its CR.
     ///
     /// # Errors
-    /// [`SlcanError`] for a frame that is none and a bit rate without a number.
+    /// [`SlcanError`] for an invalid frame or bit rate.
     pub fn parse(line: &Line) -> Result<Self, SlcanError> {
         Ok(match line.as_slice() {
             [] => Self::Empty,
@@ -146,7 +146,7 @@ impl SlcanCommand {
             [b'Z', b'1'] => Self::Stamps(true),
             [b't' | b'T' | b'r' | b'R', ..] => match parse_frame(line)? {
                 (frame, None) => Self::Transmit(frame),
-                // A host has no time stamps.
+                // Frames of a host have no time stamps.
                 (_, Some(_)) => {
                     return Err(SlcanError::Length {
                         expected: line.len() - 4,
@@ -159,25 +159,25 @@ impl SlcanCommand {
     }
 }
 
-/// The adapter's side: takes the bytes of a stream one by one and gives commands back.
+/// Decodes a stream of bytes into commands, for an adapter.
 #[derive(Clone, Debug, Default)]
 pub struct CommandDecoder {
     lines: LineAssembler,
 }
 
 impl CommandDecoder {
-    /// A decoder at the beginning of a line.
+    /// A decoder between lines.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Takes one byte; a command, or why there is none, comes out with the byte that completes the line.
+    /// Takes one byte; a command or an error comes out with the byte that completes the line.
     pub fn push(&mut self, byte: u8) -> Option<Result<SlcanCommand, SlcanError>> {
         match self.lines.push(byte)? {
             LineEvent::Line(line) => Some(SlcanCommand::parse(&line)),
             LineEvent::Dropped(error) => Some(Err(error)),
-            // No host says it: noise.
+            // Hosts do not send BEL: noise.
             LineEvent::Bell => None,
         }
     }

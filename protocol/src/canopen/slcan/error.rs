@@ -1,38 +1,38 @@
-//! What can be wrong with a line.
+//! Errors of a line.
 
 use thiserror::Error;
 
-/// Why a line was dropped. The decoder goes on with the next.
+/// Why a line was dropped. The decoder continues with the next line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SlcanError {
-    /// No CR came for longer than any line is.
+    /// No CR within the longest line.
     #[error("SLCAN: a line of more than {max} characters")]
     TooLong {
-        /// The longest there is.
+        /// The longest line.
         max: usize,
     },
     /// A frame began before the line was complete.
     #[error("SLCAN: a line broken off after {got} characters")]
     BrokenOff {
-        /// Characters that had come.
+        /// Characters received.
         got: usize,
     },
-    /// A character that cannot stand there.
+    /// A character is invalid.
     #[error("SLCAN: character {offset} of the line is {got:02X}, expected {expected}")]
     Character {
-        /// Which, counted from 0.
+        /// Offset from 0.
         offset: usize,
-        /// What may stand there.
+        /// Permitted characters.
         expected: &'static str,
-        /// What does.
+        /// The character.
         got: u8,
     },
-    /// More or fewer characters than the line should have.
+    /// The number of characters is wrong.
     #[error("SLCAN: a line of {got} characters, expected {expected}")]
     Length {
-        /// Characters it should have.
+        /// The correct number.
         expected: usize,
-        /// Characters it has.
+        /// The number in the line.
         got: usize,
     },
     /// An identifier above 11 bits.
@@ -40,7 +40,7 @@ pub enum SlcanError {
     Id {
         /// The highest.
         max: u32,
-        /// The line's.
+        /// The identifier in the line.
         got: u32,
     },
 }

@@ -1,12 +1,12 @@
-//! A CAN frame as a line: `tiiilDD..` with 11-bit, `TiiiiiiiilDD..` with 29-bit identifier, `r` and `R` the same for
-//! remote frames, without data.
+//! A CAN frame as a line: `tiiilDD..` with an 11-bit identifier, `TiiiiiiiilDD..` with a 29-bit
+//! identifier; remote frames have `r` or `R` and no data.
 
 use super::error::SlcanError;
 use super::line::{length, number, write_number};
 use crate::canopen::cob_id::CobId;
 use crate::canopen::frame::{CanFrame, CanId, ExtendedId};
 
-/// Digits of an adapter's time stamp behind a frame.
+/// Digits of a time stamp after a frame.
 const STAMP_DIGITS: usize = 4;
 
 /// Writes the line of `frame`, without its CR.
@@ -25,7 +25,8 @@ pub(super) fn write_frame(frame: &CanFrame, out: &mut impl Extend<u8>) {
     }
 }
 
-/// The frame of a line that begins with `t`, `T`, `r` or `R`, and the time stamp behind it: milliseconds of a minute.
+/// The frame of a line that begins with `t`, `T`, `r` or `R`, and its time stamp: milliseconds
+/// within a minute.
 pub(super) fn parse_frame(line: &[u8]) -> Result<(CanFrame, Option<u16>), SlcanError> {
     let extended = matches!(line.first(), Some(b'T' | b'R'));
     let remote = matches!(line.first(), Some(b'r' | b'R'));

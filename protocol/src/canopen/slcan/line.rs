@@ -1,34 +1,35 @@
-//! Bytes to lines, and hexadecimal digits.
+//! Lines of text and hexadecimal digits.
 
 use super::error::SlcanError;
 use crate::Bounded;
 
-/// Ends a line; alone, it is an adapter's "done".
+/// Ends a line; alone, it confirms a command.
 pub const CR: u8 = 0x0D;
-/// An adapter's "no".
+/// Rejects a command.
 pub const BEL: u8 = 0x07;
-/// Some put it behind CR.
+/// Follows CR in some adapters.
 const LF: u8 = 0x0A;
-/// The longest line kept. A frame has at most 30 characters, with a time stamp; texts about versions may be longer.
+/// The longest line. A frame with a time stamp has at most 30 characters; version texts may be
+/// longer.
 pub const MAX_LINE: usize = 96;
 
-/// A line, or a text in one.
+/// A line, or text in it.
 pub type Line = Bounded<u8, MAX_LINE>;
 
-/// What a byte completed.
+/// A completed line or answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineEvent {
-    /// A line without its CR, perhaps empty.
+    /// A line without its CR, possibly empty.
     Line(Line),
     Bell,
     Dropped(SlcanError),
 }
 
-/// Gathers bytes to lines.
+/// Collects bytes into lines.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LineAssembler {
     line: Line,
-    /// The line has become too long; its end is waited for.
+    /// The line is too long; its rest is dropped.
     skipping: bool,
 }
 
@@ -41,7 +42,7 @@ impl LineAssembler {
                 Some(LineEvent::Bell)
             }
             LF => None,
-            // Between lines anything else than text is noise of the line or of a port just opened.
+            // Between lines, other bytes are noise of the line or of a port just opened.
             _ if self.line.is_empty() && !byte.is_ascii_graphic() => None,
             b't' | b'T' | b'r' | b'R' if self.is_broken_off() => {
                 let got = self.line.len();
@@ -65,8 +66,8 @@ impl LineAssembler {
         }
     }
 
-    /// Whether the letter of a frame ends the line so far: arguments are hexadecimal, and only versions and serial
-    /// numbers are free text.
+    /// Whether the letter of a frame interrupts the line: arguments are hexadecimal, and only
+    /// versions and serial numbers are free text.
     fn is_broken_off(&self) -> bool {
         !matches!(self.line.as_slice(), [] | [b'V' | b'v' | b'N', ..])
     }
@@ -101,7 +102,7 @@ pub(super) fn write_number(number: u32, len: u32, out: &mut impl Extend<u8>) {
     }));
 }
 
-/// Whether a line has `expected` characters.
+/// Checks the length of a line.
 pub(super) fn length(line: &[u8], expected: usize) -> Result<(), SlcanError> {
     if line.len() == expected {
         Ok(())
@@ -113,7 +114,7 @@ pub(super) fn length(line: &[u8], expected: usize) -> Result<(), SlcanError> {
     }
 }
 
-/// What stands behind the letter of a line.
+/// The text after the letter of a line.
 pub(super) fn text(line: &[u8]) -> Line {
     let mut text = Line::new();
     text.extend(line.iter().copied().skip(1));

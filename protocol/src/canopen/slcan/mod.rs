@@ -1,9 +1,11 @@
-//! SLCAN, the Lawicel ASCII protocol (LAWICEL CAN232 and CANUSB manuals): CAN frames as lines of text on a serial port.
+//! SLCAN, the Lawicel ASCII protocol (LAWICEL CAN232 and CANUSB manuals): CAN frames as lines of
+//! text on a serial port.
 //!
-//! A line is a letter with its arguments and ends with CR; an adapter refuses with BEL. Both sides are here: a host
-//! writes [`SlcanCommand`]s and reads [`SlcanReply`]s, an adapter the other way round. Adapters differ: CANUSB answers each command
-//! with CR, a frame with `z` CR or `Z` CR, some firmware (CANable) answers nothing. That is no matter here, and neither
-//! are timeouts. Register settings, filters and CAN FD extensions are left out: their lines are `Unknown`.
+//! A line is a letter with its arguments and ends with CR; an adapter rejects a command with BEL. A
+//! host writes [`SlcanCommand`]s and reads [`SlcanReply`]s, an adapter does the reverse. Adapters
+//! differ: CANUSB answers each command with CR, a frame with `z` CR or `Z` CR; CANable answers
+//! nothing. The caller handles missing answers. Register settings, filters and CAN FD extensions
+//! are `Unknown` lines.
 
 mod command;
 mod error;

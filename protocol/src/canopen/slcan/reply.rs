@@ -1,4 +1,4 @@
-//! What an adapter tells its host: answers to commands, and frames from the bus at any time between them.
+//! Replies of an adapter to its host: answers to commands, and frames of the bus at any time.
 
 use super::error::SlcanError;
 use super::frame::{parse_frame, write_frame};
@@ -8,19 +8,19 @@ use crate::canopen::frame::CanFrame;
 /// A line from adapter to host, or BEL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlcanReply {
-    /// CR alone: done.
+    /// CR alone: confirmed.
     Done,
-    /// BEL: not done.
+    /// BEL: rejected.
     Refused,
-    /// `z`: a frame with 11-bit identifier was taken.
+    /// `z`: a frame with an 11-bit identifier was sent.
     Sent,
-    /// `Z`: a frame with 29-bit identifier was taken.
+    /// `Z`: a frame with a 29-bit identifier was sent.
     SentExtended,
-    /// A frame came from the bus.
+    /// A frame of the bus.
     Received {
         /// The frame.
         frame: CanFrame,
-        /// When, in milliseconds of a minute of the adapter's clock, if it was told to say so.
+        /// Time stamp of the adapter in milliseconds within a minute, if enabled.
         stamp_ms: Option<u16>,
     },
     /// `V` and a text, four digits on a CANUSB.
@@ -61,7 +61,7 @@ impl SlcanReply {
     /// The reply of a line without its CR.
     ///
     /// # Errors
-    /// [`SlcanError`] for a frame that is none and flags that are none.
+    /// [`SlcanError`] for an invalid frame or invalid flags.
     pub fn parse(line: &Line) -> Result<Self, SlcanError> {
         Ok(match line.as_slice() {
             [] => Self::Done,
@@ -87,22 +87,21 @@ fn prefixed(letter: u8, text: &Line, out: &mut impl Extend<u8>) {
     out.extend(text.iter().copied());
 }
 
-/// The host's side: takes the bytes of a stream one by one and gives replies back.
+/// Decodes a stream of bytes into replies, for a host.
 #[derive(Clone, Debug, Default)]
 pub struct ReplyDecoder {
     lines: LineAssembler,
 }
 
 impl ReplyDecoder {
-    /// A decoder at the beginning of a line.
+    /// A decoder between lines.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Takes one byte; a reply, or why there is none, comes out with the byte that completes the line.
-    ///
-    /// BEL in the middle of a line ends it: what stood there is dropped.
+    /// Takes one byte; a reply or an error comes out with the byte that completes the line. BEL
+    /// drops a partial line.
     pub fn push(&mut self, byte: u8) -> Option<Result<SlcanReply, SlcanError>> {
         Some(match self.lines.push(byte)? {
             LineEvent::Line(line) => SlcanReply::parse(&line),

@@ -67,8 +67,8 @@ impl RequestCanFrame {
     /// The data in its answer.
     ///
     /// # Errors
-    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer; the inner
-    /// error is what the unit reports.
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer;
+    /// the inner error is what the unit reports.
     pub fn parse_answer(
         frame: &SerialFrame,
     ) -> Result<Result<[u8; 8], CommError>, SerialFrameError> {

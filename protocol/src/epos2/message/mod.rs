@@ -115,8 +115,8 @@ impl SerialAnswer {
     /// The answer in `frame`.
     ///
     /// # Errors
-    /// [`SerialFrameError::Opcode`] for a request (an echo, for instance), [`SerialFrameError::WordCount`] below
-    /// two words.
+    /// [`SerialFrameError::Opcode`] for a request (an echo, for instance),
+    /// [`SerialFrameError::WordCount`] below two words.
     pub fn parse(frame: &SerialFrame) -> Result<Self, SerialFrameError> {
         frame.expect_opcode(SerialFrame::ANSWER)?;
         let [low, high, data @ ..] = frame.words.as_slice() else {

@@ -33,8 +33,8 @@ impl ReadObject {
     /// in two words or in four.
     ///
     /// # Errors
-    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer; the inner
-    /// error is what the unit reports.
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer;
+    /// the inner error is what the unit reports.
     pub fn parse_answer(frame: &SerialFrame) -> Result<Result<u32, CommError>, SerialFrameError> {
         SerialAnswer::read(frame, SerialAnswer::value)
     }
@@ -75,8 +75,8 @@ impl WriteObject {
     /// Whether it was carried out.
     ///
     /// # Errors
-    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no answer; the inner error is
-    /// what the unit reports.
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no answer; the
+    /// inner error is what the unit reports.
     pub fn parse_answer(frame: &SerialFrame) -> Result<Result<(), CommError>, SerialFrameError> {
         SerialAnswer::read(frame, |_| Ok(()))
     }

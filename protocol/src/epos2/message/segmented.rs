@@ -92,8 +92,8 @@ impl SegmentedRead {
     /// The segment in its answer.
     ///
     /// # Errors
-    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer or holds fewer
-    /// bytes than it announces; the inner error is what the unit reports.
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer
+    /// or holds fewer bytes than it announces; the inner error is what the unit reports.
     pub fn parse_answer(
         frame: &SerialFrame,
     ) -> Result<Result<ReadSegment, CommError>, SerialFrameError> {
@@ -136,8 +136,8 @@ impl SegmentedWrite {
     /// The request in `frame`.
     ///
     /// # Errors
-    /// [`SerialFrameError::Opcode`]; [`SerialFrameError::WordCount`] where it holds fewer bytes than it
-    /// announces.
+    /// [`SerialFrameError::Opcode`]; [`SerialFrameError::WordCount`] where it holds fewer bytes
+    /// than it announces.
     pub fn parse(frame: &SerialFrame) -> Result<Self, SerialFrameError> {
         frame.expect_opcode(Self::OPCODE)?;
         let (control, bytes) = unpack(&frame.words, 0)?;
@@ -154,8 +154,8 @@ impl SegmentedWrite {
     /// The toggle bit in its answer.
     ///
     /// # Errors
-    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer; the inner
-    /// error is what the unit reports.
+    /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer;
+    /// the inner error is what the unit reports.
     pub fn parse_answer(frame: &SerialFrame) -> Result<Result<bool, CommError>, SerialFrameError> {
         SerialAnswer::read(frame, |answer| {
             let control = answer.data.first().ok_or(word_count(3, 2))?;

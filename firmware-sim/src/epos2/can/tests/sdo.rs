@@ -207,7 +207,8 @@ fn it_answers_its_own_requests_only_and_not_when_stopped() {
     assert_eq!(bus.take().len(), 1);
 }
 
-/// Every entry through the client of the protocol crate, so that both sides of a segmented transfer meet.
+/// Every entry through the client of the protocol crate, so that both sides of a segmented transfer
+/// meet.
 #[test]
 fn every_entry_reads_over_can_as_it_is() {
     let mut bus = Bus::new();

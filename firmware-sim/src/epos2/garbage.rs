@@ -1,6 +1,6 @@
-//! The garbage that a real unit leaves in words it does not use: seeded, so that a run repeats.
+//! The garbage in unused words of a real unit, seeded for repeatable runs.
 
-/// A small generator of arbitrary numbers (splitmix64).
+/// A generator of arbitrary numbers (SplitMix64).
 #[derive(Clone, Debug)]
 pub(super) struct GarbageGenerator(u64);
 
