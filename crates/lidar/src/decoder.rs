@@ -1,9 +1,7 @@
-//! Payloads in, firing blocks or firings out: order, loss, model, and the one packet that is held
-//! back.
+//! Decoding of payloads into firing blocks or firings: order, loss and model.
 //!
-//! A packet is decoded when its successor is there, because the rotor's rate in its last block, the
-//! length of a gap inside it and sometimes its model are known only then: 1.3 ms of delay. Left
-//! out: anything that looks further ahead.
+//! A packet is decoded when its successor arrives, 1.3 ms later. Only then are the rotor's rate in
+//! its last block, the length of a gap inside it and sometimes its model facts.
 
 use core::ptr;
 
@@ -21,27 +19,27 @@ use crate::plan::{AzimuthSteps, BlockTiming, Successor, SuccessorLink, first_azi
 use crate::stats::Stats;
 use crate::timekeeper::Timekeeper;
 
-/// A packet this much before its predecessor is out of order; further back, the device's clock was
+/// Up to this time before its predecessor a packet is out of order; beyond, the device's clock was
 /// set.
 const REORDER: Span = Span::from_millis(10);
-/// A gap this long is checked against the host's clock before packets are called lost.
+/// Gaps from this length on are compared with the host's clock before packets count as lost.
 const LONG_GAP: Span = Span::from_secs(1);
-/// How every block begins.
+/// Flag at the start of every block.
 const BLOCK_FLAG: &[u8] = &[0xFF, 0xEE];
 
 /// Decodes the packets of one sensor.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     timekeeper: Timekeeper,
-    unpacker: PacketDecoder,
-    held: Option<PendingPacket>,
-    /// The held packet's payload.
+    packet_decoder: PacketDecoder,
+    pending: Option<PendingPacket>,
+    /// The pending packet's payload.
     buffer: [u8; DATA_LEN],
-    /// First firing of the last packet that was emitted since the clock last stepped.
+    /// First firing of the packet emitted last, since the last clock step.
     emitted: Option<Stamp<Lidar>>,
 }
 
-/// What is known of a packet apart from its bytes.
+/// Facts about a packet other than its bytes.
 #[derive(Clone, Copy, Debug)]
 struct PendingPacket {
     start: Stamp<Lidar>,
@@ -50,51 +48,50 @@ struct PendingPacket {
     model: Option<&'static Model>,
 }
 
-/// Turns a packet and its successor into firings.
+/// Decodes a packet with its successor.
 #[derive(Clone, Debug)]
 struct PacketDecoder {
     options: Options,
-    /// Some kilobytes, out of its place while it is used.
-    sensor: Option<Box<ModelTables>>,
-    blind: Option<BlindSector>,
+    /// Taken out while in use.
+    tables: Option<Box<ModelTables>>,
+    blind_sector: Option<BlindSector>,
     stats: Stats,
-    turned_cdeg: f64,
-    turning_ns: f64,
+    rotation_cdeg: f64,
+    rotation_ns: f64,
 }
 
-/// A model's tables.
+/// Tables and caches for a model.
 #[derive(Clone, Debug)]
 struct ModelTables {
     geometry: Geometry,
-    compass: &'static SineTable,
-    rotor: PaceCache,
-    sorted: UnpackedPacket,
+    sine_table: &'static SineTable,
+    pace_cache: PaceCache,
+    unpacked: UnpackedPacket,
 }
 
 impl Decoder {
-    /// A decoder for one sensor.
+    /// Creates a decoder for one sensor.
     #[must_use]
     pub fn new(options: Options) -> Self {
         Self {
             timekeeper: Timekeeper::new(options.clone()),
-            unpacker: PacketDecoder {
+            packet_decoder: PacketDecoder {
                 options,
-                sensor: None,
-                blind: None,
+                tables: None,
+                blind_sector: None,
                 stats: Stats::default(),
-                turned_cdeg: 0.0,
-                turning_ns: 0.0,
+                rotation_cdeg: 0.0,
+                rotation_ns: 0.0,
             },
-            held: None,
+            pending: None,
             buffer: [0; DATA_LEN],
             emitted: None,
         }
     }
 
-    /// Takes a UDP payload that arrived at `host` and emits what it completes: the firings of the
-    /// packet before it.
+    /// Decodes a UDP payload that arrived at `host` and emits the firings of the packet before it.
     ///
-    /// Nothing is an error here: payloads that are no data packets are counted in [`Stats`].
+    /// Other payloads are counted in [`Stats`]; none is an error.
     pub fn packet(
         &mut self,
         host: Stamp<Host>,
@@ -104,20 +101,19 @@ impl Decoder {
         self.firing_blocks(host, payload, &mut |block| one_by_one(block, emit));
     }
 
-    /// Emits the packet held back. The decoder can go on with packets of the same sensor
-    /// afterwards.
+    /// Emits the pending packet. Further packets of the same sensor may follow.
     pub fn finish(&mut self, emit: &mut impl FnMut(&Firing<'_>)) {
         self.finish_firing_blocks(&mut |block| one_by_one(block, emit));
     }
 
-    /// As [`Decoder::packet`], the firings of a block at a time.
+    /// As [`Decoder::packet`], but emits the firings of a block together.
     pub fn firing_blocks(
         &mut self,
         host: Stamp<Host>,
         payload: &[u8],
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
-        let stats = &mut self.unpacker.stats;
+        let stats = &mut self.packet_decoder.stats;
         match DataPacket::new(payload) {
             Ok(packet) => self.data(host, payload, &packet, emit),
             Err(error) if payload.len() == DATA_LEN || payload.starts_with(BLOCK_FLAG) => {
@@ -134,20 +130,20 @@ impl Decoder {
         }
     }
 
-    /// As [`Decoder::finish`], the firings of a block at a time.
+    /// As [`Decoder::finish`], but emits the firings of a block together.
     pub fn finish_firing_blocks(&mut self, emit: &mut impl FnMut(&FiringBlock<'_>)) {
-        if let Some(held) = self.held.take() {
-            self.emitted = Some(held.start);
+        if let Some(pending) = self.pending.take() {
+            self.emitted = Some(pending.start);
             if let Ok(packet) = DataPacket::new(&self.buffer) {
-                self.unpacker.unpack(&packet, held, None, emit);
+                self.packet_decoder.decode(&packet, pending, None, emit);
             }
         }
     }
 
-    /// What was seen so far.
+    /// Statistics so far.
     #[must_use]
     pub const fn stats(&self) -> &Stats {
-        &self.unpacker.stats
+        &self.packet_decoder.stats
     }
 
     fn data(
@@ -157,79 +153,79 @@ impl Decoder {
         packet: &DataPacket<'_>,
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
-        let known = self.timekeeper.observe(host, packet);
-        let stats = &mut self.unpacker.stats;
+        let facts = self.timekeeper.observe(host, packet);
+        let stats = &mut self.packet_decoder.stats;
         stats.data += 1;
         stats.product = Some(packet.product());
         stats.return_mode = Some(packet.return_mode());
-        if let Some(conflict) = known.conflict {
+        if let Some(conflict) = facts.conflict {
             stats.report(conflict);
-            if let Some(held) = &mut self.held {
-                held.model = known.model;
+            if let Some(pending) = &mut self.pending {
+                pending.model = facts.model;
             }
         }
         let new = PendingPacket {
-            start: known.start,
+            start: facts.start,
             host,
-            dual: known.dual,
-            model: known.model,
+            dual: facts.dual,
+            model: facts.model,
         };
-        let Some(held) = self.held else {
-            self.hold(new, payload);
+        let Some(pending) = self.pending else {
+            self.set_pending(new, payload);
             return;
         };
-        let ahead = new.start.saturating_since(held.start);
+        let ahead = new.start.saturating_since(pending.start);
         if ahead == Span::ZERO && payload == self.buffer {
             stats.duplicates += 1;
         } else if ahead < Span::ZERO && -REORDER <= ahead {
-            self.out_of_order(packet, new, held, emit);
+            self.out_of_order(packet, new, pending, emit);
         } else {
-            self.in_order(packet, new, held, emit);
-            self.hold(new, payload);
+            self.in_order(packet, new, pending, emit);
+            self.set_pending(new, payload);
         }
     }
 
-    fn hold(&mut self, packet: PendingPacket, payload: &[u8]) {
+    fn set_pending(&mut self, packet: PendingPacket, payload: &[u8]) {
         if let Ok(payload) = payload.try_into() {
             self.buffer = payload;
-            self.held = Some(packet);
+            self.pending = Some(packet);
         }
     }
 
-    /// Emits the held packet, `next` being the one after it.
+    /// Emits the pending packet, which `packet` follows.
     fn in_order(
         &mut self,
         packet: &DataPacket<'_>,
         new: PendingPacket,
-        held: PendingPacket,
+        pending: PendingPacket,
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
         let Ok(before) = DataPacket::new(&self.buffer) else {
             return;
         };
-        let ahead = new.start.saturating_since(held.start);
-        let waited = new.host.saturating_since(held.host);
+        let ahead = new.start.saturating_since(pending.start);
+        let waited = new.host.saturating_since(pending.host);
         let stepped = ahead < Span::ZERO || (ahead >= LONG_GAP && waited < ahead.half());
         let next = (!stepped).then_some(Successor {
             azimuth_cdeg: first_azimuth(packet),
             after: ahead,
         });
-        self.emitted = next.map(|_| held.start);
+        self.emitted = next.map(|_| pending.start);
         if stepped {
-            self.unpacker.stats.clock_steps += 1;
+            self.packet_decoder.stats.clock_steps += 1;
         }
-        self.unpacker.unpack(&before, held, next, emit);
+        self.packet_decoder.decode(&before, pending, next, emit);
     }
 
-    /// Emits a packet that arrived after the one that follows it, which stays held.
+    /// Emits a packet that arrived after its successor, which stays pending.
     fn out_of_order(
         &mut self,
         packet: &DataPacket<'_>,
         new: PendingPacket,
-        held: PendingPacket,
+        pending: PendingPacket,
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
-        let stats = &mut self.unpacker.stats;
+        let stats = &mut self.packet_decoder.stats;
         if self.emitted.is_some_and(|emitted| new.start <= emitted) {
             stats.late += 1;
             return;
@@ -241,12 +237,12 @@ impl Decoder {
         let (lost, duration) = (stats.lost_packets, stats.duration);
         let next = Successor {
             azimuth_cdeg: first_azimuth(&after),
-            after: held.start.saturating_since(new.start),
+            after: pending.start.saturating_since(new.start),
         };
-        self.unpacker.unpack(packet, new, Some(next), emit);
+        self.packet_decoder.decode(packet, new, Some(next), emit);
         if self.emitted.replace(new.start).is_some() {
-            // The packet before it counted the gap that it fills, and all of the time.
-            let stats = &mut self.unpacker.stats;
+            // The packet before it counted this packet as lost, and its time.
+            let stats = &mut self.packet_decoder.stats;
             stats.lost_packets = lost.saturating_sub(1);
             stats.duration = duration;
         }
@@ -254,35 +250,35 @@ impl Decoder {
 }
 
 impl PacketDecoder {
-    /// Emits the firings of a packet. `next` is its successor by device time, if that is known.
-    fn unpack(
+    /// Emits the firings of a packet. `next` is its successor by device time, if facts.
+    fn decode(
         &mut self,
         packet: &DataPacket<'_>,
-        held: PendingPacket,
+        pending: PendingPacket,
         next: Option<Successor>,
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
-        let Some(model) = held.model else {
+        let Some(model) = pending.model else {
             self.stats.unidentified += 1;
             return;
         };
-        let steps = AzimuthSteps::new(packet, model, held.dual);
+        let steps = AzimuthSteps::new(packet, model, pending.dual);
         let link = steps.link(next);
-        self.learn(&steps, link.measured);
-        self.tally(model, &steps, link, next);
+        self.update_blind_sector(&steps, link.measured);
+        self.count(model, &steps, link, next);
         let (slots, blocks) = steps.slots(link);
-        let mut sensor = match self.sensor.take() {
-            Some(sensor) if ptr::eq(sensor.geometry.model, model) => sensor,
-            _ => self.sensor_of(model),
+        let mut tables = match self.tables.take() {
+            Some(tables) if ptr::eq(tables.geometry.model, model) => tables,
+            _ => self.tables_for(model),
         };
-        sensor.sorted.set(packet);
+        tables.unpacked.set(packet);
         for (i, slot) in slots.iter().take(blocks).enumerate() {
-            self.unpack_block(packet, held, &mut sensor, i, slot, emit);
+            self.decode_block(packet, pending, &mut tables, i, slot, emit);
         }
-        self.sensor = Some(sensor);
+        self.tables = Some(tables);
     }
 
-    fn sensor_of(&mut self, model: &'static Model) -> Box<ModelTables> {
+    fn tables_for(&mut self, model: &'static Model) -> Box<ModelTables> {
         let corrections = self.options.corrections.as_deref();
         let fitting = corrections.filter(|corrections| fits(corrections, model));
         self.stats.corrections_refused = match (corrections, fitting) {
@@ -290,65 +286,70 @@ impl PacketDecoder {
             _ => None,
         };
         let geometry = Geometry::new(model, self.options.vertical_offsets, fitting);
-        let rotor = PaceCache::new(&geometry.fan);
+        let pace_cache = PaceCache::new(&geometry.channels);
         Box::new(ModelTables {
             geometry,
-            compass: SineTable::get(),
-            rotor,
-            sorted: UnpackedPacket::new(),
+            sine_table: SineTable::get(),
+            pace_cache,
+            unpacked: UnpackedPacket::new(),
         })
     }
 
-    /// Emits one block, or one pair.
+    /// Emits one block, or one pair of a dual-return packet.
     #[inline(always)]
-    fn unpack_block(
+    fn decode_block(
         &mut self,
         packet: &DataPacket<'_>,
-        held: PendingPacket,
-        sensor: &mut ModelTables,
+        pending: PendingPacket,
+        tables: &mut ModelTables,
         i: usize,
         slot: &BlockTiming,
         emit: &mut impl FnMut(&FiringBlock<'_>),
     ) {
-        let first = if held.dual { 2 * i } else { i };
+        let first = if pending.dual { 2 * i } else { i };
         let layer = |i: usize| {
-            let (block, sorted) = (packet.block(i)?, sensor.sorted.blocks.get(i)?);
-            Some(ReturnLayer::new(block.raw_channels(), sorted))
+            let (block, unpacked) = (packet.block(i)?, tables.unpacked.blocks.get(i)?);
+            Some(ReturnLayer::new(block.raw_channels(), unpacked))
         };
         let Some(even) = layer(first) else {
             return;
         };
         let returns = match layer(first + 1) {
-            // No block follows the last one; a pair always has both.
-            Some(odd) if held.dual => BlockReturns::two(even, odd, self.options.duplicates),
+            // The last block has no successor; a pair is always complete.
+            Some(odd) if pending.dual => BlockReturns::two(even, odd, self.options.duplicates),
             _ => BlockReturns::one(even, single_echo(packet.return_mode())),
         };
         let (seen, unique) = returns.count();
         self.stats.returns += seen;
         self.stats.unique_returns += unique;
-        self.stats.firings += sensor.geometry.model.firings_per_block as u64;
-        let ahead = sensor.rotor.ahead(&sensor.geometry.fan, slot.pace_cdeg);
+        self.stats.firings += tables.geometry.model.firings_per_block as u64;
+        let offsets = tables
+            .pace_cache
+            .offsets(&tables.geometry.channels, slot.pace_cdeg);
         emit(&FiringBlock {
-            start: held.start + slot.after,
+            start: pending.start + slot.after,
             azimuth_cdeg: slot.azimuth_cdeg,
             pace_cdeg: slot.pace_cdeg,
-            geometry: &sensor.geometry,
-            azimuth: sensor.compass.azimuth(slot.azimuth_cdeg),
-            ahead,
+            geometry: &tables.geometry,
+            azimuth: tables.sine_table.azimuth(slot.azimuth_cdeg),
+            offsets,
             returns,
         });
     }
 
-    /// Keeps where the sensor looks away, until it fires there again.
-    fn learn(&mut self, steps: &AzimuthSteps, measured: bool) {
-        if measured && let Some(blind) = steps.jump() {
-            self.blind = Some(blind);
-        } else if self.blind.is_some_and(|b| b.hides(steps.last_azimuth())) {
-            self.blind = None;
+    /// Updates the blind_sector sector, which is reset when the sensor fires there.
+    fn update_blind_sector(&mut self, steps: &AzimuthSteps, measured: bool) {
+        if measured && let Some(blind_sector) = steps.jump() {
+            self.blind_sector = Some(blind_sector);
+        } else if self
+            .blind_sector
+            .is_some_and(|sector| sector.contains(steps.last_azimuth()))
+        {
+            self.blind_sector = None;
         }
     }
 
-    fn tally(
+    fn count(
         &mut self,
         model: &'static Model,
         steps: &AzimuthSteps,
@@ -363,15 +364,15 @@ impl PacketDecoder {
             stats.lost_packets = stats.lost_packets.saturating_add(missing(
                 steps,
                 next,
-                steps.jump().or(self.blind),
+                steps.jump().or(self.blind_sector),
             ));
         }
-        let (turned_cdeg, periods) = steps.turned(link);
-        self.turned_cdeg += turned_cdeg;
-        self.turning_ns += f64::from(model.block_period_ns()) * periods;
-        if self.turning_ns > 0.0 {
-            let turns_per_ns = self.turned_cdeg / 36_000.0 / self.turning_ns;
-            stats.rpm = Some(turns_per_ns * 60e9);
+        let (rotation_cdeg, periods) = steps.rotation_and_periods(link);
+        self.rotation_cdeg += rotation_cdeg;
+        self.rotation_ns += f64::from(model.block_period_ns()) * periods;
+        if self.rotation_ns > 0.0 {
+            let revolutions_per_ns = self.rotation_cdeg / 36_000.0 / self.rotation_ns;
+            stats.rpm = Some(revolutions_per_ns * 60e9);
         }
     }
 }
@@ -382,7 +383,7 @@ fn one_by_one(block: &FiringBlock<'_>, emit: &mut impl FnMut(&Firing<'_>)) {
     }
 }
 
-/// What the returns of a packet without pairs are.
+/// Kind of the returns in a packet without pairs.
 const fn single_echo(mode: ReturnMode) -> Echo {
     match mode {
         ReturnMode::Strongest => Echo::Strongest,

@@ -1,42 +1,40 @@
-//! One firing of all lasers, and its returns as points of the sensor's frame.
+//! One firing of all lasers, and its returns as points in the sensor's frame.
 //!
-//! Points are made as they are asked for: who only needs the times pays for no geometry. Left out:
-//! where the sensor stood.
+//! Points are computed on request, so times alone cost no geometry.
 
 use protocol::vlp16::{ChannelReturn, Model};
 use units::{Lidar, Span, Stamp};
 
 use crate::geometry::LaserRay;
 
-/// What to do where both returns of a dual-return pair have the same distance: one pulse reported
-/// twice.
+/// Treatment of dual-return pairs with equal distances: one pulse reported twice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Duplicates {
-    /// Give it once.
+    /// Yields it once.
     #[default]
     Unique,
-    /// Give both.
+    /// Yields both.
     All,
 }
 
-/// Which return of its pulse a point is.
+/// Kind of a return within its pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Echo {
-    /// The strongest.
+    /// The strongest return.
     Strongest,
-    /// The last; in dual mode not the strongest, or one whose partner is missing.
+    /// The last return; in dual mode, one that is not the strongest or has no partner.
     Last,
-    /// Dual mode, both returns at one distance: the last is the strongest.
+    /// Dual mode: the last return is the strongest, at one distance.
     LastAndStrongest,
-    /// Dual mode's second return: the strongest, or the second strongest where the last is the
-    /// strongest. The packet does not say which.
+    /// Dual mode's second return: the strongest, or the second strongest if the last is the
+    /// strongest. Packets do not tell which.
     StrongestOrSecond,
-    /// The return mode is not known.
+    /// The return mode is unknown.
     Unknown,
 }
 
 impl Echo {
-    /// Its number in a cloud's column `echo`.
+    /// Code in a cloud's column `echo`.
     #[must_use]
     pub const fn code(self) -> u8 {
         match self {
@@ -49,54 +47,53 @@ impl Echo {
     }
 }
 
-/// One laser's measurement.
+/// Measurement of one laser.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LaserReturn {
-    /// Place in the firing order, from 0.
+    /// Index in the firing order.
     pub laser: u8,
     /// Distance in the model's unit; never 0.
     pub distance_raw: u16,
     /// Calibrated reflectivity.
     pub reflectivity: u8,
-    /// Which return of its pulse it is.
+    /// Kind of the return.
     pub echo: Echo,
 }
 
-/// A return as a point of the sensor's frame.
+/// A return as a point in the sensor's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorPoint {
-    /// When its laser fired.
+    /// Firing time of its laser.
     pub time: Stamp<Lidar>,
-    /// x right, y forward, z up, from the sensor's origin, in metres.
+    /// Position in metres: x right, y forward, z up.
     pub position_m: [f64; 3],
-    /// Measured distance in metres, uncorrected.
+    /// Measured distance in metres without corrections.
     pub range_m: f64,
-    /// Variance of its azimuth, square radians: what the wire's steps of it leave after
-    /// interpolation ([`crate::azimuth_variance_rad2`]).
+    /// Variance of the azimuth in square radians, from its resolution in packets
+    /// ([`crate::azimuth_variance_rad2`]).
     pub azimuth_variance_rad2: f64,
-    /// Place in the firing order, from 0.
+    /// Index in the firing order.
     pub laser: u8,
-    /// Place by elevation, 0 the lowest.
+    /// Ring by elevation, 0 the lowest.
     pub ring: u8,
     /// Calibrated reflectivity: 0 to 100 diffuse, 101 to 255 retro-reflective.
     pub reflectivity: u8,
-    /// Which return of its pulse it is.
+    /// Kind of the return.
     pub echo: Echo,
 }
 
-/// Variance of an azimuth, square radians, that is carried on over `part` of a block's period.
+/// Variance in square radians of an azimuth interpolated at `part` of a block's period.
 ///
-/// The wire has the azimuth of each block's begin in steps of 0.01 degrees, whose errors are even
-/// over a step: s = 0.01 deg / sqrt 12. Between two of them it is (1 - p) a + p b, so that its
-/// variance is s^2 ((1 - p)^2 + p^2). Left out: how unevenly the rotor turns, and the zero of its
-/// encoder, which no packet tells.
+/// Packets have the azimuth of each block in steps of 0.01 deg, with uniform errors: s = 0.01 deg /
+/// sqrt 12. Interpolation gives (1 - p) a + p b, with the variance s^2 ((1 - p)^2 + p^2). Uneven
+/// rotation and the offset of the encoder are not included.
 #[must_use]
 pub fn azimuth_variance_rad2(part: f64) -> f64 {
     let step_rad = 0.01_f64.to_radians();
     step_rad * step_rad / 12.0 * ((1.0 - part) * (1.0 - part) + part * part)
 }
 
-/// The channels of one firing as they are on the wire, one entry a laser.
+/// The channels of one firing as in the packet, one per laser.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum FiringChannels<'a> {
     One {
@@ -113,22 +110,22 @@ pub(crate) enum FiringChannels<'a> {
 /// One firing of all lasers.
 #[derive(Clone, Copy, Debug)]
 pub struct Firing<'a> {
-    /// When laser 0 fired.
+    /// Firing time of laser 0.
     pub start: Stamp<Lidar>,
-    /// Azimuth at `start` in degrees, 0 up to 360, clockwise from y seen from above.
+    /// Azimuth at `start` in degrees, 0 to 360, clockwise from y seen from above.
     pub azimuth_deg: f64,
-    /// How fast the azimuth grows, in degrees per second.
+    /// Rate of the azimuth in degrees per second.
     pub azimuth_rate_deg_s: f64,
-    /// The model it was decoded as.
+    /// The decoded model.
     pub model: &'static Model,
     pub(crate) rays: &'a [LaserRay],
     pub(crate) channels: FiringChannels<'a>,
-    /// Its start after its block's, over the block's period.
+    /// Start within its block, as a fraction of the block's period.
     pub(crate) part: f64,
 }
 
 impl<'a> Firing<'a> {
-    /// The returns in firing order; a laser without one is absent. Of a dual pair the last return
+    /// The returns in firing order, without lasers that have none. In a dual pair the last return
     /// comes first.
     #[must_use]
     pub const fn returns(&self) -> LaserReturns<'a> {
@@ -139,20 +136,23 @@ impl<'a> Firing<'a> {
         }
     }
 
-    /// The returns as points of the sensor's frame, in firing order.
+    /// The returns as points in the sensor's frame, in firing order.
     ///
     /// x = R cos w sin a, y = R cos w cos a, z = R sin w + vertical offset (manual 9.2; the paper's
-    /// Eq. 1-3), with the azimuth a carried on at the rotor's rate to when each laser fired; with
-    /// corrections by the formula of [`crate::LaserCorrection`].
+    /// Eq. 1-3), with the azimuth a extrapolated at the rotor's rate to the firing time of each
+    /// laser. Corrections follow the formula of [`crate::LaserCorrection`].
     pub fn points(&self) -> impl Iterator<Item = SensorPoint> + use<'a> {
         let firing = *self;
-        self.returns().filter_map(move |seen| {
-            Some(firing.place(seen, firing.rays.get(usize::from(seen.laser))?))
+        self.returns().filter_map(move |measurement| {
+            Some(firing.place(
+                measurement,
+                firing.rays.get(usize::from(measurement.laser))?,
+            ))
         })
     }
 
-    /// Azimuth at which a laser fired, in degrees, not brought back below 360; `None` for a laser
-    /// the model lacks.
+    /// Azimuth at which a laser fired in degrees, possibly above 360; `None` for a laser that the
+    /// model lacks.
     #[must_use]
     pub fn laser_azimuth_deg(&self, laser: u8) -> Option<f64> {
         let ray = self.rays.get(usize::from(laser))?;
@@ -163,30 +163,30 @@ impl<'a> Firing<'a> {
         self.azimuth_deg + self.azimuth_rate_deg_s * ray.delay_s + ray.azimuth_offset_deg
     }
 
-    /// A laser's delay over the block's period.
+    /// A laser's delay as a fraction of the block's period.
     fn part_of(&self, ray: &LaserRay) -> f64 {
         ray.delay_ns as f64 / f64::from(self.model.block_period_ns())
     }
 
-    fn place(&self, seen: LaserReturn, ray: &LaserRay) -> SensorPoint {
-        let range_m = f64::from(seen.distance_raw) * self.model.distance_unit_m;
+    fn place(&self, measurement: LaserReturn, ray: &LaserRay) -> SensorPoint {
+        let range_m = f64::from(measurement.distance_raw) * self.model.distance_unit_m;
         let (sin_azimuth, cos_azimuth) = self.azimuth_of(ray).to_radians().sin_cos();
         let corrected_m = range_m + ray.range_offset_m;
-        let across_m = corrected_m * ray.cos_elevation + ray.radial_offset_m;
-        let aside_m = ray.tangential_offset_m;
+        let horizontal_m = corrected_m * ray.cos_elevation + ray.radial_offset_m;
+        let tangential_m = ray.tangential_offset_m;
         SensorPoint {
             time: self.start + Span::from_nanos(ray.delay_ns),
             position_m: [
-                across_m * sin_azimuth - aside_m * cos_azimuth,
-                across_m * cos_azimuth + aside_m * sin_azimuth,
+                horizontal_m * sin_azimuth - tangential_m * cos_azimuth,
+                horizontal_m * cos_azimuth + tangential_m * sin_azimuth,
                 corrected_m * ray.sin_elevation + ray.vertical_offset_m,
             ],
             range_m,
             azimuth_variance_rad2: azimuth_variance_rad2(self.part + self.part_of(ray)),
-            laser: seen.laser,
+            laser: measurement.laser,
             ring: ray.ring,
-            reflectivity: seen.reflectivity,
-            echo: seen.echo,
+            reflectivity: measurement.reflectivity,
+            echo: measurement.echo,
         }
     }
 }
@@ -209,7 +209,7 @@ impl Iterator for LaserReturns<'_> {
         loop {
             let laser = self.laser;
             let i = usize::from(laser);
-            let seen = |channel: ChannelReturn, echo| {
+            let to_return = |channel: ChannelReturn, echo| {
                 (channel.distance_raw != 0).then_some(LaserReturn {
                     laser,
                     distance_raw: channel.distance_raw,
@@ -219,7 +219,7 @@ impl Iterator for LaserReturns<'_> {
             };
             let found = match self.channels {
                 FiringChannels::One { raw, echo } => {
-                    seen(ChannelReturn::from_bytes(*raw.get(i)?), echo)
+                    to_return(ChannelReturn::from_bytes(*raw.get(i)?), echo)
                 }
                 FiringChannels::Two {
                     last,
@@ -230,12 +230,12 @@ impl Iterator for LaserReturns<'_> {
                     let odd = ChannelReturn::from_bytes(*strongest.get(i)?);
                     if even.distance_raw == odd.distance_raw {
                         if duplicates == Duplicates::All {
-                            self.partner = seen(odd, Echo::LastAndStrongest);
+                            self.partner = to_return(odd, Echo::LastAndStrongest);
                         }
-                        seen(even, Echo::LastAndStrongest)
+                        to_return(even, Echo::LastAndStrongest)
                     } else {
-                        let first = seen(even, Echo::Last);
-                        let second = seen(odd, Echo::StrongestOrSecond);
+                        let first = to_return(even, Echo::Last);
+                        let second = to_return(odd, Echo::StrongestOrSecond);
                         if first.is_some() {
                             self.partner = second;
                         }
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn dual_returns_are_labelled_and_equal_pairs_given_once() {
+    fn dual_returns_are_labelled_and_equal_pairs_unique() {
         use Echo::{Last, LastAndStrongest, StrongestOrSecond};
         let unique = [
             (0, 500, LastAndStrongest),
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_is_where_equations_1_to_3_put_it() {
+    fn points_follow_equations_1_to_3() {
         let raw = raw(&[(5_000, 7); 16]);
         let geometry = Geometry::new(&VLP_16, true, None);
         let firing = firing(&geometry, &raw);

@@ -1,9 +1,8 @@
-//! Where each laser points and starts, as the sines, cosines and offsets that its points need,
-//! computed once a sensor.
+//! Direction and origin of each laser as the sines, cosines and offsets of its points, computed
+//! once per sensor.
 //!
-//! Twice: a [`LaserRay`] a laser for the exact path, which follows [`crate::LaserCorrection`]'s formula
-//! word by word, and [`ChannelTable`], a column a term over the 32 channels of a block, for the fast one.
-//! Left out: everything that changes while the sensor turns.
+//! [`LaserRay`] serves the plain path, which follows the formula of [`crate::LaserCorrection`].
+//! [`ChannelTable`] serves the fast path: one column per term over the 32 channels of a block.
 
 use core::array;
 
@@ -13,7 +12,7 @@ use units::Span;
 use crate::corrections::{Corrections, LaserCorrection};
 use crate::firing::azimuth_variance_rad2;
 
-/// One laser, ready for use.
+/// Precomputed terms of one laser.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LaserRay {
     pub sin_elevation: f64,
@@ -28,14 +27,14 @@ pub(crate) struct LaserRay {
     pub ring: u8,
 }
 
-/// A value for each channel of a block. Blocks have 32 channels in every model: two firings of 16
+/// A value per channel of a block. Blocks have 32 channels in every model: two firings of 16
 /// lasers, or one of 32.
 pub(crate) type PerChannel<T> = [T; CHANNELS];
 
-/// The lasers by channel: distance counts c become out = `out_per_count` (c + `out_counts`) along
-/// the horizon and up = `up_per_count` c + `up_m`.
+/// Terms of the lasers by channel. A distance of c counts is `out_per_count` (c + `out_counts`)
+/// along the horizon and `up_per_count` c + `up_m` upwards.
 ///
-/// Columns begin where lines of the cache do, so that no register's worth lies across two.
+/// Columns are aligned to cache lines, so that no register spans two.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct ChannelTable {
@@ -44,29 +43,29 @@ pub(crate) struct ChannelTable {
     pub up_per_count: PerChannel<f64>,
     pub up_m: PerChannel<f64>,
     pub azimuth_offset_deg: PerChannel<f64>,
-    /// Time after the block's start, over the block's period.
+    /// Time after the block's start, as a fraction of the block's period.
     pub part: PerChannel<f64>,
     pub azimuth_variance_rad2: PerChannel<f64>,
     pub delay_ns: PerChannel<i64>,
     pub delay_f64_ns: PerChannel<f64>,
-    /// Sideways, over `out_per_count`, where any laser starts beside the line through the origin.
-    pub aside_counts: Option<PerChannel<f64>>,
-    /// The longest delay.
+    /// Tangential offset over `out_per_count`, if any laser has one.
+    pub tangential_counts: Option<PerChannel<f64>>,
+    /// Longest delay.
     pub length: Span,
     pub laser: PerChannel<u8>,
     pub ring: PerChannel<u8>,
 }
 
-/// A model's lasers in firing order.
+/// The lasers of a model in firing order.
 #[derive(Clone, Debug)]
 pub(crate) struct Geometry {
     pub model: &'static Model,
     pub rays: Vec<LaserRay>,
-    pub fan: ChannelTable,
+    pub channels: ChannelTable,
 }
 
 impl Geometry {
-    /// `corrections`, if there are any, must have a laser for each of the model's: see [`fits`].
+    /// `corrections` must have as many lasers as the model: see [`fits`].
     pub(crate) fn new(
         model: &'static Model,
         vertical_offsets: bool,
@@ -99,12 +98,16 @@ impl Geometry {
                 }
             })
             .collect();
-        let fan = ChannelTable::new(model, &rays);
-        Self { model, rays, fan }
+        let channels = ChannelTable::new(model, &rays);
+        Self {
+            model,
+            rays,
+            channels,
+        }
     }
 }
 
-/// Whether corrections are for a sensor of this model.
+/// Whether corrections have as many lasers as the model.
 pub(crate) fn fits(corrections: &Corrections, model: &Model) -> bool {
     corrections.lasers.len() == model.lasers.len()
 }
@@ -119,7 +122,7 @@ impl ChannelTable {
         let unit_m = model.distance_unit_m;
         // Never 0: no angle in degrees has a cosine of exactly 0.
         let out_per_count = |ray: &LaserRay| unit_m * ray.cos_elevation;
-        let aside = of(&|ray| ray.tangential_offset_m / out_per_count(ray));
+        let tangential = of(&|ray| ray.tangential_offset_m / out_per_count(ray));
         let delay_ns: PerChannel<i64> = array::from_fn(|channel| {
             let firing = (channel / lasers) as i64 * i64::from(model.firing_period_ns);
             firing + rays.get(laser(channel)).map_or(0, |ray| ray.delay_ns)
@@ -132,7 +135,10 @@ impl ChannelTable {
             }),
             up_per_count: of(&|ray| unit_m * ray.sin_elevation),
             up_m: of(&|ray| ray.range_offset_m * ray.sin_elevation + ray.vertical_offset_m),
-            aside_counts: aside.iter().any(|&aside| aside != 0.0).then_some(aside),
+            tangential_counts: tangential
+                .iter()
+                .any(|&tangential| tangential != 0.0)
+                .then_some(tangential),
             azimuth_offset_deg: of(&|ray| ray.azimuth_offset_deg),
             part: delay_ns.map(|ns| ns as f64 / period_ns),
             azimuth_variance_rad2: delay_ns.map(|ns| azimuth_variance_rad2(ns as f64 / period_ns)),

@@ -1,21 +1,19 @@
-//! From microseconds past some hour to a time line that goes on.
+//! Unwrapping of time stamps, which are microseconds past an unknown hour.
 //!
-//! A packet says how far into the hour it is, never which hour. The first packet takes the hour
-//! nearest to the host's clock; a later one continues the last one's if it lies close to it, and
-//! otherwise takes the hour that the host's clock predicts. "It decreased, so an hour has passed"
-//! is deliberately not a rule: reordered packets decrease too.
+//! The first packet takes the hour nearest to the host's clock. A later one continues the hour of
+//! the last packet if it is close, and otherwise takes the hour that the host's clock predicts. A
+//! decrease alone does not imply a new hour, since reordered packets decrease too.
 
 use units::{Host, Lidar, Span, Stamp};
 
 const HOUR_NS: i64 = 3_600_000_000_000;
-/// This close to the last packet no other hour is considered, whatever the host's clock did
-/// meanwhile: some fifteen packets.
+/// Within this time of the last packet, 15 packets, the hour continues whatever the host's clock
+/// did.
 const CONTINUES: Span = Span::from_millis(20);
-/// Clocks that disagree by more since the last packet did not drift: one of them was set, and the
-/// host's tells nothing.
+/// If the clocks disagree by more since the last packet, one of them was set, and the host's clock
+/// is not used.
 const HOST_TRUST: Span = Span::from_secs(60);
-/// Stamps are held this far from the ends of `i64`, so that sums with a packet's length cannot
-/// overflow.
+/// Limit of stamps, so that sums with a packet's length do not overflow.
 const LIMIT_NS: i64 = i64::MAX - 1_000 * HOUR_NS;
 
 /// Unwraps the timestamps of one sensor.
@@ -29,20 +27,20 @@ impl HourUnwrapper {
         Self { last: None }
     }
 
-    /// The instant `us` microseconds past an hour, in a packet that arrived at `host`.
+    /// The instant of a packet that is `us` microseconds past an hour and arrived at `host`.
     ///
-    /// `us` may exceed an hour: devices have been seen to count on for a while before they wrap.
+    /// `us` may exceed an hour: devices wrap late (3600.06 s were recorded).
     pub(crate) fn unwrap(&mut self, us: u32, host: Stamp<Host>) -> Stamp<Lidar> {
         let device = match self.last {
             None => nearest_hour(us, host.as_nanos()),
             Some((device, then)) => {
                 let continued = nearest_hour(us, device.as_nanos());
-                if apart(continued, device) <= CONTINUES {
+                if distance(continued, device) <= CONTINUES {
                     continued
                 } else {
                     let predicted = device.saturating_add(host.saturating_since(then));
                     let by_host = nearest_hour(us, predicted.as_nanos());
-                    if apart(by_host, predicted) <= HOST_TRUST {
+                    if distance(by_host, predicted) <= HOST_TRUST {
                         by_host
                     } else {
                         continued
@@ -55,7 +53,7 @@ impl HourUnwrapper {
     }
 }
 
-/// The instant `us` past the hour that lies nearest to `target_ns`.
+/// The instant `us` past an hour that is nearest to `target_ns`.
 fn nearest_hour(us: u32, target_ns: i64) -> Stamp<Lidar> {
     let past_hour = i64::from(us) * 1_000;
     let target = target_ns.clamp(-LIMIT_NS, LIMIT_NS);
@@ -64,7 +62,7 @@ fn nearest_hour(us: u32, target_ns: i64) -> Stamp<Lidar> {
 }
 
 /// Distance between two instants.
-fn apart(a: Stamp<Lidar>, b: Stamp<Lidar>) -> Span {
+fn distance(a: Stamp<Lidar>, b: Stamp<Lidar>) -> Span {
     if a < b {
         b.saturating_since(a)
     } else {
@@ -84,13 +82,13 @@ mod tests {
         Stamp::from_nanos(ns)
     }
 
-    /// What the device sends at an instant of its own clock.
+    /// Time stamp that the device sends at an instant of its clock.
     fn wire(device_us: i64) -> u32 {
         device_us.rem_euclid(HOUR_US) as u32
     }
 
     #[test]
-    fn the_first_packet_takes_the_hour_nearest_to_the_host() {
+    fn the_first_packet_takes_the_nearest_hour() {
         let ten = host(10 * HOUR_NS);
         let us = |u| HourUnwrapper::new().unwrap(u, ten).as_nanos();
         assert_eq!(us(1), 10 * HOUR_NS + 1_000);
@@ -100,8 +98,8 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_runs_past_the_hour_before_it_wraps_goes_on_evenly() {
-        // 3600.06 s have been seen before the counter returned to 0.061 s.
+    fn a_late_wrap_does_not_step() {
+        // A recorded counter reached 3600.06 s and then returned to 0.061 s.
         let mut hours = HourUnwrapper::new();
         let mut last = None;
         for k in 0..200i64 {
@@ -120,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_packet_out_of_order_across_the_hour_does_not_jump() {
+    fn reordered_packets_across_the_hour_do_not_jump() {
         let mut hours = HourUnwrapper::new();
         let t = 5 * HOUR_NS;
         let order = [3_599_998_000u32, 653, 3_599_999_325, 1_980];
@@ -131,10 +129,10 @@ mod tests {
     }
 
     #[test]
-    fn steps_of_the_host_clock_do_not_move_the_device() {
+    fn steps_of_the_host_clock_have_no_effect() {
         for step_s in [-7_200, -3_600, -1_000, 50, 1_000, 1_800, 3_600, 36_000] {
             for gap_us in [1_327, 155_000] {
-                // A step of whole hours with a gap is what an outage looks like.
+                // A step of whole hours with a gap is indistinguishable from an outage.
                 if gap_us > 20_000 && step_s % 3_600 == 0 {
                     continue;
                 }
@@ -148,8 +146,8 @@ mod tests {
     }
 
     #[test]
-    fn a_device_clock_that_is_set_stays_near() {
-        // NMEA corrects minutes and seconds of a clock that ran free.
+    fn a_device_clock_that_is_set_keeps_the_hour() {
+        // NMEA sets minutes and seconds of a free-running clock.
         let mut hours = HourUnwrapper::new();
         let first = hours.unwrap(100_000_000, host(100_000_000_000));
         let second = hours.unwrap(900_000_000, host(100_001_327_000));
@@ -162,7 +160,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(200))]
 
         #[test]
-        fn any_walk_over_any_boundary_is_recovered(
+        fn any_sequence_of_times_is_recovered(
             start_h in -1_000i64..1_000_000,
             before_us in -3_000_000i64..3_000_000,
             steps_us in prop::collection::vec(prop_oneof![
@@ -178,7 +176,7 @@ mod tests {
             let mut at = begin;
             prop_assert_eq!(hours.unwrap(wire(at), host(at * 1_000)).as_nanos(), at * 1_000);
             for (&step, delay) in steps_us.iter().zip(&delays_us) {
-                // An outage of whole hours to 20 ms is the one thing that looks like no outage.
+                // An outage of whole hours within 20 ms is indistinguishable from none.
                 let whole_hours = step >= 20_000 && (step + 25_000) % HOUR_US <= 50_000;
                 at += if whole_hours { step + 60_000 } else { step };
                 let arrival = at + (at - begin) * drift_ppm / 1_000_000 + delay;
@@ -188,7 +186,7 @@ mod tests {
         }
 
         #[test]
-        fn anything_at_any_time_does_not_overflow(
+        fn no_input_overflows(
             packets in prop::collection::vec((any::<u32>(), any::<i64>()), 1..50),
         ) {
             let mut hours = HourUnwrapper::new();

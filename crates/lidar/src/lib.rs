@@ -1,13 +1,36 @@
-//! Velodyne packets to firings to returns: models, azimuth, time, hour unwrap, loss, dual return.
+//! Decoding of Velodyne packets into firings and returns.
 //!
-//! [`Decoder`] takes the payloads of one sensor in order of arrival and emits [`Firing`]s in order
-//! of device time, or, where speed matters, [`FiringBlock`]s: the firings of a block at a time. It
-//! never guesses across a gap. [`Timekeeper`] says when packets were fired without decoding them,
-//! by the code that the decoder itself uses, so that a first pass over a log agrees with the second
-//! to the nanosecond. Beside them: [`FrameCutter`] and [`OrganisedFrame`] (turns of the head),
-//! [`UtcClock`] (UTC from position packets), and [`calibration`] (a sensor's own angles from a
-//! file). Left out on purpose: host time (a clock model's), the tilt of the platform, and which
-//! port or address bytes came from.
+//! [`Decoder`] takes the payloads of one sensor in order of arrival. It emits [`Firing`]s in order
+//! of device time, or [`FiringBlock`]s, the firings of a block together, which are faster. It does
+//! not extrapolate across gaps. [`Timekeeper`] gives packet times without decoding, by the same
+//! code.
+//!
+//! [`FrameCutter`] and [`OrganisedFrame`] split revolutions, [`UtcClock`] derives UTC from position
+//! packets, and [`calibration`] reads a sensor's own angles from a file. Times are device times.
+//!
+//! ```
+//! use lidar::{Decoder, Options};
+//! use units::Stamp;
+//!
+//! // A data packet of a VLP-16 (manual 9.3.2) with one return per channel at 1 m.
+//! let mut payload = [0; 1206];
+//! for (n, block) in (0..).zip(payload.chunks_exact_mut(100)) {
+//!     let azimuth_cdeg = 40 * n as u16;
+//!     block[..2].copy_from_slice(&[0xFF, 0xEE]);
+//!     block[2..4].copy_from_slice(&azimuth_cdeg.to_le_bytes());
+//!     for channel in block[4..].chunks_exact_mut(3) {
+//!         channel[..2].copy_from_slice(&500_u16.to_le_bytes());
+//!     }
+//! }
+//! payload[1204..].copy_from_slice(&[0x37, 0x22]); // strongest return, VLP-16
+//!
+//! let mut points = 0;
+//! let mut decoder = Decoder::new(Options::default());
+//! let arrival = Stamp::from_nanos(0);
+//! decoder.packet(arrival, &payload, &mut |firing| points += firing.points().count());
+//! decoder.finish(&mut |firing| points += firing.points().count());
+//! assert_eq!(points, 384);
+//! ```
 
 pub mod calibration;
 mod continuity;
@@ -33,6 +56,6 @@ pub use firing::{Duplicates, Echo, Firing, LaserReturn, SensorPoint, azimuth_var
 pub use frames::{FrameCutter, LidarFrameError, RevolutionFrame};
 pub use options::Options;
 pub use organised::{FiringColumn, OrganisedFrame};
-pub use stats::{Conflict, Stats};
+pub use stats::{ModelConflict, Stats};
 pub use timekeeper::{PacketTiming, Timekeeper};
 pub use utc::{NoUtc, Utc, UtcChange, UtcClock, UtcState};

@@ -1,8 +1,8 @@
-//! A frame as a grid: a row a ring, a column a firing, a cell for every shot whether anything came
-//! back or not.
+//! Frames as grids: one row per ring, one column per firing, one cell per shot with or without a
+//! return.
 //!
-//! Columns are firings as they were fired, so that their number varies by a few from turn to turn.
-//! Left out: resampling to a fixed number of columns, which would move points or drop them.
+//! Columns are the actual firings, so their number varies slightly between revolutions. Resampling
+//! to a fixed number would move or drop points.
 
 use std::ptr;
 
@@ -15,28 +15,27 @@ use crate::frames::LidarFrameError;
 /// One firing of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiringColumn {
-    /// When laser 0 fired.
+    /// Firing time of laser 0.
     pub start: Stamp<Lidar>,
-    /// Azimuth at `start` in degrees, 0 up to 360, clockwise from y seen from above.
+    /// Azimuth at `start` in degrees, 0 to 360, clockwise from y seen from above.
     pub azimuth_deg: f64,
 }
 
-/// The returns of some firings of one sensor, ring by firing.
+/// The returns of firings of one sensor, by ring and firing.
 ///
-/// ReturnLayer 0 holds the strongest or last return of a single-return mode, and of dual mode the last.
-/// ReturnLayer 1 holds dual mode's second return; a pulse whose two returns are one has it in both
-/// layers.
+/// ReturnLayer 0 holds the strongest or last return of a single-return mode, and of dual mode the
+/// last. ReturnLayer 1 holds dual mode's second return; a pulse whose two returns are one has it in
+/// both layers.
 #[derive(Clone, Debug, Default)]
 pub struct OrganisedFrame {
     model: Option<&'static Model>,
     columns: Vec<FiringColumn>,
-    /// Firing by firing, within one from the lowest ring up; a `Vec` a layer, the second empty
-    /// until it is needed.
+    /// One `Vec` per layer, by firing and then by ring. The second is empty until it is needed.
     layers: [Vec<Option<SensorPoint>>; 2],
 }
 
 impl OrganisedFrame {
-    /// A frame without firings.
+    /// Creates a frame without firings.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -45,8 +44,7 @@ impl OrganisedFrame {
     /// Adds a firing as the next column.
     ///
     /// # Errors
-    /// [`LidarFrameError::Model`] where it is not of the model of those before it; the frame stays as it
-    /// was.
+    /// [`LidarFrameError::Model`] for a firing of another model; the frame is unchanged.
     pub fn push(&mut self, firing: &Firing<'_>) -> Result<(), LidarFrameError> {
         let model = *self.model.get_or_insert(firing.model);
         if !ptr::eq(model, firing.model) {
@@ -61,24 +59,24 @@ impl OrganisedFrame {
             start: firing.start,
             azimuth_deg: firing.azimuth_deg,
         });
-        let [only, second] = &mut self.layers;
-        only.resize(end, None);
-        if !second.is_empty() {
-            second.resize(end, None);
+        let [first_layer, second_layer] = &mut self.layers;
+        first_layer.resize(end, None);
+        if !second_layer.is_empty() {
+            second_layer.resize(end, None);
         }
         for point in firing.points() {
-            let (in_only, in_second) = match point.echo {
+            let (in_first, in_second) = match point.echo {
                 Echo::Strongest | Echo::Last | Echo::Unknown => (true, false),
                 Echo::StrongestOrSecond => (false, true),
                 Echo::LastAndStrongest => (true, true),
             };
             let at = first + usize::from(point.ring);
-            if in_only && let Some(cell) = only.get_mut(at) {
+            if in_first && let Some(cell) = first_layer.get_mut(at) {
                 *cell = Some(point);
             }
             if in_second {
-                second.resize(end, None);
-                if let Some(cell) = second.get_mut(at) {
+                second_layer.resize(end, None);
+                if let Some(cell) = second_layer.get_mut(at) {
                     *cell = Some(point);
                 }
             }
@@ -86,32 +84,32 @@ impl OrganisedFrame {
         Ok(())
     }
 
-    /// Forgets the firings and keeps the memory.
+    /// Removes the firings and keeps the memory.
     pub fn clear(&mut self) {
         self.model = None;
         self.columns.clear();
         self.layers.iter_mut().for_each(Vec::clear);
     }
 
-    /// Height of the grid: rings of the model, 0 without firings.
+    /// Height of the grid: number of rings, 0 without firings.
     #[must_use]
     pub fn rings(&self) -> usize {
         self.model.map_or(0, |model| model.lasers.len())
     }
 
-    /// The grid's columns in the order of firing; their number is its width.
+    /// The grid's columns in order of firing.
     #[must_use]
     pub fn columns(&self) -> &[FiringColumn] {
         &self.columns
     }
 
-    /// 2 where a dual-mode return was seen, else 1.
+    /// Number of layers: 2 with dual returns, else 1.
     #[must_use]
     pub const fn layers(&self) -> usize {
         if self.layers[1].is_empty() { 1 } else { 2 }
     }
 
-    /// What a shot brought back; `None` for nothing, and outside the grid. Ring 0 is the lowest.
+    /// The return of a shot; `None` without one or outside the grid. Ring 0 is the lowest.
     #[must_use]
     pub fn cell(&self, layer: usize, ring: usize, column: usize) -> Option<&SensorPoint> {
         if ring >= self.rings() {
@@ -121,7 +119,7 @@ impl OrganisedFrame {
         self.layers.get(layer)?.get(at)?.as_ref()
     }
 
-    /// When a shot was fired, whether or not anything came back; `None` outside the grid.
+    /// Firing time of a shot with or without a return; `None` outside the grid.
     #[must_use]
     pub fn time(&self, ring: usize, column: usize) -> Option<Stamp<Lidar>> {
         let lasers = self.model?.lasers;
@@ -132,7 +130,7 @@ impl OrganisedFrame {
         Some(self.columns.get(column)?.start.saturating_add(delay))
     }
 
-    /// A ring's cells in the order of firing, as many as there are columns; empty outside the grid.
+    /// The cells of a ring in order of firing; empty outside the grid.
     pub fn row(&self, layer: usize, ring: usize) -> impl Iterator<Item = Option<&SensorPoint>> {
         let columns = if ring < self.rings() && layer < self.layers() {
             self.columns.len()

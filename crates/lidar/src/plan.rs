@@ -1,30 +1,28 @@
-//! When each block of a packet fired and how fast the rotor turned, from the packet and the one
-//! after it.
+//! Firing time of each block of a packet and pace of the rotor, from the packet and its successor.
 //!
-//! A packet gives one time and twelve azimuths. Blocks follow at the model's period, except where
-//! the sensor's field of view is limited: such a sensor is silent while it looks away, and the
-//! packet that it was filling then goes on a whole gap later. The azimuths show that jump; the time
-//! of the next packet says how long it took. Left out: what lies beyond the next packet, and any
-//! guess where packets are missing.
+//! A packet has one time and twelve azimuths. Blocks follow at the model's period, except at the
+//! gap of a limited field of view: the sensor is silent there and continues the packet after the
+//! gap. The azimuths show the jump, and the time of the next packet gives its duration. Nothing is
+//! extrapolated across missing packets.
 
 use protocol::vlp16::{BLOCKS, DataPacket, Model};
 use units::Span;
 
 use crate::continuity::BlindSector;
 
-/// A turn in hundredths of a degree.
+/// A revolution in hundredths of a degree.
 pub(crate) const REVOLUTION_CDEG: i32 = 36_000;
-/// A step back by less is the rotor's jitter or a slow reversal, not nearly a whole turn forward.
+/// A step back by less is jitter or a slow reversal, not almost a revolution forward.
 const BACKLASH_CDEG: i32 = 100;
-/// A step of more than twice the usual one and this much is a jump.
+/// A step of more than twice the usual one plus this is a jump.
 const JUMP_CDEG: i32 = 20;
-/// Packets this close to the nominal spacing follow each other without a gap; stamps are whole
-/// microseconds.
+/// Packets within this of the nominal spacing follow without a gap. The tolerance covers time
+/// stamps in whole microseconds and a steered clock.
 pub(crate) const CONTIGUOUS_NS: i64 = 20_000;
-/// How far a measured gap may exceed what the rotor's rate makes of it.
+/// Largest ratio of a measured gap to the gap by the rotor's rate.
 const GAP_SLACK: f64 = 1.5;
 
-/// The packet after this one.
+/// The next packet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Successor {
     /// Azimuth of its first block.
@@ -33,48 +31,48 @@ pub(crate) struct Successor {
     pub after: Span,
 }
 
-/// One block, or one pair of a dual-return packet.
+/// Timing of one block, or of one pair of a dual-return packet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BlockTiming {
     /// Time after the packet's first firing.
     pub after: Span,
     /// Azimuth of its first firing, 0 up to 36000.
     pub azimuth_cdeg: i32,
-    /// Growth of the azimuth per block period.
+    /// Azimuth per block period.
     pub pace_cdeg: f64,
 }
 
-/// The azimuth steps within a packet.
+/// Azimuth steps within a packet.
 #[derive(Clone, Debug)]
 pub(crate) struct AzimuthSteps {
     azimuths: [i32; BLOCKS],
-    /// Step from each block to the next, that behind the last left out.
+    /// Step from each block to the next within the packet.
     inner: [i32; BLOCKS],
     blocks: usize,
     period_ns: i64,
-    /// The least step.
+    /// Smallest step.
     least_cdeg: i32,
-    /// The median step, where steps differ so much that it is needed here.
+    /// Median step, if steps differ so much that jumps are possible.
     usual_cdeg: Option<i32>,
-    /// Mean of the steps that are no jumps.
+    /// Mean of the steps without jumps.
     pub mean_cdeg: f64,
-    /// How many those are.
+    /// Number of those steps.
     count: usize,
 }
 
-/// What the successor says of a packet.
+/// Relation of a packet to its successor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SuccessorLink {
-    /// Step from the last block to the successor's first, where the two follow each other.
+    /// Step from the last block to the successor's first, if they are contiguous.
     step_cdeg: Option<i32>,
-    /// Length of the packet's gaps over their length by the rotor's rate.
+    /// Duration of the packet's gaps over their duration by the rotor's rate.
     stretch: f64,
-    /// Whether the successor's time measured that.
+    /// Whether the successor's time measured it.
     pub measured: bool,
 }
 
-/// Azimuth from `from` to `to`, both 0 up to 36000, forward, or a little back.
-pub(crate) const fn turned(from: i32, to: i32) -> i32 {
+/// Rotation between two azimuths of 0 to 35999: forward, or slightly back.
+pub(crate) const fn rotation(from: i32, to: i32) -> i32 {
     let way = to - from;
     let forward = if way < 0 { way + REVOLUTION_CDEG } else { way };
     if forward > REVOLUTION_CDEG - BACKLASH_CDEG {
@@ -84,7 +82,7 @@ pub(crate) const fn turned(from: i32, to: i32) -> i32 {
     }
 }
 
-/// A block's azimuth with 36000 as 0.
+/// Azimuth of the first block, with 36000 as 0.
 pub(crate) fn first_azimuth(packet: &DataPacket<'_>) -> i32 {
     let azimuth = packet.block(0).map_or(0, |block| block.azimuth_cdeg());
     i32::from(azimuth) % REVOLUTION_CDEG
@@ -112,7 +110,7 @@ impl AzimuthSteps {
         }
         for (step, pair) in steps.inner.iter_mut().zip(steps.azimuths.windows(2)) {
             if let [from, to] = pair {
-                *step = turned(*from, *to);
+                *step = rotation(*from, *to);
             }
         }
         let (least, most) = steps
@@ -133,7 +131,7 @@ impl AzimuthSteps {
         steps
     }
 
-    /// The azimuths of blocks that fired separately.
+    /// Azimuths of blocks that fired separately.
     fn azimuths(&self) -> &[i32] {
         self.azimuths.get(..self.blocks).unwrap_or_default()
     }
@@ -162,20 +160,20 @@ impl AzimuthSteps {
     }
 
     pub(crate) fn is_jump(&self, step_cdeg: i32) -> bool {
-        // What is none against the least step is none against the median; finding that takes longer
-        // than all the rest.
+        // A step that is no jump against the smallest is none against the median, which is
+        // expensive.
         exceeds(step_cdeg, self.least_cdeg)
             && exceeds(step_cdeg, self.usual_cdeg.unwrap_or_else(|| self.median()))
     }
 
     /// The first jump within the packet.
     pub(crate) fn jump(&self) -> Option<BlindSector> {
-        // Without a median no step within the packet can be one.
+        // Without a median the packet has no jump.
         self.usual_cdeg?;
         let azimuths = self.azimuths();
         let mut pairs = azimuths.iter().zip(azimuths.iter().skip(1));
         pairs
-            .find(|&(&from, &to)| self.is_jump(turned(from, to)))
+            .find(|&(&from, &to)| self.is_jump(rotation(from, to)))
             .map(|(&from, &to)| BlindSector { from, to })
     }
 
@@ -184,12 +182,12 @@ impl AzimuthSteps {
         self.period_ns * self.blocks as i64
     }
 
-    /// Azimuth turned while the packet is filled.
+    /// Rotation while the packet is filled.
     pub(crate) fn fill_cdeg(&self) -> f64 {
         self.mean_cdeg * self.blocks as f64
     }
 
-    /// How long the rotor takes over a jump beyond the usual step; 0 where it stands still.
+    /// Time that the rotor takes for a jump beyond the usual step; 0 at standstill.
     fn gap_ns(&self, step_cdeg: i32) -> f64 {
         if self.mean_cdeg <= 0.0 || !self.is_jump(step_cdeg) {
             return 0.0;
@@ -197,7 +195,7 @@ impl AzimuthSteps {
         (f64::from(step_cdeg) - self.mean_cdeg) / self.mean_cdeg * self.period_ns as f64
     }
 
-    /// Length of the packet's own gaps by the rotor's rate.
+    /// Duration of the packet's gaps by the rotor's rate.
     pub(crate) fn gaps_ns(&self) -> f64 {
         if self.usual_cdeg.is_none() {
             return 0.0;
@@ -205,19 +203,19 @@ impl AzimuthSteps {
         self.inner().map(|step| self.gap_ns(step)).sum()
     }
 
-    /// Joins the packet to its successor, as far as the two can be shown to follow each other.
+    /// Relates the packet to its successor, if the two are contiguous.
     pub(crate) fn link(&self, next: Option<Successor>) -> SuccessorLink {
         let inner_ns = self.gaps_ns();
         let Some(next) = next else {
             return SuccessorLink::missing();
         };
-        let step = turned(self.last_azimuth(), next.azimuth_cdeg);
-        let goes_on = (!self.is_jump(step)).then_some(step);
+        let step = rotation(self.last_azimuth(), next.azimuth_cdeg);
+        let contiguous_step = (!self.is_jump(step)).then_some(step);
         let excess_ns = next.after.as_nanos().saturating_sub(self.fill_ns());
         if (-CONTIGUOUS_NS..=CONTIGUOUS_NS).contains(&excess_ns) {
-            // Whatever the azimuths say, there was no time for a gap.
+            // There was no time for a gap, whatever the azimuths are.
             return SuccessorLink {
-                step_cdeg: goes_on,
+                step_cdeg: contiguous_step,
                 stretch: 0.0,
                 measured: false,
             };
@@ -225,37 +223,39 @@ impl AzimuthSteps {
         if inner_ns <= 0.0 || excess_ns < 0 {
             return SuccessorLink::missing();
         }
-        // With a narrow field of view the sensor may have looked away once more between the two
-        // packets.
-        let looked_away = self
+        // With a narrow field of view there may be another gap between the two packets.
+        let has_outer_gap = self
             .jump()
             .is_some_and(|blind| blind.is_between(self.last_azimuth(), next.azimuth_cdeg));
-        let outer_ns = if looked_away { self.gap_ns(step) } else { 0.0 };
+        let outer_ns = if has_outer_gap {
+            self.gap_ns(step)
+        } else {
+            0.0
+        };
         let stretch = excess_ns as f64 / (inner_ns + outer_ns);
-        let follows = (goes_on.is_some() || looked_away) && stretch <= GAP_SLACK;
+        let follows = (contiguous_step.is_some() || has_outer_gap) && stretch <= GAP_SLACK;
         SuccessorLink {
-            step_cdeg: goes_on.filter(|_| follows),
-            // Where packets are missing after this one, the time they took is not the gap's.
+            step_cdeg: contiguous_step.filter(|_| follows),
+            // The time of missing packets is not that of the gap.
             stretch: if follows { stretch } else { stretch.min(1.0) },
             measured: follows && stretch >= 1.0 / GAP_SLACK,
         }
     }
 
-    /// Azimuth turned and block periods it took, up to the successor if it follows; jumps left out.
-    pub(crate) fn turned(&self, link: SuccessorLink) -> (f64, f64) {
+    /// Rotation without jumps and the block periods it took, up to a contiguous successor.
+    pub(crate) fn rotation_and_periods(&self, link: SuccessorLink) -> (f64, f64) {
         let inner = (self.mean_cdeg * self.count as f64, self.count as f64);
         link.step_cdeg
             .map_or(inner, |step| (inner.0 + f64::from(step), inner.1 + 1.0))
     }
 
-    /// Time, azimuth and pace of each block.
+    /// Timing of each block, and the number of blocks.
     pub(crate) fn slots(&self, link: SuccessorLink) -> ([BlockTiming; BLOCKS], usize) {
         let mut slots = [BlockTiming::default(); BLOCKS];
         let mut after_ns = 0;
         let steps = self.inner().map(Some).chain([link.step_cdeg]);
         for ((slot, &azimuth), step) in slots.iter_mut().zip(self.azimuths()).zip(steps) {
-            // A jump says nothing of the pace; the packet's mean does, and better than any single
-            // step, which is rounded.
+            // At a jump the pace is the packet's mean.
             let even = step.filter(|&step| !self.is_jump(step));
             let pace = even.map_or(self.mean_cdeg, f64::from);
             *slot = BlockTiming {
@@ -273,14 +273,14 @@ impl AzimuthSteps {
     }
 }
 
-/// Whether a step is a jump where another is the usual one.
+/// Whether a step is a jump compared with the usual one.
 const fn exceeds(step_cdeg: i32, usual_cdeg: i32) -> bool {
     let usual_cdeg = if usual_cdeg > 0 { usual_cdeg } else { 0 };
     step_cdeg > 2 * usual_cdeg + JUMP_CDEG
 }
 
 impl SuccessorLink {
-    /// No successor that follows: the rotor's rate stands in for the length of gaps.
+    /// Without a contiguous successor, gaps are timed by the rotor's rate.
     const fn missing() -> Self {
         Self {
             step_cdeg: None,

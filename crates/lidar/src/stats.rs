@@ -1,79 +1,78 @@
-//! What a decoder saw, for people and for `info`.
-//!
-//! Counts only; what they mean for a scan is left to the reader.
+//! Statistics of a decoder.
 
 use core::fmt;
 
 use protocol::vlp16::{Model, PacketError, Pps, Product, ReturnMode};
 use units::Span;
 
-/// Counts over everything that a decoder was given, up to the last packet it emitted.
+/// Statistics of all payloads up to the packet emitted last.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Stats {
-    /// Sound data packets, those not emitted included.
+    /// Valid data packets, emitted or not.
     pub data: u64,
     /// Position packets.
     pub position: u64,
-    /// Payloads that begin or measure as a data packet and are not one.
+    /// Payloads with the flag or length of a data packet that are invalid.
     pub malformed: u64,
-    /// What was wrong with the first of those.
+    /// Error of the first malformed payload.
     pub first_malformed: Option<PacketError>,
-    /// Payloads of anything else.
+    /// Other payloads.
     pub other: u64,
-    /// Data packets of a model that neither factory byte nor spacing tells; not emitted.
+    /// Data packets of an unidentified model; not emitted.
     pub unidentified: u64,
-    /// Data packets that repeated the one before them, byte for byte; not emitted twice.
+    /// Data packets equal to the previous one; not emitted.
     pub duplicates: u64,
-    /// Data packets that arrived after their successor and were put back in order.
+    /// Data packets that arrived after their successor and were reordered.
     pub reordered: u64,
-    /// Data packets that arrived after their successor had been emitted; left out, so that time
-    /// never runs backwards.
+    /// Data packets that arrived after their successor was emitted; skipped, so that time never
+    /// decreases.
     pub late: u64,
-    /// Times that the device's clock was set: forwards against the host's, or backwards. Nothing is
-    /// counted lost there.
+    /// Steps of the device's clock: backwards, or forwards against the host's clock. No packets
+    /// count as lost there.
     pub clock_steps: u64,
     /// Data packets missing, by device time.
     pub lost_packets: u64,
-    /// Firings emitted, each of all lasers.
+    /// Emitted firings of all lasers.
     pub firings: u64,
-    /// FiringChannels with a distance in the packets emitted.
+    /// FiringReturns in the emitted packets.
     pub returns: u64,
-    /// The same with the two returns of a dual pair counted once where their distances are equal.
+    /// Returns with equal dual pairs counted once.
     pub unique_returns: u64,
-    /// What the packets were decoded as.
+    /// The decoded model.
     pub model: Option<&'static Model>,
-    /// The last product byte seen.
+    /// The last product byte.
     pub product: Option<Product>,
-    /// The last return mode byte seen.
+    /// The last return mode.
     pub return_mode: Option<ReturnMode>,
     /// The last state of the pulse-per-second input.
     pub pps: Option<Pps>,
-    /// Mean speed of the rotor in revolutions per minute, over the time in which it fired.
+    /// Mean speed in revolutions per minute while firing.
     pub rpm: Option<f64>,
-    /// Device time from the first firing to the end of the last packet; clock steps left out.
+    /// Device time from the first firing to the end of the last packet, without clock steps.
     pub duration: Span,
-    /// Where sources of the model disagreed, each kind once.
-    pub conflicts: Vec<Conflict>,
-    /// How many lasers the corrections asked for have, where the model has another number of them:
-    /// then none was applied.
+    /// Contradictions about the model, each kind once.
+    pub conflicts: Vec<ModelConflict>,
+    /// Number of lasers in the corrections, if it differs from the model's: no correction was
+    /// applied.
     pub corrections_refused: Option<usize>,
 }
 
-/// The factory byte, or the user, says one model and the packets' spacing another.
+/// Contradiction between the packet spacing and the factory byte or the user's model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conflict {
-    /// What the factory byte says.
+pub struct ModelConflict {
+    /// Product by the factory byte.
     pub product: Product,
-    /// What the user says, which then stands.
-    pub told: Option<&'static Model>,
-    /// Device time between the two packets that disagree.
+    /// The user's model, which takes precedence.
+    pub user_model: Option<&'static Model>,
+    /// Device time between the two packets.
     pub spacing: Span,
-    /// The model that fills a packet in that time.
+    /// The model with that packet period.
     pub spacing_of: &'static Model,
 }
 
 impl Stats {
-    pub(crate) fn report(&mut self, conflict: Conflict) {
+    pub(crate) fn report(&mut self, conflict: ModelConflict) {
         let known = self
             .conflicts
             .iter()
@@ -84,7 +83,7 @@ impl Stats {
     }
 }
 
-impl fmt::Display for Conflict {
+impl fmt::Display for ModelConflict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match Model::of(self.product) {
             Some(named) => write!(f, "the packets' factory byte says {}", named.name)?,
@@ -98,9 +97,9 @@ impl fmt::Display for Conflict {
             ", their spacing of {:.0} us says {}; decoded as {}",
             self.spacing.as_micros_f64(),
             self.spacing_of.name,
-            self.told.unwrap_or(self.spacing_of).name
+            self.user_model.unwrap_or(self.spacing_of).name
         )?;
-        if self.told.is_some() {
+        if self.user_model.is_some() {
             write!(f, " as asked")?;
         }
         Ok(())

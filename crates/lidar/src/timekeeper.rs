@@ -1,7 +1,7 @@
-//! When packets were fired: the part of decoding that a clock fit needs, without points.
+//! Times of packets, without decoding points, for the clock fit.
 //!
-//! The decoder holds one of these and has no other source of time, so a survey and the decoding
-//! after it agree exactly.
+//! The decoder takes its times from a [`Timekeeper`], so a survey and the later decoding agree
+//! exactly.
 
 use protocol::vlp16::{DATA_LEN, DataPacket, Model};
 use units::{Host, Lidar, Span, Stamp};
@@ -9,16 +9,15 @@ use units::{Host, Lidar, Span, Stamp};
 use crate::hours::HourUnwrapper;
 use crate::identify::{Identifier, is_dual};
 use crate::options::Options;
-use crate::stats::Conflict;
+use crate::stats::ModelConflict;
 
-/// When a data packet was filled, by the device's clock.
+/// Device time of a data packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PacketTiming {
-    /// Instant of the first firing.
+    /// Time of the first firing.
     pub first_firing: Stamp<Lidar>,
-    /// Time from the first firing to when the packet was complete and could leave: 24 firings of
-    /// 55.296 us for a VLP-16, 12 with dual returns. A packet that straddles the gap of a limited
-    /// field of view takes longer than said here, by the gap.
+    /// Time from the first firing to the completion of the packet: 24 firings of 55.296 us for a
+    /// VLP-16, 12 with dual returns. The gap of a limited field of view is not included.
     pub fill: Span,
 }
 
@@ -30,19 +29,19 @@ pub struct Timekeeper {
     last: Option<Stamp<Lidar>>,
 }
 
-/// All that is known of a packet before its successor arrives.
+/// Facts about a packet before its successor arrives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PacketFacts {
     pub start: Stamp<Lidar>,
     pub dual: bool,
-    /// The model after this packet; it is told by the spacing before it, so it holds for the packet
-    /// before as well.
+    /// The model after this packet. It follows from the spacing before it, so it applies to the
+    /// previous packet as well.
     pub model: Option<&'static Model>,
-    pub conflict: Option<Conflict>,
+    pub conflict: Option<ModelConflict>,
 }
 
 impl Timekeeper {
-    /// For a sensor decoded with `options`.
+    /// Creates a timekeeper for a sensor that is decoded with `options`.
     #[must_use]
     pub fn new(options: Options) -> Self {
         Self {
@@ -52,11 +51,11 @@ impl Timekeeper {
         }
     }
 
-    /// When a payload that arrived at `host` was fired; `None` for anything but a sound data packet
-    /// of a known model.
+    /// Time of a payload that arrived at `host`; `None` unless it is a valid data packet of a known
+    /// model.
     ///
-    /// Where the factory byte is wrong, the model is found from the second packet on; the first
-    /// packet's fill is the named model's.
+    /// If the factory byte is wrong, the model is known from the second packet on; the first
+    /// packet's fill is that of the named model.
     pub fn packet(&mut self, host: Stamp<Host>, payload: &[u8]) -> Option<PacketTiming> {
         if payload.len() != DATA_LEN {
             return None;

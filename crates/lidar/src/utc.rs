@@ -1,87 +1,94 @@
-//! UTC for a sensor with a receiver: the hour from NMEA, everything below the hour from the
-//! sensor's own clock.
+//! UTC of a sensor with a GPS receiver: the hour from NMEA, minutes and below from the sensor's
+//! clock.
 //!
 //! With a pulse per second and a valid fix the sensor sets its minutes and seconds from the
-//! sentence and steers the rest by the pulse, so that its time past the hour is UTC's. A position
-//! packet's sentence only has to tell which hour that is: how old the sentence is when it is sent
-//! does not matter, as long as it is a few seconds and not half an hour. Left out: any guess where
-//! the lock is missing, host time, and leap seconds, which the sensor's counter does not show.
+//! sentence and steers its clock by the pulse, so its time past the hour is that of UTC. The
+//! sentence of a position packet only gives the hour, so its age of some seconds does not matter.
+//! Without a lock UTC is unknown. The sensor's counter does not show leap seconds.
 
 use std::collections::VecDeque;
 use std::{fmt, mem};
 
 use protocol::vlp16::{NmeaError, PositionPacket, Pps};
+use thiserror::Error;
 use units::{Host, Lidar, Span, Stamp};
 
 const HOUR_NS: i64 = 3_600_000_000_000;
-/// A sentence tells of a second that has begun and is repeated until the next; a receiver may take
-/// two for it. Older ones are left from a receiver that fell silent.
+/// Oldest valid sentence. A sentence describes the second that has begun and is repeated until the
+/// next, for which a receiver may take two seconds. Older ones are left from a receiver that
+/// stopped sending.
 const OLDEST_FIX: Span = Span::from_secs(5);
-/// Times further apart than this are two clocks that never met, not an old sentence.
-const APART: Span = Span::from_secs(60);
-/// Some receivers name the second that the next pulse begins.
+/// Larger differences are those of an unset clock, not of an old sentence.
+const MAX_AGE_OF_SET_CLOCK: Span = Span::from_secs(60);
+/// Newest valid sentence: some receivers send the time of the next pulse.
 const NEWEST_FIX: Span = Span::from_millis(-1_500);
-/// Sensors send a position packet every ten milliseconds or so; without any for this long nothing
-/// says that the lock holds.
+/// Longest time without a position packet while locked. Sensors send one every ten milliseconds.
 const LONGEST_SILENCE: Span = Span::from_secs(5);
-/// Position packets this much before the last one are out of order; further back, the clock was
+/// Up to this time before the last one position packets are out of order; beyond, the clock was
 /// set.
 const REORDER: Span = Span::from_secs(2);
-/// Data this much before the last one were overtaken by it; further back, the clock was set.
-const OVERTAKEN: Span = Span::from_millis(20);
-/// Locks kept; a receiver that comes and goes more often loses the oldest.
-const MOST_LOCKS: usize = 4_096;
+/// Up to this time before the last one data are out of order; beyond, the clock was set.
+const DATA_REORDER: Span = Span::from_millis(20);
+/// Limit of stored locks; the oldest are dropped.
+const MAX_LOCKS: usize = 4_096;
 
-/// Coordinated universal time: nanoseconds since 1970-01-01, leap seconds not counted.
+/// Coordinated universal time: nanoseconds since 1970-01-01 without leap seconds.
 pub enum Utc {}
 
-/// Whether the sensor's clock can be told as UTC.
+/// Relation of the sensor's clock to UTC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UtcState {
-    /// Pulse and fix are good: UTC is device time plus this many hours.
+    /// Pulse and fix are valid: UTC is device time plus a number of hours.
     Locked {
-        /// Hours between device time, which follows the host's hour, and UTC: 0 where the host's
-        /// clock is right.
+        /// Hours from device time, which follows the host's hour, to UTC; 0 if the host's clock is
+        /// correct.
         hours: i64,
     },
-    /// Why it cannot.
+    /// UTC is unknown.
     Unlocked(NoUtc),
 }
 
-/// Why there is no UTC.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Reason why UTC is unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoUtc {
-    /// No position packet yet.
+    /// No position packet has arrived.
+    #[error("no position packet yet")]
     NotYet,
-    /// The pulse-per-second input is in another state than locked.
+    /// The pulse-per-second input is not locked.
+    #[error("{}", pps_text(*.0))]
     Pulse(Pps),
-    /// There is no sentence, or it is not to be trusted.
+    /// The NMEA sentence is missing or invalid.
+    #[error("{0}")]
     Sentence(NmeaError),
-    /// The receiver says that its fix is not valid.
+    /// The receiver has no valid fix.
+    #[error("the receiver has no valid fix")]
     NoFix,
-    /// The sentence is left from a receiver that fell silent.
+    /// The sentence is left from a receiver that stopped sending.
+    #[error("the sentence is {:.1} s old", age.as_secs_f64())]
     Stale {
-        /// Device time since the second that it tells.
+        /// Device time since the second of the sentence.
         age: Span,
     },
-    /// Device time past the hour is not the sentence's: the sensor has not set its minutes and
-    /// seconds.
+    /// Device time past the hour differs from the sentence's: the sensor has not set its clock.
+    #[error("device time is {:.1} s off the sentence's minutes and seconds", by.as_secs_f64())]
     Apart {
         /// Device time past the hour less the sentence's, within half an hour.
         by: Span,
     },
-    /// No position packet for some seconds of device time.
+    /// No position packet for 5 s of device time.
+    #[error("position packets stopped")]
     Silent,
-    /// Device time went backwards: the sensor set its clock.
+    /// Device time decreased: the sensor set its clock.
+    #[error("the device set its clock back")]
     ClockSet,
 }
 
-/// The lock was acquired, lost, or lost for another reason.
+/// A change of the lock or of the reason for its absence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UtcChange {
-    /// Device time at which it was said.
+    /// Device time of the change.
     pub at: Stamp<Lidar>,
-    /// What holds from there.
+    /// The new state.
     pub state: UtcState,
 }
 
@@ -89,15 +96,15 @@ pub struct UtcChange {
 #[derive(Clone, Copy, Debug)]
 struct UtcLock {
     from: Stamp<Lidar>,
-    /// `None` while it lasts.
+    /// `None` for the current lock.
     until: Option<Stamp<Lidar>>,
     offset: Span,
 }
 
-/// Follows the position packets of one sensor and turns device time into UTC.
+/// Converts device time of one sensor into UTC by its position packets.
 ///
-/// Feed it packets in order of arrival, and device times as the decoder gives them, so that both
-/// are of the same hour.
+/// It takes packets in order of arrival, and device times of the decoder, so that both have the
+/// same hour.
 #[derive(Clone, Debug)]
 pub struct UtcClock {
     state: UtcState,
@@ -114,7 +121,7 @@ impl Default for UtcClock {
 }
 
 impl UtcClock {
-    /// A clock that knows nothing yet.
+    /// Creates a clock without a lock.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -126,19 +133,18 @@ impl UtcClock {
         }
     }
 
-    /// Takes device time as of the last firing that was decoded; says whether that ended the lock.
+    /// Takes the device time of the last decoded firing. Returns the change if it ends the lock.
     pub fn data(&mut self, at: Stamp<Lidar>) -> Option<UtcChange> {
         let back = self
             .data
             .map_or(Span::ZERO, |last| last.saturating_since(at));
-        if Span::ZERO < back && back <= OVERTAKEN {
+        if Span::ZERO < back && back <= DATA_REORDER {
             return None;
         }
         self.data = Some(at);
         if back > Span::ZERO {
             self.position = None;
-            // The device goes through these times a second time: what they were the first time
-            // helps nobody.
+            // The device repeats these times, so their earlier relation to UTC is ambiguous.
             self.locks.retain(|lock| lock.from < at);
             for lock in &mut self.locks {
                 lock.until = Some(lock.until.map_or(at, |until| until.min(at)));
@@ -155,10 +161,9 @@ impl UtcClock {
         }
     }
 
-    /// Takes a position packet that arrived at `host`; says what it changed.
+    /// Takes a position packet that arrived at `host`. Returns the change it causes.
     ///
-    /// Packets that arrive after a later one change nothing: they are counted in
-    /// [`UtcClock::late`].
+    /// Packets that arrive after a later one are counted in [`UtcClock::late`] and ignored.
     pub fn position(
         &mut self,
         host: Stamp<Host>,
@@ -173,14 +178,13 @@ impl UtcClock {
             }
         }
         self.position = Some(at);
-        match judge(at, packet) {
+        match hours_to_utc(at, packet) {
             Ok(hours) => self.lock(at, hours),
             Err(why) => self.unlock(at, why),
         }
     }
 
-    /// UTC at an instant of device time; `None` where the clock was not locked, and beyond the year
-    /// 2262, which no stamp can say.
+    /// UTC at a device time; `None` without a lock and after the year 2262, the range of stamps.
     #[must_use]
     pub fn utc(&self, at: Stamp<Lidar>) -> Option<Stamp<Utc>> {
         let lock = self.locks.iter().rev().find(|lock| {
@@ -191,7 +195,7 @@ impl UtcClock {
         Some(Stamp::from_nanos(ns))
     }
 
-    /// How often a lock ended, whether or not another followed.
+    /// Number of locks that ended.
     #[must_use]
     pub fn ends(&self) -> usize {
         self.locks
@@ -200,7 +204,7 @@ impl UtcClock {
             .count()
     }
 
-    /// What holds now.
+    /// The current state.
     #[must_use]
     pub const fn state(&self) -> UtcState {
         self.state
@@ -212,8 +216,8 @@ impl UtcClock {
         self.late
     }
 
-    /// Device time of a position packet: in the hour that lies nearest to the data, without any to
-    /// the host's clock.
+    /// Device time of a position packet, in the hour nearest to the data, or to the host's clock
+    /// without data.
     fn device_time(&self, us: u32, host: Stamp<Host>) -> Stamp<Lidar> {
         let seen = self.data.or(self.position).map(Stamp::as_nanos);
         let past_hour = i64::from(us) * 1_000;
@@ -227,7 +231,7 @@ impl UtcClock {
             return None;
         }
         self.end(at);
-        if self.locks.len() == MOST_LOCKS {
+        if self.locks.len() == MAX_LOCKS {
             self.locks.pop_front();
         }
         self.locks.push_back(UtcLock {
@@ -243,14 +247,14 @@ impl UtcClock {
         let (was, state) = (self.state, UtcState::Unlocked(why));
         self.end(at);
         self.state = state;
-        let news = match was {
+        let is_new = match was {
             UtcState::Unlocked(was) => !was.is_like(why),
             UtcState::Locked { .. } => true,
         };
-        news.then_some(UtcChange { at, state })
+        is_new.then_some(UtcChange { at, state })
     }
 
-    /// Ends the lock that lasts, if one does.
+    /// Ends the current lock, if there is one.
     fn end(&mut self, at: Stamp<Lidar>) {
         if let Some(lock) = self.locks.back_mut()
             && lock.until.is_none()
@@ -260,17 +264,17 @@ impl UtcClock {
     }
 }
 
-/// Hours from device time to UTC, by one packet.
-fn judge(at: Stamp<Lidar>, packet: &PositionPacket<'_>) -> Result<i64, NoUtc> {
+/// Hours from device time to UTC by one packet.
+fn hours_to_utc(at: Stamp<Lidar>, packet: &PositionPacket<'_>) -> Result<i64, NoUtc> {
     if packet.pps() != Pps::Locked {
         return Err(NoUtc::Pulse(packet.pps()));
     }
     let rmc = packet.rmc().map_err(NoUtc::Sentence)?;
     let fix = rmc.utc.filter(|_| rmc.valid).ok_or(NoUtc::NoFix)?;
-    let apart_ns = fix.unix_nanos().saturating_sub(at.as_nanos());
-    let hours = whole_hours(apart_ns);
-    let age = Span::from_nanos(hours.saturating_mul(HOUR_NS).saturating_sub(apart_ns));
-    if age < NEWEST_FIX || age > APART {
+    let difference_ns = fix.unix_nanos().saturating_sub(at.as_nanos());
+    let hours = whole_hours(difference_ns);
+    let age = Span::from_nanos(hours.saturating_mul(HOUR_NS).saturating_sub(difference_ns));
+    if age < NEWEST_FIX || age > MAX_AGE_OF_SET_CLOCK {
         Err(NoUtc::Apart { by: age })
     } else if age > OLDEST_FIX {
         Err(NoUtc::Stale { age })
@@ -279,7 +283,7 @@ fn judge(at: Stamp<Lidar>, packet: &PositionPacket<'_>) -> Result<i64, NoUtc> {
     }
 }
 
-/// To the nearest.
+/// Rounds to the nearest hour.
 const fn whole_hours(ns: i64) -> i64 {
     ns.saturating_add(HOUR_NS / 2).div_euclid(HOUR_NS)
 }
@@ -295,7 +299,7 @@ impl fmt::Display for UtcState {
 }
 
 impl NoUtc {
-    /// Ages and distances change with every packet: once said is enough.
+    /// Ages and differences change with every packet and are reported once.
     fn is_like(self, other: Self) -> bool {
         match (self, other) {
             (Self::Pulse(a), Self::Pulse(b)) => a == b,
@@ -304,28 +308,13 @@ impl NoUtc {
     }
 }
 
-impl fmt::Display for NoUtc {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotYet => write!(f, "no position packet yet"),
-            Self::Pulse(Pps::Absent) => write!(f, "no pulse per second"),
-            Self::Pulse(Pps::Synchronising) => write!(f, "synchronising to the pulse per second"),
-            Self::Pulse(Pps::Error) => write!(f, "the pulse per second is in error"),
-            Self::Pulse(Pps::Locked) => write!(f, "the pulse per second is locked"),
-            Self::Pulse(Pps::Unknown(byte)) => {
-                write!(f, "pulse-per-second state {byte} is not known")
-            }
-            Self::Sentence(error) => write!(f, "{error}"),
-            Self::NoFix => write!(f, "the receiver has no valid fix"),
-            Self::Stale { age } => write!(f, "the sentence is {:.1} s old", age.as_secs_f64()),
-            Self::Apart { by } => write!(
-                f,
-                "device time is {:.1} s off the sentence's minutes and seconds",
-                by.as_secs_f64()
-            ),
-            Self::Silent => write!(f, "position packets stopped"),
-            Self::ClockSet => write!(f, "the device set its clock back"),
-        }
+fn pps_text(pps: Pps) -> String {
+    match pps {
+        Pps::Absent => "no pulse per second".to_owned(),
+        Pps::Synchronising => "synchronising to the pulse per second".to_owned(),
+        Pps::Error => "the pulse per second is in error".to_owned(),
+        Pps::Locked => "the pulse per second is locked".to_owned(),
+        Pps::Unknown(byte) => format!("pulse-per-second state {byte} is not known"),
     }
 }
 
@@ -365,9 +354,8 @@ mod tests {
         bytes
     }
 
-    /// Gives the clock a packet sent at a device time, to a host whose clock is `off_s` ahead of
-    /// UTC.
-    fn say(
+    /// Passes a packet sent at a device time, for a host clock that is `off_s` ahead of UTC.
+    fn send(
         clock: &mut UtcClock,
         device_ns: i64,
         pps: u8,
@@ -379,8 +367,8 @@ mod tests {
     }
 
     #[test]
-    fn the_hour_comes_from_the_fix_and_the_rest_from_the_device() {
-        // The host's clock is five hours and seven seconds slow; the sensor counts from its hour.
+    fn the_hour_follows_from_the_fix() {
+        // The host's clock is slow by 5 h and 7 s; the sensor counts from its hour.
         let mut clock = UtcClock::new();
         let device = |utc_ns: i64| utc_ns - 5 * HOUR_NS;
         assert_eq!(clock.data(stamp(device(TEN_59 * S))), None);
@@ -397,7 +385,7 @@ mod tests {
             })
         );
         assert_eq!(locked.to_string(), "locked; the host's clock is -5 h off");
-        // Not before it was said, and exactly from then on.
+        // UTC is known exactly from the packet on.
         assert_eq!(clock.utc(stamp(at - 1)), None);
         for after in [0, 1, 500_000_000, 1_700 * S] {
             let utc = clock.utc(stamp(at + after)).map(Stamp::as_nanos);
@@ -406,8 +394,8 @@ mod tests {
     }
 
     #[test]
-    fn the_hour_turns_whichever_side_turns_first() {
-        // Late sentences, and one of the second to come, on both sides of 11:00:00 and of midnight.
+    fn the_hour_changes_on_either_side_first() {
+        // Old sentences, and one of the next second, on both sides of 11:00:00 and of midnight.
         for begin_s in [TEN_59, TEN_59 + 13 * 3_600] {
             for fix_late_s in [-1, 0, 1, 2, 4] {
                 let mut clock = UtcClock::new();
@@ -415,7 +403,7 @@ mod tests {
                     let device = begin_s * S + tick * 100_000_000 + 37_000;
                     clock.data(stamp(device));
                     let fix_s = device.div_euclid(S) - fix_late_s;
-                    let change = say(&mut clock, device, 2, 'A', fix_s);
+                    let change = send(&mut clock, device, 2, 'A', fix_s);
                     assert_eq!(change.is_some(), tick == 0, "{change:?}");
                     assert_eq!(clock.utc(stamp(device)), Some(stamp(device)));
                 }
@@ -424,14 +412,14 @@ mod tests {
     }
 
     #[test]
-    fn out_of_order_packets_change_nothing() {
+    fn reordered_packets_change_nothing() {
         let mut clock = UtcClock::new();
         let t = TEN_59 * S;
         clock.data(stamp(t));
-        say(&mut clock, t, 2, 'A', TEN_59);
-        assert!(say(&mut clock, t + 30_000_000, 0, 'A', TEN_59).is_some());
-        // Sent before the pulse was lost, arrived after.
-        assert_eq!(say(&mut clock, t + 20_000_000, 2, 'A', TEN_59), None);
+        send(&mut clock, t, 2, 'A', TEN_59);
+        assert!(send(&mut clock, t + 30_000_000, 0, 'A', TEN_59).is_some());
+        // Sent before the loss of the pulse, arrived after it.
+        assert_eq!(send(&mut clock, t + 20_000_000, 2, 'A', TEN_59), None);
         assert_eq!(clock.late(), 1);
         assert_eq!(clock.state(), UtcState::Unlocked(NoUtc::Pulse(Pps::Absent)));
         assert!(clock.utc(stamp(t + 29_999_999)).is_some());
@@ -439,16 +427,16 @@ mod tests {
     }
 
     #[test]
-    fn each_way_to_be_without_a_lock_is_said_once() {
+    fn each_reason_for_no_lock_is_reported_once() {
         let t = TEN_59 * S;
         let mut clock = UtcClock::new();
         assert_eq!(clock.state().to_string(), "no lock: no position packet yet");
         clock.data(stamp(t));
         let mut expect = |ms: i64, pps, status, fix_s, said: &str| {
             let at = t + ms * 1_000_000;
-            let change = say(&mut clock, at, pps, status, fix_s).expect(said);
+            let change = send(&mut clock, at, pps, status, fix_s).expect(said);
             assert_eq!(change.state.to_string(), said);
-            assert_eq!(say(&mut clock, at + 10_000_000, pps, status, fix_s), None);
+            assert_eq!(send(&mut clock, at + 10_000_000, pps, status, fix_s), None);
             assert_eq!(clock.utc(stamp(at)).is_some(), said == "locked", "{said}");
         };
         expect(0, 0, 'V', TEN_59, "no lock: no pulse per second");
@@ -504,7 +492,7 @@ mod tests {
             "no lock: NMEA sentence offset 223: expected status A or V",
         );
         expect(1_000, 2, 'A', TEN_59 + 1, "locked");
-        // Where it was not locked it stays without, later locks or not.
+        // Times without a lock stay without UTC.
         assert_eq!(clock.utc(stamp(t + 750_000_000)), None);
         assert_eq!(
             clock.utc(stamp(t + 650_000_000)),
@@ -513,28 +501,27 @@ mod tests {
     }
 
     #[test]
-    fn a_lock_that_nobody_confirms_ends() {
+    fn a_lock_without_position_packets_ends() {
         let t = TEN_59 * S;
         let mut clock = UtcClock::new();
         clock.data(stamp(t));
-        say(&mut clock, t, 2, 'A', TEN_59);
+        send(&mut clock, t, 2, 'A', TEN_59);
         assert_eq!(clock.data(stamp(t + 5 * S)), None);
         let change = clock.data(stamp(t + 5 * S + 1)).unwrap();
         assert_eq!(change.state, UtcState::Unlocked(NoUtc::Silent));
         assert_eq!(clock.data(stamp(t + 6 * S)), None);
         assert_eq!(clock.utc(stamp(t + 6 * S)), None);
-        assert!(say(&mut clock, t + 7 * S, 2, 'A', TEN_59 + 7).is_some());
+        assert!(send(&mut clock, t + 7 * S, 2, 'A', TEN_59 + 7).is_some());
         assert_eq!(clock.utc(stamp(t + 7 * S)), Some(stamp(t + 7 * S)));
     }
 
     #[test]
-    fn a_clock_set_by_the_first_sentence_is_utc_from_then_on() {
-        // Free-running minutes, 700 s ahead, until the device reads the sentence and sets its clock
-        // back.
+    fn a_clock_set_by_the_first_sentence_is_utc() {
+        // The device's clock is 700 s ahead until it is set by the sentence.
         let t = TEN_59 * S;
         let mut clock = UtcClock::new();
         clock.data(stamp(t + 700 * S));
-        let change = say(&mut clock, t + 700 * S, 2, 'A', TEN_59).unwrap();
+        let change = send(&mut clock, t + 700 * S, 2, 'A', TEN_59).unwrap();
         assert!(matches!(
             change.state,
             UtcState::Unlocked(NoUtc::Apart { .. })
@@ -544,9 +531,9 @@ mod tests {
             (set.at, set.state),
             (stamp(t + S), UtcState::Unlocked(NoUtc::ClockSet))
         );
-        assert!(say(&mut clock, t + S, 2, 'A', TEN_59 + 1).is_some());
+        assert!(send(&mut clock, t + S, 2, 'A', TEN_59 + 1).is_some());
         assert_eq!(clock.utc(stamp(t + S)), Some(stamp(t + S)));
-        // A lock from before a step back does not speak for times that came twice.
+        // A lock before a step back does not apply to repeated times.
         let back = t + S - 500_000_000;
         clock.data(stamp(t + 2 * S));
         clock.data(stamp(back));
@@ -554,7 +541,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_last_stamp_there_is_no_utc() {
+    fn times_after_the_last_stamp_have_no_utc() {
         let mut clock = UtcClock::new();
         let last = 7_514_095_636_854_775_808_i64;
         for (us, ns, pps, second) in [(0_u32, 0, 0, 0), (1_219_500_000, last, 2, 77_621)] {
@@ -562,7 +549,7 @@ mod tests {
             bytes[198..202].copy_from_slice(&us.to_le_bytes());
             clock.position(stamp(ns / 2), &PositionPacket::new(&bytes).unwrap());
         }
-        // A nanosecond more than a stamp can say.
+        // A nanosecond more than a stamp can represent.
         assert_eq!(clock.utc(stamp(last)), None);
         let before = stamp(last - 1);
         let apart = clock.utc(before).unwrap().as_nanos() - before.as_nanos();
@@ -572,9 +559,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// Whatever comes, an answer is a whole number of hours from device time.
+        /// UTC always differs from device time by whole hours.
         #[test]
-        fn nothing_upsets_it(
+        fn any_input_gives_whole_hours(
             steps in prop::collection::vec((any::<u32>(), any::<i64>(), 0u8..4, any::<bool>(), any::<i32>()), 1..60),
         ) {
             let mut clock = UtcClock::new();
@@ -588,7 +575,7 @@ mod tests {
                 if let Some(utc) = clock.utc(stamp(ns)) {
                     prop_assert_eq!((i128::from(utc.as_nanos()) - i128::from(ns)) % i128::from(HOUR_NS), 0);
                 }
-                prop_assert!(clock.locks.len() <= MOST_LOCKS);
+                prop_assert!(clock.locks.len() <= MAX_LOCKS);
             }
         }
     }

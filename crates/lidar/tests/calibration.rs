@@ -1,5 +1,5 @@
-//! Calibration files of both kinds become the corrections that their own conventions mean, and
-//! wrong ones are refused with the line. All numbers are made up here.
+//! Calibration files of both kinds give the corrections of their conventions, and invalid ones are
+//! refused with the line. All numbers are invented.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use std::fmt::Write as _;
@@ -20,8 +20,8 @@ struct RosLaser {
 }
 
 impl RosLaser {
-    /// A laser a little off what its model says, each in its own way.
-    fn made_up(model: &Model, i: usize) -> Self {
+    /// A laser with individual deviations from its model.
+    fn invented(model: &Model, i: usize) -> Self {
         let wobble = |scale: f64, k: usize| scale * ((i * 7 + k * 3) as f64).sin();
         let laser = model.lasers[i];
         Self {
@@ -65,7 +65,7 @@ impl RosLaser {
 fn ros_file(model: &Model, order: impl Iterator<Item = usize>) -> String {
     let mut text = "lasers:\n".to_owned();
     for i in order {
-        text += &RosLaser::made_up(model, i).yaml(i);
+        text += &RosLaser::invented(model, i).yaml(i);
     }
     let count = model.lasers.len();
     write!(
@@ -80,7 +80,7 @@ fn ros_file(model: &Model, order: impl Iterator<Item = usize>) -> String {
 const MODELS: [&Model; 4] = [&VLP_16, &PUCK_HI_RES, &HDL_32E, &VLP_32C];
 
 #[test]
-fn a_ros_file_places_points_where_the_ros_driver_does() {
+fn ros_files_place_points_like_the_ros_driver() {
     for model in MODELS {
         let n = model.lasers.len();
         let read = from_ros_yaml(&ros_file(model, 0..n), model).unwrap();
@@ -89,7 +89,7 @@ fn a_ros_file_places_points_where_the_ros_driver_does() {
             (n, &[][..])
         );
         for (i, correction) in read.corrections.lasers.iter().enumerate() {
-            let laser = RosLaser::made_up(model, i);
+            let laser = RosLaser::invented(model, i);
             for azimuth_deg in [0.0, 17.0, 133.3, 359.99] {
                 for raw_m in [0.5, 10.0, 100.0] {
                     let [forward, left, up] = laser.driver(raw_m, f64::to_radians(azimuth_deg));
@@ -104,14 +104,14 @@ fn a_ros_file_places_points_where_the_ros_driver_does() {
 }
 
 #[test]
-fn laser_id_is_the_place_in_the_firing_order_whatever_the_order_of_the_file() {
+fn laser_id_is_the_index_in_the_firing_order() {
     let in_order = from_ros_yaml(&ros_file(&VLP_16, 0..16), &VLP_16).unwrap();
     let reversed = from_ros_yaml(&ros_file(&VLP_16, (0..16).rev()), &VLP_16).unwrap();
     assert_eq!(in_order, reversed);
     for (correction, laser) in in_order.corrections.lasers.iter().zip(VLP_16.lasers) {
         assert!((correction.elevation_deg - laser.elevation_deg).abs() < 0.2);
     }
-    // A file that numbers the lasers by elevation is one of wrong angles.
+    // A file numbered by elevation has wrong angles.
     let mut by_ring = "num_lasers: 16\nlasers:\n".to_owned();
     for ring in 0..16 {
         let i = VLP_16
@@ -119,7 +119,7 @@ fn laser_id_is_the_place_in_the_firing_order_whatever_the_order_of_the_file() {
             .iter()
             .position(|laser| usize::from(laser.ring) == ring)
             .unwrap();
-        by_ring += &RosLaser::made_up(&VLP_16, i).yaml(ring);
+        by_ring += &RosLaser::invented(&VLP_16, i).yaml(ring);
     }
     let said = from_ros_yaml(&by_ring, &VLP_16).unwrap_err().to_string();
     assert!(
@@ -129,7 +129,7 @@ fn laser_id_is_the_place_in_the_firing_order_whatever_the_order_of_the_file() {
 }
 
 #[test]
-fn a_sensor_without_corrections_is_its_models_table() {
+fn corrections_default_to_the_model() {
     for model in MODELS {
         let mut text = format!("model = {:?}\n", model.name);
         for (i, laser) in model.lasers.iter().enumerate() {
@@ -144,7 +144,7 @@ fn a_sensor_without_corrections_is_its_models_table() {
     }
 }
 
-/// A table of our own for a laser of a VLP-16, with every key.
+/// A TOML table for a laser of a VLP-16 with every key.
 fn table(i: usize) -> String {
     let elevation = VLP_16.lasers[i].elevation_deg as i64;
     format!(
@@ -159,7 +159,7 @@ fn toml_file() -> String {
 }
 
 #[test]
-fn our_own_file_says_what_it_means() {
+fn toml_files_give_their_corrections() {
     let corrections = from_toml(&toml_file(), &VLP_16).unwrap();
     let expected = LaserCorrection {
         elevation_deg: 1.0,
@@ -170,7 +170,7 @@ fn our_own_file_says_what_it_means() {
         vertical_offset_m: 0.01,
     };
     assert_eq!(corrections.lasers[1], expected);
-    // Straight ahead: out along y, aside to the left (-x), up.
+    // Ahead: radial along y, tangential to the left (-x), vertical.
     let straight = LaserCorrection {
         elevation_deg: 0.0,
         azimuth_offset_deg: 0.0,
@@ -178,13 +178,13 @@ fn our_own_file_says_what_it_means() {
     };
     let [x, y, z] = straight.place(10.01, 0.0);
     assert!((x + 0.003).abs() < 1e-12 && (y - 10.002).abs() < 1e-12 && (z - 0.01).abs() < 1e-12);
-    // To the right: out along x, aside to the left, which is forward.
+    // To the right: radial along x, tangential to the left, which is forward.
     let [x, y, _] = straight.place(10.01, 90.0);
     assert!((x - 10.002).abs() < 1e-12 && (y - 0.003).abs() < 1e-12);
 }
 
 #[test]
-fn what_is_wrong_with_our_file_is_said_with_its_line() {
+fn toml_errors_name_the_line() {
     let good = toml_file();
     let said = |from: &str, to: &str| {
         let text = good.replacen(from, to, 1);
@@ -275,9 +275,9 @@ fn what_is_wrong_with_our_file_is_said_with_its_line() {
 }
 
 #[test]
-fn what_is_wrong_with_a_ros_file_is_said_with_its_line() {
+fn ros_errors_name_the_line() {
     let good = ros_file(&VLP_16, 0..16);
-    let laser_1 = RosLaser::made_up(&VLP_16, 1);
+    let laser_1 = RosLaser::invented(&VLP_16, 1);
     let assert_said = |from: &str, to: &str, expected: &str| {
         let text = good.replacen(from, to, 1);
         assert_ne!(text, good, "{from}");
@@ -311,7 +311,7 @@ fn what_is_wrong_with_a_ros_file_is_said_with_its_line() {
     assert_said(
         "laser_id: 1, rot_correction",
         "laser_id: 1, laser_id",
-        "8: key laser_id is there twice",
+        "8: key laser_id is repeated",
     );
     let vert = |vert: f64| format!("vert_correction: {vert},");
     assert_said(
@@ -327,7 +327,7 @@ fn what_is_wrong_with_a_ros_file_is_said_with_its_line() {
     assert_said(
         &vert(laser_1.vert),
         "vert_correction: -15,",
-        "8: vert_correction: expected radians, at most half a turn, got \"-15\"",
+        "8: vert_correction: expected radians, at most half a revolution, got \"-15\"",
     );
     assert_said(
         &vert(laser_1.vert),
@@ -399,7 +399,7 @@ fn what_is_wrong_with_a_ros_file_is_said_with_its_line() {
 }
 
 #[test]
-fn lasers_beyond_num_lasers_do_not_count() {
+fn lasers_beyond_num_lasers_are_ignored() {
     let zero = RosLaser {
         rot: 0.0,
         vert: 0.0,
@@ -408,7 +408,7 @@ fn lasers_beyond_num_lasers_do_not_count() {
         horiz_offset: 0.0,
     };
     let lasers = |extra: usize| {
-        let first = (0..32).map(|i| RosLaser::made_up(&HDL_32E, i).yaml(i));
+        let first = (0..32).map(|i| RosLaser::invented(&HDL_32E, i).yaml(i));
         let text: String = first.chain([zero.yaml(extra)]).collect();
         format!("lasers:\n{text}num_lasers: 32\n")
     };
@@ -427,11 +427,11 @@ fn lasers_beyond_num_lasers_do_not_count() {
 }
 
 #[test]
-fn a_wrong_sign_of_the_azimuth_offsets_is_noticed() {
-    // The maker's own tables of the VLP-32C have them the other way round.
+fn azimuth_offsets_with_the_wrong_sign_are_refused() {
+    // The manufacturer's tables of the VLP-32C have the opposite sign.
     let mut text = "num_lasers: 32\nlasers:\n".to_owned();
     for i in 0..32 {
-        let laser = RosLaser::made_up(&VLP_32C, i);
+        let laser = RosLaser::invented(&VLP_32C, i);
         text += &RosLaser {
             rot: -laser.rot,
             ..laser
@@ -446,9 +446,9 @@ fn a_wrong_sign_of_the_azimuth_offsets_is_noticed() {
 }
 
 #[test]
-fn two_point_corrections_are_refused_where_they_would_do_something() {
+fn effective_two_point_corrections_are_refused() {
     let good = ros_file(&VLP_16, 0..16);
-    let dist = RosLaser::made_up(&VLP_16, 0).dist;
+    let dist = RosLaser::invented(&VLP_16, 0).dist;
     let with = |available: &str, x: f64, y: f64| {
         let keys = format!(
             "two_pt_correction_available: {available}, dist_correction_x: {x}, dist_correction_y: {y},"
@@ -473,7 +473,7 @@ fn two_point_corrections_are_refused_where_they_would_do_something() {
 }
 
 #[test]
-fn corrections_of_reflectivity_are_named_and_not_applied() {
+fn corrections_of_reflectivity_are_listed() {
     let good = ros_file(&VLP_16, 0..16);
     let text = good
         .replacen(

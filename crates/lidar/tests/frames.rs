@@ -1,8 +1,7 @@
-//! Frames begin where the rotor passes the cut, whatever the rotor does; organised frames keep
-//! every shot.
+//! Frames begin where the rotor passes the cut, and organised frames keep every shot.
 //!
-//! The packets are written here from manual 9.3.2 and from an angle that is a function of time, so
-//! that the frame of every firing is known in closed form.
+//! The packets are encoded here by manual 9.3.2 from an angle as a function of time, so the frame
+//! of every firing is known in closed form.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use lidar::{
@@ -15,26 +14,26 @@ const BLOCK_NS: i64 = 110_592;
 const FIRING_NS: i64 = 55_296;
 const BEGIN_NS: i64 = 470_000 * 3_600_000_000_000 + 5_000_000_000;
 
-/// One UDP payload and when its first block fired, counted from the first packet.
+/// A UDP payload and the time of its first block after the first packet.
 type Packet = (i64, Vec<u8>);
 
-/// Packets of a VLP-16 whose angle after `t` ns is `turned_deg(t)`, not brought back below 360;
-/// `seen` says where it fires.
+/// Packets of a VLP-16 whose angle after `t` ns is `angle_deg(t)`, which may exceed 360; `is_seen`
+/// tells where it fires.
 fn packets(
     blocks: i64,
-    turned_deg: impl Fn(i64) -> f64,
+    angle_deg: impl Fn(i64) -> f64,
     seen: impl Fn(f64) -> bool,
     dual: bool,
 ) -> Vec<Packet> {
     let ticks = (0..blocks).map(|k| k * BLOCK_NS);
     let times: Vec<i64> = ticks
-        .filter(|&t| seen(turned_deg(t).rem_euclid(360.0)))
+        .filter(|&t| seen(angle_deg(t).rem_euclid(360.0)))
         .collect();
     let per_packet = if dual { 6 } else { 12 };
     let packet = |times: &[i64]| {
         let mut bytes = Vec::new();
         for &t in times {
-            let azimuth = (turned_deg(t).rem_euclid(360.0) * 100.0).round() as u16;
+            let azimuth = (angle_deg(t).rem_euclid(360.0) * 100.0).round() as u16;
             for half in 0..=u16::from(dual) {
                 bytes.extend([0xFF, 0xEE]);
                 bytes.extend(azimuth.to_le_bytes());
@@ -57,7 +56,7 @@ fn packets(
     times.chunks_exact(per_packet).map(packet).collect()
 }
 
-/// Gives every firing, in order, to `each`.
+/// Passes every firing to `each`.
 fn decode(packets: &[Packet], mut each: impl FnMut(&Firing<'_>)) {
     let mut decoder = Decoder::new(Options::default());
     for (at, bytes) in packets {
@@ -70,7 +69,7 @@ fn decode(packets: &[Packet], mut each: impl FnMut(&Firing<'_>)) {
     decoder.finish(&mut each);
 }
 
-/// The frames, and for each firing its time after the first packet and the number of its frame.
+/// The frames, and the time and frame index of each firing.
 fn cut(packets: &[Packet], cut_azimuth_deg: f64) -> (Vec<RevolutionFrame>, Vec<(i64, u64)>) {
     let mut cutter = FrameCutter::new(cut_azimuth_deg).unwrap();
     let (mut frames, mut firings) = (Vec::new(), Vec::new());
@@ -95,21 +94,21 @@ fn anywhere(_: f64) -> bool {
     true
 }
 
-/// Every firing is in the frame that the angle says, but for those so close to the cut that wire
-/// angles cannot tell.
+/// Asserts that every firing is in the frame of its angle, except within the resolution of azimuths
+/// at the cut.
 fn assert_frames(
     firings: &[(i64, u64)],
     cut_deg: f64,
-    turned_deg: impl Fn(i64) -> f64,
+    angle_deg: impl Fn(i64) -> f64,
     tolerance_deg: f64,
 ) {
-    let turns = |t: i64| (turned_deg(t) - cut_deg) / 360.0;
-    let base = turns(firings[0].0).floor();
+    let revolutions = |t: i64| (angle_deg(t) - cut_deg) / 360.0;
+    let base = revolutions(firings[0].0).floor();
     for &(t, frame) in firings {
-        let exact = turns(t) - base;
-        let expected = if turned_deg(t) < turned_deg(firings[0].0) {
-            // The other way round: frames are counted downwards from the cut above.
-            turns(firings[0].0).ceil() - turns(t).ceil()
+        let exact = revolutions(t) - base;
+        let expected = if angle_deg(t) < angle_deg(firings[0].0) {
+            // In the other direction frames count downwards from the cut above.
+            revolutions(firings[0].0).ceil() - revolutions(t).ceil()
         } else {
             exact.floor()
         };
@@ -119,7 +118,7 @@ fn assert_frames(
                 frame as f64,
                 expected,
                 "{t} ns, {} deg, cut at {cut_deg}",
-                turned_deg(t)
+                angle_deg(t)
             );
         }
     }
@@ -129,7 +128,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn frames_begin_at_the_cut_at_any_speed_either_way(
+    fn frames_begin_at_the_cut_at_any_speed_and_direction(
         rpm in 300.0..1_200.0f64,
         backwards: bool,
         start_deg in 0.0..360.0f64,
@@ -137,47 +136,47 @@ proptest! {
         dual: bool,
     ) {
         let deg_s = if backwards { -6.0 * rpm } else { 6.0 * rpm };
-        let turned = |t: i64| 3_600.0 + start_deg + deg_s * t as f64 * 1e-9;
-        let (frames, firings) = cut(&packets(3_600, turned, anywhere, dual), cut_deg);
-        assert_frames(&firings, cut_deg, turned, 0.02);
-        let per_turn = 60e9 / rpm / FIRING_NS as f64;
+        let angle = |t: i64| 3_600.0 + start_deg + deg_s * t as f64 * 1e-9;
+        let (frames, firings) = cut(&packets(3_600, angle, anywhere, dual), cut_deg);
+        assert_frames(&firings, cut_deg  , angle, 0.02);
+        let per_revolution = 60e9 / rpm / FIRING_NS as f64;
         for frame in &frames[1..frames.len() - 1] {
             prop_assert!(frame.whole);
-            prop_assert!((frame.firings as f64 - per_turn).abs() < 2.0, "{frame:?}, {per_turn}");
+            prop_assert!((frame.firings as f64 - per_revolution).abs() < 2.0, "{frame:?}, {per_revolution}");
         }
-        let first_deg = (turned(0) - cut_deg) * deg_s.signum();
+        let first_deg = (angle(0) - cut_deg) * deg_s.signum();
         prop_assert_eq!(frames[0].whole, first_deg.rem_euclid(360.0) < deg_s.abs() * 55.3e-6, "{}", first_deg);
     }
 
-    /// Packets lost across the cut: the first firing behind them begins the frame, once.
+    /// After packets lost at the cut, the first firing begins the frame, once.
     #[test]
-    fn loss_over_the_cut_cuts_once(cut_deg in 0.0..360.0f64, lost in 1usize..60, before in 0usize..60) {
-        let turned = |t: i64| 100.0 + 3_600.0 * t as f64 * 1e-9;
-        let mut packets = packets(3_600, turned, anywhere, false);
-        let at_cut = packets.iter().position(|&(t, _)| turned(t) > 360.0 + cut_deg).unwrap();
+    fn loss_at_the_cut_cuts_once(cut_deg in 0.0..360.0f64, lost in 1usize..60, before in 0usize..60) {
+        let angle = |t: i64| 100.0 + 3_600.0 * t as f64 * 1e-9;
+        let mut packets = packets(3_600, angle, anywhere, false);
+        let at_cut = packets.iter().position(|&(t, _)| angle(t) > 360.0 + cut_deg).unwrap();
         let from = at_cut.saturating_sub(1 + before.min(lost - 1)).max(1);
         packets.drain(from..from + lost);
         let (frames, firings) = cut(&packets, cut_deg);
-        assert_frames(&firings, cut_deg, turned, 0.02);
+        assert_frames(&firings, cut_deg  , angle, 0.02);
         prop_assert!(frames[1..frames.len() - 1].iter().all(|frame| frame.whole));
     }
 
-    /// A view that never reaches the cut: frames begin where it opens; one that does: at the cut.
+    /// Frames begin at the cut, or at the edge of a field of view that excludes it.
     #[test]
-    fn a_limited_view_is_cut_at_its_gap(
+    fn limited_views_are_cut_at_their_gap(
         rpm in 300.0..1_200.0f64,
         first_deg in 0.0..360.0f64,
         width_deg in 40.0..320.0f64,
         cut_deg in 0.0..360.0f64,
     ) {
-        let turned = |t: i64| first_deg + 5.0 + 6.0 * rpm * t as f64 * 1e-9;
+        let angle = |t: i64| first_deg + 5.0 + 6.0 * rpm * t as f64 * 1e-9;
         let seen = |azimuth: f64| (azimuth - first_deg).rem_euclid(360.0) < width_deg;
-        let packets = packets(9_000, turned, seen, false);
+        let packets = packets(9_000, angle, seen, false);
         let (frames, firings) = cut(&packets, cut_deg);
-        // Times across a gap are right to some microseconds, except in the last packet: nothing
-        // after it measures its gap.
+        // Times across a gap are exact to microseconds, except in the last packet, whose gap no
+        // later packet measures.
         let measured = &firings[..firings.len() - 24];
-        assert_frames(measured, cut_deg, turned, 0.1);
+        assert_frames(measured, cut_deg  , angle, 0.1);
         let at: Vec<i64> = measured.iter().map(|firing| firing.0).collect();
         for frame in &frames[1..] {
             let first = frame.first.as_nanos() - BEGIN_NS;
@@ -185,32 +184,32 @@ proptest! {
                 prop_assert!(first > at[at.len() - 1]);
                 continue;
             };
-            let into_deg = (turned(at[i]) - first_deg).rem_euclid(360.0);
+            let into_deg = (angle(at[i]) - first_deg).rem_euclid(360.0);
             let cut_into_deg = (cut_deg - first_deg).rem_euclid(360.0);
             let step_deg = 12.0 * rpm * FIRING_NS as f64 * 1e-9;
-            // A block that begins within the view ends up to a block beyond it.
+            // A block that begins within the view may end outside it.
             if cut_into_deg > width_deg + step_deg {
                 prop_assert!(into_deg < step_deg + 0.5 || into_deg > 359.5, "{into_deg}");
             }
         }
     }
 
-    /// Around the cut the rotor goes back and forth, by more than it went on.
+    /// The rotor jitters at the cut by more than a step.
     #[test]
-    fn jitter_over_the_cut_cuts_once(
+    fn jitter_at_the_cut_cuts_once(
         amplitude_deg in 0.05..0.4f64,
         hz in 200.0..1_000.0f64,
         cut_deg in 0.0..360.0f64,
     ) {
-        // 6 turns a second, at rest for 30 ms when it is at the cut.
-        let turned = |t: i64| {
-            let (turn, into) = (t / 200_000_000, t % 200_000_000);
+        // 5 revolutions per second, each with a rest of 30 ms at the cut.
+        let angle = |t: i64| {
+            let (revolution, into) = (t / 200_000_000, t % 200_000_000);
             let moved = (into - 30_000_000).max(0) as f64 / 170_000_000.0;
             let jitter = amplitude_deg * (t as f64 * 1e-9 * hz * std::f64::consts::TAU).sin();
-            cut_deg + (turn as f64 + moved) * 360.0 + jitter
+            cut_deg + (revolution as f64 + moved) * 360.0 + jitter
         };
-        // Begin well before a cut, where the rotor turns.
-        let later = |t: i64| turned(t + 100_000_000);
+        // Begin before a cut, while the rotor moves.
+        let later = |t: i64| angle(t + 100_000_000);
         let (frames, _) = cut(&packets(7_600, later, anywhere, false), cut_deg);
         // 0.84 s from 0.1 s on: cuts at 0.2, 0.4, 0.6, 0.8.
         prop_assert_eq!(frames.len(), 5);
@@ -222,20 +221,20 @@ proptest! {
 }
 
 #[test]
-fn an_outage_of_turns_is_one_cut_between_frames_that_are_not_whole() {
-    let turned = |t: i64| 10.0 + 3_600.0 * t as f64 * 1e-9;
-    let mut packets = packets(9_000, turned, anywhere, false);
-    // 250 ms: two turns and a half at 10 Hz.
+fn outages_of_revolutions_cut_once() {
+    let angle = |t: i64| 10.0 + 3_600.0 * t as f64 * 1e-9;
+    let mut packets = packets(9_000, angle, anywhere, false);
+    // 250 ms: two and a half revolutions at 10 Hz.
     packets.drain(200..388);
     let (frames, _) = cut(&packets, 0.0);
-    // Gone from 2.68 turns to 5.18; cuts at 1, 2, 6, 7, 8 and 9.
+    // The gap is from 2.68 to 5.18 revolutions; cuts at 1, 2, 6, 7, 8 and 9.
     let whole: Vec<bool> = frames.iter().map(|frame| frame.whole).collect();
     assert_eq!(whole, [false, true, false, false, true, true, true, false]);
 }
 
 #[test]
-fn a_head_that_turns_back_is_cut_where_that_shows() {
-    let turned = |t: i64| {
+fn reversals_of_the_rotor_are_cut() {
+    let angle = |t: i64| {
         let s = t as f64 * 1e-9;
         if s < 0.15 {
             1_800.0 * s
@@ -243,8 +242,8 @@ fn a_head_that_turns_back_is_cut_where_that_shows() {
             540.0 - 1_800.0 * s
         }
     };
-    // Up to 270 deg and back down through 0: one cut for the change, one at 0.
-    let (frames, _) = cut(&packets(3_600, turned, anywhere, false), 0.0);
+    // Up to 270 deg and back through 0: one cut at the reversal, one at 0.
+    let (frames, _) = cut(&packets(3_600, angle, anywhere, false), 0.0);
     assert_eq!(frames.len(), 3);
     assert!(frames[1].first.as_nanos() - BEGIN_NS - 150_000_000 < 6_000_000);
     assert!((frames[2].first.as_nanos() - BEGIN_NS - 300_000_000).abs() < 200_000);
@@ -253,19 +252,18 @@ fn a_head_that_turns_back_is_cut_where_that_shows() {
 }
 
 #[test]
-fn a_frame_that_ends_within_a_step_of_the_cut_is_whole() {
-    // 38 packets are 912 firings; they turn from the cut to just behind the next, or to just before
-    // it.
-    for (turn_deg, whole) in [(360.1, true), (359.9, false)] {
-        let turned = |t: i64| turn_deg * t as f64 / (912 * FIRING_NS) as f64;
-        let (frames, _) = cut(&packets(456, turned, anywhere, false), 0.0);
+fn frames_that_end_within_a_step_of_the_cut_are_whole() {
+    // 38 packets are 912 firings, from one cut to just after or just before the next.
+    for (last_deg, whole) in [(360.1, true), (359.9, false)] {
+        let angle = |t: i64| last_deg * t as f64 / (912 * FIRING_NS) as f64;
+        let (frames, _) = cut(&packets(456, angle, anywhere, false), 0.0);
         assert_eq!((frames.len(), frames[0].firings), (1, 912));
-        assert_eq!(frames[0].whole, whole, "{turn_deg} deg");
+        assert_eq!(frames[0].whole, whole, "{last_deg} deg");
     }
 }
 
 #[test]
-fn a_cut_that_is_no_number_is_refused() {
+fn cuts_that_are_not_finite_are_refused() {
     for cut in [f64::NAN, f64::INFINITY] {
         let said = FrameCutter::new(cut).unwrap_err().to_string();
         assert!(
@@ -290,9 +288,9 @@ fn organised(packets: &[Packet], duplicates: Duplicates) -> OrganisedFrame {
 }
 
 #[test]
-fn a_grid_has_a_cell_for_every_shot() {
-    let turned = |t: i64| 3_600.0 * t as f64 * 1e-9;
-    let frame = organised(&packets(120, turned, anywhere, false), Duplicates::Unique);
+fn grids_have_a_cell_per_shot() {
+    let angle = |t: i64| 3_600.0 * t as f64 * 1e-9;
+    let frame = organised(&packets(120, angle, anywhere, false), Duplicates::Unique);
     assert_eq!(
         (frame.rings(), frame.columns().len(), frame.layers()),
         (16, 240, 1)
@@ -305,8 +303,8 @@ fn a_grid_has_a_cell_for_every_shot() {
                 + column as i64 % 24 * FIRING_NS
         );
         for ring in 0..16 {
-            // Elevations climb by 2 deg a ring: even lasers from -15, odd ones from 1 (manual table
-            // 9-1).
+            // Elevations rise by 2 deg per ring: even lasers from -15, odd ones from 1 (manual
+            // table 9-1).
             let laser = if ring < 8 {
                 2 * ring
             } else {
@@ -352,8 +350,8 @@ fn a_grid_has_a_cell_for_every_shot() {
 
 #[test]
 fn dual_returns_are_two_layers() {
-    let turned = |t: i64| 3_600.0 * t as f64 * 1e-9;
-    let packets = packets(120, turned, anywhere, true);
+    let angle = |t: i64| 3_600.0 * t as f64 * 1e-9;
+    let packets = packets(120, angle, anywhere, true);
     for duplicates in [Duplicates::Unique, Duplicates::All] {
         let frame = organised(&packets, duplicates);
         assert_eq!((frame.layers(), frame.columns().len()), (2, 240));
@@ -382,9 +380,9 @@ fn dual_returns_are_two_layers() {
 }
 
 #[test]
-fn a_grid_is_of_one_model_and_can_be_used_again() {
-    let turned = |t: i64| 3_600.0 * t as f64 * 1e-9;
-    let mut packets = packets(12, turned, anywhere, false);
+fn grids_hold_one_model_and_can_be_reused() {
+    let angle = |t: i64| 3_600.0 * t as f64 * 1e-9;
+    let mut packets = packets(12, angle, anywhere, false);
     let mut frame = organised(&packets, Duplicates::Unique);
     packets[0].1[1_205] = 0x24; // Puck Hi-Res
     let mut said = None;

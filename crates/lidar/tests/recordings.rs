@@ -1,8 +1,8 @@
 //! Decoding of real recordings: counts and sums that independent decoders agree on.
 //!
-//! Cuts of the recordings are in `tests/recordings`, whose README states origin, licence and counts.
-//! Tests of the whole files are ignored by default; they look in `$VELOMOTION_RECORDINGS`, or in
-//! `shared/recordings` beside the checkout.
+//! Cuts of the recordings are in `tests/recordings`, whose README states origin, licence and
+//! counts. Tests of the whole files are ignored by default; they look in `$VELOMOTION_RECORDINGS`,
+//! or in `shared/recordings` beside the checkout.
 #![expect(
     clippy::disallowed_methods,
     clippy::unwrap_used,
@@ -19,7 +19,7 @@ use pcap_parser::{parse_pcap_frame, parse_pcap_header};
 use protocol::vlp16::{PositionPacket, Pps, Product, ReturnMode};
 use units::{Host, Span, Stamp};
 
-/// Ethernet, IPv4 without options, UDP.
+/// Length of Ethernet, IPv4 (without options) and UDP headers.
 const HEADERS: usize = 14 + 20 + 8;
 
 struct Datagram {
@@ -58,7 +58,7 @@ fn datagrams(path: &Path) -> Vec<Datagram> {
     datagrams
 }
 
-/// Without the vertical offsets, as the sums are.
+/// Without vertical offsets, like the sums.
 fn options(duplicates: Duplicates) -> Options {
     Options {
         vertical_offsets: false,
@@ -105,8 +105,8 @@ fn assert_sums(points: &[SensorPoint], expected: [f64; 3]) {
     }
 }
 
-/// What holds for every recording here: nothing lost, time forwards, both passes of one mind.
-fn assert_sound(datagrams: &[Datagram], decoded: &Decoded) {
+/// Properties of every recording here: no loss, increasing time, agreement of both passes.
+fn assert_valid(datagrams: &[Datagram], decoded: &Decoded) {
     let Stats {
         malformed,
         unidentified,
@@ -177,7 +177,7 @@ fn whole_vlp16_strongest_with_gps() {
 
 fn assert_strongest_with_gps(datagrams: &[Datagram], expected: &Expected) {
     let decoded = decode(datagrams, options(Duplicates::Unique));
-    assert_sound(datagrams, &decoded);
+    assert_valid(datagrams, &decoded);
     let stats = &decoded.stats;
     assert_eq!(
         (stats.data, stats.position),
@@ -228,7 +228,7 @@ fn whole_vlp16_dual() {
 
 fn assert_dual(datagrams: &[Datagram], expected: &Expected) {
     let all = decode(datagrams, options(Duplicates::All));
-    assert_sound(datagrams, &all);
+    assert_valid(datagrams, &all);
     assert_eq!(all.stats.data, expected.data);
     assert_eq!(all.stats.position, expected.position);
     assert_eq!(all.stats.return_mode, Some(ReturnMode::Dual));
@@ -238,13 +238,13 @@ fn assert_dual(datagrams: &[Datagram], expected: &Expected) {
     let unique = decode(datagrams, options(Duplicates::Unique));
     assert_eq!(unique.stats.unique_returns, expected.unique as u64);
     assert_eq!(unique.points.len(), expected.unique);
-    // Twelve firings a packet, 55.296 us apart.
+    // Twelve firings per packet at 55.296 us.
     assert_eq!(all.firings.len() as u64, expected.data * 12);
     assert_eq!(all.firings[11].0, 11 * 55_296);
 }
 
 #[test]
-fn vlp16_of_2014_is_no_hdl32e() {
+fn vlp16_of_2014_is_identified() {
     let expected = Expected {
         data: 115,
         position: 21,
@@ -257,7 +257,7 @@ fn vlp16_of_2014_is_no_hdl32e() {
 
 #[test]
 #[ignore = "needs the whole recordings"]
-fn whole_vlp16_of_2014_is_no_hdl32e() {
+fn whole_vlp16_of_2014_is_identified() {
     let expected = Expected {
         data: 1_902,
         position: 367,
@@ -273,7 +273,7 @@ fn whole_vlp16_of_2014_is_no_hdl32e() {
 
 fn assert_vlp16_of_2014(datagrams: &[Datagram], expected: &Expected) {
     let decoded = decode(datagrams, options(Duplicates::Unique));
-    assert_sound(datagrams, &decoded);
+    assert_valid(datagrams, &decoded);
     let stats = &decoded.stats;
     assert_eq!(
         (stats.data, stats.position),
@@ -299,9 +299,9 @@ fn assert_vlp16_of_2014(datagrams: &[Datagram], expected: &Expected) {
 fn vlp16_with_a_limited_field_of_view() {
     let datagrams = recording("vlp16-fov-limited-malformed.pcap");
     let decoded = decode(&datagrams, options(Duplicates::Unique));
-    assert_sound(&datagrams, &decoded);
+    assert_valid(&datagrams, &decoded);
     assert_eq!((decoded.stats.data, decoded.points.len()), (41, 15_744));
-    // The file ends in the middle of a 37th position packet.
+    // The file ends within the 37th position packet.
     assert_eq!((decoded.stats.position, decoded.stats.other), (36, 0));
     let mut gaps = Vec::new();
     for pair in decoded.firings.windows(2) {
@@ -315,8 +315,7 @@ fn vlp16_with_a_limited_field_of_view() {
     }
     println!("gaps (ms, from deg, to deg): {gaps:?}");
     assert_eq!(gaps.len(), 2);
-    // Timed back from the next packet: 156045 us less one packet and one firing, and 157262
-    // likewise.
+    // Relative to the next packet: 156045 us less one packet and one firing, and 157262 likewise.
     assert!((gaps[0].0 - (156.045 - 1.327_104 + 0.055_296)).abs() < 1e-3);
     assert!((gaps[1].0 - (157.262 - 1.327_104 + 0.055_296)).abs() < 1e-3);
     // The rotor's mean rate over the field of view agrees with those times to 2 %.
@@ -340,7 +339,7 @@ fn whole_hdl32e_strongest() {
 
 fn assert_hdl32e(datagrams: &[Datagram], packets: usize, returns: usize) {
     let decoded = decode(datagrams, Options::default());
-    assert_sound(datagrams, &decoded);
+    assert_valid(datagrams, &decoded);
     let stats = &decoded.stats;
     assert_eq!(
         (stats.unique_returns, decoded.points.len()),
@@ -348,13 +347,13 @@ fn assert_hdl32e(datagrams: &[Datagram], packets: usize, returns: usize) {
     );
     assert_eq!(stats.model.unwrap().name, "HDL-32E");
     assert!(stats.conflicts.is_empty());
-    // 12 firings a packet, 46.08 us apart.
+    // 12 firings per packet at 46.08 us.
     assert_eq!(decoded.firings.len(), packets * 12);
     assert_eq!(decoded.firings[1].0, 46_080);
 }
 
 #[test]
-fn a_packet_missing_anywhere_is_counted_once() {
+fn missing_packets_are_counted_once() {
     let mut datagrams = recording("vlp16-fov-limited-malformed.pcap");
     datagrams.retain(|d| d.payload.len() == 1206);
     for out in 1..datagrams.len() - 1 {
@@ -366,7 +365,7 @@ fn a_packet_missing_anywhere_is_counted_once() {
                 assert!(!(41.0..320.0).contains(&firing.azimuth_deg));
                 let start = firing.start.as_nanos();
                 if let Some((before, azimuth)) = last {
-                    // Times stay right whichever neighbour is missing.
+                    // Times are correct whichever neighbour is missing.
                     let turned_deg = (firing.azimuth_deg - azimuth).rem_euclid(360.0);
                     let nominal_ns = turned_deg / 1_800.0 * 1e9;
                     let off_ms = ((start - before) as f64 - nominal_ns) * 1e-6;
@@ -376,7 +375,7 @@ fn a_packet_missing_anywhere_is_counted_once() {
             });
         }
         decoder.finish(&mut |_| {});
-        // A missing packet that itself straddled the first gap cannot be told from the gap.
+        // A missing packet that spans the first gap is indistinguishable from the gap.
         let straddler = out == 1;
         if !straddler {
             assert_eq!(decoder.stats().lost_packets, 1, "without {out}");
@@ -396,7 +395,7 @@ fn both_passes_agree_on_the_fill() {
 
 struct Cut {
     frames: Vec<RevolutionFrame>,
-    /// Columns, cells with something in them in either layer, and layers of each frame.
+    /// Columns, non-empty cells and layers of each frame.
     grids: Vec<(usize, usize, usize)>,
 }
 
@@ -427,8 +426,8 @@ fn cut(datagrams: &[Datagram], cut_azimuth_deg: f64) -> Cut {
     Cut { frames, grids }
 }
 
-/// Frames of a turn at any cut; the first and the last are parts of one.
-fn assert_turns(name: &str, datagrams: &[Datagram], firings_a_turn: f64) {
+/// Frames of a revolution at any cut; the first and the last are partial.
+fn assert_revolutions(name: &str, datagrams: &[Datagram], firings_per_revolution: f64) {
     for cut_deg in [0.0, 90.0, 211.5, 359.99] {
         let Cut { frames, .. } = cut(datagrams, cut_deg);
         let sizes: Vec<u64> = frames.iter().map(|frame| frame.firings).collect();
@@ -439,8 +438,11 @@ fn assert_turns(name: &str, datagrams: &[Datagram], firings_a_turn: f64) {
         assert!(inner.len() >= 2);
         for frame in inner {
             assert!(frame.whole, "{frame:?}");
-            let off = frame.firings as f64 / firings_a_turn - 1.0;
-            assert!(off.abs() < 0.005, "{frame:?}, {firings_a_turn} a turn");
+            let off = frame.firings as f64 / firings_per_revolution - 1.0;
+            assert!(
+                off.abs() < 0.005,
+                "{frame:?}, {firings_per_revolution} per revolution"
+            );
         }
     }
 }
@@ -453,7 +455,7 @@ fn firings_per_revolution(hz: f64) -> f64 {
 #[test]
 fn frames_of_real_revolutions_have_the_rotors_size() {
     let name = "vlp16-2014-no-factory-bytes.pcap";
-    assert_turns(name, &recording(name), firings_per_revolution(20.0));
+    assert_revolutions(name, &recording(name), firings_per_revolution(20.0));
 }
 
 #[test]
@@ -464,14 +466,14 @@ fn frames_of_whole_recordings_have_the_rotors_size() {
         ("vlp16-dual.pcap", 10.0),
         ("vlp16-2014-no-factory-bytes.pcap", 20.0),
     ] {
-        assert_turns(name, &whole_recording(name), firings_per_revolution(hz));
+        assert_revolutions(name, &whole_recording(name), firings_per_revolution(hz));
     }
 }
 
 #[test]
-fn frames_of_a_limited_view_begin_where_it_opens() {
+fn frames_of_a_limited_view_begin_at_its_edge() {
     let datagrams = recording("vlp16-fov-limited-malformed.pcap");
-    // 320 to 41 deg of a 5 Hz turn: 81 of 360 deg of 3617 firings.
+    // 320 to 41 deg at 5 Hz: 81 of 360 deg of 3617 firings.
     let Cut { frames, .. } = cut(&datagrams, 180.0);
     println!("{frames:?}");
     assert_eq!(frames.len(), 3);
@@ -479,7 +481,7 @@ fn frames_of_a_limited_view_begin_where_it_opens() {
     assert!((frames[1].firings as f64 - 81.0 / 360.0 * 3_617.0).abs() < 25.0);
     let silent = frames[1].first - frames[0].last;
     assert!((silent.as_secs_f64() - 0.155).abs() < 0.002);
-    // Cut at 0, which is in view, frames begin in mid-view.
+    // With a cut at 0, frames begin within the view.
     let Cut { frames, .. } = cut(&datagrams, 0.0);
     assert!((frames[1].first - frames[0].last).as_nanos() < 60_000);
 }
@@ -517,8 +519,7 @@ fn assert_organised(name: &str, datagrams: &[Datagram], returns: usize, layers: 
     assert!(grids.iter().all(|grid| grid.2 == layers));
 }
 
-/// What the position packets of a recording make of the clock: changes of the lock, and UTC less
-/// the host's clock in seconds for every position packet.
+/// Changes of the lock, and UTC less the host's clock in seconds for every position packet.
 fn utc(datagrams: &[Datagram]) -> (Vec<UtcState>, Vec<f64>, usize) {
     let mut clock = UtcClock::new();
     let mut decoder = Decoder::new(Options::default());
@@ -570,18 +571,18 @@ fn assert_utc_of_a_locked_sensor(datagrams: &[Datagram], min_points: usize) {
         "UTC less host: {least:.6} to {most:.6} s over {} packets, {told} points",
         off.len()
     );
-    // The host's clock is 0.367 s fast; what is left is the jitter of arrival, 88 us.
+    // The host's clock is 0.367 s fast; the rest is the jitter of arrival, 88 us.
     assert!((-0.367..-0.3665).contains(&least) && (-0.367..-0.3665).contains(&most));
     assert!(most - least < 0.000_2, "{least} {most}");
-    // All points but those before the first position packet, and of the packet held back and the
+    // All points except those before the first position packet, of the pending packet and of the
     // last one.
     assert!(told > min_points, "{told}");
 }
 
 #[test]
-fn utc_does_not_need_the_hosts_date() {
+fn utc_is_independent_of_the_host_date() {
     let datagrams = recording("vlp16-fov-limited-malformed.pcap");
-    // Its capture times were edited to September 2020; the receiver says 2021-05-20 08:17:21.
+    // Its capture times were changed to September 2020; the receiver has 2021-05-20 08:17:21.
     let (states, off, _) = utc(&datagrams);
     let [UtcState::Locked { hours }] = states[..] else {
         panic!("{states:?}");

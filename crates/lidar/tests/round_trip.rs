@@ -1,8 +1,7 @@
-//! Packets of the software sensor decode to firings from which the same packets can be built again,
-//! bit by bit; and every laser's azimuth is that of the rotor when it fired.
+//! Packets of the software sensor decode to firings that encode to the same packets, and every
+//! laser's azimuth is that of the rotor when it fired.
 //!
-//! The packets come from `firmware-sim`, which writes them from the manual without any code of this
-//! crate.
+//! The packets come from `firmware-sim`, which implements the manual without code of this crate.
 
 use firmware_sim::vlp16::{DataPacketBuilder, LASERS, PacketModel, ReturnMode, Returns};
 use lidar::{Decoder, Duplicates, Echo, Firing, Options};
@@ -14,7 +13,7 @@ const HOUR_NS: i64 = 3_600_000_000_000;
 const HOURS: i64 = 472_222;
 const PACKETS: usize = 6;
 
-/// A sensor that turns evenly.
+/// A sensor at constant speed.
 #[derive(Clone, Copy, Debug)]
 struct Rotor {
     rpm: f64,
@@ -34,10 +33,10 @@ impl Rotor {
     }
 }
 
-/// What came back in one firing: the only return of each laser, or its last and its strongest.
+/// Returns of firings: the only one of each laser, or the last and the strongest.
 type Shots = Vec<(Returns, Returns)>;
 
-/// Packets with the time at which each was complete.
+/// Packets with their completion times.
 fn build(rotor: Rotor, dual: bool, shots: &Shots) -> Vec<(i64, Vec<u8>)> {
     let a_packet = if dual { 12 } else { 24 };
     shots
@@ -72,7 +71,7 @@ fn packet(
     builder.finish(us).to_vec()
 }
 
-/// What a packet is built from: start and azimuth of each firing, and its shots.
+/// Start, azimuth and returns of each firing.
 #[derive(Debug, Default)]
 struct Taken {
     starts: Vec<Stamp<Lidar>>,
@@ -89,7 +88,7 @@ impl Taken {
             let laser = usize::from(seen.laser);
             let second = match seen.echo {
                 Echo::StrongestOrSecond => true,
-                // With every return asked for the pair is given in full, the last first.
+                // With all returns requested both of a pair are given, the last first.
                 Echo::LastAndStrongest => last[laser].0 != 0,
                 Echo::Strongest | Echo::Last | Echo::Unknown => false,
             };
@@ -114,7 +113,7 @@ impl Taken {
     }
 }
 
-/// A distance and a reflectivity, or nothing.
+/// A distance and a reflectivity, or no return.
 fn any_return() -> impl Strategy<Value = (u16, u8)> {
     prop_oneof![
         1 => Just((0, 0)),
@@ -133,7 +132,7 @@ prop_compose! {
     fn any_rotor()(
         rpm in 300.0..1_200.0,
         start_deg in 0.0..360.0,
-        // Up to the hour, over which some run, or anywhere in it.
+        // Just before the hour, or anywhere in it.
         before_us in prop_oneof![0i64..10_000, 0..3_600_000_000i64],
     ) -> Rotor {
         Rotor { rpm, start_deg, begin_ns: HOURS * HOUR_NS - before_us * 1_000 }
@@ -158,7 +157,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn packets_to_firings_to_packets_is_the_identity(
+    fn packets_round_trip_through_firings(
         rotor in any_rotor(), dual: bool, shots in any_shots(),
     ) {
         let packets = build(rotor, dual, &shots);
@@ -171,10 +170,10 @@ proptest! {
         }
     }
 
-    /// Two azimuths of a hundredth of a degree each are off by half of one at most, and so is what
-    /// lies between them.
+    /// Azimuths in hundredths of a degree are off by at most half of one, and so are interpolated
+    /// ones.
     #[test]
-    fn azimuths_are_the_rotors_within_half_a_hundredth(
+    fn azimuths_are_exact_to_half_a_hundredth(
         rotor in any_rotor(), dual: bool, shots in any_shots(),
     ) {
         let packets = build(rotor, dual, &shots);
@@ -185,7 +184,7 @@ proptest! {
             for laser in 0..LASERS as u8 {
                 let delay_ns = 2_304 * i64::from(laser);
                 let start_ns = rotor.begin_ns + seen as i64 * FIRING_NS;
-                // The device counts whole microseconds.
+                // Device time is in whole microseconds.
                 assert!((firing.start.as_nanos() - start_ns).abs() < 1_000);
                 let apart = firing.laser_azimuth_deg(laser).unwrap() - rotor.azimuth_deg(start_ns + delay_ns);
                 let apart = apart.rem_euclid(360.0);
@@ -199,7 +198,7 @@ proptest! {
             seen += 1;
         });
         prop_assert!(worst_deg <= 0.005 + 1e-9, "{} deg", worst_deg);
-        // Where no packet follows, the rate of the packet carries on from its last block.
+        // Without a successor, the packet's rate extends from its last block.
         prop_assert!(worst_last_deg <= 0.0075, "{} deg", worst_last_deg);
         prop_assert_eq!(seen, packets.len() * a_packet);
     }

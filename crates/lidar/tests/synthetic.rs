@@ -1,7 +1,6 @@
-//! Packets of a rotor whose every instant is known decode to that rotor: azimuth, time, hour, gaps,
-//! loss, order.
+//! Packets of a simulated rotor decode to its azimuth, time, hour, gaps, loss and order.
 //!
-//! The packets are written here from manual 9.3.2, without the code under test.
+//! The packets are encoded here by manual 9.3.2, without the code under test.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use lidar::{Decoder, Duplicates, Echo, Firing, Options, Stats, Timekeeper};
@@ -12,7 +11,7 @@ const BLOCK_NS: i64 = 110_592;
 const FIRING_NS: i64 = 55_296;
 const HOUR_NS: i64 = 3_600_000_000_000;
 
-/// A VLP-16: angle as a function of device time, and where it fires.
+/// A VLP-16: angle as a function of device time, and field of view.
 #[derive(Clone, Copy, Debug)]
 struct Sensor {
     rpm: f64,
@@ -52,7 +51,7 @@ impl Sensor {
         (self.start_deg + turned).rem_euclid(360.0)
     }
 
-    fn sees(&self, ns: i64) -> bool {
+    fn is_in_view(&self, ns: i64) -> bool {
         (self.azimuth_deg(ns) - self.view.0).rem_euclid(360.0) < self.view.1
     }
 
@@ -61,7 +60,7 @@ impl Sensor {
         let per_packet = if self.dual { 6 } else { 12 };
         let ticks = (0..).map(|k| self.begin_ns + k * BLOCK_NS);
         let times: Vec<i64> = ticks
-            .filter(|&t| self.sees(t))
+            .filter(|&t| self.is_in_view(t))
             .take(per_packet * count)
             .collect();
         let packets = times.chunks(per_packet).map(|t| self.packet(t)).collect();
@@ -76,8 +75,7 @@ impl Sensor {
                 bytes.extend([0xFF, 0xEE]);
                 bytes.extend(azimuth.to_le_bytes());
                 for channel in 0..32u16 {
-                    // Channel 0 differs between the two returns, channel 1 is missing from the
-                    // first.
+                    // Channel 0 differs between the two returns, channel 1 is missing in the first.
                     let distance = match (channel, half) {
                         (0, 1) => 4_000,
                         (1, 0) if self.dual => 0,
@@ -100,17 +98,17 @@ impl Sensor {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Seen {
+struct SeenFiring {
     ns: i64,
     azimuth_deg: f64,
     laser_15_deg: f64,
     points: usize,
 }
 
-fn decode<'a>(packets: impl IntoIterator<Item = &'a Packet>) -> (Vec<Seen>, Stats) {
+fn decode<'a>(packets: impl IntoIterator<Item = &'a Packet>) -> (Vec<SeenFiring>, Stats) {
     let mut seen = Vec::new();
     let mut keep = |firing: &Firing<'_>| {
-        seen.push(Seen {
+        seen.push(SeenFiring {
             ns: firing.start.as_nanos(),
             azimuth_deg: firing.azimuth_deg,
             laser_15_deg: firing.laser_azimuth_deg(15).unwrap(),
@@ -125,36 +123,41 @@ fn decode<'a>(packets: impl IntoIterator<Item = &'a Packet>) -> (Vec<Seen>, Stat
     (seen, decoder.stats().clone())
 }
 
-fn apart_deg(a: f64, b: f64) -> f64 {
+fn difference_deg(a: f64, b: f64) -> f64 {
     let apart = (a - b).rem_euclid(360.0);
     apart.min(360.0 - apart)
 }
 
-/// Each firing where and when the rotor was; times are known to the stamp's microsecond and
-/// `slack_ns`.
-fn assert_true(sensor: &Sensor, seen: &[Seen], blocks: &[i64], tolerance_deg: f64, slack_ns: i64) {
+/// Asserts azimuth and time of each firing, with times to a microsecond and `slack_ns`.
+fn assert_firings(
+    sensor: &Sensor,
+    seen: &[SeenFiring],
+    blocks: &[i64],
+    tolerance_deg: f64,
+    slack_ns: i64,
+) {
     assert_eq!(seen.len(), 2 * blocks.len());
     for (i, seen) in seen.iter().enumerate() {
         let truth = blocks[i / 2] + (i as i64 % 2) * FIRING_NS;
         let off = (seen.ns - truth).abs();
         assert!(off <= 1_000 + slack_ns, "firing {i}: {off} ns off");
-        let off = apart_deg(seen.azimuth_deg, sensor.azimuth_deg(truth));
+        let off = difference_deg(seen.azimuth_deg, sensor.azimuth_deg(truth));
         assert!(off <= tolerance_deg, "firing {i}: {off} deg off");
-        let off = apart_deg(seen.laser_15_deg, sensor.azimuth_deg(truth + 34_560));
+        let off = difference_deg(seen.laser_15_deg, sensor.azimuth_deg(truth + 34_560));
         assert!(off <= tolerance_deg, "firing {i}, laser 15: {off} deg off");
     }
 }
 
-fn assert_forwards(seen: &[Seen]) {
+fn assert_forwards(seen: &[SeenFiring]) {
     assert!(seen.is_sorted_by(|a, b| a.ns < b.ns));
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Interpolating between azimuths that are right to 0.005 deg is right to 0.005 deg.
+    /// Interpolation between azimuths within 0.005 deg is within 0.005 deg.
     #[test]
-    fn azimuth_is_the_rotors(
+    fn azimuths_are_those_of_the_rotor(
         rpm in 300.0..1_200.0f64,
         start_deg in 0.0..360.0f64,
         dual: bool,
@@ -164,10 +167,10 @@ proptest! {
         let sensor = Sensor { rpm, start_deg, dual, begin_ns, ..Sensor::default() };
         let (packets, blocks) = sensor.packets(30);
         let (seen, stats) = decode(&packets);
-        // The stream's last block has no successor and goes on at the pace of the block before.
+        // The last block has no successor and continues at the pace of the block before.
         let known = blocks.len() - 1;
-        assert_true(&sensor, &seen[..2 * known], &blocks[..known], 0.005 + 1e-9, 0);
-        assert_true(&sensor, &seen[2 * known..], &blocks[known..], 0.015, 0);
+        assert_firings(&sensor, &seen[..2 * known], &blocks[..known], 0.005 + 1e-9, 0);
+        assert_firings(&sensor, &seen[2 * known..], &blocks[known..], 0.015, 0);
         assert_forwards(&seen);
         prop_assert_eq!(stats.lost_packets + stats.clock_steps, 0);
         prop_assert!((stats.rpm.unwrap() - rpm).abs() < 0.2);
@@ -177,18 +180,18 @@ proptest! {
     }
 
     #[test]
-    fn a_rotor_that_changes_speed_is_followed(spin_up in -300.0..300.0f64, dual: bool) {
+    fn changes_of_speed_are_followed(spin_up in -300.0..300.0f64, dual: bool) {
         let sensor = Sensor { spin_up, dual, ..Sensor::default() };
         let (packets, blocks) = sensor.packets(400);
         let (seen, stats) = decode(&packets);
         let known = blocks.len() - 1;
-        assert_true(&sensor, &seen[..2 * known], &blocks[..known], 0.005_1, 0);
+        assert_firings(&sensor, &seen[..2 * known], &blocks[..known], 0.005_1, 0);
         prop_assert_eq!(stats.lost_packets, 0);
     }
 
-    /// The hour may turn between any two packets, or while one fills.
+    /// The hour may change between packets or within one.
     #[test]
-    fn the_hour_turns_anywhere(before_us in 0i64..30_000, dual: bool, host_off_s in -1_700i64..1_700) {
+    fn the_hour_changes_anywhere(before_us in 0i64..30_000, dual: bool, host_off_s in -1_700i64..1_700) {
         let begin_ns = 470_001 * HOUR_NS - before_us * 1_000;
         let sensor = Sensor { dual, begin_ns, ..Sensor::default() };
         let (mut packets, blocks) = sensor.packets(20);
@@ -196,12 +199,12 @@ proptest! {
             packet.host += Span::from_secs(host_off_s);
         }
         let (seen, stats) = decode(&packets);
-        assert_true(&sensor, &seen, &blocks, 0.015, 0);
+        assert_firings(&sensor, &seen, &blocks, 0.015, 0);
         assert_forwards(&seen);
         prop_assert_eq!(stats.lost_packets + stats.clock_steps, 0);
     }
 
-    /// Blocks behind the gap fired a whole gap later than their place in the packet says.
+    /// Blocks after the gap fire later by the gap than their position in the packet.
     #[test]
     fn a_limited_field_of_view_is_timed_from_the_next_packet(
         rpm in 300.0..1_200.0f64,
@@ -214,9 +217,9 @@ proptest! {
         let sensor = Sensor { rpm, view, start_deg, dual, ..Sensor::default() };
         let (packets, blocks) = sensor.packets(400);
         let (seen, stats) = decode(&packets);
-        // The last packet may straddle a gap that no successor measures.
+        // The last packet may span a gap that no successor measures.
         let known = blocks.len() - 12;
-        assert_true(&sensor, &seen[..2 * known], &blocks[..known], 0.015, 1_000);
+        assert_firings(&sensor, &seen[..2 * known], &blocks[..known], 0.015, 1_000);
         assert_forwards(&seen);
         let step_deg = rpm * 6.0 * BLOCK_NS as f64 * 1e-9;
         for firing in &seen {
@@ -226,9 +229,9 @@ proptest! {
         prop_assert_eq!(stats.clock_steps, 0);
     }
 
-    /// With a view of a few degrees one packet straddles several gaps.
+    /// With a view of a few degrees one packet spans several gaps.
     #[test]
-    fn a_narrow_field_of_view_is_timed_too(rpm in 300.0..1_200.0f64, width_deg in 3.0..30.0f64) {
+    fn narrow_fields_of_view_are_timed(rpm in 300.0..1_200.0f64, width_deg in 3.0..30.0f64) {
         let sensor = Sensor { rpm, view: (10.0, width_deg), ..Sensor::default() };
         let (packets, blocks) = sensor.packets(40);
         let (seen, _) = decode(&packets);
@@ -248,7 +251,7 @@ proptest! {
         let view = if limited { (320.0, 81.0) } else { (0.0, 360.0) };
         let sensor = Sensor { dual, view, rpm: 300.0, start_deg: 355.0, ..Sensor::default() };
         let (packets, _) = sensor.packets(100);
-        // A gap shows what it is only once a packet has straddled it.
+        // A gap is recognised once a packet spans it.
         let straddlers = packets.windows(2).enumerate().filter(|(_, pair)| {
             (pair[1].host - pair[0].host).as_nanos() > 10_000_000
         });
@@ -260,7 +263,7 @@ proptest! {
         prop_assert_eq!(stats.lost_packets, out.len() as u64);
     }
 
-    /// Neighbours that swapped places come out as if they had not; repeated packets come out once.
+    /// Swapped packets are reordered, and repeated packets are emitted once.
     #[test]
     fn order_is_restored(
         swaps in prop::collection::btree_set(0usize..60, 0..20),
@@ -279,7 +282,7 @@ proptest! {
         prop_assert_eq!(seen.len(), in_order.len());
         for (a, b) in seen.iter().zip(&in_order) {
             prop_assert_eq!(a.ns, b.ns);
-            prop_assert!(apart_deg(a.azimuth_deg, b.azimuth_deg) < 0.011);
+            prop_assert!(difference_deg(a.azimuth_deg, b.azimuth_deg) < 0.011);
         }
         prop_assert_eq!((stats.reordered, stats.lost_packets), (swaps.len() as u64, 0));
 
@@ -292,10 +295,9 @@ proptest! {
         prop_assert_eq!(stats.duplicates, twice.len() as u64);
     }
 
-    /// Bytes of any kind, at any host time, in any order: counted, never a panic, and both passes
-    /// of one mind.
+    /// Arbitrary bytes, host times and orders are counted without panic, and both passes agree.
     #[test]
-    fn anything_at_all_is_survived(
+    fn arbitrary_input_does_not_panic(
         junk in prop::collection::vec(junk(), 1..40),
         hosts in prop::collection::vec(prop_oneof![any::<i64>(), 0..10_000_000_000i64], 40),
         options in (any::<bool>(), any::<bool>()),
@@ -329,7 +331,7 @@ proptest! {
     }
 }
 
-/// Payloads from noise to nearly right.
+/// Payloads from noise to almost valid.
 fn junk() -> impl Strategy<Value = Vec<u8>> {
     let packet = (
         prop::collection::vec(any::<u8>(), 1206),
@@ -393,7 +395,7 @@ fn golden_packet_to_points() {
 }
 
 #[test]
-fn dual_packets_give_both_returns_of_a_pulse_at_one_time() {
+fn dual_returns_of_a_pulse_have_one_time() {
     let sensor = Sensor {
         dual: true,
         ..Sensor::default()
@@ -410,7 +412,7 @@ fn dual_packets_give_both_returns_of_a_pulse_at_one_time() {
     decoder.finish(&mut keep);
     assert_eq!(firings.len(), 36);
     let raw = |i: usize| (firings[0][i].range_m * 500.0).round() as u32;
-    // Laser 0 saw two distances, laser 1 one return only.
+    // Laser 0 has two distances, laser 1 a single return.
     assert_eq!((raw(0), firings[0][0].echo), (5_000, Echo::Last));
     assert_eq!(
         (raw(1), firings[0][1].echo),
@@ -421,15 +423,15 @@ fn dual_packets_give_both_returns_of_a_pulse_at_one_time() {
         (5_001, Echo::StrongestOrSecond)
     );
     assert_eq!(firings[0][0].time, firings[0][1].time);
-    // Channel 16 is laser 0 of the second firing: one distance, reported twice.
+    // Channel 16 is laser 0 of the second firing: one distance reported twice.
     assert_eq!(firings[1][0].echo, Echo::LastAndStrongest);
-    // Of 32 channels one differs, one is one-sided, thirty repeat.
+    // Of 32 channels one differs, one has a single return, thirty repeat.
     assert_eq!(decoder.stats().returns, 3 * 6 * 63);
     assert_eq!(decoder.stats().unique_returns, 3 * 6 * 33);
 }
 
 #[test]
-fn a_late_packet_is_left_out_and_said() {
+fn late_packets_are_skipped_and_counted() {
     let (packets, _) = Sensor::default().packets(6);
     let order = [0, 2, 3, 4, 1, 5];
     let (seen, stats) = decode(order.map(|i| &packets[i]));
@@ -438,7 +440,7 @@ fn a_late_packet_is_left_out_and_said() {
 }
 
 #[test]
-fn a_device_clock_that_is_set_loses_nothing() {
+fn steps_of_the_device_clock_lose_no_packets() {
     for set_s in [-600, -1, 2, 600] {
         let (mut packets, _) = Sensor::default().packets(20);
         let (after, _) = Sensor {
@@ -447,7 +449,7 @@ fn a_device_clock_that_is_set_loses_nothing() {
         }
         .packets(40);
         for (old, new) in packets.clone().iter().zip(&after[20..]) {
-            // The host's clock goes on as it was.
+            // The host's clock continues.
             packets.push(Packet {
                 host: old.host + Span::from_nanos(20 * 12 * BLOCK_NS),
                 bytes: new.bytes.clone(),
@@ -463,7 +465,7 @@ fn a_device_clock_that_is_set_loses_nothing() {
 }
 
 #[test]
-fn an_unknown_product_is_found_by_its_spacing_or_left_out() {
+fn unknown_products_are_identified_by_spacing_or_skipped() {
     let (mut packets, _) = Sensor::default().packets(5);
     for packet in &mut packets {
         packet.bytes[1205] = 0x99;
@@ -479,7 +481,7 @@ fn an_unknown_product_is_found_by_its_spacing_or_left_out() {
 }
 
 #[test]
-fn what_the_user_says_stands_and_is_reported() {
+fn the_model_of_the_user_takes_precedence() {
     let (packets, _) = Sensor::default().packets(5);
     let options = Options {
         model: Some(&protocol::vlp16::models::HDL_32E),

@@ -1,9 +1,8 @@
-//! Per-laser corrections from a file: the YAML of ROS drivers, or this project's own TOML.
+//! Calibration files: the YAML of ROS drivers, or this project's TOML.
 //!
-//! Both become [`Corrections`]. A file is believed only as a whole: what is missing, twice there,
-//! not understood or out of all proportion is an error with its line, because a correction that is
-//! silently not applied looks like a bad sensor. Left out: opening files, corrections of
-//! reflectivity, and telling which file belongs to which sensor.
+//! Both give [`Corrections`]. Missing, repeated, unknown or implausible values are errors with
+//! their line, since an ignored correction would look like a bad sensor. Corrections of
+//! reflectivity are not applied.
 
 mod native;
 mod ros;
@@ -17,77 +16,77 @@ use crate::corrections::{Corrections, LaserCorrection};
 pub use native::from_toml;
 pub use ros::{Ignored, RosCalibration, from_ros_yaml};
 
-/// A sensor's own angles are some hundredths of a degree off its model's; more is another laser,
-/// another model or another sign.
-const MOST_OFF_DEG: f64 = 2.0;
-/// No beam of this family starts further from the origin, or is further off in range.
-const MOST_OFF_M: f64 = 1.0;
+/// Largest plausible difference from the model's angles. Real ones are some hundredths of a degree;
+/// larger ones are another laser, model or sign.
+const MAX_OFFSET_DEG: f64 = 2.0;
+/// Largest plausible offset of a beam's origin or range.
+const MAX_OFFSET_M: f64 = 1.0;
 
-/// What is wrong with a calibration file, and in which line, counted from 1.
+/// Error in a calibration file, with its line, counted from 1.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CalibrationError {
-    /// Not the language that it should be in.
+    /// Invalid syntax.
     #[error("{layer} line {line}: {message}")]
     Syntax {
         /// The kind of file.
         layer: &'static str,
-        /// Where.
+        /// Line of the error.
         line: usize,
-        /// What the parser says.
+        /// The parser's message.
         message: String,
     },
-    /// A key that is not of this kind of file.
+    /// An unknown key.
     #[error("{layer} line {line}: key {key} is not known")]
     UnknownKey {
         /// The kind of file.
         layer: &'static str,
-        /// Where it is.
+        /// Its line.
         line: usize,
         /// The key.
         key: String,
     },
-    /// A key that has to be there.
+    /// A missing key.
     #[error("{layer} line {line}: expected key {key}, which is missing")]
     MissingKey {
         /// The kind of file.
         layer: &'static str,
-        /// Where the table or mapping begins that lacks it.
+        /// Start of the table or mapping.
         line: usize,
         /// The key.
         key: &'static str,
     },
-    /// A value that it cannot have.
+    /// An invalid value.
     #[error("{layer} line {line}: {key}: expected {expected}, got {got}")]
     Value {
         /// The kind of file.
         layer: &'static str,
-        /// Where it is.
+        /// Its line.
         line: usize,
         /// The key.
         key: String,
-        /// What it may be.
+        /// Valid values.
         expected: String,
-        /// What is there.
+        /// The value found.
         got: String,
     },
-    /// A correction that has no place in [`LaserCorrection`].
+    /// A correction that [`LaserCorrection`] cannot represent.
     #[error("{layer} line {line}: {key} is not supported: {why}")]
     Unsupported {
         /// The kind of file.
         layer: &'static str,
-        /// Where it is.
+        /// Its line.
         line: usize,
         /// The key.
         key: &'static str,
-        /// Why.
+        /// The reason.
         why: &'static str,
     },
-    /// Not as many lasers as the model has.
+    /// Another number of lasers than the model's.
     #[error("{layer} line {line}: expected the {expected} lasers of a {model}, got {got}")]
     Lasers {
         /// The kind of file.
         layer: &'static str,
-        /// Where the list begins.
+        /// Start of the list.
         line: usize,
         /// The model.
         model: &'static str,
@@ -98,25 +97,25 @@ pub enum CalibrationError {
     },
 }
 
-/// One laser of a file, with the lines of what may be out of proportion.
+/// One laser of a file, with the lines of its values.
 struct LaserEntry {
-    /// The laser's number in firing order, and its line.
+    /// Index in the firing order, and its line.
     id: (i64, usize),
     correction: LaserCorrection,
-    /// Key and line of elevation, azimuth offset, and of each length.
+    /// Keys and lines of the values.
     lines: EntryLines,
 }
 
-/// Which key, in which line, a quantity came from.
+/// Keys and lines of a laser's values.
 struct EntryLines {
     elevation: (&'static str, usize),
     azimuth: (&'static str, usize),
     range: (&'static str, usize),
-    /// Lengths that say where a beam starts, each with its value.
+    /// Offsets of the beam's origin, with their values.
     offsets: Vec<(&'static str, usize, f64)>,
 }
 
-/// Puts entries, in any order, into firing order, each laser once.
+/// Sorts entries into firing order and checks that each laser occurs once.
 fn assemble(
     layer: &'static str,
     line: usize,
@@ -153,21 +152,21 @@ fn assemble(
             }
         }
     }
-    // Every slot is taken: as many entries as slots, none twice.
+    // Every slot is filled: there are as many entries as slots, and none occurs twice.
     let mut lasers = Vec::with_capacity(expected);
-    for (entry, usual) in slots.into_iter().flatten().zip(model.lasers) {
-        plausible(layer, model, &entry, LaserCorrection::from(usual))?;
+    for (entry, laser) in slots.into_iter().flatten().zip(model.lasers) {
+        check_plausible(layer, model, &entry, LaserCorrection::from(laser))?;
         lasers.push(entry.correction);
     }
     Ok(Corrections { lasers })
 }
 
-/// Refuses what no sensor of the model can have.
-fn plausible(
+/// Refuses implausible values for the model.
+fn check_plausible(
     layer: &'static str,
     model: &'static Model,
     entry: &LaserEntry,
-    usual: LaserCorrection,
+    of_model: LaserCorrection,
 ) -> Result<(), CalibrationError> {
     let refuse = |(key, line): (&'static str, usize), expected: String, got: String| {
         Err(CalibrationError::Value {
@@ -190,30 +189,30 @@ fn plausible(
         (
             lines.elevation,
             "elevation",
-            usual.elevation_deg,
+            of_model.elevation_deg,
             correction.elevation_deg,
         ),
         (
             lines.azimuth,
             "azimuth offset",
-            usual.azimuth_offset_deg,
+            of_model.azimuth_offset_deg,
             correction.azimuth_offset_deg,
         ),
     ];
-    for (at, what, usual_deg, deg) in angles {
-        if (deg - usual_deg).abs() > MOST_OFF_DEG {
+    for (location, quantity, model_deg, deg) in angles {
+        if (deg - model_deg).abs() > MAX_OFFSET_DEG {
             let near = format!(
-                "an {what} within {MOST_OFF_DEG} deg of the {usual_deg} deg of laser {id} of a {name}"
+                "an {quantity} within {MAX_OFFSET_DEG} deg of the {model_deg} deg of laser {id} of a {name}"
             );
-            return refuse(at, near, format!("{deg:.3} deg"));
+            return refuse(location, near, format!("{deg:.3} deg"));
         }
     }
     let range = (lines.range.0, lines.range.1, correction.range_offset_m);
     for &(key, line, m) in lines.offsets.iter().chain([&range]) {
-        if m.abs() > MOST_OFF_M {
+        if m.abs() > MAX_OFFSET_M {
             return refuse(
                 (key, line),
-                format!("at most {MOST_OFF_M} m either way"),
+                format!("at most {MAX_OFFSET_M} m either way"),
                 format!("{m} m"),
             );
         }

@@ -1,9 +1,7 @@
-//! This project's own TOML: `model`, and a `[[laser]]` table for each laser with its units in the
-//! keys' names.
+//! This project's TOML: `model`, and a `[[laser]]` table per laser with units in the key names.
 //!
-//! `id` is the laser's place in the firing order and `elevation_deg` its angle; of the other keys,
-//! one that is absent leaves what the model's table says. Quantities are those of
-//! [`LaserCorrection`]. Left out: writing such a file.
+//! `id` is the laser's index in the firing order. `id` and `elevation_deg` are required; other keys
+//! default to the model's table. The quantities are those of [`LaserCorrection`].
 
 use std::ops::Range;
 
@@ -36,7 +34,7 @@ struct LaserTable {
     vertical_offset_m: Option<Spanned<f64>>,
 }
 
-/// Reads the text of such a file for a sensor of `model`.
+/// Parses the text of such a file for a sensor of `model`.
 ///
 /// # Errors
 /// [`CalibrationError`], with the line.
@@ -64,12 +62,12 @@ impl LaserTable {
     fn entry(&self, text: &str, model: &'static Model) -> Result<LaserEntry, CalibrationError> {
         let id_line = line(text, self.id.span());
         let laser = usize::try_from(*self.id.get_ref()).ok();
-        // A number beyond the model's is refused when all is put together.
-        let usual = laser.and_then(|id| model.lasers.get(id));
-        let usual = usual.map_or_else(LaserCorrection::default, LaserCorrection::from);
-        let read = |key: &'static str, given: Option<&Spanned<f64>>, usual: f64| {
+        // An index beyond the model's lasers is refused in `assemble`.
+        let of_model = laser.and_then(|id| model.lasers.get(id));
+        let of_model = of_model.map_or_else(LaserCorrection::default, LaserCorrection::from);
+        let read = |key: &'static str, given: Option<&Spanned<f64>>, default: f64| {
             let Some(given) = given else {
-                return Ok((usual, (key, id_line)));
+                return Ok((default, (key, id_line)));
             };
             let (number, line) = (*given.get_ref(), line(text, given.span()));
             if number.is_finite() {
@@ -87,7 +85,7 @@ impl LaserTable {
         let (azimuth_offset_deg, azimuth) = read(
             "azimuth_offset_deg",
             self.azimuth_offset_deg.as_ref(),
-            usual.azimuth_offset_deg,
+            of_model.azimuth_offset_deg,
         )?;
         let (range_offset_m, range) = read("range_offset_m", self.range_offset_m.as_ref(), 0.0)?;
         let (radial_offset_m, radial) =
@@ -100,7 +98,7 @@ impl LaserTable {
         let (vertical_offset_m, vertical) = read(
             "vertical_offset_m",
             self.vertical_offset_m.as_ref(),
-            usual.vertical_offset_m,
+            of_model.vertical_offset_m,
         )?;
         Ok(LaserEntry {
             id: (*self.id.get_ref(), id_line),
@@ -126,7 +124,7 @@ impl LaserTable {
     }
 }
 
-/// The line in which a span begins.
+/// The line at the start of a span.
 fn line(text: &str, span: Range<usize>) -> usize {
     let before = text.as_bytes().iter().take(span.start);
     1 + before.filter(|&&byte| byte == b'\n').count()

@@ -1,12 +1,11 @@
-//! The YAML of the ROS velodyne drivers.
+//! The YAML of the ROS Velodyne drivers.
 //!
-//! Their convention, with d the measured range, in this project's axes (theirs are x forward, y
-//! left, which is a rotation of the result): azimuth a = raw - rot_correction, elevation w =
-//! vert_correction, D = d + dist_correction; xy = D cos w - vert_offset sin w, x = xy sin a -
-//! horiz_offset cos a, y = xy cos a + horiz_offset sin a, z = D sin w + vert_offset cos w. So the
-//! vertical offset is square to the beam, half of it outwards for a beam that points down steeply.
-//! Angles are radians, lengths metres. `laser_id` is the channel's number in the packet, which is
-//! the firing order of every model here. Left out: corrections of reflectivity, which are named in
+//! Their convention, with the measured range d, in this project's axes (theirs are x forward, y
+//! left): azimuth a = raw - rot_correction, elevation w = vert_correction, D = d + dist_correction;
+//! xy = D cos w - vert_offset sin w, x = xy sin a - horiz_offset cos a, y = xy cos a + horiz_offset
+//! sin a, z = D sin w + vert_offset cos w. So the vertical offset is perpendicular to the beam.
+//! Angles are radians, lengths metres. `laser_id` is the channel's index in the packet, which is
+//! the firing order of every model here. Corrections of reflectivity are listed in
 //! [`RosCalibration::ignored`].
 
 use std::f64::consts::PI;
@@ -18,9 +17,9 @@ use super::{CalibrationError, EntryLines, LaserEntry, assemble};
 use crate::corrections::{Corrections, LaserCorrection};
 
 const LAYER: &str = "calibration YAML";
-/// The top level's keys.
+/// Keys of the top level.
 const TOP: [&str; 3] = ["lasers", "num_lasers", "distance_resolution"];
-/// A laser's keys that change where its points are.
+/// Keys of a laser that affect positions.
 const LASER: [&str; 9] = [
     "laser_id",
     "rot_correction",
@@ -32,7 +31,7 @@ const LASER: [&str; 9] = [
     "vert_offset_correction",
     "horiz_offset_correction",
 ];
-/// A laser's keys that change its reflectivity, and the value with which they change nothing.
+/// Keys of a laser that affect reflectivity, with their neutral value.
 const REFLECTIVITY: [(&str, f64); 4] = [
     ("focal_distance", 0.0),
     ("focal_slope", 0.0),
@@ -40,12 +39,12 @@ const REFLECTIVITY: [(&str, f64); 4] = [
     ("max_intensity", 255.0),
 ];
 
-/// A file's corrections and what it says beyond them.
+/// Content of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RosCalibration {
-    /// Every laser, in firing order.
+    /// Corrections of every laser in firing order.
     pub corrections: Corrections,
-    /// Corrections of reflectivity that would do something and are not applied.
+    /// Effective corrections of reflectivity, which are not applied.
     pub ignored: Vec<Ignored>,
 }
 
@@ -58,10 +57,10 @@ pub struct Ignored {
     pub key: &'static str,
 }
 
-/// Reads the text of such a file for a sensor of `model`.
+/// Parses the text of such a file for a sensor of `model`.
 ///
-/// Two-point corrections, made for the HDL-64E, lengthen x and y by different amounts that depend
-/// on both; where a file has them and they are not all equal, they do not fit [`LaserCorrection`].
+/// Two-point corrections, made for the HDL-64E, lengthen x and y differently. [`LaserCorrection`]
+/// cannot represent them unless they are equal.
 ///
 /// # Errors
 /// [`CalibrationError`], with the line.
@@ -85,7 +84,7 @@ pub fn from_ros_yaml(
     let mut ignored = Vec::new();
     let entries = used.iter().map(|item| entry(item, &mut ignored));
     let entries = entries.collect::<Result<_, _>>()?;
-    // The drivers' own file for the HDL-32E lists 64 and says that 32 count.
+    // The drivers' file for the HDL-32E lists 64 lasers, of which 32 count.
     for item in rest {
         let unused = entry(item, &mut Vec::new())?.id;
         if usize::try_from(unused.0).is_ok_and(|id| id < used.len()) {
@@ -104,7 +103,7 @@ pub fn from_ros_yaml(
     })
 }
 
-/// The distance unit is the packet's, not the sensor's own: another one means another model.
+/// Checks the distance unit, which is that of the packets: another unit means another model.
 fn check_unit(top: &YamlMapping<'_>, model: &'static Model) -> Result<(), CalibrationError> {
     let Some(unit) = top.get("distance_resolution") else {
         return Ok(());
@@ -117,7 +116,7 @@ fn check_unit(top: &YamlMapping<'_>, model: &'static Model) -> Result<(), Calibr
     Ok(())
 }
 
-/// One laser.
+/// Parses one laser.
 fn entry(item: &YamlNode, ignored: &mut Vec<Ignored>) -> Result<LaserEntry, CalibrationError> {
     let is_reflectivity = |key: &str| REFLECTIVITY.iter().any(|&(known, _)| known == key);
     let laser = YamlMapping::new(item, "a laser", |key| {
@@ -130,7 +129,7 @@ fn entry(item: &YamlNode, ignored: &mut Vec<Ignored>) -> Result<LaserEntry, Cali
         if radians.abs() <= PI {
             Ok((radians, (key, node.line)))
         } else {
-            Err(value(key, node, "radians, at most half a turn"))
+            Err(value(key, node, "radians, at most half a revolution"))
         }
     };
     let length = |key| {
@@ -173,8 +172,7 @@ fn entry(item: &YamlNode, ignored: &mut Vec<Ignored>) -> Result<LaserEntry, Cali
     })
 }
 
-/// Passes two-point corrections only where they come to nothing: where both equal the one for all
-/// distances.
+/// Accepts two-point corrections only if both equal the correction for all distances.
 fn two_point(laser: &YamlMapping<'_>, range_offset_m: f64) -> Result<(), CalibrationError> {
     const AVAILABLE: &str = "two_pt_correction_available";
     let Some(available) = laser.get(AVAILABLE) else {
@@ -199,7 +197,7 @@ fn two_point(laser: &YamlMapping<'_>, range_offset_m: f64) -> Result<(), Calibra
     Ok(())
 }
 
-/// A mapping all of whose keys are known.
+/// A mapping with known keys only.
 struct YamlMapping<'a> {
     line: usize,
     pairs: &'a [(YamlNode, YamlNode)],

@@ -1,16 +1,15 @@
-//! A YAML document as a tree that knows its lines: as much of the language as calibration files
-//! use.
+//! YAML documents as trees with line numbers, for the subset that calibration files use.
 //!
-//! Left out: anchors and aliases, tags, and more than one document; each is an error.
+//! Anchors, aliases, tags and several documents are errors.
 
 use saphyr_parser::{Event, Parser, Span};
 
 use super::CalibrationError;
 
-/// Deeper than any calibration.
+/// Deeper nesting than any calibration file has.
 const MOST_DEPTH: usize = 16;
 
-/// A value and the line on which it begins.
+/// A value and the line where it starts.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct YamlNode {
     pub line: usize,
@@ -21,7 +20,7 @@ pub(super) struct YamlNode {
 pub(super) enum YamlValue {
     Scalar(String),
     List(Vec<YamlNode>),
-    /// Keys in the order of the file, none twice.
+    /// Unique keys in the order of the file.
     Map(Vec<(YamlNode, YamlNode)>),
 }
 
@@ -33,7 +32,7 @@ impl YamlNode {
         }
     }
 
-    /// What it is, for an error.
+    /// Describes the value for an error message.
     pub(super) fn describe(&self) -> String {
         match &self.value {
             YamlValue::Scalar(text) => format!("{text:?}"),
@@ -43,14 +42,14 @@ impl YamlNode {
     }
 }
 
-/// A list or mapping whose end has not come.
+/// An unfinished list or mapping.
 struct OpenNode {
     node: YamlNode,
-    /// The key whose value comes next.
+    /// The key of the next value.
     key: Option<YamlNode>,
 }
 
-/// Reads the one document of `text`.
+/// Parses the single document of `text`.
 pub(super) fn parse(layer: &'static str, text: &str) -> Result<YamlNode, CalibrationError> {
     let wrong = |line, message: &str| CalibrationError::Syntax {
         layer,
@@ -107,7 +106,7 @@ pub(super) fn parse(layer: &'static str, text: &str) -> Result<YamlNode, Calibra
 }
 
 impl OpenNode {
-    /// Adds a finished item, key or value.
+    /// Adds a complete item, key or value.
     fn take(&mut self, done: YamlNode) -> Result<(), String> {
         match (&mut self.node.value, self.key.take()) {
             (YamlValue::List(items), _) => items.push(done),
@@ -117,11 +116,11 @@ impl OpenNode {
                     return Err(format!("expected a key, got {}", done.describe()));
                 };
                 if pairs.iter().any(|(key, _)| key.as_str() == Some(name)) {
-                    return Err(format!("key {name} is there twice"));
+                    return Err(format!("key {name} is repeated"));
                 }
                 self.key = Some(done);
             }
-            // Scalars are never open.
+            // Scalars have no content.
             (YamlValue::Scalar(_), _) => {}
         }
         Ok(())

@@ -1,10 +1,9 @@
-//! What one block of a packet holds, or one pair of blocks with dual returns: 32 channels that are
-//! placed together.
+//! The firings of one block, or of a pair of blocks with dual returns: 32 channels that are placed
+//! together.
 //!
-//! A [`FiringBlock`] is two firings of a 16-laser model, or one of a 32-laser one.
-//! [`FiringBlock::firings`] is the plain way on; [`FiringBlock::place`] is the fast one, several
-//! channels at a time, and gives the same points to some 1e-14 of their distance. Left out:
-//! everything after the sensor's own frame.
+//! A [`FiringBlock`] is two firings of a 16-laser model, or one of a 32-laser model.
+//! [`FiringBlock::firings`] gives the plain definition. [`FiringBlock::place`] places several
+//! channels at a time, to within 1e-14 of the distance.
 
 use protocol::vlp16::{CHANNELS, Model};
 use units::{Lidar, Real, Span, Stamp};
@@ -14,38 +13,37 @@ use super::unpack::{RawChannels, UnpackedBlock};
 use crate::firing::{Duplicates, Echo, Firing, FiringChannels};
 use crate::geometry::Geometry;
 
-/// The returns of one block: each channel's only one, or of a pair of blocks each channel's first
-/// or second.
+/// One return per channel: the only ones of a block, or the first or second ones of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct ReturnLayer<'a> {
     raw: &'a RawChannels,
-    sorted: &'a UnpackedBlock,
+    unpacked: &'a UnpackedBlock,
     kept: u32,
 }
 
 /// The firings of one block.
 #[derive(Clone, Copy, Debug)]
 pub struct FiringBlock<'a> {
-    /// When channel 0 fired.
+    /// Firing time of channel 0.
     pub start: Stamp<Lidar>,
     pub(crate) azimuth_cdeg: i32,
     pub(crate) pace_cdeg: f64,
     pub(crate) geometry: &'a Geometry,
     pub(crate) azimuth: SinCos,
-    pub(crate) ahead: &'a PaceOffsets,
+    pub(crate) offsets: &'a PaceOffsets,
     pub(crate) returns: BlockReturns<'a>,
 }
 
-/// Where channels look along the horizon: one, or several.
+/// Horizontal direction of one or several channels.
 #[derive(Clone, Copy, Debug)]
 pub struct Heading<V> {
-    /// How far right a count gets, metres.
+    /// Metres to the right per count.
     across: V,
-    /// How far forward, metres.
+    /// Metres forward per count.
     along: V,
 }
 
-/// One block, or a pair of them.
+/// Returns of one block, or of a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum BlockReturns<'a> {
     One {
@@ -61,33 +59,33 @@ pub(crate) enum BlockReturns<'a> {
 
 impl<'a> ReturnLayer<'a> {
     #[inline(always)]
-    pub(crate) const fn new(raw: &'a RawChannels, sorted: &'a UnpackedBlock) -> Self {
+    pub(crate) const fn new(raw: &'a RawChannels, unpacked: &'a UnpackedBlock) -> Self {
         Self {
             raw,
-            sorted,
-            kept: sorted.returns,
+            unpacked,
+            kept: unpacked.returns,
         }
     }
 
-    /// Bit c is set where channel c has a return that is to become a point.
+    /// Bit c is set if channel c has a return that becomes a point.
     #[inline]
     #[must_use]
     pub const fn kept(&self) -> u32 {
         self.kept
     }
 
-    /// Each channel's distance in the model's unit; 0 where nothing came back.
+    /// Distance of each channel in the model's unit; 0 without a return.
     #[inline]
     #[must_use]
     pub const fn counts(&self) -> &'a [f64; CHANNELS] {
-        &self.sorted.counts
+        &self.unpacked.counts
     }
 
-    /// Each channel's calibrated reflectivity.
+    /// Calibrated reflectivity of each channel.
     #[inline]
     #[must_use]
     pub const fn reflectivities(&self) -> &'a [u8; CHANNELS] {
-        &self.sorted.reflectivities
+        &self.unpacked.reflectivities
     }
 }
 
@@ -105,7 +103,7 @@ impl<'a> BlockReturns<'a> {
     ) -> Self {
         let mut strongest = strongest;
         if duplicates == Duplicates::Unique {
-            strongest.kept &= strongest.sorted.changed;
+            strongest.kept &= strongest.unpacked.changed;
         }
         Self::Two {
             last,
@@ -114,7 +112,7 @@ impl<'a> BlockReturns<'a> {
         }
     }
 
-    /// FiringChannels with a distance, and the same with equal pairs counted once.
+    /// FiringNumber of returns, and the same with equal pairs counted once.
     #[inline(always)]
     pub(crate) fn count(&self) -> (u64, u64) {
         let ones = |mask: u32| u64::from(mask.count_ones());
@@ -126,8 +124,8 @@ impl<'a> BlockReturns<'a> {
             Self::Two {
                 last, strongest, ..
             } => {
-                let equal = last.kept & !strongest.sorted.changed;
-                let returns = ones(last.kept) + ones(strongest.sorted.returns);
+                let equal = last.kept & !strongest.unpacked.changed;
+                let returns = ones(last.kept) + ones(strongest.unpacked.returns);
                 (returns, returns - ones(equal))
             }
         }
@@ -135,14 +133,14 @@ impl<'a> BlockReturns<'a> {
 }
 
 impl<'a> FiringBlock<'a> {
-    /// The model it was decoded as.
+    /// The decoded model.
     #[must_use]
     pub const fn model(&self) -> &'static Model {
         self.geometry.model
     }
 
-    /// The returns, and with dual returns each channel's second ones. Of one channel the first
-    /// comes first.
+    /// The returns, and the second ones of dual returns. For each channel the first return precedes
+    /// the second.
     #[inline]
     #[must_use]
     pub const fn layers(&self) -> (&ReturnLayer<'a>, Option<&ReturnLayer<'a>>) {
@@ -154,19 +152,19 @@ impl<'a> FiringBlock<'a> {
         }
     }
 
-    /// Which return each channel's is ([`Echo::code`]), a row a layer; of no meaning where a
-    /// channel has none.
+    /// Kind of each channel's return ([`Echo::code`]), one row per layer; meaningless without a
+    /// return.
     #[inline(never)]
     #[must_use]
     pub fn echo_codes(&self) -> [[u8; CHANNELS]; 2] {
         match &self.returns {
             BlockReturns::One { echo, .. } => [[echo.code(); CHANNELS]; 2],
             BlockReturns::Two { strongest, .. } => {
-                let changed = strongest.sorted.changed;
-                let codes = |apart: Echo| {
+                let changed = strongest.unpacked.changed;
+                let codes = |differing: Echo| {
                     core::array::from_fn(|channel| match changed >> channel & 1 {
                         0 => Echo::LastAndStrongest.code(),
-                        _ => apart.code(),
+                        _ => differing.code(),
                     })
                 };
                 [codes(Echo::Last), codes(Echo::StrongestOrSecond)]
@@ -174,62 +172,62 @@ impl<'a> FiringBlock<'a> {
         }
     }
 
-    /// When each channel fired, in nanoseconds after the start.
+    /// Firing time of each channel in nanoseconds after the start.
     #[inline]
     #[must_use]
     pub const fn delays_ns(&self) -> &'a [i64; CHANNELS] {
-        &self.geometry.fan.delay_ns
+        &self.geometry.channels.delay_ns
     }
 
-    /// The same as floating-point numbers.
+    /// [`FiringBlock::delays_ns`] as floating-point numbers.
     #[inline]
     #[must_use]
     pub const fn delays_f64_ns(&self) -> &'a [f64; CHANNELS] {
-        &self.geometry.fan.delay_f64_ns
+        &self.geometry.channels.delay_f64_ns
     }
 
-    /// From the start to when the last channel fired.
+    /// Time from the start to the last channel.
     #[inline]
     #[must_use]
     pub const fn length(&self) -> Span {
-        self.geometry.fan.length
+        self.geometry.channels.length
     }
 
     /// Variance of each channel's azimuth, square radians ([`crate::azimuth_variance_rad2`]).
     #[inline]
     #[must_use]
     pub const fn azimuth_variances_rad2(&self) -> &'a [f64; CHANNELS] {
-        &self.geometry.fan.azimuth_variance_rad2
+        &self.geometry.channels.azimuth_variance_rad2
     }
 
-    /// Each channel's laser, by its place in the firing order.
+    /// Laser of each channel, by index in the firing order.
     #[inline]
     #[must_use]
     pub const fn lasers(&self) -> &'a [u8; CHANNELS] {
-        &self.geometry.fan.laser
+        &self.geometry.channels.laser
     }
 
-    /// Each channel's place by elevation, 0 the lowest.
+    /// Ring of each channel by elevation, 0 the lowest.
     #[inline]
     #[must_use]
     pub const fn rings(&self) -> &'a [u8; CHANNELS] {
-        &self.geometry.fan.ring
+        &self.geometry.channels.ring
     }
 
-    /// Where channels look along the horizon: how far right and forward they get by one count. `of`
-    /// takes the values of some channels, the same ones every time, from a column of all.
+    /// Horizontal direction of channels. `of` selects the values of these channels from a column of
+    /// all.
     #[inline(always)]
     pub fn heading<V: Real>(&self, of: impl Fn(&[f64; CHANNELS]) -> V) -> Heading<V> {
-        let (SinCos { sin, cos }, ahead) = (self.azimuth, self.ahead);
-        let (ahead_sin, ahead_cos) = (of(&ahead.sin), of(&ahead.cos));
+        let (SinCos { sin, cos }, offsets) = (self.azimuth, self.offsets);
+        let (offset_sin, offset_cos) = (of(&offsets.sin), of(&offsets.cos));
         Heading {
-            across: ahead_cos * sin + ahead_sin * cos,
-            along: ahead_cos * cos - ahead_sin * sin,
+            across: offset_cos * sin + offset_sin * cos,
+            along: offset_cos * cos - offset_sin * sin,
         }
     }
 
-    /// The points of channels in the sensor's frame (x right, y forward, z up, metres) from their
-    /// distance counts. Of a channel without a return that is a place of no meaning.
+    /// Points of channels in the sensor's frame (x right, y forward, z up, metres) from their
+    /// distance counts; meaningless without a return.
     #[inline(always)]
     pub fn place<V: Real>(
         &self,
@@ -237,20 +235,20 @@ impl<'a> FiringBlock<'a> {
         heading: Heading<V>,
         of: impl Fn(&[f64; CHANNELS]) -> V,
     ) -> [V; 3] {
-        let (fan, Heading { across, along }) = (&self.geometry.fan, heading);
-        let out = counts + of(&fan.out_counts);
-        let up_m = counts * of(&fan.up_per_count) + of(&fan.up_m);
-        match &fan.aside_counts {
+        let (channels, Heading { across, along }) = (&self.geometry.channels, heading);
+        let out = counts + of(&channels.out_counts);
+        let up_m = counts * of(&channels.up_per_count) + of(&channels.up_m);
+        match &channels.tangential_counts {
             None => [out * across, out * along, up_m],
-            Some(aside) => {
-                let aside = of(aside);
-                let x_m = out * across - aside * along;
-                [x_m, out * along + aside * across, up_m]
+            Some(tangential) => {
+                let tangential = of(tangential);
+                let x_m = out * across - tangential * along;
+                [x_m, out * along + tangential * across, up_m]
             }
         }
     }
 
-    /// The firings one by one, in order of time.
+    /// The firings in order of time.
     pub fn firings(&self) -> impl ExactSizeIterator<Item = Firing<'a>> + use<'a> {
         let block = *self;
         let model = block.geometry.model;

@@ -1,28 +1,27 @@
-//! The channels of a packet's blocks by kind: distances, reflectivities, and bits that say where
-//! there is a return.
+//! SIMD unpacking of a packet's channels into distances, reflectivities and bits of returns.
 //!
-//! On the wire they come three bytes a channel. All twelve blocks are taken apart together, in the
-//! widest registers that the processor has. Left out: what a distance is in metres.
+//! Packets have three bytes per channel. All twelve blocks are unpacked together, in the
+//! processor's widest registers. The plain definition is [`DataPacket::blocks`].
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, u8x64, u16x32};
 use protocol::vlp16::{BLOCKS, CHANNELS, DataPacket};
 
-/// The channels of a block as they are on the wire.
+/// The channels of a block as in the packet.
 pub(crate) type RawChannels = [[u8; 3]; CHANNELS];
 
 /// The channels of one block.
 ///
-/// Aligned as registers are, which must not lie across two lines of the cache.
+/// Aligned to cache lines, so that no register spans two.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(crate) struct UnpackedBlock {
     /// Distances in the model's unit.
     pub counts: [f64; CHANNELS],
     pub reflectivities: [u8; CHANNELS],
-    /// Bit c is set where channel c has a distance.
+    /// Bit c is set if channel c has a distance.
     pub returns: u32,
-    /// Bit c is set where channel c has another distance than in the block before.
+    /// Bit c is set if channel c has another distance than in the block before.
     pub changed: u32,
 }
 
@@ -52,47 +51,47 @@ impl UnpackedPacket {
         }
     }
 
-    /// Takes a packet.
+    /// Unpacks a packet.
     pub(crate) fn set(&mut self, packet: &DataPacket<'_>) {
-        dispatch!(self.level, simd => sort(simd, packet, &mut self.blocks));
+        dispatch!(self.level, simd => unpack(simd, packet, &mut self.blocks));
     }
 }
 
-/// Which bytes of [`RawChannels`] are the distances.
+/// Indices of the distance bytes of [`RawChannels`].
 const COUNTS: [u8; 2 * CHANNELS] = {
     let mut bytes = [0; 2 * CHANNELS];
     let mut i = 0;
     while i < bytes.len() {
         let swapped = cfg!(target_endian = "big") as usize;
-        bytes[i] = among_two(3 * (i / 2) + ((i % 2) ^ swapped));
+        bytes[i] = joined_index(3 * (i / 2) + ((i % 2) ^ swapped));
         i += 1;
     }
     bytes
 };
 
-/// Which are the reflectivities; each twice.
+/// Indices of the reflectivity bytes, each twice.
 const REFLECTIVITIES: [u8; 2 * CHANNELS] = {
     let mut bytes = [0; 2 * CHANNELS];
     let mut i = 0;
     while i < bytes.len() {
-        bytes[i] = among_two(3 * (i % CHANNELS) + 2);
+        bytes[i] = joined_index(3 * (i % CHANNELS) + 2);
         i += 1;
     }
     bytes
 };
 
-/// The place of a byte of [`RawChannels`] where its first 64 bytes and its last 64 are joined.
-const fn among_two(byte: usize) -> u8 {
+/// Index of a byte of [`RawChannels`] in its first 64 bytes followed by its last 64.
+const fn joined_index(byte: usize) -> u8 {
     let place = if byte < 64 { byte } else { byte + 32 };
     place as u8
 }
 
 #[inline(always)]
-fn sort<S: Simd>(simd: S, packet: &DataPacket<'_>, blocks: &mut [UnpackedBlock; BLOCKS]) {
+fn unpack<S: Simd>(simd: S, packet: &DataPacket<'_>, blocks: &mut [UnpackedBlock; BLOCKS]) {
     let counts_of = u8x64::simd_from(simd, COUNTS);
     let reflectivities_of = u8x64::simd_from(simd, REFLECTIVITIES);
     let mut before = u16x32::splat(simd, 0);
-    for (sorted, block) in blocks.iter_mut().zip(packet.blocks()) {
+    for (unpacked, block) in blocks.iter_mut().zip(packet.blocks()) {
         let raw = block.raw_channels().as_flattened();
         let (head, tail) = (raw.first_chunk(), raw.last_chunk());
         let (Some(head), Some(tail)) = (head, tail) else {
@@ -104,15 +103,15 @@ fn sort<S: Simd>(simd: S, packet: &DataPacket<'_>, blocks: &mut [UnpackedBlock; 
         );
         let counts: u16x32<S> = head.concat_swizzle_dyn(tail, counts_of).bitcast();
         let (reflectivities, _) = head.concat_swizzle_dyn(tail, reflectivities_of).split();
-        reflectivities.store_array(&mut sorted.reflectivities);
-        widen(simd, counts, &mut sorted.counts);
-        sorted.returns = counts.simd_ne(0).to_bitmask() as u32;
-        sorted.changed = counts.simd_ne(before).to_bitmask() as u32;
+        reflectivities.store_array(&mut unpacked.reflectivities);
+        widen(simd, counts, &mut unpacked.counts);
+        unpacked.returns = counts.simd_ne(0).to_bitmask() as u32;
+        unpacked.changed = counts.simd_ne(before).to_bitmask() as u32;
         before = counts;
     }
 }
 
-/// The same numbers as f64, by way of f32, which holds 16 bits exactly.
+/// Converts to f64 through f32, which represents 16 bits exactly.
 #[inline(always)]
 fn widen<S: Simd>(simd: S, counts: u16x32<S>, to: &mut [f64; CHANNELS]) {
     let froms = counts.as_slice().chunks_exact(S::u16s::LEN);
@@ -138,7 +137,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_level_sorts_as_the_wire_says(
+        fn every_simd_level_agrees_with_the_plain_definition(
             noise in prop::collection::vec(prop_oneof![Just(0), any::<u8>()], DATA_LEN),
         ) {
             let mut bytes = noise;
@@ -156,15 +155,15 @@ mod tests {
                 detected.as_avx2().map(Level::Avx2),
             ].into_iter().flatten());
             for level in levels {
-                let mut sorted = UnpackedPacket { level, ..UnpackedPacket::new() };
-                sorted.set(&packet);
+                let mut unpacked = UnpackedPacket { level, ..UnpackedPacket::new() };
+                unpacked.set(&packet);
                 let mut before = [0; CHANNELS];
-                for (sorted, block) in sorted.blocks.iter().zip(packet.blocks()) {
+                for (unpacked, block) in unpacked.blocks.iter().zip(packet.blocks()) {
                     for (c, channel) in block.channels().enumerate() {
-                        prop_assert_eq!(sorted.counts[c], f64::from(channel.distance_raw));
-                        prop_assert_eq!(sorted.reflectivities[c], channel.reflectivity);
-                        prop_assert_eq!(sorted.returns >> c & 1 != 0, channel.distance_raw != 0);
-                        prop_assert_eq!(sorted.changed >> c & 1 != 0, channel.distance_raw != before[c]);
+                        prop_assert_eq!(unpacked.counts[c], f64::from(channel.distance_raw));
+                        prop_assert_eq!(unpacked.reflectivities[c], channel.reflectivity);
+                        prop_assert_eq!(unpacked.returns >> c & 1 != 0, channel.distance_raw != 0);
+                        prop_assert_eq!(unpacked.changed >> c & 1 != 0, channel.distance_raw != before[c]);
                         before[c] = channel.distance_raw;
                     }
                 }
