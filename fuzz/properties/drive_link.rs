@@ -10,7 +10,10 @@
 
 use std::collections::VecDeque;
 
-use drive::{AxisConfig, Client, Command, Event, Listener, Move, Observation, ShaftSample};
+use drive::{
+    AxisConfig, DriveClient, DriveCommand, DriveEvent, DriveListener, MoveCommand, Observation,
+    ShaftSample,
+};
 use firmware_sim::epos2::{CanServer, Node, NodeConfig, Rs232Server, UsbServer};
 use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
 use protocol::epos2::message::{Answer, ReadObject};
@@ -53,8 +56,8 @@ type Way = VecDeque<(Stamp<Host>, Vec<u8>)>;
 
 struct World {
     link: DriveLink,
-    client: Client,
-    listener: Listener,
+    client: DriveClient,
+    listener: DriveListener,
     node: Node,
     server: Server,
     now: Stamp<Host>,
@@ -89,8 +92,8 @@ impl World {
         axis.homing.home_position = Degrees(0.0);
         Self {
             link,
-            listener: Listener::new(axis.node),
-            client: Client::with_link(axis, link),
+            listener: DriveListener::new(axis.node),
+            client: DriveClient::new(axis, link),
             node: Node::new(NodeConfig::default()),
             server: match link {
                 DriveLink::Usb => Server::Usb(UsbServer::new(7)),
@@ -147,23 +150,23 @@ impl World {
     }
 
     fn start(&mut self, input: &mut Input<'_>) {
-        let to = Move {
+        let to = MoveCommand {
             to: Degrees(f64::from(input.u8().cast_signed()) / 2.0),
             speed: Rpm(1_125),
             acceleration: RpmPerS(10_000),
         };
         let command = match input.u8() % 9 {
-            0 => Command::Connect,
-            1 => Command::Home,
-            2 => Command::Goto(to),
-            3 => Command::Sweep(to),
-            4 => Command::Hold {
+            0 => DriveCommand::Connect,
+            1 => DriveCommand::Home,
+            2 => DriveCommand::Goto(to),
+            3 => DriveCommand::Sweep(to),
+            4 => DriveCommand::Hold {
                 until: self.now + Span::from_millis(100),
             },
-            5 => Command::Stop,
-            6 => Command::Brake,
-            7 => Command::ClearFaults,
-            _ => Command::Status,
+            5 => DriveCommand::Stop,
+            6 => DriveCommand::Brake,
+            7 => DriveCommand::ClearFaults,
+            _ => DriveCommand::Status,
         };
         // Refused where it does not fit; that is no matter here.
         let _ = self.client.start(command);
@@ -339,7 +342,7 @@ impl World {
     /// Takes what client and listener say, and holds it against what passed.
     fn look(&mut self) {
         while let Some(event) = self.client.poll_event() {
-            if let Event::Sample(sample) = event {
+            if let DriveEvent::Sample(sample) = event {
                 self.check(&sample, "client");
                 self.samples += 1;
                 let seen = self.observed.iter().any(|seen| is_same(&sample, seen));

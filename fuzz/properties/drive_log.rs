@@ -6,8 +6,8 @@
 
 use std::collections::BTreeSet;
 
-use drive::{Listener, Observation, ShaftSample};
-use protocol::canopen::sdo::{Answer as SdoAnswer, Expedited, Initiate, Request as SdoRequest};
+use drive::{DriveListener, Observation, ShaftSample};
+use protocol::canopen::sdo::{Expedited, Initiate, SdoRequest, SdoResponse};
 use protocol::canopen::{NodeId, SOCKETCAN_LEN};
 use protocol::epos2::message::ReadObject;
 use protocol::epos2::{CommError, Frame, objects, usb};
@@ -19,7 +19,7 @@ use super::input::Input;
 
 /// Runs a log of these records.
 pub fn holds(input: &mut Input<'_>) {
-    let mut listener = Listener::new(1);
+    let mut listener = DriveListener::new(1);
     // When something went to the device, and when something came from it.
     let mut asked = BTreeSet::new();
     let mut answered = BTreeSet::new();
@@ -101,7 +101,7 @@ fn sound(link: DriveLink, direction: Direction, value: u32) -> Vec<u8> {
         }
         (DriveLink::Can, Direction::FromDevice) => {
             let transfer = Initiate::Expedited(Expedited::of(value));
-            let answer = SdoAnswer::InitiateUpload { address, transfer };
+            let answer = SdoResponse::InitiateUpload { address, transfer };
             answer.to_frame(node).to_socketcan().to_vec()
         }
     }

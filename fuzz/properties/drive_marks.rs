@@ -4,7 +4,7 @@
 //! A shaft at rest hides an answer that was taken for another's; a number does not. Left out:
 //! everything else that the unit says.
 
-use protocol::canopen::sdo::{Answer as SdoAnswer, Expedited, Initiate};
+use protocol::canopen::sdo::{Expedited, Initiate, SdoResponse};
 use protocol::canopen::{CanFrame, Channel, NodeId, PdoNumber};
 use protocol::epos2::message::{Answer, ReadObject};
 use protocol::epos2::objects::POSITION_ACTUAL;
@@ -88,12 +88,12 @@ impl Marks {
             let id = frame.id();
             let frame = CanFrame::new(id, &data).expect("eight bytes");
             *said = frame.to_socketcan().to_vec();
-        } else if let Ok((_, SdoAnswer::InitiateUpload { address: got, .. })) =
-            SdoAnswer::parse(&frame)
+        } else if let Ok((_, SdoResponse::InitiateUpload { address: got, .. })) =
+            SdoResponse::parse(&frame)
             && got == address
         {
             let transfer = Initiate::Expedited(Expedited::of(self.qc));
-            let answer = SdoAnswer::InitiateUpload { address, transfer };
+            let answer = SdoResponse::InitiateUpload { address, transfer };
             *said = answer.to_frame(node).to_socketcan().to_vec();
         }
     }

@@ -3,8 +3,8 @@
 
 use firmware_sim::epos2::{CanServer, Node, NodeConfig, UsbServer};
 use protocol::canopen::sdo::{
-    Access, Answer, Expedited, Handled, Initiate, Outcome, Request, SdoClient, Segment,
-    TransferError, Value,
+    Expedited, FrameDisposition, Initiate, SdoClient, SdoOutcome, SdoRequest, SdoResponse,
+    SdoSegment, SdoValue, TransferDirection, TransferError,
 };
 use protocol::canopen::{CanFrame, Channel, Message, NodeId};
 use protocol::epos2::message::{Answer as UsbAnswer, ReadObject, WriteObject};
@@ -65,8 +65,8 @@ struct Asked {
     now: Stamp<Host>,
     address: Address,
     data: Vec<u8>,
-    sent: Vec<Request>,
-    taken: Vec<Answer>,
+    sent: Vec<SdoRequest>,
+    taken: Vec<SdoResponse>,
 }
 
 fn client(input: &mut Input<'_>) {
@@ -131,10 +131,10 @@ impl Asked {
 
     fn transmit(&mut self) {
         while let Some(frame) = self.client.poll_transmit(self.now) {
-            let (node, request) = Request::parse(&frame).expect("a request");
+            let (node, request) = SdoRequest::parse(&frame).expect("a request");
             assert_eq!(node, node_1());
             // An abort belongs to the transfer before.
-            if !matches!(request, Request::Abort { .. }) {
+            if !matches!(request, SdoRequest::Abort { .. }) {
                 self.sent.push(request);
             }
         }
@@ -154,9 +154,9 @@ impl Asked {
             1 => {
                 let mut bytes = [0; 8];
                 bytes.iter_mut().for_each(|byte| *byte = input.u8());
-                Answer::from_bytes(bytes)
+                SdoResponse::from_bytes(bytes)
             }
-            2 => Answer::InitiateUpload {
+            2 => SdoResponse::InitiateUpload {
                 address,
                 transfer: match input.u8() % 8 {
                     0 => Initiate::Unsized(input.u32().to_le_bytes()),
@@ -173,13 +173,13 @@ impl Asked {
             },
             3 | 4 => {
                 let head = input.u8();
-                let mut segment = Segment::cut(input.take(usize::from(head & 7)), 0, toggle);
+                let mut segment = SdoSegment::cut(input.take(usize::from(head & 7)), 0, toggle, 7);
                 segment.last = head & 8 != 0;
-                Answer::UploadSegment(segment)
+                SdoResponse::UploadSegment(segment)
             }
-            5 => Answer::InitiateDownload { address },
-            6 => Answer::DownloadSegment { toggle },
-            _ => Answer::Abort {
+            5 => SdoResponse::InitiateDownload { address },
+            6 => SdoResponse::DownloadSegment { toggle },
+            _ => SdoResponse::Abort {
                 address,
                 error: CommError(input.u32()),
             },
@@ -190,12 +190,15 @@ impl Asked {
     fn hear(&mut self, frame: &CanFrame) {
         let was_busy = self.client.is_busy();
         let handled = self.client.handle_frame(frame);
-        let answer = Answer::parse(frame).ok().map(|(_, answer)| answer);
+        let answer = SdoResponse::parse(frame).ok().map(|(_, answer)| answer);
         match handled {
-            Handled::Foreign => {
-                assert_ne!(frame.cob_id(), Some(Channel::SdoAnswer(node_1()).cob_id()));
+            FrameDisposition::Foreign => {
+                assert_ne!(
+                    frame.cob_id(),
+                    Some(Channel::SdoResponse(node_1()).cob_id())
+                );
             }
-            Handled::Taken => {
+            FrameDisposition::Accepted => {
                 assert!(was_busy);
                 let Some(answer) = answer else {
                     // No SDO message: the transfer has failed.
@@ -210,8 +213,8 @@ impl Asked {
                 );
                 self.taken.push(answer);
             }
-            Handled::Late => {}
-            Handled::Unasked => assert!(!was_busy || !self.was_asked()),
+            FrameDisposition::Stale => {}
+            FrameDisposition::Unsolicited => assert!(!was_busy || !self.was_asked()),
         }
     }
 
@@ -222,9 +225,9 @@ impl Asked {
     }
 
     fn fetch(&mut self) {
-        let Some(Outcome {
+        let Some(SdoOutcome {
             address,
-            access,
+            direction,
             result,
         }) = self.client.poll_outcome()
         else {
@@ -232,14 +235,14 @@ impl Asked {
         };
         assert!(!self.client.is_busy());
         assert_eq!(address, self.address);
-        match (access, result) {
-            (Access::Read, Ok(value)) => self.was_read(&value),
-            (Access::Write, Ok(value)) => {
+        match (direction, result) {
+            (TransferDirection::Upload, Ok(value)) => self.was_read(&value),
+            (TransferDirection::Download, Ok(value)) => {
                 assert!(value.bytes.is_empty());
                 self.was_written();
             }
             (_, Err(TransferError::Aborted(error))) => {
-                let Some(Answer::Abort {
+                let Some(SdoResponse::Abort {
                     address,
                     error: got,
                 }) = self.taken.last()
@@ -253,8 +256,12 @@ impl Asked {
     }
 
     /// A value that was read is the answers', put together a second time.
-    fn was_read(&self, value: &Value<ROOM>) {
-        let [Answer::InitiateUpload { address, transfer }, segments @ ..] = &self.taken[..] else {
+    fn was_read(&self, value: &SdoValue<ROOM>) {
+        let [
+            SdoResponse::InitiateUpload { address, transfer },
+            segments @ ..,
+        ] = &self.taken[..]
+        else {
             panic!("read by {:?}", self.taken);
         };
         assert_eq!(*address, self.address);
@@ -264,7 +271,7 @@ impl Asked {
             Initiate::Unsized(bytes) => expected.extend(bytes),
             Initiate::Segmented { size } => {
                 for (n, answer) in segments.iter().enumerate() {
-                    let Answer::UploadSegment(segment) = answer else {
+                    let SdoResponse::UploadSegment(segment) = answer else {
                         panic!("no segment: {answer:?}");
                     };
                     assert_eq!(segment.toggle, n % 2 == 1, "segment {n}");
@@ -282,25 +289,29 @@ impl Asked {
 
     /// What was written went out whole and was confirmed piece by piece.
     fn was_written(&self) {
-        let [Answer::InitiateDownload { address }, confirmed @ ..] = &self.taken[..] else {
+        let [SdoResponse::InitiateDownload { address }, confirmed @ ..] = &self.taken[..] else {
             panic!("written by {:?}", self.taken);
         };
         assert_eq!(*address, self.address);
         for (n, answer) in confirmed.iter().enumerate() {
             let toggle = n % 2 == 1;
-            assert_eq!(*answer, Answer::DownloadSegment { toggle }, "segment {n}");
+            assert_eq!(
+                *answer,
+                SdoResponse::DownloadSegment { toggle },
+                "segment {n}"
+            );
         }
         let mut written: Vec<u8> = Vec::new();
         for request in &self.sent {
             match request {
-                Request::InitiateDownload {
+                SdoRequest::InitiateDownload {
                     transfer: Initiate::Expedited(data),
                     ..
                 } => {
                     written.extend(data.as_slice());
                 }
-                Request::InitiateDownload { .. } => {}
-                Request::DownloadSegment(segment) => written.extend(segment.bytes.iter()),
+                SdoRequest::InitiateDownload { .. } => {}
+                SdoRequest::DownloadSegment(segment) => written.extend(segment.bytes.iter()),
                 other => panic!("{other:?} in a write"),
             }
         }
@@ -335,7 +346,7 @@ fn server(input: &mut Input<'_>) {
             }
             _ => {
                 let frame = can_frames::frame(input);
-                match Request::parse(&frame) {
+                match SdoRequest::parse(&frame) {
                     Ok((to, request)) if to.get() == node.node_id() => {
                         ask(&mut node, &mut server, &request, &mut told_apart);
                     }
@@ -346,32 +357,33 @@ fn server(input: &mut Input<'_>) {
     }
 }
 
-fn request(input: &mut Input<'_>) -> Request {
+fn request(input: &mut Input<'_>) -> SdoRequest {
     let choice = input.u8();
     let address = address(input);
     let toggle = choice & 0x80 != 0;
     match choice % 8 {
-        0 | 1 => Request::InitiateUpload { address },
-        2 => Request::UploadSegment { toggle },
-        3 => Request::InitiateDownload {
+        0 | 1 => SdoRequest::InitiateUpload { address },
+        2 => SdoRequest::UploadSegment { toggle },
+        3 => SdoRequest::InitiateDownload {
             address,
             transfer: Initiate::Segmented {
                 size: (!toggle).then(|| input.u8().into()),
             },
         },
         4 => {
-            let mut segment = Segment::cut(input.take(usize::from(choice >> 3 & 7)), 0, toggle);
+            let mut segment =
+                SdoSegment::cut(input.take(usize::from(choice >> 3 & 7)), 0, toggle, 7);
             segment.last = choice & 0x40 != 0;
-            Request::DownloadSegment(segment)
+            SdoRequest::DownloadSegment(segment)
         }
-        5 => Request::Abort {
+        5 => SdoRequest::Abort {
             address,
             error: CommError::GENERAL,
         },
         _ => {
             let len = usize::from(choice >> 3 & 3) + 1;
             let data = Expedited::new(input.take(len)).unwrap_or_else(|| Expedited::of(0_u8));
-            Request::InitiateDownload {
+            SdoRequest::InitiateDownload {
                 address,
                 transfer: Initiate::Expedited(data),
             }
@@ -396,8 +408,8 @@ fn is_whole(frame: &CanFrame) {
 }
 
 /// A request has at most one answer, and that is about its object.
-fn ask(node: &mut Node, server: &mut CanServer, request: &Request, told_apart: &mut bool) {
-    if let Request::InitiateDownload { address, .. } = request {
+fn ask(node: &mut Node, server: &mut CanServer, request: &SdoRequest, told_apart: &mut bool) {
+    if let SdoRequest::InitiateDownload { address, .. } = request {
         // 1014, 1400 to 1BFF: where emergencies and process data go. 2000: the node's id.
         *told_apart &= !matches!(address.index, 0x1014 | 0x1400..=0x1BFF | 0x2000);
     }
@@ -410,7 +422,7 @@ fn ask(node: &mut Node, server: &mut CanServer, request: &Request, told_apart: &
         if *told_apart {
             Message::parse(frame).expect("a message of the predefined set");
         }
-        if frame.cob_id() == Some(Channel::SdoAnswer(id).cob_id()) {
+        if frame.cob_id() == Some(Channel::SdoResponse(id).cob_id()) {
             answers.push(*frame);
         }
     });
@@ -419,28 +431,37 @@ fn ask(node: &mut Node, server: &mut CanServer, request: &Request, told_apart: &
     }
     let answers: Vec<_> = answers
         .iter()
-        .map(|frame| Answer::parse(frame).expect("an answer").1)
+        .map(|frame| SdoResponse::parse(frame).expect("an answer").1)
         .collect();
     let [answer] = answers[..] else {
         assert!(answers.is_empty(), "{answers:?} to {request:?}");
         return;
     };
     match (request, answer) {
-        (Request::InitiateUpload { address }, Answer::InitiateUpload { address: got, .. })
-        | (Request::InitiateUpload { address }, Answer::Abort { address: got, .. })
-        | (Request::InitiateDownload { address, .. }, Answer::InitiateDownload { address: got })
-        | (Request::InitiateDownload { address, .. }, Answer::Abort { address: got, .. }) => {
+        (
+            SdoRequest::InitiateUpload { address },
+            SdoResponse::InitiateUpload { address: got, .. },
+        )
+        | (SdoRequest::InitiateUpload { address }, SdoResponse::Abort { address: got, .. })
+        | (
+            SdoRequest::InitiateDownload { address, .. },
+            SdoResponse::InitiateDownload { address: got },
+        )
+        | (SdoRequest::InitiateDownload { address, .. }, SdoResponse::Abort { address: got, .. }) =>
+        {
             assert_eq!(*address, got);
         }
-        (Request::UploadSegment { toggle }, Answer::UploadSegment(segment)) => {
+        (SdoRequest::UploadSegment { toggle }, SdoResponse::UploadSegment(segment)) => {
             assert_eq!(*toggle, segment.toggle);
         }
-        (Request::DownloadSegment(segment), Answer::DownloadSegment { toggle }) => {
+        (SdoRequest::DownloadSegment(segment), SdoResponse::DownloadSegment { toggle }) => {
             assert_eq!(segment.toggle, toggle);
         }
         (
-            Request::UploadSegment { .. } | Request::DownloadSegment(_) | Request::Unknown(_),
-            Answer::Abort { .. },
+            SdoRequest::UploadSegment { .. }
+            | SdoRequest::DownloadSegment(_)
+            | SdoRequest::Unknown(_),
+            SdoResponse::Abort { .. },
         ) => {}
         _ => panic!("{answer:?} to {request:?}"),
     }
@@ -474,7 +495,7 @@ fn dialogue(input: &mut Input<'_>) {
     }
 }
 
-type Exchanged = Result<Value<ROOM>, TransferError>;
+type Exchanged = Result<SdoValue<ROOM>, TransferError>;
 
 fn exchange(client: &mut SdoClient<ROOM>, node: &mut Node, server: &mut CanServer) -> Exchanged {
     let now = Stamp::from_nanos(0);

@@ -12,7 +12,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use drive::{AxisConfig, Client, Command, Listener, Observation, ShaftSample, Taken};
+use drive::{
+    AxisConfig, DriveClient, DriveCommand, DriveListener, Observation, SampleTrigger, ShaftSample,
+};
 use engine::config::{AxisSettings, Device, DeviceKind};
 use engine::devices::drive_port as ports;
 use engine::devices::drive_session::Session;
@@ -122,10 +124,10 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
     let port = RecordingPort::new(opened.port, opened.link, |record: &Record<'_>| {
         heard.borrow_mut().hear(record);
     });
-    let client = Client::with_link(axis, opened.link);
+    let client = DriveClient::new(axis, opened.link);
     let mut session = Session::new(client, port, Arc::new(AtomicBool::new(false)));
-    session.run(Command::Connect, &mut |_| {}).unwrap();
-    session.run(Command::Home, &mut |_| {}).unwrap();
+    session.run(DriveCommand::Connect, &mut |_| {}).unwrap();
+    session.run(DriveCommand::Home, &mut |_| {}).unwrap();
     let before = heard.borrow().listener.clone();
     *heard.borrow_mut() = Heard {
         listener: before,
@@ -134,7 +136,9 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
     let child = drive.process.id().to_string();
     let (begin, client_s, drive_s) = (Instant::now(), cpu_s("self"), cpu_s(&child));
     let until = session.port().now() + Span::from_secs_f64(seconds);
-    session.run(Command::Hold { until }, &mut |_| {}).unwrap();
+    session
+        .run(DriveCommand::Hold { until }, &mut |_| {})
+        .unwrap();
     let took = begin.elapsed().as_secs_f64();
     let said = heard.replace(Heard::new(&AxisConfig::default()));
     let measured = Measured {
@@ -145,7 +149,7 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
         client_share: (cpu_s("self") - client_s) / took,
         drive_share: (cpu_s(&child) - drive_s) / took,
     };
-    session.run(Command::Brake, &mut |_| {}).unwrap();
+    session.run(DriveCommand::Brake, &mut |_| {}).unwrap();
     measured
 }
 
@@ -178,7 +182,7 @@ fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> M
             request,
             answer,
             position,
-            taken: Taken::Asked,
+            trigger: SampleTrigger::Request,
             device_us: None,
         });
         // As the client does: no burst for what is late.
@@ -213,7 +217,7 @@ fn read_position(bus: &mut dyn CanPort, sdo: &mut SdoClient<8>) -> i32 {
 
 /// What a log of the session tells.
 struct Heard {
-    listener: Listener,
+    listener: DriveListener,
     samples: Vec<ShaftSample>,
     beats: Vec<Stamp<Host>>,
     answers: Vec<Stamp<Host>>,
@@ -224,7 +228,7 @@ struct Heard {
 impl Heard {
     fn new(axis: &AxisConfig) -> Self {
         Self {
-            listener: Listener::new(axis.node),
+            listener: DriveListener::new(axis.node),
             samples: Vec::new(),
             beats: Vec::new(),
             answers: Vec::new(),

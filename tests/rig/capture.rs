@@ -12,7 +12,7 @@ use std::sync::atomic::AtomicBool;
 
 use analysis::truth::TruthReport;
 use cloud::{Fields, Points};
-use drive::{Client, Observation};
+use drive::{DriveClient, Observation};
 use engine::capture::moves as motion;
 use engine::capture::request::scan_config;
 use engine::config::{AxisSettings, Config};
@@ -147,7 +147,7 @@ impl Captured {
                 });
             }
         });
-        let client = Client::with_link(axis.clone(), link);
+        let client = DriveClient::new(axis.clone(), link);
         let interrupt = Arc::new(AtomicBool::new(false));
         if let Some(after) = setting.interrupt_after {
             port.interrupt_at(setting.start + after, Arc::clone(&interrupt));
@@ -330,7 +330,7 @@ impl Captured {
     }
 
     fn listen(&self, emit: &mut impl FnMut(Observation)) {
-        let mut listener = drive::Listener::new(1);
+        let mut listener = drive::DriveListener::new(1);
         let mut recording = io::recording::Recording::open(self.log()).unwrap();
         while let Some(record) = recording.next_record().unwrap() {
             if let Wire::Drive {

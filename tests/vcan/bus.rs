@@ -5,7 +5,7 @@
 
 use io::can::{CanPort, SocketCan};
 use io::clock;
-use protocol::canopen::sdo::{Handled, SdoClient, TransferError, Value};
+use protocol::canopen::sdo::{FrameDisposition, SdoClient, SdoValue, TransferError};
 use protocol::canopen::{CanFrame, NodeId};
 use protocol::epos2::objects::{Address, Object, Scalar};
 use units::{Host, Span, Stamp};
@@ -88,7 +88,7 @@ impl Master {
     }
 
     /// Reads an object of any length.
-    pub fn read_raw(&mut self, address: Address) -> Result<Value<16>, TransferError> {
+    pub fn read_raw(&mut self, address: Address) -> Result<SdoValue<16>, TransferError> {
         self.sdo.read(address).unwrap();
         self.transfer()
     }
@@ -107,7 +107,7 @@ impl Master {
     }
 
     /// Brings the transfer that was begun to its end.
-    fn transfer(&mut self) -> Result<Value<16>, TransferError> {
+    fn transfer(&mut self) -> Result<SdoValue<16>, TransferError> {
         loop {
             while let Some(frame) = self.sdo.poll_transmit(clock::now()) {
                 self.send(&frame);
@@ -121,8 +121,8 @@ impl Master {
                 .map_or(Span::ZERO, |end| end.saturating_since(clock::now()));
             match self.bus.read(left).unwrap() {
                 Some(heard) => match self.sdo.handle_frame(&heard.0) {
-                    Handled::Taken => {}
-                    Handled::Foreign => self.heard.push(heard),
+                    FrameDisposition::Accepted => {}
+                    FrameDisposition::Foreign => self.heard.push(heard),
                     other => panic!("{other:?}: {}", heard.0),
                 },
                 None => self.sdo.handle_timeout(clock::now()),

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use drive::{Client, Command, Listener, Observation, Outcome, ShaftSample};
+use drive::{CommandOutcome, DriveClient, DriveCommand, DriveListener, Observation, ShaftSample};
 use engine::capture::moves::{self as motion, SweepRequest};
 use engine::config::AxisSettings;
 use engine::devices::drive_port::BusLine;
@@ -26,7 +26,7 @@ use crate::onlooker::Onlooker;
 /// What a log of the sweep tells.
 struct Heard<W> {
     log: LogWriter<W>,
-    listener: Listener,
+    listener: DriveListener,
     samples: Vec<ShaftSample>,
 }
 
@@ -82,21 +82,21 @@ pub fn sweep(out: &Path) {
     };
     let heard = RefCell::new(Heard {
         log: LogWriter::create(out.join(LOG), &head, Overwrite::Refuse).unwrap(),
-        listener: Listener::new(axis.node),
+        listener: DriveListener::new(axis.node),
         samples: Vec::new(),
     });
     let line = BusLine(SocketCan::open(BUS).unwrap());
     let port = RecordingPort::new(line, DriveLink::Can, |record: &Record<'_>| {
         heard.borrow_mut().hear(record);
     });
-    let client = Client::with_link(axis, DriveLink::Can);
+    let client = DriveClient::new(axis, DriveLink::Can);
     let mut session = Session::new(client, port, Arc::new(AtomicBool::new(false)));
-    session.run(Command::Connect, &mut |_| {}).unwrap();
-    session.run(Command::Home, &mut |_| {}).unwrap();
+    session.run(DriveCommand::Connect, &mut |_| {}).unwrap();
+    session.run(DriveCommand::Home, &mut |_| {}).unwrap();
     let plan = steps[0].plan;
     let outcome = session
         .run(
-            Command::Sweep(drive::Move {
+            DriveCommand::Sweep(drive::MoveCommand {
                 to: plan.to,
                 speed: plan.speed,
                 acceleration: plan.acceleration,
@@ -104,13 +104,13 @@ pub fn sweep(out: &Path) {
             &mut |_| {},
         )
         .unwrap();
-    let Outcome::Arrived(arrived) = outcome else {
+    let CommandOutcome::Arrived(arrived) = outcome else {
         panic!("{outcome:?}");
     };
     assert!((arrived.angle.0 + 45.0).abs() < 0.01, "{arrived:?}");
-    session.run(Command::Brake, &mut |_| {}).unwrap();
+    session.run(DriveCommand::Brake, &mut |_| {}).unwrap();
     // What answers the last SYNCs may come after what ends the command: the log has it when something else has been asked.
-    session.run(Command::Status, &mut |_| {}).unwrap();
+    session.run(DriveCommand::Status, &mut |_| {}).unwrap();
     assert_eq!(session.port().port().0.dropped(), 0);
     drop(session);
     onlooker.finish();

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
-use drive::Command;
+use drive::DriveCommand;
 use tokio::sync::oneshot;
 use units::Span;
 
@@ -46,7 +46,7 @@ pub enum Order {
     /// Run commands.
     Tilt {
         /// These.
-        commands: Vec<Command>,
+        commands: Vec<DriveCommand>,
         /// Who wants to know.
         answer: Answer,
     },
@@ -193,7 +193,7 @@ impl Keeper {
                 && greeted.left().is_zero()
                 && self.shared.claim(Doing::Connecting)
             {
-                let done = self.ask(&mut line, &[Command::Connect]);
+                let done = self.ask(&mut line, &[DriveCommand::Connect]);
                 self.shared.set_idle();
                 match done {
                     Ok(_) => greeted = Backoff::new(),
@@ -278,7 +278,10 @@ impl Keeper {
 ///
 /// # Errors
 /// [`Kind::Usage`] for a move that the axis cannot make.
-pub fn tilt_order(request: JogRequest, shared: &Shared) -> Result<(Doing, Vec<Command>), Failure> {
+pub fn tilt_order(
+    request: JogRequest,
+    shared: &Shared,
+) -> Result<(Doing, Vec<DriveCommand>), Failure> {
     let commands = tilting::commands(request, &shared.config, &shared.device)?;
     let doing = match request {
         JogRequest::Home => Doing::Homing,

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use drive::{Plan, Progress};
+use drive::{CommandProgress, MovePlan};
 use units::{Degrees, Gearing, Host, Stamp};
 
 use super::hub::Event;
@@ -33,16 +33,16 @@ impl<'a> Motions<'a> {
     }
 
     /// The drive's client says how far it is, moves to a plan left out.
-    pub fn progress(&mut self, step: &Progress, gearing: &Gearing) {
+    pub fn progress(&mut self, step: &CommandProgress, gearing: &Gearing) {
         match step {
-            Progress::Homing => {
+            CommandProgress::Homing => {
                 let known = self.shared.report();
                 self.referenced = known.is_some_and(|report| report.referenced);
                 self.shared.note(|activity| activity.homes = true);
                 self.shared.tell_status();
             }
             // An axis that has lost its zero is somewhere.
-            Progress::Searching { at, demand } if self.referenced => {
+            CommandProgress::Searching { at, demand } if self.referenced => {
                 let packets = self.shared.activity().packets;
                 self.moved(*at, gearing.angle(*demand), packets);
             }
@@ -54,7 +54,7 @@ impl<'a> Motions<'a> {
     }
 
     /// A move begins: number `step` of `steps`.
-    pub fn begin(&mut self, plan: &Plan, step: usize, steps: usize) {
+    pub fn begin(&mut self, plan: &MovePlan, step: usize, steps: usize) {
         let seconds = plan.duration.as_secs_f64().max(0.0);
         self.until = Duration::try_from_secs_f64(seconds)
             .ok()

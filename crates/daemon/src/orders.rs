@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-use drive::{Client, Command, Event, Status};
+use drive::{DriveClient, DriveCommand, DriveEvent, DriveStatus};
 
 use super::hub::Level;
 use super::keeper::{Keeper, Lost};
@@ -28,15 +28,15 @@ impl Keeper {
     pub(super) fn ask(
         &self,
         line: &mut Line,
-        commands: &[Command],
+        commands: &[DriveCommand],
     ) -> Result<Report, SessionError> {
         let shared = &self.shared;
         line.hush()?;
         let opened = &mut line.opened;
-        let client = Client::with_link(self.axis.clone(), opened.link);
+        let client = DriveClient::new(self.axis.clone(), opened.link);
         // What moves nothing is not stopped by what was meant for the order behind it.
         let interrupt = match commands {
-            [] | [Command::Connect] => Arc::default(),
+            [] | [DriveCommand::Connect] => Arc::default(),
             _ => Arc::clone(&shared.interrupt),
         };
         let mut session = Session::new(client, &mut *opened.port, interrupt);
@@ -47,17 +47,20 @@ impl Keeper {
         };
         let mut motions = Motions::new(shared);
         let done = tilting::ask(&mut session, commands, homing, &mut |event| match event {
-            Event::Sample(sample) => {
+            DriveEvent::Sample(sample) => {
                 motions.moved(sample.answer, self.axis.gearing.angle(sample.position), 0)
             }
-            Event::Progress(drive::Progress::Moving(plan)) => motions.begin(plan, 0, 0),
-            Event::Progress(step) => motions.progress(step, &self.axis.gearing),
+            DriveEvent::Progress(drive::CommandProgress::Moving(plan)) => motions.begin(plan, 0, 0),
+            DriveEvent::Progress(step) => motions.progress(step, &self.axis.gearing),
             event => tracing::debug!(?event),
         });
         motions.end();
         drop(session);
         let doubtful = line.axis == Axis::MayMove;
-        line.ended(commands.contains(&Command::Connect), done.as_ref().err());
+        line.ended(
+            commands.contains(&DriveCommand::Connect),
+            done.as_ref().err(),
+        );
         match done {
             Ok(status) => Ok(self.said(&status, line.axis)),
             Err(error) => {
@@ -74,7 +77,7 @@ impl Keeper {
     }
 
     /// The drive has said how it is.
-    pub(super) fn said(&self, status: &Status, axis: Axis) -> Report {
+    pub(super) fn said(&self, status: &DriveStatus, axis: Axis) -> Report {
         let shared = &self.shared;
         let report = Report::new(&shared.name, status, shared.simulated());
         let gearing = self.axis.gearing;

@@ -1,9 +1,13 @@
-//! The client as a machine without I/O: commands and bytes in, bytes and events out, time an argument.
+//! The client as a state machine without I/O: commands and bytes in, bytes and events out, time as an
+//! argument.
 //!
-//! The owner of the port writes what [`Client::poll_transmit`] hands out, passes what it reads to [`Client::handle_input`], wakes up at
-//! [`Client::poll_timeout`], and takes events from [`Client::poll_event`]. After each of the first three, `poll_transmit` is asked again.
-//! Inside, a command is a plain sequential `async fn` over [`crate::ops::Ops`], polled here with a waker that does nothing: dropping
-//! it cancels the command. Nothing here knows which bytes a transport uses.
+//! The port's owner writes the bytes of [`DriveClient::poll_transmit`], passes what it reads to
+//! [`DriveClient::handle_input`], wakes up at [`DriveClient::poll_timeout`] for
+//! [`DriveClient::handle_timeout`], and takes events from [`DriveClient::poll_event`]. After each input
+//! and timeout it calls `poll_transmit` until that returns `None`.
+//!
+//! A command is a sequential `async fn` over [`crate::ops::Ops`], polled here with a waker that does
+//! nothing. Dropping it cancels the command.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -16,46 +20,40 @@ use protocol::canopen::NodeId;
 use protocol::record::DriveLink;
 use units::{Host, Stamp};
 
-use crate::bus::Bus;
+use crate::can_services::CanServices;
 use crate::codec::Codec;
-use crate::command::{Command, CommandKind};
+use crate::command::{CommandKind, DriveCommand};
 use crate::config::AxisConfig;
 use crate::error::DriveError;
-use crate::event::{Event, Outcome, Progress};
+use crate::event::{CommandOutcome, CommandProgress, DriveEvent};
 use crate::link::{Link, LinkStats};
-use crate::ops::{Core, Ops, Shared, lock};
+use crate::ops::{Core, Ops, SharedCore, lock};
 use crate::procedures;
 
-type Procedure = Pin<Box<dyn Future<Output = Result<Outcome, DriveError>> + Send>>;
+type Procedure = Pin<Box<dyn Future<Output = Result<CommandOutcome, DriveError>> + Send>>;
 
 /// A client of one EPOS2 axis.
 ///
-/// On USB and RS232 it takes and gives bytes; on a CAN bus the 16 bytes of a `struct can_frame` each, as in a log's records.
-pub struct Client {
+/// On USB and RS232 it exchanges bytes, on a CAN bus frames of 16 bytes (`struct can_frame`).
+pub struct DriveClient {
     config: Arc<AxisConfig>,
-    core: Shared,
+    core: SharedCore,
     running: Option<(CommandKind, Procedure)>,
     connected: bool,
-    attached: DriveLink,
+    link: DriveLink,
 }
 
-impl Client {
-    /// A client for an axis on USB; nothing is sent before a command starts.
+impl DriveClient {
+    /// Creates a client of an axis on this link. It sends nothing before a command starts.
     #[must_use]
-    pub fn new(config: AxisConfig) -> Self {
-        Self::with_link(config, DriveLink::Usb)
-    }
-
-    /// A client for an axis on any of its links; nothing is sent before a command starts.
-    #[must_use]
-    pub fn with_link(config: AxisConfig, link: DriveLink) -> Self {
-        let bus = NodeId::new(config.node).filter(|_| link == DriveLink::Can);
+    pub fn new(config: AxisConfig, link: DriveLink) -> Self {
+        let node = NodeId::new(config.node).filter(|_| link == DriveLink::Can);
         let core = Core {
             link: Link::new(Codec::new(link, config.node)),
-            bus: bus.map(|node| Bus::new(node, config.can)),
+            can: node.map(|node| CanServices::new(node, config.can)),
             referenced: false,
             now: Stamp::from_nanos(0),
-            begins: false,
+            is_starting: false,
             wake: None,
             events: VecDeque::new(),
         };
@@ -64,23 +62,24 @@ impl Client {
             core: Arc::new(Mutex::new(core)),
             running: None,
             connected: false,
-            attached: link,
+            link,
         }
     }
 
-    /// How the axis is attached.
+    /// The link to the drive.
     #[must_use]
     pub fn link(&self) -> DriveLink {
-        self.attached
+        self.link
     }
 
-    /// Starts a command. [`Command::Stop`] cancels whatever runs (that command then ends without an event of its own); any other
-    /// has to wait for the end of the one before.
+    /// Starts a command. [`DriveCommand::Stop`] cancels the running command, which then ends without an
+    /// event; any other command is refused while one runs.
     ///
     /// # Errors
-    /// Before a byte is sent: [`DriveError::Config`], [`DriveError::Busy`], [`DriveError::NotConnected`], and for moves
-    /// [`DriveError::Limits`], [`DriveError::Speed`] and [`DriveError::Acceleration`], for writes [`DriveError::Reserved`].
-    pub fn start(&mut self, command: Command) -> Result<(), DriveError> {
+    /// Before a byte is sent: [`DriveError::Config`], [`DriveError::Busy`],
+    /// [`DriveError::NotConnected`]; for moves [`DriveError::Limits`], [`DriveError::Speed`] and
+    /// [`DriveError::Acceleration`]; for writes [`DriveError::Reserved`].
+    pub fn start(&mut self, command: DriveCommand) -> Result<(), DriveError> {
         let kind = command.kind();
         self.config.check()?;
         if let (Some((running, _)), true) = (&self.running, kind != CommandKind::Stop) {
@@ -94,20 +93,20 @@ impl Client {
         }
         let ops = Ops::new(Arc::clone(&self.core), Arc::clone(&self.config));
         let procedure: Procedure = match command {
-            Command::Connect => {
+            DriveCommand::Connect => {
                 self.connected = false;
                 Box::pin(procedures::connect(ops))
             }
-            Command::Home => Box::pin(procedures::home(ops)),
-            Command::Goto(to) => Box::pin(procedures::goto(ops, self.config.aim(to)?)),
-            Command::Sweep(to) => Box::pin(procedures::sweep(ops, self.config.aim(to)?)),
-            Command::Hold { until } => Box::pin(procedures::hold(ops, until)),
-            Command::Stop => Box::pin(procedures::stop(ops)),
-            Command::Brake => Box::pin(procedures::brake(ops)),
-            Command::ClearFaults => Box::pin(procedures::clear_faults(ops)),
-            Command::Status => Box::pin(procedures::status(ops)),
-            Command::Read(address) => Box::pin(procedures::read(ops, address)),
-            Command::Write { address, bytes } => {
+            DriveCommand::Home => Box::pin(procedures::home(ops)),
+            DriveCommand::Goto(to) => Box::pin(procedures::goto(ops, self.config.validate(to)?)),
+            DriveCommand::Sweep(to) => Box::pin(procedures::sweep(ops, self.config.validate(to)?)),
+            DriveCommand::Hold { until } => Box::pin(procedures::hold(ops, until)),
+            DriveCommand::Stop => Box::pin(procedures::stop(ops)),
+            DriveCommand::Brake => Box::pin(procedures::brake(ops)),
+            DriveCommand::ClearFaults => Box::pin(procedures::clear_faults(ops)),
+            DriveCommand::Status => Box::pin(procedures::status(ops)),
+            DriveCommand::Read(address) => Box::pin(procedures::read(ops, address)),
+            DriveCommand::Write { address, bytes } => {
                 procedures::check_writable(address)?;
                 Box::pin(procedures::write(ops, address, bytes))
             }
@@ -115,75 +114,73 @@ impl Client {
         self.cancel();
         self.running = Some((kind, procedure));
         let mut core = lock(&self.core);
-        core.begins = true;
-        let started = Event::Progress(Progress::Started(kind));
+        core.is_starting = true;
+        let started = DriveEvent::Progress(CommandProgress::Started(kind));
         core.events.push_back(started);
         Ok(())
     }
 
-    /// The command that is running.
+    /// The running command.
     #[must_use]
     pub fn running(&self) -> Option<CommandKind> {
         self.running.as_ref().map(|(kind, _)| *kind)
     }
 
-    /// The next bytes to write to the port, on CAN a frame; `now` becomes the request's time.
+    /// The next bytes to write to the port, on CAN one frame. `now` becomes the time of the request.
     pub fn poll_transmit(&mut self, now: Stamp<Host>) -> Option<Vec<u8>> {
         self.advance(now);
         let mut core = lock(&self.core);
         let period = self.config.timing.poll_period;
-        let frame = core.bus.as_mut().and_then(|bus| bus.transmit(now, period));
+        let frame = core.can.as_mut().and_then(|can| can.transmit(now, period));
         match frame {
             Some(frame) => Some(frame.to_socketcan().to_vec()),
             None => core.link.transmit(now),
         }
     }
 
-    /// Takes bytes that were read from the port, in any portions, on CAN whole frames of 16 bytes; `now` becomes the time of the
-    /// answer they complete.
+    /// Processes bytes from the port in portions of any size, on CAN whole frames. `now` becomes the
+    /// time of the reply they complete.
     pub fn handle_input(&mut self, bytes: &[u8], now: Stamp<Host>) {
         {
             let mut core = lock(&self.core);
             core.begin(now);
-            core.link.input(bytes, now);
+            core.link.handle_input(bytes, now);
             while let Some(frame) = core.link.take_frame() {
-                let sample = core.bus.as_mut().and_then(|bus| bus.handle(&frame, now));
-                core.events.extend(sample.map(Event::Sample));
+                let can = core.can.as_mut();
+                let sample = can.and_then(|can| can.handle_frame(&frame, now));
+                core.events.extend(sample.map(DriveEvent::Sample));
             }
         }
         self.advance(now);
     }
 
-    /// When [`Client::handle_timeout`] is due if nothing else happens before.
+    /// When [`DriveClient::handle_timeout`] is due without input.
     #[must_use]
     pub fn poll_timeout(&self) -> Option<Stamp<Host>> {
         let core = lock(&self.core);
-        let runs = self.running.is_some();
-        let wake = core.wake.filter(|_| runs);
-        let bus = core.bus.as_ref().and_then(Bus::deadline).filter(|_| runs);
-        [core.link.deadline(), wake, bus]
-            .into_iter()
-            .flatten()
-            .min()
+        let can = core.can.as_ref().and_then(CanServices::deadline);
+        let is_running = self.running.is_some();
+        let of_command = [core.wake, can].into_iter().filter(|_| is_running);
+        of_command.chain([core.link.deadline()]).flatten().min()
     }
 
-    /// Lets time pass.
+    /// Acts on deadlines that have passed.
     pub fn handle_timeout(&mut self, now: Stamp<Host>) {
         self.advance(now);
     }
 
-    /// What happened, oldest first.
-    pub fn poll_event(&mut self) -> Option<Event> {
+    /// Takes the oldest event.
+    pub fn poll_event(&mut self) -> Option<DriveEvent> {
         lock(&self.core).events.pop_front()
     }
 
-    /// What the link went through so far.
+    /// Counters of the link.
     #[must_use]
     pub fn link_stats(&self) -> LinkStats {
         lock(&self.core).link.stats()
     }
 
-    /// The axis this client was made for.
+    /// The configuration of the axis.
     #[must_use]
     pub fn config(&self) -> &AxisConfig {
         &self.config
@@ -203,8 +200,8 @@ impl Client {
             core.now = now;
             core.begin(now);
             core.link.expire(now);
-            if let (true, Some(bus)) = (self.running.is_some(), &mut core.bus) {
-                bus.expire(now);
+            if let (true, Some(can)) = (self.running.is_some(), &mut core.can) {
+                can.expire(now);
             }
         }
         let Some((kind, procedure)) = self.running.as_mut() else {
@@ -221,13 +218,13 @@ impl Client {
         let mut core = lock(&self.core);
         core.end();
         core.events.push_back(match result {
-            Ok(outcome) => Event::Done(outcome),
-            Err(error) => Event::Failed(error),
+            Ok(outcome) => DriveEvent::Done(outcome),
+            Err(error) => DriveEvent::Failed(error),
         });
     }
 }
 
-/// Whether a command relies on the settings that connecting makes and verifies.
+/// Whether a command relies on the settings made by [`DriveCommand::Connect`].
 fn needs_connection(kind: CommandKind) -> bool {
     matches!(
         kind,
@@ -235,9 +232,9 @@ fn needs_connection(kind: CommandKind) -> bool {
     )
 }
 
-impl fmt::Debug for Client {
+impl fmt::Debug for DriveClient {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Client")
+        f.debug_struct("DriveClient")
             .field("config", &self.config)
             .field("running", &self.running())
             .field("core", &self.core)

@@ -1,4 +1,4 @@
-//! What the client can be asked to do.
+//! The commands of the client.
 
 use std::fmt;
 
@@ -8,46 +8,48 @@ use units::{Degrees, Host, Rpm, RpmPerS, Stamp};
 
 /// A procedure to run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
-    /// Identify the drive, clear its power-on fault, configure it and verify that its safety functions took.
+pub enum DriveCommand {
+    /// Identifies the drive, clears its power-on fault, configures it and verifies its safety functions.
     Connect,
-    /// Find the home position.
+    /// Runs the drive's homing.
     Home,
-    /// Move to an angle.
-    Goto(Move),
-    /// Move to an angle, sampled also at standstill before and after.
-    Sweep(Move),
-    /// Sample where the axis stands until this time.
+    /// Moves to an angle.
+    Goto(MoveCommand),
+    /// Moves to an angle, with samples at standstill before and after.
+    Sweep(MoveCommand),
+    /// Samples the position without motion.
     Hold {
         /// End of the hold.
         until: Stamp<Host>,
     },
-    /// Stop at once, disable the power stage and let the brake hold. The only command that may interrupt another.
+    /// Stops, disables the power stage and lets the brake hold. The only command that may interrupt
+    /// another.
     Stop,
-    /// Disable the power stage of an axis at rest, so that the brake holds.
+    /// Disables the power stage of an axis at rest, so that the brake holds.
     Brake,
-    /// Clear a fault; the axis stays disabled.
+    /// Clears a fault; the axis stays disabled.
     ClearFaults,
-    /// Report state, position and errors; changes nothing.
+    /// Reports state, position and errors without changing anything.
     Status,
-    /// Read any object, of whatever length up to 256 bytes.
+    /// Reads any object of up to 256 bytes.
     Read(Address),
-    /// Write any object but the controlword (6040) while the power stage is off. What is written is not looked at, and stays until the
-    /// drive restarts or is connected to.
+    /// Writes any object except the controlword (6040) while the power stage is off. The value is not
+    /// checked; it lasts until the drive restarts or is connected again.
     Write {
         /// The object.
         address: Address,
-        /// Its bytes, low byte first, as many as the object has: up to four go in one exchange, more in segments.
+        /// Its bytes in little-endian order, exactly as many as the object has.
         bytes: ObjectBytes,
     },
 }
 
-/// Bytes of an object. The longest that an EPOS2 lets anybody write have eight, but for the memory of its data recorder.
+/// Bytes of an object. Writable objects of an EPOS2 have at most eight, except for the memory of its
+/// data recorder.
 pub type ObjectBytes = Bounded<u8, 64>;
 
 /// An absolute move.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Move {
+pub struct MoveCommand {
     /// Target angle.
     pub to: Degrees,
     /// Cruise speed of the motor.
@@ -56,35 +58,25 @@ pub struct Move {
     pub acceleration: RpmPerS,
 }
 
-/// The name of a command.
+/// The kind of a command, without its arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "each variant is that of DriveCommand")]
 pub enum CommandKind {
-    /// [`Command::Connect`]
     Connect,
-    /// [`Command::Home`]
     Home,
-    /// [`Command::Goto`]
     Goto,
-    /// [`Command::Sweep`]
     Sweep,
-    /// [`Command::Hold`]
     Hold,
-    /// [`Command::Stop`]
     Stop,
-    /// [`Command::Brake`]
     Brake,
-    /// [`Command::ClearFaults`]
     ClearFaults,
-    /// [`Command::Status`]
     Status,
-    /// [`Command::Read`]
     Read,
-    /// [`Command::Write`]
     Write,
 }
 
-impl Command {
-    /// Its name.
+impl DriveCommand {
+    /// The kind of the command.
     #[must_use]
     pub fn kind(&self) -> CommandKind {
         match self {
@@ -105,18 +97,9 @@ impl Command {
 
 impl fmt::Display for CommandKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Connect => "connect",
-            Self::Home => "home",
-            Self::Goto => "goto",
-            Self::Sweep => "sweep",
-            Self::Hold => "hold",
-            Self::Stop => "stop",
-            Self::Brake => "brake",
-            Self::ClearFaults => "clear faults",
-            Self::Status => "status",
-            Self::Read => "read",
-            Self::Write => "write",
-        })
+        match self {
+            Self::ClearFaults => f.write_str("clear faults"),
+            one_word => f.write_str(&format!("{one_word:?}").to_lowercase()),
+        }
     }
 }

@@ -1,7 +1,8 @@
-//! What the client must know about the axis before it may move it.
+//! Configuration of the axis, with validation.
 //!
-//! Plain data with a check. Reading it from a file is somebody else's business, and so is anything about the link
-//! itself (device names, baud rates).
+//! Plain data: files, device names and baud rates are the caller's concern.
+
+use std::fmt::Display;
 
 use units::{Degrees, Gearing, Quadcounts, Rpm, RpmPerS, Span};
 
@@ -10,131 +11,135 @@ use crate::error::DriveError;
 /// The tilt axis: gearing, limits, switches, brake, homing and timing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisConfig {
-    /// CANopen node id of the drive, 1..=127.
+    /// CANopen node id of the drive, 1 to 127.
     pub node: u8,
     /// Encoder and gear.
     pub gearing: Gearing,
-    /// Range of tilt angles; targets outside are refused and the drive's own software limits (607D) are set to it.
-    pub limits: Limits,
-    /// Fastest motor speed, written to 607F.
+    /// Range of targets, also written to the drive as software position limits (607D).
+    pub limits: AxisLimits,
+    /// Maximal motor speed (607F).
     pub max_speed: Rpm,
-    /// Largest acceleration a move or homing may ask for; 60C5 gets it, or the quick stop's where that is larger.
+    /// Maximal acceleration of a move or homing. Max acceleration (60C5) is the larger of this and
+    /// `quick_stop`.
     pub max_acceleration: RpmPerS,
-    /// Deceleration of a quick stop, written to 6085.
+    /// Quick stop deceleration (6085).
     pub quick_stop: RpmPerS,
-    /// Largest following error before the drive faults, written to 6065.
+    /// Max following error (6065).
     pub max_following_error: Quadcounts,
-    /// How far from its target the axis may come to rest and still have arrived.
+    /// Largest distance from the target at which a move has arrived.
     pub arrival_tolerance: Quadcounts,
     /// Inputs of the limit switches.
-    pub limit_switches: LimitSwitches,
-    /// The holding brake; `None` leaves the outputs alone.
-    pub brake: Option<Brake>,
-    /// How the axis finds its zero.
-    pub homing: Homing,
+    pub limit_switches: LimitSwitchConfig,
+    /// The holding brake; `None` leaves the outputs unchanged.
+    pub brake: Option<BrakeConfig>,
+    /// Homing procedure.
+    pub homing: HomingConfig,
     /// Periods and time limits.
-    pub timing: Timing,
-    /// What is said on a CAN bus beside requests; the other links have none of it.
-    pub can: CanBus,
+    pub timing: AxisTiming,
+    /// Heartbeats on a CAN bus; unused on other links.
+    pub can: CanHeartbeats,
 }
 
-/// Signs of life on a CAN bus.
+/// Heartbeats on a CAN bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CanBus {
-    /// Node id under which the host sends its heartbeat while the axis may move, 1..=127, not the drive's.
+pub struct CanHeartbeats {
+    /// Node id of the host's heartbeat while the axis may move, 1 to 127, other than the drive's.
     pub host_node: u8,
-    /// How often it does.
+    /// Period of the host's heartbeat.
     pub host_heartbeat: Span,
-    /// Silence of the host after which the drive stops (whole milliseconds, 1016:1).
+    /// Time without the host's heartbeat after which the drive stops (1016:1, whole milliseconds).
     pub host_limit: Span,
-    /// How often the drive sends its heartbeat (whole milliseconds, 1017).
+    /// Period of the drive's heartbeat (1017, whole milliseconds).
     pub node_heartbeat: Span,
-    /// Silence of the drive after which it counts as lost.
+    /// Time without the drive's heartbeat after which it counts as lost.
     pub node_limit: Span,
 }
 
 /// A closed range of tilt angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct AxisLimits {
     /// Lowest angle.
     pub min: Degrees,
     /// Highest angle.
     pub max: Degrees,
 }
 
-/// Digital inputs (1..=9) of the limit switches; `None` where the axis has no such switch.
+/// Digital inputs (1 to 9) of the limit switches; `None` for a missing switch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LimitSwitches {
+pub struct LimitSwitchConfig {
     /// Input of the negative limit switch.
     pub negative: Option<u8>,
     /// Input of the positive limit switch.
     pub positive: Option<u8>,
-    /// Whether a switch is active when its input is low (a normally closed contact: a broken wire stops the axis).
+    /// Whether a switch is active when its input is low (a normally closed contact: a broken wire stops
+    /// the axis).
     pub active_low: bool,
 }
 
 /// The holding brake on a digital output of the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Brake {
-    /// Digital output, 1..=5, that feeds the brake (2079).
+pub struct BrakeConfig {
+    /// Digital output of the brake (2079), 1 to 5.
     pub output: u8,
-    /// Time the brake takes to open, whole milliseconds up to 65535 (2100:1).
+    /// Time the brake takes to open (2100:1), whole milliseconds up to 65535.
     pub rise: Span,
-    /// Time the brake takes to close, whole milliseconds up to 65535 (2100:2).
+    /// Time the brake takes to close (2100:2), whole milliseconds up to 65535.
     pub fall: Span,
 }
 
-/// How the axis finds its zero.
+/// The homing procedure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Homing {
+pub struct HomingConfig {
     /// Homing method (6098): 1, 2, 7, 11, 17, 18, 23, 27, 33, 34, 35 or -1 to -4.
     pub method: i8,
-    /// Speed of the search for the switch or stop (6099:1).
+    /// Speed for the switch search (6099:1), which also applies to a mechanical stop.
     pub switch_speed: Rpm,
-    /// Speed of the search for the edge or index (6099:2).
+    /// Speed for the zero search (6099:2).
     pub zero_speed: Rpm,
-    /// Acceleration while homing (609A).
+    /// Homing acceleration (609A).
     pub acceleration: RpmPerS,
-    /// How far the axis moves on after detection (607C), as an angle; its sign is the direction.
+    /// Home offset (607C): how far the axis moves on after detection; the sign is the direction.
     pub offset: Degrees,
-    /// The tilt angle of the place it then stands at (2081).
+    /// Home position (2081): tilt angle of the axis after that.
     pub home_position: Degrees,
-    /// Current that tells a mechanical stop, mA (2080); written for methods -1 to -4 alone.
+    /// Current threshold (2080) for methods -1 to -4, mA.
     pub current_threshold_ma: u16,
-    /// Homing that takes longer has failed.
+    /// Time limit of the procedure.
     pub time_limit: Span,
 }
 
 /// Periods and time limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Timing {
-    /// Time an answer may take before it counts as lost (the drive's own frame timeout is 500 ms).
+pub struct AxisTiming {
+    /// Time limit of a reply (the drive's own frame timeout is 500 ms).
     pub timeout: Span,
-    /// The same while the axis moves, when silence costs more than a repeated question.
+    /// Time limit of a reply while the axis moves, when silence costs more than a repeated request.
     pub timeout_moving: Span,
-    /// How often a read is repeated after its answer was lost. Writes are never repeated by themselves.
+    /// Repeats of a read after its reply was lost. Writes are not repeated.
     pub read_retries: u8,
-    /// Least time between two position samples; zero polls as fast as answers come. The position loop runs at 1 kHz.
+    /// Shortest period of position samples; zero polls at the rate of the replies. The position loop
+    /// runs at 1 kHz.
     pub poll_period: Span,
-    /// Time between two looks at the statusword during motion.
+    /// Period of statusword checks during motion.
     pub status_period: Span,
     /// Sampling at standstill before and after a sweep.
     pub hold: Span,
-    /// How much longer than planned a move may take.
+    /// Time beyond the plan after which a move has failed.
     pub arrival_margin: Span,
-    /// Time a change of state (enable, fault reset, setpoint acknowledge) may take.
+    /// Time limit of a state change (enable, fault reset, setpoint acknowledge).
     pub state_limit: Span,
     /// Time without motion that counts as standstill.
     pub standstill: Span,
 }
 
 impl Default for AxisConfig {
-    /// The Velomotion-16's axis: 500 lines, 120:1, up to 75 deg/s and 1000 deg/s2, factory inputs for the switches, brake on output 1.
+    /// The Velomotion-16's axis: 500 lines, 120:1, up to 75 deg/s and 1000 deg/s2, factory inputs for
+    /// the switches, brake on output 1.
     fn default() -> Self {
         Self {
             node: 1,
-            gearing: default_gearing(),
-            limits: Limits {
+            gearing: DEFAULT_GEARING,
+            limits: AxisLimits {
                 min: Degrees(-60.0),
                 max: Degrees(60.0),
             },
@@ -143,18 +148,24 @@ impl Default for AxisConfig {
             quick_stop: RpmPerS(20_000),
             max_following_error: Quadcounts(2_000),
             arrival_tolerance: Quadcounts(20),
-            limit_switches: LimitSwitches::default(),
-            brake: Some(Brake::default()),
-            homing: Homing::default(),
-            timing: Timing::default(),
-            can: CanBus::default(),
+            limit_switches: LimitSwitchConfig::default(),
+            brake: Some(BrakeConfig::default()),
+            homing: HomingConfig::default(),
+            timing: AxisTiming::default(),
+            can: CanHeartbeats::default(),
         }
     }
 }
 
-impl Default for CanBus {
-    /// Heartbeats every 50 ms; the drive waits for four of the host's, whose threads may be held up, the host for two and a
-    /// half of the drive's.
+/// 500 lines and 120:1.
+const DEFAULT_GEARING: Gearing = match Gearing::new(500, 120, 1) {
+    Ok(gearing) => gearing,
+    Err(_) => unreachable!(),
+};
+
+impl Default for CanHeartbeats {
+    /// Heartbeats every 50 ms. The drive tolerates three missing ones, as the host's threads may be
+    /// delayed; the host tolerates one.
     fn default() -> Self {
         Self {
             host_node: 127,
@@ -166,17 +177,8 @@ impl Default for CanBus {
     }
 }
 
-/// 500 lines behind 120:1.
-fn default_gearing() -> Gearing {
-    const PAPER: Gearing = match Gearing::new(500, 120, 1) {
-        Ok(gearing) => gearing,
-        Err(_) => unreachable!(),
-    };
-    PAPER
-}
-
-impl Default for LimitSwitches {
-    /// The factory's choice: input 6 negative, input 5 positive, active high (EPOS2 object 2070).
+impl Default for LimitSwitchConfig {
+    /// The factory setting (2070): input 6 negative, input 5 positive, active high.
     fn default() -> Self {
         Self {
             negative: Some(6),
@@ -186,16 +188,8 @@ impl Default for LimitSwitches {
     }
 }
 
-impl LimitSwitches {
-    /// The switches' bits in 2071 (bit 0 negative, bit 1 positive).
-    #[must_use]
-    pub fn mask(self) -> u16 {
-        u16::from(self.negative.is_some()) | u16::from(self.positive.is_some()) << 1
-    }
-}
-
-impl Default for Brake {
-    /// Output 1, 10 ms each way as from the factory.
+impl Default for BrakeConfig {
+    /// Output 1, and the factory setting of 10 ms each way.
     fn default() -> Self {
         Self {
             output: 1,
@@ -205,8 +199,8 @@ impl Default for Brake {
     }
 }
 
-impl Default for Homing {
-    /// Method 17: the edge of the negative limit switch, without index; then 5 degrees off the switch.
+impl Default for HomingConfig {
+    /// Method 17 (edge of the negative limit switch, without index), then 5 deg off the switch.
     fn default() -> Self {
         Self {
             method: 17,
@@ -221,7 +215,7 @@ impl Default for Homing {
     }
 }
 
-impl Default for Timing {
+impl Default for AxisTiming {
     fn default() -> Self {
         Self {
             timeout: Span::from_millis(500),
@@ -237,38 +231,74 @@ impl Default for Timing {
     }
 }
 
-/// Limits in the drive's own units.
+/// The limits in quadcounts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LimitsQc {
     pub min: Quadcounts,
     pub max: Quadcounts,
 }
 
+impl LimitsQc {
+    pub fn contains(self, position: Quadcounts, tolerance: Quadcounts) -> bool {
+        let min = self.min.0.saturating_sub(tolerance.0);
+        let max = self.max.0.saturating_add(tolerance.0);
+        (min..=max).contains(&position.0)
+    }
+}
+
+/// Upper limit of max profile velocity (607F), EPOS2 Firmware Specification.
+const MAX_SPEED_RPM: u32 = 25_000;
+const HOMING_METHODS: [i8; 15] = [1, 2, 7, 11, 17, 18, 23, 27, 33, 34, 35, -1, -2, -3, -4];
+/// One hour. No wait is meant to be longer, and sums of such spans cannot overflow.
+const MAX_SPAN_MS: i64 = 3_600_000;
+
 impl AxisConfig {
-    /// Refuses what no axis can be.
+    /// Validates every field.
     ///
     /// # Errors
-    /// [`DriveError::Config`] naming the first field that is out of range.
+    /// [`DriveError::Config`] with the first invalid field.
     pub fn check(&self) -> Result<(), DriveError> {
         within("node", self.node, 1, 127)?;
         within("max_speed", self.max_speed.0, 1, MAX_SPEED_RPM)?;
-        within("max_acceleration", self.max_acceleration.0, 1, u32::MAX)?;
-        within("quick_stop", self.quick_stop.0, 1, u32::MAX)?;
-        within(
-            "max_following_error",
-            self.max_following_error.0,
-            1,
-            i32::MAX,
-        )?;
+        for (field, acceleration) in [
+            ("max_acceleration", self.max_acceleration),
+            ("quick_stop", self.quick_stop),
+        ] {
+            within(field, acceleration.0, 1, u32::MAX)?;
+        }
+        let error = self.max_following_error.0;
+        within("max_following_error", error, 1, i32::MAX)?;
         within("arrival_tolerance", self.arrival_tolerance.0, 0, i32::MAX)?;
         self.limits_qc()?;
         self.limit_switches.check()?;
         if let Some(brake) = self.brake {
-            brake.check()?;
+            within("brake.output", brake.output, 1, 5)?;
+            within_ms("brake.rise", brake.rise, 0, u16::MAX.into())?;
+            within_ms("brake.fall", brake.fall, 0, u16::MAX.into())?;
         }
-        self.homing.check(self)?;
+        self.check_homing()?;
         self.timing.check()?;
         self.can.check(self.node)
+    }
+
+    fn check_homing(&self) -> Result<(), DriveError> {
+        let homing = &self.homing;
+        if !HOMING_METHODS.contains(&homing.method) {
+            let expected = format!("one of {HOMING_METHODS:?}");
+            return Err(invalid("homing.method", expected, homing.method));
+        }
+        for (field, speed) in [
+            ("homing.switch_speed", homing.switch_speed),
+            ("homing.zero_speed", homing.zero_speed),
+        ] {
+            within(field, speed.0, 1, self.max_speed.0)?;
+        }
+        let max_acceleration = self.max_acceleration.0;
+        let acceleration = homing.acceleration.0;
+        within("homing.acceleration", acceleration, 1, max_acceleration)?;
+        self.quadcounts("homing.offset", homing.offset)?;
+        self.quadcounts("homing.home_position", homing.home_position)?;
+        within_ms("homing.time_limit (ms)", homing.time_limit, 1, i64::MAX)
     }
 
     /// The limits in quadcounts, rounded to the nearest.
@@ -276,36 +306,31 @@ impl AxisConfig {
         let min = self.quadcounts("limits.min", self.limits.min)?;
         let max = self.quadcounts("limits.max", self.limits.max)?;
         if min >= max {
-            return Err(DriveError::Config {
-                field: "limits",
-                expected: "min below max".into(),
-                got: format!("{} to {} deg", self.limits.min.0, self.limits.max.0),
-            });
+            let got = format!("{} to {} deg", self.limits.min.0, self.limits.max.0);
+            return Err(invalid("limits", "min below max".into(), got));
         }
         Ok(LimitsQc { min, max })
     }
 
-    /// An angle of the configuration as quadcounts.
+    /// A configured angle in quadcounts.
     pub(crate) fn quadcounts(
         &self,
         field: &'static str,
         angle: Degrees,
     ) -> Result<Quadcounts, DriveError> {
-        self.gearing
-            .position(angle)
-            .map_err(|_| DriveError::Config {
-                field,
-                expected: "an angle whose quadcounts fit 32 bits".into(),
-                got: format!("{} deg", angle.0),
-            })
+        self.gearing.position(angle).map_err(|_| {
+            let expected = "an angle whose quadcounts fit 32 bits".into();
+            invalid(field, expected, format!("{} deg", angle.0))
+        })
     }
 }
 
-/// Upper limit of 607F in the EPOS2's device description.
-const MAX_SPEED_RPM: u32 = 25_000;
-const METHODS: [i8; 15] = [1, 2, 7, 11, 17, 18, 23, 27, 33, 34, 35, -1, -2, -3, -4];
+impl LimitSwitchConfig {
+    /// The switches' bits in object 2071: bit 0 negative, bit 1 positive.
+    pub(crate) fn mask(self) -> u16 {
+        u16::from(self.negative.is_some()) | u16::from(self.positive.is_some()) << 1
+    }
 
-impl LimitSwitches {
     fn check(self) -> Result<(), DriveError> {
         for (field, input) in [
             ("limit_switches.negative", self.negative),
@@ -316,67 +341,27 @@ impl LimitSwitches {
             }
         }
         if self.negative.is_some() && self.negative == self.positive {
-            return Err(DriveError::Config {
-                field: "limit_switches",
-                expected: "two different inputs".into(),
-                got: format!("{:?} for both", self.negative),
-            });
+            let got = format!("{:?} for both", self.negative);
+            return Err(invalid(
+                "limit_switches",
+                "two different inputs".into(),
+                got,
+            ));
         }
         Ok(())
     }
 }
 
-impl Brake {
-    fn check(self) -> Result<(), DriveError> {
-        within("brake.output", self.output, 1, 5)?;
-        for (field, span) in [("brake.rise", self.rise), ("brake.fall", self.fall)] {
-            within(field, whole_ms(span), 0, i64::from(u16::MAX))?;
-        }
-        Ok(())
-    }
-}
-
-impl Homing {
-    /// Whether a mechanical stop is found by the motor's current.
-    pub(crate) fn by_current(&self) -> bool {
+impl HomingConfig {
+    /// Whether the method detects a mechanical stop by the motor's current.
+    pub(crate) fn detects_current(&self) -> bool {
         self.method < 0
     }
-
-    fn check(&self, axis: &AxisConfig) -> Result<(), DriveError> {
-        if !METHODS.contains(&self.method) {
-            return Err(DriveError::Config {
-                field: "homing.method",
-                expected: format!("one of {METHODS:?}"),
-                got: self.method.to_string(),
-            });
-        }
-        within(
-            "homing.switch_speed",
-            self.switch_speed.0,
-            1,
-            axis.max_speed.0,
-        )?;
-        within("homing.zero_speed", self.zero_speed.0, 1, axis.max_speed.0)?;
-        within(
-            "homing.acceleration",
-            self.acceleration.0,
-            1,
-            axis.max_acceleration.0,
-        )?;
-        axis.quadcounts("homing.offset", self.offset)?;
-        axis.quadcounts("homing.home_position", self.home_position)?;
-        within(
-            "homing.time_limit (ms)",
-            whole_ms(self.time_limit),
-            1,
-            i64::MAX,
-        )
-    }
 }
 
-impl Timing {
+impl AxisTiming {
     fn check(&self) -> Result<(), DriveError> {
-        for (field, span, least) in [
+        for (field, span, min_ms) in [
             ("timing.timeout", self.timeout, 1),
             ("timing.timeout_moving", self.timeout_moving, 1),
             ("timing.poll_period", self.poll_period, 0),
@@ -386,37 +371,31 @@ impl Timing {
             ("timing.state_limit", self.state_limit, 1),
             ("timing.standstill", self.standstill, 1),
         ] {
-            within(field, whole_ms(span), least, MAX_SPAN_MS)?;
+            within_ms(field, span, min_ms, MAX_SPAN_MS)?;
         }
         Ok(())
     }
 }
 
-impl CanBus {
+impl CanHeartbeats {
     fn check(&self, node: u8) -> Result<(), DriveError> {
         within("can.host_node", self.host_node, 1, 127)?;
         if self.host_node == node {
-            return Err(DriveError::Config {
-                field: "can.host_node",
-                expected: "another node than the drive's".into(),
-                got: node.to_string(),
-            });
+            let expected = "a node id other than the drive's".into();
+            return Err(invalid("can.host_node", expected, node));
         }
-        for (field, span, more_than) in [
+        for (field, span, above) in [
             ("can.host_heartbeat", self.host_heartbeat, Span::ZERO),
             ("can.host_limit", self.host_limit, self.host_heartbeat),
             ("can.node_heartbeat", self.node_heartbeat, Span::ZERO),
             ("can.node_limit", self.node_limit, self.node_heartbeat),
         ] {
-            let least = whole_ms(more_than).saturating_add(1);
-            within(field, whole_ms(span), least, i64::from(u16::MAX))?;
+            let min_ms = whole_ms(above).saturating_add(1);
+            within_ms(field, span, min_ms, u16::MAX.into())?;
         }
         Ok(())
     }
 }
-
-/// An hour: nothing here is meant to wait longer, and sums of such spans stay far from overflow.
-const MAX_SPAN_MS: i64 = 3_600_000;
 
 /// Whole milliseconds, rounded away from zero so that a negative span never becomes zero.
 pub(crate) fn whole_ms(span: Span) -> i64 {
@@ -424,27 +403,35 @@ pub(crate) fn whole_ms(span: Span) -> i64 {
     ns / 1_000_000 + (ns % 1_000_000).signum()
 }
 
-fn within<T: PartialOrd + std::fmt::Display>(
+fn within_ms(field: &'static str, span: Span, min: i64, max: i64) -> Result<(), DriveError> {
+    within(field, whole_ms(span), min, max)
+}
+
+fn within<T: PartialOrd + Display>(
     field: &'static str,
     value: T,
     min: T,
     max: T,
 ) -> Result<(), DriveError> {
     if value < min || value > max {
-        return Err(DriveError::Config {
-            field,
-            expected: format!("{min} to {max}"),
-            got: value.to_string(),
-        });
+        return Err(invalid(field, format!("{min} to {max}"), value));
     }
     Ok(())
+}
+
+fn invalid(field: &'static str, expected: String, got: impl Display) -> DriveError {
+    DriveError::Config {
+        field,
+        expected,
+        got: got.to_string(),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn field(change: impl FnOnce(&mut AxisConfig)) -> &'static str {
+    fn invalid_field(change: impl FnOnce(&mut AxisConfig)) -> &'static str {
         let mut config = AxisConfig::default();
         change(&mut config);
         match config.check() {
@@ -454,50 +441,45 @@ mod tests {
     }
 
     #[test]
-    fn the_default_rig_is_sound() {
+    fn the_default_is_valid() {
         assert_eq!(AxisConfig::default().check(), Ok(()));
         let limits = AxisConfig::default().limits_qc().unwrap();
         assert_eq!((limits.min.0, limits.max.0), (-40_000, 40_000));
     }
 
     #[test]
-    fn each_impossible_field_is_named() {
-        assert_eq!(field(|c| c.node = 0), "node");
-        assert_eq!(field(|c| c.node = 128), "node");
-        assert_eq!(field(|c| c.max_speed = Rpm(25_001)), "max_speed");
-        assert_eq!(field(|c| c.limits.min = Degrees(60.0)), "limits");
-        assert_eq!(field(|c| c.limits.max = Degrees(f64::NAN)), "limits.max");
-        assert_eq!(field(|c| c.homing.method = 3), "homing.method");
-        assert_eq!(field(|c| c.homing.zero_speed = Rpm(0)), "homing.zero_speed");
-        assert_eq!(
-            field(|c| c.limit_switches.positive = Some(6)),
-            "limit_switches"
-        );
-        assert_eq!(
-            field(|c| c.brake = Some(Brake {
-                output: 6,
-                ..Brake::default()
-            })),
-            "brake.output"
-        );
-        assert_eq!(field(|c| c.timing.timeout = Span::ZERO), "timing.timeout");
-        assert_eq!(field(|c| c.can.host_node = 1), "can.host_node");
-        assert_eq!(
-            field(|c| c.can.node_limit = Span::from_millis(50)),
-            "can.node_limit"
-        );
-        assert_eq!(
-            field(|c| c.timing.hold = Span::from_nanos(-1)),
-            "timing.hold"
-        );
+    fn the_error_names_the_invalid_field() {
+        type Change = fn(&mut AxisConfig);
+        let cases: [(&str, Change); 13] = [
+            ("node", |c| c.node = 0),
+            ("node", |c| c.node = 128),
+            ("max_speed", |c| c.max_speed = Rpm(25_001)),
+            ("limits", |c| c.limits.min = Degrees(60.0)),
+            ("limits.max", |c| c.limits.max = Degrees(f64::NAN)),
+            ("homing.method", |c| c.homing.method = 3),
+            ("homing.zero_speed", |c| c.homing.zero_speed = Rpm(0)),
+            ("limit_switches", |c| c.limit_switches.positive = Some(6)),
+            ("brake.output", |c| {
+                c.brake.as_mut().unwrap().output = 6;
+            }),
+            ("timing.timeout", |c| c.timing.timeout = Span::ZERO),
+            ("can.host_node", |c| c.can.host_node = 1),
+            ("can.node_limit", |c| {
+                c.can.node_limit = Span::from_millis(50);
+            }),
+            ("timing.hold", |c| c.timing.hold = Span::from_nanos(-1)),
+        ];
+        for (field, change) in cases {
+            assert_eq!(invalid_field(change), field);
+        }
     }
 
     #[test]
     fn limit_switch_bits_are_those_of_2071() {
-        assert_eq!(LimitSwitches::default().mask(), 0b11);
-        let one = LimitSwitches {
+        assert_eq!(LimitSwitchConfig::default().mask(), 0b11);
+        let one = LimitSwitchConfig {
             negative: None,
-            ..LimitSwitches::default()
+            ..LimitSwitchConfig::default()
         };
         assert_eq!(one.mask(), 0b10);
     }

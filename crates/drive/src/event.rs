@@ -1,4 +1,4 @@
-//! What the client tells: samples, progress, and how a command ended.
+//! The events of the client: samples, progress and results of commands.
 
 use std::fmt;
 
@@ -9,134 +9,134 @@ use units::{Degrees, Host, Quadcounts, Stamp};
 
 use crate::command::CommandKind;
 use crate::error::DriveError;
-use crate::plan::Plan;
+use crate::plan::MovePlan;
 
-/// A position of the shaft with the times between which the drive read it, and how far the drive itself narrows that down.
+/// A position of the shaft with bounds of the time at which the drive sampled it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaftSample {
-    /// When the request was handed out: on RS232 its body, on a CAN bus's stream the SYNC.
+    /// When the request was sent: on RS232 its body, for the stream of a CAN bus the SYNC.
     pub request: Stamp<Host>,
-    /// When the answer had been read; seen by a listener on RS232, when it was announced.
+    /// When the reply was read; for a listener on RS232, when it was announced.
     pub answer: Stamp<Host>,
     /// Position actual value (6064).
     pub position: Quadcounts,
-    /// What made the drive read it.
-    pub taken: Taken,
-    /// The drive's own clock as it latched the position (1013), in us: of no zero in particular, wrapping every 71 minutes. `None`
-    /// where the answer does not carry it.
+    /// What made the drive sample its position.
+    pub trigger: SampleTrigger,
+    /// The drive's clock at the sample (1013) in us, with an arbitrary zero, wrapping every 71 minutes;
+    /// `None` if the reply does not contain it.
     pub device_us: Option<u32>,
 }
 
-/// What made the drive read its position, and so where between the two stamps it did.
+/// The trigger of a sample, which determines where between its two stamps it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Taken {
-    /// It was asked for object 6064: anywhere between request and answer.
-    Asked,
-    /// It got a SYNC (CAN): `request` is when that was sent, and the position was latched within a control cycle of its
-    /// arrival; `answer` is when the process data had come. Should it not be certain which SYNC it answers, `request` is of an
-    /// older one, never of a later.
-    AtSync,
+pub enum SampleTrigger {
+    /// A read of object 6064: anywhere between request and reply.
+    Request,
+    /// A SYNC (CAN): within one control cycle of its arrival. `request` is when the SYNC was sent,
+    /// `answer` when the process data arrived. If the match is uncertain, `request` is that of an earlier
+    /// SYNC, never of a later one.
+    Sync,
 }
 
-/// Something that happened.
+/// An event of the client.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Event {
+pub enum DriveEvent {
     /// A sample of the shaft's position.
     Sample(ShaftSample),
     /// A step of the running command.
-    Progress(Progress),
-    /// The command is done.
-    Done(Outcome),
-    /// The command failed. A failed move or homing has been brought to rest unless the error is [`DriveError::NotStopped`]; a failed stop
-    /// says what is known.
+    Progress(CommandProgress),
+    /// The command succeeded.
+    Done(CommandOutcome),
+    /// The command failed. After a failed move or homing the axis is at rest, unless the error is
+    /// [`DriveError::NotStopped`].
     Failed(DriveError),
 }
 
 /// A step of a command.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Progress {
-    /// The command's first step.
+pub enum CommandProgress {
+    /// The command started.
     Started(CommandKind),
-    /// The drive said what it is.
-    Identified(Identity),
+    /// The drive was identified.
+    Identified(DriveIdentity),
     /// A fault was cleared.
     FaultCleared {
-        /// What it had been, newest entry of the history.
+        /// The newest entry of the error history before.
         error: Option<DeviceError>,
     },
     /// Every setting was written and read back.
     Configured,
     /// The power stage is on and the brake open.
     Enabled,
-    /// The drive took the target and moves; the plan starts now.
-    Moving(Plan),
-    /// The axis searches its home.
+    /// The drive accepted the target; the plan starts now.
+    Moving(MovePlan),
+    /// Homing started.
     Homing,
-    /// It is on its way there: where the drive wants it to be (6062), counted from whatever zero it had before. No sample: none of a shaft
-    /// that loses its zero would be of use.
+    /// Homing continues. This is not a sample, as the axis may lose its zero at any time.
     Searching {
-        /// When the drive said so.
+        /// When the drive reported the position.
         at: Stamp<Host>,
-        /// Where.
+        /// Position demand value (6062), relative to the zero before homing.
         demand: Quadcounts,
     },
-    /// A command failed and the axis was brought to rest; the failure follows.
-    MadeSafe(Stopped),
+    /// A command failed and the axis was stopped; the failure follows.
+    MadeSafe(StopReport),
 }
 
-/// How a command ended well.
+/// Result of a successful command.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
-    /// [`crate::Command::Connect`]
-    Connected(Connected),
-    /// [`crate::Command::Home`]
+pub enum CommandOutcome {
+    /// Of [`crate::DriveCommand::Connect`].
+    Connected(ConnectionReport),
+    /// Of [`crate::DriveCommand::Home`].
     Homed {
-        /// Where the axis stands now.
+        /// Position of the axis.
         position: Quadcounts,
-        /// The same as an angle.
+        /// The position as an angle.
         angle: Degrees,
     },
-    /// [`crate::Command::Goto`] and [`crate::Command::Sweep`]
-    Arrived(Arrived),
-    /// [`crate::Command::Hold`]
+    /// Of [`crate::DriveCommand::Goto`] and [`crate::DriveCommand::Sweep`].
+    Arrived(MoveReport),
+    /// Of [`crate::DriveCommand::Hold`].
     Held,
-    /// [`crate::Command::Stop`] and [`crate::Command::Brake`]
-    Stopped(Stopped),
-    /// [`crate::Command::ClearFaults`]; the errors that were in the history, newest first.
+    /// Of [`crate::DriveCommand::Stop`] and [`crate::DriveCommand::Brake`].
+    Stopped(StopReport),
+    /// Of [`crate::DriveCommand::ClearFaults`]: the error history before, newest first.
     FaultsCleared(Vec<DeviceError>),
-    /// [`crate::Command::Status`]
-    Status(Status),
-    /// [`crate::Command::Read`]
+    /// Of [`crate::DriveCommand::Status`].
+    Status(DriveStatus),
+    /// Of [`crate::DriveCommand::Read`].
     Read {
         /// The object.
         address: Address,
-        /// All of it, low byte first.
+        /// Its bytes in little-endian order.
         bytes: Vec<u8>,
     },
-    /// [`crate::Command::Write`]; the object.
+    /// Of [`crate::DriveCommand::Write`].
     Written(Address),
 }
 
-/// What the drive says it is.
+/// Identity of the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Identity {
+#[non_exhaustive]
+pub struct DriveIdentity {
     /// Device name (1008), "EPOS2".
     pub name: DeviceName,
-    /// Vendor (1018:1), 0xFB for maxon.
+    /// Vendor id (1018:1), 0xFB for maxon.
     pub vendor: u32,
     /// Product code (1018:2); its upper half is the hardware version.
     pub product: u32,
-    /// Revision (1018:3); its upper half is the software version.
+    /// Revision number (1018:3); its upper half is the software version.
     pub revision: u32,
     /// Serial number (1018:4).
     pub serial: u32,
-    /// Software version (2003:1), as hexadecimal digits.
+    /// Software version (2003:1) in hexadecimal digits.
     pub software: u16,
-    /// Hardware version (2003:2), as hexadecimal digits.
+    /// Hardware version (2003:2) in hexadecimal digits.
     pub hardware: u16,
 }
 
-/// The name a device gives itself: up to 16 bytes of ASCII, empty where it tells none.
+/// Name of a device: up to 16 ASCII characters, empty if unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DeviceName {
     bytes: [u8; 16],
@@ -144,7 +144,7 @@ pub struct DeviceName {
 }
 
 impl DeviceName {
-    /// The name in the bytes of an object: up to the first that is no printable ASCII, 16 at most.
+    /// The name in an object's bytes, up to the first that is not printable ASCII.
     pub(crate) fn new(bytes: &[u8]) -> Self {
         let mut name = Self::default();
         let printable = bytes
@@ -157,7 +157,7 @@ impl DeviceName {
         name
     }
 
-    /// The name.
+    /// The name as text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         let bytes = self.bytes.get(..self.len).unwrap_or_default();
@@ -171,81 +171,84 @@ impl fmt::Display for DeviceName {
     }
 }
 
-/// Where the angle comes from.
+/// Source of the shaft samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AngleSource {
-    /// The position is asked for, again and again.
+    /// Reads of the position.
     Polls,
-    /// The drive sends it at each SYNC, with its own time (CAN).
+    /// Process data with the drive's time, at each SYNC (CAN).
     Stream,
 }
 
-/// A drive that is ready to be used.
+/// A connected drive.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Connected {
-    /// What it is.
-    pub identity: Identity,
-    /// Its error history as found, newest first.
+#[non_exhaustive]
+pub struct ConnectionReport {
+    /// Identity of the drive.
+    pub identity: DriveIdentity,
+    /// Error history as found, newest first.
     pub history: Vec<DeviceError>,
-    /// Whether it already knows its position.
+    /// Whether the axis is referenced.
     pub referenced: bool,
-    /// Where it stands; an angle only if referenced.
+    /// Position; an angle only if referenced.
     pub position: Quadcounts,
-    /// Where the angle will come from.
+    /// Source of the shaft samples.
     pub angle: AngleSource,
-    /// Whether the drive stops by itself when the host falls silent during a motion (CAN: heartbeat, object 1016). Where it does
-    /// not, an axis whose host dies ends its move.
-    pub watches_host: bool,
+    /// Whether the drive stops on its own if the host fails during a motion (CAN heartbeat, object
+    /// 1016). Otherwise the drive completes its move.
+    pub monitors_host: bool,
 }
 
 /// A completed move.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arrived {
-    /// What was planned.
-    pub plan: Plan,
-    /// Where the axis came to rest.
+#[non_exhaustive]
+pub struct MoveReport {
+    /// The plan.
+    pub plan: MovePlan,
+    /// Final position.
     pub position: Quadcounts,
-    /// The same as an angle.
+    /// The position as an angle.
     pub angle: Degrees,
-    /// When the drive acknowledged the command to move.
+    /// When the drive confirmed the command to move.
     pub started: Stamp<Host>,
-    /// When the axis was seen at its target.
+    /// When the axis was observed at its target.
     pub arrived: Stamp<Host>,
 }
 
 /// An axis at rest with the power stage off.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stopped {
-    /// Where it stands.
+#[non_exhaustive]
+pub struct StopReport {
+    /// Position of the axis.
     pub position: Quadcounts,
-    /// What that position is worth.
-    pub place: Place,
-    /// The same as an angle; `None` unless the place is known.
+    /// Validity of the position.
+    pub validity: PositionValidity,
+    /// The position as an angle; `None` unless it is valid.
     pub angle: Option<Degrees>,
-    /// Whether the drive is in fault (power off and brake set all the same).
+    /// Whether the drive is in fault (with power off and brake set all the same).
     pub fault: bool,
-    /// Whether an output of the drive holds a brake.
+    /// Whether an output of the drive controls a brake.
     pub brake: bool,
 }
 
-/// Whether an axis at rest still knows where it is.
+/// Validity of the position of an axis at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// It does: the encoder was read all the time.
-    Known,
-    /// It has not been homed.
+pub enum PositionValidity {
+    /// The axis is referenced and has not missed encoder counts since.
+    Valid,
+    /// The axis has not been homed.
     NotHomed,
-    /// It has been homed, and does not know any more: home again.
+    /// The axis lost its reference: home it again.
     Lost {
-        /// The device error that says so; `None` where the drive restarted or gave its reference up.
+        /// The device error that reports it; `None` if the drive restarted or cleared its reference.
         error: Option<DeviceError>,
     },
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for PositionValidity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Known => f.write_str("position known"),
+            Self::Valid => f.write_str("position known"),
             Self::NotHomed => f.write_str("not homed"),
             Self::Lost { error: None } => f.write_str("position lost: home again"),
             Self::Lost { error: Some(error) } => {
@@ -255,26 +258,27 @@ impl fmt::Display for Place {
     }
 }
 
-/// State, position and errors.
+/// State, position and errors of the drive.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Status {
-    /// What the drive is.
-    pub identity: Identity,
+#[non_exhaustive]
+pub struct DriveStatus {
+    /// Identity of the drive.
+    pub identity: DriveIdentity,
     /// Statusword (6041).
     pub statusword: u16,
-    /// State; `None` for a statusword of no known state.
+    /// State; `None` if the statusword matches none.
     pub state: Option<State>,
-    /// Mode of operation shown (6061).
+    /// Modes of operation display (6061).
     pub mode: i8,
-    /// Whether the axis knows where it is.
+    /// Whether the axis is referenced.
     pub referenced: bool,
-    /// Where it stands.
+    /// Position actual value (6064).
     pub position: Quadcounts,
-    /// The same as an angle; `None` if the axis is not referenced.
+    /// The position as an angle; `None` if the axis is not referenced.
     pub angle: Option<Degrees>,
-    /// Velocity (606C), rpm with sign.
+    /// Velocity actual value (606C), rpm.
     pub velocity_rpm: i32,
-    /// Digital input functions (2071:1): bit 0 negative limit switch, bit 1 positive, bit 2 home switch.
+    /// Digital input functionalities (2071:1): bit 0 negative limit switch, bit 1 positive, bit 2 home.
     pub inputs: u16,
     /// Error history (1003), newest first.
     pub history: Vec<DeviceError>,

@@ -1,37 +1,59 @@
-//! The EPOS2 tilt drive's client, without I/O: connect, home, move, sample the shaft, stop; and a listener that reads the same out of a log.
+//! The client of the tilt axis' EPOS2 drive, without I/O, and a listener that decodes logs.
 //!
-//! [`Client`] is a machine: bytes and times in, frames and events out. [`Listener`] only looks on. Neither opens a port, reads a
-//! clock, or knows about lidars; what the angles are good for is decided elsewhere.
+//! [`DriveClient`] is a state machine: the caller passes bytes and times in and takes bytes and events
+//! out. [`DriveListener`] only observes. Neither opens a port, reads a clock or knows about lidars.
+//!
+//! # Example
+//! A client sends nothing before a command starts. `Connect` begins with reading the device type:
+//! ```
+//! use drive::{AxisConfig, DriveClient, DriveCommand, DriveLink};
+//! use units::Stamp;
+//!
+//! let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Usb);
+//! let mut now = Stamp::from_nanos(0);
+//! assert_eq!(client.poll_transmit(now), None);
+//!
+//! client.start(DriveCommand::Connect)?;
+//! let request = client.poll_transmit(now).expect("bytes to write to the port");
+//! assert_eq!(request[..6], [0x90, 0x02, 0x10, 0x02, 0x00, 0x10]);
+//!
+//! // The port's owner now passes the reply to `handle_input`. Without one:
+//! now = client.poll_timeout().expect("the reply has a time limit");
+//! client.handle_timeout(now);
+//! # Ok::<(), drive::DriveError>(())
+//! ```
 
-mod beat;
-mod bus;
+mod can_services;
 mod client;
 mod codec;
 mod command;
 pub mod config;
 mod error;
 mod event;
+mod exchange;
 mod link;
-pub mod listener;
+mod listener;
 mod ops;
-mod pairing;
 mod plan;
 mod procedures;
+mod request_matcher;
+mod sync_matcher;
 #[cfg(test)]
 mod tests;
 
-pub use client::Client;
-pub use command::{Command, CommandKind, Move, ObjectBytes};
+pub use client::DriveClient;
+pub use command::{CommandKind, DriveCommand, MoveCommand, ObjectBytes};
 pub use config::AxisConfig;
-pub use error::{DriveError, Operation, Wrote};
+pub use error::{DriveError, Operation, WrittenData};
 pub use event::{
-    AngleSource, Arrived, Connected, DeviceName, Event, Identity, Outcome, Place, Progress,
-    ShaftSample, Status, Stopped, Taken,
+    AngleSource, CommandOutcome, CommandProgress, ConnectionReport, DeviceName, DriveEvent,
+    DriveIdentity, DriveStatus, MoveReport, PositionValidity, SampleTrigger, ShaftSample,
+    StopReport,
 };
 pub use link::LinkStats;
-pub use listener::{Listener, Observation};
-pub use pairing::MARKERS;
-pub use plan::Plan;
+pub use listener::{DriveListener, Observation};
+pub use plan::MovePlan;
 pub use protocol::canopen::nmt::NmtState;
 pub use protocol::epos2::{CommError, DeviceError, cia402, objects};
 pub use protocol::record::{self, DriveLink};
+pub use request_matcher::PROBES;

@@ -1,44 +1,45 @@
-//! What a requested move becomes in the drive's whole rpm, and how long it will take.
+//! Plans of moves: the drive's whole rpm and the resulting timing.
 //!
-//! The profile is the symmetric trapezoid of 6086 = 0: acceleration a over v/a, cruise at v, deceleration a; a way shorter
-//! than v2/a never reaches v and is a triangle. What the axis really does is measured, not planned.
+//! The profile is the symmetric trapezoid of motion profile type 0 (6086): acceleration a for v/a,
+//! cruise at v, deceleration a. A distance below v2/a never reaches v and gives a triangle.
 
 use units::{DegPerS, DegPerS2, Degrees, Quadcounts, Rpm, RpmPerS, Span};
 
-use crate::command::Move;
+use crate::command::MoveCommand;
 use crate::config::AxisConfig;
 use crate::error::DriveError;
 
-/// A move in the drive's units with its timing.
+/// A move in the drive's units, with its timing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plan {
-    /// Start, at the nearest quadcount.
+#[non_exhaustive]
+pub struct MovePlan {
+    /// Start, rounded to quadcounts.
     pub from: Degrees,
-    /// Target, at the nearest quadcount.
+    /// Target, rounded to quadcounts.
     pub to: Degrees,
-    /// Profile velocity (6081): the requested cruise speed in whole rpm.
+    /// Profile velocity (6081): the requested speed in whole rpm.
     pub speed: Rpm,
     /// Profile acceleration and deceleration (6083, 6084).
     pub acceleration: RpmPerS,
-    /// The speed that was asked for.
+    /// Requested speed.
     pub requested: DegPerS,
-    /// Highest speed reached: that of `speed`, or the peak of the triangle.
+    /// Highest speed: that of `speed`, or the peak of the triangle.
     pub cruise: DegPerS,
-    /// Way over duration; zero for no way.
+    /// Distance over duration; zero without motion.
     pub mean: DegPerS,
-    /// Length of each of the two ramps.
+    /// Duration of each ramp.
     pub ramp: Span,
-    /// Time at constant speed.
+    /// Duration at constant speed.
     pub cruising: Span,
-    /// Whole time from start to standstill.
+    /// Duration from start to standstill.
     pub duration: Span,
-    /// Whether the way is too short to reach the profile velocity.
+    /// Whether the distance is too short to reach the profile velocity.
     pub triangle: bool,
 }
 
-/// A move that has passed the checks.
+/// A validated move command in the drive's units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Aim {
+pub(crate) struct ValidatedMove {
     pub target: Quadcounts,
     pub speed: Rpm,
     pub acceleration: RpmPerS,
@@ -48,17 +49,18 @@ impl AxisConfig {
     /// Plans a move at a cruise speed and an acceleration in degrees of tilt.
     ///
     /// # Errors
-    /// [`DriveError::Limits`] for a target outside the limits; [`DriveError::Speed`] and [`DriveError::Acceleration`]
-    /// for what is not a number, not above zero, less than half an rpm, or above the axis' maximum.
+    /// [`DriveError::Limits`] for a target outside the limits. [`DriveError::Speed`] and
+    /// [`DriveError::Acceleration`] for a value that is not a number, not positive, less than half an
+    /// rpm or above the axis' maximum.
     pub fn plan(
         &self,
         from: Degrees,
         to: Degrees,
         speed: DegPerS,
         acceleration: DegPerS2,
-    ) -> Result<Plan, DriveError> {
+    ) -> Result<MovePlan, DriveError> {
         let rpm = self.gearing.rpm(speed);
-        // Not a number is not above zero either.
+        // Written so that NaN is not positive either.
         let is_positive = speed.0 > 0.0;
         if !is_positive || rpm.0 == 0 || rpm > self.max_speed {
             return Err(self.speed_error(speed));
@@ -69,86 +71,79 @@ impl AxisConfig {
             return Err(self.acceleration_error(acceleration));
         }
         let from = self.quadcounts("from", from)?;
-        let to = self.target(to)?;
-        let plan = self.plan_move(from, to, rpm, rpm_per_s)?;
-        Ok(Plan {
+        let planned = self.validate(MoveCommand {
+            to,
+            speed: rpm,
+            acceleration: rpm_per_s,
+        })?;
+        Ok(MovePlan {
             requested: speed,
-            ..plan
+            ..self.plan_move(from, planned)
         })
     }
 
-    /// Plans a move that is already in the drive's units.
-    ///
-    /// # Errors
-    /// As for [`AxisConfig::plan`].
-    pub fn plan_move(
-        &self,
-        from: Quadcounts,
-        to: Quadcounts,
-        speed: Rpm,
-        acceleration: RpmPerS,
-    ) -> Result<Plan, DriveError> {
-        self.check_rates(speed, acceleration)?;
-        let (from, to) = (self.gearing.angle(from), self.gearing.angle(to));
-        let way = (to.0 - from.0).abs();
+    /// Plans a validated move.
+    pub(crate) fn plan_move(&self, from: Quadcounts, planned: ValidatedMove) -> MovePlan {
+        let ValidatedMove {
+            target,
+            speed,
+            acceleration,
+        } = planned;
+        let (from, to) = (self.gearing.angle(from), self.gearing.angle(target));
+        let distance = (to.0 - from.0).abs();
         let v = self.gearing.rate(speed).0;
         let a = self.gearing.acceleration(acceleration).0;
-        let triangle = way < v * v / a;
-        let peak = if triangle { (way * a).sqrt() } else { v };
+        let triangle = distance < v * v / a;
+        let peak = if triangle { (distance * a).sqrt() } else { v };
         let ramp = peak / a;
-        let cruising = if triangle { 0.0 } else { way / v - ramp };
+        let cruising = if triangle { 0.0 } else { distance / v - ramp };
         let duration = 2.0 * ramp + cruising;
-        Ok(Plan {
+        let mean = if duration > 0.0 {
+            distance / duration
+        } else {
+            0.0
+        };
+        MovePlan {
             from,
             to,
             speed,
             acceleration,
             requested: DegPerS(v),
             cruise: DegPerS(peak),
-            mean: DegPerS(if duration > 0.0 { way / duration } else { 0.0 }),
+            mean: DegPerS(mean),
             ramp: Span::from_secs_f64(ramp),
             cruising: Span::from_secs_f64(cruising),
             duration: Span::from_secs_f64(duration),
             triangle,
-        })
-    }
-
-    /// A commanded move in quadcounts, refused where the axis cannot or must not make it.
-    pub(crate) fn aim(&self, to: Move) -> Result<Aim, DriveError> {
-        self.check_rates(to.speed, to.acceleration)?;
-        Ok(Aim {
-            target: self.target(to.to)?,
-            speed: to.speed,
-            acceleration: to.acceleration,
-        })
-    }
-
-    /// A target in quadcounts, refused outside the limits.
-    fn target(&self, to: Degrees) -> Result<Quadcounts, DriveError> {
-        let outside = DriveError::Limits {
-            target: to,
-            min: self.limits.min,
-            max: self.limits.max,
-        };
-        let limits = self.limits_qc()?;
-        let Ok(target) = self.gearing.position(to) else {
-            return Err(outside);
-        };
-        if target < limits.min || target > limits.max {
-            return Err(outside);
         }
-        Ok(target)
     }
 
-    /// Refuses rates that the axis cannot run at.
-    fn check_rates(&self, speed: Rpm, acceleration: RpmPerS) -> Result<(), DriveError> {
+    /// Checks a move against the axis' ranges and converts its target to quadcounts.
+    pub(crate) fn validate(&self, command: MoveCommand) -> Result<ValidatedMove, DriveError> {
+        let MoveCommand {
+            to,
+            speed,
+            acceleration,
+        } = command;
         if speed.0 == 0 || speed > self.max_speed {
             return Err(self.speed_error(self.gearing.rate(speed)));
         }
         if acceleration.0 == 0 || acceleration > self.max_acceleration {
             return Err(self.acceleration_error(self.gearing.acceleration(acceleration)));
         }
-        Ok(())
+        let limits = self.limits_qc()?;
+        match self.gearing.position(to) {
+            Ok(target) if limits.contains(target, Quadcounts(0)) => Ok(ValidatedMove {
+                target,
+                speed,
+                acceleration,
+            }),
+            _ => Err(DriveError::Limits {
+                target: to,
+                min: self.limits.min,
+                max: self.limits.max,
+            }),
+        }
     }
 
     fn speed_error(&self, requested: DegPerS) -> DriveError {
@@ -174,7 +169,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn plan(to: f64, speed: f64, acceleration: f64) -> Result<Plan, DriveError> {
+    fn plan(to: f64, speed: f64, acceleration: f64) -> Result<MovePlan, DriveError> {
         AxisConfig::default().plan(
             Degrees(0.0),
             Degrees(to),
@@ -183,7 +178,8 @@ mod tests {
         )
     }
 
-    /// The paper's sweep: 45 deg at 56.25 deg/s; with 500 deg/s2 the two ramps add v/a = 112.5 ms to 0.8 s of way.
+    /// The paper's sweep: 45 deg at 56.25 deg/s; with 500 deg/s2
+    /// the two ramps add v/a = 112.5 ms to the 0.8 s.
     #[test]
     fn the_papers_sweep_takes_912_5_ms() {
         let plan = plan(45.0, 56.25, 500.0).unwrap();
@@ -196,17 +192,17 @@ mod tests {
     }
 
     #[test]
-    fn a_short_way_is_a_triangle() {
+    fn a_short_distance_is_a_triangle() {
         let plan = plan(1.0, 56.25, 500.0).unwrap();
         assert!(plan.triangle);
         assert!(plan.cruise.0 < 56.25);
         assert_eq!(plan.cruising, Span::ZERO);
-        // Two ramps of sqrt(way / a) each; 1 deg is 666.67 qc, so 667 qc = 1.0005 deg.
+        // Two ramps of sqrt(distance / a) each; 1 deg is 666.67 qc, so 667 qc = 1.0005 deg.
         assert!((plan.duration.as_secs_f64() - 2.0 * (1.0005f64 / 500.0).sqrt()).abs() < 1e-8);
     }
 
     #[test]
-    fn no_way_takes_no_time() {
+    fn no_distance_takes_no_time() {
         let plan = plan(0.0, 10.0, 100.0).unwrap();
         assert_eq!((plan.duration, plan.mean), (Span::ZERO, DegPerS(0.0)));
     }
@@ -251,13 +247,13 @@ mod tests {
     }
 
     proptest! {
-        /// The area under the planned speed is the way.
+        /// The area under the planned speed is the distance.
         #[test]
-        fn the_profile_covers_the_way(to in -60.0..60.0f64, speed in 0.05..75.0f64, acceleration in 1.0..1000.0f64) {
+        fn the_profile_covers_the_distance(to in -60.0..60.0f64, speed in 0.05..75.0f64, acceleration in 1.0..1000.0f64) {
             let plan = plan(to, speed, acceleration).unwrap();
-            let way = (plan.to.0 - plan.from.0).abs();
+            let distance = (plan.to.0 - plan.from.0).abs();
             let area = plan.cruise.0 * (plan.ramp.as_secs_f64() + plan.cruising.as_secs_f64());
-            prop_assert!((area - way).abs() < 1e-6, "{area} {way}");
+            prop_assert!((area - distance).abs() < 1e-6, "{area} {distance}");
             prop_assert!(plan.cruise.0 <= 75.0);
         }
     }

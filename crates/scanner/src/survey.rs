@@ -3,7 +3,7 @@
 
 use drive::objects::Address;
 use drive::record::{Direction, DriveLink, Record, Wire};
-use drive::{Listener, Observation, ShaftSample};
+use drive::{DriveListener, Observation, ShaftSample};
 use lidar::{Options, Timekeeper};
 use units::{Gearing, Host, Span, Stamp};
 
@@ -119,7 +119,7 @@ impl Survey {
 /// Reads times and angles from records, for the first pass and for the live cloud.
 pub(crate) struct RecordReader {
     timekeeper: Timekeeper,
-    listener: Listener,
+    listener: DriveListener,
     request_transmission_time: Span,
 }
 
@@ -148,7 +148,7 @@ impl RecordReader {
     pub(crate) fn new(config: &ScanConfig, options: Options) -> Self {
         Self {
             timekeeper: Timekeeper::new(options),
-            listener: Listener::new(config.axis.node),
+            listener: DriveListener::new(config.axis.node),
             request_transmission_time: config.request_transmission_time(),
         }
     }

@@ -3,7 +3,7 @@
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
-use drive::Plan;
+use drive::MovePlan;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use units::{Degrees, Host, Stamp};
 
@@ -20,7 +20,7 @@ pub struct Progress {
 /// A move in progress.
 struct Sweep {
     bar: ProgressBar,
-    plan: Plan,
+    plan: MovePlan,
     started: Option<Stamp<Host>>,
 }
 
@@ -49,7 +49,7 @@ impl Progress {
     }
 
     /// Starts the bar of a move.
-    pub fn begin_move(&mut self, plan: &Plan) {
+    pub fn begin_move(&mut self, plan: &MovePlan) {
         self.end_move();
         if self.quiet || !self.terminal {
             return;

@@ -5,7 +5,7 @@
 //! link models the delay.
 
 use protocol::canopen::nmt::{Nmt, NmtCommand};
-use protocol::canopen::sdo::{Outcome, SdoClient, TransferError};
+use protocol::canopen::sdo::{SdoClient, SdoOutcome, TransferError};
 use protocol::canopen::{CanFrame, CobId, NodeId};
 use protocol::epos2::message::{RequestCanFrame, SendCanFrame};
 use protocol::epos2::objects::Address;
@@ -48,7 +48,7 @@ fn transfer(
     bus: &mut impl CanBus,
     node: u8,
     begin: impl FnOnce(&mut Client) -> bool,
-) -> Result<Outcome<LONGEST>, Abort> {
+) -> Result<SdoOutcome<LONGEST>, Abort> {
     let id = NodeId::new(node).ok_or(Abort::CAN_ID)?;
     let mut client = Client::new(id, Span::from_nanos(1));
     if !begin(&mut client) {

@@ -123,7 +123,7 @@ pub enum CommunicationObject {
     /// 200, 300, 400, 500 + node: process data to a node.
     ReceivePdo(PdoNumber, NodeId),
     /// 580 + node: answers of a node's SDO server.
-    SdoAnswer(NodeId),
+    SdoResponse(NodeId),
     /// 600 + node: requests to a node's SDO server.
     SdoRequest(NodeId),
     /// 700 + node: boot-up and heartbeat of a node.
@@ -155,7 +155,7 @@ impl CommunicationObject {
             0x400 => Self::ReceivePdo(PdoNumber::Three, node),
             0x480 => Self::TransmitPdo(PdoNumber::Four, node),
             0x500 => Self::ReceivePdo(PdoNumber::Four, node),
-            0x580 => Self::SdoAnswer(node),
+            0x580 => Self::SdoResponse(node),
             0x600 => Self::SdoRequest(node),
             0x700 => Self::Heartbeat(node),
             _ => Self::Other(id),
@@ -173,7 +173,7 @@ impl CommunicationObject {
             Self::Emergency(node) => (0x080, node),
             Self::TransmitPdo(number, node) => (0x180 + 0x100 * number.offset(), node),
             Self::ReceivePdo(number, node) => (0x200 + 0x100 * number.offset(), node),
-            Self::SdoAnswer(node) => (0x580, node),
+            Self::SdoResponse(node) => (0x580, node),
             Self::SdoRequest(node) => (0x600, node),
             Self::Heartbeat(node) => (0x700, node),
         };
@@ -234,7 +234,7 @@ mod tests {
                 0x501,
                 CommunicationObject::ReceivePdo(PdoNumber::Four, node),
             ),
-            (0x581, CommunicationObject::SdoAnswer(node)),
+            (0x581, CommunicationObject::SdoResponse(node)),
             (0x601, CommunicationObject::SdoRequest(node)),
             (0x701, CommunicationObject::Heartbeat(node)),
         ];

@@ -18,7 +18,7 @@ pub enum MessageKind {
     /// Service data, from client to server.
     SdoRequest,
     /// Service data, from server to client.
-    SdoAnswer,
+    SdoResponse,
     /// Boot-up and heartbeat.
     Heartbeat,
 }
@@ -31,7 +31,7 @@ impl core::fmt::Display for MessageKind {
             Self::Emergency => "EMCY message",
             Self::Pdo => "PDO",
             Self::SdoRequest => "SDO request",
-            Self::SdoAnswer => "SDO answer",
+            Self::SdoResponse => "SDO answer",
             Self::Heartbeat => "heartbeat",
         })
     }

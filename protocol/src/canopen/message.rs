@@ -7,7 +7,7 @@ pub(super) use super::error::{data as bytes, wrong_id};
 use super::frame::CanFrame;
 use super::heartbeat::Heartbeat;
 use super::nmt::Nmt;
-use super::sdo::{Answer, Request};
+use super::sdo::{SdoRequest, SdoResponse};
 use super::sync::SyncMessage;
 use crate::Bounded;
 
@@ -25,9 +25,9 @@ pub enum BusMessage {
     /// Process data to a node.
     ReceivePdo(PdoNumber, NodeId, Bounded<u8, 8>),
     /// A request to a node's SDO server.
-    SdoRequest(NodeId, Request),
+    SdoRequest(NodeId, SdoRequest),
     /// An answer of a node's SDO server.
-    SdoAnswer(NodeId, Answer),
+    SdoResponse(NodeId, SdoResponse),
     /// A heartbeat of a node.
     Heartbeat(Heartbeat),
     /// A frame outside the services, a time stamp, or a remote frame: not decoded.
@@ -51,12 +51,12 @@ impl BusMessage {
             CommunicationObject::TransmitPdo(number, node) => Self::TransmitPdo(number, node, data),
             CommunicationObject::ReceivePdo(number, node) => Self::ReceivePdo(number, node, data),
             CommunicationObject::SdoRequest(_) => {
-                let (node, request) = Request::parse(frame)?;
+                let (node, request) = SdoRequest::parse(frame)?;
                 Self::SdoRequest(node, request)
             }
-            CommunicationObject::SdoAnswer(_) => {
-                let (node, answer) = Answer::parse(frame)?;
-                Self::SdoAnswer(node, answer)
+            CommunicationObject::SdoResponse(_) => {
+                let (node, answer) = SdoResponse::parse(frame)?;
+                Self::SdoResponse(node, answer)
             }
             CommunicationObject::Heartbeat(_) => Self::Heartbeat(Heartbeat::parse(frame)?),
             CommunicationObject::Time | CommunicationObject::Other(_) => Self::Other(*frame),
@@ -79,7 +79,7 @@ impl BusMessage {
                 data,
             ),
             Self::SdoRequest(node, request) => request.to_frame(*node),
-            Self::SdoAnswer(node, answer) => answer.to_frame(*node),
+            Self::SdoResponse(node, answer) => answer.to_frame(*node),
             Self::Heartbeat(message) => message.to_frame(),
             Self::Other(frame) => *frame,
         }

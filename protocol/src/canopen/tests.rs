@@ -11,7 +11,7 @@ use super::heartbeat::Heartbeat;
 use super::nmt::{Nmt, NmtCommand, NmtState};
 use super::object::{Address, TypedObject};
 use super::pdo::{CommunicationId, TransmissionType};
-use super::sdo::{Answer, Expedited, Initiate, Request, Segment};
+use super::sdo::{Expedited, Initiate, SdoRequest, SdoResponse, SdoSegment};
 use super::sync::SyncMessage;
 use super::{
     BusMessage, CanFrame, CanId, CobId, ExtendedId, MessageError, MessageKind, NodeId, PdoNumber,
@@ -59,19 +59,19 @@ pub(super) const MODE_DISPLAY: TypedObject<i8> =
 pub(super) const POSITION_ACTUAL: TypedObject<i32> =
     TypedObject::new(0x6064, 0, "Position Actual Value");
 
-fn upload(address: Address, data: &[u8]) -> Answer {
+fn upload(address: Address, data: &[u8]) -> SdoResponse {
     let transfer = Initiate::Expedited(Expedited::new(data).unwrap());
-    Answer::InitiateUpload { address, transfer }
+    SdoResponse::InitiateUpload { address, transfer }
 }
 
-fn download(address: Address, data: &[u8]) -> Request {
+fn download(address: Address, data: &[u8]) -> SdoRequest {
     let transfer = Initiate::Expedited(Expedited::new(data).unwrap());
-    Request::InitiateDownload { address, transfer }
+    SdoRequest::InitiateDownload { address, transfer }
 }
 
-fn segment(toggle: bool, last: bool, bytes: &[u8]) -> Segment {
+fn segment(toggle: bool, last: bool, bytes: &[u8]) -> SdoSegment {
     let bytes = Bounded::from_slice(bytes).unwrap();
-    Segment {
+    SdoSegment {
         toggle,
         last,
         bytes,
@@ -82,13 +82,13 @@ fn segment(toggle: bool, last: bool, bytes: &[u8]) -> Segment {
 /// device name.
 fn sdo_messages() -> Vec<(&'static str, BusMessage)> {
     let ask = |request| BusMessage::SdoRequest(node(1), request);
-    let say = |answer| BusMessage::SdoAnswer(node(1), answer);
+    let say = |answer| BusMessage::SdoResponse(node(1), answer);
     let address = STATUSWORD.address;
     let six = Address::new(0x2080, 3);
     std::vec![
         (
             "601#4041600000000000",
-            ask(Request::InitiateUpload { address })
+            ask(SdoRequest::InitiateUpload { address })
         ),
         ("581#4B41600040010000", say(upload(address, &[0x40, 0x01]))),
         (
@@ -118,54 +118,54 @@ fn sdo_messages() -> Vec<(&'static str, BusMessage)> {
         ),
         (
             "581#6040600000000000",
-            say(Answer::InitiateDownload {
+            say(SdoResponse::InitiateDownload {
                 address: Address::new(0x6040, 0)
             })
         ),
         (
             "581#8041600000000206",
-            say(Answer::Abort {
+            say(SdoResponse::Abort {
                 address,
                 error: CommError::NO_OBJECT
             })
         ),
         (
             "601#8041600000000405",
-            ask(Request::Abort {
+            ask(SdoRequest::Abort {
                 address,
                 error: CommError::TIMEOUT
             })
         ),
         (
             "601#4008100000000000",
-            ask(Request::InitiateUpload { address: NAME })
+            ask(SdoRequest::InitiateUpload { address: NAME })
         ),
         (
             "581#4108100005000000",
-            say(Answer::InitiateUpload {
+            say(SdoResponse::InitiateUpload {
                 address: NAME,
                 transfer: Initiate::Segmented { size: Some(5) }
             })
         ),
         (
             "601#6000000000000000",
-            ask(Request::UploadSegment { toggle: false })
+            ask(SdoRequest::UploadSegment { toggle: false })
         ),
         (
             "581#0545504F53320000",
-            say(Answer::UploadSegment(segment(false, true, b"EPOS2")))
+            say(SdoResponse::UploadSegment(segment(false, true, b"EPOS2")))
         ),
         // Writing nine bytes in segments: announced, seven, two.
         (
             "601#2180200309000000",
-            ask(Request::InitiateDownload {
+            ask(SdoRequest::InitiateDownload {
                 address: six,
                 transfer: Initiate::Segmented { size: Some(9) }
             })
         ),
         (
             "601#0001020304050607",
-            ask(Request::DownloadSegment(segment(
+            ask(SdoRequest::DownloadSegment(segment(
                 false,
                 false,
                 &[1, 2, 3, 4, 5, 6, 7]
@@ -173,42 +173,42 @@ fn sdo_messages() -> Vec<(&'static str, BusMessage)> {
         ),
         (
             "581#2000000000000000",
-            say(Answer::DownloadSegment { toggle: false })
+            say(SdoResponse::DownloadSegment { toggle: false })
         ),
         (
             "601#1B08090000000000",
-            ask(Request::DownloadSegment(segment(true, true, &[8, 9])))
+            ask(SdoRequest::DownloadSegment(segment(true, true, &[8, 9])))
         ),
         (
             "581#3000000000000000",
-            say(Answer::DownloadSegment { toggle: true })
+            say(SdoResponse::DownloadSegment { toggle: true })
         ),
         (
             "601#7000000000000000",
-            ask(Request::UploadSegment { toggle: true })
+            ask(SdoRequest::UploadSegment { toggle: true })
         ),
         // Forms the EPOS2 does not use and other nodes may.
         (
             "581#42416000AABBCCDD",
-            say(Answer::InitiateUpload {
+            say(SdoResponse::InitiateUpload {
                 address,
                 transfer: Initiate::Unsized([0xAA, 0xBB, 0xCC, 0xDD])
             })
         ),
         (
             "581#4041600000000000",
-            say(Answer::InitiateUpload {
+            say(SdoResponse::InitiateUpload {
                 address,
                 transfer: Initiate::Segmented { size: None }
             })
         ),
         (
             "601#A041600000000000",
-            ask(Request::Unknown([0xA0, 0x41, 0x60, 0, 0, 0, 0, 0]))
+            ask(SdoRequest::Unknown([0xA0, 0x41, 0x60, 0, 0, 0, 0, 0]))
         ),
         (
             "581#C241600000000000",
-            say(Answer::Unknown([0xC2, 0x41, 0x60, 0, 0, 0, 0, 0]))
+            say(SdoResponse::Unknown([0xC2, 0x41, 0x60, 0, 0, 0, 0, 0]))
         ),
     ]
 }
@@ -316,7 +316,7 @@ fn another_length_and_another_service_are_refused() {
         })
     };
     for (text, error) in [
-        ("581#4B416000400100", length(MessageKind::SdoAnswer, 8, 7)),
+        ("581#4B416000400100", length(MessageKind::SdoResponse, 8, 7)),
         ("601#", length(MessageKind::SdoRequest, 8, 0)),
         ("701#0500", length(MessageKind::Heartbeat, 1, 2)),
         ("080#0000", length(MessageKind::Sync, 0, 2)),
@@ -346,13 +346,13 @@ fn another_length_and_another_service_are_refused() {
         Err(id(MessageKind::Heartbeat, "701 to 77F"))
     );
     assert_eq!(
-        Request::parse(&other),
+        SdoRequest::parse(&other),
         Err(id(MessageKind::SdoRequest, "601 to 67F"))
     );
     // A 29-bit identifier with the same number is no message of CANopen.
     let extended = CanFrame::new(ExtendedId::new(0x581).unwrap(), other.data()).unwrap();
     assert!(matches!(
-        Answer::parse(&extended),
+        SdoResponse::parse(&extended),
         Err(MessageError::Id { .. })
     ));
     assert_eq!(

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use drive::{AxisConfig, Client};
+use drive::{AxisConfig, DriveClient};
 use engine::devices::drive_port::BusLine;
 use engine::devices::drive_session::Session;
 use io::can::Slcan;
@@ -58,9 +58,9 @@ pub(super) fn rejoin(
             )),
             Attachment::Usb | Attachment::Rs232 | Attachment::Can => Box::new(port.clone()),
         };
-        let client = Client::with_link(axis.clone(), link);
+        let client = DriveClient::new(axis.clone(), link);
         let mut session = Session::new(client, line, Arc::default());
-        let connected = session.run(drive::Command::Connect, &mut |_| {
+        let connected = session.run(drive::DriveCommand::Connect, &mut |_| {
             if !port.moves() && !port.is_powered() {
                 safe_after.get_or_insert(port.now() - came);
             }

@@ -1,15 +1,15 @@
-//! The master's side of an EPOS2 RS232 dialogue: opcode, `O`, body, `O`; then `00`, `O`, answer, `O` (Communication Guide,
-//! "RS232 Communication").
+//! The master's side of an EPOS2 RS232 dialogue: opcode, `O`, body, `O`; then `00`, `O`, answer, `O`
+//! (Communication Guide, "RS232 Communication").
 //!
-//! A dialogue that went wrong leaves the unit anywhere in it. It is brought back by `F`s: where the unit awaits a
-//! handshake they refuse, where it awaits the rest of a body they fill it up to a checksum that cannot hold, and where it awaits an
-//! opcode they are none, which it refuses in turn. Then the line must be quiet for a while, so that nothing said before is taken for
-//! an answer to what comes next. The guide itself only promises that the unit forgets an unfinished frame after 500 ms of
-//! silence, and what it makes of an unknown opcode it does not say; so where a unit stays silent after two of them the line is
-//! left silent for as long as the guide says.
+//! After a failure the unit may be anywhere in the dialogue. A flush of `F` bytes resets it: as a
+//! handshake `F` refuses, in a body it completes a frame with a wrong checksum, as an opcode it is
+//! unknown and refused. The line must then stay quiet for a while, so that no stale byte is taken for
+//! an answer. The guide itself only promises that the unit drops an incomplete frame after 500 ms of
+//! silence and does not describe unknown opcodes. If a unit stays silent after two flushes, the master
+//! therefore waits for the guide's silence instead.
 //!
-//! What must not wait, a stop on a line that does not answer, is shouted: flush, opcode, body and both handshakes in one go. A unit
-//! that hears but cannot be heard carries it out.
+//! A request that must not wait, a stop on a line without answers, is sent unsolicited: flush, opcode,
+//! body and both handshakes at once. A unit whose answers are lost still executes it.
 
 use std::collections::VecDeque;
 
@@ -17,88 +17,91 @@ use protocol::epos2::Frame;
 use protocol::epos2::rs232::{self, BodyDecoder, FAILED, FRAME_TIMEOUT_MS, OKAY};
 use units::{Host, Span, Stamp};
 
-use super::{Decoded, Outgoing, decoded};
+use super::{Decoded, Outgoing, decode_serial};
 
-/// The master's side.
+/// The master's side of the dialogue.
 #[derive(Clone, Debug)]
-pub(super) struct Dialogue {
-    turn: Turn,
+pub(super) struct Rs232Master {
+    state: DialogueState,
     body: Vec<u8>,
     out: VecDeque<Outgoing>,
     deadline: Stamp<Host>,
-    /// What dialogues given up one after the other cost.
+    /// Accumulated cost of consecutive failures.
     failures: u32,
-    /// The unit has said something in this one.
-    heard: bool,
+    /// The unit has sent a byte in this dialogue.
+    has_input: bool,
 }
 
 #[derive(Clone, Debug)]
-enum Turn {
-    /// Nothing is under way.
+enum DialogueState {
     Idle,
-    /// The opcode is out, its `O` is awaited.
-    Ready,
-    /// The body is out, its `O` is awaited.
-    Accepted,
-    /// The answer's opcode is awaited.
-    Lead,
-    /// The answer is awaited.
+    /// Opcode sent, awaiting its `O`.
+    OpcodeSent,
+    /// Body sent, awaiting its `O`.
+    BodySent,
+    /// Awaiting the answer's opcode.
+    AwaitAnswer,
+    /// Receiving the answer.
     Answer(BodyDecoder),
-    /// The line is to be quiet until this time.
-    Quiet { span: Span, until: Stamp<Host> },
+    /// The line must stay quiet until this time; each byte restarts the span.
+    Quiet {
+        span: Span,
+        until: Stamp<Host>,
+    },
 }
 
-/// Longer than any answer's way through an adapter with a latency timer of 16 ms.
+/// Longer than an answer takes through a serial adapter with a latency timer of 16 ms.
 const QUIET: Span = Span::from_millis(20);
-/// As long as the guide says, and some.
+/// The unit's frame timeout plus 20 ms.
 const SILENCE: Span = Span::from_millis(FRAME_TIMEOUT_MS as i64 + 20);
-/// Fills the longest body that `F` announces itself: 71 words, after a length and before a checksum.
-const FLUSH: usize = 1 + 2 * (FAILED as usize + 1) + 2;
-/// The flush takes 38 ms at 38400 baud, the slowest any EPOS2 is delivered with.
+/// Completes the longest body that `F` as a length announces: length, 71 words, checksum.
+const FLUSH_LEN: usize = 1 + 2 * (FAILED as usize + 1) + 2;
+/// 145 bytes of 10 bits take 38 ms at 38400 baud, the slowest factory setting of an EPOS2.
 const FLUSH_TIME: Span = Span::from_millis(40);
-/// What failures in a row may cost before silence is tried: a unit that does not say anything may be one that flushes do not bring
-/// back, while one that is heard damaged will be back when the line is well again.
-const FAILURES: u32 = 8;
-const UNHEARD: u32 = 4;
-const DAMAGED: u32 = 1;
+/// Cost of consecutive failures above which silence replaces the flush.
+const MAX_FAILURE_COST: u32 = 8;
+/// Cost of a dialogue without any byte from the unit: a flush may not reset it.
+const COST_SILENT: u32 = 4;
+/// Cost of a dialogue with damaged bytes: the unit responds once the line is good again.
+const COST_DAMAGED: u32 = 1;
 
-impl Dialogue {
+impl Rs232Master {
     pub fn new() -> Self {
         Self {
-            turn: Turn::Idle,
+            state: DialogueState::Idle,
             body: Vec::new(),
             out: VecDeque::new(),
             deadline: Stamp::from_nanos(0),
             failures: 0,
-            heard: false,
+            has_input: false,
         }
     }
 
     pub fn is_idle(&self) -> bool {
-        matches!(self.turn, Turn::Idle) && self.out.is_empty()
+        matches!(self.state, DialogueState::Idle) && self.out.is_empty()
     }
 
-    /// Begins; gives back the opcode. After `deadline` the dialogue gives itself up.
+    /// Starts a dialogue that ends at `deadline`; returns the opcode.
     pub fn begin(&mut self, frame: &Frame, deadline: Stamp<Host>) -> Vec<u8> {
         self.body.clear();
-        // Every request has words.
+        // Cannot fail: every request has words.
         let _ = rs232::encode_body(frame, &mut self.body);
-        self.turn = Turn::Ready;
-        self.heard = false;
+        self.state = DialogueState::OpcodeSent;
+        self.has_input = false;
         self.deadline = deadline;
         vec![frame.opcode]
     }
 
-    /// The whole of a request at once, to a unit that may be anywhere in a dialogue and may not be heard; what it says to that is
-    /// passed over.
-    pub fn shout(&mut self, frame: &Frame, now: Stamp<Host>) -> Vec<u8> {
+    /// Encodes a complete request for a unit in an unknown state; the unit's bytes are discarded.
+    pub fn send_unsolicited(&mut self, frame: &Frame, now: Stamp<Host>) -> Vec<u8> {
         self.out.clear();
-        let span = QUIET;
-        let until = now.saturating_add(FLUSH_TIME).saturating_add(span);
-        self.turn = Turn::Quiet { span, until };
-        let mut bytes = vec![FAILED; FLUSH];
+        self.state = DialogueState::Quiet {
+            span: QUIET,
+            until: now.saturating_add(FLUSH_TIME).saturating_add(QUIET),
+        };
+        let mut bytes = vec![FAILED; FLUSH_LEN];
         bytes.push(frame.opcode);
-        // Every request has words.
+        // Cannot fail: every request has words.
         let _ = rs232::encode_body(frame, &mut bytes);
         bytes.extend([OKAY; 2]);
         bytes
@@ -106,116 +109,119 @@ impl Dialogue {
 
     pub fn outgoing(&mut self, now: Stamp<Host>) -> Option<Outgoing> {
         let out = self.out.pop_front()?;
-        if let Turn::Quiet { span, until } = &mut self.turn {
-            // Quiet begins when the bytes are out.
-            let wire = if out.bytes.len() > 1 {
+        if let DialogueState::Quiet { span, until } = &mut self.state {
+            // The quiet span starts after the last byte is on the line.
+            let wait = if out.bytes.len() > 1 {
                 FLUSH_TIME
             } else {
                 *span
             };
-            *until = now.saturating_add(wire);
+            *until = now.saturating_add(wait);
         }
         Some(out)
     }
 
-    /// Takes a byte from the unit.
+    /// Processes a byte from the unit.
     pub fn push(&mut self, byte: u8, now: Stamp<Host>) -> Option<Decoded> {
-        self.heard = true;
-        match (&mut self.turn, byte) {
-            (Turn::Idle, _) => Some(Decoded::Noise),
-            (Turn::Quiet { span, until }, _) => {
+        use DialogueState::{Answer, AwaitAnswer, BodySent, Idle, OpcodeSent, Quiet};
+        self.has_input = true;
+        match (&mut self.state, byte) {
+            (Idle, _) => Some(Decoded::Noise),
+            (Quiet { span, until }, _) => {
                 *until = now.saturating_add(*span);
-                Some(Decoded::Step)
+                Some(Decoded::Handshake)
             }
-            (Turn::Ready, OKAY) => {
-                self.turn = Turn::Accepted;
+            (OpcodeSent, OKAY) => {
+                self.state = BodySent;
                 self.out.push_back(Outgoing {
                     bytes: std::mem::take(&mut self.body),
                     is_body: true,
                 });
-                Some(Decoded::Step)
+                Some(Decoded::Handshake)
             }
-            (Turn::Accepted, OKAY) => {
-                self.turn = Turn::Lead;
-                Some(Decoded::Step)
+            (BodySent, OKAY) => {
+                self.state = AwaitAnswer;
+                Some(Decoded::Handshake)
             }
-            (Turn::Lead, Frame::ANSWER) => {
-                self.turn = Turn::Answer(BodyDecoder::new(Frame::ANSWER));
-                self.say(OKAY);
-                Some(Decoded::Step)
+            (AwaitAnswer, Frame::ANSWER) => {
+                self.state = Answer(BodyDecoder::new(Frame::ANSWER));
+                self.send(vec![OKAY]);
+                Some(Decoded::Handshake)
             }
-            (Turn::Answer(decoder), _) => {
+            (Answer(decoder), _) => {
                 let frame = decoder.push(byte)?;
                 if frame.is_ok() {
-                    self.turn = Turn::Idle;
+                    self.state = Idle;
                     self.failures = 0;
-                    self.say(OKAY);
+                    self.send(vec![OKAY]);
                 } else {
-                    self.hush(now);
-                    self.say(FAILED);
+                    self.drain_stale(now);
+                    self.send(vec![FAILED]);
                 }
-                Some(decoded(&frame))
+                Some(decode_serial(&frame))
             }
-            (Turn::Ready | Turn::Accepted, FAILED) => {
-                // A unit that was elsewhere in the dialogue may refuse each byte of a body.
-                self.hush(now);
+            (OpcodeSent | BodySent, FAILED) => {
+                // A desynchronised unit may refuse each byte of a body.
+                self.drain_stale(now);
                 Some(Decoded::Refused)
             }
-            (Turn::Ready | Turn::Accepted | Turn::Lead, _) => Some(Decoded::Damaged),
+            (OpcodeSent | BodySent | AwaitAnswer, _) => Some(Decoded::Damaged),
         }
     }
 
-    /// Forgets the dialogue under way and brings the unit back to its beginning.
-    pub fn give_up(&mut self, now: Stamp<Host>) {
-        if matches!(self.turn, Turn::Idle | Turn::Quiet { .. }) {
+    /// Cancels the dialogue in progress and resets the unit.
+    pub fn cancel(&mut self, now: Stamp<Host>) {
+        if matches!(
+            self.state,
+            DialogueState::Idle | DialogueState::Quiet { .. }
+        ) {
             return;
         }
-        let cost = if self.heard { DAMAGED } else { UNHEARD };
+        let cost = if self.has_input {
+            COST_DAMAGED
+        } else {
+            COST_SILENT
+        };
         self.failures = self.failures.saturating_add(cost);
         self.out.clear();
-        let span = if self.failures > FAILURES {
+        let span = if self.failures > MAX_FAILURE_COST {
             SILENCE
         } else {
-            self.out.push_back(Outgoing {
-                bytes: vec![FAILED; FLUSH],
-                is_body: false,
-            });
+            self.send(vec![FAILED; FLUSH_LEN]);
             QUIET
         };
         let until = now.saturating_add(span);
-        self.turn = Turn::Quiet { span, until };
+        self.state = DialogueState::Quiet { span, until };
     }
 
     pub fn deadline(&self) -> Option<Stamp<Host>> {
-        match self.turn {
-            Turn::Idle => None,
-            Turn::Quiet { until, .. } => Some(until),
-            Turn::Ready | Turn::Accepted | Turn::Lead | Turn::Answer(_) => Some(self.deadline),
+        match self.state {
+            DialogueState::Idle => None,
+            DialogueState::Quiet { until, .. } => Some(until),
+            _ => Some(self.deadline),
         }
     }
 
     pub fn expire(&mut self, now: Stamp<Host>) {
-        match self.turn {
-            // Quiet begins when the flush is out.
-            Turn::Quiet { until, .. } if until <= now && self.out.is_empty() => {
-                self.turn = Turn::Idle;
+        match self.state {
+            // The quiet span starts after the flush is sent.
+            DialogueState::Quiet { until, .. } if until <= now && self.out.is_empty() => {
+                self.state = DialogueState::Idle;
             }
-            Turn::Idle | Turn::Quiet { .. } => {}
-            _ if self.deadline <= now => self.give_up(now),
+            DialogueState::Idle | DialogueState::Quiet { .. } => {}
+            _ if self.deadline <= now => self.cancel(now),
             _ => {}
         }
     }
 
-    /// The unit awaits an opcode, but may not have said all yet.
-    fn hush(&mut self, now: Stamp<Host>) {
+    /// Discards input until the line is quiet: the unit awaits an opcode but may still be sending.
+    fn drain_stale(&mut self, now: Stamp<Host>) {
         let until = now.saturating_add(QUIET);
-        self.turn = Turn::Quiet { span: QUIET, until };
+        self.state = DialogueState::Quiet { span: QUIET, until };
     }
 
-    fn say(&mut self, byte: u8) {
-        self.out.push_back(Outgoing {
-            bytes: vec![byte],
-            is_body: false,
-        });
+    fn send(&mut self, bytes: Vec<u8>) {
+        let is_body = false;
+        self.out.push_back(Outgoing { bytes, is_body });
     }
 }

@@ -1,4 +1,5 @@
 use proptest::prelude::*;
+use protocol::epos2::CommError;
 use protocol::epos2::rs232::{FAILED, OKAY};
 
 use super::*;
@@ -10,8 +11,8 @@ fn at(ms: i64) -> Stamp<Host> {
     Stamp::from_nanos(ms * 1_000_000)
 }
 
-fn encode(codec: &mut Codec, address: Address, access: Access, width: u8) -> Vec<u8> {
-    codec.encode(address, access, width, at(500))
+fn encode(codec: &mut Codec, address: Address, access: ObjectAccess) -> Vec<u8> {
+    codec.encode(address, access, at(500))
 }
 
 fn decode(bytes: &[u8]) -> Vec<Decoded> {
@@ -26,7 +27,7 @@ fn shape(decoded: &[Decoded]) -> Vec<(u32, usize, Option<u32>)> {
     decoded
         .iter()
         .map(|one| match one {
-            Decoded::Reply(reply) => (reply.error.0, reply.words, reply.value),
+            Decoded::Reply(Reply::Serial(reply)) => (reply.error.0, reply.words, reply.value),
             other => panic!("{other:?}"),
         })
         .collect()
@@ -37,11 +38,18 @@ fn shape(decoded: &[Decoded]) -> Vec<(u32, usize, Option<u32>)> {
 fn golden_requests() {
     let mut codec = Codec::usb(1);
     assert_eq!(
-        encode(&mut codec, STATUSWORD, Access::Read, 2),
+        encode(&mut codec, STATUSWORD, ObjectAccess::Read),
         [0x90, 2, 0x10, 2, 0x41, 0x60, 0, 1, 0x64, 0xCF]
     );
     assert_eq!(
-        encode(&mut codec, CONTROLWORD, Access::Write(0x0F), 2),
+        encode(
+            &mut codec,
+            CONTROLWORD,
+            ObjectAccess::Write {
+                value: 0x0F,
+                width: 2
+            }
+        ),
         [
             0x90, 2, 0x11, 4, 0x40, 0x60, 0, 1, 0x0F, 0, 0, 0, 0x2D, 0x2C
         ]
@@ -61,7 +69,7 @@ fn golden_answers() {
 #[test]
 fn an_echo_is_no_answer() {
     let mut codec = Codec::usb(1);
-    let echo = encode(&mut codec, STATUSWORD, Access::Read, 2);
+    let echo = encode(&mut codec, STATUSWORD, ObjectAccess::Read);
     assert_eq!(decode(&echo), [Decoded::Foreign]);
 }
 
@@ -102,15 +110,15 @@ fn stuffing_at_every_position() {
 #[test]
 fn golden_rs232() {
     let mut codec = Codec::new(DriveLink::Rs232, 1);
-    assert_eq!(encode(&mut codec, STATUSWORD, Access::Read, 2), [0x10]);
+    assert_eq!(encode(&mut codec, STATUSWORD, ObjectAccess::Read), [0x10]);
     assert!(!codec.is_ready());
     assert_eq!(codec.outgoing(at(0)), None, "not before the unit is ready");
-    assert_eq!(codec.push(&[OKAY], at(1)), Some(Decoded::Step));
+    assert_eq!(codec.push(&[OKAY], at(1)), Some(Decoded::Handshake));
     let body = codec.outgoing(at(1)).unwrap();
     assert_eq!(body.bytes, [0x01, 0x41, 0x60, 0x00, 0x01, 0xAB, 0xF0]);
     assert!(body.is_body);
-    assert_eq!(codec.push(&[OKAY], at(2)), Some(Decoded::Step));
-    assert_eq!(codec.push(&[0x00], at(2)), Some(Decoded::Step));
+    assert_eq!(codec.push(&[OKAY], at(2)), Some(Decoded::Handshake));
+    assert_eq!(codec.push(&[0x00], at(2)), Some(Decoded::Handshake));
     assert_eq!(codec.outgoing(at(2)).unwrap().bytes, [OKAY]);
     let answer = [0x03, 0, 0, 0, 0, 0x37, 2, 0, 0, 0x19, 0x80];
     let decoded: Vec<_> = answer
@@ -126,7 +134,14 @@ fn golden_rs232() {
 #[test]
 fn golden_rs232_write() {
     let mut codec = Codec::new(DriveLink::Rs232, 1);
-    let opcode = encode(&mut codec, CONTROLWORD, Access::Write(0x0F), 2);
+    let opcode = encode(
+        &mut codec,
+        CONTROLWORD,
+        ObjectAccess::Write {
+            value: 0x0F,
+            width: 2,
+        },
+    );
     assert_eq!(opcode, [0x11]);
     codec.push(&[OKAY], at(1));
     assert_eq!(
@@ -139,7 +154,7 @@ fn golden_rs232_write() {
 fn rs232_refusals_are_told_and_end_the_dialogue() {
     for accepted in [false, true] {
         let mut codec = Codec::new(DriveLink::Rs232, 1);
-        encode(&mut codec, STATUSWORD, Access::Read, 2);
+        encode(&mut codec, STATUSWORD, ObjectAccess::Read);
         if accepted {
             codec.push(&[OKAY], at(1));
             codec.outgoing(at(1)).unwrap();
@@ -156,8 +171,8 @@ fn rs232_refusals_are_told_and_end_the_dialogue() {
 fn rs232_comes_back_after_a_flush_and_quiet() {
     let mut codec = Codec::new(DriveLink::Rs232, 1);
     for failure in 1..=3 {
-        encode(&mut codec, STATUSWORD, Access::Read, 2);
-        codec.give_up(at(0));
+        encode(&mut codec, STATUSWORD, ObjectAccess::Read);
+        codec.cancel(at(0));
         assert!(!codec.is_ready());
         let flush = codec.outgoing(at(0));
         assert_eq!(flush.is_some(), failure < 3, "then the guide's silence");
@@ -165,7 +180,7 @@ fn rs232_comes_back_after_a_flush_and_quiet() {
             assert!(flush.bytes.iter().all(|&b| b == FAILED));
         }
         // The unit's last words do not count, but are waited for.
-        assert_eq!(codec.push(&[OKAY], at(30)), Some(Decoded::Step));
+        assert_eq!(codec.push(&[OKAY], at(30)), Some(Decoded::Handshake));
         codec.expire(at(49));
         assert!(!codec.is_ready());
         let quiet = if failure < 3 { 50 } else { 550 };
@@ -183,27 +198,36 @@ fn golden_can() {
     let frame =
         |id: [u8; 2], data: [u8; 8]| [&[0, 0, id[0], id[1], 8, 0, 0, 0][..], &data].concat();
     let asked = [0x40, 0x41, 0x60, 0, 0, 0, 0, 0];
-    let request = encode(&mut codec, STATUSWORD, Access::Read, 2);
+    let request = encode(&mut codec, STATUSWORD, ObjectAccess::Read);
     assert_eq!(request, frame([6, 1], asked));
-    let written = encode(&mut codec, CONTROLWORD, Access::Write(0x0F), 2);
+    let written = encode(
+        &mut codec,
+        CONTROLWORD,
+        ObjectAccess::Write {
+            value: 0x0F,
+            width: 2,
+        },
+    );
     assert_eq!(written, frame([6, 1], [0x2B, 0x40, 0x60, 0, 0x0F, 0, 0, 0]));
     let mode = encode(
         &mut codec,
         Address::new(0x6060, 0),
-        Access::Write(0xFFFF_FFFD),
-        1,
+        ObjectAccess::Write {
+            value: 0xFFFF_FFFD,
+            width: 1,
+        },
     );
     assert_eq!(mode, frame([6, 1], [0x2F, 0x60, 0x60, 0, 0xFD, 0, 0, 0]));
     let answer = frame([5, 0x81], [0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0]);
     let Some(Decoded::Reply(reply)) = codec.push(&answer, at(0)) else {
         panic!()
     };
-    assert_eq!((reply.error.0, reply.value), (0, Some(0x140)));
+    assert_eq!((reply.error().0, reply.value()), (0, Some(0x140)));
     let abort = frame([5, 0x81], [0x80, 0x41, 0x60, 0, 0, 0, 2, 6]);
     let Some(Decoded::Reply(reply)) = codec.push(&abort, at(0)) else {
         panic!()
     };
-    assert_eq!((reply.error, reply.value), (CommError::NO_OBJECT, None));
+    assert_eq!((reply.error(), reply.value()), (CommError::NO_OBJECT, None));
     let other_node = frame([5, 0x82], [0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0]);
     assert!(matches!(
         codec.push(&other_node, at(0)),
@@ -217,7 +241,11 @@ fn golden_can() {
 fn golden_can_segments() {
     let mut codec = Codec::new(DriveLink::Can, 1);
     let name = Address::new(0x1008, 0);
-    let open = encode(&mut codec, name, Access::Open, 0);
+    let open = encode(
+        &mut codec,
+        name,
+        ObjectAccess::Transfer(TransferRequest::InitiateUpload { address: name }),
+    );
     assert_eq!(open[8..], [0x40, 8, 0x10, 0, 0, 0, 0, 0]);
     let push = |codec: &mut Codec, data: [u8; 8]| {
         let frame = [&[0, 0, 5, 0x81, 8, 0, 0, 0][..], &data].concat();
@@ -227,11 +255,17 @@ fn golden_can_segments() {
         }
     };
     let opened = push(&mut codec, [0x41, 8, 0x10, 0, 5, 0, 0, 0]);
-    assert_eq!((opened.value, opened.segment), (None, None));
-    let next = encode(&mut codec, name, Access::Segment { toggle: false }, 0);
+    assert_eq!((opened.value(), opened.error()), (None, CommError::NONE));
+    let next = encode(
+        &mut codec,
+        name,
+        ObjectAccess::Transfer(TransferRequest::UploadSegment { toggle: false }),
+    );
     assert_eq!(next[8], 0x60);
     let segment = push(&mut codec, [0x05, b'E', b'P', b'O', b'S', b'2', 0, 0]);
-    let segment = segment.segment.unwrap();
+    let Reply::Sdo(TransferResponse::UploadSegment(segment)) = segment else {
+        panic!("{segment:?}")
+    };
     assert_eq!(segment.bytes.as_slice(), b"EPOS2");
     assert!(segment.last && !segment.toggle);
 }
@@ -241,8 +275,8 @@ proptest! {
     fn any_bytes_are_taken(bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
         for link in [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can] {
             let mut codec = Codec::new(link, 1);
-            codec.encode(STATUSWORD, Access::Read, 2, at(500));
-            for piece in bytes.chunks(codec.piece()) {
+            codec.encode(STATUSWORD, ObjectAccess::Read, at(500));
+            for piece in bytes.chunks(codec.chunk_len()) {
                 codec.push(piece, at(0));
                 codec.outgoing(at(0));
             }

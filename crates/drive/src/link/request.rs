@@ -1,110 +1,117 @@
-//! A question on its way: what is asked, what has become of it, what comes of it in the end.
+//! A request on the link, its progress and its result.
 
 use protocol::epos2::objects::Address;
 use units::{Host, Span, Stamp};
 
-use crate::codec::Reply;
-use crate::pairing::Access;
+use crate::exchange::{ObjectAccess, Reply};
 
-/// A question to the drive.
+/// A request to the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Request {
+pub(crate) struct LinkRequest {
     pub address: Address,
-    pub access: Access,
-    /// Bytes of the object.
-    pub width: u8,
-    /// How long each attempt waits.
+    pub access: ObjectAccess,
+    /// Time limit of each attempt.
     pub timeout: Span,
-    /// How long each marker waits after a loss.
-    pub marker_timeout: Span,
-    /// How often it is repeated after a lost answer.
+    /// Time limit of each probe after a loss.
+    pub probe_timeout: Span,
+    /// Repeats after a lost reply.
     pub retries: u8,
-    /// Goes out even while the link is out of step, and again once it is in step: for what must not wait.
-    pub urgent: bool,
-    /// Given up after one timeout, attempts and markers included: where a link that seems dead is tried for the last time.
-    pub last: bool,
+    /// Sent even while the link is desynchronised, and again after that.
+    pub is_urgent: bool,
+    /// Given up after one timeout in all, attempts and probes included.
+    pub is_last_attempt: bool,
 }
 
-/// An answer, with the times at which the question was handed out and the answer read.
+/// A reply with the times at which its request was sent and the reply was read.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Answered {
+pub(crate) struct TimedReply {
     pub reply: Reply,
     pub request: Stamp<Host>,
     pub answer: Stamp<Host>,
 }
 
-/// Why there is no answer.
+/// Why a request has no reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Lost {
-    /// The link works, but every attempt's answer was lost.
-    Answer {
+pub(crate) enum RequestFailure {
+    /// The link works, but the reply to every attempt was lost.
+    NoReply {
         attempts: u8,
-        /// Whether the last one came back damaged rather than not at all.
+        /// The last reply was damaged rather than missing.
         damaged: bool,
     },
-    /// Nothing at all came back within this time, markers included.
-    Link { silent: Span },
-    /// The unit refused every attempt before it looked at it (RS232 handshake).
-    Handshake { attempts: u8 },
+    /// Nothing arrived for this span, probes included.
+    LinkLost { silent: Span },
+    /// The unit refused every attempt (RS232 handshake).
+    Refused { attempts: u8 },
 }
 
-/// What the link went through.
+/// Counters of the link.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct LinkStats {
-    /// Requests handed out, repeats and markers included.
+    /// Requests sent, repeats and probes included.
     pub requests: u64,
-    /// Answers given to the request they belong to.
+    /// Replies matched to the active request.
     pub answers: u64,
-    /// Attempts whose answer did not come in time or came damaged.
+    /// Attempts whose reply was late or damaged.
     pub lost: u64,
-    /// Answers that belonged to no request, or to one that had been given up.
-    pub strays: u64,
-    /// Frames with a wrong checksum or an impossible length.
+    /// Replies to no request, or to one given up.
+    pub unmatched: u64,
+    /// Frames with a wrong checksum or length.
     pub damaged: u64,
-    /// Frames that are no answers at all, such as an echo of our own.
+    /// Valid frames that are not replies, such as an echo.
     pub foreign: u64,
 }
 
-/// A question with what has become of it so far.
+/// A request in progress.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Job {
-    pub request: Request,
+pub(super) struct ActiveRequest {
+    pub request: LinkRequest,
     /// The latest copy on the wire.
     pub id: Option<u64>,
     pub attempts: u8,
-    pub rejected: u8,
+    pub rejections: u8,
     pub damaged: bool,
-    /// When it was first looked at.
-    pub first: Option<Stamp<Host>>,
-    pub hastened: bool,
+    /// When the link first processed it.
+    pub started: Option<Stamp<Host>>,
+    /// A copy was sent since the link was last synchronised.
+    pub expedited: bool,
 }
 
-/// Repeats of a request that the drive refused for its checksum, and more of them while this span lasts: bursts of damage end.
-const REJECTIONS: u8 = 2;
-const REJECTED: Span = Span::from_millis(150);
+/// Repeats of a request that the drive rejected for its checksum.
+const MAX_REJECTIONS: u8 = 2;
+/// Time during which the number of such repeats is not limited: bursts of damage end.
+const REJECTION_SPAN: Span = Span::from_millis(150);
 
-impl Job {
-    pub fn new(request: Request) -> Self {
+impl ActiveRequest {
+    pub fn new(request: LinkRequest) -> Self {
         Self {
             request,
             id: None,
             attempts: 0,
-            rejected: 0,
+            rejections: 0,
             damaged: false,
-            first: None,
-            hastened: false,
+            started: None,
+            expedited: false,
         }
     }
 
-    /// Whether a request that the drive refused for its checksum goes out again.
-    pub fn may_be_rejected(&self, now: Stamp<Host>) -> bool {
-        let since = self.first.map(|first| now.saturating_since(first));
-        self.rejected < REJECTIONS || since.is_some_and(|since| since < REJECTED)
+    /// Records a rejection for a wrong checksum: the drive did not execute the request, so the attempt
+    /// does not count. Returns whether the request may be repeated.
+    pub fn retry_rejected(&mut self, now: Stamp<Host>) -> bool {
+        let elapsed = self.started.map(|started| now.saturating_since(started));
+        let may_retry = self.rejections < MAX_REJECTIONS
+            || elapsed.is_some_and(|elapsed| elapsed < REJECTION_SPAN);
+        if may_retry {
+            self.rejections = self.rejections.saturating_add(1);
+            self.attempts = self.attempts.saturating_sub(1);
+        }
+        may_retry
     }
 
-    /// When a last attempt is over.
-    pub fn last_call(&self) -> Option<Stamp<Host>> {
-        let first = self.first.filter(|_| self.request.last)?;
-        Some(first.saturating_add(self.request.timeout))
+    /// When a last attempt is given up.
+    pub fn final_deadline(&self) -> Option<Stamp<Host>> {
+        let started = self.started.filter(|_| self.request.is_last_attempt)?;
+        Some(started.saturating_add(self.request.timeout))
     }
 }

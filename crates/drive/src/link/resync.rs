@@ -1,213 +1,210 @@
-//! Losing step and finding it again: what a line that is out of step is asked, and when it is given up.
+//! Loss of synchronisation and recovery by probe requests (see [`crate::request_matcher`]).
 //!
-//! After a loss nobody knows which answers are still to come; markers tell (see [`crate::pairing`]). How long a line is tried is
-//! [`Patience`]'s to say. What is asked in step is the parent's business.
+//! [`ResyncBudget`](super::resync_budget::ResyncBudget) limits the time that recovery takes.
 
 use protocol::epos2::objects::Address;
 use units::{Host, Span, Stamp};
 
-use crate::pairing::{Access, MARKERS};
+use crate::exchange::ObjectAccess;
+use crate::request_matcher::PROBES;
 
-use super::patience::Patience;
-use super::request::{Job, Lost, Request};
-use super::{Line, Link};
+use super::request::{ActiveRequest, LinkRequest, RequestFailure};
+use super::{Link, LinkState};
 
-/// Markers tried before a request is given up.
-const TRIES: u8 = 2;
-/// How long the rest of an answer may take: longer than through an adapter with a latency timer of 16 ms.
-const REST: Span = Span::from_millis(20);
+/// Unanswered probes before a request is given up.
+const MAX_PROBES: u8 = 2;
+/// Time limit of the rest of a reply: longer than a serial adapter's latency timer of 16 ms.
+const REST_TIMEOUT: Span = Span::from_millis(20);
 
 impl Link {
-    /// The marker that was not sent last, so that its answer is not taken for that one's; but where it is still owed an answer
-    /// itself, the last one again: the answer to that retires the other.
-    pub(super) fn send_marker(&mut self, now: Stamp<Host>, timeout: Span) -> Vec<u8> {
-        let [(this, _), (other, _)] = MARKERS;
-        let next = if self.marker == this { other } else { this };
-        if !self.pairing.awaits(next) {
-            self.marker = next;
+    /// Sends the probe that was not sent last, so that a late reply to the last is not taken for this
+    /// one's. If that other probe is itself outstanding, repeats the last: its reply retires both.
+    pub(super) fn send_probe(&mut self, now: Stamp<Host>, timeout: Span) -> Vec<u8> {
+        let [(first, _), (second, _)] = PROBES;
+        let next = if self.probe == first { second } else { first };
+        if !self.matcher.awaits(next) {
+            self.probe = next;
         }
-        self.patience.ask();
-        let marker = Request {
-            address: self.marker,
-            access: Access::Read,
-            width: 4,
+        self.budget.handle_probe_sent();
+        let probe = LinkRequest {
+            address: self.probe,
+            access: ObjectAccess::Read,
             timeout,
-            marker_timeout: timeout,
+            probe_timeout: timeout,
             retries: 0,
-            urgent: false,
-            last: false,
+            is_urgent: false,
+            is_last_attempt: false,
         };
-        self.send(&marker, now)
+        self.send(&probe, now)
     }
 
-    /// A marker was answered. Where one like it is still out, the answer may have been that one's, and the other kind tells at once.
-    pub(super) fn passed(&mut self, marker: Address, now: Stamp<Host>) {
-        match self.line {
-            Line::Marker { markers, .. }
-                if marker == self.marker && !self.pairing.in_step() && !self.is_worn_out(now) =>
+    /// If an equal probe is still outstanding, the reply may have been that one's: the other kind of
+    /// probe decides at once.
+    pub(super) fn handle_probe_reply(&mut self, probe: Address, now: Stamp<Host>) {
+        match self.state {
+            LinkState::Probing { probes, .. }
+                if probe == self.probe
+                    && !self.matcher.is_synchronised()
+                    && !self.is_budget_exhausted(now) =>
             {
-                let markers = markers.saturating_sub(1);
-                self.line = Line::OutOfStep { markers };
+                let probes = probes.saturating_sub(1);
+                self.state = LinkState::Desynchronised { probes };
             }
-            _ => self.still_coming(now),
+            _ => self.extend_probe(now),
         }
     }
 
-    fn is_worn_out(&self, now: Stamp<Host>) -> bool {
-        let timeout = self.job.map(|job| job.request.marker_timeout);
-        timeout.is_some_and(|timeout| self.patience.is_worn_out(timeout, now))
+    fn is_budget_exhausted(&self, now: Stamp<Host>) -> bool {
+        self.active
+            .is_some_and(|active| self.budget.is_exhausted(active.request.probe_timeout, now))
     }
 
-    /// An older answer came while a marker is awaited: the marker's is still to come, and gets its full time from here.
-    pub(super) fn still_coming(&mut self, now: Stamp<Host>) {
-        if let (Line::Marker { markers, .. }, Some(job)) = (self.line, self.job) {
-            self.line = Line::Marker {
-                markers,
-                deadline: now.saturating_add(job.request.marker_timeout),
+    /// Gives the outstanding probe its full time limit again after the reply to an older request.
+    pub(super) fn extend_probe(&mut self, now: Stamp<Host>) {
+        if let (LinkState::Probing { probes, .. }, Some(active)) = (self.state, self.active) {
+            self.state = LinkState::Probing {
+                probes,
+                deadline: now.saturating_add(active.request.probe_timeout),
             };
         }
     }
 
-    /// Part of an answer came: the rest of it soon, or never.
-    pub(super) fn began(&mut self, now: Stamp<Host>) {
-        self.patience.hear(now);
-        if let Line::Asked { deadline, limit } = &mut self.line {
-            *deadline = now.saturating_add(REST).min(*limit);
+    pub(super) fn handle_partial_reply(&mut self, now: Stamp<Host>) {
+        self.budget.handle_input(now);
+        if let LinkState::AwaitReply { deadline, limit } = &mut self.state {
+            *deadline = now.saturating_add(REST_TIMEOUT).min(*limit);
         }
     }
 
-    pub(super) fn damaged(&mut self, now: Stamp<Host>) {
+    pub(super) fn handle_damage(&mut self, now: Stamp<Host>) {
         self.stats.damaged += 1;
-        self.heard = true;
-        self.patience.hear(now);
-        // The frame may have been our answer: no use in waiting for the timeout.
-        if matches!(self.line, Line::Asked { .. }) {
-            self.fall_out_of_step(true, now);
+        self.has_input = true;
+        self.budget.handle_input(now);
+        // The damaged frame may have been the reply: waiting for the timeout is useless.
+        if matches!(self.state, LinkState::AwaitReply { .. }) {
+            self.desynchronise(true, now);
             return;
         }
-        self.codec.give_up(now);
-        let Line::Marker { markers, deadline } = self.line else {
+        self.codec.cancel(now);
+        let LinkState::Probing { probes, deadline } = self.state else {
             return;
         };
         if !self.codec.is_ready() {
-            // A dialogue that broke off has no answer any more.
-            self.silence(markers, now);
-        } else if let Some(job) = self.job {
-            let pace = now.saturating_add(Patience::pace(job.request.marker_timeout));
-            let end = self.patience.end(job.request.marker_timeout);
-            let deadline = deadline.min(pace).min(end.unwrap_or(pace));
-            self.line = Line::Marker { markers, deadline };
+            // A cancelled dialogue has no reply.
+            self.handle_probe_timeout(probes, now);
+        } else if let Some(active) = self.active {
+            let probe_timeout = active.request.probe_timeout;
+            // After damage probes go out twice as fast.
+            let next = now.saturating_add(probe_timeout.half());
+            let end = self.budget.damage_deadline(probe_timeout).unwrap_or(next);
+            let deadline = deadline.min(next).min(end);
+            self.state = LinkState::Probing { probes, deadline };
         }
     }
 
-    /// The unit did not take what was sent. As the refusal may be an older one's, the line is out of step.
-    pub(super) fn refused(&mut self, now: Stamp<Host>) {
-        self.heard = true;
-        self.patience.hear(now);
-        let was_marker = match self.line {
-            Line::Marker { markers, .. } => Some(markers),
-            _ => None,
-        };
-        if let Some(markers) = was_marker {
-            self.silence(markers, now);
+    /// The unit refused a request. As the refusal may be that of an older one, the link is
+    /// desynchronised.
+    pub(super) fn handle_refusal(&mut self, now: Stamp<Host>) {
+        self.has_input = true;
+        self.budget.handle_input(now);
+        if let LinkState::Probing { probes, .. } = self.state {
+            self.handle_probe_timeout(probes, now);
             return;
         }
-        self.fall_out_of_step(true, now);
-        let Some(job) = self.job.as_mut() else {
+        self.desynchronise(true, now);
+        let Some(active) = self.active.as_mut() else {
             return;
         };
-        if job.may_be_rejected(now) {
-            // It was not carried out, so this attempt does not count.
-            job.rejected = job.rejected.saturating_add(1);
-            job.attempts = job.attempts.saturating_sub(1);
-        } else {
-            let attempts = job.attempts.saturating_add(job.rejected);
-            self.job = None;
-            self.done = Some(Err(Lost::Handshake { attempts }));
+        if !active.retry_rejected(now) {
+            let attempts = active.attempts.saturating_add(active.rejections);
+            self.fail(RequestFailure::Refused { attempts });
         }
     }
 
-    pub(super) fn fall_out_of_step(&mut self, damaged: bool, now: Stamp<Host>) {
+    pub(super) fn desynchronise(&mut self, damaged: bool, now: Stamp<Host>) {
         self.stats.lost += 1;
-        self.heard = false;
-        self.patience.fall(now);
-        self.codec.give_up(now);
-        if let Some(job) = self.job.as_mut() {
-            job.damaged = damaged;
-            job.hastened = false;
+        self.has_input = false;
+        self.budget.handle_desynchronised(now);
+        self.codec.cancel(now);
+        if let Some(active) = self.active.as_mut() {
+            active.damaged = damaged;
+            active.expedited = false;
         }
-        self.line = Line::OutOfStep { markers: 0 };
+        self.state = LinkState::Desynchronised { probes: 0 };
     }
 
-    /// A marker was not answered.
-    pub(super) fn silence(&mut self, markers: u8, now: Stamp<Host>) {
+    pub(super) fn handle_probe_timeout(&mut self, probes: u8, now: Stamp<Host>) {
         self.stats.lost += 1;
-        self.codec.give_up(now);
-        let timeout = self.job.map(|job| job.request.marker_timeout);
-        let damage = timeout.and_then(|timeout| self.patience.end(timeout));
-        let (again, counted) = match damage {
-            // A unit that has to be left alone for longer will not be heard before that.
+        self.codec.cancel(now);
+        let damage_deadline = self
+            .active
+            .and_then(|active| self.budget.damage_deadline(active.request.probe_timeout));
+        let (may_retry, counted) = match damage_deadline {
+            // A unit that needs a longer silence is not expected to answer before that.
             Some(end) => (
                 now.max(self.codec.deadline().unwrap_or(now)) < end,
-                markers.saturating_sub(1),
+                probes.saturating_sub(1),
             ),
-            None => (markers < TRIES, markers),
+            None => (probes < MAX_PROBES, probes),
         };
-        if again && !self.is_worn_out(now) {
-            self.line = Line::OutOfStep { markers: counted };
+        if may_retry && !self.is_budget_exhausted(now) {
+            self.state = LinkState::Desynchronised { probes: counted };
             return;
         }
-        self.line = Line::OutOfStep { markers: 0 };
-        let Some(job) = self.job else {
+        self.state = LinkState::Desynchronised { probes: 0 };
+        let Some(active) = self.active else {
             return;
         };
-        if self.heard || damage.is_some() {
-            self.job = None;
-            self.done = Some(Err(Lost::Answer {
-                attempts: job.attempts.max(1),
-                damaged: job.damaged || damage.is_some(),
-            }));
+        if self.has_input || damage_deadline.is_some() {
+            self.fail(RequestFailure::NoReply {
+                attempts: active.attempts.max(1),
+                damaged: active.damaged || damage_deadline.is_some(),
+            });
         } else {
-            self.lose_link(&job, now);
+            self.fail(link_lost(&active, now));
         }
     }
 
-    /// A last attempt is over.
-    pub(super) fn last_call(&mut self, job: &Job, now: Stamp<Host>) {
-        let damaged = self.patience.is_hurt();
-        self.lose_link(job, now);
-        if damaged {
-            self.done = Some(Err(Lost::Answer {
-                attempts: job.attempts.max(1),
+    pub(super) fn end_last_attempt(&mut self, active: &ActiveRequest, now: Stamp<Host>) {
+        let damaged = self.budget.has_damage();
+        let failure = if damaged {
+            RequestFailure::NoReply {
+                attempts: active.attempts.max(1),
                 damaged,
-            }));
+            }
+        } else {
+            link_lost(active, now)
+        };
+        self.fail(failure);
+        if let LinkState::AwaitReply { .. } = self.state {
+            self.desynchronise(false, now);
         }
     }
 
-    pub(super) fn lose_link(&mut self, job: &Job, now: Stamp<Host>) {
-        self.job = None;
-        if let Line::Asked { .. } = self.line {
-            self.fall_out_of_step(false, now);
-        }
-        self.done = Some(Err(Lost::Link {
-            silent: now.saturating_since(job.first.unwrap_or(now)),
-        }));
-    }
-
-    pub(super) fn back_in_step(&mut self) {
-        self.line = Line::InStep;
-        let Some(job) = self.job.as_mut() else {
+    pub(super) fn synchronise(&mut self) {
+        self.state = LinkState::Idle;
+        let Some(active) = self.active.as_mut() else {
             return;
         };
-        // Its answer can no longer come.
-        job.id = None;
-        if job.attempts > job.request.retries {
-            let lost = Lost::Answer {
-                attempts: job.attempts,
-                damaged: job.damaged,
+        // The reply to the last copy is lost.
+        active.id = None;
+        if active.attempts > active.request.retries {
+            let failure = RequestFailure::NoReply {
+                attempts: active.attempts,
+                damaged: active.damaged,
             };
-            self.job = None;
-            self.done = Some(Err(lost));
+            self.fail(failure);
         }
+    }
+
+    fn fail(&mut self, failure: RequestFailure) {
+        self.active = None;
+        self.result = Some(Err(failure));
+    }
+}
+
+fn link_lost(active: &ActiveRequest, now: Stamp<Host>) -> RequestFailure {
+    RequestFailure::LinkLost {
+        silent: now.saturating_since(active.started.unwrap_or(now)),
     }
 }

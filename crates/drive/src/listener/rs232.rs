@@ -1,6 +1,6 @@
-//! An RS232 dialogue by looking on at both sides: which bytes are handshake, which are bodies.
+//! Passive decoder of an RS232 dialogue: separates handshake from bodies.
 //!
-//! Whatever does not fit ends the dialogue; the next opcode begins another, as for the unit.
+//! A byte that does not fit ends the dialogue; the next opcode begins another, as for the unit.
 
 use protocol::epos2::message::{
     InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, RequestCanFrame, SegmentedRead,
@@ -10,7 +10,7 @@ use protocol::epos2::rs232::{BodyDecoder, FAILED, OKAY};
 use protocol::epos2::{Frame, FrameError};
 use protocol::record::Direction;
 
-/// Opcodes of requests that are answered.
+/// Opcodes of requests with an answer.
 const OPCODES: [u8; 7] = [
     ReadObject::OPCODE,
     WriteObject::OPCODE,
@@ -21,95 +21,96 @@ const OPCODES: [u8; 7] = [
     RequestCanFrame::OPCODE,
 ];
 
-/// Looks on at a dialogue.
+/// Decodes both sides of a dialogue.
 #[derive(Clone, Debug)]
-pub(super) struct Rs232Watch {
-    turn: Turn,
+pub(super) struct Rs232Listener {
+    awaiting: Awaiting,
 }
 
+/// The next byte of the dialogue.
 #[derive(Clone, Debug)]
-enum Turn {
-    /// The master is to send an opcode.
+enum Awaiting {
+    /// From the master: an opcode.
     Opcode,
-    /// The unit is to take it.
-    Ready(u8),
-    /// The master sends the body.
+    /// From the unit: the handshake for this opcode.
+    OpcodeHandshake(u8),
+    /// From the master: the body.
     Body(BodyDecoder),
-    /// The unit is to take it.
-    Accepted,
-    /// The unit is to announce its answer.
-    Lead,
-    /// The master is to take that.
-    Announced,
-    /// The unit answers.
+    /// From the unit: the handshake for the body.
+    BodyHandshake,
+    /// From the unit: the answer's opcode.
+    AnswerOpcode,
+    /// From the master: the handshake for the answer's opcode.
+    AnswerOpcodeHandshake,
+    /// From the unit: the answer.
     Answer(BodyDecoder),
-    /// The master is to take it.
-    Receipt,
+    /// From the master: the handshake for the answer.
+    AnswerHandshake,
 }
 
-/// What a byte completed.
-pub(super) enum Said {
-    Nothing,
+/// Result of a byte.
+pub(super) enum Rs232Event {
     Noise,
     Request(Result<Frame, FrameError>),
-    /// An answer is ready: what was asked for has been done.
+    /// An answer is ready: the request has been executed.
     Announced,
     Answer(Result<Frame, FrameError>),
 }
 
-impl Rs232Watch {
+impl Rs232Listener {
     pub fn new() -> Self {
-        Self { turn: Turn::Opcode }
+        Self {
+            awaiting: Awaiting::Opcode,
+        }
     }
 
-    pub fn hear(&mut self, direction: Direction, byte: u8) -> Said {
+    pub fn push(&mut self, direction: Direction, byte: u8) -> Option<Rs232Event> {
         match direction {
-            Direction::ToDevice => self.master(byte),
-            Direction::FromDevice => self.unit(byte),
+            Direction::ToDevice => self.push_from_master(byte),
+            Direction::FromDevice => self.push_from_unit(byte),
         }
     }
 
-    fn master(&mut self, byte: u8) -> Said {
-        match (&mut self.turn, byte) {
-            (Turn::Body(decoder), _) => match decoder.push(byte) {
-                None => return Said::Nothing,
-                Some(frame) => {
-                    self.turn = if frame.is_ok() {
-                        Turn::Accepted
-                    } else {
-                        Turn::Opcode
-                    };
-                    return Said::Request(frame);
-                }
-            },
-            (Turn::Announced, OKAY) => self.turn = Turn::Answer(BodyDecoder::new(Frame::ANSWER)),
-            (Turn::Receipt, OKAY | FAILED) => self.turn = Turn::Opcode,
-            (_, opcode) if OPCODES.contains(&opcode) => self.turn = Turn::Ready(opcode),
-            _ => self.turn = Turn::Opcode,
-        }
-        Said::Nothing
+    fn push_from_master(&mut self, byte: u8) -> Option<Rs232Event> {
+        self.awaiting = match (&mut self.awaiting, byte) {
+            (Awaiting::Body(decoder), _) => {
+                let frame = decoder.push(byte)?;
+                self.awaiting = if frame.is_ok() {
+                    Awaiting::BodyHandshake
+                } else {
+                    Awaiting::Opcode
+                };
+                return Some(Rs232Event::Request(frame));
+            }
+            (Awaiting::AnswerOpcodeHandshake, OKAY) => {
+                Awaiting::Answer(BodyDecoder::new(Frame::ANSWER))
+            }
+            (Awaiting::AnswerHandshake, OKAY | FAILED) => Awaiting::Opcode,
+            (_, opcode) if OPCODES.contains(&opcode) => Awaiting::OpcodeHandshake(opcode),
+            _ => Awaiting::Opcode,
+        };
+        None
     }
 
-    fn unit(&mut self, byte: u8) -> Said {
-        match (&mut self.turn, byte) {
-            (Turn::Ready(opcode), OKAY) => self.turn = Turn::Body(BodyDecoder::new(*opcode)),
-            (Turn::Accepted, OKAY) => self.turn = Turn::Lead,
-            (Turn::Lead, Frame::ANSWER) => {
-                self.turn = Turn::Announced;
-                return Said::Announced;
+    fn push_from_unit(&mut self, byte: u8) -> Option<Rs232Event> {
+        let (next, event) = match (&mut self.awaiting, byte) {
+            (Awaiting::OpcodeHandshake(opcode), OKAY) => {
+                (Awaiting::Body(BodyDecoder::new(*opcode)), None)
             }
-            (Turn::Ready(_) | Turn::Accepted, FAILED) => self.turn = Turn::Opcode,
-            (Turn::Answer(decoder), _) => {
-                if let Some(frame) = decoder.push(byte) {
-                    self.turn = Turn::Receipt;
-                    return Said::Answer(frame);
-                }
+            (Awaiting::BodyHandshake, OKAY) => (Awaiting::AnswerOpcode, None),
+            (Awaiting::AnswerOpcode, Frame::ANSWER) => {
+                (Awaiting::AnswerOpcodeHandshake, Some(Rs232Event::Announced))
             }
-            _ => {
-                self.turn = Turn::Opcode;
-                return Said::Noise;
+            (Awaiting::OpcodeHandshake(_) | Awaiting::BodyHandshake, FAILED) => {
+                (Awaiting::Opcode, None)
             }
-        }
-        Said::Nothing
+            (Awaiting::Answer(decoder), _) => {
+                let frame = decoder.push(byte)?;
+                (Awaiting::AnswerHandshake, Some(Rs232Event::Answer(frame)))
+            }
+            _ => (Awaiting::Opcode, Some(Rs232Event::Noise)),
+        };
+        self.awaiting = next;
+        event
     }
 }

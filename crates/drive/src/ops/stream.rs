@@ -1,37 +1,34 @@
-//! The stream of positions on a CAN bus, as the procedures take from it.
+//! Samples of the position stream on a CAN bus.
 
 use std::future::poll_fn;
 use std::task::Poll;
 
 use units::Span;
 
-use crate::bus::Bus;
+use crate::can_services::CanServices;
 use crate::event::ShaftSample;
 
 use super::{Ops, lock};
 
-/// A stream that has been silent for so long is helped along by asking.
-const STREAM_SILENCE: Span = Span::from_millis(20);
+/// Time without a sample after which the position is polled: 20 SYNC periods at 1 kHz.
+const STREAM_TIMEOUT: Span = Span::from_millis(20);
 
 impl Ops {
-    /// The next position of the stream; `None` without one, while it is silent, and at an alarm.
-    pub(super) async fn streamed(&self) -> Option<ShaftSample> {
-        let asked = self.on_bus(|bus, now| {
-            bus.sample(now);
-            bus.streaming && (!bus.mute || bus.has_fresh())
-        });
-        asked.filter(|streaming| *streaming)?;
-        let until = self.now().saturating_add(STREAM_SILENCE);
+    /// The next sample of the stream; `None` without a stream, while it is stalled, and at an alarm.
+    pub(super) async fn next_streamed(&self) -> Option<ShaftSample> {
+        self.on_can(|can, now| can.request_samples(now))
+            .filter(|expected| *expected)?;
+        let until = self.now().saturating_add(STREAM_TIMEOUT);
         poll_fn(|_| {
             let mut core = lock(&self.core);
-            let over = core.now >= until || (self.watching && core.has_alarm());
-            let fresh = core.bus.as_mut().and_then(Bus::take_fresh);
-            core.wake = Some(until).filter(|_| fresh.is_none() && !over);
-            if let (None, true, Some(bus)) = (fresh, over, &mut core.bus) {
-                bus.mute = true;
+            let has_ended = core.now >= until || self.is_interrupted(&core);
+            let sample = core.can.as_mut().and_then(CanServices::take_sample);
+            core.wake = Some(until).filter(|_| sample.is_none() && !has_ended);
+            if let (None, true, Some(can)) = (sample, has_ended, &mut core.can) {
+                can.set_stalled();
             }
-            if fresh.is_some() || over {
-                Poll::Ready(fresh)
+            if sample.is_some() || has_ended {
+                Poll::Ready(sample)
             } else {
                 Poll::Pending
             }

@@ -1,49 +1,58 @@
-//! The drive's settings, written and read back: profile, limits, limit switches, brake.
+//! The drive's settings: profile, limits, limit switches, brake.
 //!
-//! Nothing is saved in the drive (1010): after a restart it is as its owner left it, and connecting sets it up again. Gains and
-//! motor data are the commissioning tool's business.
+//! Nothing is saved in the drive (1010): a restart restores its own settings, and connecting writes these
+//! again. Gains and motor data are left to the commissioning tool.
 
-use crate::config::{Brake, LimitSwitches, whole_ms};
-use crate::error::DriveError;
-use crate::objects::{self, Object};
-use crate::ops::Ops;
 use protocol::epos2::cia402::mode;
+use protocol::epos2::objects::{self, Object};
+
+use crate::config::{BrakeConfig, LimitSwitchConfig, whole_ms};
+use crate::error::DriveError;
+use crate::ops::Ops;
 
 use super::network;
 use super::power::set_mode;
 
+/// Motion profile type (6086): trapezoidal.
+const TRAPEZOID: i16 = 0;
+/// Position window (6067) switched off: "target reached" means the end of the profile.
+const NO_WINDOW: u32 = u32::MAX;
+
 /// Writes every setting and reads it back. The axis must be disabled.
 pub(super) async fn configure(ops: &Ops) -> Result<(), DriveError> {
     let config = &ops.config;
-    limit_switches(ops, config.limit_switches).await?;
-    software_limits(ops).await?;
+    configure_limit_switches(ops, config.limit_switches).await?;
+    configure_software_limits(ops).await?;
     set_mode(ops, mode::PROFILE_POSITION).await?;
-    let fastest = config.max_acceleration.max(config.quick_stop).0;
-    ops.set(objects::MAX_PROFILE_VELOCITY, config.max_speed.0)
-        .await?;
-    ops.set(objects::MAX_ACCELERATION, fastest).await?;
-    ops.set(objects::PROFILE_ACCELERATION, config.max_acceleration.0)
-        .await?;
-    ops.set(objects::PROFILE_DECELERATION, config.max_acceleration.0)
-        .await?;
-    ops.set(objects::QUICK_STOP_DECELERATION, config.quick_stop.0)
-        .await?;
-    ops.set(objects::PROFILE_TYPE, TRAPEZOID).await?;
-    ops.set(objects::POSITION_WINDOW, NO_WINDOW).await?;
-    let following = config.max_following_error.0.unsigned_abs();
-    ops.set(objects::MAX_FOLLOWING_ERROR, following).await?;
+    let acceleration = config.max_acceleration.0;
+    let following_error = config.max_following_error.0.unsigned_abs();
+    for (object, value) in [
+        (objects::MAX_PROFILE_VELOCITY, config.max_speed.0),
+        (
+            objects::MAX_ACCELERATION,
+            acceleration.max(config.quick_stop.0),
+        ),
+        (objects::PROFILE_ACCELERATION, acceleration),
+        (objects::PROFILE_DECELERATION, acceleration),
+        (objects::QUICK_STOP_DECELERATION, config.quick_stop.0),
+    ] {
+        ops.write_verified(object, value).await?;
+    }
+    ops.write_verified(objects::PROFILE_TYPE, TRAPEZOID).await?;
+    for (object, value) in [
+        (objects::POSITION_WINDOW, NO_WINDOW),
+        (objects::MAX_FOLLOWING_ERROR, following_error),
+    ] {
+        ops.write_verified(object, value).await?;
+    }
     match config.brake {
-        Some(brake) => set_brake(ops, brake).await,
+        Some(brake) => configure_brake(ops, brake).await,
         None => Ok(()),
     }
 }
 
-/// 6086: trapezoidal profile.
-const TRAPEZOID: i16 = 0;
-/// 6067: "target reached" means the end of the profile.
-const NO_WINDOW: u32 = u32::MAX;
-
-/// Reads what keeps the axis within its range. Done before every move, as a drive that restarted in between has forgotten it.
+/// Verifies the settings that keep the axis within its range. Done before every move, as a drive that
+/// restarted has lost them.
 pub(super) async fn verify_safety(ops: &Ops) -> Result<(), DriveError> {
     let switches = ops.config.limit_switches.mask();
     for object in [objects::INPUT_MASK, objects::INPUT_EXECUTION_MASK] {
@@ -57,58 +66,67 @@ pub(super) async fn verify_safety(ops: &Ops) -> Result<(), DriveError> {
         }
     }
     let limits = ops.config.limits_qc()?;
-    ops.expect(objects::MIN_POSITION, limits.min.0).await?;
-    ops.expect(objects::MAX_POSITION, limits.max.0).await?;
-    network::verify(ops).await
+    ops.verify(objects::MIN_POSITION, limits.min.0).await?;
+    ops.verify(objects::MAX_POSITION, limits.max.0).await?;
+    network::verify_stream(ops).await
 }
 
-/// Whether the drive has lost what it was told when it was connected: only a restart does that.
-pub(super) async fn has_forgotten(ops: &Ops) -> Result<bool, DriveError> {
+/// Whether the drive has lost the software limits written by connecting, which only a restart causes.
+pub(super) async fn has_lost_settings(ops: &Ops) -> Result<bool, DriveError> {
     let limits = ops.config.limits_qc()?;
     let min = ops.read(objects::MIN_POSITION).await?;
     let max = ops.read(objects::MAX_POSITION).await?;
     Ok(min != limits.min.0 && max != limits.max.0)
 }
 
-/// By default a limit switch does not stop the axis: only a bit in 2071:4 makes it run its error routine.
-async fn limit_switches(ops: &Ops, switches: LimitSwitches) -> Result<(), DriveError> {
-    let purposes = [(switches.negative, 0), (switches.positive, 1)];
-    for (input, purpose) in purposes {
+/// Assigns and enables the limit switches. By default a switch does not stop the axis: only its bit in
+/// 2071:4 makes the drive run its error reaction.
+async fn configure_limit_switches(
+    ops: &Ops,
+    switches: LimitSwitchConfig,
+) -> Result<(), DriveError> {
+    let functions = [(switches.negative, 0), (switches.positive, 1)];
+    for (input, function) in functions {
         if let Some(input) = input {
-            set_if_other(ops, Object::new(0x2070, input, "input"), purpose).await?;
+            write_if_different(ops, Object::new(0x2070, input, "input"), function).await?;
         }
     }
     let mask = switches.mask();
     let polarity = if switches.active_low { mask } else { 0 };
-    ops.set_bits(objects::INPUT_POLARITY, mask, polarity)
+    ops.write_bits(objects::INPUT_POLARITY, mask, polarity)
         .await?;
-    ops.set_bits(objects::INPUT_MASK, mask, mask).await?;
-    ops.set_bits(objects::INPUT_EXECUTION_MASK, mask, mask)
+    ops.write_bits(objects::INPUT_MASK, mask, mask).await?;
+    ops.write_bits(objects::INPUT_EXECUTION_MASK, mask, mask)
         .await
 }
 
-async fn software_limits(ops: &Ops) -> Result<(), DriveError> {
+async fn configure_software_limits(ops: &Ops) -> Result<(), DriveError> {
     let limits = ops.config.limits_qc()?;
-    // Opened first, so that the new pair never crosses the old one.
+    // The upper limit is opened first, so that the new pair never crosses the old one.
     ops.write(objects::MAX_POSITION, i32::MAX).await?;
-    ops.set(objects::MIN_POSITION, limits.min.0).await?;
-    ops.set(objects::MAX_POSITION, limits.max.0).await
+    ops.write_verified(objects::MIN_POSITION, limits.min.0)
+        .await?;
+    ops.write_verified(objects::MAX_POSITION, limits.max.0)
+        .await
 }
 
-async fn set_brake(ops: &Ops, brake: Brake) -> Result<(), DriveError> {
+async fn configure_brake(ops: &Ops, brake: BrakeConfig) -> Result<(), DriveError> {
     let ms = |span| u16::try_from(whole_ms(span)).unwrap_or(u16::MAX);
-    ops.set(objects::BRAKE_RISE, ms(brake.rise)).await?;
-    ops.set(objects::BRAKE_FALL, ms(brake.fall)).await?;
+    ops.write_verified(objects::BRAKE_RISE, ms(brake.rise))
+        .await?;
+    ops.write_verified(objects::BRAKE_FALL, ms(brake.fall))
+        .await?;
     let output = Object::new(0x2079, brake.output, "output");
-    set_if_other(ops, output, objects::OUTPUT_BRAKE).await?;
+    write_if_different(ops, output, objects::OUTPUT_BRAKE).await?;
     let bit = 1 << objects::OUTPUT_BRAKE;
-    ops.set_bits(objects::OUTPUT_MASK, bit, bit).await
+    ops.write_bits(objects::OUTPUT_MASK, bit, bit).await
 }
 
-/// Purposes are written only where they differ: a drive refuses a purpose that another terminal has already.
-async fn set_if_other(ops: &Ops, object: Object<u16>, value: u16) -> Result<(), DriveError> {
+/// Writes a terminal's function only if it differs: a drive refuses a function that another terminal
+/// has.
+async fn write_if_different(ops: &Ops, object: Object<u16>, value: u16) -> Result<(), DriveError> {
     if ops.read(object).await? == value {
         return Ok(());
     }
-    ops.set(object, value).await
+    ops.write_verified(object, value).await
 }

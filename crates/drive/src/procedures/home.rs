@@ -1,11 +1,11 @@
-//! Home: the drive searches its reference by itself; the client sets it up, watches, and checks the result.
+//! Home: the client configures the drive's homing, monitors it and checks the result.
 
 use protocol::epos2::cia402::{control, mode, status};
+use protocol::epos2::objects;
 use units::Quadcounts;
 
 use crate::error::DriveError;
-use crate::event::{Outcome, Progress};
-use crate::objects;
+use crate::event::{CommandOutcome, CommandProgress};
 use crate::ops::Ops;
 
 use super::configure::verify_safety;
@@ -13,68 +13,71 @@ use super::network;
 use super::power::{check_enabled, enable, is_referenced, set_mode};
 use super::stop::make_safe;
 
-/// [`crate::Command::Home`]
-pub(crate) async fn home(mut ops: Ops) -> Result<Outcome, DriveError> {
-    ops.watch(true);
-    match search(&mut ops).await {
+/// Runs [`crate::DriveCommand::Home`].
+pub(crate) async fn home(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
+    ops.set_abort_on_alarm(true);
+    match run(&mut ops).await {
         Ok(outcome) => Ok(outcome),
         Err(cause) => Err(make_safe(&mut ops, cause).await),
     }
 }
 
-async fn search(ops: &mut Ops) -> Result<Outcome, DriveError> {
+async fn run(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
     verify_safety(ops).await?;
-    // Into a known state before the mode changes: a start bit left over from another master must not act.
+    // A start bit left by another master must not act when the mode changes.
     ops.write(objects::CONTROLWORD, control::SHUTDOWN).await?;
     set_mode(ops, mode::HOMING).await?;
-    set_up(ops).await?;
+    configure(ops).await?;
     network::arm(ops).await?;
     enable(ops).await?;
     ops.set_moving(true);
     ops.set_referenced(false);
     ops.write(objects::CONTROLWORD, control::START_HOMING)
         .await?;
-    ops.tell(Progress::Homing);
-    watch(ops).await?;
+    ops.report(CommandProgress::Homing);
+    wait_until_attained(ops).await?;
     ops.set_moving(false);
     ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
         .await?;
     set_mode(ops, mode::PROFILE_POSITION).await?;
-    let outcome = check(ops).await?;
+    let outcome = check_result(ops).await?;
     network::disarm(ops).await?;
     Ok(outcome)
 }
 
-async fn set_up(ops: &Ops) -> Result<(), DriveError> {
-    let homing = ops.config.homing;
-    let offset = ops.config.quadcounts("homing.offset", homing.offset)?;
-    let position = ops
-        .config
-        .quadcounts("homing.home_position", homing.home_position)?;
-    ops.set(objects::HOMING_METHOD, homing.method).await?;
-    ops.set(objects::HOMING_SWITCH_SPEED, homing.switch_speed.0)
+async fn configure(ops: &Ops) -> Result<(), DriveError> {
+    let config = &ops.config;
+    let homing = config.homing;
+    let offset = config.quadcounts("homing.offset", homing.offset)?;
+    let position = config.quadcounts("homing.home_position", homing.home_position)?;
+    ops.write_verified(objects::HOMING_METHOD, homing.method)
         .await?;
-    ops.set(objects::HOMING_ZERO_SPEED, homing.zero_speed.0)
+    for (object, value) in [
+        (objects::HOMING_SWITCH_SPEED, homing.switch_speed.0),
+        (objects::HOMING_ZERO_SPEED, homing.zero_speed.0),
+        (objects::HOMING_ACCELERATION, homing.acceleration.0),
+    ] {
+        ops.write_verified(object, value).await?;
+    }
+    ops.write_verified(objects::HOME_OFFSET, offset.0).await?;
+    ops.write_verified(objects::HOME_POSITION, position.0)
         .await?;
-    ops.set(objects::HOMING_ACCELERATION, homing.acceleration.0)
-        .await?;
-    ops.set(objects::HOME_OFFSET, offset.0).await?;
-    ops.set(objects::HOME_POSITION, position.0).await?;
-    if homing.by_current() {
-        ops.set(objects::HOMING_CURRENT, homing.current_threshold_ma)
+    if homing.detects_current() {
+        ops.write_verified(objects::HOMING_CURRENT, homing.current_threshold_ma)
             .await?;
     }
     Ok(())
 }
 
-/// Waits for bits 10 and 12. The first look comes a period late, when the bits of an earlier homing have gone.
-async fn watch(ops: &mut Ops) -> Result<(), DriveError> {
+/// Waits for bits 10 and 12. The first check follows a period later, when the bits of an earlier homing
+/// are cleared.
+async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
     const DONE: u16 = status::TARGET_REACHED | status::HOMING_ATTAINED;
     let homing = ops.config.homing;
     let limit = ops.now().saturating_add(homing.time_limit);
     loop {
         ops.sleep(ops.config.timing.status_period).await;
-        let asked = ops.now();
+        let requested = ops.now();
         let got = check_enabled(ops).await?;
         if got & status::HOMING_ERROR != 0 {
             return Err(DriveError::Homing {
@@ -85,14 +88,14 @@ async fn watch(ops: &mut Ops) -> Result<(), DriveError> {
         if got & DONE == DONE {
             return Ok(());
         }
-        // For whoever looks on. A drive that does not tell is homed all the same; one that is gone is missed at the next look.
-        if let Ok((demand, answered)) = ops.read_timed(objects::POSITION_DEMAND).await {
-            ops.tell(Progress::Searching {
-                at: answered.answer,
+        // For display only: an error here does not end homing. A lost link fails the next check.
+        if let Ok((demand, reply)) = ops.read_timed(objects::POSITION_DEMAND).await {
+            ops.report(CommandProgress::Searching {
+                at: reply.answer,
                 demand: Quadcounts(demand),
             });
         }
-        if asked > limit {
+        if requested > limit {
             return Err(DriveError::HomingTime {
                 method: homing.method,
                 limit: homing.time_limit,
@@ -102,13 +105,13 @@ async fn watch(ops: &mut Ops) -> Result<(), DriveError> {
     }
 }
 
-async fn check(ops: &mut Ops) -> Result<Outcome, DriveError> {
+async fn check_result(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
     let got = check_enabled(ops).await?;
     if !is_referenced(got) {
         return Err(DriveError::NotReferenced { got });
     }
     ops.set_referenced(true);
-    let position = settled(ops).await?;
+    let position = settled_position(ops).await?;
     let angle = ops.config.gearing.angle(position);
     if !is_inside(ops, position)? {
         return Err(DriveError::Outside {
@@ -117,34 +120,32 @@ async fn check(ops: &mut Ops) -> Result<Outcome, DriveError> {
             max: ops.config.limits.max,
         });
     }
-    Ok(Outcome::Homed { position, angle })
+    Ok(CommandOutcome::Homed { position, angle })
 }
 
-/// Where the axis is, once it is within the limits or stands: the drive calls homing done when its demand is there, and a servo comes
-/// after it.
-async fn settled(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
+/// The position once it is within the limits or constant. The drive reports homing attained when its
+/// demand has arrived; the axis lags behind.
+async fn settled_position(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
     let timing = ops.config.timing;
     let limit = ops.now().saturating_add(timing.state_limit);
-    let mut place = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
+    let mut last = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
     let mut since = ops.now();
-    while !is_inside(ops, place)? {
-        let asked = ops.now();
-        if asked.saturating_since(since) >= timing.standstill || asked > limit {
+    while !is_inside(ops, last)? {
+        let requested = ops.now();
+        if requested.saturating_since(since) >= timing.standstill || requested > limit {
             break;
         }
         ops.sleep(timing.status_period).await;
         let position = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
-        if position != place {
-            (place, since) = (position, ops.now());
+        if position != last {
+            (last, since) = (position, ops.now());
         }
     }
-    Ok(place)
+    Ok(last)
 }
 
-/// Whether a position is within the limits, to the tolerance of an arrival.
+/// Whether a position is within the limits and the arrival tolerance.
 fn is_inside(ops: &Ops, position: Quadcounts) -> Result<bool, DriveError> {
     let limits = ops.config.limits_qc()?;
-    let tolerance = ops.config.arrival_tolerance.0;
-    Ok(limits.min.0.saturating_sub(tolerance) <= position.0
-        && position.0 <= limits.max.0.saturating_add(tolerance))
+    Ok(limits.contains(position, ops.config.arrival_tolerance))
 }

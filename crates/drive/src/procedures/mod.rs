@@ -1,7 +1,8 @@
-//! The procedures: what each command does, step by step, as one would tell it.
+//! The procedure of each command.
 //!
-//! Each is a sequential `async fn` over [`crate::ops::Ops`]. None knows how requests travel or who runs it; each may be dropped between
-//! any two steps. A procedure that fails while the axis may move brings it to rest before it reports.
+//! Each is a sequential `async fn` over [`crate::ops::Ops`], independent of the link and of who runs it,
+//! and may be dropped between any two steps. If a procedure fails while the axis may move, it stops the
+//! axis before it reports the failure.
 
 mod configure;
 mod connect;

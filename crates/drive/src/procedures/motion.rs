@@ -1,58 +1,67 @@
-//! Goto, sweep and hold: profile-position moves with the shaft sampled all along.
+//! Goto, sweep and hold: moves in profile position mode, sampled throughout.
 //!
-//! The targets were checked against the limits before the procedure began. The drive makes the profile; the client asks for the position
-//! as often as configured and now and then whether all is well.
+//! Targets are validated before the procedure starts. The drive generates the profile; the client polls
+//! the position and periodically checks the statusword.
 
 use protocol::epos2::cia402::{control, mode, status};
+use protocol::epos2::objects;
 use units::{Host, Quadcounts, Span, Stamp};
 
 use crate::error::DriveError;
-use crate::event::{Arrived, Outcome, Progress};
-use crate::objects;
+use crate::event::{CommandOutcome, CommandProgress, MoveReport};
 use crate::ops::Ops;
-use crate::plan::{Aim, Plan};
+use crate::plan::{MovePlan, ValidatedMove};
 
 use super::configure::verify_safety;
 use super::network;
-use super::power::{check_enabled, enable, is_referenced, set_mode, wait_for};
+use super::power::{check_enabled, enable, is_fault, is_referenced, set_mode, wait_for};
 use super::stop::make_safe;
 
-/// [`crate::Command::Goto`]
-pub(crate) async fn goto(ops: Ops, aim: Aim) -> Result<Outcome, DriveError> {
-    guarded(ops, aim, Span::ZERO).await
+/// Runs [`crate::DriveCommand::Goto`].
+pub(crate) async fn goto(ops: Ops, target: ValidatedMove) -> Result<CommandOutcome, DriveError> {
+    guarded_move(ops, target, Span::ZERO).await
 }
 
-/// [`crate::Command::Sweep`]
-pub(crate) async fn sweep(ops: Ops, aim: Aim) -> Result<Outcome, DriveError> {
+/// Runs [`crate::DriveCommand::Sweep`].
+pub(crate) async fn sweep(ops: Ops, target: ValidatedMove) -> Result<CommandOutcome, DriveError> {
     let hold = ops.config.timing.hold;
-    guarded(ops, aim, hold).await
+    guarded_move(ops, target, hold).await
 }
 
-/// [`crate::Command::Hold`]
-pub(crate) async fn hold(mut ops: Ops, until: Stamp<Host>) -> Result<Outcome, DriveError> {
-    ops.watch(true);
-    let mut watch = Watch::new(&ops);
-    while ops.now() < until {
-        let looked = match ops.sample().await {
-            Ok(_) => watch.look_for_fault(&ops).await,
-            Err(error) => Err(error),
-        };
-        if let Err(cause) = looked {
-            return Err(make_safe(&mut ops, cause).await);
-        }
-    }
-    Ok(Outcome::Held)
-}
-
-async fn guarded(mut ops: Ops, aim: Aim, hold: Span) -> Result<Outcome, DriveError> {
-    ops.watch(true);
-    match move_to(&mut ops, aim, hold).await {
-        Ok(arrived) => Ok(Outcome::Arrived(arrived)),
+/// Runs [`crate::DriveCommand::Hold`].
+pub(crate) async fn hold(mut ops: Ops, until: Stamp<Host>) -> Result<CommandOutcome, DriveError> {
+    ops.set_abort_on_alarm(true);
+    match sample_until_fault(&mut ops, until).await {
+        Ok(()) => Ok(CommandOutcome::Held),
         Err(cause) => Err(make_safe(&mut ops, cause).await),
     }
 }
 
-async fn move_to(ops: &mut Ops, aim: Aim, hold: Span) -> Result<Arrived, DriveError> {
+/// Samples an axis that may be disabled.
+async fn sample_until_fault(ops: &mut Ops, until: Stamp<Host>) -> Result<(), DriveError> {
+    let mut check = PeriodicCheck::new(ops);
+    while ops.now() < until {
+        ops.next_sample().await?;
+        if check.is_due(ops.now()) && is_fault(ops.read(objects::STATUSWORD).await?) {
+            return Err(DriveError::Fault { error: None });
+        }
+    }
+    Ok(())
+}
+
+async fn guarded_move(
+    mut ops: Ops,
+    target: ValidatedMove,
+    hold: Span,
+) -> Result<CommandOutcome, DriveError> {
+    ops.set_abort_on_alarm(true);
+    match run(&mut ops, target, hold).await {
+        Ok(report) => Ok(CommandOutcome::Arrived(report)),
+        Err(cause) => Err(make_safe(&mut ops, cause).await),
+    }
+}
+
+async fn run(ops: &mut Ops, target: ValidatedMove, hold: Span) -> Result<MoveReport, DriveError> {
     verify_safety(ops).await?;
     let got = ops.read(objects::STATUSWORD).await?;
     if !is_referenced(got) {
@@ -62,18 +71,16 @@ async fn move_to(ops: &mut Ops, aim: Aim, hold: Span) -> Result<Arrived, DriveEr
     set_mode(ops, mode::PROFILE_POSITION).await?;
     network::arm(ops).await?;
     enable(ops).await?;
-    set_up(ops, aim).await?;
+    configure(ops, target).await?;
     sample_for(ops, hold).await?;
-    let from = ops.sample().await?.position;
-    let plan = ops
-        .config
-        .plan_move(from, aim.target, aim.speed, aim.acceleration)?;
+    let from = ops.next_sample().await?.position;
+    let plan = ops.config.plan_move(from, target);
     let started = start(ops, plan).await?;
-    let (position, arrived) = follow(ops, aim.target, &plan, started).await?;
+    let (position, arrived) = sample_until_arrival(ops, target.target, &plan, started).await?;
     ops.set_moving(false);
     sample_for(ops, hold).await?;
     network::disarm(ops).await?;
-    Ok(Arrived {
+    Ok(MoveReport {
         plan,
         position,
         angle: ops.config.gearing.angle(position),
@@ -82,14 +89,17 @@ async fn move_to(ops: &mut Ops, aim: Aim, hold: Span) -> Result<Arrived, DriveEr
     })
 }
 
-async fn set_up(ops: &Ops, aim: Aim) -> Result<(), DriveError> {
-    ops.set(objects::PROFILE_VELOCITY, aim.speed.0).await?;
-    ops.set(objects::PROFILE_ACCELERATION, aim.acceleration.0)
+async fn configure(ops: &Ops, target: ValidatedMove) -> Result<(), DriveError> {
+    for (object, value) in [
+        (objects::PROFILE_VELOCITY, target.speed.0),
+        (objects::PROFILE_ACCELERATION, target.acceleration.0),
+        (objects::PROFILE_DECELERATION, target.acceleration.0),
+    ] {
+        ops.write_verified(object, value).await?;
+    }
+    ops.write_verified(objects::TARGET_POSITION, target.target.0)
         .await?;
-    ops.set(objects::PROFILE_DECELERATION, aim.acceleration.0)
-        .await?;
-    ops.set(objects::TARGET_POSITION, aim.target.0).await?;
-    // The setpoint bit acts on its rising edge, and only once the last acknowledgement is gone.
+    // The setpoint bit acts on its rising edge, after the last acknowledgement is cleared.
     ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
         .await?;
     wait_for(ops, "setpoint acknowledgement (bit 12) cleared", |word| {
@@ -99,58 +109,57 @@ async fn set_up(ops: &Ops, aim: Aim) -> Result<(), DriveError> {
     .map(drop)
 }
 
-/// Sets the axis moving; gives back when.
-async fn start(ops: &mut Ops, plan: Plan) -> Result<Stamp<Host>, DriveError> {
+/// Starts the move; returns when.
+async fn start(ops: &mut Ops, plan: MovePlan) -> Result<Stamp<Host>, DriveError> {
     ops.set_moving(true);
     ops.write(objects::CONTROLWORD, control::START_ABSOLUTE)
         .await?;
     let started = ops.now();
-    ops.tell(Progress::Moving(plan));
+    ops.report(CommandProgress::Moving(plan));
     let limit = started.saturating_add(ops.config.timing.state_limit);
     loop {
-        // The ramp is on and its shape is told by samples alone: every other request is between two of them.
-        ops.sample().await?;
-        let asked = ops.now();
+        // The axis accelerates and only samples show how: each other request goes between two of them.
+        ops.next_sample().await?;
+        let requested = ops.now();
         let got = check_enabled(ops).await?;
         if got & status::SETPOINT_ACKNOWLEDGE != 0 {
             break;
         }
-        if asked > limit {
+        if requested > limit {
             return Err(DriveError::State {
                 expected: "setpoint acknowledged (bit 12)",
                 got,
             });
         }
     }
-    ops.sample().await?;
+    ops.next_sample().await?;
     ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
         .await?;
     Ok(started)
 }
 
-/// Samples until the axis is at its target.
-async fn follow(
+/// Samples until the axis is at its target; returns its position and when.
+async fn sample_until_arrival(
     ops: &mut Ops,
     target: Quadcounts,
-    plan: &Plan,
+    plan: &MovePlan,
     started: Stamp<Host>,
 ) -> Result<(Quadcounts, Stamp<Host>), DriveError> {
-    let timing = ops.config.timing;
     let limit = started
         .saturating_add(plan.duration)
-        .saturating_add(timing.arrival_margin);
+        .saturating_add(ops.config.timing.arrival_margin);
     let tolerance = ops.config.arrival_tolerance.0.unsigned_abs();
-    let mut watch = Watch::new(ops);
+    let mut check = PeriodicCheck::new(ops);
     let mut reached = false;
-    // The statusword, and after it the position, were asked for after the limit: a host that was held up may have slept through
-    // the arrival.
-    let mut late = false;
+    // Set when the statusword was requested after the limit. Only a position requested after that proves
+    // a failure, as a delayed host may have missed the arrival.
+    let mut is_overdue = false;
     loop {
-        let sample = ops.sample().await?;
+        let sample = ops.next_sample().await?;
         if reached && sample.position.0.abs_diff(target.0) <= tolerance {
             return Ok((sample.position, sample.answer));
         }
-        if late && sample.request > limit {
+        if is_overdue && sample.request > limit {
             return Err(DriveError::NotArrived {
                 target,
                 position: sample.position,
@@ -158,36 +167,33 @@ async fn follow(
                 reached,
             });
         }
-        late = ops.now() > limit;
-        let word = if late {
-            Some(check_enabled(ops).await?)
-        } else {
-            watch.look(ops).await?
-        };
-        if let Some(word) = word {
-            reached = word & status::TARGET_REACHED != 0;
+        is_overdue = ops.now() > limit;
+        if is_overdue || check.is_due(ops.now()) {
+            reached = check_enabled(ops).await? & status::TARGET_REACHED != 0;
         }
     }
 }
 
-/// Samples at standstill.
+/// Samples an enabled axis at standstill.
 async fn sample_for(ops: &mut Ops, span: Span) -> Result<(), DriveError> {
     let until = ops.now().saturating_add(span);
-    let mut watch = Watch::new(ops);
+    let mut check = PeriodicCheck::new(ops);
     while ops.now() < until {
-        ops.sample().await?;
-        watch.look(ops).await?;
+        ops.next_sample().await?;
+        if check.is_due(ops.now()) {
+            check_enabled(ops).await?;
+        }
     }
     Ok(())
 }
 
-/// Looks at the statusword once a period.
-struct Watch {
+/// Timer of the statusword checks.
+struct PeriodicCheck {
     next: Stamp<Host>,
     period: Span,
 }
 
-impl Watch {
+impl PeriodicCheck {
     fn new(ops: &Ops) -> Self {
         let period = ops.config.timing.status_period;
         Self {
@@ -196,32 +202,11 @@ impl Watch {
         }
     }
 
-    fn due(&mut self, now: Stamp<Host>) -> bool {
-        let due = now >= self.next;
-        if due {
+    fn is_due(&mut self, now: Stamp<Host>) -> bool {
+        let is_due = now >= self.next;
+        if is_due {
             self.next = now.saturating_add(self.period);
         }
-        due
-    }
-
-    /// The statusword of an axis that must be enabled, if a look is due.
-    async fn look(&mut self, ops: &Ops) -> Result<Option<u16>, DriveError> {
-        if self.due(ops.now()) {
-            check_enabled(ops).await.map(Some)
-        } else {
-            Ok(None)
-        }
-    }
-
-    /// The same for an axis that may be disabled.
-    async fn look_for_fault(&mut self, ops: &Ops) -> Result<(), DriveError> {
-        if !self.due(ops.now()) {
-            return Ok(());
-        }
-        let word = ops.read(objects::STATUSWORD).await?;
-        if super::power::is_fault(word) {
-            return Err(DriveError::Fault { error: None });
-        }
-        Ok(())
+        is_due
     }
 }

@@ -1,70 +1,76 @@
-//! What a CAN bus asks for beside the settings of the axis: the node's network state, heartbeats both ways, the stream of
-//! positions. On the other links each of these does nothing.
+//! Configuration of a CAN bus: NMT state, heartbeats both ways, the stream of positions. Does nothing on
+//! other links.
 //!
-//! The node watches the host's heartbeat (1016) only while a command may move the axis: an axis at rest holds, and its owner need
-//! not be heard between two commands. The EPOS2 has nothing of the kind on USB and RS232.
+//! The node monitors the host's heartbeat (1016) only while a command may move the axis. Between
+//! commands the axis holds and the host may be silent. The EPOS2 has no such monitoring on USB and
+//! RS232.
 
 use protocol::canopen::heartbeat::ConsumerEntry;
 use protocol::canopen::nmt::NmtCommand;
 use protocol::canopen::pdo::{self, TransmissionType};
 use protocol::canopen::{CanId, NodeId};
 use protocol::epos2::cia402::status;
-use protocol::epos2::objects::{Address, Object};
+use protocol::epos2::objects::{self, Address, Object};
 
-use crate::bus::{self, STREAM};
+use crate::can_services::{self, STREAM};
 use crate::config::whole_ms;
 use crate::error::DriveError;
 use crate::event::AngleSource;
-use crate::objects;
 use crate::ops::Ops;
 
 use super::power::wait_for;
 
-/// The node listens to requests, and takes the settings of its process data, in this state.
-pub(super) fn pre_operational(ops: &Ops) {
-    ops.on_bus(|bus, _| bus.command(NmtCommand::EnterPreOperational));
+/// Enters the NMT state in which process data can be configured.
+pub(super) fn enter_pre_operational(ops: &Ops) {
+    ops.on_can(|can, _| can.send_nmt(NmtCommand::EnterPreOperational));
 }
 
-/// From here on a node that restarts forgets what it was told; before, it may just have been switched on.
-pub(super) fn begin(ops: &Ops) {
-    ops.on_bus(|bus, _| bus.forget());
+/// Resets the services. A boot-up message before this only shows that the drive was switched on.
+pub(super) fn reset(ops: &Ops) {
+    ops.on_can(|can, _| can.reset());
 }
 
-/// Heartbeats and stream; then the node is started.
-pub(super) async fn set_up(ops: &Ops) -> Result<(AngleSource, bool), DriveError> {
-    let Some(node) = ops.on_bus(|bus, _| bus.node()) else {
+/// Configures heartbeats and stream, then starts the node.
+pub(super) async fn configure(ops: &Ops) -> Result<(AngleSource, bool), DriveError> {
+    let Some(node) = ops.on_can(|can, _| can.node()) else {
         return Ok((AngleSource::Polls, false));
     };
     let period = whole_ms(ops.config.can.node_heartbeat);
     let period = u16::try_from(period).unwrap_or(u16::MAX);
-    taken(ops.set(objects::PRODUCER_HEARTBEAT, period).await)?;
-    let watches = taken(ops.set(objects::CONSUMER_HEARTBEAT, NOBODY).await)?;
-    let streams = taken(map_stream(ops, node).await)?;
-    ops.on_bus(|bus, _| {
-        bus.watches_host = watches;
-        bus.streaming = streams;
-        bus.command(NmtCommand::Start);
+    is_supported(
+        ops.write_verified(objects::PRODUCER_HEARTBEAT, period)
+            .await,
+    )?;
+    let monitors_host = is_supported(
+        ops.write_verified(objects::CONSUMER_HEARTBEAT, NO_CONSUMER)
+            .await,
+    )?;
+    let streaming = is_supported(map_stream(ops, node).await)?;
+    ops.on_can(|can, _| {
+        can.monitors_host = monitors_host;
+        can.streaming = streaming;
+        can.send_nmt(NmtCommand::Start);
     });
     wait_for(ops, "NMT operational (bit 9)", |word| {
         word & status::REMOTE != 0
     })
     .await?;
-    if ops.on_bus(|bus, _| bus.has_restarted()) == Some(true) {
+    if ops.on_can(|can, _| can.has_restarted()) == Some(true) {
         return Err(DriveError::Restarted { error: None });
     }
-    let angle = if streams {
+    let angle = if streaming {
         AngleSource::Stream
     } else {
         AngleSource::Polls
     };
-    Ok((angle, watches))
+    Ok((angle, monitors_host))
 }
 
-/// 1016: no heartbeat is expected.
-const NOBODY: u32 = 0;
+/// 1016: no heartbeat is monitored.
+const NO_CONSUMER: u32 = 0;
 
-/// Whether a node took a setting that not every firmware has.
-fn taken(result: Result<(), DriveError>) -> Result<bool, DriveError> {
+/// Whether the firmware supports a setting that not every version has.
+fn is_supported(result: Result<(), DriveError>) -> Result<bool, DriveError> {
     match result {
         Ok(()) => Ok(true),
         Err(DriveError::Refused { .. } | DriveError::NotTaken { .. }) => Ok(false),
@@ -73,33 +79,32 @@ fn taken(result: Result<(), DriveError>) -> Result<bool, DriveError> {
 }
 
 async fn map_stream(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
-    let wanted = bus::configuration();
-    for write in pdo::configuration(STREAM, node, &wanted) {
+    let configuration = can_services::stream_configuration();
+    for write in pdo::configuration(STREAM, node, &configuration) {
         let width = write.data.as_slice().len() as u8;
         let written = ops
             .write_raw(write.address, write.data.to_u32(), width)
             .await;
-        // Its shortest time between two is no part of every firmware, and does not hold for SYNC by CiA 301.
-        let inhibit = write.address == Address::new(STREAM.communication(), 3);
-        if inhibit {
-            taken(written)?;
+        // Not every firmware has the inhibit time, and CiA 301 does not apply it to synchronous PDOs.
+        if write.address == Address::new(STREAM.communication(), 3) {
+            is_supported(written)?;
         } else {
             written?;
         }
     }
-    expect_stream(ops, node).await
+    verify_mapping(ops, node).await
 }
 
-/// The node still sends what it was told to. Done before every move: a log of the move then tells what its stream carries, and a master
-/// that changed it is noticed.
-pub(super) async fn verify(ops: &Ops) -> Result<(), DriveError> {
-    match ops.on_bus(|bus, _| (bus.streaming, bus.node())) {
-        Some((true, node)) => expect_stream(ops, node).await,
+/// Verifies the stream before a move: a log of the move then contains the mapping, and a change by
+/// another master is detected.
+pub(super) async fn verify_stream(ops: &Ops) -> Result<(), DriveError> {
+    match ops.on_can(|can, _| (can.streaming, can.node())) {
+        Some((true, node)) => verify_mapping(ops, node).await,
         _ => Ok(()),
     }
 }
 
-async fn expect_stream(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
+async fn verify_mapping(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
     let (communication, mapping) = (STREAM.communication(), STREAM.mapping());
     let id = ops
         .read(Object::<u32>::new(communication, 1, "COB-ID"))
@@ -113,46 +118,44 @@ async fn expect_stream(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
             got: id,
         });
     }
-    let each = TransmissionType::EACH_SYNC.to_u8();
-    ops.expect(Object::<u8>::new(communication, 2, "type"), each)
+    let each_sync = TransmissionType::EACH_SYNC.to_u8();
+    ops.verify(Object::<u8>::new(communication, 2, "type"), each_sync)
         .await?;
-    let layout = bus::layout();
+    let layout = can_services::layout();
     let entries = layout.entries();
     let count = Object::<u8>::new(mapping, 0, "count");
-    ops.expect(count, entries.len() as u8).await?;
+    ops.verify(count, entries.len() as u8).await?;
     for (sub, entry) in (1..).zip(entries) {
         let object = Object::<u32>::new(mapping, sub, "entry");
-        ops.expect(object, entry.to_u32()).await?;
+        ops.verify(object, entry.to_u32()).await?;
     }
     Ok(())
 }
 
-/// From here on the node stops by itself if the host falls silent.
+/// Starts the monitoring: the node stops on its own if the host's heartbeat is missing.
 pub(super) async fn arm(ops: &Ops) -> Result<(), DriveError> {
     let can = ops.config.can;
-    let watches = ops.on_bus(|bus, now| {
-        if bus.watches_host {
-            bus.live(now);
+    let monitors_host = ops.on_can(|can, now| {
+        if can.monitors_host {
+            can.start_heartbeat(now);
         }
-        bus.watches_host
+        can.monitors_host
     });
-    let (Some(true), Some(node)) = (watches, NodeId::new(can.host_node)) else {
+    let (Some(true), Some(node)) = (monitors_host, NodeId::new(can.host_node)) else {
         return Ok(());
     };
     let time_ms = u16::try_from(whole_ms(can.host_limit)).unwrap_or(u16::MAX);
     let entry = ConsumerEntry { node, time_ms };
-    ops.set(objects::CONSUMER_HEARTBEAT, entry.to_u32()).await
+    ops.write_verified(objects::CONSUMER_HEARTBEAT, entry.to_u32())
+        .await
 }
 
-/// The host may fall silent.
+/// Ends the monitoring.
 pub(super) async fn disarm(ops: &Ops) -> Result<(), DriveError> {
-    let armed = ops.on_bus(|bus, _| bus.is_living());
-    if armed != Some(true) {
+    if ops.on_can(|can, _| can.sends_heartbeat()) != Some(true) {
         return Ok(());
     }
-    let written = ops.write(objects::CONSUMER_HEARTBEAT, NOBODY).await;
-    if written.is_ok() {
-        ops.on_bus(|bus, _| bus.cease());
-    }
-    written
+    ops.write(objects::CONSUMER_HEARTBEAT, NO_CONSUMER).await?;
+    ops.on_can(|can, _| can.stop_heartbeat());
+    Ok(())
 }

@@ -1,26 +1,27 @@
-//! Read and write: any object of the drive, by hand.
+//! Direct access to any object of the drive.
 //!
-//! What the objects mean is the caller's business. So that nothing moves by it, writing asks for an axis without power, and
-//! the controlword is left to the commands that watch over what comes of it.
+//! So that a write causes no motion, it requires a disabled axis, and the controlword is reserved for
+//! the motion commands.
+
+use protocol::epos2::objects::{self, Address};
 
 use crate::command::ObjectBytes;
 use crate::error::DriveError;
-use crate::event::Outcome;
-use crate::objects::{self, Address};
+use crate::event::CommandOutcome;
 use crate::ops::Ops;
 
 use super::power::is_off;
 
-/// [`crate::Command::Read`]
-pub(crate) async fn read(ops: Ops, address: Address) -> Result<Outcome, DriveError> {
+/// Runs [`crate::DriveCommand::Read`].
+pub(crate) async fn read(ops: Ops, address: Address) -> Result<CommandOutcome, DriveError> {
     let bytes = ops.read_bytes(address).await?;
-    Ok(Outcome::Read { address, bytes })
+    Ok(CommandOutcome::Read { address, bytes })
 }
 
-/// Whether an object may be written by hand.
+/// Rejects objects that must not be written directly.
 ///
 /// # Errors
-/// [`DriveError::Reserved`]
+/// [`DriveError::Reserved`].
 pub(crate) fn check_writable(address: Address) -> Result<(), DriveError> {
     if address.index == objects::CONTROLWORD.address.index {
         return Err(DriveError::Reserved { address });
@@ -28,12 +29,12 @@ pub(crate) fn check_writable(address: Address) -> Result<(), DriveError> {
     Ok(())
 }
 
-/// [`crate::Command::Write`]
+/// Runs [`crate::DriveCommand::Write`].
 pub(crate) async fn write(
     ops: Ops,
     address: Address,
     bytes: ObjectBytes,
-) -> Result<Outcome, DriveError> {
+) -> Result<CommandOutcome, DriveError> {
     let got = ops.read(objects::STATUSWORD).await?;
     if !is_off(got) {
         return Err(DriveError::State {
@@ -42,5 +43,5 @@ pub(crate) async fn write(
         });
     }
     ops.write_bytes(address, &bytes).await?;
-    Ok(Outcome::Written(address))
+    Ok(CommandOutcome::Written(address))
 }

@@ -1,22 +1,23 @@
-//! The device control state machine as the client walks it: wait for a state, clear a fault, enable, change mode.
+//! The device control state machine (CiA 402): wait for a state, clear a fault, enable, change the mode.
 
-use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{State, control, status};
+use protocol::epos2::objects;
 use units::Span;
 
 use crate::error::DriveError;
-use crate::event::{Outcome, Progress};
-use crate::objects;
+use crate::event::{CommandOutcome, CommandProgress};
 use crate::ops::Ops;
 
-use super::report::history;
+use super::report::{history, newest_error};
 
-/// Pause between two looks at something that changes within milliseconds.
-const LOOK: Span = Span::from_millis(1);
-/// Fault resets tried: one clears one cause, and a drive may report several.
-const RESETS: u32 = 3;
+/// Interval of checks of a value that changes within milliseconds.
+const CHECK_INTERVAL: Span = Span::from_millis(1);
+/// Fault resets tried: each clears one cause, and a drive may report several.
+const MAX_RESETS: u32 = 3;
+/// Time until a fault reset shows in the statusword: some control cycles of 1 ms.
+const RESET_TIME: Span = Span::from_millis(20);
 
-/// Whether the drive is in fault or on the way there.
+/// Whether the drive is in fault or in its fault reaction.
 pub(super) fn is_fault(statusword: u16) -> bool {
     matches!(
         State::from_statusword(statusword),
@@ -32,59 +33,55 @@ pub(super) fn is_off(statusword: u16) -> bool {
     )
 }
 
-/// The newest fault as an error.
-pub(super) async fn fault(ops: &Ops) -> DriveError {
-    match history(ops).await {
-        Ok(history) => DriveError::Fault {
-            error: history.first().copied(),
-        },
-        Err(error) => error,
-    }
+/// Whether the axis is referenced.
+pub(super) fn is_referenced(statusword: u16) -> bool {
+    statusword & status::REFERENCED != 0
 }
 
-/// Reads the statusword until it is as wanted. With `expected` for the error message.
+/// Reads the statusword until `is_wanted`; `expected` describes it for the error message.
 ///
 /// # Errors
-/// [`DriveError::State`] for a statusword that was asked for after the state limit.
+/// [`DriveError::State`] for a statusword requested after the state limit.
 pub(super) async fn wait_for(
     ops: &Ops,
     expected: &'static str,
-    wanted: impl Fn(u16) -> bool,
+    is_wanted: impl Fn(u16) -> bool,
 ) -> Result<u16, DriveError> {
     let limit = ops.now().saturating_add(ops.config.timing.state_limit);
     loop {
-        let asked = ops.now();
+        let requested = ops.now();
         let got = ops.read(objects::STATUSWORD).await?;
-        if wanted(got) {
+        if is_wanted(got) {
             return Ok(got);
         }
-        if asked > limit {
+        if requested > limit {
             return Err(DriveError::State { expected, got });
         }
-        ops.sleep(LOOK).await;
+        ops.sleep(CHECK_INTERVAL).await;
     }
 }
 
-/// As [`wait_for`], but a fault ends the wait.
+/// Like [`wait_for`]; also fails on a fault.
 async fn wait_for_state(ops: &Ops, expected: &'static str, state: State) -> Result<(), DriveError> {
     let is = |word| State::from_statusword(word) == Some(state);
     let got = wait_for(ops, expected, |word| is(word) || is_fault(word)).await?;
     if is(got) {
-        Ok(())
-    } else {
-        Err(fault(ops).await)
+        return Ok(());
     }
+    Err(DriveError::Fault {
+        error: newest_error(ops).await?,
+    })
 }
 
-/// Clears whatever fault there is; the axis stays disabled. Gives back what the newest fault was.
+/// Clears any fault; the axis stays disabled.
 pub(super) async fn clear_fault(ops: &Ops) -> Result<(), DriveError> {
-    let settled = |word| !is_fault(word) || State::from_statusword(word) == Some(State::Fault);
-    let mut got = wait_for(ops, "the end of the fault reaction", settled).await?;
+    let is_settled = |word| !is_fault(word) || State::from_statusword(word) == Some(State::Fault);
+    let mut got = wait_for(ops, "the end of the fault reaction", is_settled).await?;
     if !is_fault(got) {
         return Ok(());
     }
-    let error = history(ops).await?.first().copied();
-    for _ in 0..RESETS {
+    let error = newest_error(ops).await?;
+    for _ in 0..MAX_RESETS {
         // The reset bit acts on its rising edge.
         ops.write(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
             .await?;
@@ -101,27 +98,24 @@ pub(super) async fn clear_fault(ops: &Ops) -> Result<(), DriveError> {
     if is_fault(got) {
         return Err(DriveError::FaultStays { error });
     }
-    ops.tell(Progress::FaultCleared { error });
+    ops.report(CommandProgress::FaultCleared { error });
     Ok(())
 }
 
-/// A fault reset shows within some control cycles.
-const RESET_TIME: Span = Span::from_millis(20);
-
-/// [`crate::Command::ClearFaults`]
-pub(crate) async fn clear_faults(ops: Ops) -> Result<Outcome, DriveError> {
-    let found: Vec<DeviceError> = history(&ops).await?;
+/// Runs [`crate::DriveCommand::ClearFaults`].
+pub(crate) async fn clear_faults(ops: Ops) -> Result<CommandOutcome, DriveError> {
+    let found = history(&ops).await?;
     clear_fault(&ops).await?;
-    Ok(Outcome::FaultsCleared(found))
+    Ok(CommandOutcome::FaultsCleared(found))
 }
 
-/// Power on, brake open, holding.
+/// Enables the power stage and opens the brake.
 pub(super) async fn enable(ops: &Ops) -> Result<(), DriveError> {
     let got = ops.read(objects::STATUSWORD).await?;
     match State::from_statusword(got) {
         Some(State::OperationEnabled) => return Ok(()),
         Some(State::SwitchOnDisabled | State::ReadyToSwitchOn) => {}
-        // From anywhere else the way leads through "disabled".
+        // Any other state is left through "switch-on disabled".
         _ => {
             ops.write(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
                 .await?;
@@ -133,14 +127,15 @@ pub(super) async fn enable(ops: &Ops) -> Result<(), DriveError> {
     ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
         .await?;
     wait_for_state(ops, "operation enabled", State::OperationEnabled).await?;
-    ops.tell(Progress::Enabled);
+    ops.report(CommandProgress::Enabled);
     Ok(())
 }
 
-/// Reads the statusword of an axis that must be enabled. Which fault it is is asked once the axis has been made safe.
+/// Reads the statusword of an axis that must be enabled. The error history is read after the axis has
+/// been stopped.
 ///
 /// # Errors
-/// [`DriveError::Fault`], or [`DriveError::State`] for any other state.
+/// [`DriveError::Fault`] without its cause, or [`DriveError::State`].
 pub(super) async fn check_enabled(ops: &Ops) -> Result<u16, DriveError> {
     let got = ops.read(objects::STATUSWORD).await?;
     if is_fault(got) {
@@ -155,20 +150,17 @@ pub(super) async fn check_enabled(ops: &Ops) -> Result<u16, DriveError> {
     Ok(got)
 }
 
-/// Changes the mode of operation and waits until it is in effect.
+/// Changes the mode of operation and waits until the drive displays it.
 pub(super) async fn set_mode(ops: &Ops, mode: i8) -> Result<(), DriveError> {
     ops.write(objects::MODE, mode).await?;
     let limit = ops.now().saturating_add(ops.config.timing.state_limit);
     loop {
-        let asked = ops.now();
-        match ops.expect(objects::MODE_DISPLAY, mode).await {
-            Err(DriveError::NotTaken { .. }) if asked <= limit => ops.sleep(LOOK).await,
+        let requested = ops.now();
+        match ops.verify(objects::MODE_DISPLAY, mode).await {
+            Err(DriveError::NotTaken { .. }) if requested <= limit => {
+                ops.sleep(CHECK_INTERVAL).await;
+            }
             result => return result,
         }
     }
-}
-
-/// Whether the statusword says that the axis knows where it is.
-pub(super) fn is_referenced(statusword: u16) -> bool {
-    statusword & status::REFERENCED != 0
 }

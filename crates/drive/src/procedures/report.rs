@@ -1,25 +1,26 @@
-//! What the drive says about itself: identity, error history, status. Nothing here changes anything.
+//! Identity, error history and status of the drive. Nothing here changes anything.
 
+use protocol::canopen::sdo::TransferError;
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::State;
+use protocol::epos2::objects::{self, error_history};
 use units::Quadcounts;
 
 use crate::error::DriveError;
-use crate::event::{DeviceName, Identity, Outcome, Status};
-use crate::objects::{self, error_history};
+use crate::event::{CommandOutcome, DeviceName, DriveIdentity, DriveStatus};
 use crate::ops::Ops;
 
 use super::power::is_referenced;
 
 /// Entries of the error history (1003).
-const HISTORY: u8 = 5;
-/// Lower half of the device type: CiA profile 402.
+const HISTORY_LEN: u8 = 5;
+/// Lower half of the device type (1000): CiA profile 402.
 const PROFILE_402: u32 = 0x0192;
-/// maxon motor's vendor id.
+/// Vendor id of maxon motor.
 const MAXON: u32 = 0x0000_00FB;
 
-/// Who is there; anything but a drive by maxon is refused.
-pub(super) async fn identify(ops: &Ops) -> Result<Identity, DriveError> {
+/// Identifies the drive; fails unless it is a servo drive by maxon.
+pub(super) async fn identify(ops: &Ops) -> Result<DriveIdentity, DriveError> {
     let wrong = |object: objects::Object<u32>, expected, got| DriveError::WrongDevice {
         address: object.address,
         what: object.name,
@@ -35,8 +36,8 @@ pub(super) async fn identify(ops: &Ops) -> Result<Identity, DriveError> {
     if vendor != MAXON {
         return Err(wrong(objects::VENDOR_ID, MAXON, vendor));
     }
-    Ok(Identity {
-        name: name(ops).await?,
+    Ok(DriveIdentity {
+        name: device_name(ops).await?,
         vendor,
         product: ops.read(objects::PRODUCT_CODE).await?,
         revision: ops.read(objects::REVISION).await?,
@@ -46,34 +47,45 @@ pub(super) async fn identify(ops: &Ops) -> Result<Identity, DriveError> {
     })
 }
 
-/// The device's name; empty where it keeps it for itself.
-async fn name(ops: &Ops) -> Result<DeviceName, DriveError> {
+/// The device's name; empty if it cannot be read.
+async fn device_name(ops: &Ops) -> Result<DeviceName, DriveError> {
     match ops.read_bytes(objects::DEVICE_NAME).await {
         Ok(bytes) => Ok(DeviceName::new(&bytes)),
-        Err(DriveError::Refused { .. } | DriveError::TooLong { .. }) => Ok(DeviceName::default()),
+        Err(DriveError::Refused { .. }) => Ok(DeviceName::default()),
+        // An unusual name is no reason to fail, but a wrong toggle bit shows a lost segment.
+        Err(DriveError::Transfer { error, .. })
+            if !matches!(error, TransferError::Toggle { .. }) =>
+        {
+            Ok(DeviceName::default())
+        }
         Err(error) => Err(error),
     }
 }
 
 /// The error history, newest first.
 pub(super) async fn history(ops: &Ops) -> Result<Vec<DeviceError>, DriveError> {
-    let count = ops.read(objects::ERROR_COUNT).await?.min(HISTORY);
+    let count = ops.read(objects::ERROR_COUNT).await?.min(HISTORY_LEN);
     let mut errors = Vec::new();
     for n in 1..=count {
-        // The code is the lower half; the upper is additional information of the manufacturer.
+        // The lower half is the error code, the upper is manufacturer-specific.
         let entry = ops.read(error_history(n)).await?;
         errors.push(DeviceError(entry as u16));
     }
     Ok(errors)
 }
 
-/// [`crate::Command::Status`]
-pub(crate) async fn status(ops: Ops) -> Result<Outcome, DriveError> {
+/// The newest entry of the error history.
+pub(super) async fn newest_error(ops: &Ops) -> Result<Option<DeviceError>, DriveError> {
+    Ok(history(ops).await?.first().copied())
+}
+
+/// Runs [`crate::DriveCommand::Status`].
+pub(crate) async fn status(ops: Ops) -> Result<CommandOutcome, DriveError> {
     let identity = identify(&ops).await?;
     let statusword = ops.read(objects::STATUSWORD).await?;
     let position = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
     let referenced = is_referenced(statusword);
-    Ok(Outcome::Status(Status {
+    Ok(CommandOutcome::Status(DriveStatus {
         identity,
         statusword,
         state: State::from_statusword(statusword),

@@ -5,7 +5,7 @@ use units::{Host, Span, Stamp};
 
 use super::fake::{ENABLED, Hurt};
 use super::rig::{Rig, to};
-use crate::{Command, DriveError, Outcome};
+use crate::{CommandOutcome, DriveCommand, DriveError};
 
 /// How answers are hurt.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,7 @@ pub fn hurting(damage: Damage, from: Stamp<Host>, until: Stamp<Host>) -> Hurt {
 
 fn sweeping(link: DriveLink, after: Span) -> Rig {
     let mut rig = Rig::homed_on(link);
-    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(after), None, "{link:?}");
     rig.forget();
     rig
@@ -59,7 +59,7 @@ fn bursts_are_survived() {
                 rig.fake.hurt = hurting(damage, rig.now, until);
                 let ended = rig.finish();
                 assert!(
-                    matches!(ended, Ok(Outcome::Arrived(_))),
+                    matches!(ended, Ok(CommandOutcome::Arrived(_))),
                     "{link:?} {damage:?} for {burst} ms: {ended:?}"
                 );
                 // The first sample comes soon after; a handshake of RS232 without what follows it looks like a unit that works.
@@ -147,5 +147,5 @@ fn a_damaged_heartbeat_ends_nothing() {
         bytes
     });
     let ended = rig.finish();
-    assert!(matches!(ended, Ok(Outcome::Arrived(_))), "{ended:?}");
+    assert!(matches!(ended, Ok(CommandOutcome::Arrived(_))), "{ended:?}");
 }

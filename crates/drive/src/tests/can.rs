@@ -8,7 +8,8 @@ use units::{Host, Span, Stamp};
 use super::fake::{FAULT, Fate};
 use super::rig::{Rig, to};
 use crate::{
-    AngleSource, AxisConfig, Command, DriveError, Observation, Outcome, Progress, ShaftSample,
+    AngleSource, AxisConfig, CommandOutcome, CommandProgress, DriveCommand, DriveError,
+    Observation, ShaftSample,
 };
 
 fn can() -> Rig {
@@ -24,7 +25,7 @@ fn the_stream_is_sampled_at_1_khz_with_none_lost() {
     let mut rig = homed();
     let until = rig.now + Span::from_secs(60);
     let before = rig.fake.bus.syncs.len();
-    rig.run(Command::Hold { until }).unwrap();
+    rig.run(DriveCommand::Hold { until }).unwrap();
     let syncs = &rig.fake.bus.syncs[before..];
     let samples = rig.samples();
     assert!(samples.len() > 59_500, "{}", samples.len());
@@ -41,7 +42,7 @@ fn the_stream_is_sampled_at_1_khz_with_none_lost() {
 #[test]
 fn the_stream_goes_on_while_the_state_is_asked_for() {
     let mut rig = homed();
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let moving: Vec<_> = rig
         .samples()
         .into_iter()
@@ -62,13 +63,13 @@ fn a_drive_that_refuses_the_mapping_is_polled() {
     for refused in [(0x1A00, 2), (0x1A00, 0), (0x1800, 1), (0x1800, 2)] {
         let mut rig = can();
         rig.fake.refuses = vec![refused];
-        let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+        let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
             panic!("{:?}", rig.events.last())
         };
         assert_eq!(connected.angle, AngleSource::Polls);
-        rig.run(Command::Home).unwrap();
+        rig.run(DriveCommand::Home).unwrap();
         rig.forget();
-        rig.run(Command::Sweep(to(-15.0))).unwrap();
+        rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
         assert!(rig.samples().len() > 700, "{}", rig.samples().len());
     }
 }
@@ -77,7 +78,7 @@ fn a_drive_that_refuses_the_mapping_is_polled() {
 fn a_refused_inhibit_time_does_not_cost_the_stream() {
     let mut rig = can();
     rig.fake.refuses = vec![(0x1800, 3)];
-    let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+    let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
     };
     assert_eq!(connected.angle, AngleSource::Stream);
@@ -87,19 +88,19 @@ fn a_refused_inhibit_time_does_not_cost_the_stream() {
 fn a_drive_that_cannot_watch_the_host_is_said_not_to() {
     let mut rig = can();
     rig.fake.refuses = vec![(0x1016, 1)];
-    let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+    let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
     };
-    assert!(!connected.watches_host);
-    rig.run(Command::Home).unwrap();
-    assert!(rig.run(Command::Goto(to(0.0))).is_ok());
+    assert!(!connected.monitors_host);
+    rig.run(DriveCommand::Home).unwrap();
+    assert!(rig.run(DriveCommand::Goto(to(0.0))).is_ok());
 }
 
 #[test]
 fn a_stream_that_falls_silent_is_helped_along_by_asking() {
     let mut rig = homed();
     rig.fake.bus.copies = Box::new(|n| usize::from(!(300..600).contains(&n)));
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let samples = rig.samples();
     for pair in samples.windows(2) {
         let apart = pair[1].request - pair[0].request;
@@ -116,7 +117,7 @@ fn lost_and_repeated_frames_of_the_stream_leave_the_others_right() {
         9 => 2,
         _ => 1,
     });
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let samples = rig.samples();
     for sample in &samples {
         assert_eq!(sample.answer - sample.request, Span::from_micros(300));
@@ -135,7 +136,7 @@ fn lost_and_repeated_frames_of_the_stream_leave_the_others_right() {
 #[test]
 fn the_drives_own_time_goes_with_each_sample_of_a_log() {
     let mut rig = homed();
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let heard = rig.heard();
     let mut timed = 0;
     for pair in heard.windows(2) {
@@ -163,7 +164,7 @@ fn the_drives_own_time_goes_with_each_sample_of_a_log() {
 fn a_log_without_the_mapping_gives_no_samples() {
     let mut rig = homed();
     let until = rig.now + Span::from_millis(200);
-    rig.run(Command::Hold { until }).unwrap();
+    rig.run(DriveCommand::Hold { until }).unwrap();
     let sampled = rig
         .heard()
         .iter()
@@ -174,7 +175,7 @@ fn a_log_without_the_mapping_gives_no_samples() {
 #[test]
 fn the_drive_stops_when_the_host_dies() {
     let mut rig = homed();
-    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
     assert_eq!(rig.fake.objects[&(0x1016, 1)], 127 << 16 | 200);
     // Nobody turns the crank any more.
@@ -191,14 +192,14 @@ fn the_drive_stops_when_the_host_dies() {
 fn the_host_is_heard_until_a_stop_is_over() {
     let mut rig = homed();
     rig.client
-        .start(Command::Goto(crate::Move {
+        .start(DriveCommand::Goto(crate::MoveCommand {
             speed: units::Rpm(300),
             ..to(45.0)
         }))
         .unwrap();
     assert_eq!(rig.run_for(Span::from_secs(2)), None);
-    rig.client.start(Command::Stop).unwrap();
-    let Ok(Outcome::Stopped(stopped)) = rig.finish() else {
+    rig.client.start(DriveCommand::Stop).unwrap();
+    let Ok(CommandOutcome::Stopped(stopped)) = rig.finish() else {
         panic!("{:?}", rig.events.last())
     };
     assert!(!stopped.fault);
@@ -207,17 +208,17 @@ fn the_host_is_heard_until_a_stop_is_over() {
 #[test]
 fn between_commands_the_host_need_not_be_heard() {
     let mut rig = homed();
-    rig.run(Command::Goto(to(0.0))).unwrap();
+    rig.run(DriveCommand::Goto(to(0.0))).unwrap();
     rig.now += Span::from_secs(30);
     rig.fake.live(rig.now);
     assert_ne!(rig.fake.state, FAULT);
-    assert!(rig.run(Command::Goto(to(10.0))).is_ok());
+    assert!(rig.run(DriveCommand::Goto(to(10.0))).is_ok());
 }
 
 #[test]
 fn a_silent_heartbeat_in_mid_sweep_stops_it() {
     let mut rig = homed();
-    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
     let at = rig.now;
     rig.fake.bus.mute = true;
@@ -228,14 +229,14 @@ fn a_silent_heartbeat_in_mid_sweep_stops_it() {
     );
     let reaction = rig.quick_stop().unwrap() - at;
     assert!(reaction < Span::from_millis(140), "{reaction:?}");
-    let safe = |p: &Progress| matches!(p, Progress::MadeSafe(_));
+    let safe = |p: &CommandProgress| matches!(p, CommandProgress::MadeSafe(_));
     assert!(rig.progress().iter().any(safe));
 }
 
 #[test]
 fn a_node_that_another_master_takes_away_is_told() {
     let mut rig = homed();
-    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
     rig.fake.bus.state = NmtState::PreOperational;
     let error = rig.finish().unwrap_err();
@@ -247,7 +248,7 @@ fn a_restart_between_commands_prevents_the_next_move() {
     let mut rig = homed();
     rig.fake.restart(rig.now);
     rig.now += Span::from_millis(5);
-    let error = rig.run(Command::Goto(to(0.0))).unwrap_err();
+    let error = rig.run(DriveCommand::Goto(to(0.0))).unwrap_err();
     assert!(matches!(error, DriveError::Restarted { .. }), "{error}");
     assert!(!rig.writes().iter().any(|w| w.0 == 0x607A));
 }
@@ -255,18 +256,18 @@ fn a_restart_between_commands_prevents_the_next_move() {
 #[test]
 fn answers_about_another_object_or_of_another_node_are_passed_over() {
     use protocol::canopen::NodeId;
-    use protocol::canopen::sdo::{Answer, Expedited, Initiate};
+    use protocol::canopen::sdo::{Expedited, Initiate, SdoResponse};
     use protocol::epos2::objects::Address;
     let mut rig = can();
     let answer = |index, node| {
         let transfer = Initiate::Expedited(Expedited::of(0x1234_5678_u32));
         let address = Address::new(index, 0);
-        Answer::InitiateUpload { address, transfer }
+        SdoResponse::InitiateUpload { address, transfer }
             .to_frame(NodeId::new(node).unwrap())
             .to_socketcan()
             .to_vec()
     };
-    rig.client.start(Command::Connect).unwrap();
+    rig.client.start(DriveCommand::Connect).unwrap();
     for n in 0..2_000 {
         let frame = match n % 3 {
             0 => answer(0x6064, 1),
@@ -276,7 +277,7 @@ fn answers_about_another_object_or_of_another_node_are_passed_over() {
         rig.client.handle_input(&frame, rig.now);
         if let Some(end) = rig.step() {
             assert!(end.is_ok(), "{end:?}");
-            assert!(rig.client.link_stats().strays > 50);
+            assert!(rig.client.link_stats().unmatched > 50);
             return;
         }
     }
@@ -287,8 +288,8 @@ fn answers_about_another_object_or_of_another_node_are_passed_over() {
 fn a_late_answer_is_not_taken_for_the_next_one_of_the_same_object() {
     let mut rig = can();
     rig.fake.refuses = vec![(0x1A00, 0)];
-    rig.run(Command::Connect).unwrap();
-    rig.run(Command::Home).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
+    rig.run(DriveCommand::Home).unwrap();
     rig.forget();
     rig.fake.hand = Box::new(|n, request| match request {
         Request::ReadObject(read) if read.address.index == 0x6064 && n % 37 == 0 => {
@@ -296,7 +297,7 @@ fn a_late_answer_is_not_taken_for_the_next_one_of_the_same_object() {
         }
         _ => Fate::Sent,
     });
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     // 37,500 qc/s: an answer of another time would be off by thousands.
     let moving: Vec<_> = rig
         .samples()

@@ -7,12 +7,12 @@ use units::{Quadcounts, Span};
 
 use super::fake::{DISABLED, FAULT, Fate};
 use super::rig::{Rig, to};
-use crate::{AxisConfig, Command, DriveError, Outcome, Progress};
+use crate::{AxisConfig, CommandOutcome, CommandProgress, DriveCommand, DriveError};
 
 fn made_safe(rig: &Rig) -> bool {
     rig.progress()
         .iter()
-        .any(|p| matches!(p, Progress::MadeSafe(_)))
+        .any(|p| matches!(p, CommandProgress::MadeSafe(_)))
 }
 
 fn is_read(request: &Request, index: u16) -> bool {
@@ -26,7 +26,7 @@ fn is_write(request: &Request, index: u16, value: u32) -> bool {
 /// In mid-move with the record of the start forgotten.
 fn moving() -> Rig {
     let mut rig = Rig::homed();
-    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(400)), None);
     let moved = rig.fake.position(rig.now) + 40_000.0;
     assert!(moved > 5_000.0, "{moved}");
@@ -61,7 +61,7 @@ fn a_blocked_axis_is_given_up_after_the_planned_time() {
     let mut rig = Rig::homed();
     rig.fake.blocked = true;
     let began = rig.now;
-    let error = rig.run(Command::Goto(to(45.0))).unwrap_err();
+    let error = rig.run(DriveCommand::Goto(to(45.0))).unwrap_err();
     let DriveError::NotArrived {
         target,
         position,
@@ -85,9 +85,9 @@ fn homing_that_never_ends_is_stopped() {
     config.homing.time_limit = Span::from_secs(5);
     let mut rig = Rig::new(config);
     rig.fake.homing_time = Span::from_secs(1000);
-    rig.run(Command::Connect).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
     assert!(matches!(
-        rig.run(Command::Home),
+        rig.run(DriveCommand::Home),
         Err(DriveError::HomingTime { method: 17, .. })
     ));
     assert!(made_safe(&rig));
@@ -96,10 +96,10 @@ fn homing_that_never_ends_is_stopped() {
 #[test]
 fn homing_error_bit_is_told() {
     let mut rig = Rig::new(AxisConfig::default());
-    rig.run(Command::Connect).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
     rig.fake.flags |= 1 << 13;
     assert!(matches!(
-        rig.run(Command::Home),
+        rig.run(DriveCommand::Home),
         Err(DriveError::Homing { method: 17, .. })
     ));
 }
@@ -109,9 +109,9 @@ fn a_home_outside_the_limits_is_refused() {
     let mut config = AxisConfig::default();
     config.homing.home_position = units::Degrees(-70.0);
     let mut rig = Rig::new(config);
-    rig.run(Command::Connect).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
     assert!(matches!(
-        rig.run(Command::Home),
+        rig.run(DriveCommand::Home),
         Err(DriveError::Outside { .. })
     ));
 }
@@ -121,13 +121,13 @@ fn a_fault_that_does_not_clear_ends_the_connection() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.fake.faults_that_stay = true;
     assert_eq!(
-        rig.run(Command::Connect),
+        rig.run(DriveCommand::Connect),
         Err(DriveError::FaultStays {
             error: Some(DeviceError::CAN_PASSIVE)
         })
     );
     assert!(matches!(
-        rig.client.start(Command::Home),
+        rig.client.start(DriveCommand::Home),
         Err(DriveError::NotConnected { .. })
     ));
 }
@@ -136,7 +136,7 @@ fn a_fault_that_does_not_clear_ends_the_connection() {
 fn a_limit_switch_mask_that_does_not_take_prevents_every_move() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.fake.stubborn = vec![(0x2071, 4)];
-    let error = rig.run(Command::Connect).unwrap_err();
+    let error = rig.run(DriveCommand::Connect).unwrap_err();
     assert_eq!(
         error.to_string(),
         "object 2071:04 read back: expected 0xB, got 0x8"
@@ -148,7 +148,7 @@ fn a_drive_that_restarted_in_between_is_noticed_before_it_moves() {
     let mut rig = Rig::homed();
     rig.fake.objects.insert((0x2071, 4), 8);
     assert!(matches!(
-        rig.run(Command::Goto(to(0.0))),
+        rig.run(DriveCommand::Goto(to(0.0))),
         Err(DriveError::NotTaken { .. })
     ));
     assert!(!rig.writes().iter().any(|w| w.2 == 0x1F));
@@ -158,7 +158,7 @@ fn a_drive_that_restarted_in_between_is_noticed_before_it_moves() {
 fn another_device_is_refused() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.fake.objects.insert((0x1018, 1), 0x2E);
-    let error = rig.run(Command::Connect).unwrap_err();
+    let error = rig.run(DriveCommand::Connect).unwrap_err();
     assert_eq!(
         error.to_string(),
         "object 1018:01 (Vendor ID): expected 0xFB, got 0x2E"
@@ -170,7 +170,7 @@ fn another_device_is_refused() {
 fn a_refusal_names_object_and_reason() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.fake.objects.remove(&(0x607F, 0));
-    let error = rig.run(Command::Connect).unwrap_err();
+    let error = rig.run(DriveCommand::Connect).unwrap_err();
     assert!(matches!(
         error,
         DriveError::Refused {
@@ -187,8 +187,8 @@ fn a_refusal_names_object_and_reason() {
 fn stop_in_mid_sweep_stops() {
     let mut rig = moving();
     let at = rig.now;
-    rig.client.start(Command::Stop).unwrap();
-    let Ok(Outcome::Stopped(stopped)) = rig.finish() else {
+    rig.client.start(DriveCommand::Stop).unwrap();
+    let Ok(CommandOutcome::Stopped(stopped)) = rig.finish() else {
         panic!("{:?}", rig.events.last())
     };
     assert_eq!(
@@ -217,8 +217,8 @@ fn stop_does_not_wait_for_a_link_that_lost_an_answer() {
     });
     rig.run_for(Span::from_millis(10));
     let at = rig.now;
-    rig.client.start(Command::Stop).unwrap();
-    assert!(matches!(rig.finish(), Ok(Outcome::Stopped(_))));
+    rig.client.start(DriveCommand::Stop).unwrap();
+    assert!(matches!(rig.finish(), Ok(CommandOutcome::Stopped(_))));
     let (seen, _) = rig
         .fake
         .requests
@@ -231,7 +231,7 @@ fn stop_does_not_wait_for_a_link_that_lost_an_answer() {
 #[test]
 fn stop_of_an_idle_or_faulty_drive_is_harmless() {
     let mut rig = Rig::new(AxisConfig::default());
-    let Ok(Outcome::Stopped(stopped)) = rig.run(Command::Stop) else {
+    let Ok(CommandOutcome::Stopped(stopped)) = rig.run(DriveCommand::Stop) else {
         panic!("{:?}", rig.events)
     };
     assert!(stopped.fault);
@@ -244,17 +244,17 @@ fn an_axis_that_does_not_stop_is_said_not_to() {
     let mut config = AxisConfig::default();
     config.timing.state_limit = Span::from_millis(100);
     let mut rig = Rig::new(config);
-    rig.run(Command::Connect).unwrap();
-    rig.run(Command::Home).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
+    rig.run(DriveCommand::Home).unwrap();
     rig.client
-        .start(Command::Goto(crate::Move {
+        .start(DriveCommand::Goto(crate::MoveCommand {
             speed: units::Rpm(200),
             ..to(45.0)
         }))
         .unwrap();
     assert_eq!(rig.run_for(Span::from_millis(500)), None);
     rig.fake.deaf_to_quick_stop = true;
-    rig.client.start(Command::Stop).unwrap();
+    rig.client.start(DriveCommand::Stop).unwrap();
     assert!(matches!(rig.finish(), Err(DriveError::StillMoving { .. })));
 }
 
@@ -284,7 +284,7 @@ fn lost_answers_to_samples_cost_samples_and_nothing_else() {
             Fate::Sent
         }
     });
-    let Ok(Outcome::Arrived(arrived)) = rig.run(Command::Sweep(to(-15.0))) else {
+    let Ok(CommandOutcome::Arrived(arrived)) = rig.run(DriveCommand::Sweep(to(-15.0))) else {
         panic!("{:?}", rig.events.last())
     };
     assert_eq!(arrived.position, Quadcounts(-10_000));
@@ -298,7 +298,7 @@ fn late_answers_are_taken_for_what_they_are() {
         20 => Fate::Late(Span::from_millis(130)),
         _ => Fate::Sent,
     });
-    assert!(rig.run(Command::Sweep(to(-15.0))).is_ok());
+    assert!(rig.run(DriveCommand::Sweep(to(-15.0))).is_ok());
     let late = rig
         .samples()
         .iter()
@@ -326,10 +326,10 @@ fn damage_and_repetition_are_survived() {
             }
         });
         for command in [
-            Command::Connect,
-            Command::Home,
-            Command::Sweep(to(-15.0)),
-            Command::Brake,
+            DriveCommand::Connect,
+            DriveCommand::Home,
+            DriveCommand::Sweep(to(-15.0)),
+            DriveCommand::Brake,
         ] {
             let result = rig.run(command);
             assert!(result.is_ok(), "{fate:?} {command:?}: {result:?}");
@@ -349,7 +349,7 @@ fn a_write_whose_answer_is_lost_is_not_repeated() {
         }
     });
     assert!(matches!(
-        rig.run(Command::Connect),
+        rig.run(DriveCommand::Connect),
         Err(DriveError::NoAnswer { attempts: 1, .. })
     ));
     let writes = rig.writes();
@@ -359,7 +359,7 @@ fn a_write_whose_answer_is_lost_is_not_repeated() {
 #[test]
 fn a_sweep_does_not_fail_by_the_last_lost_answer() {
     let mut rig = Rig::homed();
-    assert!(rig.run(Command::Sweep(to(-15.0))).is_ok());
+    assert!(rig.run(DriveCommand::Sweep(to(-15.0))).is_ok());
     let mut lost = 0;
     rig.fake.hand = Box::new(move |_, request| {
         // Power off is power off, however often it is said.
@@ -370,7 +370,10 @@ fn a_sweep_does_not_fail_by_the_last_lost_answer() {
         Fate::Sent
     });
     let before = rig.writes().len();
-    assert!(matches!(rig.run(Command::Brake), Ok(Outcome::Stopped(_))));
+    assert!(matches!(
+        rig.run(DriveCommand::Brake),
+        Ok(CommandOutcome::Stopped(_))
+    ));
     let off = rig.writes().split_off(before);
     assert_eq!(off.iter().filter(|w| w.0 == 0x6040).count(), 3);
 }
@@ -380,7 +383,7 @@ fn silence_ends_a_command_in_bounded_time() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.fake.hand = Box::new(|_, _| Fate::Lost);
     let began = rig.now;
-    let error = rig.run(Command::Connect).unwrap_err();
+    let error = rig.run(DriveCommand::Connect).unwrap_err();
     assert!(matches!(error, DriveError::LinkLost { .. }));
     assert!(rig.now - began <= Span::from_millis(1600));
     assert!(error.to_string().contains("silence for 1500 ms"), "{error}");

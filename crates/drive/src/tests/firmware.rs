@@ -14,8 +14,8 @@ use super::bursts::{DAMAGES, hurting};
 use super::fake::Hurt;
 use super::rig::to;
 use crate::{
-    AngleSource, AxisConfig, Client, Command, DriveError, Event, Move, Outcome, Place, Plan,
-    Progress, ShaftSample, Stopped,
+    AngleSource, AxisConfig, CommandOutcome, CommandProgress, DriveClient, DriveCommand,
+    DriveError, DriveEvent, MoveCommand, MovePlan, PositionValidity, ShaftSample, StopReport,
 };
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
@@ -71,14 +71,14 @@ impl Server {
 }
 
 struct World {
-    client: Client,
+    client: DriveClient,
     node: Node,
     server: Server,
     now: Stamp<Host>,
     next_tick: Stamp<Host>,
     to_node: VecDeque<(Stamp<Host>, Vec<u8>)>,
     to_host: VecDeque<(Stamp<Host>, Vec<u8>)>,
-    events: Vec<Event>,
+    events: Vec<DriveEvent>,
     /// When the client was heard to order a quick stop.
     quick_stops: Vec<Stamp<Host>>,
     /// The cable is cut.
@@ -97,7 +97,7 @@ impl World {
     fn on(link: DriveLink, config: NodeConfig) -> Self {
         let now = Stamp::from_nanos(1_795_000_000_000_000_000);
         Self {
-            client: Client::with_link(AxisConfig::default(), link),
+            client: DriveClient::new(AxisConfig::default(), link),
             node: Node::new(config),
             server: Server::new(link),
             now,
@@ -112,12 +112,12 @@ impl World {
         }
     }
 
-    fn run(&mut self, command: Command) -> Result<Outcome, DriveError> {
+    fn run(&mut self, command: DriveCommand) -> Result<CommandOutcome, DriveError> {
         self.client.start(command)?;
         self.finish()
     }
 
-    fn finish(&mut self) -> Result<Outcome, DriveError> {
+    fn finish(&mut self) -> Result<CommandOutcome, DriveError> {
         let limit = self.now + Span::from_secs(120);
         while self.now < limit {
             if let Some(end) = self.step() {
@@ -127,7 +127,7 @@ impl World {
         panic!("no end after 120 s: {:?}", self.client);
     }
 
-    fn step(&mut self) -> Option<Result<Outcome, DriveError>> {
+    fn step(&mut self) -> Option<Result<CommandOutcome, DriveError>> {
         while let Some(frame) = self.client.poll_transmit(self.now) {
             if is_quick_stop(&frame) {
                 self.quick_stops.push(self.now);
@@ -142,9 +142,9 @@ impl World {
         while let Some(event) = self.client.poll_event() {
             self.events.push(event.clone());
             match event {
-                Event::Done(outcome) => return Some(Ok(outcome)),
-                Event::Failed(error) => return Some(Err(error)),
-                Event::Sample(_) | Event::Progress(_) => {}
+                DriveEvent::Done(outcome) => return Some(Ok(outcome)),
+                DriveEvent::Failed(error) => return Some(Err(error)),
+                DriveEvent::Sample(_) | DriveEvent::Progress(_) => {}
             }
         }
         self.wait();
@@ -203,7 +203,7 @@ impl World {
     /// In mid-sweep.
     fn moving_on(link: DriveLink) -> Self {
         let mut world = Self::homed_on(link);
-        world.client.start(Command::Sweep(to(45.0))).unwrap();
+        world.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
         world.run_for(Span::from_millis(1_000));
         world.quick_stops.clear();
         world
@@ -211,16 +211,16 @@ impl World {
 
     fn homed_on(link: DriveLink) -> Self {
         let mut world = Self::on(link, NodeConfig::default());
-        world.run(Command::Connect).unwrap();
-        world.run(Command::Home).unwrap();
+        world.run(DriveCommand::Connect).unwrap();
+        world.run(DriveCommand::Home).unwrap();
         world.events.clear();
         world
     }
 
     /// What the client said about bringing the axis to rest.
-    fn made_safe(&self) -> Option<Stopped> {
+    fn made_safe(&self) -> Option<StopReport> {
         self.events.iter().find_map(|event| match event {
-            Event::Progress(Progress::MadeSafe(stopped)) => Some(*stopped),
+            DriveEvent::Progress(CommandProgress::MadeSafe(stopped)) => Some(*stopped),
             _ => None,
         })
     }
@@ -233,7 +233,7 @@ impl World {
         self.events
             .iter()
             .filter_map(|event| match event {
-                Event::Sample(sample) => Some(*sample),
+                DriveEvent::Sample(sample) => Some(*sample),
                 _ => None,
             })
             .collect()
@@ -253,13 +253,10 @@ fn is_quick_stop(bytes: &[u8]) -> bool {
     has(&[0x40, 0x60, 0, 1, 0x0B, 0]) || has(&[0x2B, 0x40, 0x60, 0, 0x0B, 0])
 }
 
-fn from_home(world: &World, angle_deg: f64) -> Plan {
+fn from_home(world: &World, angle_deg: f64) -> MovePlan {
     let axis = world.client.config();
     let home = axis.gearing.position(axis.homing.home_position).unwrap();
-    let aim = to(angle_deg);
-    let target = axis.gearing.position(aim.to).unwrap();
-    axis.plan_move(home, target, aim.speed, aim.acceleration)
-        .unwrap()
+    axis.plan_move(home, axis.validate(to(angle_deg)).unwrap())
 }
 
 /// The whole story of a capture, from power-on to the brake.
@@ -267,19 +264,19 @@ fn from_home(world: &World, angle_deg: f64) -> Plan {
 fn connect_home_sweep_brake() {
     let mut world = World::new(NodeConfig::default());
     assert_eq!(world.node.state(), State::Fault);
-    let Ok(Outcome::Connected(connected)) = world.run(Command::Connect) else {
+    let Ok(CommandOutcome::Connected(connected)) = world.run(DriveCommand::Connect) else {
         panic!("{:?}", world.events.last())
     };
     assert_eq!(connected.history.first(), Some(&DeviceError::CAN_PASSIVE));
     assert_eq!(connected.identity.serial, 1);
     assert_eq!(world.node.brake(), BrakeState::Closed);
-    let Ok(Outcome::Homed { angle, .. }) = world.run(Command::Home) else {
+    let Ok(CommandOutcome::Homed { angle, .. }) = world.run(DriveCommand::Home) else {
         panic!("{:?}", world.events.last())
     };
     assert!((angle.0 + 60.0).abs() < 0.01, "{angle:?}");
     assert_eq!(world.node.brake(), BrakeState::Open);
     world.events.clear();
-    let Ok(Outcome::Arrived(arrived)) = world.run(Command::Sweep(to(-15.0))) else {
+    let Ok(CommandOutcome::Arrived(arrived)) = world.run(DriveCommand::Sweep(to(-15.0))) else {
         panic!("{:?}", world.events.last())
     };
     assert_eq!(arrived.position.0, -10_000);
@@ -290,20 +287,20 @@ fn connect_home_sweep_brake() {
         (took - planned).abs() < 0.03,
         "{took} s, planned {planned} s"
     );
-    let Ok(Outcome::Stopped(stopped)) = world.run(Command::Brake) else {
+    let Ok(CommandOutcome::Stopped(stopped)) = world.run(DriveCommand::Brake) else {
         panic!("{:?}", world.events.last())
     };
     assert_eq!((stopped.position.0, stopped.fault), (-10_000, false));
     assert_eq!(world.node.brake(), BrakeState::Closed);
     assert_eq!(world.client.link_stats().lost, 0);
-    assert_eq!(world.client.link_stats().strays, 0);
+    assert_eq!(world.client.link_stats().unmatched, 0);
 }
 
 #[test]
 fn samples_are_the_shaft_at_a_time_between_their_stamps() {
     for link in LINKS {
         let mut world = World::homed_on(link);
-        world.run(Command::Sweep(to(45.0))).unwrap();
+        world.run(DriveCommand::Sweep(to(45.0))).unwrap();
         let samples = world.samples();
         let least = match link {
             DriveLink::Usb => 1_800,
@@ -332,11 +329,11 @@ fn samples_are_the_shaft_at_a_time_between_their_stamps() {
 fn slow_and_short_moves_arrive() {
     let mut world = World::homed();
     for (to_deg, rpm) in [(-59.9, 1), (-59.9, 1), (-59.8985, 1500), (-30.0, 1500)] {
-        let command = Command::Goto(Move {
+        let command = DriveCommand::Goto(MoveCommand {
             speed: Rpm(rpm),
             ..to(to_deg)
         });
-        let Ok(Outcome::Arrived(arrived)) = world.run(command) else {
+        let Ok(CommandOutcome::Arrived(arrived)) = world.run(command) else {
             panic!("{to_deg} at {rpm}: {:?}", world.events.last())
         };
         assert!((arrived.angle.0 - to_deg).abs() < 0.002, "{arrived:?}");
@@ -346,14 +343,14 @@ fn slow_and_short_moves_arrive() {
 #[test]
 fn stop_in_mid_sweep_keeps_the_position() {
     let mut world = World::homed();
-    world.client.start(Command::Sweep(to(45.0))).unwrap();
+    world.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     let until = world.now + Span::from_millis(800);
     while world.now < until {
         assert_eq!(world.step(), None);
     }
-    world.client.start(Command::Stop).unwrap();
+    world.client.start(DriveCommand::Stop).unwrap();
     let asked = world.now;
-    let Ok(Outcome::Stopped(stopped)) = world.finish() else {
+    let Ok(CommandOutcome::Stopped(stopped)) = world.finish() else {
         panic!("{:?}", world.events.last())
     };
     assert!(stopped.angle.is_some());
@@ -361,7 +358,7 @@ fn stop_in_mid_sweep_keeps_the_position() {
     // 1125 rpm at 20,000 rpm/s take 56 ms to stop; then 50 ms of standstill, the brake, and some round trips.
     assert!(world.now - asked < Span::from_millis(200));
     // And it goes on from there.
-    assert!(world.run(Command::Goto(to(0.0))).is_ok());
+    assert!(world.run(DriveCommand::Goto(to(0.0))).is_ok());
 }
 
 #[test]
@@ -373,9 +370,9 @@ fn a_limit_switch_in_mid_sweep_is_named() {
             switch.pressed = firmware_sim::epos2::Region::AtLeast(13_333);
         }
         let mut world = World::on(link, config);
-        world.run(Command::Connect).unwrap();
-        world.run(Command::Home).unwrap();
-        let error = world.run(Command::Sweep(to(45.0))).unwrap_err();
+        world.run(DriveCommand::Connect).unwrap();
+        world.run(DriveCommand::Home).unwrap();
+        let error = world.run(DriveCommand::Sweep(to(45.0))).unwrap_err();
         assert_eq!(
             error,
             DriveError::Fault {
@@ -385,13 +382,13 @@ fn a_limit_switch_in_mid_sweep_is_named() {
         );
         assert!(error.to_string().contains("FF07"), "{error}");
         let stopped = world.made_safe().unwrap();
-        assert_eq!(stopped.place, Place::Known, "{link:?}");
-        let Ok(Outcome::FaultsCleared(found)) = world.run(Command::ClearFaults) else {
+        assert_eq!(stopped.validity, PositionValidity::Valid, "{link:?}");
+        let Ok(CommandOutcome::FaultsCleared(found)) = world.run(DriveCommand::ClearFaults) else {
             panic!("{:?}", world.events.last())
         };
         assert_eq!(found.first(), Some(&DeviceError::POSITIVE_LIMIT));
         assert!(
-            world.run(Command::Goto(to(0.0))).is_ok(),
+            world.run(DriveCommand::Goto(to(0.0))).is_ok(),
             "{link:?}: it can leave the switch"
         );
     }
@@ -409,10 +406,10 @@ fn a_restart_in_mid_sweep_is_noticed() {
             "{link:?}: {error}"
         );
         let stopped = world.made_safe().unwrap();
-        assert_eq!(stopped.place, Place::Lost { error: None });
+        assert_eq!(stopped.validity, PositionValidity::Lost { error: None });
         // It has forgotten its limits: no move before it is connected again.
         assert!(matches!(
-            world.run(Command::Goto(to(0.0))),
+            world.run(DriveCommand::Goto(to(0.0))),
             Err(DriveError::Restarted { .. })
         ));
     }
@@ -422,24 +419,27 @@ fn a_restart_in_mid_sweep_is_noticed() {
 fn the_whole_story_on_each_link() {
     for link in LINKS {
         let mut world = World::on(link, NodeConfig::default());
-        let Ok(Outcome::Connected(connected)) = world.run(Command::Connect) else {
+        let Ok(CommandOutcome::Connected(connected)) = world.run(DriveCommand::Connect) else {
             panic!("{link:?}: {:?}", world.events.last())
         };
         assert_eq!(connected.identity.name.as_str(), "EPOS2", "{link:?}");
-        assert_eq!(connected.watches_host, link == DriveLink::Can);
+        assert_eq!(connected.monitors_host, link == DriveLink::Can);
         let streams = connected.angle == AngleSource::Stream;
         assert_eq!(streams, link == DriveLink::Can);
-        world.run(Command::Home).unwrap();
-        let Ok(Outcome::Arrived(arrived)) = world.run(Command::Sweep(to(-15.0))) else {
+        world.run(DriveCommand::Home).unwrap();
+        let Ok(CommandOutcome::Arrived(arrived)) = world.run(DriveCommand::Sweep(to(-15.0))) else {
             panic!("{link:?}: {:?}", world.events.last())
         };
         assert_eq!(arrived.position.0, -10_000);
-        let Ok(Outcome::Stopped(stopped)) = world.run(Command::Brake) else {
+        let Ok(CommandOutcome::Stopped(stopped)) = world.run(DriveCommand::Brake) else {
             panic!("{link:?}: {:?}", world.events.last())
         };
-        assert_eq!((stopped.place, stopped.fault), (Place::Known, false));
+        assert_eq!(
+            (stopped.validity, stopped.fault),
+            (PositionValidity::Valid, false)
+        );
         let stats = world.client.link_stats();
-        assert_eq!((stats.lost, stats.strays), (0, 0), "{link:?}");
+        assert_eq!((stats.lost, stats.unmatched), (0, 0), "{link:?}");
     }
 }
 
@@ -469,7 +469,10 @@ fn faults_in_mid_sweep_are_named_and_answered_within_100_ms() {
             let lost = error == DeviceError::POSITION_SENSOR;
             let stopped = world.made_safe().unwrap();
             assert!(stopped.fault);
-            assert_eq!(matches!(stopped.place, Place::Lost { .. }), lost);
+            assert_eq!(
+                matches!(stopped.validity, PositionValidity::Lost { .. }),
+                lost
+            );
         }
     }
 }
@@ -481,11 +484,11 @@ fn a_blocked_motor_is_a_following_error() {
         world.node.block();
         let error = Some(DeviceError::FOLLOWING);
         assert_eq!(world.finish(), Err(DriveError::Fault { error }), "{link:?}");
-        assert_eq!(world.made_safe().unwrap().place, Place::Known);
+        assert_eq!(world.made_safe().unwrap().validity, PositionValidity::Valid);
         // And it goes on from there once it is free.
         world.node.unblock();
-        world.run(Command::ClearFaults).unwrap();
-        assert!(world.run(Command::Goto(to(0.0))).is_ok(), "{link:?}");
+        world.run(DriveCommand::ClearFaults).unwrap();
+        assert!(world.run(DriveCommand::Goto(to(0.0))).is_ok(), "{link:?}");
     }
 }
 
@@ -534,9 +537,9 @@ fn an_axis_whose_answers_are_all_damaged_is_stopped() {
 fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
     for link in LINKS {
         let mut world = World::on(link, NodeConfig::default());
-        world.run(Command::Connect).unwrap();
-        let mut read = |index, sub| match world.run(Command::Read(Address::new(index, sub))) {
-            Ok(Outcome::Read { bytes, .. }) => bytes,
+        world.run(DriveCommand::Connect).unwrap();
+        let mut read = |index, sub| match world.run(DriveCommand::Read(Address::new(index, sub))) {
+            Ok(CommandOutcome::Read { bytes, .. }) => bytes,
             other => panic!("{link:?}: {other:?}"),
         };
         assert_eq!(read(0x1008, 0), b"EPOS2");
@@ -556,7 +559,9 @@ fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
         ] {
             let bytes = Bounded::from_slice(&vec![0x90; len]).unwrap();
             let address = Address::new(index, 0);
-            let error = world.run(Command::Write { address, bytes }).unwrap_err();
+            let error = world
+                .run(DriveCommand::Write { address, bytes })
+                .unwrap_err();
             assert!(
                 matches!(error, DriveError::Refused { error, .. } if error == expected),
                 "{link:?}: {error}"
@@ -564,13 +569,13 @@ fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
         }
         let bytes = Bounded::from_slice(&1_500_u32.to_le_bytes()).unwrap();
         let address = Address::new(0x6065, 0);
-        world.run(Command::Write { address, bytes }).unwrap();
-        let Ok(Outcome::Read { bytes, .. }) = world.run(Command::Read(address)) else {
+        world.run(DriveCommand::Write { address, bytes }).unwrap();
+        let Ok(CommandOutcome::Read { bytes, .. }) = world.run(DriveCommand::Read(address)) else {
             panic!("{link:?}")
         };
         assert_eq!(bytes, 1_500_u32.to_le_bytes());
         let stats = world.client.link_stats();
-        assert_eq!((stats.lost, stats.strays), (0, 0), "{link:?}");
+        assert_eq!((stats.lost, stats.unmatched), (0, 0), "{link:?}");
     }
 }
 
@@ -589,20 +594,20 @@ fn a_servo_that_lags_is_home_and_arrives() {
                 ..NodeConfig::default()
             };
             let mut world = World::on(link, config);
-            world.run(Command::Connect).unwrap();
-            let homed = world.run(Command::Home);
-            let Ok(Outcome::Homed { angle, .. }) = homed else {
+            world.run(DriveCommand::Connect).unwrap();
+            let homed = world.run(DriveCommand::Home);
+            let Ok(CommandOutcome::Homed { angle, .. }) = homed else {
                 panic!("{servo:?} {link:?}: {homed:?}")
             };
             // Within the limits, to the tolerance of an arrival.
             assert!(angle.0 > -60.031, "{servo:?} {link:?}: {angle:?}");
-            let swept = world.run(Command::Sweep(to(-15.0)));
-            let Ok(Outcome::Arrived(arrived)) = swept else {
+            let swept = world.run(DriveCommand::Sweep(to(-15.0)));
+            let Ok(CommandOutcome::Arrived(arrived)) = swept else {
                 panic!("{servo:?} {link:?}: {swept:?}")
             };
             assert!(arrived.position.0.abs_diff(-10_000) <= 20);
-            let slept = world.run(Command::Brake).unwrap();
-            let Outcome::Stopped(stopped) = slept else {
+            let slept = world.run(DriveCommand::Brake).unwrap();
+            let CommandOutcome::Stopped(stopped) = slept else {
                 panic!("{slept:?}")
             };
             assert!(!stopped.fault && stopped.position.0.abs_diff(-10_000) <= 1);

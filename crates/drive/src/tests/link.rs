@@ -11,27 +11,27 @@ use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
 use crate::codec::Codec;
-use crate::link::{Link, Lost, Request};
-use crate::pairing::{Access, MARKERS};
-use crate::{AxisConfig, Client, Command};
+use crate::exchange::ObjectAccess;
+use crate::link::{Link, LinkRequest, RequestFailure};
+use crate::request_matcher::PROBES;
+use crate::{AxisConfig, DriveClient, DriveCommand};
 
 const TIMEOUT: Span = Span::from_millis(100);
 
-fn request(index: u16, access: Access) -> Request {
-    Request {
+fn request(index: u16, access: ObjectAccess) -> LinkRequest {
+    LinkRequest {
         address: Address::new(index, 0),
         access,
-        width: 4,
         timeout: TIMEOUT,
-        marker_timeout: TIMEOUT,
+        probe_timeout: TIMEOUT,
         retries: 2,
-        urgent: false,
-        last: false,
+        is_urgent: false,
+        is_last_attempt: false,
     }
 }
 
-fn read(index: u16) -> Request {
-    request(index, Access::Read)
+fn read(index: u16) -> LinkRequest {
+    request(index, ObjectAccess::Read)
 }
 
 fn at(ms: i64) -> Stamp<Host> {
@@ -44,15 +44,15 @@ fn answer(value: u32) -> Vec<u8> {
 
 /// The answer to a marker.
 fn absent(kind: usize) -> Vec<u8> {
-    usb::to_bytes(&ReadObject::answer(Err(MARKERS[kind].1))).to_vec()
+    usb::to_bytes(&ReadObject::answer(Err(PROBES[kind].1))).to_vec()
 }
 
 fn marker(kind: usize) -> Vec<u8> {
-    Codec::usb(1).encode(MARKERS[kind].0, Access::Read, 4, at(0))
+    Codec::usb(1).encode(PROBES[kind].0, ObjectAccess::Read, at(0))
 }
 
 fn value(link: &mut Link) -> Option<u32> {
-    link.take()?.ok()?.reply.value
+    link.take_result()?.ok()?.reply.value()
 }
 
 #[test]
@@ -65,14 +65,14 @@ fn a_late_answer_does_not_answer_the_next_question() {
     assert_eq!(link.transmit(at(1)), None, "the first is still awaited");
     assert_eq!(link.deadline(), Some(at(51)), "but not for long");
     assert_eq!(link.transmit(at(51)), Some(marker(0)));
-    link.input(&answer(1), at(52));
-    assert_eq!(link.take(), None, "the late answer is nobody's");
-    link.input(&absent(0), at(53));
+    link.handle_input(&answer(1), at(52));
+    assert_eq!(link.take_result(), None, "the late answer is nobody's");
+    link.handle_input(&absent(0), at(53));
     let second = link.transmit(at(53)).unwrap();
     assert_ne!(first, second);
-    link.input(&answer(2), at(54));
-    let answered = link.take().unwrap().unwrap();
-    assert_eq!(answered.reply.value, Some(2));
+    link.handle_input(&answer(2), at(54));
+    let answered = link.take_result().unwrap().unwrap();
+    assert_eq!(answered.reply.value(), Some(2));
     assert_eq!((answered.request, answered.answer), (at(53), at(54)));
 }
 
@@ -85,11 +85,11 @@ fn reads_are_repeated_a_bounded_number_of_times() {
     let lost = loop {
         if let Some(frame) = link.transmit(now) {
             match (0..2).find(|&kind| frame == marker(kind)) {
-                Some(kind) => link.input(&absent(kind), now),
+                Some(kind) => link.handle_input(&absent(kind), now),
                 None => sent += 1,
             }
         }
-        if let Some(result) = link.take() {
+        if let Some(result) = link.take_result() {
             break result.unwrap_err();
         }
         now = link.deadline().unwrap_or(now);
@@ -98,7 +98,7 @@ fn reads_are_repeated_a_bounded_number_of_times() {
     assert_eq!(sent, 3);
     assert_eq!(
         lost,
-        Lost::Answer {
+        RequestFailure::NoReply {
             attempts: 3,
             damaged: false
         }
@@ -112,24 +112,24 @@ fn a_damaged_answer_is_asked_for_again_at_once() {
     link.transmit(at(0)).unwrap();
     let mut bad = answer(7);
     bad[10] ^= 1;
-    link.input(&bad, at(2));
+    link.handle_input(&bad, at(2));
     assert_eq!(link.transmit(at(2)), Some(marker(0)));
-    link.input(&absent(0), at(4));
+    link.handle_input(&absent(0), at(4));
     assert!(link.transmit(at(4)).is_some());
-    link.input(&answer(7), at(6));
+    link.handle_input(&answer(7), at(6));
     assert_eq!(value(&mut link), Some(7));
 }
 
 #[test]
 fn noise_before_the_answer_does_not_lose_it() {
     let mut link = Link::new(Codec::usb(1));
-    link.submit(request(0x6040, Access::Write(0)));
+    link.submit(request(0x6040, ObjectAccess::Write { value: 0, width: 2 }));
     link.transmit(at(0)).unwrap();
-    link.input(&[0x90, 2, 0x33, 1, 1, 1, 1, 1], at(1));
+    link.handle_input(&[0x90, 2, 0x33, 1, 1, 1, 1, 1], at(1));
     assert_eq!(link.transmit(at(1)), Some(marker(0)));
     // The write's own answer comes before the marker's: it was carried out after all.
-    link.input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(2));
-    assert!(link.take().unwrap().is_ok());
+    link.handle_input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(2));
+    assert!(link.take_result().unwrap().is_ok());
 }
 
 #[test]
@@ -140,17 +140,23 @@ fn an_urgent_request_does_not_wait_for_the_marker() {
     link.expire(at(100));
     assert_eq!(link.transmit(at(100)), Some(marker(0)));
     link.abandon();
-    let stop = request(0x6040, Access::Write(0x0B));
-    link.submit(Request {
-        urgent: true,
+    let stop = request(
+        0x6040,
+        ObjectAccess::Write {
+            value: 0x0B,
+            width: 2,
+        },
+    );
+    link.submit(LinkRequest {
+        is_urgent: true,
         ..stop
     });
-    let frame = Codec::usb(1).encode(stop.address, stop.access, 2, at(0));
+    let frame = Codec::usb(1).encode(stop.address, stop.access, at(0));
     assert_eq!(link.transmit(at(101)), Some(frame.clone()));
     assert_eq!(link.transmit(at(101)), None, "once");
-    link.input(&absent(0), at(102));
-    link.input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(103));
-    assert!(link.take().unwrap().is_ok());
+    link.handle_input(&absent(0), at(102));
+    link.handle_input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(103));
+    assert!(link.take_result().unwrap().is_ok());
 }
 
 #[test]
@@ -161,7 +167,7 @@ fn silence_is_told_after_two_markers() {
     let mut now = at(0);
     let end = loop {
         frames.extend(link.transmit(now));
-        if let Some(end) = link.take() {
+        if let Some(end) = link.take_result() {
             break end;
         }
         now = link.deadline().unwrap();
@@ -170,7 +176,7 @@ fn silence_is_told_after_two_markers() {
     assert_eq!(frames[1..], [marker(0), marker(1)]);
     assert_eq!(
         end,
-        Err(Lost::Link {
+        Err(RequestFailure::LinkLost {
             silent: Span::from_millis(300)
         })
     );
@@ -178,11 +184,11 @@ fn silence_is_told_after_two_markers() {
     link.submit(read(0x6041));
     assert_eq!(link.transmit(at(400)), Some(marker(1)));
     for late in [answer(1), absent(0), absent(1), absent(1)] {
-        link.input(&late, at(401));
+        link.handle_input(&late, at(401));
     }
-    assert_eq!(link.take(), None);
+    assert_eq!(link.take_result(), None);
     assert!(link.transmit(at(402)).is_some());
-    link.input(&answer(2), at(403));
+    link.handle_input(&answer(2), at(403));
     assert_eq!(value(&mut link), Some(2));
 }
 
@@ -193,29 +199,29 @@ fn a_lost_marker_answer_does_not_keep_the_link_out_of_step_for_ever() {
     link.transmit(at(0)).unwrap();
     assert_eq!(link.transmit(at(100)), Some(marker(0)));
     assert_eq!(link.transmit(at(200)), Some(marker(1)));
-    link.input(&absent(1), at(201));
+    link.handle_input(&absent(1), at(201));
     assert!(link.transmit(at(201)).is_some());
-    link.input(&answer(9), at(202));
+    link.handle_input(&answer(9), at(202));
     assert_eq!(value(&mut link), Some(9));
 }
 
 #[test]
 fn a_request_the_drive_saw_damaged_goes_out_again_even_if_it_writes() {
     let mut link = Link::new(Codec::usb(1));
-    let write = Request {
+    let write = LinkRequest {
         retries: 0,
-        ..request(0x607A, Access::Write(5))
+        ..request(0x607A, ObjectAccess::Write { value: 5, width: 2 })
     };
     link.submit(write);
     let first = link.transmit(at(0)).unwrap();
-    link.input(
+    link.handle_input(
         &usb::to_bytes(&WriteObject::answer(Err(CommError::CRC))),
         at(1),
     );
-    assert_eq!(link.take(), None);
+    assert_eq!(link.take_result(), None);
     assert_eq!(link.transmit(at(1)), Some(first));
-    link.input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(2));
-    assert!(link.take().unwrap().is_ok());
+    link.handle_input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(2));
+    assert!(link.take_result().unwrap().is_ok());
 }
 
 /// What becomes of an answer on its way.
@@ -246,7 +252,7 @@ fn serve(frame: &[u8]) -> Vec<u8> {
         .unwrap();
     let answer = match Wire::parse(&frame).unwrap().unwrap() {
         Wire::ReadObject(read) => {
-            let marker = MARKERS.iter().find(|(address, _)| *address == read.address);
+            let marker = PROBES.iter().find(|(address, _)| *address == read.address);
             ReadObject::answer(match marker {
                 Some((_, error)) => Err(*error),
                 None => Ok(u32::from(read.address.index)),
@@ -260,7 +266,7 @@ fn serve(frame: &[u8]) -> Vec<u8> {
 
 /// A device that answers with the number of the request.
 fn count(attached: DriveLink, frame: &[u8], number: u32) -> Vec<u8> {
-    let outcome = |address| match MARKERS.iter().find(|(marker, _)| *marker == address) {
+    let outcome = |address| match PROBES.iter().find(|(marker, _)| *marker == address) {
         Some((_, error)) => Err(*error),
         None => Ok(number),
     };
@@ -271,16 +277,16 @@ fn count(attached: DriveLink, frame: &[u8], number: u32) -> Vec<u8> {
         return usb::to_bytes(&ReadObject::answer(outcome(read.address))).to_vec();
     }
     let frame = CanFrame::from_socketcan(frame).unwrap();
-    let (node, request) = sdo::Request::parse(&frame).unwrap();
-    let sdo::Request::InitiateUpload { address } = request else {
+    let (node, request) = sdo::SdoRequest::parse(&frame).unwrap();
+    let sdo::SdoRequest::InitiateUpload { address } = request else {
         panic!("{request:?}")
     };
     let answer = match outcome(address) {
-        Ok(number) => sdo::Answer::InitiateUpload {
+        Ok(number) => sdo::SdoResponse::InitiateUpload {
             address,
             transfer: Initiate::Expedited(Expedited::of(number)),
         },
-        Err(error) => sdo::Answer::Abort { address, error },
+        Err(error) => sdo::SdoResponse::Abort { address, error },
     };
     answer.to_frame(node).to_socketcan().to_vec()
 }
@@ -299,9 +305,9 @@ proptest! {
         let mut fates = fates.into_iter().cycle();
         let mut now = at(0);
         for (n, abandon) in (0u16..).zip(abandons) {
-            let access = if n % 4 == 3 { Access::Write(1) } else { Access::Read };
+            let access = if n % 4 == 3 { ObjectAccess::Write { value: 1, width: 2 } } else { ObjectAccess::Read };
             let retries = if n % 4 == 3 { 0 } else { 2 };
-            link.submit(Request { retries, ..request(0x6000 + n, access) });
+            link.submit(LinkRequest { retries, ..request(0x6000 + n, access) });
             let began = now;
             for _ in 0..400 {
                 if let Some(frame) = link.transmit(now) {
@@ -317,11 +323,11 @@ proptest! {
                         Fate::TakesMs(ms) => wire.push((earliest + Span::from_millis(ms.into()), bytes)),
                     }
                 }
-                if let Some(end) = link.take() {
+                if let Some(end) = link.take_result() {
                     if let Ok(answered) = end {
-                        let value = (access == Access::Read).then_some(u32::from(0x6000 + n));
-                        prop_assert_eq!(answered.reply.value, value);
-                        prop_assert_eq!(answered.reply.error, CommError::NONE);
+                        let value = (access == ObjectAccess::Read).then_some(u32::from(0x6000 + n));
+                        prop_assert_eq!(answered.reply.value(), value);
+                        prop_assert_eq!(answered.reply.error(), CommError::NONE);
                         prop_assert!(answered.request >= began && answered.answer == now);
                     }
                     break;
@@ -334,7 +340,7 @@ proptest! {
                 now = next.into_iter().flatten().min().unwrap().max(now);
                 while wire.first().is_some_and(|w| w.0 <= now) {
                     let (_, bytes) = wire.remove(0);
-                    link.input(&bytes, now);
+                    link.handle_input(&bytes, now);
                 }
                 link.expire(now);
             }
@@ -374,9 +380,9 @@ proptest! {
                         Fate::TakesMs(ms) => wire.push((earliest + Span::from_millis(ms.into()), bytes)),
                     }
                 }
-                if let Some(end) = link.take() {
+                if let Some(end) = link.take_result() {
                     if let Ok(answered) = end {
-                        let value = answered.reply.value.unwrap() as usize;
+                        let value = answered.reply.value().unwrap() as usize;
                         prop_assert_eq!(sent[value - 1], answered.request);
                         prop_assert!(answered.request >= began);
                     }
@@ -390,7 +396,7 @@ proptest! {
                 now = next.into_iter().flatten().min().unwrap().max(now);
                 while wire.first().is_some_and(|w| w.0 <= now) {
                     let (_, bytes) = wire.remove(0);
-                    link.input(&bytes, now);
+                    link.handle_input(&bytes, now);
                 }
                 link.expire(now);
             }
@@ -416,12 +422,12 @@ proptest! {
         on_can in any::<bool>(),
     ) {
         let attached = if on_can { DriveLink::Can } else { DriveLink::Usb };
-        let mut client = Client::with_link(AxisConfig::default(), attached);
-        client.start(Command::Connect).unwrap();
+        let mut client = DriveClient::new(AxisConfig::default(), attached);
+        client.start(DriveCommand::Connect).unwrap();
         let mut now = at(0);
         for (n, bytes) in inputs.iter().enumerate() {
             if n == stop_after {
-                client.start(Command::Stop).unwrap();
+                client.start(DriveCommand::Stop).unwrap();
             }
             while client.poll_transmit(now).is_some() {}
             now += Span::from_millis(1);

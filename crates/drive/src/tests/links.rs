@@ -8,8 +8,8 @@ use units::{Quadcounts, Span, Stamp};
 use super::fake::{DISABLED, FAULT, Fate};
 use super::rig::{Rig, to};
 use crate::{
-    AngleSource, AxisConfig, Command, DriveError, Observation, Outcome, Place, Progress,
-    ShaftSample, Stopped,
+    AngleSource, AxisConfig, CommandOutcome, CommandProgress, DriveCommand, DriveError,
+    Observation, PositionValidity, ShaftSample, StopReport,
 };
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
@@ -18,16 +18,16 @@ const REACTION: Span = Span::from_millis(100);
 
 fn moving_on(link: DriveLink) -> Rig {
     let mut rig = Rig::homed_on(link);
-    rig.client.start(Command::Sweep(to(45.0))).unwrap();
+    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None, "{link:?}");
     let moved = rig.fake.position(rig.now) + 40_000.0;
     assert!(moved > 5_000.0, "{link:?}: {moved}");
     rig
 }
 
-fn made_safe(rig: &Rig) -> Option<Stopped> {
+fn made_safe(rig: &Rig) -> Option<StopReport> {
     rig.progress().iter().find_map(|p| match p {
-        Progress::MadeSafe(stopped) => Some(*stopped),
+        CommandProgress::MadeSafe(stopped) => Some(*stopped),
         _ => None,
     })
 }
@@ -36,27 +36,30 @@ fn made_safe(rig: &Rig) -> Option<Stopped> {
 fn the_whole_story() {
     for link in LINKS {
         let mut rig = Rig::on(link, AxisConfig::default());
-        let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+        let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
             panic!("{link:?}: {:?}", rig.events.last())
         };
         assert_eq!(connected.identity.name.as_str(), "EPOS2", "{link:?}");
         assert_eq!(connected.identity.serial, 0x9090_9090);
         assert_eq!(connected.history, [DeviceError::CAN_PASSIVE]);
         let on_can = link == DriveLink::Can;
-        assert_eq!(connected.watches_host, on_can);
+        assert_eq!(connected.monitors_host, on_can);
         assert_eq!(connected.angle == AngleSource::Stream, on_can);
-        rig.run(Command::Home).unwrap();
-        let Ok(Outcome::Arrived(arrived)) = rig.run(Command::Sweep(to(-15.0))) else {
+        rig.run(DriveCommand::Home).unwrap();
+        let Ok(CommandOutcome::Arrived(arrived)) = rig.run(DriveCommand::Sweep(to(-15.0))) else {
             panic!("{link:?}: {:?}", rig.events.last())
         };
         assert_eq!(arrived.position, Quadcounts(-10_000));
-        let Ok(Outcome::Stopped(stopped)) = rig.run(Command::Brake) else {
+        let Ok(CommandOutcome::Stopped(stopped)) = rig.run(DriveCommand::Brake) else {
             panic!("{link:?}: {:?}", rig.events.last())
         };
-        assert_eq!((stopped.place, stopped.fault), (Place::Known, false));
+        assert_eq!(
+            (stopped.validity, stopped.fault),
+            (PositionValidity::Valid, false)
+        );
         let stats = rig.client.link_stats();
         assert_eq!(
-            (stats.lost, stats.strays, stats.damaged),
+            (stats.lost, stats.unmatched, stats.damaged),
             (0, 0, 0),
             "{link:?}"
         );
@@ -64,7 +67,7 @@ fn the_whole_story() {
     }
 }
 
-/// On RS232 a log tells more narrowly when the position was taken: by when the answer was announced.
+/// On RS232 a log tells more narrowly when the position was trigger: by when the answer was announced.
 pub fn same(link: DriveLink, client: &ShaftSample, log: &ShaftSample) -> bool {
     let narrowed = ShaftSample {
         answer: log.answer,
@@ -80,10 +83,10 @@ pub fn same(link: DriveLink, client: &ShaftSample, log: &ShaftSample) -> bool {
 fn a_log_tells_the_same_on_each_link() {
     for link in LINKS {
         let mut rig = Rig::on(link, AxisConfig::default());
-        rig.run(Command::Connect).unwrap();
-        rig.run(Command::Home).unwrap();
-        rig.run(Command::Sweep(to(-15.0))).unwrap();
-        rig.run(Command::Brake).unwrap();
+        rig.run(DriveCommand::Connect).unwrap();
+        rig.run(DriveCommand::Home).unwrap();
+        rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
+        rig.run(DriveCommand::Brake).unwrap();
         let heard = rig.heard();
         let sampled: Vec<ShaftSample> = heard
             .iter()
@@ -121,7 +124,7 @@ fn a_log_tells_the_same_on_each_link() {
 fn samples_lie_between_their_stamps_on_each_link() {
     for link in LINKS {
         let mut rig = Rig::homed_on(link);
-        rig.run(Command::Sweep(to(-15.0))).unwrap();
+        rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
         let samples = rig.samples();
         let moving: Vec<_> = samples
             .iter()
@@ -148,11 +151,11 @@ fn samples_lie_between_their_stamps_on_each_link() {
 fn a_fault_in_mid_sweep_stops_it() {
     for link in LINKS {
         for (code, place) in [
-            (0x8611, Place::Known),
-            (0xFF07, Place::Known),
+            (0x8611, PositionValidity::Valid),
+            (0xFF07, PositionValidity::Valid),
             (
                 0x7320,
-                Place::Lost {
+                PositionValidity::Lost {
                     error: Some(DeviceError::POSITION_SENSOR),
                 },
             ),
@@ -163,8 +166,8 @@ fn a_fault_in_mid_sweep_stops_it() {
             let error = Some(DeviceError(code));
             assert_eq!(rig.finish(), Err(DriveError::Fault { error }), "{link:?}");
             let stopped = made_safe(&rig).unwrap();
-            assert_eq!((stopped.place, stopped.fault), (place, true));
-            assert_eq!(stopped.angle.is_some(), place == Place::Known);
+            assert_eq!((stopped.validity, stopped.fault), (place, true));
+            assert_eq!(stopped.angle.is_some(), place == PositionValidity::Valid);
             assert_eq!(rig.fake.state, FAULT);
             let reaction = rig.quick_stop().unwrap() - at;
             // On CAN an emergency says it at once; else a look at the statusword does.
@@ -190,7 +193,7 @@ fn a_restart_in_mid_sweep_is_told_and_the_position_is_lost() {
         );
         assert!(error.help().contains("home again"));
         let stopped = made_safe(&rig).unwrap();
-        assert_eq!(stopped.place, Place::Lost { error: None });
+        assert_eq!(stopped.validity, PositionValidity::Lost { error: None });
         assert_eq!(stopped.angle, None);
         let reaction = rig.quick_stop().unwrap() - at;
         // On CAN the boot-up message says it; else what was asked last is not answered, and its time has to pass first.
@@ -200,10 +203,10 @@ fn a_restart_in_mid_sweep_is_told_and_the_position_is_lost() {
             "{link:?}: {reaction:?}"
         );
         // No move before it has been connected again.
-        assert!(rig.run(Command::Goto(to(0.0))).is_err());
-        rig.run(Command::Connect).unwrap();
-        rig.run(Command::Home).unwrap();
-        assert!(rig.run(Command::Goto(to(0.0))).is_ok(), "{link:?}");
+        assert!(rig.run(DriveCommand::Goto(to(0.0))).is_err());
+        rig.run(DriveCommand::Connect).unwrap();
+        rig.run(DriveCommand::Home).unwrap();
+        assert!(rig.run(DriveCommand::Goto(to(0.0))).is_ok(), "{link:?}");
     }
 }
 
@@ -247,7 +250,7 @@ fn an_axis_that_does_not_follow_is_given_up() {
     for link in LINKS {
         let mut rig = Rig::homed_on(link);
         rig.fake.blocked = true;
-        let error = rig.run(Command::Goto(to(45.0))).unwrap_err();
+        let error = rig.run(DriveCommand::Goto(to(45.0))).unwrap_err();
         assert!(
             matches!(error, DriveError::NotArrived { .. }),
             "{link:?}: {error}"
@@ -262,16 +265,16 @@ fn a_host_that_sleeps_through_the_arrival_finds_the_axis_there() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
         let mut usual = Rig::homed_on(link);
         let began = usual.now;
-        usual.run(Command::Goto(to(-15.0))).unwrap();
+        usual.run(DriveCommand::Goto(to(-15.0))).unwrap();
         let took = usual.now - began;
         for k in 1..60 {
             let mut rig = Rig::homed_on(link);
-            rig.client.start(Command::Goto(to(-15.0))).unwrap();
+            rig.client.start(DriveCommand::Goto(to(-15.0))).unwrap();
             let before = took - Span::from_micros(970 * k);
             assert_eq!(rig.run_for(before), None, "{link:?}");
             rig.sleep(Span::from_millis(1_700));
             let ended = rig.finish();
-            let Ok(Outcome::Arrived(arrived)) = ended else {
+            let Ok(CommandOutcome::Arrived(arrived)) = ended else {
                 panic!("{link:?} {before:?}: {ended:?}")
             };
             assert_eq!(arrived.position, Quadcounts(-10_000));
@@ -293,7 +296,7 @@ fn a_host_that_sleeps_on_can_is_told_that_the_drive_stopped() {
         error: Some(DeviceError(0x8130)),
     };
     assert_eq!(error, error_8130);
-    assert_eq!(made_safe(&rig).unwrap().place, Place::Known);
+    assert_eq!(made_safe(&rig).unwrap().validity, PositionValidity::Valid);
 }
 
 /// A change of state and a standstill that the host slept through are seen, too.
@@ -307,10 +310,10 @@ fn a_host_that_sleeps_at_any_time_finds_what_has_become_of_it() {
             let mut rig = Rig::on(link, config);
             rig.fake.homing_time = Span::from_millis(300);
             for command in [
-                Command::Connect,
-                Command::Home,
-                Command::Goto(to(-50.0)),
-                Command::Stop,
+                DriveCommand::Connect,
+                DriveCommand::Home,
+                DriveCommand::Goto(to(-50.0)),
+                DriveCommand::Stop,
             ] {
                 rig.client.start(command).unwrap();
                 let mut ended = rig.run_for(Span::from_micros(1 + 970 * k));
@@ -363,10 +366,10 @@ fn loss_damage_repetition_and_refusal_are_survived() {
                 }
             });
             for command in [
-                Command::Connect,
-                Command::Home,
-                Command::Sweep(to(-15.0)),
-                Command::Brake,
+                DriveCommand::Connect,
+                DriveCommand::Home,
+                DriveCommand::Sweep(to(-15.0)),
+                DriveCommand::Brake,
             ] {
                 let result = rig.run(command);
                 assert!(result.is_ok(), "{link:?} {fate:?} {command:?}: {result:?}");
@@ -381,10 +384,10 @@ fn a_wrong_toggle_bit_is_told() {
     for link in LINKS {
         let mut rig = Rig::on(link, AxisConfig::default());
         rig.fake.wrong_toggle = true;
-        let error = rig.run(Command::Connect).unwrap_err();
+        let error = rig.run(DriveCommand::Connect).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "reading object 1008:00 in segments: expected toggle bit 0, got 1",
+            "reading object 1008:00 in segments: SDO: toggle bit 1, expected 0",
             "{link:?}"
         );
         assert!(rig.writes().is_empty());
@@ -396,11 +399,11 @@ fn a_stop_from_mid_sweep_is_immediate_and_keeps_the_position() {
     for link in LINKS {
         let mut rig = moving_on(link);
         let asked = rig.now;
-        rig.client.start(Command::Stop).unwrap();
-        let Ok(Outcome::Stopped(stopped)) = rig.finish() else {
+        rig.client.start(DriveCommand::Stop).unwrap();
+        let Ok(CommandOutcome::Stopped(stopped)) = rig.finish() else {
             panic!("{link:?}: {:?}", rig.events.last())
         };
-        assert_eq!(stopped.place, Place::Known);
+        assert_eq!(stopped.validity, PositionValidity::Valid);
         assert_eq!(
             f64::from(stopped.position.0),
             rig.fake.position(rig.now).floor()
@@ -426,12 +429,12 @@ fn an_answer_to_another_request_in_mid_sweep_is_passed_over() {
             }
             _ => Fate::Sent,
         });
-        let Ok(Outcome::Arrived(arrived)) = rig.run(Command::Sweep(to(-15.0))) else {
+        let Ok(CommandOutcome::Arrived(arrived)) = rig.run(DriveCommand::Sweep(to(-15.0))) else {
             panic!("{link:?}: {:?}", rig.events.last())
         };
         assert_eq!(arrived.position, Quadcounts(-10_000));
         let in_order = |pair: &[ShaftSample]| pair[0].position <= pair[1].position;
         assert!(rig.samples().windows(2).all(in_order), "{link:?}");
-        assert!(rig.client.link_stats().strays > 0, "{link:?}");
+        assert!(rig.client.link_stats().unmatched > 0, "{link:?}");
     }
 }

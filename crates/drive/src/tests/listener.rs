@@ -6,7 +6,7 @@ use units::Span;
 
 use super::fake::Fate;
 use super::rig::{Rig, to};
-use crate::{Command, Listener, Observation, ShaftSample};
+use crate::{DriveCommand, DriveListener, Observation, ShaftSample};
 
 fn sampled(heard: &[Observation]) -> Vec<ShaftSample> {
     heard
@@ -21,7 +21,7 @@ fn sampled(heard: &[Observation]) -> Vec<ShaftSample> {
 #[test]
 fn a_log_gives_the_clients_samples_writes_and_states() {
     let mut rig = Rig::homed();
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let heard = rig.heard();
     assert_eq!(sampled(&heard), rig.samples());
     let wrote: Vec<_> = heard
@@ -49,7 +49,7 @@ fn lost_and_late_answers_leave_the_log_right() {
         27 => Fate::Twice,
         _ => Fate::Sent,
     });
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let heard = rig.heard();
     assert_eq!(sampled(&heard), rig.samples());
     assert!(
@@ -62,7 +62,7 @@ fn lost_and_late_answers_leave_the_log_right() {
 #[test]
 fn a_log_that_begins_in_the_middle_is_understood() {
     let mut rig = Rig::homed();
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let all = sampled(&rig.heard());
     for cut in [1, 2, 101, 102] {
         rig.log.drain(..cut);
@@ -75,8 +75,8 @@ fn a_log_that_begins_in_the_middle_is_understood() {
 #[test]
 fn requests_to_other_nodes_are_not_ours() {
     let mut rig = Rig::homed();
-    rig.run(Command::Goto(to(-15.0))).unwrap();
-    let mut listener = Listener::new(2);
+    rig.run(DriveCommand::Goto(to(-15.0))).unwrap();
+    let mut listener = DriveListener::new(2);
     for (direction, frame, host) in &rig.log {
         listener.observe(DriveLink::Usb, *direction, frame, *host, &mut |seen| {
             panic!("{seen:?}");
@@ -95,8 +95,8 @@ proptest! {
     ) {
         let mut rig = Rig::homed();
         let until = rig.now + Span::from_millis(80);
-        rig.run(Command::Hold { until }).unwrap();
-        rig.run(Command::Goto(crate::Move { speed: units::Rpm(1500), ..to(-55.0) })).unwrap();
+        rig.run(DriveCommand::Hold { until }).unwrap();
+        rig.run(DriveCommand::Goto(crate::MoveCommand { speed: units::Rpm(1500), ..to(-55.0) })).unwrap();
         let truth = sampled(&rig.heard());
         for index in &missing {
             // Only answers go missing: a recorder sees its own requests.

@@ -1,12 +1,13 @@
 //! Any object by hand, expedited and in segments, both ways, with aborts.
 
+use protocol::canopen::sdo::TransferError;
 use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, CommError};
 use protocol::record::DriveLink;
 
 use super::fake::Fate;
 use super::rig::{Rig, to};
-use crate::{AxisConfig, Command, DriveError, Observation, Outcome};
+use crate::{AxisConfig, CommandOutcome, DriveCommand, DriveError, Observation};
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
 const NAME: Address = Address::new(0x1008, 0);
@@ -15,14 +16,14 @@ fn rig(link: DriveLink) -> Rig {
     Rig::on(link, AxisConfig::default())
 }
 
-fn write(address: Address, bytes: &[u8]) -> Command {
+fn write(address: Address, bytes: &[u8]) -> DriveCommand {
     let bytes = Bounded::from_slice(bytes).unwrap();
-    Command::Write { address, bytes }
+    DriveCommand::Write { address, bytes }
 }
 
 fn read(rig: &mut Rig, address: Address) -> Result<Vec<u8>, DriveError> {
-    match rig.run(Command::Read(address))? {
-        Outcome::Read {
+    match rig.run(DriveCommand::Read(address))? {
+        CommandOutcome::Read {
             address: got,
             bytes,
         } if got == address => Ok(bytes),
@@ -40,7 +41,7 @@ fn long_objects_are_written_and_read_back() {
             let bytes: Vec<u8> = (0..len).map(|n| 0x90 - n % 3).collect();
             assert_eq!(
                 rig.run(write(NAME, &bytes)),
-                Ok(Outcome::Written(NAME)),
+                Ok(CommandOutcome::Written(NAME)),
                 "{link:?} {len}"
             );
             assert_eq!(rig.fake.name, bytes, "{link:?}");
@@ -121,7 +122,7 @@ fn a_wrong_toggle_bit_breaks_a_write_off() {
         let error = rig.run(write(NAME, b"another name")).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "writing 12 bytes to object 1008:00 in segments: expected toggle bit 0, got 1",
+            "writing 12 bytes to object 1008:00 in segments: SDO: toggle bit 1, expected 0",
             "{link:?}"
         );
         let aborts = if link == DriveLink::Can {
@@ -168,7 +169,13 @@ fn an_object_beyond_all_bounds_is_not_read_for_ever() {
         rig.fake.name = vec![b'x'; 300];
         let error = read(&mut rig, NAME).unwrap_err();
         assert!(
-            matches!(error, DriveError::TooLong { most: 256, .. }),
+            matches!(
+                error,
+                DriveError::Transfer {
+                    error: TransferError::TooLong { max: 256, .. },
+                    ..
+                }
+            ),
             "{error}"
         );
         rig.fake.name.truncate(256);
@@ -183,12 +190,12 @@ fn nothing_is_written_by_hand_to_what_moves_the_axis_or_while_it_may() {
         let controlword = Address::new(0x6040, 0);
         let error = rig.run(write(controlword, &[0x1F, 0])).unwrap_err();
         assert!(matches!(error, DriveError::Reserved { .. }), "{error}");
-        rig.run(Command::Goto(to(-50.0))).unwrap();
+        rig.run(DriveCommand::Goto(to(-50.0))).unwrap();
         rig.forget();
         let error = rig.run(write(NAME, b"a new name")).unwrap_err();
         assert!(matches!(error, DriveError::State { .. }), "{error}");
         assert_eq!(rig.fake.requests.len(), 1, "{link:?}: the statusword");
-        rig.run(Command::Brake).unwrap();
+        rig.run(DriveCommand::Brake).unwrap();
         assert!(rig.run(write(NAME, b"a new name")).is_ok());
     }
 }
@@ -205,7 +212,7 @@ fn every_byte_passes_at_every_position() {
                     if mask & 1 << at == 0 { 0x11 } else { special }
                 }));
                 rig.fake.objects.insert((0x1018, 4), value);
-                let Ok(Outcome::Status(status)) = rig.run(Command::Status) else {
+                let Ok(CommandOutcome::Status(status)) = rig.run(DriveCommand::Status) else {
                     panic!("{link:?}: {:?}", rig.events.last())
                 };
                 assert_eq!(status.identity.serial, value, "{link:?}");

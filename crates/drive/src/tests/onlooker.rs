@@ -9,7 +9,7 @@ use units::{Host, Rpm, Span, Stamp};
 
 use super::links::same;
 use super::rig::{Rig, to};
-use crate::{Command, Listener, Move, Observation, ShaftSample, Taken};
+use crate::{DriveCommand, DriveListener, MoveCommand, Observation, SampleTrigger, ShaftSample};
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
 
@@ -27,7 +27,7 @@ fn recorded(link: DriveLink) -> &'static Recorded {
     let at = LINKS.iter().position(|other| *other == link).unwrap();
     RECORDED[at].get_or_init(|| {
         let mut rig = Rig::homed_on(link);
-        rig.run(Command::Sweep(Move {
+        rig.run(DriveCommand::Sweep(MoveCommand {
             speed: Rpm(1500),
             ..to(-57.0)
         }))
@@ -40,7 +40,7 @@ fn recorded(link: DriveLink) -> &'static Recorded {
 }
 
 fn listen(link: DriveLink, log: &[Record]) -> Vec<ShaftSample> {
-    let mut listener = Listener::new(1);
+    let mut listener = DriveListener::new(1);
     let mut samples = Vec::new();
     for (direction, bytes, host) in log {
         listener.observe(link, *direction, bytes, *host, &mut |seen| {
@@ -63,7 +63,7 @@ fn a_clean_log_gives_the_clients_own_samples() {
         }
         let on_can = link == DriveLink::Can;
         for sample in samples {
-            assert_eq!(sample.taken == Taken::AtSync, on_can);
+            assert_eq!(sample.trigger == SampleTrigger::Sync, on_can);
             assert_eq!(sample.device_us.is_some(), on_can);
         }
     }

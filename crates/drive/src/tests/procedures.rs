@@ -5,7 +5,7 @@ use units::{Degrees, Quadcounts, Rpm, Span};
 
 use super::fake::{DISABLED, ENABLED, Fake};
 use super::rig::{Rig, to};
-use crate::{AxisConfig, Command, CommandKind, DriveError, Outcome, Progress};
+use crate::{AxisConfig, CommandKind, CommandOutcome, CommandProgress, DriveCommand, DriveError};
 
 fn target(qc: i32) -> (u16, u8, u32) {
     (0x607A, 0, qc as u32)
@@ -14,7 +14,7 @@ fn target(qc: i32) -> (u16, u8, u32) {
 #[test]
 fn connect_identifies_clears_and_configures() {
     let mut rig = Rig::new(AxisConfig::default());
-    let Ok(Outcome::Connected(connected)) = rig.run(Command::Connect) else {
+    let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events)
     };
     assert_eq!(connected.identity.software, 0x2126);
@@ -22,7 +22,7 @@ fn connect_identifies_clears_and_configures() {
     assert_eq!(connected.history, [DeviceError::CAN_PASSIVE]);
     assert!(!connected.referenced);
     assert_eq!(rig.fake.state, DISABLED);
-    let cleared = Progress::FaultCleared {
+    let cleared = CommandProgress::FaultCleared {
         error: Some(DeviceError::CAN_PASSIVE),
     };
     assert!(rig.progress().contains(&cleared));
@@ -40,14 +40,14 @@ fn connect_identifies_clears_and_configures() {
 fn switches_and_brake_are_left_alone_where_there_are_none() {
     let mut rig = Rig::new(AxisConfig {
         brake: None,
-        limit_switches: crate::config::LimitSwitches {
+        limit_switches: crate::config::LimitSwitchConfig {
             negative: None,
             positive: None,
             active_low: false,
         },
         ..AxisConfig::default()
     });
-    rig.run(Command::Connect).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
     let fresh = Fake::new();
     for entry in [(0x2071, 4), (0x2079, 1), (0x2078, 2), (0x2100, 1)] {
         assert_eq!(rig.fake.objects[&entry], fresh.objects[&entry]);
@@ -57,13 +57,13 @@ fn switches_and_brake_are_left_alone_where_there_are_none() {
 #[test]
 fn connect_brings_an_axis_to_rest_that_another_left_moving() {
     let mut rig = Rig::homed();
-    rig.client.start(Command::Goto(to(45.0))).unwrap();
+    rig.client.start(DriveCommand::Goto(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(300)), None);
     assert_eq!(rig.fake.state, ENABLED);
     // Another process takes over.
-    rig.client = crate::Client::new(AxisConfig::default());
+    rig.client = crate::DriveClient::new(AxisConfig::default(), crate::DriveLink::Usb);
     rig.forget();
-    rig.run(Command::Connect).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
     assert_eq!(rig.writes()[0], (0x6040, 0, 0x0B));
     assert_eq!(rig.fake.state, DISABLED);
 }
@@ -71,11 +71,11 @@ fn connect_brings_an_axis_to_rest_that_another_left_moving() {
 #[test]
 fn home_finds_the_home_position() {
     let mut rig = Rig::new(AxisConfig::default());
-    rig.run(Command::Connect).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
     rig.forget();
     assert_eq!(
-        rig.run(Command::Home),
-        Ok(Outcome::Homed {
+        rig.run(DriveCommand::Home),
+        Ok(CommandOutcome::Homed {
             position: Quadcounts(-40_000),
             angle: Degrees(-60.0),
         })
@@ -94,8 +94,8 @@ fn homing_by_current_writes_its_threshold_and_others_do_not() {
         config.homing.method = method;
         let mut rig = Rig::new(config);
         rig.fake.objects.insert((0x2080, 0), 0);
-        rig.run(Command::Connect).unwrap();
-        rig.run(Command::Home).unwrap();
+        rig.run(DriveCommand::Connect).unwrap();
+        rig.run(DriveCommand::Home).unwrap();
         rig.fake.objects[&(0x2080, 0)]
     };
     assert_eq!(threshold(-3), 500);
@@ -105,7 +105,7 @@ fn homing_by_current_writes_its_threshold_and_others_do_not() {
 #[test]
 fn a_sweep_is_sampled_from_standstill_to_standstill() {
     let mut rig = Rig::homed();
-    let Ok(Outcome::Arrived(arrived)) = rig.run(Command::Sweep(to(-15.0))) else {
+    let Ok(CommandOutcome::Arrived(arrived)) = rig.run(DriveCommand::Sweep(to(-15.0))) else {
         panic!("{:?}", rig.events)
     };
     assert_eq!(arrived.position, Quadcounts(-10_000));
@@ -135,7 +135,7 @@ fn a_sweep_is_sampled_from_standstill_to_standstill() {
 #[test]
 fn samples_lie_between_their_stamps() {
     let mut rig = Rig::homed();
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let samples = rig.samples();
     let began = samples
         .iter()
@@ -156,17 +156,17 @@ fn polling_as_fast_as_answers_come() {
     config.timing.poll_period = Span::ZERO;
     let mut rig = Rig::new(config);
     rig.fake.turnaround = Span::from_micros(250);
-    rig.run(Command::Connect).unwrap();
-    rig.run(Command::Home).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
+    rig.run(DriveCommand::Home).unwrap();
     rig.forget();
-    rig.run(Command::Sweep(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     assert!(rig.samples().len() > 3_000, "{}", rig.samples().len());
 }
 
 #[test]
 fn a_goto_needs_no_standstill_around_it() {
     let mut rig = Rig::homed();
-    rig.run(Command::Goto(to(-15.0))).unwrap();
+    rig.run(DriveCommand::Goto(to(-15.0))).unwrap();
     let samples = rig.samples();
     let still = samples.iter().filter(|s| s.position.0 == -40_000).count();
     assert!(still <= 3, "{still}");
@@ -176,8 +176,8 @@ fn a_goto_needs_no_standstill_around_it() {
 fn a_move_to_where_the_axis_stands_arrives() {
     let mut rig = Rig::homed();
     assert!(matches!(
-        rig.run(Command::Goto(to(-60.0))),
-        Ok(Outcome::Arrived(_))
+        rig.run(DriveCommand::Goto(to(-60.0))),
+        Ok(CommandOutcome::Arrived(_))
     ));
 }
 
@@ -185,7 +185,10 @@ fn a_move_to_where_the_axis_stands_arrives() {
 fn hold_samples_until_its_end() {
     let mut rig = Rig::homed();
     let until = rig.now + Span::from_millis(100);
-    assert_eq!(rig.run(Command::Hold { until }), Ok(Outcome::Held));
+    assert_eq!(
+        rig.run(DriveCommand::Hold { until }),
+        Ok(CommandOutcome::Held)
+    );
     assert!((90..=101).contains(&rig.samples().len()));
     assert!(rig.writes().is_empty());
 }
@@ -193,7 +196,7 @@ fn hold_samples_until_its_end() {
 #[test]
 fn brake_switches_the_power_off_without_a_quick_stop() {
     let mut rig = Rig::homed();
-    let Ok(Outcome::Stopped(stopped)) = rig.run(Command::Brake) else {
+    let Ok(CommandOutcome::Stopped(stopped)) = rig.run(DriveCommand::Brake) else {
         panic!("{:?}", rig.events)
     };
     assert_eq!(stopped.angle, Some(Degrees(-60.0)));
@@ -205,7 +208,7 @@ fn brake_switches_the_power_off_without_a_quick_stop() {
 #[test]
 fn status_changes_nothing() {
     let mut rig = Rig::new(AxisConfig::default());
-    let Ok(Outcome::Status(status)) = rig.run(Command::Status) else {
+    let Ok(CommandOutcome::Status(status)) = rig.run(DriveCommand::Status) else {
         panic!("{:?}", rig.events)
     };
     assert_eq!(status.state, Some(crate::cia402::State::Fault));
@@ -219,8 +222,10 @@ fn status_changes_nothing() {
 fn clear_faults_clears() {
     let mut rig = Rig::new(AxisConfig::default());
     assert_eq!(
-        rig.run(Command::ClearFaults),
-        Ok(Outcome::FaultsCleared(vec![DeviceError::CAN_PASSIVE]))
+        rig.run(DriveCommand::ClearFaults),
+        Ok(CommandOutcome::FaultsCleared(vec![
+            DeviceError::CAN_PASSIVE
+        ]))
     );
     assert_eq!(rig.fake.state, DISABLED);
 }
@@ -228,20 +233,20 @@ fn clear_faults_clears() {
 #[test]
 fn refusals_come_before_the_first_byte() {
     let mut rig = Rig::homed();
-    let fast = crate::Move {
+    let fast = crate::MoveCommand {
         speed: Rpm(1501),
         ..to(0.0)
     };
-    let still = crate::Move {
+    let still = crate::MoveCommand {
         speed: Rpm(0),
         ..to(0.0)
     };
     for (command, kind) in [
-        (Command::Goto(to(60.1)), "Limits"),
-        (Command::Sweep(to(-60.1)), "Limits"),
-        (Command::Goto(to(f64::NAN)), "Limits"),
-        (Command::Goto(fast), "Speed"),
-        (Command::Sweep(still), "Speed"),
+        (DriveCommand::Goto(to(60.1)), "Limits"),
+        (DriveCommand::Sweep(to(-60.1)), "Limits"),
+        (DriveCommand::Goto(to(f64::NAN)), "Limits"),
+        (DriveCommand::Goto(fast), "Speed"),
+        (DriveCommand::Sweep(still), "Speed"),
     ] {
         let error = rig.client.start(command).unwrap_err();
         assert!(format!("{error:?}").starts_with(kind), "{error:?}");
@@ -254,14 +259,14 @@ fn refusals_come_before_the_first_byte() {
 fn moves_need_a_connection_and_a_reference() {
     let mut rig = Rig::new(AxisConfig::default());
     assert_eq!(
-        rig.client.start(Command::Home),
+        rig.client.start(DriveCommand::Home),
         Err(DriveError::NotConnected {
             asked: CommandKind::Home
         })
     );
-    rig.run(Command::Connect).unwrap();
+    rig.run(DriveCommand::Connect).unwrap();
     assert!(matches!(
-        rig.run(Command::Goto(to(0.0))),
+        rig.run(DriveCommand::Goto(to(0.0))),
         Err(DriveError::NotReferenced { .. })
     ));
     assert!(!rig.writes().iter().any(|w| w.0 == 0x607A));
@@ -270,9 +275,9 @@ fn moves_need_a_connection_and_a_reference() {
 #[test]
 fn one_command_at_a_time() {
     let mut rig = Rig::homed();
-    rig.client.start(Command::Goto(to(0.0))).unwrap();
+    rig.client.start(DriveCommand::Goto(to(0.0))).unwrap();
     assert_eq!(
-        rig.client.start(Command::Status),
+        rig.client.start(DriveCommand::Status),
         Err(DriveError::Busy {
             asked: CommandKind::Status,
             running: CommandKind::Goto,
@@ -284,8 +289,8 @@ fn one_command_at_a_time() {
 #[test]
 fn the_client_can_live_on_a_thread() {
     fn sendable<T: Send + 'static>(_: &T) {}
-    let mut client = crate::Client::new(AxisConfig::default());
-    client.start(Command::Connect).unwrap();
+    let mut client = crate::DriveClient::new(AxisConfig::default(), crate::DriveLink::Usb);
+    client.start(DriveCommand::Connect).unwrap();
     sendable(&client);
     let first = std::thread::spawn(move || client.poll_transmit(units::Stamp::from_nanos(0)));
     assert!(first.join().unwrap().is_some());

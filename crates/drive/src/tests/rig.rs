@@ -1,4 +1,4 @@
-//! Client and scripted drive in virtual time, with everything on the wire kept.
+//! DriveClient and scripted drive in virtual time, with everything on the wire kept.
 
 use protocol::epos2::message::Request;
 use protocol::record::{Direction, DriveLink};
@@ -6,15 +6,15 @@ use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
 
 use super::fake::Fake;
 use crate::{
-    AxisConfig, Client, Command, DriveError, Event, Listener, Move, Observation, Outcome, Progress,
-    ShaftSample,
+    AxisConfig, CommandOutcome, CommandProgress, DriveClient, DriveCommand, DriveError, DriveEvent,
+    DriveListener, MoveCommand, Observation, ShaftSample,
 };
 
 pub struct Rig {
-    pub client: Client,
+    pub client: DriveClient,
     pub fake: Fake,
     pub now: Stamp<Host>,
-    pub events: Vec<Event>,
+    pub events: Vec<DriveEvent>,
     pub log: Vec<(Direction, Vec<u8>, Stamp<Host>)>,
 }
 
@@ -25,7 +25,7 @@ impl Rig {
 
     pub fn on(link: DriveLink, config: AxisConfig) -> Self {
         Self {
-            client: Client::with_link(config, link),
+            client: DriveClient::new(config, link),
             fake: Fake::on(link),
             now: Stamp::from_nanos(1_795_000_000_000_000_000),
             events: Vec::new(),
@@ -40,8 +40,8 @@ impl Rig {
 
     pub fn homed_on(link: DriveLink) -> Self {
         let mut rig = Self::on(link, AxisConfig::default());
-        rig.run(Command::Connect).unwrap();
-        rig.run(Command::Home).unwrap();
+        rig.run(DriveCommand::Connect).unwrap();
+        rig.run(DriveCommand::Home).unwrap();
         rig.forget();
         rig
     }
@@ -53,12 +53,12 @@ impl Rig {
     }
 
     /// Runs a command to its end.
-    pub fn run(&mut self, command: Command) -> Result<Outcome, DriveError> {
+    pub fn run(&mut self, command: DriveCommand) -> Result<CommandOutcome, DriveError> {
         self.client.start(command)?;
         self.finish()
     }
 
-    pub fn finish(&mut self) -> Result<Outcome, DriveError> {
+    pub fn finish(&mut self) -> Result<CommandOutcome, DriveError> {
         let limit = self.now + Span::from_secs(120);
         while self.now < limit {
             if let Some(end) = self.step() {
@@ -69,7 +69,7 @@ impl Rig {
     }
 
     /// Runs for a while; `None` if the command has not ended.
-    pub fn run_for(&mut self, span: Span) -> Option<Result<Outcome, DriveError>> {
+    pub fn run_for(&mut self, span: Span) -> Option<Result<CommandOutcome, DriveError>> {
         let until = self.now + span;
         while self.now < until {
             if let Some(end) = self.step() {
@@ -92,15 +92,15 @@ impl Rig {
         self.now += span;
     }
 
-    /// One turn of the owner's loop.
-    pub fn step(&mut self) -> Option<Result<Outcome, DriveError>> {
+    /// One state of the owner's loop.
+    pub fn step(&mut self) -> Option<Result<CommandOutcome, DriveError>> {
         self.transmit();
         while let Some(event) = self.client.poll_event() {
             self.events.push(event.clone());
             match event {
-                Event::Done(outcome) => return Some(Ok(outcome)),
-                Event::Failed(error) => return Some(Err(error)),
-                Event::Sample(_) | Event::Progress(_) => {}
+                DriveEvent::Done(outcome) => return Some(Ok(outcome)),
+                DriveEvent::Failed(error) => return Some(Err(error)),
+                DriveEvent::Sample(_) | DriveEvent::Progress(_) => {}
             }
         }
         let next = [self.fake.next_answer(), self.client.poll_timeout()];
@@ -132,17 +132,17 @@ impl Rig {
         self.events
             .iter()
             .filter_map(|event| match event {
-                Event::Sample(sample) => Some(*sample),
+                DriveEvent::Sample(sample) => Some(*sample),
                 _ => None,
             })
             .collect()
     }
 
-    pub fn progress(&self) -> Vec<Progress> {
+    pub fn progress(&self) -> Vec<CommandProgress> {
         self.events
             .iter()
             .filter_map(|event| match event {
-                Event::Progress(progress) => Some(progress.clone()),
+                DriveEvent::Progress(progress) => Some(progress.clone()),
                 _ => None,
             })
             .collect()
@@ -162,7 +162,7 @@ impl Rig {
 
     /// What the listener makes of the log.
     pub fn heard(&self) -> Vec<Observation> {
-        let mut listener = Listener::new(1);
+        let mut listener = DriveListener::new(1);
         let mut heard = Vec::new();
         for (direction, frame, host) in &self.log {
             let link = self.client.link();
@@ -174,8 +174,8 @@ impl Rig {
     }
 }
 
-pub fn to(angle_deg: f64) -> Move {
-    Move {
+pub fn to(angle_deg: f64) -> MoveCommand {
+    MoveCommand {
         to: Degrees(angle_deg),
         speed: Rpm(1125),
         acceleration: RpmPerS(10_000),

@@ -9,35 +9,35 @@ use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
 use crate::codec::Codec;
-use crate::link::{Link, Lost, Request};
-use crate::pairing::{Access, MARKERS};
-use crate::{AxisConfig, Client, Command, DriveError, Event};
+use crate::exchange::ObjectAccess;
+use crate::link::{Link, LinkRequest, RequestFailure};
+use crate::request_matcher::PROBES;
+use crate::{AxisConfig, DriveClient, DriveCommand, DriveError, DriveEvent};
 
 fn at(us: i64) -> Stamp<Host> {
     Stamp::from_nanos(us * 1_000)
 }
 
-fn request(index: u16, access: Access) -> Request {
-    Request {
+fn request(index: u16, access: ObjectAccess) -> LinkRequest {
+    LinkRequest {
         address: Address::new(index, 0),
         access,
-        width: 4,
         timeout: Span::from_millis(100),
-        marker_timeout: Span::from_millis(100),
-        retries: if access == Access::Read { 2 } else { 0 },
-        urgent: false,
-        last: false,
+        probe_timeout: Span::from_millis(100),
+        retries: if access == ObjectAccess::Read { 2 } else { 0 },
+        is_urgent: false,
+        is_last_attempt: false,
     }
 }
 
 /// A unit whose value at index i is i.
 struct Unit {
-    turn: Turn,
+    state: UnitState,
     heard: Stamp<Host>,
     executed: Vec<Wire>,
 }
 
-enum Turn {
+enum UnitState {
     Opcode,
     Body(BodyDecoder),
     Ready(Frame),
@@ -47,7 +47,7 @@ enum Turn {
 impl Unit {
     fn new() -> Self {
         Self {
-            turn: Turn::Opcode,
+            state: UnitState::Opcode,
             heard: at(0),
             executed: Vec::new(),
         }
@@ -55,33 +55,33 @@ impl Unit {
 
     fn take(&mut self, byte: u8, now: Stamp<Host>) -> Vec<u8> {
         if now - self.heard > Span::from_millis(500) {
-            self.turn = Turn::Opcode;
+            self.state = UnitState::Opcode;
         }
         self.heard = now;
-        match std::mem::replace(&mut self.turn, Turn::Opcode) {
-            Turn::Opcode if matches!(byte, 0x10 | 0x11) => {
-                self.turn = Turn::Body(BodyDecoder::new(byte));
+        match std::mem::replace(&mut self.state, UnitState::Opcode) {
+            UnitState::Opcode if matches!(byte, 0x10 | 0x11) => {
+                self.state = UnitState::Body(BodyDecoder::new(byte));
                 vec![OKAY]
             }
-            Turn::Opcode => vec![FAILED],
-            Turn::Body(mut decoder) => match decoder.push(byte) {
+            UnitState::Opcode => vec![FAILED],
+            UnitState::Body(mut decoder) => match decoder.push(byte) {
                 None => {
-                    self.turn = Turn::Body(decoder);
+                    self.state = UnitState::Body(decoder);
                     Vec::new()
                 }
                 Some(Err(_)) => vec![FAILED],
                 Some(Ok(frame)) => {
-                    self.turn = Turn::Ready(self.execute(&frame));
+                    self.state = UnitState::Ready(self.execute(&frame));
                     vec![OKAY, 0]
                 }
             },
-            Turn::Ready(answer) if byte == OKAY => {
+            UnitState::Ready(answer) if byte == OKAY => {
                 let mut body = Vec::new();
                 encode_body(&answer, &mut body).unwrap();
-                self.turn = Turn::Receipt;
+                self.state = UnitState::Receipt;
                 body
             }
-            Turn::Ready(_) | Turn::Receipt => Vec::new(),
+            UnitState::Ready(_) | UnitState::Receipt => Vec::new(),
         }
     }
 
@@ -90,7 +90,7 @@ impl Unit {
         self.executed.push(request);
         match request {
             Wire::ReadObject(read) => {
-                let marker = MARKERS.iter().find(|(a, _)| *a == read.address);
+                let marker = PROBES.iter().find(|(a, _)| *a == read.address);
                 ReadObject::answer(match marker {
                     Some((_, error)) => Err(*error),
                     None => Ok(u32::from(read.address.index)),
@@ -103,8 +103,8 @@ impl Unit {
 
 #[test]
 fn a_unit_that_refuses_for_ever_is_told() {
-    let mut client = Client::with_link(AxisConfig::default(), DriveLink::Rs232);
-    client.start(Command::Status).unwrap();
+    let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Rs232);
+    client.start(DriveCommand::Status).unwrap();
     let mut now = at(0);
     for _ in 0..10_000 {
         while client.poll_transmit(now).is_some() {
@@ -112,7 +112,7 @@ fn a_unit_that_refuses_for_ever_is_told() {
             client.handle_input(&[FAILED], now);
         }
         match client.poll_event() {
-            Some(Event::Failed(error)) => {
+            Some(DriveEvent::Failed(error)) => {
                 assert!(
                     matches!(
                         error,
@@ -213,7 +213,7 @@ proptest! {
         let (mut out, mut home) = (Line::new(there), Line::new(back));
         let mut now = at(0);
         for (n, abandon) in (0u16..).zip(abandons) {
-            let access = if n % 4 == 3 { Access::Write(1) } else { Access::Read };
+            let access = if n % 4 == 3 { ObjectAccess::Write { value: 1, width: 2 } } else { ObjectAccess::Read };
             link.submit(request(0x6000 + n, access));
             let began = now;
             let executed_before = unit.executed.len();
@@ -221,11 +221,11 @@ proptest! {
                 while let Some(bytes) = link.transmit(now) {
                     out.send(&bytes, now);
                 }
-                match link.take() {
+                match link.take_result() {
                     Some(Ok(answered)) => {
-                        let value = (access == Access::Read).then_some(u32::from(0x6000 + n));
-                        prop_assert_eq!(answered.reply.value, value);
-                        prop_assert_eq!(answered.reply.error, CommError::NONE);
+                        let value = (access == ObjectAccess::Read).then_some(u32::from(0x6000 + n));
+                        prop_assert_eq!(answered.reply.value(), value);
+                        prop_assert_eq!(answered.reply.error(), CommError::NONE);
                         prop_assert!(answered.request >= began && answered.answer == now);
                         let ours = |w: &Wire| match w {
                             Wire::ReadObject(r) => r.address.index == 0x6000 + n,
@@ -235,7 +235,7 @@ proptest! {
                         prop_assert!(unit.executed[executed_before..].iter().any(ours));
                         break;
                     }
-                    Some(Err(Lost::Answer { .. } | Lost::Link { .. } | Lost::Handshake { .. })) => break,
+                    Some(Err(RequestFailure::NoReply { .. } | RequestFailure::LinkLost { .. } | RequestFailure::Refused { .. })) => break,
                     None => {}
                 }
                 if abandon && now > began + Span::from_millis(30) {
@@ -249,7 +249,7 @@ proptest! {
                     home.send(&said, now + Span::from_micros(300));
                 }
                 while let Some(byte) = home.take(now) {
-                    link.input(&[byte], now);
+                    link.handle_input(&[byte], now);
                 }
                 link.expire(now);
             }
@@ -260,8 +260,8 @@ proptest! {
     /// Any bytes at any time: no panic, and an end.
     #[test]
     fn any_bytes_end(inputs in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..12), 0..60)) {
-        let mut client = Client::with_link(AxisConfig::default(), DriveLink::Rs232);
-        client.start(Command::Connect).unwrap();
+        let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Rs232);
+        client.start(DriveCommand::Connect).unwrap();
         let mut now = at(0);
         for bytes in &inputs {
             while client.poll_transmit(now).is_some() {}

@@ -2,7 +2,9 @@
 
 use units::{Span, Stamp};
 
-use crate::{AxisConfig, Client, Command, DriveError, Event, Progress};
+use crate::{
+    AxisConfig, CommandProgress, DriveClient, DriveCommand, DriveError, DriveEvent, DriveLink,
+};
 
 fn hex(text: &str) -> Vec<u8> {
     text.split_whitespace()
@@ -13,9 +15,9 @@ fn hex(text: &str) -> Vec<u8> {
 /// Quick stop, then statusword and position; the answers are those of the guide's examples.
 #[test]
 fn stop_asks_what_the_guide_says() {
-    let mut client = Client::new(AxisConfig::default());
+    let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Usb);
     let mut now = Stamp::from_nanos(0);
-    client.start(Command::Stop).unwrap();
+    client.start(DriveCommand::Stop).unwrap();
     let quick_stop = client.poll_transmit(now).unwrap();
     assert_eq!(quick_stop[..12], hex("90 02 11 04 40 60 00 01 0B 00 00 00"));
     assert_eq!(client.poll_transmit(now), None, "one request at a time");
@@ -31,7 +33,11 @@ fn stop_asks_what_the_guide_says() {
         client.handle_input(&hex(part), now);
     }
     let events: Vec<_> = std::iter::from_fn(|| client.poll_event()).collect();
-    let [Event::Progress(Progress::Started(_)), Event::Sample(sample)] = events[..] else {
+    let [
+        DriveEvent::Progress(CommandProgress::Started(_)),
+        DriveEvent::Sample(sample),
+    ] = events[..]
+    else {
         panic!("{events:?}")
     };
     assert_eq!(sample.request, Stamp::from_nanos(2_000_000));
@@ -45,13 +51,17 @@ fn the_drives_own_refusal_is_told() {
         "90 02 00 02 00 00 02 06 A4 01",
         "90 02 00 04 00 00 02 06 00 00 00 00 57 64",
     ] {
-        let mut client = Client::new(AxisConfig::default());
-        client.start(Command::Status).unwrap();
+        let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Usb);
+        client.start(DriveCommand::Status).unwrap();
         let now = Stamp::from_nanos(0);
         client.poll_transmit(now).unwrap();
         client.handle_input(&hex(refusal), now);
         let events: Vec<_> = std::iter::from_fn(|| client.poll_event()).collect();
-        let [_, Event::Failed(DriveError::Refused { operation, error })] = &events[..] else {
+        let [
+            _,
+            DriveEvent::Failed(DriveError::Refused { operation, error }),
+        ] = &events[..]
+        else {
             panic!("{events:?}")
         };
         assert_eq!(operation.to_string(), "reading object 1000:00");

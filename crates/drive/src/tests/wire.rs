@@ -22,14 +22,14 @@ use super::fake::{Fake, Fate, device_us, width};
 
 pub enum Wire {
     Usb(UsbDecoder),
-    Rs232(Turn),
+    Rs232(UnitState),
     Can,
     /// While it is in use.
     Gone,
 }
 
-/// Whose turn it is, and for what.
-pub enum Turn {
+/// Whose state it is, and for what.
+pub enum UnitState {
     Opcode,
     Body(BodyDecoder),
     Ready(Frame, Fate),
@@ -78,7 +78,7 @@ impl Wire {
     pub fn new(link: DriveLink) -> Self {
         match link {
             DriveLink::Usb => Self::Usb(UsbDecoder::new()),
-            DriveLink::Rs232 => Self::Rs232(Turn::Opcode),
+            DriveLink::Rs232 => Self::Rs232(UnitState::Opcode),
             DriveLink::Can => Self::Can,
         }
     }
@@ -102,10 +102,10 @@ impl Wire {
                     }
                 }
             }
-            Self::Rs232(turn) => {
+            Self::Rs232(state) => {
                 for &byte in bytes {
-                    let was = std::mem::replace(turn, Turn::Opcode);
-                    *turn = rs232(was, fake, byte, now);
+                    let was = std::mem::replace(state, UnitState::Opcode);
+                    *state = rs232(was, fake, byte, now);
                 }
             }
             Self::Can => {
@@ -149,21 +149,21 @@ fn usb_answer(fake: &mut Fake, answer: &Frame, fate: Fate, now: Stamp<Host>) {
     fake.send(bytes, by, now);
 }
 
-fn rs232(turn: Turn, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> Turn {
-    match turn {
-        Turn::Opcode if [0x10, 0x11, 0x12, 0x13, 0x14, 0x15].contains(&byte) => {
+fn rs232(state: UnitState, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> UnitState {
+    match state {
+        UnitState::Opcode if [0x10, 0x11, 0x12, 0x13, 0x14, 0x15].contains(&byte) => {
             fake.send(vec![OKAY], Span::ZERO, now);
-            Turn::Body(BodyDecoder::new(byte))
+            UnitState::Body(BodyDecoder::new(byte))
         }
-        Turn::Opcode => {
+        UnitState::Opcode => {
             fake.send(vec![FAILED], Span::ZERO, now);
-            Turn::Opcode
+            UnitState::Opcode
         }
-        Turn::Body(mut decoder) => match decoder.push(byte) {
-            None => Turn::Body(decoder),
+        UnitState::Body(mut decoder) => match decoder.push(byte) {
+            None => UnitState::Body(decoder),
             Some(Err(_)) => {
                 fake.send(vec![FAILED], Span::ZERO, now);
-                Turn::Opcode
+                UnitState::Opcode
             }
             Some(Ok(frame)) => {
                 let request = Request::parse(&frame).unwrap().unwrap();
@@ -171,16 +171,16 @@ fn rs232(turn: Turn, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> Turn {
                 match fate {
                     Fate::Rejected => {
                         fake.send(vec![FAILED], Span::ZERO, now);
-                        return Turn::Opcode;
+                        return UnitState::Opcode;
                     }
                     Fate::Lost => {}
                     Fate::Late(by) => fake.send(vec![OKAY, 0], by, now),
                     _ => fake.send(vec![OKAY, 0], Span::ZERO, now),
                 }
-                Turn::Ready(answer, fate)
+                UnitState::Ready(answer, fate)
             }
         },
-        Turn::Ready(mut answer, fate) if byte == OKAY => {
+        UnitState::Ready(mut answer, fate) if byte == OKAY => {
             if fate == Fate::Another {
                 answer = another(&answer);
             }
@@ -193,9 +193,9 @@ fn rs232(turn: Turn, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> Turn {
                 fake.send(body.clone(), Span::ZERO, now);
             }
             fake.send(body, Span::ZERO, now);
-            Turn::Receipt
+            UnitState::Receipt
         }
-        Turn::Ready(..) | Turn::Receipt => Turn::Opcode,
+        UnitState::Ready(..) | UnitState::Receipt => UnitState::Opcode,
     }
 }
 
@@ -219,20 +219,20 @@ fn can(fake: &mut Fake, frame: &CanFrame, now: Stamp<Host>) {
     }
 }
 
-fn sdo_request(fake: &mut Fake, request: &sdo::Request, now: Stamp<Host>) {
+fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
     let (wire, address) = match *request {
-        sdo::Request::InitiateUpload { address } if address.index == 0x1008 => {
+        sdo::SdoRequest::InitiateUpload { address } if address.index == 0x1008 => {
             let open = InitiateSegmentedRead {
                 node: NODE,
                 address,
             };
             (Request::InitiateSegmentedRead(open), address)
         }
-        sdo::Request::InitiateUpload { address } => {
+        sdo::SdoRequest::InitiateUpload { address } => {
             let node = NODE;
             (Request::ReadObject(ReadObject { node, address }), address)
         }
-        sdo::Request::InitiateDownload {
+        sdo::SdoRequest::InitiateDownload {
             address,
             transfer: Initiate::Expedited(data),
         } => {
@@ -248,11 +248,11 @@ fn sdo_request(fake: &mut Fake, request: &sdo::Request, now: Stamp<Host>) {
             };
             (Request::WriteObject(write), address)
         }
-        sdo::Request::UploadSegment { toggle } => (
+        sdo::SdoRequest::UploadSegment { toggle } => (
             Request::SegmentedRead(SegmentedRead { toggle }),
             Address::new(0x1008, 0),
         ),
-        sdo::Request::InitiateDownload {
+        sdo::SdoRequest::InitiateDownload {
             address,
             transfer: Initiate::Segmented { size: Some(len) },
         } => {
@@ -260,14 +260,14 @@ fn sdo_request(fake: &mut Fake, request: &sdo::Request, now: Stamp<Host>) {
             let open = InitiateSegmentedWrite { node, address, len };
             (Request::InitiateSegmentedWrite(open), address)
         }
-        sdo::Request::DownloadSegment(segment) => {
+        sdo::SdoRequest::DownloadSegment(segment) => {
             let mut bytes = Bounded::new();
             bytes.extend(segment.bytes.iter().copied());
             let toggle = segment.toggle;
             let write = SegmentedWrite(WriteSegment { toggle, bytes });
             (Request::SegmentedWrite(write), Address::new(0x1008, 0))
         }
-        sdo::Request::Abort { error, .. } => {
+        sdo::SdoRequest::Abort { error, .. } => {
             fake.aborts.push(error);
             return;
         }
@@ -279,7 +279,7 @@ fn sdo_request(fake: &mut Fake, request: &sdo::Request, now: Stamp<Host>) {
         // Of the same kind, even.
         let address = Address::new(address.index + 1, address.sub);
         let transfer = Initiate::Expedited(Expedited::of(0x1234_u32));
-        answer = sdo::Answer::InitiateUpload { address, transfer };
+        answer = sdo::SdoResponse::InitiateUpload { address, transfer };
     }
     let mut bytes = answer.to_frame(node()).to_socketcan().to_vec();
     let by = match fate {
@@ -296,34 +296,34 @@ fn sdo_request(fake: &mut Fake, request: &sdo::Request, now: Stamp<Host>) {
     fake.send(bytes, by, now);
 }
 
-fn sdo_answer(request: &Request, address: Address, answer: &Frame) -> sdo::Answer {
+fn sdo_answer(request: &Request, address: Address, answer: &Frame) -> sdo::SdoResponse {
     let parsed = Answer::parse(answer).unwrap();
     let error = parsed.error;
     if !error.is_none() {
-        return sdo::Answer::Abort { address, error };
+        return sdo::SdoResponse::Abort { address, error };
     }
     match request {
         Request::WriteObject(_) | Request::InitiateSegmentedWrite(_) => {
-            sdo::Answer::InitiateDownload { address }
+            sdo::SdoResponse::InitiateDownload { address }
         }
         Request::SegmentedWrite(_) => {
             let toggle = SegmentedWrite::parse_answer(answer).unwrap().unwrap();
-            sdo::Answer::DownloadSegment { toggle }
+            sdo::SdoResponse::DownloadSegment { toggle }
         }
-        Request::InitiateSegmentedRead(_) => sdo::Answer::InitiateUpload {
+        Request::InitiateSegmentedRead(_) => sdo::SdoResponse::InitiateUpload {
             address,
             transfer: Initiate::Segmented { size: None },
         },
         Request::SegmentedRead(_) => {
             let read = SegmentedRead::parse_answer(answer).unwrap().unwrap();
-            let mut segment = sdo::Segment::cut(&read.bytes, 0, read.toggle);
+            let mut segment = sdo::SdoSegment::cut(&read.bytes, 0, read.toggle, sdo::SEGMENT_LEN);
             segment.last = !read.more;
-            sdo::Answer::UploadSegment(segment)
+            sdo::SdoResponse::UploadSegment(segment)
         }
         _ => {
             let value = parsed.value().unwrap().to_le_bytes();
             let data = Expedited::new(&value[..usize::from(width(address))]).unwrap();
-            sdo::Answer::InitiateUpload {
+            sdo::SdoResponse::InitiateUpload {
                 address,
                 transfer: Initiate::Expedited(data),
             }

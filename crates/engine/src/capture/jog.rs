@@ -1,6 +1,6 @@
 //! The axis by hand: what a wish becomes for the drive's client, and how the axis then stands. For the command, and for the daemon.
 
-use drive::{Command, DeviceError, Event, Outcome, Status};
+use drive::{CommandOutcome, DeviceError, DriveCommand, DriveEvent, DriveStatus};
 use io::port::Port;
 use serde::{Deserialize, Serialize};
 use units::{DegPerS, DegPerS2, Degrees};
@@ -84,12 +84,16 @@ pub fn commands(
     request: JogRequest,
     config: &Config,
     device: &Device,
-) -> Result<Vec<Command>, Failure> {
+) -> Result<Vec<DriveCommand>, Failure> {
     Ok(match request {
         JogRequest::Status => vec![],
-        JogRequest::ClearFaults => vec![Command::ClearFaults],
-        JogRequest::Stop => vec![Command::Stop],
-        JogRequest::Home => vec![Command::Connect, Command::Home, Command::Brake],
+        JogRequest::ClearFaults => vec![DriveCommand::ClearFaults],
+        JogRequest::Stop => vec![DriveCommand::Stop],
+        JogRequest::Home => vec![
+            DriveCommand::Connect,
+            DriveCommand::Home,
+            DriveCommand::Brake,
+        ],
         JogRequest::Goto {
             to_deg,
             speed_deg_s,
@@ -105,12 +109,16 @@ pub fn commands(
                     DegPerS2(accel),
                 )
                 .map_err(|error| Failure::new(Kind::Usage, error.to_string()).help(error.help()))?;
-            let to = drive::Move {
+            let to = drive::MoveCommand {
                 to: plan.to,
                 speed: plan.speed,
                 acceleration: plan.acceleration,
             };
-            vec![Command::Connect, Command::Goto(to), Command::Brake]
+            vec![
+                DriveCommand::Connect,
+                DriveCommand::Goto(to),
+                DriveCommand::Brake,
+            ]
         }
     })
 }
@@ -130,18 +138,18 @@ pub enum Homing {
 /// [`SessionError`].
 pub fn ask<P: Port>(
     session: &mut Session<P>,
-    commands: &[Command],
+    commands: &[DriveCommand],
     homing: Homing,
-    told: &mut dyn FnMut(&Event),
-) -> Result<Status, SessionError> {
+    told: &mut dyn FnMut(&DriveEvent),
+) -> Result<DriveStatus, SessionError> {
     for command in commands {
-        if homing == Homing::First && matches!(command, Command::Goto(_)) {
-            session.run(Command::Home, told)?;
+        if homing == Homing::First && matches!(command, DriveCommand::Goto(_)) {
+            session.run(DriveCommand::Home, told)?;
         }
         session.run(*command, told)?;
     }
-    match session.run(Command::Status, &mut |_| {})? {
-        Outcome::Status(status) => Ok(status),
+    match session.run(DriveCommand::Status, &mut |_| {})? {
+        CommandOutcome::Status(status) => Ok(status),
         _ => Err(SessionError::Interrupted),
     }
 }
@@ -149,7 +157,7 @@ pub fn ask<P: Port>(
 impl Report {
     /// The report on what the drive called `device` said.
     #[must_use]
-    pub fn new(device: &str, status: &Status, simulated: bool) -> Self {
+    pub fn new(device: &str, status: &DriveStatus, simulated: bool) -> Self {
         Self {
             device: device.to_owned(),
             state: status

@@ -1,6 +1,6 @@
 //! The moves of a capture: planned, then run.
 
-use drive::{AxisConfig, Command, Event, Plan};
+use drive::{AxisConfig, DriveCommand, DriveEvent, MovePlan};
 use io::port::Port;
 use units::{DegPerS, DegPerS2, Degrees};
 
@@ -28,7 +28,7 @@ pub struct SweepRequest {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// Motion as the drive will run it.
-    pub plan: Plan,
+    pub plan: MovePlan,
     /// Whether returns during the move become points.
     pub sweep: bool,
 }
@@ -89,7 +89,7 @@ pub enum MoveProgress<'a> {
     /// A step begins.
     Step(&'a Step),
     /// An event of the drive client.
-    Event(&'a Event),
+    Event(&'a DriveEvent),
 }
 
 /// Connects, homes, runs every move, then disables the axis and sets its brake.
@@ -101,28 +101,28 @@ pub fn run<P: Port>(
     steps: &[Step],
     on_progress: &mut dyn FnMut(MoveProgress<'_>),
 ) -> Result<(), SessionError> {
-    for command in [Command::Connect, Command::Home] {
+    for command in [DriveCommand::Connect, DriveCommand::Home] {
         session.run(command, &mut |event| {
             on_progress(MoveProgress::Event(event))
         })?;
     }
     for step in steps {
         on_progress(MoveProgress::Step(step));
-        let to = drive::Move {
+        let to = drive::MoveCommand {
             to: step.plan.to,
             speed: step.plan.speed,
             acceleration: step.plan.acceleration,
         };
         let command = if step.sweep {
-            Command::Sweep(to)
+            DriveCommand::Sweep(to)
         } else {
-            Command::Goto(to)
+            DriveCommand::Goto(to)
         };
         session.run(command, &mut |event| {
             on_progress(MoveProgress::Event(event))
         })?;
     }
-    session.run(Command::Brake, &mut |event| {
+    session.run(DriveCommand::Brake, &mut |event| {
         on_progress(MoveProgress::Event(event))
     })?;
     Ok(())

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use drive::{Client, Event, Progress, ShaftSample};
+use drive::{CommandProgress, DriveClient, DriveEvent, ShaftSample};
 use io::port::{Port, RecordingPort};
 use io::udp::ListenConfig;
 use protocol::record::{DriveLink, Record};
@@ -75,7 +75,7 @@ pub enum CaptureEvent<'a> {
         packets: u64,
     },
     /// The drive client's own words.
-    Progress(&'a Progress),
+    Progress(&'a CommandProgress),
     /// The axis has made its last move.
     Over,
     /// The disk is waited for, every few milliseconds.
@@ -139,7 +139,7 @@ pub fn record(job: Job<'_>, told: &mut dyn FnMut(CaptureEvent<'_>)) -> Result<En
         log.record(record);
         onlooker(record);
     });
-    let client = Client::with_link(setup.axis.clone(), job.link);
+    let client = DriveClient::new(setup.axis.clone(), job.link);
     let mut session = Session::new(client, port, Arc::clone(interrupt));
     let gearing = setup.axis.gearing;
     let mut number = 0;
@@ -154,14 +154,14 @@ pub fn record(job: Job<'_>, told: &mut dyn FnMut(CaptureEvent<'_>)) -> Result<En
                 told(CaptureEvent::Move { number, step });
                 number += 1;
             }
-            MoveProgress::Event(Event::Sample(ShaftSample {
+            MoveProgress::Event(DriveEvent::Sample(ShaftSample {
                 answer, position, ..
             })) => told(CaptureEvent::Moved {
                 at: *answer,
                 angle: gearing.angle(*position),
                 packets: recording.packets(),
             }),
-            MoveProgress::Event(Event::Progress(step)) => told(CaptureEvent::Progress(step)),
+            MoveProgress::Event(DriveEvent::Progress(step)) => told(CaptureEvent::Progress(step)),
             MoveProgress::Event(event) => tracing::debug!(?event),
         }
     });

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use drive::{Client, Command, CommandKind, DriveError, Event, Outcome};
+use drive::{CommandKind, CommandOutcome, DriveClient, DriveCommand, DriveError, DriveEvent};
 use io::port::{Port, PortError};
 use thiserror::Error;
 use units::{Host, Span, Stamp};
@@ -57,7 +57,7 @@ impl SessionError {
 
 /// A drive client on a port. Dropped while the axis may move, it tells it to stop.
 pub struct Session<P: Port> {
-    client: Client,
+    client: DriveClient,
     port: P,
     interrupt: Arc<AtomicBool>,
     /// Whether a command was begun that can move or power the axis, and none has ended since that leaves it disabled.
@@ -73,7 +73,7 @@ const LAST_RESORT: Span = Span::from_secs(1);
 
 impl<P: Port> Session<P> {
     /// A session over `port`, whose time it keeps, that stops the axis when `interrupt` becomes true.
-    pub fn new(client: Client, port: P, interrupt: Arc<AtomicBool>) -> Self {
+    pub fn new(client: DriveClient, port: P, interrupt: Arc<AtomicBool>) -> Self {
         Self {
             client,
             port,
@@ -88,9 +88,9 @@ impl<P: Port> Session<P> {
     /// [`SessionError`]; the axis has been stopped unless the error says that it could not be.
     pub fn run(
         &mut self,
-        command: Command,
-        on_event: &mut dyn FnMut(&Event),
-    ) -> Result<Outcome, SessionError> {
+        command: DriveCommand,
+        on_event: &mut dyn FnMut(&DriveEvent),
+    ) -> Result<CommandOutcome, SessionError> {
         let kind = command.kind();
         if let Err(error) = self.client.start(command) {
             return Err(match self.stop(on_event)? {
@@ -129,10 +129,13 @@ impl<P: Port> Session<P> {
     }
 
     /// Stops the axis and sets the brake; the last error, where every try failed.
-    fn stop(&mut self, on_event: &mut dyn FnMut(&Event)) -> Result<Option<DriveError>, PortError> {
+    fn stop(
+        &mut self,
+        on_event: &mut dyn FnMut(&DriveEvent),
+    ) -> Result<Option<DriveError>, PortError> {
         let mut last = None;
         for _ in 0..STOP_TRIES {
-            last = match self.client.start(Command::Stop) {
+            last = match self.client.start(DriveCommand::Stop) {
                 Err(error) => Some(error),
                 Ok(()) => match self.pump(on_event, false, None)? {
                     Ended::Failed(error) => Some(error),
@@ -149,7 +152,7 @@ impl<P: Port> Session<P> {
 
     fn pump(
         &mut self,
-        on_event: &mut dyn FnMut(&Event),
+        on_event: &mut dyn FnMut(&DriveEvent),
         interruptible: bool,
         until: Option<Stamp<Host>>,
     ) -> Result<Ended, PortError> {
@@ -161,8 +164,8 @@ impl<P: Port> Session<P> {
             while let Some(event) = self.client.poll_event() {
                 on_event(&event);
                 match event {
-                    Event::Done(outcome) => return Ok(Ended::Done(outcome)),
-                    Event::Failed(error) => return Ok(Ended::Failed(error)),
+                    DriveEvent::Done(outcome) => return Ok(Ended::Done(outcome)),
+                    DriveEvent::Failed(error) => return Ok(Ended::Failed(error)),
                     _ => {}
                 }
             }
@@ -200,7 +203,7 @@ fn powers(kind: CommandKind) -> bool {
 impl<P: Port> Drop for Session<P> {
     /// After a panic, or an error of the port: the stop is sent all the same, and its end waited for where one can come.
     fn drop(&mut self) {
-        if self.unsafe_to_leave && self.client.start(Command::Stop).is_ok() {
+        if self.unsafe_to_leave && self.client.start(DriveCommand::Stop).is_ok() {
             let until = self.port.now().saturating_add(LAST_RESORT);
             // There is nobody left to tell; whoever dropped the session has the error that led here.
             let _ = self.pump(&mut |_| {}, false, Some(until));
@@ -209,7 +212,7 @@ impl<P: Port> Drop for Session<P> {
 }
 
 enum Ended {
-    Done(Outcome),
+    Done(CommandOutcome),
     Failed(DriveError),
     Interrupted,
 }

@@ -1,6 +1,6 @@
 //! From a device profile to an open drive port and a lidar address.
 
-use drive::config::{Brake, Homing, LimitSwitches, Limits, Timing};
+use drive::config::{AxisLimits, AxisTiming, BrakeConfig, HomingConfig, LimitSwitchConfig};
 use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
 
 use crate::config::{AxisSettings, Config, Device, DeviceKind};
@@ -60,23 +60,23 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
     let config = drive::AxisConfig {
         node: axis.node,
         gearing,
-        limits: Limits {
+        limits: AxisLimits {
             min: Degrees(axis.min_deg),
             max: Degrees(axis.max_deg),
         },
         max_speed: rpm(axis.max_speed_deg_s),
         max_acceleration,
         quick_stop: gearing.rpm_per_s(DegPerS2(axis.quick_stop_deg_s2)),
-        limit_switches: LimitSwitches {
+        limit_switches: LimitSwitchConfig {
             negative: axis.limit_switches.negative,
             positive: axis.limit_switches.positive,
             active_low: axis.limit_switches.normally_closed,
         },
-        brake: axis.brake_output.map(|output| Brake {
+        brake: axis.brake_output.map(|output| BrakeConfig {
             output,
-            ..Brake::default()
+            ..BrakeConfig::default()
         }),
-        homing: Homing {
+        homing: HomingConfig {
             method: homing.method,
             switch_speed: rpm(homing.speed_deg_s),
             zero_speed: rpm(homing.edge_speed_deg_s),
@@ -84,9 +84,9 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
             offset: Degrees(homing.to_deg - homing.at_deg),
             home_position: Degrees(homing.to_deg),
             time_limit: Span::from_secs(60),
-            ..Homing::default()
+            ..HomingConfig::default()
         },
-        timing: Timing::default(),
+        timing: AxisTiming::default(),
         ..drive::AxisConfig::default()
     };
     config.check().map_err(|error| wrong(&error))?;
@@ -127,7 +127,7 @@ mod tests {
             limit_switches: switches,
             ..AxisSettings::default()
         });
-        let expected = LimitSwitches {
+        let expected = LimitSwitchConfig {
             negative: None,
             positive: Some(2),
             active_low: true,

@@ -197,7 +197,7 @@ mod tests {
                 request: Stamp::from_nanos(request),
                 answer: Stamp::from_nanos(taken + back(i) * 1_000),
                 position: Quadcounts(i as i32),
-                taken: drive::Taken::AtSync,
+                trigger: drive::SampleTrigger::Sync,
                 device_us: Some(device_us as u32),
             }
         });

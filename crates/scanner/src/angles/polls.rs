@@ -149,7 +149,7 @@ fn round_trips(samples: &[AngleSample]) -> (Span, Span) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use drive::Taken;
+    use drive::SampleTrigger;
     use units::{Quadcounts, Stamp};
 
     fn poll(request_us: i64, round_trip_us: i64) -> ShaftSample {
@@ -157,7 +157,7 @@ mod tests {
             request: Stamp::from_nanos(request_us * 1_000),
             answer: Stamp::from_nanos((request_us + round_trip_us) * 1_000),
             position: Quadcounts(-2),
-            taken: Taken::Asked,
+            trigger: SampleTrigger::Request,
             device_us: None,
         }
     }

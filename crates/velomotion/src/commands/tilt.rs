@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use drive::{Client, Command};
+use drive::{DriveClient, DriveCommand};
 use serde::Serialize;
 
 use super::{CommandOutput, through_daemon};
@@ -95,12 +95,12 @@ fn with_port(
     config: &Config,
     (name, device): (&str, &Device),
     place: &Path,
-    commands: &[Command],
+    commands: &[DriveCommand],
     interrupt: Arc<AtomicBool>,
 ) -> Result<CommandOutput, Failure> {
     let simulated = devices::simulated(device);
     let opened = ports::open(device, place)?;
-    let client = Client::with_link(devices::axis(&config.axis)?, opened.link);
+    let client = DriveClient::new(devices::axis(&config.axis)?, opened.link);
     let control = control::Control::listen(place, &interrupt);
     let mut session = Session::new(client, opened.port, interrupt);
     // A software drive was born a moment ago.

@@ -14,7 +14,7 @@ mod transmit;
 use protocol::canopen::emcy::Emergency;
 use protocol::canopen::heartbeat::Heartbeat;
 use protocol::canopen::nmt::{Nmt, NmtState};
-use protocol::canopen::sdo::Request;
+use protocol::canopen::sdo::SdoRequest;
 use protocol::canopen::sync::SyncMessage;
 use protocol::canopen::{CanFrame, CobId, CommunicationObject, NodeId, PdoNumber};
 use protocol::epos2::objects::Address;
@@ -168,7 +168,7 @@ impl CanServer {
             }
             Some(CommunicationObject::SdoRequest(to)) if to == id => {
                 if node.nmt_state() != NmtState::Stopped
-                    && let Ok((_, request)) = Request::parse(frame)
+                    && let Ok((_, request)) = SdoRequest::parse(frame)
                     && let Some(answer) = self.sdo.execute(node, &request, now_us)
                 {
                     out(&answer.to_frame(id));

@@ -1,7 +1,9 @@
 //! The SDO server: reads and writes of the object dictionary, in one exchange or in segments (CiA
 //! 301, "SDO services").
 
-use protocol::canopen::sdo::{Answer, Expedited, Initiate, Request, Segment};
+use protocol::canopen::sdo::{
+    Expedited, Initiate, SEGMENT_LEN, SdoRequest, SdoResponse, SdoSegment,
+};
 use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, CommError};
 
@@ -51,40 +53,47 @@ impl ServerTransfer {
 
 impl SdoServer {
     /// Executes a request; an abort by the client has no answer.
-    pub fn execute(&mut self, node: &mut Node, request: &Request, now_us: u64) -> Option<Answer> {
+    pub fn execute(
+        &mut self,
+        node: &mut Node,
+        request: &SdoRequest,
+        now_us: u64,
+    ) -> Option<SdoResponse> {
         self.last_request_us = now_us;
         let transfer = self.transfer.take();
         let current = transfer.map_or(Address::default(), |transfer| transfer.address());
         let (address, outcome) = match request {
-            Request::InitiateUpload { address } => (*address, self.upload(node, *address)),
-            Request::InitiateDownload { address, transfer } => {
+            SdoRequest::InitiateUpload { address } => (*address, self.upload(node, *address)),
+            SdoRequest::InitiateDownload { address, transfer } => {
                 (*address, self.download(node, *address, transfer))
             }
-            Request::UploadSegment { toggle } => (current, self.upload_segment(transfer, *toggle)),
-            Request::DownloadSegment(segment) => {
+            SdoRequest::UploadSegment { toggle } => {
+                (current, self.upload_segment(transfer, *toggle))
+            }
+            SdoRequest::DownloadSegment(segment) => {
                 (current, self.download_segment(node, transfer, segment))
             }
-            Request::Abort { .. } => return None,
+            SdoRequest::Abort { .. } => return None,
             // Block transfer has the address in the same place.
-            Request::Unknown([_, low, high, sub, ..]) => {
+            SdoRequest::Unknown([_, low, high, sub, ..]) => {
                 let index = u16::from_le_bytes([*low, *high]);
                 (Address::new(index, *sub), Err(Abort::COMMAND))
             }
         };
-        Some(outcome.unwrap_or_else(|error| Answer::Abort { address, error }))
+        Some(outcome.unwrap_or_else(|error| SdoResponse::Abort { address, error }))
     }
 
     /// Aborts a transfer whose client is silent.
-    pub fn expire(&mut self, now_us: u64) -> Option<Answer> {
+    pub fn expire(&mut self, now_us: u64) -> Option<SdoResponse> {
         let silent = now_us.saturating_sub(self.last_request_us) > TRANSFER_TIMEOUT_US;
         let transfer = self.transfer.take_if(|_| silent)?;
-        Some(Answer::Abort {
+        Some(SdoResponse::Abort {
             address: transfer.address(),
             error: CommError::TIMEOUT,
         })
     }
 
-    fn upload(&mut self, node: &Node, address: Address) -> Result<Answer, Abort> {
+    fn upload(&mut self, node: &Node, address: Address) -> Result<SdoResponse, Abort> {
         let value = node.read(address)?;
         let transfer = match Expedited::new(value.bytes()) {
             Some(data) => Initiate::Expedited(data),
@@ -100,14 +109,14 @@ impl SdoServer {
                 }
             }
         };
-        Ok(Answer::InitiateUpload { address, transfer })
+        Ok(SdoResponse::InitiateUpload { address, transfer })
     }
 
     fn upload_segment(
         &mut self,
         transfer: Option<ServerTransfer>,
         requested: bool,
-    ) -> Result<Answer, Abort> {
+    ) -> Result<SdoResponse, Abort> {
         let Some(ServerTransfer::Upload {
             address,
             value,
@@ -120,7 +129,7 @@ impl SdoServer {
         if requested != toggle {
             return Err(Abort::TOGGLE);
         }
-        let segment = Segment::cut(value.bytes(), sent, toggle);
+        let segment = SdoSegment::cut(value.bytes(), sent, toggle, SEGMENT_LEN);
         if !segment.last {
             self.transfer = Some(ServerTransfer::Upload {
                 address,
@@ -129,7 +138,7 @@ impl SdoServer {
                 toggle: !toggle,
             });
         }
-        Ok(Answer::UploadSegment(segment))
+        Ok(SdoResponse::UploadSegment(segment))
     }
 
     fn download(
@@ -137,7 +146,7 @@ impl SdoServer {
         node: &mut Node,
         address: Address,
         transfer: &Initiate,
-    ) -> Result<Answer, Abort> {
+    ) -> Result<SdoResponse, Abort> {
         match transfer {
             Initiate::Expedited(data) => node.write_bytes(address, data.as_slice())?,
             // The type of the object determines how many of the four bytes count.
@@ -159,15 +168,15 @@ impl SdoServer {
                 });
             }
         }
-        Ok(Answer::InitiateDownload { address })
+        Ok(SdoResponse::InitiateDownload { address })
     }
 
     fn download_segment(
         &mut self,
         node: &mut Node,
         transfer: Option<ServerTransfer>,
-        segment: &Segment,
-    ) -> Result<Answer, Abort> {
+        segment: &SdoSegment,
+    ) -> Result<SdoResponse, Abort> {
         let Some(ServerTransfer::Download {
             address,
             mut bytes,
@@ -198,6 +207,6 @@ impl SdoServer {
                 toggle: !toggle,
             });
         }
-        Ok(Answer::DownloadSegment { toggle })
+        Ok(SdoResponse::DownloadSegment { toggle })
     }
 }

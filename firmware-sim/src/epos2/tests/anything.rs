@@ -7,7 +7,7 @@ use std::vec::Vec;
 
 use proptest::prelude::*;
 use protocol::canopen::nmt::{Nmt, NmtCommand};
-use protocol::canopen::sdo::{Expedited, Initiate, Request};
+use protocol::canopen::sdo::{Expedited, Initiate, SdoRequest};
 use protocol::canopen::{CanFrame, CobId, NodeId};
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::State::{self, *};
@@ -276,7 +276,7 @@ impl World {
                 }
             }
             Doing::ControlBySdo(word) => {
-                let request = Request::InitiateDownload {
+                let request = SdoRequest::InitiateDownload {
                     address: objects::CONTROLWORD.address,
                     transfer: Initiate::Expedited(Expedited::of(*word)),
                 };

@@ -115,7 +115,7 @@ mod tests {
 
     use super::*;
     use crate::canopen::pdo::MappedObject;
-    use crate::canopen::sdo::{Initiate, Request};
+    use crate::canopen::sdo::{Initiate, SdoRequest};
     use crate::canopen::tests::{POSITION_ACTUAL, TIMESTAMP};
     use std::vec::Vec;
 
@@ -135,7 +135,7 @@ mod tests {
         configuration(pdo, NodeId::new(1).unwrap(), wanted)
             .map(|Write { address, data }| {
                 let transfer = Initiate::Expedited(data);
-                Request::InitiateDownload { address, transfer }.to_bytes()
+                SdoRequest::InitiateDownload { address, transfer }.to_bytes()
             })
             .collect()
     }

@@ -1,17 +1,17 @@
-//! The client's side of SDO transfers as a machine without I/O: one transfer at a time, of up to `N` bytes.
+//! An SDO client as a state machine without I/O: one transfer at a time.
 //!
-//! The caller moves the frames, says what time it is when it sends one, and retries if it wants to. An answer names at
-//! most its object, so a late one cannot be told from the answer to the same question asked again: see
-//! [`SdoClient::owed`].
+//! The caller carries the frames, passes the time and decides about retries. A response names at most
+//! its object, so a stale one looks like the response to a repeated request: see
+//! [`SdoClient::pending_stale_response`].
 
 use units::{Host, Span, Stamp};
 
-use super::outcome::{Handled, Outcome, StartError, TransferError, Value};
-use super::step::{Next, Step, Transfer, advance};
-use super::{Access, Answer, Expedited, Initiate, Request};
+use super::{
+    FrameDisposition, SEGMENT_LEN, SdoOutcome, SdoRequest, SdoResponse, SdoTransfer, SdoValue,
+    StartError, TransferError, TransferStep,
+};
 use crate::canopen::cob_id::{CommunicationObject, NodeId};
 use crate::canopen::frame::CanFrame;
-use crate::epos2::Bounded;
 use crate::epos2::objects::{Address, Scalar};
 
 /// The client of one node's SDO server, for objects of up to `N` bytes (at least 4).
@@ -19,18 +19,18 @@ use crate::epos2::objects::{Address, Scalar};
 pub struct SdoClient<const N: usize> {
     node: NodeId,
     timeout: Span,
-    transfer: Option<Transfer<N>>,
-    /// To be sent, the abort first.
-    abort: Option<Request>,
-    request: Option<Request>,
-    /// From when the last request was sent.
+    transfer: Option<SdoTransfer<N>>,
+    /// Sent before `request`.
+    abort: Option<SdoRequest>,
+    request: Option<SdoRequest>,
+    /// Set when a request is sent.
     deadline: Option<Stamp<Host>>,
-    outcome: Option<Outcome<N>>,
-    owed: Option<Address>,
+    outcome: Option<SdoOutcome<N>>,
+    stale: Option<Address>,
 }
 
 impl<const N: usize> SdoClient<N> {
-    /// The client of `node`, which is given `timeout` for each answer.
+    /// Creates a client of `node` that waits up to `timeout` for each response.
     #[must_use]
     pub const fn new(node: NodeId, timeout: Span) -> Self {
         const { assert!(N >= 4) };
@@ -42,48 +42,36 @@ impl<const N: usize> SdoClient<N> {
             request: None,
             deadline: None,
             outcome: None,
-            owed: None,
+            stale: None,
         }
     }
 
-    /// Changes the time given for each answer, from the next request on.
+    /// Changes the time limit, from the next request on.
     pub const fn set_timeout(&mut self, timeout: Span) {
         self.timeout = timeout;
     }
 
-    /// Begins to read an object.
+    /// Starts reading an object.
     ///
     /// # Errors
     /// [`StartError::Busy`].
     pub fn read(&mut self, address: Address) -> Result<(), StartError> {
-        self.start(
-            address,
-            Step::InitiateUpload,
-            Bounded::new(),
-            Request::InitiateUpload { address },
-        )
+        self.start(SdoTransfer::upload(address))
     }
 
-    /// Begins to write an object: up to four bytes in one exchange, none or more in segments.
+    /// Starts writing an object: one to four bytes in one exchange, any other length in segments.
     ///
     /// # Errors
     /// [`StartError`].
     pub fn write(&mut self, address: Address, data: &[u8]) -> Result<(), StartError> {
-        let bytes = Bounded::from_slice(data).map_err(|full| StartError::TooLong {
-            max: full.capacity,
+        let started = SdoTransfer::download(address, data, SEGMENT_LEN);
+        self.start(started.map_err(|_| StartError::TooLong {
+            max: N,
             got: data.len(),
-        })?;
-        let transfer = Expedited::new(data).map_or(
-            Initiate::Segmented {
-                size: u32::try_from(data.len()).ok(),
-            },
-            Initiate::Expedited,
-        );
-        let request = Request::InitiateDownload { address, transfer };
-        self.start(address, Step::InitiateDownload, bytes, request)
+        })?)
     }
 
-    /// Begins to write an object of type `T`.
+    /// Starts writing an object of type `T`.
     ///
     /// # Errors
     /// [`StartError::Busy`].
@@ -92,46 +80,39 @@ impl<const N: usize> SdoClient<N> {
         address: Address,
         value: T,
     ) -> Result<(), StartError> {
-        self.write(address, Expedited::of(value).as_slice())
+        self.write(address, super::Expedited::of(value).as_slice())
     }
 
     fn start(
         &mut self,
-        address: Address,
-        step: Step,
-        data: Bounded<u8, N>,
-        request: Request,
+        (transfer, request): (SdoTransfer<N>, SdoRequest),
     ) -> Result<(), StartError> {
-        let under_way = self.transfer.map(|transfer| transfer.address);
-        if let Some(address) = under_way.or(self.outcome.map(|outcome| outcome.address)) {
+        let active = self.transfer.map(|transfer| transfer.address());
+        if let Some(address) = active.or(self.outcome.map(|outcome| outcome.address)) {
             return Err(StartError::Busy { address });
         }
-        self.transfer = Some(Transfer {
-            address,
-            step,
-            data,
-        });
+        self.transfer = Some(transfer);
         self.request = Some(request);
         Ok(())
     }
 
-    /// Whether a transfer is under way.
+    /// Whether a transfer is active.
     #[must_use]
     pub const fn is_busy(&self) -> bool {
         self.transfer.is_some()
     }
 
-    /// The object of a transfer that was given up without an answer, as long as the answer may still come.
+    /// The object of a transfer given up without a response, while that response may still arrive.
     ///
-    /// Asked the same again, the client would take the late answer for the new one. To be sure of a value, read another
-    /// object first: a node's answers come in the order of its requests, so when that answer is there, the late one has
-    /// come (and been dropped) or never will.
+    /// If the same request is repeated, the client takes the stale response for the new one. To be sure
+    /// of a value, read another object first: a node responds in the order of requests, so once that
+    /// response is there, the stale one has been dropped or is lost.
     #[must_use]
-    pub const fn owed(&self) -> Option<Address> {
-        self.owed
+    pub const fn pending_stale_response(&self) -> Option<Address> {
+        self.stale
     }
 
-    /// The next frame to send; `now` is when that is done. The time for the answer begins.
+    /// The next frame to send. `now` starts the time limit of its response.
     pub fn poll_transmit(&mut self, now: Stamp<Host>) -> Option<CanFrame> {
         let message = self.abort.take().or_else(|| {
             let request = self.request.take()?;
@@ -141,138 +122,128 @@ impl<const N: usize> SdoClient<N> {
         Some(message.to_frame(self.node))
     }
 
-    /// When [`SdoClient::handle_timeout`] wants to be called, if no answer comes.
+    /// When to call [`SdoClient::handle_timeout`] if no response arrives.
     #[must_use]
     pub const fn poll_timeout(&self) -> Option<Stamp<Host>> {
         self.deadline
     }
 
-    /// Gives the transfer up if its time is over.
+    /// Ends the transfer with an error if its time limit has passed.
     pub fn handle_timeout(&mut self, now: Stamp<Host>) {
         if self.deadline.is_none_or(|deadline| now < deadline) {
             return;
         }
         if let Some(transfer) = self.transfer.take() {
-            let expected = transfer.step.expected();
+            let expected = transfer.expected();
             self.fail(&transfer, TransferError::Timeout { expected });
         }
     }
 
-    /// Breaks a transfer off; the node is told.
+    /// Cancels the transfer and sends an abort to the node.
     pub fn cancel(&mut self) {
         if let Some(transfer) = self.transfer.take() {
             self.fail(&transfer, TransferError::Cancelled);
         }
     }
 
-    /// How the last transfer ended, once.
-    pub const fn poll_outcome(&mut self) -> Option<Outcome<N>> {
+    /// Takes the outcome of the last transfer.
+    pub const fn poll_outcome(&mut self) -> Option<SdoOutcome<N>> {
         self.outcome.take()
     }
 
-    /// Takes any frame of the bus.
-    pub fn handle_frame(&mut self, frame: &CanFrame) -> Handled {
-        if frame.cob_id() != Some(CommunicationObject::SdoAnswer(self.node).cob_id()) {
-            return Handled::Foreign;
+    /// Processes any frame of the bus.
+    pub fn handle_frame(&mut self, frame: &CanFrame) -> FrameDisposition {
+        if frame.cob_id() != Some(CommunicationObject::SdoResponse(self.node).cob_id()) {
+            return FrameDisposition::Foreign;
         }
-        // Not asked yet, so this answers nothing, however well it would fit.
-        let waiting = self.request.is_none();
-        let Some(transfer) = self.transfer.take_if(|_| waiting) else {
-            return self.unasked(frame);
+        // A response before the request was sent matches nothing, however well it fits.
+        let is_sent = self.request.is_none();
+        let Some(transfer) = self.transfer.take_if(|_| is_sent) else {
+            return self.unsolicited(frame);
         };
-        let answer = match Answer::parse(frame) {
-            Ok((_, answer)) => answer,
+        let response = match SdoResponse::parse(frame) {
+            Ok((_, response)) => response,
             Err(error) => {
                 self.fail(&transfer, error.into());
-                return Handled::Taken;
+                return FrameDisposition::Accepted;
             }
         };
-        if self.is_late(&transfer, &answer) {
-            self.owed = None;
+        if self.is_stale(&transfer, &response) {
+            self.stale = None;
             self.transfer = Some(transfer);
-            return Handled::Late;
+            return FrameDisposition::Stale;
         }
-        self.take(transfer, &answer);
-        Handled::Taken
+        self.advance(transfer, &response);
+        FrameDisposition::Accepted
     }
 
-    fn unasked(&mut self, frame: &CanFrame) -> Handled {
-        let late = match (self.owed, Answer::parse(frame)) {
-            (Some(owed), Ok((_, answer))) => answer.address().is_none_or(|got| got == owed),
+    fn unsolicited(&mut self, frame: &CanFrame) -> FrameDisposition {
+        let is_stale = match (self.stale, SdoResponse::parse(frame)) {
+            (Some(stale), Ok((_, response))) => response.address().is_none_or(|got| got == stale),
             _ => false,
         };
-        if late {
-            self.owed = None;
-            Handled::Late
+        if is_stale {
+            self.stale = None;
+            FrameDisposition::Stale
         } else {
-            Handled::Unasked
+            FrameDisposition::Unsolicited
         }
     }
 
-    /// Whether `answer` is the one owed by an earlier transfer and cannot be this one's.
-    fn is_late(&self, transfer: &Transfer<N>, answer: &Answer) -> bool {
-        let Some(owed) = self.owed else {
+    /// Whether `response` belongs to the transfer given up earlier and cannot belong to this one.
+    fn is_stale(&self, transfer: &SdoTransfer<N>, response: &SdoResponse) -> bool {
+        let Some(stale) = self.stale else {
             return false;
         };
-        match (answer, answer.address()) {
-            (Answer::Abort { .. }, Some(got)) => got == owed && got != transfer.address,
-            (_, Some(got)) => {
-                let kind = match answer {
-                    Answer::InitiateUpload { .. } => Step::InitiateUpload,
-                    _ => Step::InitiateDownload,
-                };
-                got == owed && (got != transfer.address || transfer.step != kind)
-            }
-            // Segments name no object; at the beginning of a transfer they are not its own.
-            (_, None) => transfer.step.is_first(),
-        }
+        let Some(got) = response.address() else {
+            // Segments name no object; the first response of a transfer is none.
+            return transfer.is_first();
+        };
+        let fits = got == transfer.address()
+            && match response {
+                SdoResponse::Abort { .. } => true,
+                _ => transfer.awaits_initiate(response),
+            };
+        got == stale && !fits
     }
 
-    /// Moves `transfer` on by an answer to it.
-    fn take(&mut self, mut transfer: Transfer<N>, answer: &Answer) {
-        let next = advance(&mut transfer, answer);
-        // Answers come in order: what another request was owed before this one will not come any more.
-        if matches!(next, Ok(_) | Err(TransferError::Aborted(_))) {
-            self.owed = self.owed.filter(|owed| *owed == transfer.address);
+    fn advance(&mut self, mut transfer: SdoTransfer<N>, response: &SdoResponse) {
+        let step = transfer.handle_response(response);
+        // Responses arrive in order: those to requests before this one are lost.
+        if matches!(step, Ok(_) | Err(TransferError::Aborted(_))) {
+            self.stale = self.stale.filter(|stale| *stale == transfer.address());
         }
-        match next {
-            Ok(Next::Ask(step, request)) => {
-                transfer.step = step;
+        match step {
+            Ok(TransferStep::Send(request)) => {
                 self.transfer = Some(transfer);
                 self.request = Some(request);
                 self.deadline = None;
             }
-            Ok(Next::Done { sized }) => {
-                let bytes = match transfer.step.access() {
-                    Access::Read => transfer.data,
-                    Access::Write => Bounded::new(),
-                };
-                self.end(&transfer, Ok(Value { bytes, sized }));
-            }
+            Ok(TransferStep::Done(value)) => self.end(&transfer, Ok(value)),
             Err(error) => self.fail(&transfer, error),
         }
     }
 
-    fn fail(&mut self, transfer: &Transfer<N>, error: TransferError) {
-        let address = transfer.address;
-        let outstanding = self.request.take().is_none();
-        if outstanding && error.leaves_answer() {
-            self.owed = Some(address);
+    fn fail(&mut self, transfer: &SdoTransfer<N>, error: TransferError) {
+        let address = transfer.address();
+        let is_outstanding = self.request.take().is_none();
+        if is_outstanding && error.leaves_response() {
+            self.stale = Some(address);
         }
-        // A node that was asked nothing yet has nothing to abort.
-        if outstanding || !transfer.step.is_first() {
+        // Before the first request is sent, the node has nothing to abort.
+        if is_outstanding || !transfer.is_first() {
             self.abort = error
                 .abort_code()
-                .map(|error| Request::Abort { address, error });
+                .map(|error| SdoRequest::Abort { address, error });
         }
         self.end(transfer, Err(error));
     }
 
-    fn end(&mut self, transfer: &Transfer<N>, result: Result<Value<N>, TransferError>) {
+    fn end(&mut self, transfer: &SdoTransfer<N>, result: Result<SdoValue<N>, TransferError>) {
         self.deadline = None;
-        self.outcome = Some(Outcome {
-            address: transfer.address,
-            access: transfer.step.access(),
+        self.outcome = Some(SdoOutcome {
+            address: transfer.address(),
+            direction: transfer.direction(),
             result,
         });
     }

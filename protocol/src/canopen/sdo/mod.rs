@@ -1,21 +1,28 @@
-//! SDO, service data objects (CiA 301, "SDO services"): one entry of a node's object dictionary read or written.
+//! SDO, service data objects (CiA 301, "SDO services"): access to one entry of a node's object
+//! dictionary.
 //!
-//! A client asks ([`Request`]), the node answers ([`Answer`]); up to four bytes travel in the first exchange (expedited),
-//! more in segments of seven. [`SdoClient`] is the client's side as a machine without I/O. Block transfer is not looked
-//! into: its messages are `Unknown`, and a node answers them with [`crate::epos2::CommError::COMMAND`].
+//! The client sends an [`SdoRequest`], the node's server returns an [`SdoResponse`]. Up to four bytes
+//! travel in the first exchange (expedited transfer), more in segments of seven (segmented transfer).
+//! [`SdoTransfer`] holds the rules of one transfer, [`SdoClient`] adds time limits and stale responses.
+//! Both are state machines without I/O. Block transfer is not supported: its messages are `Unknown`,
+//! and a node aborts them with [`crate::epos2::CommError::COMMAND`].
+//!
+//! [`SdoTransfer`] is generic over the capacity of a segment: the EPOS2 carries the same transfers over
+//! its serial links, in segments of up to 63 bytes.
 
-mod answer;
 mod client;
+mod data;
 mod outcome;
 mod request;
-mod step;
+mod response;
 mod transfer;
 
-pub use answer::Answer;
 pub use client::SdoClient;
-pub use outcome::{Access, Handled, Outcome, StartError, TransferError, Value};
-pub use request::Request;
-pub use transfer::{Expedited, Initiate, Segment};
+pub use data::{Expedited, GenericSdoSegment, Initiate, SEGMENT_LEN, SdoSegment};
+pub use outcome::{FrameDisposition, SdoOutcome, SdoValue, StartError, TransferError};
+pub use request::{GenericSdoRequest, SdoRequest};
+pub use response::{GenericSdoResponse, SdoResponse};
+pub use transfer::{SdoTransfer, TransferDirection, TransferStep};
 
 use crate::epos2::objects::Address;
 
@@ -24,12 +31,12 @@ const LEN: usize = 8;
 /// Command specifier of an abort, in both directions.
 const ABORT: u8 = 4;
 
-/// A command specifier in its place.
+/// A command specifier in bits 5 to 7.
 const fn command(specifier: u8) -> u8 {
     specifier << 5
 }
 
-/// The object that the bytes after the command name.
+/// The multiplexer (index and subindex) after the command byte.
 const fn address(index_low: u8, index_high: u8, sub: u8) -> Address {
     Address::new(u16::from_le_bytes([index_low, index_high]), sub)
 }

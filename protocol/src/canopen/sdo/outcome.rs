@@ -1,86 +1,79 @@
-//! How an SDO transfer begins, goes and ends for its client: what was read, or why not.
+//! Results and errors of SDO transfers.
 
 use thiserror::Error;
 
+use super::TransferDirection;
 use crate::canopen::error::MessageError;
 use crate::epos2::objects::{Address, Scalar};
 use crate::epos2::{Bounded, CommError};
 
-/// Which way a transfer goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Access {
-    /// The object is read ("upload").
-    Read,
-    /// The object is written ("download").
-    Write,
-}
-
 /// Why a transfer failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum TransferError {
-    /// The node refused or broke off.
-    #[error("SDO: the node aborted: {0}")]
+    /// The node aborted the transfer.
+    #[error("SDO: aborted by the node: {0}")]
     Aborted(CommError),
-    /// No answer in time.
-    #[error("SDO: no answer in time, expected {expected}")]
+    /// No response within the time limit.
+    #[error("SDO: no response in time, expected {expected}")]
     Timeout {
-        /// Which answer.
+        /// The expected response.
         expected: &'static str,
     },
-    /// An answer to a question about another object.
-    #[error("SDO: an answer about {got}, expected {expected}")]
+    /// A response about another object.
+    #[error("SDO: response about object {got}, expected {expected}")]
     OtherObject {
         /// The object of this transfer.
         expected: Address,
-        /// The object of the answer.
+        /// The object of the response.
         got: Address,
     },
-    /// The toggle bit of a segment did not alternate: one was lost or came twice.
+    /// The toggle bit of a segment did not alternate: a segment was lost or duplicated.
     #[error("SDO: toggle bit {}, expected {}", u8::from(*got), u8::from(*expected))]
     Toggle {
         /// As in the request.
         expected: bool,
-        /// As in the answer.
+        /// As in the response.
         got: bool,
     },
-    /// An answer of another kind.
+    /// A response of another service.
     #[error("SDO: command byte {got:02X}, expected {expected}")]
     Unexpected {
-        /// Which answer.
+        /// The expected response.
         expected: &'static str,
-        /// First byte of the one that came.
+        /// First byte of the response.
         got: u8,
     },
-    /// Another number of bytes than was announced, or than the object's type has.
+    /// The number of bytes differs from the indicated size or from the object's type.
     #[error("SDO: {got} bytes, expected {expected}")]
     Size {
-        /// Bytes announced, or of the type.
+        /// Bytes indicated, or of the type.
         expected: usize,
-        /// Bytes that came (so far, where they are already too many).
+        /// Bytes received, so far if already too many.
         got: usize,
     },
-    /// The object is longer than there is room for.
+    /// The object exceeds the client's buffer.
     #[error("SDO: {got} bytes, expected at most {max}")]
     TooLong {
-        /// Bytes of room.
+        /// Capacity of the buffer in bytes.
         max: usize,
-        /// Bytes announced, or that came so far.
+        /// Bytes indicated, or received so far.
         got: usize,
     },
-    /// A segment without a byte that is not the last: such a transfer need not end.
-    #[error("SDO: an empty segment, expected data or the end")]
+    /// An empty segment that is not the last: such a transfer might never end.
+    #[error("SDO: empty segment, expected data or the last segment")]
     EmptySegment,
-    /// The caller broke off.
+    /// The caller cancelled the transfer.
     #[error("SDO: cancelled")]
     Cancelled,
-    /// A frame on the answer's identifier that is no SDO message.
+    /// A frame with the response's identifier that is not an SDO message.
     #[error(transparent)]
-    BusMessage(#[from] MessageError),
+    Message(#[from] MessageError),
 }
 
 impl TransferError {
-    /// What the node is told when the client breaks off; `None` where the node knows already.
-    pub(super) const fn abort_code(&self) -> Option<CommError> {
+    /// The abort code to send to the node; `None` if the node itself aborted.
+    #[must_use]
+    pub const fn abort_code(&self) -> Option<CommError> {
         match self {
             Self::Aborted(_) => None,
             Self::Timeout { .. } => Some(CommError::TIMEOUT),
@@ -91,56 +84,56 @@ impl TransferError {
             Self::OtherObject { .. }
             | Self::Unexpected { .. }
             | Self::EmptySegment
-            | Self::BusMessage(_) => Some(CommError::COMMAND),
+            | Self::Message(_) => Some(CommError::COMMAND),
         }
     }
 
-    /// Whether the right answer may come after all.
-    pub(super) const fn leaves_answer(&self) -> bool {
+    /// Whether the matching response may still arrive.
+    pub(super) const fn leaves_response(&self) -> bool {
         matches!(
             self,
             Self::Timeout { .. }
                 | Self::OtherObject { .. }
                 | Self::Unexpected { .. }
                 | Self::Cancelled
-                | Self::BusMessage(_)
+                | Self::Message(_)
         )
     }
 }
 
-/// Why a transfer was not begun.
+/// Why a transfer could not be started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum StartError {
-    /// Another is under way, or its outcome has not been fetched.
-    #[error("SDO: a transfer of {address} is under way or not fetched")]
+    /// Another transfer is active, or its outcome has not been taken.
+    #[error("SDO: transfer of object {address} is active or its outcome not yet taken")]
     Busy {
         /// Its object.
         address: Address,
     },
-    /// More data than there is room for.
+    /// The data exceeds the client's buffer.
     #[error("SDO: {got} bytes to write, expected at most {max}")]
     TooLong {
-        /// Bytes of room.
+        /// Capacity of the buffer in bytes.
         max: usize,
-        /// Bytes given.
+        /// Bytes to write.
         got: usize,
     },
 }
 
-/// What was read.
+/// Data read from an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Value<const N: usize> {
+pub struct SdoValue<const N: usize> {
     /// The bytes.
     pub bytes: Bounded<u8, N>,
-    /// Their number is the object's. Otherwise the node sent four bytes without saying how many count.
+    /// Whether `bytes` has the object's length. Otherwise the node sent four bytes without a size.
     pub sized: bool,
 }
 
-impl<const N: usize> Value<N> {
+impl<const N: usize> SdoValue<N> {
     /// The value of an object of type `T`.
     ///
     /// # Errors
-    /// [`TransferError::Size`] where it has another number of bytes.
+    /// [`TransferError::Size`] if the number of bytes does not match.
     pub fn scalar<T: Scalar>(&self) -> Result<T, TransferError> {
         let expected = usize::from(T::BYTES);
         let got = self.bytes.len();
@@ -154,26 +147,26 @@ impl<const N: usize> Value<N> {
     }
 }
 
-/// How a transfer ended.
+/// Result of a transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Outcome<const N: usize> {
+pub struct SdoOutcome<const N: usize> {
     /// The object.
     pub address: Address,
     /// Read or written.
-    pub access: Access,
-    /// What was read (nothing for a write), or why it failed.
-    pub result: Result<Value<N>, TransferError>,
+    pub direction: TransferDirection,
+    /// The data read (empty for a write), or the error.
+    pub result: Result<SdoValue<N>, TransferError>,
 }
 
-/// What a frame was to the client.
+/// What the client did with a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Handled {
-    /// No SDO answer of this node.
+pub enum FrameDisposition {
+    /// Not an SDO response of this node.
     Foreign,
-    /// It moved the transfer on, to its end perhaps.
-    Taken,
-    /// The answer to a transfer that had been given up. It was dropped.
-    Late,
-    /// An answer, but nothing was asked. It was dropped.
-    Unasked,
+    /// Used by the transfer, which may have ended.
+    Accepted,
+    /// Dropped: the response to a transfer given up earlier.
+    Stale,
+    /// Dropped: no request is outstanding.
+    Unsolicited,
 }

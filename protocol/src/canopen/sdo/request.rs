@@ -1,6 +1,6 @@
-//! What a client asks a node's SDO server; CiA 301's "download" is writing, "upload" is reading.
+//! Requests from an SDO client to a node's server. CiA 301's "download" writes, "upload" reads.
 
-use super::transfer::{Initiate, Segment, TOGGLE, toggle_bit};
+use super::data::{GenericSdoSegment, Initiate, SEGMENT_LEN, TOGGLE, toggle_bit};
 use super::{ABORT, LEN, address, command, message};
 use crate::canopen::cob_id::{CommunicationObject, NodeId};
 use crate::canopen::error::{MessageError, MessageKind};
@@ -9,47 +9,61 @@ use crate::canopen::message::{bytes, wrong_id};
 use crate::epos2::CommError;
 use crate::epos2::objects::Address;
 
-/// Command specifiers of a client.
+/// Client command specifiers.
 const DOWNLOAD_SEGMENT: u8 = 0;
 const INITIATE_DOWNLOAD: u8 = 1;
 const INITIATE_UPLOAD: u8 = 2;
 const UPLOAD_SEGMENT: u8 = 3;
 
-/// A message from client to server.
+/// A message from client to server on CAN.
+pub type SdoRequest = GenericSdoRequest<SEGMENT_LEN>;
+
+/// A message from client to server, with segments of up to `L` bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Request {
-    /// Write an object.
+pub enum GenericSdoRequest<const L: usize> {
+    /// Starts writing an object.
     InitiateDownload {
         /// The object.
         address: Address,
-        /// Its data, or the size of it.
+        /// Its data or size.
         transfer: Initiate,
     },
-    /// Take the next segment.
-    DownloadSegment(Segment),
-    /// Read an object.
+    /// Writes the next segment.
+    DownloadSegment(GenericSdoSegment<L>),
+    /// Starts reading an object.
     InitiateUpload {
         /// The object.
         address: Address,
     },
-    /// Give the next segment.
+    /// Reads the next segment.
     UploadSegment {
         /// Alternates from segment to segment, beginning with `false`.
         toggle: bool,
     },
-    /// The client breaks off.
+    /// Aborts the transfer.
     Abort {
         /// The object of the transfer.
         address: Address,
-        /// Why.
+        /// The abort code.
         error: CommError,
     },
-    /// A command specifier that this protocol does not look into (5 and 6: block transfer).
+    /// Another command specifier (5 and 6: block transfer).
     Unknown([u8; LEN]),
 }
 
-impl Request {
-    /// The data of the frame.
+impl<const L: usize> GenericSdoRequest<L> {
+    /// The object named by the request; segments name none.
+    #[must_use]
+    pub const fn address(&self) -> Option<Address> {
+        match self {
+            Self::InitiateDownload { address, .. }
+            | Self::InitiateUpload { address }
+            | Self::Abort { address, .. } => Some(*address),
+            Self::DownloadSegment(_) | Self::UploadSegment { .. } | Self::Unknown(_) => None,
+        }
+    }
+
+    /// The data of the frame. A segment is cut to the seven bytes that fit.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; LEN] {
         match *self {
@@ -70,14 +84,14 @@ impl Request {
         }
     }
 
-    /// The message of a frame's data; bits and bytes that it does not use do not count.
+    /// The message in a frame's data. Unused bits and bytes are ignored.
     #[must_use]
     pub fn from_bytes(bytes: [u8; LEN]) -> Self {
         let [command, data @ ..] = bytes;
         let [low, high, sub, rest @ ..] = data;
         let address = address(low, high, sub);
         match command >> 5 {
-            DOWNLOAD_SEGMENT => Self::DownloadSegment(Segment::parse(command, data)),
+            DOWNLOAD_SEGMENT => Self::DownloadSegment(GenericSdoSegment::parse(command, data)),
             INITIATE_DOWNLOAD => Self::InitiateDownload {
                 address,
                 transfer: Initiate::parse(command, rest),
@@ -103,10 +117,10 @@ impl Request {
         )
     }
 
-    /// The node asked, and the request in `frame`.
+    /// The addressed node and the request in `frame`.
     ///
     /// # Errors
-    /// [`MessageError`]; an SDO message has eight bytes whatever it uses of them.
+    /// [`MessageError`]; an SDO message always has eight bytes.
     pub fn parse(frame: &CanFrame) -> Result<(NodeId, Self), MessageError> {
         let layer = MessageKind::SdoRequest;
         let Some(CommunicationObject::SdoRequest(node)) =

@@ -32,18 +32,18 @@ fn client() -> Client {
     SdoClient::new(node(), Span::from_millis(50))
 }
 
-fn expedited(address: Address, data: &[u8]) -> Answer {
+fn expedited(address: Address, data: &[u8]) -> SdoResponse {
     let transfer = Initiate::Expedited(Expedited::new(data).unwrap());
-    Answer::InitiateUpload { address, transfer }
+    SdoResponse::InitiateUpload { address, transfer }
 }
 
-fn sized(address: Address, size: u32) -> Answer {
+fn sized(address: Address, size: u32) -> SdoResponse {
     let transfer = Initiate::Segmented { size: Some(size) };
-    Answer::InitiateUpload { address, transfer }
+    SdoResponse::InitiateUpload { address, transfer }
 }
 
-fn part(toggle: bool, last: bool, bytes: &[u8]) -> Answer {
-    Answer::UploadSegment(Segment {
+fn part(toggle: bool, last: bool, bytes: &[u8]) -> SdoResponse {
+    SdoResponse::UploadSegment(SdoSegment {
         toggle,
         last,
         bytes: crate::epos2::Bounded::from_slice(bytes).unwrap(),
@@ -51,35 +51,35 @@ fn part(toggle: bool, last: bool, bytes: &[u8]) -> Answer {
 }
 
 /// What the client wants sent.
-fn sent(client: &mut Client, now: Stamp<Host>) -> Vec<Request> {
+fn sent(client: &mut Client, now: Stamp<Host>) -> Vec<SdoRequest> {
     core::iter::from_fn(|| client.poll_transmit(now))
-        .map(|frame| Request::parse(&frame).unwrap().1)
+        .map(|frame| SdoRequest::parse(&frame).unwrap().1)
         .collect()
 }
 
-fn hear(client: &mut Client, answer: Answer) -> Handled {
+fn hear(client: &mut Client, answer: SdoResponse) -> FrameDisposition {
     client.handle_frame(&answer.to_frame(node()))
 }
 
 /// Plays a read: answers in turn, each after the request for it was sent; the outcome and what the client sent last.
-fn play(address: Address, answers: &[Answer]) -> (Outcome<ROOM>, Vec<Request>) {
+fn play(address: Address, answers: &[SdoResponse]) -> (SdoOutcome<ROOM>, Vec<SdoRequest>) {
     let mut client = client();
     client.read(address).unwrap();
     for answer in answers {
         assert_eq!(sent(&mut client, at(0)).len(), 1);
-        assert_eq!(hear(&mut client, *answer), Handled::Taken);
+        assert_eq!(hear(&mut client, *answer), FrameDisposition::Accepted);
     }
     let outcome = client.poll_outcome().expect("the transfer has ended");
     assert_eq!((client.is_busy(), client.poll_timeout()), (false, None));
     (outcome, sent(&mut client, at(0)))
 }
 
-fn failure(address: Address, answers: &[Answer]) -> (TransferError, Option<CommError>) {
+fn failure(address: Address, answers: &[SdoResponse]) -> (TransferError, Option<CommError>) {
     let (outcome, last) = play(address, answers);
     let told = match last.as_slice() {
         [] => None,
         [
-            Request::Abort {
+            SdoRequest::Abort {
                 address: about,
                 error,
             },
@@ -96,7 +96,10 @@ fn failure(address: Address, answers: &[Answer]) -> (TransferError, Option<CommE
 fn an_expedited_read() {
     let (outcome, last) = play(STATUS, &[expedited(STATUS, &[0x40, 0x01])]);
     let value = outcome.result.unwrap();
-    assert_eq!((outcome.address, outcome.access), (STATUS, Access::Read));
+    assert_eq!(
+        (outcome.address, outcome.direction),
+        (STATUS, TransferDirection::Upload)
+    );
     assert_eq!(value.scalar::<u16>(), Ok(0x0140));
     assert!(value.sized && last.is_empty());
     // The object is longer or shorter than its reader thinks.
@@ -117,7 +120,7 @@ fn an_expedited_read() {
 #[test]
 fn an_answer_without_a_size_has_four_bytes_of_which_the_type_takes_its_own() {
     let transfer = Initiate::Unsized([0xFE, 0xFF, 0xAA, 0xBB]);
-    let answer = Answer::InitiateUpload {
+    let answer = SdoResponse::InitiateUpload {
         address: STATUS,
         transfer,
     };
@@ -133,7 +136,7 @@ fn a_segmented_read() {
     let (outcome, _) = play(NAME, &answers);
     assert_eq!(outcome.result.unwrap().bytes.as_slice(), b"EPOS2");
     // Without a size, in three segments, the last empty.
-    let unsized_ = Answer::InitiateUpload {
+    let unsized_ = SdoResponse::InitiateUpload {
         address: NAME,
         transfer: Initiate::Segmented { size: None },
     };
@@ -154,7 +157,7 @@ fn a_segmented_read() {
 fn what_the_node_refuses_is_typed_and_not_aborted_again() {
     let error = CommError::NO_OBJECT;
     let address = NAME;
-    let refused = Answer::Abort { address, error };
+    let refused = SdoResponse::Abort { address, error };
     let expected = (TransferError::Aborted(error), None);
     assert_eq!(failure(NAME, &[refused]), expected);
     assert_eq!(failure(NAME, &[sized(NAME, 9), refused]), expected);
@@ -169,7 +172,7 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
         failure(NAME, &[other]),
         (OtherObject { expected, got }, Some(CommError::COMMAND))
     );
-    let abort = Answer::Abort {
+    let abort = SdoResponse::Abort {
         address: POSITION,
         error: CommError::RANGE,
     };
@@ -191,12 +194,12 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
         part(false, false, b"0123456"),
     ];
     assert!(matches!(failure(NAME, &twice).0, Toggle { .. }));
-    let wrote = Answer::InitiateDownload { address: NAME };
+    let wrote = SdoResponse::InitiateDownload { address: NAME };
     assert_eq!(
         failure(NAME, &[wrote]),
         (
             Unexpected {
-                expected: "the answer to an upload (4x)",
+                expected: "an upload response (4x)",
                 got: 0x60
             },
             Some(CommError::COMMAND)
@@ -204,8 +207,8 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
     );
     for stray in [
         part(false, true, b"x"),
-        Answer::DownloadSegment { toggle: false },
-        Answer::Unknown([0xC0; 8]),
+        SdoResponse::DownloadSegment { toggle: false },
+        SdoResponse::Unknown([0xC0; 8]),
     ] {
         assert!(matches!(failure(NAME, &[stray]).0, Unexpected { .. }));
     }
@@ -244,7 +247,10 @@ fn an_endless_read_without_a_size_ends_at_the_room() {
     sent(&mut client, at(0));
     let transfer = Initiate::Segmented { size: None };
     let address = NAME;
-    hear(&mut client, Answer::InitiateUpload { address, transfer });
+    hear(
+        &mut client,
+        SdoResponse::InitiateUpload { address, transfer },
+    );
     let mut toggle = false;
     for _ in 0..6 {
         sent(&mut client, at(0));
@@ -265,10 +271,10 @@ fn a_damaged_answer_is_typed() {
     sent(&mut client, at(0));
     let whole = expedited(STATUS, &[1, 2]).to_frame(node());
     let short = CanFrame::new(whole.id(), &whole.data()[..6]).unwrap();
-    assert_eq!(client.handle_frame(&short), Handled::Taken);
+    assert_eq!(client.handle_frame(&short), FrameDisposition::Accepted);
     assert!(matches!(
         client.poll_outcome().unwrap().result,
-        Err(TransferError::BusMessage(MessageError::Length {
+        Err(TransferError::Message(MessageError::Length {
             expected: 8,
             got: 6,
             ..
@@ -284,17 +290,20 @@ fn writes_of_every_length_leave_as_they_should() {
         client.poll_transmit(at(0)).unwrap().data(),
         [0x2B, 0x41, 0x60, 0, 0x0F, 0, 0, 0]
     );
-    hear(&mut client, Answer::InitiateDownload { address: STATUS });
+    hear(
+        &mut client,
+        SdoResponse::InitiateDownload { address: STATUS },
+    );
     let outcome = client.poll_outcome().unwrap();
-    assert_eq!(outcome.access, Access::Write);
+    assert_eq!(outcome.direction, TransferDirection::Download);
     assert!(outcome.result.unwrap().bytes.is_empty());
     // Nine bytes: announced, seven, two.
     client.write(NAME, b"123456789").unwrap();
     let mut data = vec![];
     for answer in [
-        Answer::InitiateDownload { address: NAME },
-        Answer::DownloadSegment { toggle: false },
-        Answer::DownloadSegment { toggle: true },
+        SdoResponse::InitiateDownload { address: NAME },
+        SdoResponse::DownloadSegment { toggle: false },
+        SdoResponse::DownloadSegment { toggle: true },
     ] {
         data.push(client.poll_transmit(at(0)).unwrap().data().to_vec());
         hear(&mut client, answer);
@@ -320,9 +329,9 @@ fn a_wrong_toggle_in_a_write_is_typed() {
     let mut client = client();
     client.write(NAME, b"123456789").unwrap();
     sent(&mut client, at(0));
-    hear(&mut client, Answer::InitiateDownload { address: NAME });
+    hear(&mut client, SdoResponse::InitiateDownload { address: NAME });
     sent(&mut client, at(0));
-    hear(&mut client, Answer::DownloadSegment { toggle: true });
+    hear(&mut client, SdoResponse::DownloadSegment { toggle: true });
     let (expected, got) = (false, true);
     assert_eq!(
         client.poll_outcome().unwrap().result,
@@ -352,7 +361,7 @@ fn time_runs_from_when_a_request_was_sent() {
     assert_eq!(error, TransferError::Timeout { expected });
     assert_eq!(
         sent(&mut client, at(250)),
-        [Request::Abort {
+        [SdoRequest::Abort {
             address: NAME,
             error: CommError::TIMEOUT
         }]
@@ -373,13 +382,16 @@ fn one_at_a_time() {
         client.poll_outcome().unwrap().result,
         Err(TransferError::Cancelled)
     );
-    assert_eq!((client.owed(), sent(&mut client, at(0))), (None, vec![]));
+    assert_eq!(
+        (client.pending_stale_response(), sent(&mut client, at(0))),
+        (None, vec![])
+    );
     assert_eq!(client.read(STATUS), Ok(()));
     sent(&mut client, at(0));
     client.cancel();
     let aborted = sent(&mut client, at(0));
-    assert!(matches!(aborted[..], [Request::Abort { .. }]));
-    assert_eq!(client.owed(), Some(STATUS));
+    assert!(matches!(aborted[..], [SdoRequest::Abort { .. }]));
+    assert_eq!(client.pending_stale_response(), Some(STATUS));
 }
 
 /// Lets a read of `address` run out of time.
@@ -389,7 +401,7 @@ fn time_out(client: &mut Client, address: Address) {
     client.handle_timeout(at(50));
     client.poll_outcome().unwrap();
     sent(client, at(50));
-    assert_eq!(client.owed(), Some(address));
+    assert_eq!(client.pending_stale_response(), Some(address));
 }
 
 #[test]
@@ -399,22 +411,22 @@ fn a_late_answer_is_not_taken_for_another() {
     client.read(STATUS).unwrap();
     sent(&mut client, at(60));
     let late = expedited(POSITION, &[1, 2, 3, 4]);
-    assert_eq!(hear(&mut client, late), Handled::Late);
-    assert_eq!(client.owed(), None);
+    assert_eq!(hear(&mut client, late), FrameDisposition::Stale);
+    assert_eq!(client.pending_stale_response(), None);
     let answer = expedited(STATUS, &[0x40, 1]);
-    assert_eq!(hear(&mut client, answer), Handled::Taken);
+    assert_eq!(hear(&mut client, answer), FrameDisposition::Accepted);
     assert!(client.poll_outcome().unwrap().result.is_ok());
     // While nothing is asked it is dropped as well; once, as only one was owed.
     time_out(&mut client, POSITION);
-    assert_eq!(hear(&mut client, late), Handled::Late);
-    assert_eq!(hear(&mut client, late), Handled::Unasked);
+    assert_eq!(hear(&mut client, late), FrameDisposition::Stale);
+    assert_eq!(hear(&mut client, late), FrameDisposition::Unsolicited);
     // Asked for another way, the object's name alone does not make it the answer.
     time_out(&mut client, POSITION);
     client.write(POSITION, &[1, 2, 3, 4]).unwrap();
     sent(&mut client, at(60));
-    assert_eq!(hear(&mut client, late), Handled::Late);
-    let wrote = Answer::InitiateDownload { address: POSITION };
-    assert_eq!(hear(&mut client, wrote), Handled::Taken);
+    assert_eq!(hear(&mut client, late), FrameDisposition::Stale);
+    let wrote = SdoResponse::InitiateDownload { address: POSITION };
+    assert_eq!(hear(&mut client, wrote), FrameDisposition::Accepted);
     assert!(client.poll_outcome().unwrap().result.is_ok());
 }
 
@@ -422,8 +434,8 @@ fn a_late_answer_is_not_taken_for_another() {
 fn an_answer_that_nobody_is_owed_is_no_late_one() {
     for stray in [
         expedited(NAME, &[1, 2, 3, 4]),
-        Answer::InitiateDownload { address: NAME },
-        Answer::Abort {
+        SdoResponse::InitiateDownload { address: NAME },
+        SdoResponse::Abort {
             address: NAME,
             error: CommError::STATE,
         },
@@ -432,7 +444,7 @@ fn an_answer_that_nobody_is_owed_is_no_late_one() {
         time_out(&mut client, POSITION);
         client.read(STATUS).unwrap();
         sent(&mut client, at(60));
-        assert_eq!(hear(&mut client, stray), Handled::Taken);
+        assert_eq!(hear(&mut client, stray), FrameDisposition::Accepted);
         let (expected, got) = (STATUS, NAME);
         assert_eq!(
             client.poll_outcome().unwrap().result,
@@ -445,7 +457,7 @@ fn an_answer_that_nobody_is_owed_is_no_late_one() {
 fn an_answer_in_order_settles_what_was_owed() {
     for answer in [
         expedited(STATUS, &[0x40, 1]),
-        Answer::Abort {
+        SdoResponse::Abort {
             address: STATUS,
             error: CommError::STATE,
         },
@@ -454,9 +466,9 @@ fn an_answer_in_order_settles_what_was_owed() {
         time_out(&mut client, POSITION);
         client.read(STATUS).unwrap();
         sent(&mut client, at(60));
-        assert_eq!(hear(&mut client, answer), Handled::Taken);
+        assert_eq!(hear(&mut client, answer), FrameDisposition::Accepted);
         client.poll_outcome().unwrap();
-        assert_eq!(client.owed(), None);
+        assert_eq!(client.pending_stale_response(), None);
     }
 }
 
@@ -477,11 +489,11 @@ fn a_late_segment_does_not_disturb_the_next_transfer() {
     );
     assert_eq!(
         hear(&mut client, part(false, false, b"0123456")),
-        Handled::Late
+        FrameDisposition::Stale
     );
     assert_eq!(
         hear(&mut client, expedited(STATUS, &[0x40, 1])),
-        Handled::Taken
+        FrameDisposition::Accepted
     );
 }
 
@@ -491,16 +503,19 @@ fn frames_of_others_and_answers_to_nothing_do_nothing() {
     client.read(STATUS).unwrap();
     let answer = expedited(STATUS, &[0x40, 1]);
     // It would fit, but nothing was sent yet.
-    assert_eq!(hear(&mut client, answer), Handled::Unasked);
+    assert_eq!(hear(&mut client, answer), FrameDisposition::Unsolicited);
     sent(&mut client, at(0));
     let two = NodeId::new(2).unwrap();
-    assert_eq!(client.handle_frame(&answer.to_frame(two)), Handled::Foreign);
-    let request = Request::InitiateUpload { address: STATUS };
+    assert_eq!(
+        client.handle_frame(&answer.to_frame(two)),
+        FrameDisposition::Foreign
+    );
+    let request = SdoRequest::InitiateUpload { address: STATUS };
     assert_eq!(
         client.handle_frame(&request.to_frame(node())),
-        Handled::Foreign
+        FrameDisposition::Foreign
     );
-    assert_eq!(hear(&mut client, answer), Handled::Taken);
+    assert_eq!(hear(&mut client, answer), FrameDisposition::Accepted);
     // The controller of the bus may deliver a frame twice.
-    assert_eq!(hear(&mut client, answer), Handled::Unasked);
+    assert_eq!(hear(&mut client, answer), FrameDisposition::Unsolicited);
 }

@@ -1,165 +1,280 @@
-//! How data travels in SDO messages: up to four bytes in the first message, or in segments of up to seven.
+//! The rules of one SDO transfer (CiA 301): which request follows which response, without time or I/O.
 
+use super::{
+    Expedited, GenericSdoRequest, GenericSdoResponse, GenericSdoSegment, Initiate, SEGMENT_LEN,
+    SdoValue, TransferError,
+};
 use crate::epos2::Bounded;
-use crate::epos2::objects::Scalar;
+use crate::epos2::objects::Address;
 
-/// Bit of the first message: the data, or its size, is said to be so long.
-const SIZE_INDICATED: u8 = 1 << 0;
-/// Bit of the first message: the data is in it.
-const EXPEDITED: u8 = 1 << 1;
-/// Toggle bit of segments and of what asks for or confirms them.
-pub(super) const TOGGLE: u8 = 1 << 4;
-/// Bit of a segment: no more segments follow.
-const LAST: u8 = 1 << 0;
-/// The most bytes in a segment.
-const SEGMENT_LEN: usize = 7;
-
-/// One to four bytes, whose number the message says.
+/// Direction of a transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Expedited {
-    /// Zero beyond `len`.
-    bytes: [u8; 4],
-    len: u8,
+pub enum TransferDirection {
+    /// The client reads the object.
+    Upload,
+    /// The client writes the object.
+    Download,
 }
 
-impl Expedited {
-    /// `data`; `None` unless it has one to four bytes.
-    #[must_use]
-    pub fn new(data: &[u8]) -> Option<Self> {
-        if !(1..=4).contains(&data.len()) {
-            return None;
-        }
-        let mut bytes = [0; 4];
-        for (to, from) in bytes.iter_mut().zip(data) {
-            *to = *from;
-        }
-        Some(Self {
-            bytes,
-            len: data.len() as u8,
-        })
-    }
-
-    /// `value`, low byte first, as long as its type.
-    #[must_use]
-    pub fn of<T: Scalar>(value: T) -> Self {
-        const { assert!(T::BYTES >= 1 && T::BYTES <= 4) };
-        let mut bytes = value.to_raw().to_le_bytes();
-        for byte in bytes.iter_mut().skip(usize::from(T::BYTES)) {
-            *byte = 0;
-        }
-        Self {
-            bytes,
-            len: T::BYTES,
-        }
-    }
-
-    /// The bytes.
-    #[must_use]
-    pub fn as_slice(&self) -> &[u8] {
-        self.bytes.get(..usize::from(self.len)).unwrap_or_default()
-    }
-
-    /// The bytes as a number, low byte first.
-    #[must_use]
-    pub const fn to_u32(self) -> u32 {
-        u32::from_le_bytes(self.bytes)
-    }
+/// A transfer of up to `N` bytes in segments of up to `L`.
+#[derive(Clone, Copy, Debug)]
+pub struct SdoTransfer<const N: usize, const L: usize = SEGMENT_LEN> {
+    address: Address,
+    state: TransferState,
+    /// Data to write, or read so far.
+    data: Bounded<u8, N>,
+    segment_len: usize,
 }
 
-/// How a transfer begins.
+/// The expected response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Initiate {
-    /// All data is here.
-    Expedited(Expedited),
-    /// All data is here; how many of the four bytes count is known only from the object's type. The EPOS2 always says
-    /// it, other nodes may not.
-    Unsized([u8; 4]),
-    /// The data follows in segments.
-    Segmented {
-        /// Bytes to come, if said.
+enum TransferState {
+    InitiateUpload,
+    UploadSegment {
+        toggle: bool,
         size: Option<u32>,
+    },
+    InitiateDownload,
+    /// `sent` bytes are out, those of the outstanding segment included.
+    DownloadSegment {
+        toggle: bool,
+        sent: usize,
     },
 }
 
-impl Initiate {
-    /// Low bits of the command byte, and the four bytes behind the object.
-    pub(super) const fn encode(&self) -> (u8, [u8; 4]) {
-        match self {
-            Self::Expedited(data) => ((4 - data.len) << 2 | EXPEDITED | SIZE_INDICATED, data.bytes),
-            Self::Unsized(bytes) => (EXPEDITED, *bytes),
-            Self::Segmented { size: Some(size) } => (SIZE_INDICATED, size.to_le_bytes()),
-            Self::Segmented { size: None } => (0, [0; 4]),
-        }
-    }
-
-    pub(super) fn parse(command: u8, data: [u8; 4]) -> Self {
-        match (command & EXPEDITED != 0, command & SIZE_INDICATED != 0) {
-            (true, true) => {
-                let [first, ..] = data;
-                let len = 4 - usize::from(command >> 2 & 3);
-                // One to four bytes: `new` takes them all.
-                let bytes = data.get(..len).and_then(Expedited::new);
-                Self::Expedited(bytes.unwrap_or_else(|| Expedited::of(first)))
-            }
-            (true, false) => Self::Unsized(data),
-            (false, true) => Self::Segmented {
-                size: Some(u32::from_le_bytes(data)),
-            },
-            (false, false) => Self::Segmented { size: None },
-        }
-    }
-}
-
-/// A piece of longer data.
+/// What follows a response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Segment {
-    /// Alternates from segment to segment, beginning with `false`.
-    pub toggle: bool,
-    /// No more segments follow.
-    pub last: bool,
-    /// Its bytes.
-    pub bytes: Bounded<u8, SEGMENT_LEN>,
+pub enum TransferStep<const N: usize, const L: usize = SEGMENT_LEN> {
+    /// Send the next request.
+    Send(GenericSdoRequest<L>),
+    /// The transfer is complete.
+    Done(SdoValue<N>),
 }
 
-impl Segment {
-    /// The segment that begins at byte `offset` of `data`: up to seven bytes, the last if no byte is left behind them.
+impl<const N: usize, const L: usize> SdoTransfer<N, L> {
+    /// Starts reading an object; returns the transfer and its first request.
     #[must_use]
-    pub fn cut(data: &[u8], offset: usize, toggle: bool) -> Self {
-        let rest = data.get(offset..).unwrap_or_default();
-        let mut bytes = Bounded::new();
-        bytes.extend(rest.iter().copied().take(SEGMENT_LEN));
-        Self {
-            toggle,
-            last: rest.len() <= SEGMENT_LEN,
-            bytes,
+    pub fn upload(address: Address) -> (Self, GenericSdoRequest<L>) {
+        let transfer = Self {
+            address,
+            state: TransferState::InitiateUpload,
+            data: Bounded::new(),
+            segment_len: L,
+        };
+        (transfer, GenericSdoRequest::InitiateUpload { address })
+    }
+
+    /// Starts writing an object; returns the transfer and its first request. One to four bytes take
+    /// one exchange, any other length segments of up to `segment_len` bytes.
+    ///
+    /// # Errors
+    /// [`TransferError::TooLong`].
+    pub fn download(
+        address: Address,
+        data: &[u8],
+        segment_len: usize,
+    ) -> Result<(Self, GenericSdoRequest<L>), TransferError> {
+        let bytes = Bounded::from_slice(data).map_err(|full| TransferError::TooLong {
+            max: full.capacity,
+            got: data.len(),
+        })?;
+        let initiate = Expedited::new(data).map_or(
+            Initiate::Segmented {
+                size: u32::try_from(data.len()).ok(),
+            },
+            Initiate::Expedited,
+        );
+        let transfer = Self {
+            address,
+            state: TransferState::InitiateDownload,
+            data: bytes,
+            segment_len,
+        };
+        let request = GenericSdoRequest::InitiateDownload {
+            address,
+            transfer: initiate,
+        };
+        Ok((transfer, request))
+    }
+
+    /// The object.
+    #[must_use]
+    pub const fn address(&self) -> Address {
+        self.address
+    }
+
+    /// Read or write.
+    #[must_use]
+    pub const fn direction(&self) -> TransferDirection {
+        match self.state {
+            TransferState::InitiateUpload | TransferState::UploadSegment { .. } => {
+                TransferDirection::Upload
+            }
+            TransferState::InitiateDownload | TransferState::DownloadSegment { .. } => {
+                TransferDirection::Download
+            }
         }
     }
 
-    /// The message; both directions have command specifier 0 for it.
-    pub(super) fn to_bytes(self) -> [u8; super::LEN] {
-        let unused = (SEGMENT_LEN - self.bytes.len()) as u8;
-        let mut message = [0; super::LEN];
-        for (to, from) in message.iter_mut().skip(1).zip(self.bytes.iter()) {
-            *to = *from;
-        }
-        let [command, ..] = &mut message;
-        *command = toggle_bit(self.toggle) | unused << 1 | if self.last { LAST } else { 0 };
-        message
+    /// Whether no response has arrived yet.
+    pub(super) const fn is_first(&self) -> bool {
+        matches!(
+            self.state,
+            TransferState::InitiateUpload | TransferState::InitiateDownload
+        )
     }
 
-    pub(super) fn parse(command: u8, data: [u8; SEGMENT_LEN]) -> Self {
-        let unused = usize::from(command >> 1 & 7);
-        let mut bytes = Bounded::new();
-        bytes.extend(data.into_iter().take(SEGMENT_LEN - unused));
-        Self {
-            toggle: command & TOGGLE != 0,
-            last: command & LAST != 0,
-            bytes,
+    /// Whether `response` has the service of the initiate response expected next.
+    pub(super) fn awaits_initiate(&self, response: &GenericSdoResponse<L>) -> bool {
+        matches!(
+            (self.state, response),
+            (
+                TransferState::InitiateUpload,
+                GenericSdoResponse::InitiateUpload { .. }
+            ) | (
+                TransferState::InitiateDownload,
+                GenericSdoResponse::InitiateDownload { .. }
+            )
+        )
+    }
+
+    /// Description of the expected response, for messages.
+    pub(super) const fn expected(&self) -> &'static str {
+        match self.state {
+            TransferState::InitiateUpload => "an upload response (4x)",
+            TransferState::UploadSegment { .. } => "an upload segment (0x, 1x)",
+            TransferState::InitiateDownload => "a download response (60)",
+            TransferState::DownloadSegment { .. } => "a download segment response (20, 30)",
         }
+    }
+
+    /// Processes the response to the last request.
+    ///
+    /// # Errors
+    /// [`TransferError`]; the transfer has then ended, and the node expects an abort where
+    /// [`TransferError::abort_code`] gives one.
+    pub fn handle_response(
+        &mut self,
+        response: &GenericSdoResponse<L>,
+    ) -> Result<TransferStep<N, L>, TransferError> {
+        if let Some(got) = response.address().filter(|got| *got != self.address) {
+            return Err(TransferError::OtherObject {
+                expected: self.address,
+                got,
+            });
+        }
+        match (self.state, response) {
+            (_, GenericSdoResponse::Abort { error, .. }) => Err(TransferError::Aborted(*error)),
+            (
+                TransferState::InitiateUpload,
+                GenericSdoResponse::InitiateUpload { transfer, .. },
+            ) => self.begin_upload(transfer),
+            (
+                TransferState::UploadSegment { toggle, size },
+                GenericSdoResponse::UploadSegment(segment),
+            ) => {
+                check_toggle(toggle, segment.toggle)?;
+                self.append(size, segment)
+            }
+            (TransferState::InitiateDownload, GenericSdoResponse::InitiateDownload { .. }) => {
+                if Expedited::new(&self.data).is_some() {
+                    return Ok(self.done(true));
+                }
+                Ok(self.send_segment(0, false))
+            }
+            (
+                TransferState::DownloadSegment { toggle, sent },
+                GenericSdoResponse::DownloadSegment { toggle: got },
+            ) => {
+                check_toggle(toggle, *got)?;
+                if sent >= self.data.len() {
+                    return Ok(self.done(true));
+                }
+                Ok(self.send_segment(sent, !toggle))
+            }
+            (_, response) => {
+                let [got, ..] = response.to_bytes();
+                Err(TransferError::Unexpected {
+                    expected: self.expected(),
+                    got,
+                })
+            }
+        }
+    }
+
+    fn begin_upload(&mut self, initiate: &Initiate) -> Result<TransferStep<N, L>, TransferError> {
+        let size = match initiate {
+            Initiate::Expedited(data) => {
+                self.data.extend(data.as_slice().iter().copied());
+                return Ok(self.done(true));
+            }
+            Initiate::Unsized(bytes) => {
+                self.data.extend(*bytes);
+                return Ok(self.done(false));
+            }
+            Initiate::Segmented { size } => *size,
+        };
+        match size.map(|size| size as usize) {
+            Some(got) if got > N => Err(TransferError::TooLong { max: N, got }),
+            _ => Ok(self.request_segment(false, size)),
+        }
+    }
+
+    fn append(
+        &mut self,
+        size: Option<u32>,
+        segment: &GenericSdoSegment<L>,
+    ) -> Result<TransferStep<N, L>, TransferError> {
+        let got = self.data.len() + segment.bytes.len();
+        let is_wrong = |expected: usize| {
+            if segment.last {
+                got != expected
+            } else {
+                got > expected
+            }
+        };
+        let indicated = size.map(|size| size as usize);
+        if let Some(expected) = indicated.filter(|&expected| is_wrong(expected)) {
+            return Err(TransferError::Size { expected, got });
+        }
+        if got > N {
+            return Err(TransferError::TooLong { max: N, got });
+        }
+        self.data.extend(segment.bytes.iter().copied());
+        if segment.last {
+            Ok(self.done(true))
+        } else if segment.bytes.is_empty() {
+            Err(TransferError::EmptySegment)
+        } else {
+            Ok(self.request_segment(!segment.toggle, size))
+        }
+    }
+
+    fn request_segment(&mut self, toggle: bool, size: Option<u32>) -> TransferStep<N, L> {
+        self.state = TransferState::UploadSegment { toggle, size };
+        TransferStep::Send(GenericSdoRequest::UploadSegment { toggle })
+    }
+
+    fn send_segment(&mut self, offset: usize, toggle: bool) -> TransferStep<N, L> {
+        let segment = GenericSdoSegment::cut(&self.data, offset, toggle, self.segment_len);
+        let sent = offset + segment.bytes.len();
+        self.state = TransferState::DownloadSegment { toggle, sent };
+        TransferStep::Send(GenericSdoRequest::DownloadSegment(segment))
+    }
+
+    fn done(&self, sized: bool) -> TransferStep<N, L> {
+        let bytes = match self.direction() {
+            TransferDirection::Upload => self.data,
+            TransferDirection::Download => Bounded::new(),
+        };
+        TransferStep::Done(SdoValue { bytes, sized })
     }
 }
 
-/// The toggle bit in its place.
-pub(super) const fn toggle_bit(toggle: bool) -> u8 {
-    if toggle { TOGGLE } else { 0 }
+fn check_toggle(expected: bool, got: bool) -> Result<(), TransferError> {
+    if expected == got {
+        Ok(())
+    } else {
+        Err(TransferError::Toggle { expected, got })
+    }
 }

@@ -267,7 +267,7 @@ fn request(drive_request: DriveRequest, gearing: Gearing) -> Frame {
 
 /// Address and error answer of the two probe requests.
 const fn marker(second: bool) -> (Address, CommError) {
-    let [one, other] = drive::MARKERS;
+    let [one, other] = drive::PROBES;
     if second { other } else { one }
 }
 

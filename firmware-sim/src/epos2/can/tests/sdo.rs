@@ -6,7 +6,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 use protocol::canopen::NodeId;
 use protocol::canopen::nmt::NmtCommand;
-use protocol::canopen::sdo::{Access, SdoClient};
+use protocol::canopen::sdo::{SdoClient, TransferDirection};
 use protocol::epos2::CommError;
 use protocol::epos2::objects::{self, Address};
 use units::{Span, Stamp};
@@ -221,7 +221,7 @@ fn every_entry_reads_over_can_as_it_is() {
             });
         }
         let outcome = client.poll_outcome().unwrap();
-        assert_eq!(outcome.access, Access::Read);
+        assert_eq!(outcome.direction, TransferDirection::Upload);
         match bus.node.read(entry.address) {
             Ok(value) => assert_eq!(outcome.result.unwrap().bytes.as_slice(), value.bytes()),
             Err(code) => {

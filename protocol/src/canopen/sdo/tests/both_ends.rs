@@ -28,24 +28,24 @@ impl Server {
         }
     }
 
-    fn answer(&mut self, request: Request) -> Answer {
+    fn answer(&mut self, request: SdoRequest) -> SdoResponse {
         match request {
-            Request::InitiateUpload { address } => {
+            SdoRequest::InitiateUpload { address } => {
                 (self.at, self.toggle) = (0, false);
                 let size = self.announce.then_some(self.data.len() as u32);
                 let transfer = Expedited::new(&self.data)
                     .filter(|_| self.expedite)
                     .map_or(Initiate::Segmented { size }, Initiate::Expedited);
-                Answer::InitiateUpload { address, transfer }
+                SdoResponse::InitiateUpload { address, transfer }
             }
-            Request::UploadSegment { toggle } => {
+            SdoRequest::UploadSegment { toggle } => {
                 assert_eq!(toggle, self.toggle);
-                let segment = Segment::cut(&self.data, self.at, toggle);
+                let segment = SdoSegment::cut(&self.data, self.at, toggle, SEGMENT_LEN);
                 self.at += segment.bytes.len();
                 self.toggle = !toggle;
-                Answer::UploadSegment(segment)
+                SdoResponse::UploadSegment(segment)
             }
-            Request::InitiateDownload { address, transfer } => {
+            SdoRequest::InitiateDownload { address, transfer } => {
                 self.toggle = false;
                 self.data.clear();
                 match transfer {
@@ -53,27 +53,30 @@ impl Server {
                     Initiate::Segmented { size } => self.announced = size,
                     Initiate::Unsized(_) => panic!("the client says sizes"),
                 }
-                Answer::InitiateDownload { address }
+                SdoResponse::InitiateDownload { address }
             }
-            Request::DownloadSegment(segment) => {
+            SdoRequest::DownloadSegment(segment) => {
                 assert_eq!(segment.toggle, self.toggle);
                 self.data.extend(segment.bytes.as_slice());
                 self.toggle = !self.toggle;
                 if segment.last {
                     assert_eq!(self.announced, Some(self.data.len() as u32));
                 }
-                Answer::DownloadSegment {
+                SdoResponse::DownloadSegment {
                     toggle: segment.toggle,
                 }
             }
-            Request::Abort { .. } | Request::Unknown(_) => panic!("{request:?}"),
+            SdoRequest::Abort { .. } | SdoRequest::Unknown(_) => panic!("{request:?}"),
         }
     }
 
-    fn serve(&mut self, client: &mut Client) -> Outcome<ROOM> {
+    fn serve(&mut self, client: &mut Client) -> SdoOutcome<ROOM> {
         for _ in 0..20 {
             for request in sent(client, at(0)) {
-                assert_eq!(hear(client, self.answer(request)), Handled::Taken);
+                assert_eq!(
+                    hear(client, self.answer(request)),
+                    FrameDisposition::Accepted
+                );
             }
             if let Some(outcome) = client.poll_outcome() {
                 return outcome;
@@ -83,7 +86,7 @@ impl Server {
     }
 }
 
-fn noise() -> impl Strategy<Value = Answer> {
+fn noise() -> impl Strategy<Value = SdoResponse> {
     let byte = prop_oneof![
         prop::sample::select(
             &[
@@ -99,7 +102,7 @@ fn noise() -> impl Strategy<Value = Answer> {
         if ours {
             bytes[1..4].copy_from_slice(&[0x08, 0x10, 0x00]);
         }
-        Answer::from_bytes(bytes)
+        SdoResponse::from_bytes(bytes)
     })
 }
 
@@ -140,10 +143,10 @@ proptest! {
 
     #[test]
     fn any_eight_bytes_are_a_message_both_ways(bytes in any::<[u8; 8]>()) {
-        let request = Request::from_bytes(bytes);
-        prop_assert_eq!(Request::from_bytes(request.to_bytes()), request);
-        let answer = Answer::from_bytes(bytes);
-        prop_assert_eq!(Answer::from_bytes(answer.to_bytes()), answer);
+        let request = SdoRequest::from_bytes(bytes);
+        prop_assert_eq!(SdoRequest::from_bytes(request.to_bytes()), request);
+        let answer = SdoResponse::from_bytes(bytes);
+        prop_assert_eq!(SdoResponse::from_bytes(answer.to_bytes()), answer);
         prop_assert_eq!(answer.to_bytes()[0] >> 5, bytes[0] >> 5);
     }
 

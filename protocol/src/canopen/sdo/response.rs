@@ -1,7 +1,7 @@
-//! What a node's SDO server answers.
+//! Responses of a node's SDO server.
 
-use super::transfer::{Initiate, Segment, TOGGLE, toggle_bit};
-use super::{ABORT, LEN, address, command, message};
+use super::data::{GenericSdoSegment, Initiate, SEGMENT_LEN, TOGGLE, toggle_bit};
+use super::{ABORT, GenericSdoRequest, LEN, address, command, message};
 use crate::canopen::cob_id::{CommunicationObject, NodeId};
 use crate::canopen::error::{MessageError, MessageKind};
 use crate::canopen::frame::CanFrame;
@@ -9,47 +9,50 @@ use crate::canopen::message::{bytes, wrong_id};
 use crate::epos2::CommError;
 use crate::epos2::objects::Address;
 
-/// Command specifiers of a server.
+/// Server command specifiers.
 const UPLOAD_SEGMENT: u8 = 0;
 const DOWNLOAD_SEGMENT: u8 = 1;
 const INITIATE_UPLOAD: u8 = 2;
 const INITIATE_DOWNLOAD: u8 = 3;
 
-/// A message from server to client.
+/// A message from server to client on CAN.
+pub type SdoResponse = GenericSdoResponse<SEGMENT_LEN>;
+
+/// A message from server to client, with segments of up to `L` bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum GenericSdoResponse<const L: usize> {
     /// The next segment.
-    UploadSegment(Segment),
-    /// The segment was taken.
+    UploadSegment(GenericSdoSegment<L>),
+    /// Confirms a segment that was written.
     DownloadSegment {
         /// As in the request.
         toggle: bool,
     },
-    /// The object is read.
+    /// Starts or completes a read.
     InitiateUpload {
         /// The object.
         address: Address,
-        /// Its data, or the size of it.
+        /// Its data or size.
         transfer: Initiate,
     },
-    /// The object is written, or its segments may come.
+    /// Confirms an expedited write, or the start of a segmented one.
     InitiateDownload {
         /// The object.
         address: Address,
     },
-    /// The server refuses or breaks off.
+    /// Aborts the transfer.
     Abort {
         /// The object of the transfer.
         address: Address,
-        /// Why.
+        /// The abort code.
         error: CommError,
     },
-    /// A command specifier that this protocol does not look into (5 and 6: block transfer).
+    /// Another command specifier (5 and 6: block transfer).
     Unknown([u8; LEN]),
 }
 
-impl Answer {
-    /// The data of the frame.
+impl<const L: usize> GenericSdoResponse<L> {
+    /// The data of the frame. A segment is cut to the seven bytes that fit.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; LEN] {
         match *self {
@@ -72,14 +75,14 @@ impl Answer {
         }
     }
 
-    /// The message of a frame's data; bits and bytes that it does not use do not count.
+    /// The message in a frame's data. Unused bits and bytes are ignored.
     #[must_use]
     pub fn from_bytes(bytes: [u8; LEN]) -> Self {
         let [command, data @ ..] = bytes;
         let [low, high, sub, rest @ ..] = data;
         let address = address(low, high, sub);
         match command >> 5 {
-            UPLOAD_SEGMENT => Self::UploadSegment(Segment::parse(command, data)),
+            UPLOAD_SEGMENT => Self::UploadSegment(GenericSdoSegment::parse(command, data)),
             DOWNLOAD_SEGMENT => Self::DownloadSegment {
                 toggle: command & TOGGLE != 0,
             },
@@ -96,22 +99,22 @@ impl Answer {
         }
     }
 
-    /// The answer of `node` as a frame.
+    /// The response of `node` as a frame.
     #[must_use]
     pub fn to_frame(&self, node: NodeId) -> CanFrame {
         CanFrame::of(
-            CommunicationObject::SdoAnswer(node).cob_id(),
+            CommunicationObject::SdoResponse(node).cob_id(),
             self.to_bytes(),
         )
     }
 
-    /// The node that answers, and the answer in `frame`.
+    /// The responding node and the response in `frame`.
     ///
     /// # Errors
-    /// [`MessageError`]; an SDO message has eight bytes whatever it uses of them.
+    /// [`MessageError`]; an SDO message always has eight bytes.
     pub fn parse(frame: &CanFrame) -> Result<(NodeId, Self), MessageError> {
-        let layer = MessageKind::SdoAnswer;
-        let Some(CommunicationObject::SdoAnswer(node)) =
+        let layer = MessageKind::SdoResponse;
+        let Some(CommunicationObject::SdoResponse(node)) =
             frame.cob_id().map(CommunicationObject::of)
         else {
             return Err(wrong_id(layer, "581 to 5FF", frame));
@@ -119,7 +122,7 @@ impl Answer {
         Ok((node, Self::from_bytes(*bytes(layer, frame)?)))
     }
 
-    /// The object that the answer names; segments name none.
+    /// The object named by the response; segments name none.
     #[must_use]
     pub const fn address(&self) -> Option<Address> {
         match self {
@@ -128,5 +131,31 @@ impl Answer {
             | Self::Abort { address, .. } => Some(*address),
             Self::UploadSegment(_) | Self::DownloadSegment { .. } | Self::Unknown(_) => None,
         }
+    }
+
+    /// Whether this can be the response to `request`: same service, same object where both name one.
+    #[must_use]
+    pub fn answers(&self, request: &GenericSdoRequest<L>) -> bool {
+        let same_object = match (self.address(), request.address()) {
+            (Some(got), Some(expected)) => got == expected,
+            _ => true,
+        };
+        same_object
+            && matches!(
+                (self, request),
+                (
+                    Self::UploadSegment(_),
+                    GenericSdoRequest::UploadSegment { .. }
+                ) | (
+                    Self::DownloadSegment { .. },
+                    GenericSdoRequest::DownloadSegment(_)
+                ) | (
+                    Self::InitiateUpload { .. },
+                    GenericSdoRequest::InitiateUpload { .. }
+                ) | (
+                    Self::InitiateDownload { .. },
+                    GenericSdoRequest::InitiateDownload { .. }
+                ) | (Self::Abort { .. }, _)
+            )
     }
 }

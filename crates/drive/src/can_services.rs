@@ -1,0 +1,325 @@
+//! CANopen services other than SDO: heartbeats both ways, boot-up, EMCY, NMT, and the stream of
+//! positions in a TPDO at each SYNC.
+//!
+//! A state machine without I/O. It reports events as an [`Alarm`]; the procedures react to them.
+
+use std::collections::VecDeque;
+
+use protocol::canopen::heartbeat::{Heartbeat, HeartbeatConsumer, HeartbeatEvent};
+use protocol::canopen::nmt::{Nmt, NmtCommand, NmtState};
+use protocol::canopen::pdo::{Configuration, MappedObject, Pdo, PdoLayout, TransmissionType};
+use protocol::canopen::sdo::SdoRequest;
+use protocol::canopen::sync::SyncMessage;
+use protocol::canopen::{BusMessage, CanFrame, CommunicationObject, NodeId, PdoNumber};
+use protocol::epos2::objects::{Address, POSITION_ACTUAL, TIMESTAMP};
+use protocol::epos2::{CommError, DeviceError};
+use units::{Host, Quadcounts, Span, Stamp};
+
+use crate::config::CanHeartbeats;
+use crate::event::{SampleTrigger, ShaftSample};
+use crate::sync_matcher::SyncMatcher;
+
+/// An event that ends a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Alarm {
+    /// An EMCY message.
+    Emergency(DeviceError),
+    /// A boot-up message.
+    BootUp,
+    /// No heartbeat for this span.
+    HeartbeatLost(Span),
+    /// The node left the state operational and sends no process data.
+    NotOperational(NmtState),
+}
+
+/// The PDO that carries the stream.
+pub(crate) const STREAM: Pdo = Pdo::Transmit(PdoNumber::One);
+/// Shortest SYNC period: the drive's position loop runs at 1 kHz.
+const MIN_SYNC_PERIOD: Span = Span::from_millis(1);
+/// Time for a delayed host to read pending frames before it reports a lost heartbeat.
+const HEARTBEAT_GRACE: Span = Span::from_millis(10);
+
+/// The CANopen services of one node.
+#[derive(Debug)]
+pub(crate) struct CanServices {
+    node: NodeId,
+    config: CanHeartbeats,
+    out: VecDeque<CanFrame>,
+    heartbeat: HeartbeatConsumer,
+    /// When the host noticed a missing heartbeat.
+    missing_since: Option<Stamp<Host>>,
+    operational: bool,
+    /// When the host's next heartbeat is due.
+    next_heartbeat: Option<Stamp<Host>>,
+    syncs: SyncMatcher,
+    next_sync: Option<Stamp<Host>>,
+    /// The node is configured to send the stream.
+    pub streaming: bool,
+    /// The node has the object (1016) that monitors the host's heartbeat.
+    pub monitors_host: bool,
+    /// The latest sample that has not been taken.
+    latest: Option<ShaftSample>,
+    /// The stream has stalled: a wait for it timed out.
+    stalled: bool,
+    alarm: Option<Alarm>,
+    restarted: bool,
+}
+
+impl CanServices {
+    pub fn new(node: NodeId, config: CanHeartbeats) -> Self {
+        Self {
+            node,
+            config,
+            out: VecDeque::new(),
+            heartbeat: HeartbeatConsumer::new(node, config.node_limit),
+            missing_since: None,
+            operational: false,
+            next_heartbeat: None,
+            syncs: SyncMatcher::default(),
+            next_sync: None,
+            streaming: false,
+            monitors_host: false,
+            latest: None,
+            stalled: false,
+            alarm: None,
+            restarted: false,
+        }
+    }
+
+    pub fn node(&self) -> NodeId {
+        self.node
+    }
+
+    /// Starts a command. Events between commands are dropped, except for a restart of the node.
+    pub fn begin(&mut self, now: Stamp<Host>) {
+        self.syncs.observe(now);
+        self.heartbeat = HeartbeatConsumer::new(self.node, self.config.node_limit);
+        self.missing_since = None;
+        self.operational = false;
+        self.latest = None;
+        self.alarm = self.restarted.then_some(Alarm::BootUp);
+    }
+
+    /// Ends a command. The host's heartbeat continues with the next one until it is stopped.
+    pub fn end(&mut self) {
+        self.next_sync = None;
+    }
+
+    /// Resets the state before the node is configured.
+    pub fn reset(&mut self) {
+        self.restarted = false;
+        self.alarm = None;
+        self.streaming = false;
+        self.stalled = false;
+        self.monitors_host = false;
+        self.next_heartbeat = None;
+        self.syncs.restart();
+    }
+
+    pub fn send_nmt(&mut self, command: NmtCommand) {
+        let node = Some(self.node);
+        self.operational = false;
+        self.out.push_back(Nmt { node, command }.to_frame());
+    }
+
+    /// Aborts an SDO transfer.
+    pub fn abort_transfer(&mut self, address: Address, error: CommError) {
+        let abort = SdoRequest::Abort { address, error };
+        self.out.push_back(abort.to_frame(self.node));
+    }
+
+    /// Starts the host's heartbeat.
+    pub fn start_heartbeat(&mut self, now: Stamp<Host>) {
+        self.next_heartbeat.get_or_insert(now);
+    }
+
+    pub fn sends_heartbeat(&self) -> bool {
+        self.next_heartbeat.is_some()
+    }
+
+    pub fn stop_heartbeat(&mut self) {
+        self.next_heartbeat = None;
+    }
+
+    /// Starts SYNC messages if none are sent. Returns whether a sample of the stream can be expected.
+    pub fn request_samples(&mut self, now: Stamp<Host>) -> bool {
+        if self.next_sync.is_none() {
+            self.next_sync = Some(self.syncs.earliest_sync(now).max(now));
+            self.latest = None;
+        }
+        self.streaming && (!self.stalled || self.latest.is_some())
+    }
+
+    pub fn take_sample(&mut self) -> Option<ShaftSample> {
+        self.latest.take()
+    }
+
+    /// Records that a wait for the stream timed out.
+    pub fn set_stalled(&mut self) {
+        self.stalled = true;
+    }
+
+    pub fn take_alarm(&mut self) -> Option<Alarm> {
+        self.alarm.take()
+    }
+
+    pub fn has_alarm(&self) -> bool {
+        self.alarm.is_some()
+    }
+
+    pub fn has_restarted(&self) -> bool {
+        self.restarted
+    }
+
+    /// Processes a frame other than an SDO response; returns the sample it carries, if any.
+    pub fn handle_frame(&mut self, frame: &CanFrame, now: Stamp<Host>) -> Option<ShaftSample> {
+        match BusMessage::parse(frame).ok()? {
+            BusMessage::Emergency(emergency)
+                if emergency.node == self.node && !emergency.is_reset() =>
+            {
+                let error = DeviceError(emergency.code);
+                self.alarm.get_or_insert(Alarm::Emergency(error));
+            }
+            BusMessage::Heartbeat(_) => self.handle_heartbeat(frame, now),
+            BusMessage::TransmitPdo(PdoNumber::One, node, data) if node == self.node => {
+                return self.handle_pdo(&data, now);
+            }
+            _ => {}
+        }
+        None
+    }
+
+    /// The next frame to send.
+    pub fn transmit(&mut self, now: Stamp<Host>, sync_period: Span) -> Option<CanFrame> {
+        if let Some(due) = self.next_sync.filter(|due| *due <= now) {
+            return Some(self.send_sync(due, now, sync_period));
+        }
+        if self.next_heartbeat.is_some_and(|due| due <= now) {
+            self.next_heartbeat = Some(now.saturating_add(self.config.host_heartbeat));
+            let state = NmtState::Operational;
+            let node = NodeId::new(self.config.host_node)?;
+            return Some(Heartbeat { node, state }.to_frame());
+        }
+        self.out.pop_front()
+    }
+
+    pub fn deadline(&self) -> Option<Stamp<Host>> {
+        let lost = self
+            .missing_since
+            .map(|since| since.saturating_add(HEARTBEAT_GRACE));
+        [
+            self.next_sync,
+            self.next_heartbeat,
+            lost.or(self.heartbeat.poll_timeout()),
+        ]
+        .into_iter()
+        .flatten()
+        .min()
+    }
+
+    /// Acts on deadlines that have passed.
+    pub fn expire(&mut self, now: Stamp<Host>) {
+        let Some(due) = self.heartbeat.poll_timeout().filter(|due| *due <= now) else {
+            return;
+        };
+        let since = *self.missing_since.get_or_insert(now);
+        if now < since.saturating_add(HEARTBEAT_GRACE) {
+            return;
+        }
+        self.missing_since = None;
+        if let Some(HeartbeatEvent::Lost { silence }) = self.heartbeat.handle_timeout(now.max(due))
+        {
+            self.alarm.get_or_insert(Alarm::HeartbeatLost(silence));
+        }
+    }
+
+    fn handle_heartbeat(&mut self, frame: &CanFrame, now: Stamp<Host>) {
+        match self.heartbeat.handle_frame(frame, now) {
+            Some(HeartbeatEvent::BootUp) => {
+                self.restarted = true;
+                self.streaming = false;
+                self.syncs.restart();
+                self.alarm = Some(Alarm::BootUp);
+            }
+            // A state unknown to CiA 301 is a damaged byte: SLCAN lines have no checksum.
+            Some(HeartbeatEvent::State {
+                to: NmtState::Unknown(_),
+                ..
+            }) => {}
+            Some(HeartbeatEvent::State { to, .. }) => {
+                let was_operational = self.operational;
+                self.operational = to == NmtState::Operational;
+                if was_operational && !self.operational {
+                    self.alarm.get_or_insert(Alarm::NotOperational(to));
+                }
+            }
+            Some(HeartbeatEvent::Lost { .. }) | None => {}
+        }
+        if self.heartbeat.poll_timeout().is_some_and(|due| due > now) {
+            self.missing_since = None;
+        }
+    }
+
+    fn send_sync(&mut self, due: Stamp<Host>, now: Stamp<Host>, period: Span) -> CanFrame {
+        self.syncs.handle_sync(now);
+        let period = period.max(MIN_SYNC_PERIOD);
+        // Keeps to the grid unless that would cause a burst.
+        let on_grid = due.saturating_add(period);
+        let next = if on_grid > now {
+            on_grid
+        } else {
+            now.saturating_add(period)
+        };
+        self.next_sync = Some(next.max(self.syncs.earliest_sync(now)));
+        SyncMessage::default().to_frame()
+    }
+
+    fn handle_pdo(&mut self, data: &[u8], now: Stamp<Host>) -> Option<ShaftSample> {
+        if !self.streaming {
+            return None;
+        }
+        let layout = layout();
+        let position = layout.get(POSITION_ACTUAL, data).ok()??;
+        let device_us = layout.get(TIMESTAMP, data).ok()??;
+        let was_started = self.syncs.is_started();
+        let request = self.syncs.handle_pdo(device_us, now)?;
+        if !was_started && self.next_sync.is_some() {
+            // The single first SYNC is matched: the next may follow in sequence.
+            self.next_sync = Some(now);
+        }
+        let sample = ShaftSample {
+            request,
+            answer: now,
+            position: Quadcounts(position),
+            trigger: SampleTrigger::Sync,
+            device_us: Some(device_us),
+        };
+        self.stalled = false;
+        self.latest = Some(sample);
+        Some(sample)
+    }
+}
+
+/// Content of the stream: the position and the drive's time.
+pub(crate) fn layout() -> PdoLayout {
+    // Cannot fail: two objects of four bytes fit a frame.
+    PdoLayout::new(&[
+        MappedObject::of(POSITION_ACTUAL),
+        MappedObject::of(TIMESTAMP),
+    ])
+    .unwrap_or_default()
+}
+
+/// Configuration of the stream's PDO.
+pub(crate) fn stream_configuration() -> Configuration {
+    Configuration {
+        transmission: TransmissionType::EACH_SYNC,
+        inhibit_100us: Some(0),
+        layout: layout(),
+    }
+}
+
+/// Whether `channel` is that of the stream.
+pub(crate) fn is_stream(channel: CommunicationObject, node: NodeId) -> bool {
+    channel == STREAM.channel(node)
+}
