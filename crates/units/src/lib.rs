@@ -1,10 +1,4 @@
-//! Quantities and clock domains as concrete types, so that degrees and radians, quadcounts and rpm,
-//! lidar time and host time cannot be mixed.
-//!
-//! Time is `i64` nanoseconds throughout: exact for 292 years around its epoch. Angles, lengths and
-//! rates are `f64`. There is no trait tower here and no arithmetic between unlike quantities: a
-//! conversion that needs a fact (a gear ratio, a clock model) is a method of the type that holds
-//! the fact.
+#![doc = include_str!("../README.md")]
 #![no_std]
 
 mod angle;
