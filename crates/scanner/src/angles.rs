@@ -14,7 +14,7 @@ pub use table::{AngleTable, TableTime};
 /// The platform's angle at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngleSample {
-    /// When the angle held: the middle of request and answer.
+    /// Middle of request and answer.
     pub host: Stamp<Host>,
     /// Half of the round trip: the angle held within this span of `host`.
     pub bound: Span,

@@ -1,5 +1,4 @@
-//! What a scan needs to know beside its bytes: carried in the log as TOML, so that a log explains
-//! itself.
+//! Configuration of a scan, carried in the log as TOML.
 
 use cloud::mount::Mount;
 use serde::{Deserialize, Serialize};
@@ -15,25 +14,24 @@ pub struct ScanConfig {
     pub device: String,
     /// Whether the devices were software.
     pub simulated: bool,
-    /// How the lidar sits on the tilt axis.
+    /// Mount of the lidar on the tilt axis.
     pub mount: MountConfig,
-    /// How well the lidar measures.
+    /// Accuracy of the lidar.
     pub lidar: LidarConfig,
     /// The tilt axis.
     pub axis: AxisConfig,
     /// Speed of the drive's RS232 line, baud; absent on every other link.
     pub rs232_baud: Option<u32>,
-    /// What was to be swept; absent where nothing was.
+    /// The planned sweeps; absent if none were planned.
     pub sweep: Option<SweepPlan>,
 }
 
-/// Bytes of the body that asks for an object on RS232 (Communication Guide: length, two words,
-/// checksum), and bits of a byte.
+/// Bits of the body of a read request on RS232 (Communication Guide: length, two words, checksum),
+/// with start, stop and eight data bits per byte.
 const READ_BODY_BITS: i64 = 7 * 10;
 
 impl ScanConfig {
-    /// How long the question for a position is under way on an RS232 line before the drive has all
-    /// of it; nothing elsewhere.
+    /// Transmission time of a position request on an RS232 line; zero on other links.
     pub(crate) fn request_transmission_time(&self) -> Span {
         let baud = i64::from(self.rs232_baud.unwrap_or(0));
         Span::from_nanos(
@@ -44,7 +42,7 @@ impl ScanConfig {
     }
 }
 
-/// How the lidar sits on the tilt axis.
+/// Mount of the lidar on the tilt axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MountConfig {
@@ -52,11 +50,11 @@ pub struct MountConfig {
     pub d_m: f64,
 }
 
-/// How well the lidar measures.
+/// Accuracy of the lidar.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LidarConfig {
-    /// Standard deviation of a range, metres, steps of the wire included.
+    /// Standard deviation of a range, including quantisation, metres.
     pub range_sd_m: f64,
 }
 
@@ -85,7 +83,7 @@ pub struct SweepPlan {
     pub cruise_deg_s: f64,
     /// Acceleration as commanded in whole rpm/s, degrees per second squared.
     pub accel_deg_s2: f64,
-    /// How many sweeps.
+    /// Number of sweeps.
     pub sweeps: u32,
     /// Whether the way back is a sweep too.
     pub both_ways: bool,
@@ -114,15 +112,15 @@ impl Default for MountConfig {
 }
 
 impl Default for LidarConfig {
-    /// 3 cm: the typical accuracy of the VLP-16 by its manual (63-9243, specifications), which does
-    /// not say of what kind it is; here it counts as one standard deviation.
+    /// 3 cm: the typical accuracy of the VLP-16 by its manual (63-9243, specifications). The manual
+    /// does not define it; here it counts as one standard deviation.
     fn default() -> Self {
         Self { range_sd_m: 0.03 }
     }
 }
 
 impl Default for AxisConfig {
-    /// 500 lines behind 120:1: 0.0015 deg a quadcount, 0.05 deg/s an rpm.
+    /// 500 lines behind 120:1: 0.0015 deg per quadcount, 0.05 deg/s per rpm.
     fn default() -> Self {
         Self {
             node: 1,
@@ -144,7 +142,7 @@ impl AxisConfig {
     /// The gearing.
     ///
     /// # Errors
-    /// Where a number of it is zero.
+    /// If one of its numbers is zero.
     pub fn gearing(self) -> Result<Gearing, GearingError> {
         let [motor_turns, axis_turns] = self.gear;
         Gearing::new(self.encoder_lines, motor_turns, axis_turns)
@@ -152,7 +150,7 @@ impl AxisConfig {
 }
 
 impl SweepPlan {
-    /// Whether a move from `from` towards `target` is a sweep of the plan: along it, or `back`.
+    /// Whether a move from `from` towards `target` is a sweep of the plan, forward or `back`.
     #[must_use]
     pub fn is_sweep(&self, from: Degrees, target: Degrees, back: bool, tolerance_deg: f64) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= tolerance_deg;

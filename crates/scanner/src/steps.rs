@@ -1,18 +1,16 @@
-//! Clocks that are set in mid-recording: found, told apart, undone.
+//! Clocks that are set in mid-recording: found, attributed and undone.
 //!
-//! Three clocks stamp what is recorded, and two of them may be set: the host's (by NTP, for a leap
-//! second, by hand) and the lidar's (by its pulse per second, or because it began anew). Either
-//! shows as a jump of (arrival - device time) that stays: a delay goes as it came, this does not
-//! (`jumps`). Whose clock it was is told by who else saw it. The drive's records are stamped by the
-//! host's clock alone, so if they jump by as much at the same place of the recording, it was the
-//! host's; else, and without records of the drive, it was the clock whose spacing from packet to
-//! packet was not its usual one.
+//! Three clocks stamp a recording, and two of them may be set: the host's (by NTP, for a leap
+//! second, by hand) and the lidar's (by its pulse per second, or at a restart). Either appears as a
+//! lasting jump of (arrival - device time), while delays are made up for (`jumps`). The drive's
+//! records are stamped by the host's clock alone. If they jump by as much at the same place, the
+//! host's clock was set. Otherwise, or without records of the drive, it was the clock whose spacing
+//! from packet to packet is irregular.
 //!
-//! All host stamps after a step of the host's clock, the drive's too (`monotonic`), are brought
-//! back to the clock before it, so time goes on evenly and so do clock and trajectory. A lidar's
-//! clock that was set has another piece from then on. Steps of the host's clock below 10 ms are not
-//! looked for: they show in the clock's bound. So does what is undone within six seconds. An hour
-//! that wraps is nothing to be found here: `lidar` unwraps it.
+//! All host stamps after a step of the host's clock, including the drive's (`monotonic`), are
+//! converted to the clock before it. After a step of the lidar's clock, that clock has another
+//! piece. Steps of the host's clock below 10 ms, and steps undone within six seconds, are not
+//! searched for; the clock's bound contains them. `lidar` unwraps hours.
 
 mod jumps;
 mod monotonic;
@@ -26,25 +24,25 @@ use jumps::Jump;
 use monotonic::before;
 pub(crate) use monotonic::{ClockSteps, HostTimeline};
 
-/// Which clock was set.
+/// The clock that was set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetClock {
-    /// The recording host's.
+    /// The recording host's clock.
     Host,
-    /// The lidar's, or the lidar began anew.
+    /// The lidar's clock, set or restarted.
     Lidar,
 }
 
-/// A clock that was set in mid-recording.
+/// A step of a clock in mid-recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClockStep {
-    /// Which.
+    /// The clock.
     pub clock: SetClock,
-    /// When, by the host's clock as it was at the recording's begin.
+    /// Time of the step, by the host's clock as it was at the beginning.
     pub when: Stamp<Host>,
-    /// How long after the lidar's first packet.
+    /// Time since the lidar's first packet.
     pub after: Span,
-    /// How far forward; negative where it was set back.
+    /// Size of the step; negative if the clock was set back.
     pub by: Span,
 }
 
@@ -69,28 +67,28 @@ impl fmt::Display for ClockStep {
     }
 }
 
-/// Time as it went on.
+/// Clock and stamps, without the steps of the host's clock.
 pub(crate) struct Timeline {
     pub clock: LidarClock,
     pub steps: Vec<ClockStep>,
-    /// Host stamps of the drive's records, brought to one clock.
+    /// Converts host stamps of the drive's records.
     pub drive: HostTimeline,
-    /// The lidar's packets, likewise.
+    /// The lidar's packets, with converted stamps.
     pub arrivals: Vec<Arrival>,
 }
 
-/// Packets this near to a step say nothing: which side they are of is not certain.
-const UNSURE: usize = 16;
+/// Packets this near to a step are not used: their side of it is uncertain.
+const UNCERTAIN_PACKETS: usize = 16;
 
 impl Timeline {
-    /// Finds the lidar's clock and what steps there were, from packets in the order in which they
-    /// were recorded. `None` without a packet.
-    pub fn new(arrivals: &[Arrival], monotonic: &ClockSteps) -> Option<Self> {
+    /// Finds the lidar's clock and the steps, from packets in order of recording. `None` without
+    /// packets.
+    pub fn new(arrivals: &[Arrival], clock_steps: &ClockSteps) -> Option<Self> {
         let found = jumps::find(arrivals);
         let mut cuts: Vec<(Jump, SetClock)> = found
             .jumps
             .iter()
-            .filter_map(|jump| Some((*jump, judge(*jump, &found, arrivals, monotonic)?)))
+            .filter_map(|jump| Some((*jump, attribute(*jump, &found, arrivals, clock_steps)?)))
             .collect();
         cuts.sort_by_key(|(jump, _)| jump.at);
         let pieces = pieces(arrivals, &cuts, &found.strays);
@@ -100,7 +98,7 @@ impl Timeline {
             .collect();
         let (clock, rises) = LidarClock::fit_pieces(&pieces, &host_was_set)?;
         let begin = arrivals.first()?.host;
-        let mut line = HostTimeline::new(monotonic);
+        let mut line = HostTimeline::new(clock_steps);
         let mut steps = Vec::new();
         let mut corrected = arrivals.to_vec();
         let mut total = Span::ZERO;
@@ -116,7 +114,7 @@ impl Timeline {
                 for arrival in corrected.get_mut(jump.at..).unwrap_or_default() {
                     arrival.host = before(arrival.host, by);
                 }
-                line.set(monotonic.boundary(jump.at, by), by);
+                line.set(clock_steps.boundary(jump.at, by), by);
             }
             let when = match clock {
                 SetClock::Host => before(when, by),
@@ -138,18 +136,18 @@ impl Timeline {
     }
 }
 
-/// Whose clock jumped; `None` where neither did, and packets were merely delayed.
-fn judge(
+/// The clock that jumped; `None` if packets were merely delayed.
+fn attribute(
     jump: Jump,
     found: &jumps::JumpReport,
     arrivals: &[Arrival],
-    monotonic: &ClockSteps,
+    clock_steps: &ClockSteps,
 ) -> Option<SetClock> {
-    if monotonic.shows(jump.at, jump.by) {
+    if clock_steps.shows(jump.at, jump.by) {
         return Some(SetClock::Host);
     }
     let device_jumped = found.device_jumped(arrivals, jump.at);
-    if monotonic.is_dense(jump.at) {
+    if clock_steps.is_dense(jump.at) {
         return device_jumped.then_some(SetClock::Lidar);
     }
     if device_jumped {
@@ -159,8 +157,7 @@ fn judge(
     }
 }
 
-/// The packets between the cuts, without those that are not certain, in order of device time; with
-/// the first and last of all.
+/// The packets between the steps, without uncertain ones, in order of device time.
 fn pieces(arrivals: &[Arrival], cuts: &[(Jump, SetClock)], strays: &[usize]) -> Vec<Stretch> {
     let ends = cuts.iter().map(|(jump, _)| jump.at).chain([arrivals.len()]);
     let mut from = 0;
@@ -171,14 +168,18 @@ fn pieces(arrivals: &[Arrival], cuts: &[(Jump, SetClock)], strays: &[usize]) -> 
             sound.filter_map(|i| arrivals.get(i).copied()).collect()
         };
         let whole = sound(from..to);
-        let begin = if from > 0 { from + UNSURE } else { from };
+        let begin = if from > 0 {
+            from + UNCERTAIN_PACKETS
+        } else {
+            from
+        };
         let end = if to < arrivals.len() {
-            to.saturating_sub(UNSURE)
+            to.saturating_sub(UNCERTAIN_PACKETS)
         } else {
             to
         };
         let mut sure = sound(begin..end.max(begin));
-        if sure.len() < UNSURE {
+        if sure.len() < UNCERTAIN_PACKETS {
             sure.clone_from(&whole);
         }
         let devices = || whole.iter().map(|arrival| arrival.device);

@@ -1,10 +1,9 @@
-//! Which stretches of time were sweeps: found from what the host wrote to the drive and from how
-//! the angle then moved.
+//! Sweeps: intervals of time, from the host's commands to the drive and the angles that follow.
 //!
-//! The commands say when a profile move was asked for and where to; the samples say when the axis
-//! left its place and when it came to rest. A move is a sweep of the plan if it starts at one end
-//! of the plan and heads for the other, so moves to the starting place, homing and returns drop out
-//! without marks in the log. A sweep that was cut short stays one, with the angle it reached.
+//! The commands show when a profile move was requested and its target; the samples show when the
+//! axis left its place and came to rest. A move is a sweep of the plan if it starts at one end of
+//! the plan and heads for the other. Moves to the starting place, homing and returns are thereby
+//! excluded without marks in the log. A sweep that was cut short counts, with the angle it reached.
 
 mod streaming;
 
@@ -15,7 +14,7 @@ use crate::angles::AngleSample;
 use crate::config::SweepPlan;
 pub(crate) use streaming::SweepWatch;
 
-/// One sweep as it happened.
+/// A sweep as measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep {
     /// Angle at its start.
@@ -28,11 +27,11 @@ pub struct Sweep {
     pub start: Stamp<Host>,
     /// First sample at rest after it.
     pub end: Stamp<Host>,
-    /// What the drive was told of its motion.
+    /// The command of its motion.
     pub commanded: Commanded,
 }
 
-/// What a drive was told of a profile move; zero where it was not.
+/// Command of a profile move; zero where it was not written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Commanded {
     /// Speed of the cruise.
@@ -44,7 +43,7 @@ pub struct Commanded {
 }
 
 impl Commanded {
-    /// Nothing.
+    /// No command.
     pub const NOTHING: Self = Self {
         speed: DegPerS(0.0),
         acceleration: DegPerS2(0.0),
@@ -75,17 +74,16 @@ pub struct MoveWatch {
 const PROFILE_POSITION: u32 = 1;
 const NEW_SETPOINT: u16 = 0x0010;
 const RELATIVE: u16 = 0x0040;
-/// How far a move may start or aim from the plan's ends and still be one of its sweeps.
+/// Greatest distance of a sweep's start and target from the ends of the plan.
 const END_TOLERANCE_DEG: f64 = 0.1;
-/// A jump is more than this and than the way at three times the commanded speed.
+/// A jump exceeds this, and the way at three times the commanded speed.
 const JUMP_DEG: f64 = 0.1;
 const JUMP_SPEEDS: f64 = 3.0;
-/// The axis is at rest while it stays within this of its place: an encoder at an edge flickers by
-/// one count.
+/// Range of an axis at rest: an encoder at an edge flickers by one count.
 const REST_QC: f64 = 1.5;
 
 impl MoveWatch {
-    /// A watch behind `gearing`.
+    /// An observer of an axis with `gearing`.
     #[must_use]
     pub fn new(gearing: Gearing) -> Self {
         Self {
@@ -99,7 +97,7 @@ impl MoveWatch {
         }
     }
 
-    /// Takes note of an acknowledged write of `value` to `address`, asked for at `host`.
+    /// Takes an acknowledged write of `value` to `address`, requested at `host`.
     pub fn wrote(&mut self, address: Address, value: u32, host: Stamp<Host>) {
         if address == objects::TARGET_POSITION.address {
             self.target = Some(Quadcounts(value as i32));
@@ -134,7 +132,7 @@ impl MoveWatch {
         }
     }
 
-    /// How many moves were commanded so far, and where the newest goes to.
+    /// Number of moves so far, and target of the newest.
     fn newest(&self) -> Option<(usize, Degrees)> {
         Some((self.moves.len(), self.moves.last()?.target))
     }
@@ -161,8 +159,8 @@ impl MoveWatch {
     }
 }
 
-/// The plan's sweeps among the moves: the first goes along, with `both_ways` the next one back, and
-/// so on, and no more than were planned. So the way to the starting place is none, though it may go
+/// The plan's sweeps among the moves: the first goes forward, with `both_ways` the next one back,
+/// and so on, up to the planned number. The way to the starting place is thereby excluded, even
 /// from end to end.
 fn planned(moved: impl Iterator<Item = (Sweep, Degrees)>, plan: &SweepPlan) -> Vec<Sweep> {
     let mut sweeps: Vec<Sweep> = Vec::new();
@@ -177,14 +175,14 @@ fn planned(moved: impl Iterator<Item = (Sweep, Degrees)>, plan: &SweepPlan) -> V
     sweeps
 }
 
-/// The motion between `command` and `end`, with its target; `None` where the axis did not move.
+/// The motion between `command` and `end`, with its target; `None` if the axis did not move.
 fn sweep(
     command: &Move,
     end: Stamp<Host>,
     samples: &[AngleSample],
     rest: f64,
 ) -> Option<(Sweep, Degrees)> {
-    // One sample before the command, so that the place at rest is known.
+    // One sample before the command, for the place at rest.
     let first = samples
         .partition_point(|s| s.host < command.commanded)
         .saturating_sub(1);
@@ -215,8 +213,8 @@ fn sweep(
     Some((sweep, command.target))
 }
 
-/// How many samples there are before the angle jumps farther than the axis can have gone: a drive
-/// that lost its supply counts from zero again, and what follows is no angle of this axis.
+/// Number of samples before the angle jumps farther than the axis can move. A drive that loses its
+/// supply restarts at zero, and the samples after that are no angles of this axis.
 fn unbroken(window: &[AngleSample], speed: DegPerS) -> usize {
     let jump = window.windows(2).position(|pair| match pair {
         [a, b] => {
@@ -228,8 +226,8 @@ fn unbroken(window: &[AngleSample], speed: DegPerS) -> usize {
     jump.map_or(window.len(), |before| before + 1)
 }
 
-/// Measured speed over the middle half of the way, by least squares: ramps stay outside unless they
-/// take over half of it.
+/// Measured speed over the middle half of the way, by least squares; it excludes ramps of up to
+/// half of it.
 fn cruise(moving: &[AngleSample], from: Degrees, to: Degrees) -> DegPerS {
     let way = to.0 - from.0;
     let middle = |s: &&AngleSample| {

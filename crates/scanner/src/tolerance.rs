@@ -1,10 +1,10 @@
-//! An accuracy that is asked for instead of a method: `2mm@20m`.
+//! Accuracy requested as a length at a distance: `2mm@20m`.
 //!
-//! Every way to know the angle has a bound, and a cost. The cheapest whose bound is good enough at
-//! the distance named is taken; where none is, it is said how far the best one comes, and nothing
-//! is made. What the bound holds is [`crate::trajectory::Trajectory::bound_deg`] and the lidar's
-//! clock at the fastest motion. Left out: the lidar's own ranges, which no choice here changes, and
-//! a delay that all packets of the lidar share, which timing cannot see.
+//! Every method for the angle has an error bound and a cost. The cheapest one with a sufficient
+//! bound at the given distance is chosen. If none is sufficient, the error reports how far the best
+//! one comes. The bound is [`crate::trajectory::Trajectory::bound_deg`] plus the error of the
+//! lidar's clock at the greatest speed. It does not contain the lidar's ranges and a delay common
+//! to all packets, which timing cannot observe.
 
 use core::fmt;
 use core::str::FromStr;
@@ -14,72 +14,72 @@ use units::{DegPerS, Degrees, Metres, Span};
 
 use crate::trajectory::{Method, Trajectory};
 
-/// Points at a distance may be off by so much.
+/// Greatest error of points at a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// By how much, across the line of sight.
+    /// Error, across the line of sight.
     pub off: Metres,
-    /// At what distance from the tilt axis.
+    /// Distance from the tilt axis.
     pub at: Metres,
 }
 
-/// How accurate angles are to be.
+/// Requested accuracy of the angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Accuracy {
     /// As accurate as the recording allows.
     #[default]
     Best,
-    /// By a given method, whatever comes of it.
+    /// A given method.
     By(Method),
-    /// By the cheapest method that is good enough.
+    /// The cheapest method that is sufficient.
     Within(Tolerance),
 }
 
-/// Why a method was taken.
+/// Reason for a method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodChoice {
-    /// What was asked for.
+    /// The requested tolerance.
     pub tolerance: Tolerance,
-    /// Bounds at the distance asked for, the cheapest method first; the last one is the one taken.
+    /// Bounds at the requested distance, in order of cost; the last one is that of the chosen
+    /// method.
     pub bounds: Vec<(Method, Metres)>,
 }
 
-/// Why no method would do.
+/// A tolerance that no method meets.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
     "no method is within {tolerance}: the best, {}, is within {} mm there ({:.4} deg at {:.2} deg/s)",
     .best.name(), three_digits(.bound.0 * 1e3), .bound_angle.0, .fastest.0.abs()
 )]
 pub struct UnreachableTolerance {
-    /// What was asked for.
+    /// The requested tolerance.
     pub tolerance: Tolerance,
     /// The best method.
     pub best: Method,
-    /// How far off its points may be at that distance.
+    /// Greatest error of its points at that distance.
     pub bound: Metres,
-    /// The same as an angle.
+    /// The bound as an angle.
     pub bound_angle: Degrees,
-    /// How much of the bound a delay common to all samples has.
+    /// Share of the bound due to a delay common to all samples.
     pub delay_share: f64,
     /// The greatest speed of the sweeps.
     pub fastest: DegPerS,
 }
 
-/// A number with three digits that count: rounded to one or two a bound may look like what it
-/// misses.
+/// A number with three significant digits: with one or two a bound may look equal to the tolerance
+/// it misses.
 fn three_digits(number: f64) -> String {
     let decimals = 2.0 - number.abs().max(1e-6).log10().floor();
     format!("{number:.*}", decimals.clamp(0.0, 9.0) as usize)
 }
 
 impl UnreachableTolerance {
-    /// The tolerance at the same distance that the best method meets with a tenth to spare, rounded
-    /// up to two digits.
+    /// The tolerance that the best method meets with 10 % to spare, rounded up to two digits.
     #[must_use]
     pub fn tolerance_that_would_do(&self) -> Tolerance {
         let least_mm = 1.1e3 * self.bound.0;
         let digit = 10_f64.powi(least_mm.log10().floor() as i32 - 1);
-        // Of a digit like 0.01 the multiples are not exact: two digits are.
+        // Multiples of a digit such as 0.01 are inexact; parsing two digits is exact.
         let up = format!("{:.1e}", (least_mm / digit).ceil() * digit);
         let mm = up.parse().unwrap_or(least_mm);
         Tolerance {
@@ -88,32 +88,32 @@ impl UnreachableTolerance {
         }
     }
 
-    /// The speed at which the best method would do, where a slower sweep helps: all of its bound
-    /// but the encoder's count shrinks with the speed.
+    /// The speed at which the best method would be sufficient, if a slower sweep helps: all of its
+    /// bound but the encoder's count shrinks with the speed.
     #[must_use]
     pub fn speed_that_would_do(&self) -> Option<DegPerS> {
         /// Below it a motor does not turn evenly.
         const SLOWEST_DEG_S: f64 = 0.05;
-        // A tenth less, as the next scan is not this one.
+        // A tenth less, for the variation from scan to scan.
         let speed = 0.9 * self.fastest.0.abs() * self.tolerance.angle().0 / self.bound_angle.0;
         (speed >= SLOWEST_DEG_S).then_some(DegPerS(speed))
     }
 }
 
 impl Tolerance {
-    /// The angle that it is.
+    /// The tolerance as an angle.
     #[must_use]
     pub fn angle(&self) -> Degrees {
         Degrees((self.off.0 / self.at.0).to_degrees())
     }
 
-    /// How far off a point is by an angle at this distance.
+    /// Displacement of a point by an angle at this distance.
     fn off_by(&self, angle_deg: f64) -> Metres {
         Metres(angle_deg.to_radians() * self.at.0)
     }
 
-    /// The cheapest method of `through` that does, with why; `clock` is how far off the lidar's
-    /// clock may be.
+    /// The cheapest sufficient method of `through`, with the reason; `clock` is the bound of the
+    /// lidar's clock.
     pub(crate) fn choose(
         &self,
         clock: Span,
@@ -183,7 +183,7 @@ impl fmt::Display for MethodChoice {
     }
 }
 
-/// What a tolerance cannot be.
+/// A text that is no tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("expected a length at a distance, such as 2mm@20m (mm, cm or m)")]
 pub struct ParseToleranceError;

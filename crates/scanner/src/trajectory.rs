@@ -1,11 +1,10 @@
-//! The tilt angle over host time: from shaft samples to an angle at any instant.
+//! Tilt angle over host time, from samples to an angle at any instant.
 //!
-//! A [`Trajectory`] is what the synchroniser asks; how it came about is nobody else's concern.
-//! Between sweeps, and with methods that know no sweeps, it goes from sample to sample
-//! (`interpolate`); over each sweep it may be the commanded motion found in the samples (`profile`,
-//! `profile_fit`) or a spline through them (`spline`), whichever is truer (`choose`). All end as
-//! piecewise cubics (`pieces`), followed by one cursor. It never extrapolates: outside its samples
-//! there is no angle.
+//! Between sweeps, and with methods that do not fit sweeps, a [`Trajectory`] connects sample to
+//! sample (`interpolate`). Over each sweep it may be the commanded motion fitted to the samples
+//! (`profile`, `profile_fit`) or a spline through them (`spline`), whichever has the smaller error
+//! (`choose`). All end as piecewise cubics (`pieces`). A trajectory never extrapolates: outside its
+//! samples there is no angle.
 
 use units::{DegPerS, Degrees, Host, Span, Stamp};
 
@@ -32,29 +31,29 @@ pub use pieces::{CubicPiece, PiecewiseCubic};
 pub use prior::RegularisedParameters;
 pub use profile::Profile;
 
-/// How the angle between samples is known.
+/// Method by which the angle between samples is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Method {
-    /// There are none: the platform does not tilt.
+    /// None: the platform does not tilt.
     None,
-    /// The nearest sample's.
+    /// The nearest sample.
     Nearest,
-    /// On a straight line between neighbours.
+    /// A straight line between neighbours.
     Linear,
-    /// On a cubic between neighbours, with speeds from theirs.
+    /// A cubic between neighbours, with speeds from their neighbours.
     Hermite,
-    /// On a least-squares spline through a sweep's samples.
+    /// A least-squares spline through a sweep's samples.
     Spline,
-    /// By the commanded motion, found in a sweep's samples.
+    /// The commanded motion, fitted to a sweep's samples.
     Profile,
-    /// The same behind a servo of first order.
+    /// The commanded motion behind a servo of first order.
     ProfileServo,
-    /// The same behind a servo of second order, which may overshoot.
+    /// The commanded motion behind a servo of second order, which may overshoot.
     ProfileSwing,
 }
 
 impl Method {
-    /// All that know an angle from samples, the cheapest first.
+    /// All methods that use samples, in order of cost.
     pub const ALL: [Self; 7] = [
         Self::Nearest,
         Self::Linear,
@@ -65,7 +64,7 @@ impl Method {
         Self::Spline,
     ];
 
-    /// Its name in reports.
+    /// Name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -80,7 +79,7 @@ impl Method {
         }
     }
 
-    /// Whether it is of whole sweeps, and goes straight between them.
+    /// Whether it fits whole sweeps; between sweeps it is linear.
     #[must_use]
     pub const fn is_fit(self) -> bool {
         matches!(
@@ -90,17 +89,17 @@ impl Method {
     }
 }
 
-/// What is to be said of a sweep's angles.
+/// A remark on a sweep's angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Remark {
-    /// The motion was not the commanded one: a profile would be off by so much, root mean square.
+    /// The motion was not the commanded one.
     NotAsCommanded {
-        /// By how much.
+        /// Error of a profile, root mean square.
         off: Degrees,
     },
-    /// The samples do not tell all of the motion: this was held near what was commanded.
+    /// Some parameters of the motion follow from the command, as the samples do not determine them.
     Regularised(RegularisedParameters),
-    /// No fit was possible: too few samples; they are joined by straight lines.
+    /// Too few samples for a fit: they are connected by straight lines.
     TooFewSamples,
 }
 
@@ -140,9 +139,9 @@ pub struct Trajectory {
     curve: Curve,
     method: Method,
     fits: Vec<SweepFit>,
-    /// As they came, in strictly increasing time.
+    /// In strictly increasing time.
     samples: Vec<AngleSample>,
-    /// A step of the encoder.
+    /// One step of the encoder.
     step_deg: f64,
 }
 
@@ -165,9 +164,10 @@ impl Trajectory {
         }
     }
 
-    /// Through samples in any order; of several at one instant the first is kept. Their angles come
-    /// in steps of `quantum`. A method of whole sweeps goes over `sweeps`, and straight where it
-    /// cannot; without a method each sweep gets the truest. `None` without samples.
+    /// A trajectory through samples in any order; of several at one instant the first is kept.
+    /// Angles are quantised by `quantum`. A method that fits sweeps covers `sweeps` and is linear
+    /// elsewhere; without a method each sweep gets the one with the smallest error. `None` without
+    /// samples.
     #[must_use]
     pub fn through(
         samples: Vec<AngleSample>,
@@ -196,8 +196,8 @@ impl Trajectory {
         Some(trajectory)
     }
 
-    /// The same, of samples whose instants are all off together, by a standard deviation in
-    /// nanoseconds: what that is worth at its speed is added to each piece's.
+    /// Adds an error of time common to all samples, one standard deviation in nanoseconds, to each
+    /// piece's error at its speed.
     #[must_use]
     pub(crate) fn with_shared_sd(mut self, sd_ns: f64) -> Self {
         if let Curve::Piecewise(pieces) = &mut self.curve {
@@ -212,15 +212,14 @@ impl Trajectory {
             return;
         };
         for (i, sweep) in sweeps.iter().enumerate() {
-            // Half of the pause between two sweeps belongs to either.
+            // Half of the pause between two sweeps belongs to each.
             let pause =
                 |a: &Sweep, b: &Sweep| a.end.saturating_add(b.start.saturating_since(a.end).half());
             let before = i.checked_sub(1).and_then(|i| sweeps.get(i));
             let low = before.map_or(Stamp::from_nanos(i64::MIN), |before| pause(before, sweep));
             let next = sweeps.get(i + 1);
             let high = next.map_or(Stamp::from_nanos(i64::MAX), |next| pause(sweep, next));
-            // Samples of one time each: the same noise everywhere would mix a quick sweep with
-            // rest.
+            // The noise of this sweep alone: one estimate for all would mix fast sweeps with rest.
             let inside = within(&self.samples, (sweep.start, sweep.end));
             let noise = Noise::of(inside, Degrees(noise.angle_sd_deg * f64::sqrt(12.0)));
             let best = choose::Candidates::new(sweep, &self.samples, &noise, (low, high))
@@ -247,7 +246,7 @@ impl Trajectory {
         }
     }
 
-    /// One that grows piece by piece; `None` without time.
+    /// A trajectory of one piece, to be continued by [`Trajectory::append`].
     pub(crate) fn of_piece(piece: CubicPiece, end: Stamp<Host>, method: Method) -> Option<Self> {
         Some(Self {
             curve: Curve::Piecewise(PiecewiseCubic::new(vec![piece], end)?),
@@ -258,21 +257,21 @@ impl Trajectory {
         })
     }
 
-    /// Goes on with `piece` until `end`.
+    /// Continues with `piece` until `end`.
     pub(crate) fn append(&mut self, piece: CubicPiece, end: Stamp<Host>) {
         if let Curve::Piecewise(pieces) = &mut self.curve {
             pieces.append(piece, end);
         }
     }
 
-    /// Forgets what ended before `host`.
+    /// Drops pieces that end before `host`.
     pub(crate) fn drop_before(&mut self, host: Stamp<Host>) {
         if let Curve::Piecewise(pieces) = &mut self.curve {
             pieces.drop_before(host);
         }
     }
 
-    /// The angle at an instant; `None` outside the time that samples cover.
+    /// The angle at an instant; `None` outside the time of the samples.
     #[must_use]
     pub fn angle(&self, at: Moment) -> Option<Degrees> {
         match &self.curve {
@@ -281,8 +280,7 @@ impl Trajectory {
         }
     }
 
-    /// The piece that holds at an instant; `None` of a platform that stands still, and outside the
-    /// time that samples cover.
+    /// The piece at an instant; `None` for a fixed platform, and outside the time of the samples.
     #[must_use]
     pub fn piece(&self, at: Moment) -> Option<&CubicPiece> {
         match &self.curve {
@@ -291,9 +289,9 @@ impl Trajectory {
         }
     }
 
-    /// Variance of the angle at an instant that is known to `clock_sd_ns` nanoseconds (one standard
-    /// deviation), square radians: (piece's deviation)^2 + (rate x clock's deviation)^2. 0 where
-    /// there is no piece.
+    /// Variance of the angle at an instant known to `clock_sd_ns` nanoseconds (one standard
+    /// deviation), square radians: (piece's deviation)^2 + (rate x clock's deviation)^2. 0 without
+    /// a piece.
     #[must_use]
     pub fn variance_rad2(&self, at: Moment, clock_sd_ns: f64) -> f64 {
         self.piece(at).map_or(0.0, |piece| {
@@ -305,31 +303,29 @@ impl Trajectory {
         &self.curve
     }
 
-    /// The samples that it goes by, in strictly increasing time; none of a platform that stands
-    /// still.
+    /// The samples, in strictly increasing time; none for a fixed platform.
     #[must_use]
     pub fn samples(&self) -> &[AngleSample] {
         &self.samples
     }
 
-    /// How the angle is known; of several sweeps the first one's.
+    /// The method; of several sweeps that of the first.
     #[must_use]
     pub const fn method(&self) -> Method {
         self.method
     }
 
-    /// What was found over each sweep; empty where no sweeps were fitted.
+    /// The fit of each sweep; empty if no sweeps were fitted.
     #[must_use]
     pub fn fits(&self) -> &[SweepFit] {
         &self.fits
     }
 
-    /// How well the samples within `spans` agree with each other, degrees: their root mean square
-    /// against the fits, or where there are none each against the line between its neighbours.
-    /// `None` where too few fall there.
+    /// Agreement of the samples within `spans`, degrees: their root mean square deviation from the
+    /// fits, or without fits from the line between their neighbours. `None` with too few samples.
     ///
-    /// It holds the jitter of the stamps, and of lines what they miss of a ramp; a constant delay
-    /// does not show.
+    /// It contains the jitter of the stamps, and for lines their error on ramps; a constant delay
+    /// does not appear.
     #[must_use]
     pub fn rms_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> Option<f64> {
         if self.fits.is_empty() {
@@ -345,10 +341,10 @@ impl Trajectory {
         Some((squares / self.fits.len() as f64).sqrt())
     }
 
-    /// How far off the angle may be within `spans`, at worst, degrees. Of fits: three standard
-    /// deviations, and the delay that all samples may share at the speed there. Of samples joined:
-    /// a step of the encoder, half a poll's round trip at the speed there, and what a straight line
-    /// misses where the speed changes.
+    /// Greatest error of the angle within `spans`, degrees. For fits: three standard deviations,
+    /// and the delay that all samples may share at the speed there. For connected samples: a step
+    /// of the encoder, half a poll's round trip at the speed there, and the error of a straight
+    /// line where the speed changes.
     #[must_use]
     pub fn bound_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> f64 {
         let over = |(i, span): (usize, &(Stamp<Host>, Stamp<Host>))| {
@@ -361,7 +357,7 @@ impl Trajectory {
         spans.iter().enumerate().map(over).fold(0.0, f64::max)
     }
 
-    /// How much of [`Trajectory::bound_deg`] is a delay that all samples of a sweep may share,
+    /// The part of [`Trajectory::bound_deg`] due to a delay that all samples of a sweep may share,
     /// degrees.
     #[must_use]
     pub fn delay_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> f64 {
@@ -370,11 +366,11 @@ impl Trajectory {
         shared.fold(0.0, f64::max) * fastest
     }
 
-    /// The greatest speed within `spans`, signed as the motion; zero without samples.
+    /// Greatest speed within `spans`, signed; zero without samples.
     #[must_use]
     pub fn fastest(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> DegPerS {
         let inside = spans.iter().map(|span| within(&self.samples, *span));
-        // Over some samples, as between neighbours a stamp's jitter is a speed.
+        // Over several samples: between neighbours the jitter of stamps would count as speed.
         let speeds = inside.flat_map(|samples| {
             samples.windows(8).filter_map(|window| {
                 let (a, b) = (window.first()?, window.last()?);
@@ -398,8 +394,8 @@ fn within(samples: &[AngleSample], (from, to): (Stamp<Host>, Stamp<Host>)) -> &[
     samples.get(low..high.max(low)).unwrap_or_default()
 }
 
-/// Each sample against the line between its neighbours, root mean square, degrees. `None` of fewer
-/// than three samples.
+/// Root mean square deviation of each sample from the line between its neighbours, degrees. `None`
+/// with fewer than three samples.
 fn leave_one_out_rms(samples: &[AngleSample]) -> Option<f64> {
     let off = samples.windows(3).filter_map(|w| match w {
         [a, b, c] => {
@@ -412,8 +408,8 @@ fn leave_one_out_rms(samples: &[AngleSample]) -> Option<f64> {
     (count > 0).then(|| (sum / f64::from(count)).sqrt())
 }
 
-/// An encoder says which of its counts the shaft is in. On its way through a count it is in the
-/// middle of it in the mean; at rest, where it was sent, at its beginning.
+/// Corrects for quantisation. On its way through a count the shaft is on average in the middle of
+/// it; at rest it is at the count's edge, where it was sent.
 fn centred(mut samples: Vec<AngleSample>, quantum: Degrees) -> Vec<AngleSample> {
     samples.sort_by_key(|s| s.host);
     let angles: Vec<f64> = samples.iter().map(|s| s.angle.0).collect();

@@ -7,12 +7,15 @@ use core::marker::PhantomData;
 use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
 /// The lidar's clock: microseconds of the hour on the wire, unwrapped to nanoseconds here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lidar {}
 
 /// The tilt drive's clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drive {}
 
 /// The host's clock (`CLOCK_REALTIME`): nanoseconds since 1970-01-01 UTC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Host {}
 
 /// An instant of clock `C` in nanoseconds since that clock's epoch.

@@ -1,12 +1,11 @@
-//! Positions that came at SYNC, with the drive's own time, to angle samples.
+//! Positions latched at SYNC, with the drive's own time, to angle samples.
 //!
 //! The drive latches position (6064) and time (1013) together, after the SYNC was sent and before
-//! the frame that carries them came in. So every pair bounds the drive's clock from both sides: the
-//! upper envelope of the SYNC times and the lower one of the arrivals, each free of what single
-//! frames suffered on their way, hold the clock between them. It is taken in the middle, as a bus
-//! is no slower one way than the other, and half of what is between them is the bound. The drive's
-//! time wraps after 71 minutes and begins anew when the drive does; a run between two starts has a
-//! clock of its own.
+//! the frame that carries them arrived. Every pair thus bounds the drive's clock on both sides. The
+//! upper envelope of the SYNC times and the lower one of the arrivals enclose the clock, each free
+//! of the delays of single frames. The clock is taken in the middle, as a bus is equally fast both
+//! ways, and half of the distance is the bound. The drive's time wraps after 71 minutes and
+//! restarts with the drive; each run between two starts has its own clock.
 
 use drive::ShaftSample;
 use units::{Drive, Gearing, Host, Span, Stamp};
@@ -14,25 +13,26 @@ use units::{Drive, Gearing, Host, Span, Stamp};
 use super::AngleSample;
 use crate::clock::{Arrival, DeviceClock};
 
-/// Fewer pairs than this tell no clock; they stand in the middle of SYNC and arrival, as polls do.
+/// With fewer pairs no clock is fitted; the samples are at the middle of SYNC and arrival, like
+/// polls.
 const FEWEST: usize = 8;
-/// The drive's clock and the host's may differ by this over a pause before the drive counts as
-/// started anew, and by as much again of the pause.
+/// Greatest difference of the clocks over a pause, and its growth per pause, before the drive
+/// counts as restarted.
 const RESTART: Span = Span::from_secs(1);
 const RESTART_SHARE: i64 = 1_000;
-/// What quantisation of the drive's time, 1 us, adds to a bound.
+/// Quantisation of the drive's time.
 const QUANTUM: Span = Span::from_micros(1);
 
-/// A sample with the drive's time, nanoseconds since its clock's run began.
+/// A sample with the drive's time, nanoseconds since the beginning of its run.
 #[derive(Clone, Copy, Debug)]
 struct LatchedSample {
     sample: ShaftSample,
     device_ns: i64,
 }
 
-/// Angle samples of what came at SYNC, in its order, and the standard deviation of their clock,
-/// nanoseconds: an error that they share, so that no fit averages over it. Samples without the
-/// drive's time are passed over.
+/// Angle samples of samples latched at SYNC, in order, and the standard deviation of their clock,
+/// nanoseconds: an error that they share and no fit reduces. Samples without the drive's time are
+/// ignored.
 pub(crate) fn angle_samples(stream: &[ShaftSample], gearing: Gearing) -> (Vec<AngleSample>, f64) {
     let mut samples = Vec::with_capacity(stream.len());
     let mut square_ns2 = 0.0;
@@ -60,7 +60,7 @@ pub(crate) fn angle_samples(stream: &[ShaftSample], gearing: Gearing) -> (Vec<An
     (samples, sd_ns)
 }
 
-/// The samples cut where the drive's clock began anew, its wraps undone.
+/// The samples of each run of the drive's clock, with unwrapped times.
 fn runs(stream: &[ShaftSample]) -> Vec<Vec<LatchedSample>> {
     let mut runs: Vec<Vec<LatchedSample>> = Vec::new();
     let mut last: Option<(u32, LatchedSample)> = None;
@@ -85,8 +85,7 @@ fn runs(stream: &[ShaftSample]) -> Vec<Vec<LatchedSample>> {
     runs
 }
 
-/// How far the drive's clock went while the host's went by `host`; `None` where it cannot have gone
-/// on.
+/// Advance of the drive's clock while the host's advances by `host`; `None` if the drive restarted.
 fn went(before_us: u32, after_us: u32, host: Span) -> Option<Span> {
     const WRAP_US: i64 = 1 << 32;
     let least = i64::from(after_us) - i64::from(before_us);
@@ -98,7 +97,7 @@ fn went(before_us: u32, after_us: u32, host: Span) -> Option<Span> {
     (apart <= allowed).then_some(device)
 }
 
-/// The drive's clock, from both sides: from above the envelope is that of times counted backwards.
+/// The drive's clock, from both sides; the upper envelope is the lower one of negated times.
 struct TwoSidedClock {
     early: DeviceClock<Drive>,
     late: DeviceClock<Drive>,
@@ -114,9 +113,9 @@ impl TwoSidedClock {
             })
             .collect();
         let late = DeviceClock::fit(&arrivals)?;
-        // After frames were lost samples may for long be given the SYNC before their own: a whole
-        // beat early, which would tilt the envelope. They, and those whose SYNC was held up as
-        // long, tell nothing of it.
+        // After lost frames, samples may long be paired with the SYNC before their own, a whole
+        // period early, which would tilt the envelope. They are left out, and so are those whose
+        // SYNC was as late.
         let ahead = |latched: &LatchedSample| {
             let taken = late.host(Stamp::from_nanos(latched.device_ns));
             taken.saturating_since(latched.sample.request)
@@ -135,15 +134,15 @@ impl TwoSidedClock {
         Some(Self { early, late })
     }
 
-    /// Standard deviation of the middle between both sides, nanoseconds, beside what the quickest
-    /// ways there and back differ by.
+    /// Standard deviation of the middle between both sides, nanoseconds, without the asymmetry of
+    /// the smallest delays.
     fn sd_ns(&self, device_ns: i64) -> f64 {
         let early = self.early.sd_near_ns(backwards(device_ns), None);
         let late = self.late.sd_near_ns(Stamp::from_nanos(device_ns), None);
         0.5 * early.hypot(late)
     }
 
-    /// Between which times of the host the drive's clock read `device_ns`.
+    /// Host times that enclose the drive's time `device_ns`.
     fn bounds(&self, device_ns: i64) -> (Stamp<Host>, Stamp<Host>) {
         let early = self.early.host(backwards(device_ns));
         let late = self.late.host(Stamp::from_nanos(device_ns));
@@ -151,7 +150,7 @@ impl TwoSidedClock {
     }
 }
 
-/// The usual time from one sample to the next.
+/// Median interval of the samples.
 fn beat(run: &[LatchedSample]) -> Span {
     let pairs = run.windows(2).filter_map(|pair| match pair {
         [a, b] => Some(b.device_ns.saturating_sub(a.device_ns)),

@@ -1,24 +1,25 @@
-//! Samples that no platform can have given: a position far beside its neighbours for one sample.
+//! Discards samples that no platform can produce: a single position far off its neighbours.
 //!
-//! A link without a checksum (SLCAN on a serial line) may hand on a flipped bit as a position. What
-//! a motor does between two samples is bounded by what it does around them and by how hard it can
-//! be accelerated; beyond that a lone sample is left out. Runs of wrong samples are not found here.
+//! A link without a checksum (SLCAN on a serial line) may pass a flipped bit as a position. The
+//! motion between two samples is bounded by the motion around them and by the greatest
+//! acceleration; a single sample beyond that is discarded. Runs of wrong samples are not found
+//! here.
 
 use super::AngleSample;
 
-/// Beside its neighbours by less is never implausible.
+/// Smaller deviations are never outliers.
 const ALWAYS_DEG: f64 = 0.1;
-/// More than any tilting platform's acceleration.
+/// Above the acceleration of any tilting platform.
 const HARDEST_DEG_S2: f64 = 20_000.0;
 
-/// Leaves out samples that cannot be, of samples in order of time; how many.
+/// Discards outliers from samples in order of time, and returns their number.
 pub(crate) fn discard(samples: &mut Vec<AngleSample>) -> u64 {
     let before = samples.len();
     let mut kept: Vec<AngleSample> = Vec::with_capacity(before);
     for (i, this) in samples.iter().enumerate() {
         let plausible = match (kept.last(), samples.get(i + 1)) {
             (Some(last), Some(next)) => is_plausible(last, this, next),
-            // The first and the last have nothing on one side to be held against.
+            // The first and the last sample have no neighbour on one side.
             _ => true,
         };
         if plausible {
@@ -38,8 +39,9 @@ fn is_plausible(last: &AngleSample, this: &AngleSample, next: &AngleSample) -> b
     let across = next.angle.0 - last.angle.0;
     let share = if whole > 0.0 { since / whole } else { 0.5 };
     let beside = (this.angle.0 - last.angle.0 - across * share).abs();
-    // Motion one way is never farther beside the line than its ends are apart. Half of a turn back
-    // and forth under full acceleration; samples stand where they are within their bounds.
+    // Motion in one direction never deviates from the line by more than its ends differ. To that
+    // comes half of a turn back and forth under full acceleration; sample times vary within their
+    // bounds.
     let slack = (last.bound + this.bound + next.bound).as_secs_f64();
     let hard = 0.5 * HARDEST_DEG_S2 * (whole + slack).powi(2);
     beside <= ALWAYS_DEG + across.abs() + hard

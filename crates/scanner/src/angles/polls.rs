@@ -1,11 +1,10 @@
-//! Shaft samples to angle samples. What came at SYNC with the drive's own time goes by that
-//! (`stream`); what was asked for stands in the middle of request and answer, slow polls left out
-//! where they are not needed.
+//! Shaft samples to angle samples. Samples latched at SYNC use the drive's own time (`latched`);
+//! polled ones are at the middle of request and answer, and slow polls are dropped where they are
+//! not needed.
 //!
-//! A poll that took unusually long was held up on one side or the other, and which side cannot be
-//! known: its middle may be off by half the excess. In steady motion its neighbours tell the angle
-//! better than it does. On a ramp they may not: a slow poll stays where the line across the hole
-//! would be worse than the poll.
+//! A slow poll was delayed on one side or the other, and its middle may be off by half of the
+//! excess. In steady motion its neighbours determine the angle better. On a ramp they may not: a
+//! slow poll stays if the line across the gap would be worse than the poll.
 
 use std::collections::VecDeque;
 
@@ -34,7 +33,7 @@ pub(crate) fn with_shared_sd(samples: &[ShaftSample], gearing: Gearing) -> (Vec<
     (without_slow(&angles), shared_ns)
 }
 
-/// Leaves the slow ones out where they are not needed.
+/// Drops slow polls where they are not needed.
 fn without_slow(samples: &[AngleSample]) -> Vec<AngleSample> {
     let (least, limit) = round_trips(samples);
     let quick = |s: &AngleSample| s.bound + s.bound <= limit;
@@ -49,7 +48,7 @@ fn without_slow(samples: &[AngleSample]) -> Vec<AngleSample> {
         let quick_before = before.iter().rev().filter(|s| quick(s));
         let quick_after = after.iter().filter(|s| quick(s));
         let hole = PollGap::between(quick_before, quick_after);
-        // At the ends of a recording there is nothing to replace a poll by.
+        // At the ends of a recording there is nothing to replace a poll.
         if hole.is_none_or(|hole| hole.line_error() > hole.poll_error(this, least)) {
             kept.push(*this);
         }
@@ -67,19 +66,19 @@ pub(crate) fn sample(poll: &ShaftSample, gearing: Gearing) -> AngleSample {
     }
 }
 
-/// Tells slow polls while they come in: by the round trips of the last ones.
+/// Detects slow polls while they come in, by the round trips of the last ones.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SlowPollFilter {
     trips: VecDeque<Span>,
 }
 
-/// So many round trips tell what is slow.
+/// Round trips that define what is slow.
 const REMEMBERED: usize = 64;
-/// Without a sample for so long a slow one is better than none.
+/// After such a gap a slow poll is better than none.
 const MAX_POLL_GAP: Span = Span::from_millis(20);
 
 impl SlowPollFilter {
-    /// Whether to take a sample that comes after `newest`.
+    /// Whether to use a sample that comes after `newest`.
     pub(crate) fn accepts(&mut self, sample: &AngleSample, newest: Option<&AngleSample>) -> bool {
         let trip = sample.bound + sample.bound;
         if self.trips.len() >= REMEMBERED {
@@ -94,7 +93,7 @@ impl SlowPollFilter {
     }
 }
 
-/// The motion on both sides of a stretch without quick polls.
+/// The motion around an interval without quick polls.
 struct PollGap {
     length: Span,
     speed_before: f64,
@@ -115,19 +114,20 @@ impl PollGap {
         })
     }
 
-    /// How far a straight line across the hole is from motion whose speed changes evenly: v't2/8.
+    /// Distance of a straight line across the gap from motion with an even change of speed: v't^2 /
+    /// 8.
     fn line_error(&self) -> f64 {
         (self.speed_after - self.speed_before).abs() * self.length.as_secs_f64() / 8.0
     }
 
-    /// How far the angle may have been from the poll's at its middle.
+    /// Greatest error of the angle at the middle of the poll.
     fn poll_error(&self, poll: &AngleSample, least: Span) -> f64 {
         let excess = (poll.bound + poll.bound - least).as_secs_f64();
         self.speed_before.abs().max(self.speed_after.abs()) * excess / 2.0
     }
 }
 
-/// Degrees per second between two samples; zero between two of one instant.
+/// Degrees per second between two samples; zero at one instant.
 fn speed(a: &AngleSample, b: &AngleSample) -> f64 {
     let time = b.host.saturating_since(a.host).as_secs_f64();
     if time > 0.0 {
@@ -137,7 +137,7 @@ fn speed(a: &AngleSample, b: &AngleSample) -> f64 {
     }
 }
 
-/// The least round trip, and the one above which polls are slow.
+/// The smallest round trip, and the one above which polls are slow.
 fn round_trips(samples: &[AngleSample]) -> (Span, Span) {
     let mut trips: Vec<Span> = samples.iter().map(|s| s.bound + s.bound).collect();
     trips.sort_unstable();

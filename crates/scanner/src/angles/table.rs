@@ -6,13 +6,13 @@ use super::AngleSample;
 use crate::clock::Arrival;
 use crate::error::ScanError;
 
-/// Angles over time, as another rig wrote them.
+/// Angles over time, in strictly increasing time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngleTable {
     rows: Vec<(f64, f64)>,
 }
 
-/// Which clock a table's times are of.
+/// Clock of a table's times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableTime {
     /// Host time: Unix seconds, as in the recording's packet headers.
@@ -21,8 +21,7 @@ pub enum TableTime {
     SinceFirstPacket,
 }
 
-/// Times below this (1973) cannot be Unix times of a lidar recording and count from its first
-/// packet.
+/// Times below this (1973) count from the recording's first packet.
 const UNIX_FROM_S: f64 = 1e8;
 
 impl AngleTable {
@@ -47,7 +46,7 @@ impl AngleTable {
         }
     }
 
-    /// Which clock the table's times are of.
+    /// The clock of the table's times.
     #[must_use]
     pub fn time(&self) -> TableTime {
         match self.rows.first() {
@@ -92,7 +91,7 @@ impl AngleTable {
     }
 }
 
-/// Times from 1653 to 2286 and angles within ten turns: what is outside is a mistake, and would
+/// Times from 1653 to 2286 and angles within ten revolutions: others are mistakes, and would
 /// overflow 64 bits of nanoseconds.
 fn in_range((seconds, degrees): (f64, f64)) -> bool {
     seconds.abs() <= 1e10 && degrees.abs() <= 3_600.0

@@ -1,8 +1,5 @@
-//! The clock of a device as a function: lines, blended, in one piece or several.
-//!
-//! Left out: how the lines are found (`envelope`) and where the pieces end (`steps`).
+//! A device's clock as a function: lines, blended, in one piece or several.
 
-use core::fmt;
 use core::marker::PhantomData;
 
 use units::{Host, Lidar, Span, Stamp};
@@ -11,62 +8,62 @@ use super::Arrival;
 use super::envelope::Envelope;
 use super::segment::{ClockSegment, Moment, OffsetLine};
 
-/// Maps a device's time to host time.
+/// Maps device time to host time.
 ///
-/// `C` is the device's clock. In one piece as long as nobody set the device's clock; a clock that
-/// was set, or began anew, has another piece from then on.
+/// `C` is the device's clock. A clock that is set or restarts in mid-recording has several pieces.
+#[derive(Clone, Debug)]
 pub struct DeviceClock<C = Lidar> {
     origin_ns: i64,
-    /// In the order in which they were recorded, never empty.
+    /// In order of recording, never empty.
     pieces: Vec<ClockPiece>,
     residual: Span,
     domain: PhantomData<fn() -> C>,
 }
 
-/// What arrived between two steps of a clock.
+/// Arrivals between two steps of a clock.
 pub(crate) struct Stretch<C = Lidar> {
-    /// Those that tell the clock, in order of device time.
+    /// Arrivals used for the fit, in order of device time.
     pub arrivals: Vec<Arrival<C>>,
-    /// First and last device time of all.
+    /// First and last device time of all arrivals.
     pub first: Stamp<C>,
     pub last: Stamp<C>,
     /// Device time where the stretch begins in the recording.
     pub join: Stamp<C>,
 }
 
-/// A stretch over which a device's clock went on evenly.
+/// A stretch over which a device's clock runs without steps.
 #[derive(Clone, Debug)]
 pub(crate) struct ClockPiece {
     /// First and last arrival, device nanoseconds after the clock's origin.
     pub from_ns: f64,
     pub to_ns: f64,
-    /// The last by the device's clock.
+    /// The last arrival by the device's clock.
     pub end_ns: i64,
-    /// Whole nanoseconds from device time to host time, beside the lines' offsets.
+    /// Whole nanoseconds from device time to host time, without the offsets of the lines.
     pub whole: i64,
-    /// How far the host's clock had been set forward by then.
+    /// Sum of the host clock's steps before this piece.
     pub set_by: i64,
     /// Never empty.
     pub lines: Vec<OffsetLine>,
-    /// How far off it may be.
+    /// Error bounds along the piece.
     pub cells: Vec<ErrorCell>,
 }
 
-/// How far off the clock may be from an instant on until the next cell.
+/// Error bound of the clock from an instant until the next cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ErrorCell {
     pub from_ns: f64,
     pub bound_ns: f64,
-    /// Standard deviation of it.
+    /// Standard deviation of the error.
     pub sd_ns: f64,
 }
 
-/// A device time this far beyond a piece's arrivals may still be of it: packets that were lost at
-/// its end, firings of its last.
-const BEYOND_NS: f64 = 5e6;
+/// Device times this far outside a piece's arrivals may belong to it: lost packets at its end,
+/// later firings of its last packet.
+const PIECE_MARGIN_NS: f64 = 5e6;
 
-impl<C> DeviceClock<C> {
-    /// Fits the envelope, in one piece. `None` without a single arrival.
+impl<C: Copy> DeviceClock<C> {
+    /// Fits the envelope, in one piece. `None` without arrivals.
     ///
     /// Arrivals need not be in order. Cost: n log n.
     #[must_use]
@@ -82,7 +79,7 @@ impl<C> DeviceClock<C> {
         Self::fit_pieces(&[stretch], &[]).map(|(clock, _)| clock)
     }
 
-    /// One that runs as fast as the host's and passes `moment` at `device`.
+    /// A clock at the host's rate that passes `moment` at `device`.
     #[must_use]
     pub(crate) fn through(device: Stamp<C>, moment: Moment) -> Self {
         let host = moment.host.as_nanos();
@@ -107,9 +104,9 @@ impl<C> DeviceClock<C> {
         }
     }
 
-    /// Fits a piece for each stretch. Between stretches one of the two clocks was set; where it was
-    /// the host's, host times go on from the stretch before. Beside the clock, how much later
-    /// packets came from each stretch to the next.
+    /// Fits a piece to each stretch. Between stretches one of the two clocks was set; after a step
+    /// of the host's clock, host times continue from the stretch before. Returns the clock and the
+    /// step of (arrival - device time) from each stretch to the next.
     pub(crate) fn fit_pieces(
         stretches: &[Stretch<C>],
         host_was_set: &[bool],
@@ -164,53 +161,52 @@ impl<C> DeviceClock<C> {
         self.moment(device).host
     }
 
-    /// The same with what rounding to nanoseconds takes away.
+    /// Host time of `device`, with the remainder below a nanosecond.
     #[must_use]
     pub fn moment(&self, device: Stamp<C>) -> Moment {
         self.moment_near(device, None)
     }
 
-    /// The same, where the device's clock read `device` twice, for the time that is nearer to
-    /// `near`, about when it arrived by the host's clock of that time.
+    /// Like [`DeviceClock::moment`]. If the device's clock read `device` twice, the result is the
+    /// time nearer to `near`, the approximate receive time by the host's clock of that time.
     #[must_use]
     pub fn moment_near(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Moment {
         self.segment(device, near)
             .moment(device, self.since_origin(device))
     }
 
-    /// Median of how late packets came above the envelope: the link's typical delay beyond its
+    /// Median delay of packets above the envelope: the typical delay of the link beyond its
     /// smallest.
     #[must_use]
     pub fn residual(&self) -> Span {
         self.residual
     }
 
-    /// How far off the clock may be at worst, beyond the constant delay: see
-    /// [`DeviceClock::bound_at`].
+    /// Greatest error of the clock, without the constant delay: see [`DeviceClock::bound_at`].
     #[must_use]
     pub fn bound(&self) -> Span {
         let cells = self.pieces.iter().flat_map(|piece| &piece.cells);
         span(cells.map(|cell| cell.bound_ns).fold(0.0, f64::max))
     }
 
-    /// How far off the clock may be at `device`, beyond the constant delay.
+    /// Greatest error of the clock at `device`, without the constant delay.
     ///
-    /// It is a statistical bound, which holds all along a recording in 99 of 100: what oscillators
-    /// wander across a block, and 3.5 standard deviations of its line, which follow from how
-    /// densely packets lie just above it; and where all packets of some seconds are later than
-    /// chance allows, that: steps too small to be found, and slews too fast to be followed.
+    /// A statistical bound that holds along a whole recording in 99 of 100. It contains the wander
+    /// of the oscillators across a block and 3.5 standard deviations of its line, which follow from
+    /// the density of packets just above it. Where all packets of some seconds are later than
+    /// chance allows, it contains their delay: steps too small to be found, and slews too fast to
+    /// be followed.
     #[must_use]
     pub fn bound_at(&self, device: Stamp<C>) -> Span {
         let cell = self.cell(device, None);
         cell.map_or(Span::ZERO, |cell| span(cell.bound_ns))
     }
 
-    /// Standard deviation of the clock at `device`, nanoseconds, beyond the constant delay; where
-    /// the device's clock read `device` twice, of the time that is nearer to `near`.
+    /// Standard deviation of the clock at `device`, nanoseconds, without the constant delay; see
+    /// [`DeviceClock::moment_near`] for `near`.
     ///
-    /// That of its line, from how densely packets lie just above it; what oscillators wander across
-    /// a block, and packets that are all late for some seconds, as errors even over what
-    /// [`DeviceClock::bound_at`] allows them.
+    /// It combines the standard deviation of the line with wander and common delays of packets,
+    /// which count as uniform errors within [`DeviceClock::bound_at`].
     #[must_use]
     pub fn sd_near_ns(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> f64 {
         self.cell(device, near).map_or(0.0, |cell| cell.sd_ns)
@@ -223,8 +219,8 @@ impl<C> DeviceClock<C> {
         cells.get(next.saturating_sub(1))
     }
 
-    /// Drift of the device's clock against the host's at the middle of the recording, in parts per
-    /// million; positive when the device's seconds are long.
+    /// Drift of the device's clock against the host's at the middle of the recording, parts per
+    /// million; positive if the device's seconds are long.
     #[must_use]
     pub fn drift_ppm(&self) -> f64 {
         let longest = self
@@ -235,7 +231,7 @@ impl<C> DeviceClock<C> {
         line.map_or(0.0, |line| line.slope * 1e6)
     }
 
-    /// Whether the device's clock was set, so that there is more than one piece.
+    /// Whether the clock has several pieces.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.pieces.len() > 1
@@ -246,14 +242,18 @@ impl<C> DeviceClock<C> {
         device.as_nanos().saturating_sub(self.origin_ns) as f64
     }
 
-    /// The piece that `device` falls into, the nearest where it falls into none.
+    /// The piece that contains `device`, or the nearest one.
     fn piece(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Option<&ClockPiece> {
         if let [only] = self.pieces.as_slice() {
             return Some(only);
         }
         let x = self.since_origin(device);
-        let beyond = |piece: &ClockPiece| (piece.from_ns - x).max(x - piece.to_ns).max(BEYOND_NS);
-        let apart = |piece: &ClockPiece| {
+        let beyond = |piece: &ClockPiece| {
+            (piece.from_ns - x)
+                .max(x - piece.to_ns)
+                .max(PIECE_MARGIN_NS)
+        };
+        let distance = |piece: &ClockPiece| {
             near.map_or(0, |near| {
                 let host = piece.segment(x).moment(device, x).host;
                 let recorded = host.saturating_add(Span::from_nanos(piece.set_by));
@@ -261,12 +261,12 @@ impl<C> DeviceClock<C> {
             })
         };
         self.pieces.iter().min_by(|a, b| {
-            let nearer = || apart(a).cmp(&apart(b));
+            let nearer = || distance(a).cmp(&distance(b));
             beyond(a).total_cmp(&beyond(b)).then_with(nearer)
         })
     }
 
-    /// The stretch that `device` falls into: between two lines' centres, or beyond all of them.
+    /// The segment that contains `device`.
     #[inline(never)]
     pub(crate) fn segment(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> ClockSegment {
         let Some(piece) = self.piece(device, near) else {
@@ -274,8 +274,8 @@ impl<C> DeviceClock<C> {
         };
         let mut segment = piece.segment(self.since_origin(device));
         if self.is_cut() {
-            segment.from_ns = segment.from_ns.max(piece.from_ns - BEYOND_NS);
-            segment.to_ns = segment.to_ns.min(piece.to_ns + BEYOND_NS);
+            segment.from_ns = segment.from_ns.max(piece.from_ns - PIECE_MARGIN_NS);
+            segment.to_ns = segment.to_ns.min(piece.to_ns + PIECE_MARGIN_NS);
         }
         segment
     }
@@ -315,7 +315,7 @@ impl ClockPiece {
         self.to_ns - self.from_ns
     }
 
-    /// The stretch between two lines' centres, or beyond all of them, that `x` falls into.
+    /// The segment that contains `x`: between the centres of two lines, or outside all of them.
     fn segment(&self, x: f64) -> ClockSegment {
         let next = self.lines.partition_point(|line| line.centre_ns <= x);
         let before = next.checked_sub(1).and_then(|i| self.lines.get(i)).copied();
@@ -343,26 +343,4 @@ fn median(mut values: Vec<i64>) -> Span {
 
 pub(super) fn span(ns: f64) -> Span {
     Span::from_nanos(ns.ceil() as i64)
-}
-
-// Derives would ask for `C: Clone` and so on; the clock's name is only a name.
-impl<C> Clone for DeviceClock<C> {
-    fn clone(&self) -> Self {
-        Self {
-            origin_ns: self.origin_ns,
-            pieces: self.pieces.clone(),
-            residual: self.residual,
-            domain: PhantomData,
-        }
-    }
-}
-
-impl<C> fmt::Debug for DeviceClock<C> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("DeviceClock")
-            .field("origin_ns", &self.origin_ns)
-            .field("pieces", &self.pieces)
-            .field("residual", &self.residual)
-            .finish()
-    }
 }

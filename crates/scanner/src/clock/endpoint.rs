@@ -1,36 +1,35 @@
-//! How far below the lowest packets the clock is: Pitman's estimate of where a distribution ends.
+//! Distance of the clock below the lowest packets: Pitman's estimate of the end of a distribution.
 //!
-//! A delay that is the sum of several stages (waiting to be polled, waiting to be scheduled) is
-//! rarely close to its least value: with two stages the density near it grows linearly from zero,
-//! and the lowest of n packets is late by about the n^-1/2 part of the spread instead of the n^-1.
-//! The hull, which takes the lowest packets at their word, is late with them.
+//! A delay of several stages (waiting to be polled, waiting to be scheduled) is rarely near its
+//! minimum. With two stages its density grows linearly from zero, and the lowest of n packets is
+//! late by about n^-1/2 of the spread instead of n^-1. The convex hull is late with them.
 //!
 //! Near its end let the share of delays below d be proportional to d^a (a = 1: a step, a = 2: two
-//! stages). Of the packets less than D above the hull, the likelihood of a line that runs d(x)
-//! below it is
+//! stages). For the packets less than D above the hull, the likelihood of a line d(x) below it is
 //!
 //! ```text
-//!     product over packets of  (r + d)^(a-1) / (D + d)^a,     r: lateness above the hull,     0 where a packet would be early
+//!     product over packets of (r + d)^(a-1) / (D + d)^a
+//!     r: delay above the hull; 0 if a packet precedes the line
 //! ```
 //!
-//! Its maximum is no good estimate at an end (it may lie on the edge); its mean over all lines is
-//! the one of least variance among those that move with the data (E. J. G. Pitman, Biometrika 30,
-//! 1939, pp. 391-421). It is taken over a grid of the line's two ends, and the spread there is how
-//! well the line is known. The exponent is measured by Hill's estimator (B. M. Hill, Annals of
-//! Statistics 3, 1975, pp. 1163-1174) from the lowest packets of the whole recording.
+//! Its maximum is a poor estimate at an end, as it may lie on the edge. Its mean over all lines has
+//! the least variance among the equivariant estimates (E. J. G. Pitman, Biometrika 30, 1939, pp.
+//! 391-421). It is taken over a grid of the line's two ends, and the spread over the grid is the
+//! error of the line. Hill's estimator (B. M. Hill, Annals of Statistics 3, 1975, pp. 1163-1174)
+//! gives the exponent from the lowest packets of the whole recording.
 
 use super::envelope::Point;
 use super::segment::OffsetLine;
 
-/// How delays are spread just above the least: the share below d is that of `depth_ns` times (d /
-/// depth)^exponent.
+/// Distribution of delays just above the smallest: the share below d is that of `depth_ns` times (d
+/// / depth)^exponent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tail {
     depth_ns: f64,
     exponent: f64,
 }
 
-/// Standard deviation of a line at its begin, middle and end, nanoseconds.
+/// Standard deviation of a line at its beginning, middle and end, nanoseconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ends {
     begin_ns: f64,
@@ -38,20 +37,20 @@ pub(super) struct Ends {
     end_ns: f64,
 }
 
-/// Nodes of the grid a side, and how many deviations the second, finer one reaches.
+/// Grid nodes per side, and reach of the second, finer grid in standard deviations.
 const NODES: usize = 17;
 const REACH: f64 = 3.5;
-/// The first grid reaches this many times the lateness of the tenth lowest packet down, and up.
+/// Reach of the first grid down and up, in multiples of the delay of the tenth lowest packet.
 const TENTH: usize = 10;
 const DOWN: f64 = 5.0;
 const UP: f64 = 3.0;
-/// A line that moves by this, the tenth packet may be at the hull.
+/// Least reach: the tenth packet may be on the hull.
 const LEAST_NS: f64 = 50.0;
-/// So many factors multiply without leaving the range of a double.
+/// Number of factors that can be multiplied without overflow of an f64.
 const FACTORS: usize = 16;
 
 impl Tail {
-    /// What a delay of two stages looks like from near by.
+    /// The tail of a delay of two stages.
     pub const fn of_two_stages(depth_ns: f64) -> Self {
         Self {
             depth_ns,
@@ -59,8 +58,7 @@ impl Tail {
         }
     }
 
-    /// The same depth with the exponent that the lateness of packets shows (Hill); between that of
-    /// one stage and of three.
+    /// The same depth with Hill's estimate of the exponent, limited to one to three stages.
     pub fn measured(self, late_ns: impl Iterator<Item = f64>) -> Self {
         let low = late_ns.filter(|r| *r > 0.0 && *r < self.depth_ns);
         let (count, sum) = low.fold((0.0, 0.0), |(count, sum), r| {
@@ -75,7 +73,7 @@ impl Tail {
 }
 
 impl Ends {
-    /// The same along the line.
+    /// The same deviation along the whole line.
     pub const fn all(ns: f64) -> Self {
         Self {
             begin_ns: ns,
@@ -84,7 +82,8 @@ impl Ends {
         }
     }
 
-    /// At -1 (begin) to 1 (end), or beyond: the variance of a line is a parabola.
+    /// Standard deviation at -1 (beginning) to 1 (end), or beyond: the variance of a line is a
+    /// parabola.
     pub fn at(self, beside: f64) -> f64 {
         let end = if beside < 0.0 {
             self.begin_ns
@@ -97,24 +96,24 @@ impl Ends {
     }
 }
 
-/// A low packet: where in the block (0 to 1) and how late above the hull.
+/// A low packet: position in the block (0 to 1) and delay above the hull.
 type Low = (f64, f64);
 
-/// A grid over how far the line's begin and end are below the hull's.
+/// A grid over the distances of the line's beginning and end below the hull.
 struct LineGrid {
     begin: (f64, f64),
     end: (f64, f64),
 }
 
-/// Mean and deviation of the line's begin and end, and deviation of its middle.
+/// Mean and deviation of the line's beginning and end, and deviation of its middle.
 struct LinePosterior {
     begin: (f64, f64),
     end: (f64, f64),
     middle: f64,
 }
 
-/// Where the clock is by the lowest of a block's points, and how well that is known. `None` where
-/// there are too few.
+/// Pitman's estimate of the line from the lowest points of a block, with its deviations. `None`
+/// with too few points.
 pub(super) fn line(points: &[Point], hull: OffsetLine, tail: Tail) -> Option<(OffsetLine, Ends)> {
     let (first, last) = (points.first()?.0, points.last()?.0);
     let length = last - first;
@@ -141,7 +140,7 @@ pub(super) fn line(points: &[Point], hull: OffsetLine, tail: Tail) -> Option<(Of
         begin: coarse.begin_side(),
         end: coarse.end_side(),
     };
-    // Where all of the likelihood is between two nodes the finer grid may miss it.
+    // If all of the likelihood is between two nodes the finer grid may miss it.
     let spread = fine.spread(&low, tail).unwrap_or(coarse);
     let line = OffsetLine {
         centre_ns: hull.centre_ns,
@@ -161,7 +160,7 @@ impl LineGrid {
         side.0 + (side.1 - side.0) * i as f64 / (NODES - 1) as f64
     }
 
-    /// Mean and deviations over the grid; `None` where no node is possible.
+    /// Mean and deviations over the grid; `None` if no node is possible.
     fn spread(&self, low: &[Low], tail: Tail) -> Option<LinePosterior> {
         let mut nodes: Vec<(f64, f64, f64)> = Vec::with_capacity(NODES * NODES);
         for i in 0..NODES {
@@ -208,13 +207,13 @@ impl LinePosterior {
     }
 }
 
-/// Of the line that begins `begin` and ends `end` below the hull; `None` where a packet would be
-/// early.
+/// Log likelihood of the line `begin` and `end` below the hull; `None` if a packet would precede
+/// it.
 fn log_likelihood(low: &[Low], begin: f64, end: f64, tail: Tail) -> Option<f64> {
     let per_depth = 1.0 / tail.depth_ns;
     let (mut up, mut down) = (0.0, 0.0);
     for some in low.chunks(FACTORS) {
-        // Logarithms are dear, products cheap.
+        // One logarithm per group of factors: logarithms cost more than products.
         let (mut late, mut deep) = (1.0, 1.0);
         for (at, r) in some {
             let below = begin + (end - begin) * at;

@@ -1,67 +1,65 @@
-//! Lines under the arrivals: of each block of 30 s one, neighbouring blocks blended linearly, so
-//! that slow wander of either oscillator is followed.
+//! Lines under the arrivals, one per block of 30 s, neighbouring blocks blended linearly, so that
+//! slow wander of either oscillator is followed.
 //!
-//! A block's line is first the edge of its lower convex hull under its middle. On a link where
-//! packets come often with next to the least delay that is the clock to within a fraction of a
-//! microsecond. Where they do not, `endpoint` says how far below the hull the clock is. Left out:
-//! clocks that were set; whoever calls cuts there.
+//! A block's line is first the edge of its lower convex hull under its middle. On a link with many
+//! packets near the smallest delay, that is the clock to a fraction of a microsecond. Otherwise
+//! `endpoint` estimates the distance of the clock below the hull.
 
 use super::device::ErrorCell;
 use super::endpoint::{self, Ends, Tail};
 use super::segment::OffsetLine;
 
-/// Length of a block: long enough to meet a prompt packet on a busy link, short against an
-/// oscillator's wander.
+/// Length of a block: long enough to contain a prompt packet on a busy link, short against the
+/// wander of an oscillator.
 pub(super) const BLOCK_NS: f64 = 30e9;
-/// No pair of crystal oscillators in working order drifts apart faster; holds the slope where a
-/// recording is too short to measure it.
+/// Greatest drift between two working crystal oscillators; limits the slope if a recording is too
+/// short to measure it.
 const MAX_SLOPE: f64 = 200e-6;
-/// A clock that is being slewed (500 ppm by the kernel) does, which takes this long to tell from
+/// Greatest drift of a slewed clock (500 ppm by the kernel), and the time needed to tell it from
 /// delays.
 const MAX_SLEW: f64 = 600e-6;
 const SLEW_NS: f64 = 10e9;
-/// Share of all packets that tells how the least delays are spread, or so many, where a recording
-/// is short.
+/// Share of all packets that defines the spread of the lowest delays, and their least number in a
+/// short recording.
 const LOW_SHARE: f64 = 0.02;
-const FEWEST_LOW: usize = 64;
-/// With fewer packets in a block the hull stays as it is.
-const FEWEST: usize = 8 * FEWEST_LOW;
-/// Where so many are within this above the hull, it is the clock to within a fraction of a
-/// microsecond, and stays.
+const MIN_LOW_PACKETS: usize = 64;
+/// With fewer packets per block the hull is not refined.
+const MIN_BLOCK_PACKETS: usize = 8 * MIN_LOW_PACKETS;
+/// With the lowest packets within this of the hull, the hull is the clock to a fraction of a
+/// microsecond.
 const PROMPT_NS: f64 = 5e3;
-/// Rounds in which lines and the spread of the delays above them are found from each other.
+/// Iterations between the lines and the distribution of the delays above them.
 const ROUNDS: usize = 3;
-/// How fast the rates of two ordinary oscillators part, per second (0.03 ppm/s): across a block of
-/// length L a straight line misses L^2/8 of it. Where neighbouring blocks show more, it is theirs,
-/// and a quarter for what they do not show.
+/// Rate of change of the drift between two ordinary oscillators (0.03 ppm/s): across a block of
+/// length L a straight line misses L^2/8 of it. If neighbouring blocks show more, theirs counts,
+/// enlarged by a quarter.
 const WANDER_PER_S: f64 = 0.03e-6;
-const MORE_WANDER: f64 = 1.25;
-/// Standard deviations within which all of a recording stays in 99 of 100 cases.
-const DEVIATIONS: f64 = 3.5;
-/// Cells of a block.
+const WANDER_MARGIN: f64 = 1.25;
+/// Standard deviations that contain a whole recording in 99 of 100 cases.
+const BOUND_SDS: f64 = 3.5;
+/// Cells per block.
 const CELLS: f64 = 16.0;
-/// A cell's least late packet is later than it may be by chance if so many others should have been
-/// before it.
-const MISSED: f64 = 9.0;
-/// What is later was held up by the network: a clock that was set by as much is found.
-const HELD_UP_NS: f64 = 10e6;
-/// How much more than a cell's neighbours show a clock may be off at the edge of a small step.
-const AT_EDGE: f64 = 1.5;
-/// Standard deviation of what is even between two bounds, in halves of their distance.
-const EVEN: f64 = 0.577_350_269_189_625_8;
-/// Of one or two packets nothing is known but that a network rarely holds one for a second.
+/// A cell's smallest delay is not by chance if this many packets were expected below it.
+const EXPECTED_BELOW: f64 = 9.0;
+/// Greater delays are held up by the network: a clock step of that size is found.
+const MAX_DELAY_NS: f64 = 10e6;
+/// Error at the edge of a small step, relative to the delays of neighbouring cells.
+const EDGE_MARGIN: f64 = 1.5;
+/// Standard deviation of a uniform distribution, in halves of its width: 1 / sqrt(3).
+const UNIFORM_SD: f64 = 0.577_350_269_189_625_8;
+/// Bound with one or two packets: networks rarely delay a packet by a second.
 const UNKNOWN_NS: f64 = 1e9;
 
 /// A point of (device time, offset), both in nanoseconds.
 pub(super) type Point = (f64, f64);
 
-/// The clock under a recording's points.
+/// The clock under the points of a recording.
 pub(super) struct Envelope {
     pub lines: Vec<OffsetLine>,
     pub cells: Vec<ErrorCell>,
 }
 
-/// How delays are spread above the lines: this share is below the depth.
+/// Distribution of the lowest delays: `share` of all are below `depth_ns`.
 #[derive(Clone, Copy)]
 struct LowDelays {
     share: f64,
@@ -69,10 +67,10 @@ struct LowDelays {
 }
 
 impl LowDelays {
-    /// What the least of `count` delays stays below: with one stage of delay or two, and packets
-    /// that come in bunches.
+    /// Upper limit of the smallest of `count` delays, for one or two stages of delay and packets in
+    /// bursts.
     fn least_of(self, count: usize) -> f64 {
-        let part = MISSED / (self.share * count as f64);
+        let part = EXPECTED_BELOW / (self.share * count as f64);
         2.0 * self.depth_ns * part.max(part.sqrt())
     }
 }
@@ -81,7 +79,7 @@ impl LowDelays {
 struct EnvelopeBlock<'a> {
     points: &'a [Point],
     line: OffsetLine,
-    /// Standard deviation of the line at the block's begin, middle and end.
+    /// Standard deviations of the line.
     ends: Ends,
 }
 
@@ -116,8 +114,8 @@ impl Envelope {
     }
 }
 
-/// Brings lines down to where the delays above them come to an end, where that matters; how the
-/// delays are spread.
+/// Lowers the lines to where the distribution of delays ends, if that matters. Returns the
+/// distribution.
 fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
     let low = |blocks: &[EnvelopeBlock<'_>]| {
         let mut late: Vec<f64> = blocks.iter().flat_map(EnvelopeBlock::lateness).collect();
@@ -126,12 +124,13 @@ fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
     let (depth_ns, count) = low(blocks)?;
     let all: usize = blocks.iter().map(|block| block.points.len()).sum();
     for block in blocks.iter_mut() {
-        // The lowest of k packets that are up to D late is late by about D over the root of k, or
-        // less.
+        // The lowest of k packets with delays up to D has a delay of about D / sqrt(k), or less.
         let own = (count * block.points.len()) as f64 / all as f64;
         block.ends = Ends::all(depth_ns / own.max(1.0).sqrt());
     }
-    let too_few = blocks.iter().any(|block| block.points.len() < FEWEST);
+    let too_few = blocks
+        .iter()
+        .any(|block| block.points.len() < MIN_BLOCK_PACKETS);
     let spread = LowDelays {
         share: count as f64 / all as f64,
         depth_ns,
@@ -152,9 +151,9 @@ fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
     Some(spread)
 }
 
-/// The lateness below which a share of all lies, and how many these are.
+/// The delay below which the lowest share lies, and the number of packets in it.
 fn lowest(late: &mut [f64]) -> Option<(f64, usize)> {
-    let count = ((late.len() as f64 * LOW_SHARE) as usize).max(FEWEST_LOW.min(late.len() / 8));
+    let count = ((late.len() as f64 * LOW_SHARE) as usize).max(MIN_LOW_PACKETS.min(late.len() / 8));
     if late.is_empty() {
         return None;
     }
@@ -162,8 +161,8 @@ fn lowest(late: &mut [f64]) -> Option<(f64, usize)> {
     Some((depth.max(0.0), count.max(1)))
 }
 
-/// How far off the clock may be, cell by cell. Two things tell: how well each line is known, and
-/// cells of which all packets are late, above which the clock may be.
+/// Error bounds of the clock, cell by cell, from the deviations of the lines and from cells in
+/// which all packets are late.
 fn cells(
     points: &[Point],
     blocks: &[EnvelopeBlock<'_>],
@@ -190,51 +189,51 @@ fn cells(
             let late = here.iter().map(|p| p.1 - blended(blocks, p.0));
             let least = late.fold(f64::INFINITY, f64::min);
             let usual = spread.map_or(f64::INFINITY, |spread| spread.least_of(here.len()));
-            if least > usual && least < HELD_UP_NS {
+            if least > usual && least < MAX_DELAY_NS {
                 least
             } else {
                 0.0
             }
         })
         .collect();
-    let known = |x: f64| wander_ns + DEVIATIONS * deviation(blocks, x);
+    let known = |x: f64| wander_ns + BOUND_SDS * deviation(blocks, x);
     (0..count)
         .map(|i| {
             let (from_ns, to_ns) = (from(i), from(i + 1));
             let near = late.get(i.saturating_sub(1)..(i + 2).min(count));
             let late_ns = near.unwrap_or_default().iter().copied();
-            let late_ns = AT_EDGE * late_ns.fold(0.0, f64::max);
+            let late_ns = EDGE_MARGIN * late_ns.fold(0.0, f64::max);
             if points.len() < 3 {
                 return ErrorCell {
                     from_ns,
                     bound_ns: UNKNOWN_NS,
-                    sd_ns: EVEN * UNKNOWN_NS,
+                    sd_ns: UNIFORM_SD * UNKNOWN_NS,
                 };
             }
             let line_ns = deviation(blocks, from_ns).max(deviation(blocks, to_ns));
             ErrorCell {
                 from_ns,
                 bound_ns: known(from_ns).max(known(to_ns)).max(late_ns),
-                sd_ns: line_ns.hypot(EVEN * wander_ns.max(late_ns)),
+                sd_ns: line_ns.hypot(UNIFORM_SD * wander_ns.max(late_ns)),
             }
         })
         .collect()
 }
 
-/// How fast the rate changed between two neighbours.
+/// Rate of change of the drift between two neighbours.
 fn wander_per_s(pair: &[EnvelopeBlock<'_>]) -> f64 {
     let [a, b] = pair else {
         return 0.0;
     };
-    let apart_s = (b.line.centre_ns - a.line.centre_ns) * 1e-9;
-    if apart_s > 0.0 {
-        MORE_WANDER * (b.line.slope - a.line.slope).abs() / apart_s
+    let distance_s = (b.line.centre_ns - a.line.centre_ns) * 1e-9;
+    if distance_s > 0.0 {
+        WANDER_MARGIN * (b.line.slope - a.line.slope).abs() / distance_s
     } else {
         0.0
     }
 }
 
-/// The blocks whose centres are around `x`, and how much the second counts.
+/// The blocks whose centres enclose `x`, and the weight of the second.
 fn around<'b, 'p>(
     blocks: &'b [EnvelopeBlock<'p>],
     x: f64,
@@ -242,9 +241,9 @@ fn around<'b, 'p>(
     let next = blocks.partition_point(|block| block.line.centre_ns <= x);
     let after = blocks.get(next).or(blocks.last())?;
     let before = blocks.get(next.saturating_sub(1)).unwrap_or(after);
-    let apart = after.line.centre_ns - before.line.centre_ns;
-    let weight = if apart > 0.0 {
-        ((x - before.line.centre_ns) / apart).clamp(0.0, 1.0)
+    let distance = after.line.centre_ns - before.line.centre_ns;
+    let weight = if distance > 0.0 {
+        ((x - before.line.centre_ns) / distance).clamp(0.0, 1.0)
     } else {
         0.0
     };
@@ -272,17 +271,16 @@ impl EnvelopeBlock<'_> {
     fn deviation(&self, x: f64) -> f64 {
         let half = self.points.first().zip(self.points.last());
         let half = half.map_or(0.0, |(a, b)| 0.5 * (b.0 - a.0));
-        let beside = if half > 0.0 {
+        let position = if half > 0.0 {
             (x - self.line.centre_ns) / half
         } else {
             0.0
         };
-        self.ends.at(beside)
+        self.ends.at(position)
     }
 }
 
-/// Blocks of 30 s that overlap by half and are spread evenly, so that the last one is as long as
-/// the first.
+/// Blocks of 30 s that overlap by half, evenly spaced, so that all have one length.
 fn blocks(begin_ns: f64, length_ns: f64) -> impl Iterator<Item = (f64, f64)> {
     let strides = ((length_ns - BLOCK_NS) / (BLOCK_NS / 2.0)).ceil().max(0.0);
     let stride = if strides > 0.0 {
@@ -296,8 +294,8 @@ fn blocks(begin_ns: f64, length_ns: f64) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// The line under all of `points` (sorted by x) that is closest to them in sum: the hull edge under
-/// their mean x, its slope held to what oscillators do.
+/// The line under all of `points` (sorted by x) with the least sum of distances: the hull edge
+/// under their mean x, its slope limited to the drift of oscillators.
 fn line_below(points: &[Point]) -> Option<OffsetLine> {
     let (first, last) = (points.first()?, points.last()?);
     let centre = 0.5 * (first.0 + last.0);

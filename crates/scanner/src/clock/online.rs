@@ -1,18 +1,15 @@
-//! A device's clock while packets come in: Olson's passive algorithm, streaming.
+//! Olson's passive synchronisation, streaming.
 //!
-//! E. Olson, "A passive solution to the sensor synchronization problem" (IROS 2010): of all packets
-//! so far the one that was late the least tells the clock, its offset allowed to grow by the most
-//! that the two clocks can drift apart since; a packet that comes before that replaces it. Cost:
-//! constant, in time and memory. On a link of few prompt packets the clock is late by what it may
-//! grow until the next of them comes; a whole recording is better served by [`super::DeviceClock`].
+//! E. Olson, "A passive solution to the sensor synchronization problem" (IROS 2010): the packet
+//! with the smallest delay so far defines the clock, and its offset may grow at the greatest drift
+//! between the two clocks; a packet below that replaces it. Time and memory per packet are
+//! constant. On a link with few prompt packets the error is the growth until the next of them;
+//! [`super::DeviceClock`] is more accurate for a whole recording.
 //!
-//! Time never runs backwards for firings asked for packet by packet: where a prompter packet lowers
-//! the offset, the clock runs at half its speed until it is there. It begins anew where the host's
-//! clock went back, the device's was set, or nothing has come in time for five seconds (the host's
-//! clock went forward); then time may jump, and [`OnlineClock::observe`] says so.
-
-use core::fmt;
-use core::marker::PhantomData;
+//! Time never runs backwards: if a packet lowers the offset, the clock runs at half speed until it
+//! has caught up. The clock restarts if the host's clock goes back, the device's clock is set, or
+//! no packet is prompt for five seconds (the host's clock went forward). Time may jump then, and
+//! [`OnlineClock::observe`] reports it.
 
 use units::{Lidar, Span, Stamp};
 
@@ -20,60 +17,58 @@ use super::Arrival;
 use super::device::span;
 use super::segment::{ClockSegment, Moment, OffsetLine};
 
-/// How fast the offset may grow: the clocks drift apart no faster.
-const RATE: f64 = 100e-6;
-/// How fast the offset may come down.
+/// Greatest growth of the offset: the greatest drift between the clocks.
+const MAX_DRIFT: f64 = 100e-6;
+/// Rate at which the offset comes down.
 const CATCH_UP: f64 = 0.5;
-/// Stamps that go back by more were not reordered.
+/// Reordered packets go back by at most this.
 const BACK_NS: f64 = 10e6;
-/// A gap in device time that the host's clock does not show, or packets all later than this for
-/// [`PATIENCE_NS`], are of a clock that was set.
-const SET_NS: f64 = 10e6;
-const PATIENCE_NS: f64 = 5e9;
-/// Intervals between prompt packets that the bound remembers.
-const AGES: usize = 32;
-/// The bound before they are known.
+/// A gap in device time that the host's clock does not show, or delays above this for
+/// [`RESTART_NS`], indicate that a clock was set.
+const STEP_NS: f64 = 10e6;
+const RESTART_NS: f64 = 5e9;
+/// Number of intervals between prompt packets from which the bound follows.
+const INTERVALS: usize = 32;
+/// Bound before two such intervals are known.
 const UNKNOWN_NS: f64 = 1e9;
 
 /// Follows a device's clock packet by packet.
-pub struct OnlineClock<C = Lidar> {
+#[derive(Clone, Debug, Default)]
+pub struct OnlineClock {
     origin_ns: i64,
     whole: i64,
     state: Option<OnlineState>,
-    domain: PhantomData<fn() -> C>,
 }
 
-/// All in nanoseconds: x after the origin, y of offset.
+/// Nanoseconds: x after the origin, y of offset.
 #[derive(Clone, Debug)]
 struct OnlineState {
-    /// The packet that tells the clock.
-    held: (f64, f64),
-    /// Where the clock was when that was last found: it comes down from there.
+    /// The packet that defines the clock.
+    prompt: (f64, f64),
+    /// Point from which the clock comes down to that packet's line.
     from: (f64, f64),
     last: (f64, f64),
-    /// Since when every packet was late by more than a step, and the least lateness since.
+    /// Beginning of a period in which every delay exceeds a step, and the least delay in it.
     late: Option<(f64, f64)>,
-    /// How long packets stayed the held one, in turn.
-    ages: [f64; AGES],
+    /// Lengths of the last intervals between prompt packets, as a ring.
+    intervals: [f64; INTERVALS],
     turn: usize,
     median: f64,
 }
 
-impl<C> OnlineClock<C> {
-    /// A clock that has seen nothing.
+impl OnlineClock {
+    /// A clock without packets.
     #[must_use]
     pub const fn new() -> Self {
         Self {
             origin_ns: 0,
             whole: 0,
             state: None,
-            domain: PhantomData,
         }
     }
 
-    /// Takes a packet. Whether the clock began anew with it, because one of the clocks was set; the
-    /// first does not count.
-    pub fn observe(&mut self, arrival: Arrival<C>) -> bool {
+    /// Takes a packet. Returns whether the clock restarted because one of the clocks was set.
+    pub fn observe(&mut self, arrival: Arrival) -> bool {
         let (device, host) = (arrival.device.as_nanos(), arrival.host.as_nanos());
         if self.state.is_some() {
             let at = self.point(device, host);
@@ -84,22 +79,22 @@ impl<C> OnlineClock<C> {
                 return false;
             }
         }
-        let anew = self.state.is_some();
+        let restarted = self.state.is_some();
         self.origin_ns = device;
         self.whole = host.wrapping_sub(device);
         self.state = Some(OnlineState::new());
-        anew
+        restarted
     }
 
     /// The host time at which the device's clock read `device`. `None` before the first packet.
     #[must_use]
-    pub fn moment(&self, device: Stamp<C>) -> Option<Moment> {
+    pub fn moment(&self, device: Stamp<Lidar>) -> Option<Moment> {
         let x = self.since_origin(device);
         let line = self.state.as_ref()?.line(x);
         Some(ClockSegment::straight(line, self.whole).moment(device, x))
     }
 
-    /// About the median of how late packets come above the clock.
+    /// Running estimate of the median delay above the clock.
     #[must_use]
     pub fn residual(&self) -> Span {
         self.state
@@ -107,10 +102,9 @@ impl<C> OnlineClock<C> {
             .map_or(Span::ZERO, |state| span(state.median))
     }
 
-    /// How far off the clock may be now, beyond the constant delay: what it grew, and clocks may
-    /// have drifted, in the two longest of the last 32 intervals between prompt packets.
-    /// Statistical: it holds at 99 of 100 packets from the first second on; until two such
-    /// intervals are known it is a second.
+    /// Greatest error of the clock now, without the constant delay: growth and drift over the two
+    /// longest of the last 32 intervals between prompt packets. Statistical: it holds at 99 of 100
+    /// packets from the first second on; it is 1 s until two such intervals are known.
     #[must_use]
     pub fn bound(&self) -> Span {
         span(
@@ -120,7 +114,7 @@ impl<C> OnlineClock<C> {
         )
     }
 
-    fn since_origin(&self, device: Stamp<C>) -> f64 {
+    fn since_origin(&self, device: Stamp<Lidar>) -> f64 {
         device.as_nanos().saturating_sub(self.origin_ns) as f64
     }
 
@@ -133,19 +127,19 @@ impl<C> OnlineClock<C> {
 impl OnlineState {
     fn new() -> Self {
         Self {
-            held: (0.0, 0.0),
+            prompt: (0.0, 0.0),
             from: (0.0, 0.0),
             last: (0.0, 0.0),
             late: None,
-            ages: [0.0; AGES],
+            intervals: [0.0; INTERVALS],
             turn: 0,
             median: 0.0,
         }
     }
 
-    /// Where the offset may have grown to.
+    /// Greatest possible offset.
     fn target(&self, x: f64) -> f64 {
-        self.held.1 + RATE * (x - self.held.0)
+        self.prompt.1 + MAX_DRIFT * (x - self.prompt.0)
     }
 
     /// Whether a packet shows that one of the clocks was set.
@@ -155,18 +149,17 @@ impl OnlineState {
         if host < -BACK_NS || device < -BACK_NS {
             return true;
         }
-        // Packets that were held up come close together by the host's clock, never far apart by the
-        // device's.
-        if device > PATIENCE_NS.min(host + 100.0 * SET_NS) && at.1 < self.target(at.0) - SET_NS {
+        // Delayed packets come close together by the host's clock, never far apart by the device's.
+        if device > RESTART_NS.min(host + 100.0 * STEP_NS) && at.1 < self.target(at.0) - STEP_NS {
             return true;
         }
         let late = at.1 - self.target(at.0);
-        self.late = (late > SET_NS).then(|| {
+        self.late = (late > STEP_NS).then(|| {
             let (since, least) = self.late.unwrap_or((at.0, late));
             (since, least.min(late))
         });
         self.late
-            .is_some_and(|(since, _)| at.0 - since > PATIENCE_NS)
+            .is_some_and(|(since, _)| at.0 - since > RESTART_NS)
     }
 
     fn follow(&mut self, at: (f64, f64)) {
@@ -177,11 +170,11 @@ impl OnlineState {
         if late < 0.0 {
             let now = x.max(self.last.0);
             self.from = (now, self.offset(now));
-            if let Some(age) = self.ages.get_mut(self.turn) {
-                *age = (x - self.held.0).max(0.0);
+            if let Some(interval) = self.intervals.get_mut(self.turn) {
+                *interval = (x - self.prompt.0).max(0.0);
             }
-            self.turn = (self.turn + 1) % AGES;
-            self.held = at;
+            self.turn = (self.turn + 1) % INTERVALS;
+            self.prompt = at;
         }
         self.last = (x.max(self.last.0), y);
     }
@@ -194,16 +187,20 @@ impl OnlineState {
     /// The line at `x`.
     fn line(&self, x: f64) -> OffsetLine {
         let above = self.from.1 - self.target(self.from.0);
-        let there = self.from.0 + (above / (CATCH_UP + RATE)).max(0.0);
+        let there = self.from.0 + (above / (CATCH_UP + MAX_DRIFT)).max(0.0);
         if x >= there {
             return OffsetLine {
-                centre_ns: self.held.0,
-                offset_ns: self.held.1,
-                slope: RATE,
+                centre_ns: self.prompt.0,
+                offset_ns: self.prompt.1,
+                slope: MAX_DRIFT,
             };
         }
-        // Before it came down the clock ran evenly.
-        let slope = if x >= self.from.0 { -CATCH_UP } else { RATE };
+        // Before it came down the clock ran at the greatest drift.
+        let slope = if x >= self.from.0 {
+            -CATCH_UP
+        } else {
+            MAX_DRIFT
+        };
         OffsetLine {
             centre_ns: self.from.0,
             offset_ns: self.from.1,
@@ -212,41 +209,14 @@ impl OnlineState {
     }
 
     fn bound_ns(&self) -> f64 {
-        let mut ages = self.ages;
-        ages.sort_unstable_by(f64::total_cmp);
-        let grew = match ages.as_slice() {
+        let mut intervals = self.intervals;
+        intervals.sort_unstable_by(f64::total_cmp);
+        let grew = match intervals.as_slice() {
             [.., second, first] if *second > 0.0 => first + second,
             _ => return UNKNOWN_NS,
         };
-        let now = (self.last.0 - self.held.0).max(0.0);
+        let now = (self.last.0 - self.prompt.0).max(0.0);
         let coming_down = (self.offset(self.last.0) - self.target(self.last.0)).max(0.0);
-        2.0 * RATE * grew.max(now) + coming_down
-    }
-}
-
-impl<C> Default for OnlineClock<C> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-// Derives would ask for `C: Clone` and so on; the clock's name is only a name.
-impl<C> Clone for OnlineClock<C> {
-    fn clone(&self) -> Self {
-        Self {
-            origin_ns: self.origin_ns,
-            whole: self.whole,
-            state: self.state.clone(),
-            domain: PhantomData,
-        }
-    }
-}
-
-impl<C> fmt::Debug for OnlineClock<C> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("OnlineClock")
-            .field("origin_ns", &self.origin_ns)
-            .field("state", &self.state)
-            .finish_non_exhaustive()
+        2.0 * MAX_DRIFT * grew.max(now) + coming_down
     }
 }

@@ -1,11 +1,10 @@
-//! Jumps of (arrival - device time) that stay.
+//! Lasting jumps of (arrival - device time).
 //!
-//! Before and after each packet stand the least values of six seconds. Where they differ by more
-//! than clocks drift in that time, and the difference is already there within a tenth of a second,
-//! it is a jump. A delay is none, be it of seconds: what was held up comes all at once, so that the
-//! values fall back within as long as it was held up. Near the ends of a recording, where there are
-//! no six seconds, the values must be level instead. Left out: jumps up that are undone within six
-//! seconds, and whose clock it was.
+//! The minima over the six seconds before and after each packet are compared. A difference beyond
+//! the drift of clocks that arises within a tenth of a second is a jump. A delay is none, even of
+//! seconds: delayed packets arrive together, so the values fall back as fast as they rose. Near the
+//! ends of a recording the values must be level instead. Jumps up that are undone within six
+//! seconds are not found.
 
 use std::collections::VecDeque;
 
@@ -13,47 +12,47 @@ use units::Span;
 
 use crate::clock::Arrival;
 
-/// Smaller ones are not looked for.
+/// The smallest jump to look for.
 pub(crate) const LEAST: Span = Span::from_millis(10);
 const LEAST_NS: i64 = LEAST.as_nanos();
-/// How long it must stay.
+/// Time for which a jump must last.
 const WINDOW_NS: i64 = 6_000_000_000;
-/// The fewest packets that are a level, and the most within which a jump happens.
-const LEVEL: usize = 32;
-const LOCAL: usize = 64;
-/// Host stamps that go back by more were not reordered; nor was device time.
+/// Least number of packets that form a level, and greatest number within which a jump happens.
+const MIN_LEVEL_PACKETS: usize = 32;
+const MAX_JUMP_PACKETS: usize = 64;
+/// Reordered packets go back by at most this, in host stamps and device time.
 const BACK: Span = Span::from_millis(-10);
-/// How far from a jump its packet may be.
+/// Greatest distance of a jump from its packet, in packets.
 const NEAR: usize = 8;
 /// Stamps are whole microseconds.
 const QUANTUM_NS: i64 = 3_000;
-/// More packets than this in a row are not lost; who was silent for longer may have begun anew.
-const MOST_LOST: i64 = 750;
-/// Spacings that differ by less are alike: gaps of a limited field of view, block by block.
-const ALIKE_NS: i64 = 500_000;
+/// Greatest number of packets lost in a row; after a longer silence the lidar may have restarted.
+const MAX_LOST: i64 = 750;
+/// Spacings that differ by less are equal: gaps of a limited field of view, block by block.
+const SAME_SPACING_NS: i64 = 500_000;
 
-/// A jump that stays.
+/// A lasting jump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Jump {
     /// First packet after it.
     pub at: usize,
-    /// How much later packets are since.
+    /// Change of the delay.
     pub by: Span,
 }
 
-/// What there is in a recording.
+/// Jumps and outliers of a recording.
 pub(crate) struct JumpReport {
     pub jumps: Vec<Jump>,
-    /// Packets that came before they can have: damaged stamps.
+    /// Packets that precede their earliest possible arrival: damaged stamps.
     pub strays: Vec<usize>,
     spacing_ns: i64,
 }
 
-/// Looks through packets in the order in which they were recorded.
+/// Searches packets in order of recording.
 pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
     let offsets = offsets(arrivals);
     let spacing_ns = spacing_ns(arrivals);
-    let window = usize::try_from(WINDOW_NS / spacing_ns.max(100_000)).unwrap_or(LEVEL);
+    let window = usize::try_from(WINDOW_NS / spacing_ns.max(100_000)).unwrap_or(MIN_LEVEL_PACKETS);
     let ahead = least_ahead(&offsets, window);
     let mut search = JumpSearch {
         arrivals,
@@ -72,8 +71,8 @@ pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
             search.behind.push(at, *offset, window);
             continue;
         };
-        match search.judge(at, before, *after) {
-            PacketKind::Goes => search.behind.push(at, *offset, window),
+        match search.classify(at, before, *after) {
+            PacketKind::Regular => search.behind.push(at, *offset, window),
             PacketKind::Stray => found.strays.push(at),
             PacketKind::Jumped(by) => {
                 found.jumps.push(Jump { at, by });
@@ -96,13 +95,13 @@ struct JumpSearch<'a> {
 }
 
 enum PacketKind {
-    Goes,
+    Regular,
     Stray,
     Jumped(Span),
 }
 
 impl JumpSearch<'_> {
-    fn judge(&self, at: usize, before: i64, after: i64) -> PacketKind {
+    fn classify(&self, at: usize, before: i64, after: i64) -> PacketKind {
         let rise = after.saturating_sub(before);
         let here = self.offsets.get(at).copied().unwrap_or(before);
         let early = here.saturating_sub(before) <= -LEAST_NS / 2;
@@ -110,22 +109,23 @@ impl JumpSearch<'_> {
             return PacketKind::Jumped(Span::from_nanos(rise));
         }
         if !early {
-            return PacketKind::Goes;
+            return PacketKind::Regular;
         }
-        // Nobody is early for nothing: another jump within the window changes nothing of this one.
+        // An early packet always has a cause; another jump within the window does not change this
+        // one.
         let fall = self
-            .least(at, at + LOCAL)
+            .least(at, at + MAX_JUMP_PACKETS)
             .map_or(0, |least| least.saturating_sub(before));
-        let next = self.least(at + 1, at + LOCAL);
+        let next = self.least(at + 1, at + MAX_JUMP_PACKETS);
         if next.is_none_or(|next| next.saturating_sub(before) > -LEAST_NS / 2) {
             return PacketKind::Stray;
         }
-        // But those before may all have been late.
+        // All packets before it may have been late.
         let was_level = at - self.since >= self.window || self.is_level(self.since, at);
         if fall <= -LEAST_NS && (was_level || self.went_back(at)) {
             return PacketKind::Jumped(Span::from_nanos(fall));
         }
-        PacketKind::Goes
+        PacketKind::Regular
     }
 
     fn least(&self, from: usize, to: usize) -> Option<i64> {
@@ -133,17 +133,17 @@ impl JumpSearch<'_> {
         self.offsets.get(from..to)?.iter().copied().min()
     }
 
-    /// Most of the rise is there within some packets.
+    /// Whether most of the rise happens within some packets.
     fn is_sudden(&self, at: usize, rise: i64) -> bool {
-        let before = self.least(at.saturating_sub(LOCAL).max(self.since), at);
-        let after = self.least(at, at + LOCAL);
+        let before = self.least(at.saturating_sub(MAX_JUMP_PACKETS).max(self.since), at);
+        let after = self.least(at, at + MAX_JUMP_PACKETS);
         before.zip(after).is_some_and(|(before, after)| {
             let local = after.saturating_sub(before);
             local.signum() == rise.signum() && local.unsigned_abs() >= rise.unsigned_abs() / 2
         })
     }
 
-    /// Whether what follows is not a delay that is being made up for.
+    /// Whether the rise lasts, unlike a delay.
     fn stays(&self, at: usize) -> bool {
         let end = self.offsets.len();
         end - at >= self.window || self.is_level(at, end)
@@ -152,18 +152,18 @@ impl JumpSearch<'_> {
     fn is_level(&self, from: usize, to: usize) -> bool {
         let middle = from + to.saturating_sub(from) / 2;
         let halves = self.least(from, middle).zip(self.least(middle, to));
-        to.saturating_sub(from) >= LEVEL
+        to.saturating_sub(from) >= MIN_LEVEL_PACKETS
             && halves.is_some_and(|(a, b)| a.saturating_sub(b).saturating_abs() < LEAST_NS / 2)
     }
 
-    /// Whether one of the clocks shows it by itself.
+    /// Whether one of the clocks goes back.
     fn went_back(&self, at: usize) -> bool {
         steps(self.arrivals, at).is_some_and(|(device, host)| host < BACK || device < BACK)
     }
 }
 
 impl JumpReport {
-    /// Whether the lidar's clock did not keep its spacing about packet `at`.
+    /// Whether the lidar's clock deviates from its spacing near packet `at`.
     pub fn device_jumped(&self, arrivals: &[Arrival], at: usize) -> bool {
         let near = at.saturating_sub(NEAR).max(1)..at + NEAR;
         near.filter_map(|i| steps(arrivals, i))
@@ -171,27 +171,27 @@ impl JumpReport {
             .any(|device| !self.is_usual(device) && !is_frequent(arrivals, at, device))
     }
 
-    /// A whole number of packets, some of them lost; or one of a few that came out of order.
+    /// Whether a spacing is a whole number of packets, some lost, or that of reordered ones.
     fn is_usual(&self, device_ns: i64) -> bool {
         let spacing = self.spacing_ns.max(1);
         let count = (device_ns.abs() + spacing / 2) / spacing;
         let off = (device_ns.abs() - count * spacing).abs();
-        let ordered = device_ns > 0 && count <= MOST_LOST;
+        let ordered = device_ns > 0 && count <= MAX_LOST;
         let reordered = device_ns <= 0 && count <= NEAR as i64;
         (ordered || reordered) && off <= QUANTUM_NS + count * 10
     }
 }
 
-/// Whether a spacing is found in other places, too.
+/// Whether a spacing occurs in other places too.
 fn is_frequent(arrivals: &[Arrival], at: usize, device_ns: i64) -> bool {
     let elsewhere = (1..arrivals.len()).filter(|i| i.abs_diff(at) > 2 * NEAR);
     let alike = elsewhere
         .filter_map(|i| steps(arrivals, i))
-        .filter(|(d, _)| d.as_nanos().saturating_sub(device_ns).saturating_abs() < ALIKE_NS);
+        .filter(|(d, _)| d.as_nanos().saturating_sub(device_ns).saturating_abs() < SAME_SPACING_NS);
     alike.take(3).count() == 3
 }
 
-/// From the packet before to this one, by the device's and the host's clock.
+/// Device time and host time from the packet before to this one.
 fn steps(arrivals: &[Arrival], at: usize) -> Option<(Span, Span)> {
     let (before, this) = (arrivals.get(at.checked_sub(1)?)?, arrivals.get(at)?);
     Some((
@@ -200,7 +200,7 @@ fn steps(arrivals: &[Arrival], at: usize) -> Option<(Span, Span)> {
     ))
 }
 
-/// Host time less device time, less that of the first.
+/// Host time less device time, relative to the first.
 fn offsets(arrivals: &[Arrival]) -> Vec<i64> {
     let offset = |a: &Arrival| a.host.as_nanos().saturating_sub(a.device.as_nanos());
     let first = arrivals.first().map_or(0, offset);
@@ -210,7 +210,7 @@ fn offsets(arrivals: &[Arrival]) -> Vec<i64> {
         .collect()
 }
 
-/// The usual spacing of packets by the device's clock: the mean of those about the median.
+/// Usual spacing of packets by the device's clock: the mean of those near the median.
 fn spacing_ns(arrivals: &[Arrival]) -> i64 {
     let mut spacings: Vec<i64> = (1..arrivals.len())
         .filter_map(|i| steps(arrivals, i))
@@ -230,10 +230,10 @@ fn spacing_ns(arrivals: &[Arrival]) -> i64 {
     sum / count.max(1)
 }
 
-/// The least of the last values.
+/// Minimum of the last values.
 #[derive(Default)]
 struct SlidingMinimum {
-    /// Place and value, both growing.
+    /// Index and value, both increasing.
     rising: VecDeque<(usize, i64)>,
 }
 
@@ -257,11 +257,11 @@ impl SlidingMinimum {
     }
 }
 
-/// The least of each value and the ones after it within the window.
+/// Minimum of each value and the following ones within the window.
 fn least_ahead(values: &[i64], window: usize) -> Vec<i64> {
     let mut least = SlidingMinimum::default();
     let mut ahead: Vec<i64> = Vec::with_capacity(values.len());
-    // Backwards, so that what is ahead has gone before.
+    // In reverse, so that the following values come first.
     for (at, value) in values.iter().rev().enumerate() {
         least.push(at, *value, window);
         ahead.push(least.get().unwrap_or(*value));

@@ -1,6 +1,4 @@
-//! Sweeps while they happen: when they begin and end, as far as it is known by then.
-//!
-//! Left out: what a sweep was in the end, which [`MoveWatch::sweeps`] tells.
+//! Sweeps while they happen. [`MoveWatch::sweeps`] finds them more exactly afterwards.
 
 use units::{Degrees, Gearing, Host, Span, Stamp};
 
@@ -8,13 +6,12 @@ use super::{END_TOLERANCE_DEG, MoveWatch, REST_QC};
 use crate::angles::AngleSample;
 use crate::config::SweepPlan;
 
-/// Follows the samples of an axis while it sweeps: when sweeps begin and end, as far as it is known
-/// by then.
+/// Follows the samples of an axis, and reports when sweeps begin and end.
 #[derive(Clone, Debug)]
 pub(crate) struct SweepWatch {
     rest_deg: f64,
     spans: Vec<(Stamp<Host>, Stamp<Host>)>,
-    /// Moves that were looked at.
+    /// Number of moves handled.
     seen: usize,
     last: Option<AngleSample>,
     state: Watched,
@@ -23,17 +20,17 @@ pub(crate) struct SweepWatch {
 #[derive(Clone, Copy, Debug)]
 enum Watched {
     Nothing,
-    /// A sweep was commanded and the axis is still where it was.
+    /// A sweep was commanded, and the axis is still in its place.
     Rest(Degrees),
-    /// Where the axis was last seen to have moved to, and when.
+    /// The last sample that moved.
     Motion(AngleSample),
 }
 
-/// An axis that stays in its place for so long has ended its sweep.
+/// An axis at rest for this long has ended its sweep.
 const STILL: Span = Span::from_millis(50);
 
 impl SweepWatch {
-    /// A watch behind `gearing`.
+    /// An observer of an axis with `gearing`.
     pub(crate) fn new(gearing: Gearing) -> Self {
         Self {
             rest_deg: REST_QC * gearing.degrees_per_qc(),
@@ -44,7 +41,7 @@ impl SweepWatch {
         }
     }
 
-    /// The sweeps so far; one that goes on has no end.
+    /// The sweeps so far; a current one has no end.
     pub(crate) fn spans(&self) -> &[(Stamp<Host>, Stamp<Host>)] {
         &self.spans
     }

@@ -1,6 +1,5 @@
-//! How far off an angle may be at worst, of fits and of samples that are joined.
-//!
-//! Left out: the lidar's clock, which is the caller's, and a delay that packets share.
+//! Greatest error of an angle, for fits and for connected samples. The caller adds the error of the
+//! lidar's clock.
 
 use units::{Host, Stamp};
 
@@ -8,11 +7,11 @@ use super::choose::SweepFit;
 use super::pieces::PiecewiseCubic;
 use super::{AngleSample, Method, noise};
 
-/// Standard deviations that a bound holds.
-const SURE: f64 = 3.0;
+/// Standard deviations within a bound.
+const BOUND_SDS: f64 = 3.0;
 
-/// Of a fit within a span: what it scatters, and the delay that all samples may share at the speed
-/// there, degrees.
+/// Bound of a fit within a span, degrees: its scatter, and the delay that all samples may share at
+/// the speed there.
 pub(super) fn of_fit(
     pieces: &PiecewiseCubic,
     (from, to): (Stamp<Host>, Stamp<Host>),
@@ -20,21 +19,21 @@ pub(super) fn of_fit(
 ) -> f64 {
     let shared_s = fit.shared_s();
     let all = pieces.as_slice();
-    // The one that has begun already is within it, too.
+    // The piece that contains the beginning counts too.
     let first = all.partition_point(|p| p.from <= from).saturating_sub(1);
     let inside = all.iter().skip(first).take_while(|p| p.from <= to);
     inside
-        .map(|piece| SURE * piece.sd_deg + shared_s * piece.rate(0.0).abs() * 1e9)
+        .map(|piece| BOUND_SDS * piece.sd_deg + shared_s * piece.rate(0.0).abs() * 1e9)
         .fold(0.0, f64::max)
 }
 
-/// Of samples that are joined, within a span, degrees.
+/// Bound of connected samples within a span, degrees.
 pub(super) fn of_joined(
     samples: &[AngleSample],
     (from, to): (Stamp<Host>, Stamp<Host>),
     method: Method,
 ) -> f64 {
-    // Two more either side: they tell the speeds at its ends.
+    // Two more on either side determine the speeds at the ends.
     let low = samples.partition_point(|s| s.host < from).saturating_sub(2);
     let high = samples.partition_point(|s| s.host <= to).saturating_add(2);
     let around = samples
@@ -47,7 +46,7 @@ pub(super) fn of_joined(
     of_lines(around) + jump
 }
 
-/// The greatest step from one sample to the next, degrees.
+/// Greatest step between neighbouring samples, degrees.
 fn widest_step(samples: &[AngleSample]) -> f64 {
     let steps = samples.windows(2).map(|pair| match pair {
         [a, b] => (b.angle.0 - a.angle.0).abs(),
@@ -56,10 +55,9 @@ fn widest_step(samples: &[AngleSample]) -> f64 {
     steps.fold(0.0, f64::max)
 }
 
-/// Half of a round trip at the speed there, and what a line misses of a change of speed: a quarter
-/// of it times the time between two samples where it comes at once in the middle between them (if
-/// it comes evenly, an eighth). Of fewer than four samples nothing is known but that the axis went
-/// from one to the next.
+/// Half of a round trip at the speed there, and the error of a line where the speed changes. That
+/// error is a quarter of the change times the time between two samples if the change is sudden, an
+/// eighth if it is even. With fewer than four samples the bound is the greatest step.
 fn of_lines(samples: &[AngleSample]) -> f64 {
     if samples.len() < 4 {
         return widest_step(samples);

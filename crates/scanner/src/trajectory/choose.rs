@@ -1,11 +1,9 @@
-//! Which curve through a sweep's samples is the truest: judged by what its residuals show beyond
-//! the scatter of single samples.
+//! Chooses the curve with the smallest error through a sweep's samples.
 //!
-//! The commanded motion has few parameters, so it averages over hundreds of samples; but it is
-//! right only if the axis did what it was told. Residuals of many samples in a row that do not
-//! cancel say how far it did not. A spline follows anything and averages over fewer samples. Each
-//! has an error that can be told from the samples: what they scatter it by, and what is left in a
-//! row. The one with the least is taken.
+//! The commanded motion has few parameters and averages over hundreds of samples, but it is right
+//! only if the axis followed the command. The autocorrelation of its residuals shows how far it did
+//! not. A spline follows any motion and averages over fewer samples. The error of each is the
+//! scatter of the samples and the residual autocorrelation; the curve with the least is taken.
 
 use units::{Degrees, Host, Span, Stamp};
 
@@ -20,85 +18,86 @@ use crate::sweeps::Sweep;
 /// A curve through a sweep.
 #[derive(Clone, Debug)]
 pub struct SweepFit {
-    /// How the angle between its samples is known.
+    /// The method.
     pub method: Method,
-    /// Root mean square of samples against it, degrees, over the sweep.
+    /// Root mean square residual of the samples over the sweep, degrees.
     pub rms_deg: f64,
-    /// How far it may be off by what the samples scatter and what is left of them in a row, one
-    /// standard deviation, degrees.
+    /// Error by scatter of the samples and residual autocorrelation, one standard deviation,
+    /// degrees.
     pub sd_deg: f64,
-    /// A delay that all samples of it share lies between these, as each was taken between its
-    /// request and its answer.
+    /// Limits of a delay common to all samples, as each was taken between its request and its
+    /// answer.
     pub delay: (Span, Span),
-    /// The motion that was found; `None` where none was looked for or it is not the one taken.
+    /// The fitted motion; `None` if another curve was taken.
     pub profile: Option<Profile>,
     /// Condition number of the fit.
     pub condition: Option<f64>,
-    /// What is to be said of it.
+    /// Remarks on the sweep.
     pub remarks: Vec<Remark>,
 }
 
 impl SweepFit {
-    /// The longest delay that all samples may share either way, seconds.
+    /// Greatest magnitude of a delay common to all samples, seconds.
     pub(super) fn shared_s(&self) -> f64 {
         let (early, late) = self.delay;
         early.as_secs_f64().abs().max(late.as_secs_f64().abs())
     }
 }
 
-/// Samples of rest that a fit gets on either side of the sweep.
-const BESIDE: Span = Span::from_millis(60);
-/// So many residuals in a row are taken together.
-const ROW: usize = 16;
-/// A motion is not the commanded one if residuals in a row show this many times what samples
-/// scatter it by, and this much.
-const STRANGE: f64 = 4.0;
-const STRANGE_DEG: f64 = 0.01;
-/// So long after a ramp a servo that moves a head has settled, seconds.
+/// Samples of rest before and after the sweep that enter a fit.
+const REST_MARGIN: Span = Span::from_millis(60);
+/// Residuals per batch mean.
+const BATCH: usize = 16;
+/// A motion is not the commanded one if the residual autocorrelation exceeds both this multiple of
+/// the error and this angle.
+const MAX_AUTOCORRELATION: f64 = 4.0;
+const MAX_AUTOCORRELATION_DEG: f64 = 0.01;
+/// Settling time of a head's servo after a ramp, seconds.
 const SETTLED_S: f64 = 0.1;
-/// Observations of the cruise that are left for a profile's fit.
-const MOST_STRAIGHT: usize = 100;
-/// No servo's answer takes more pieces than this.
-const MOST_PIECES: usize = 4_000;
-/// The bias of a spline with the best spacing is about its scatter.
+/// Observations of the cruise in a profile's fit, at most.
+const MAX_CRUISE_OBSERVATIONS: usize = 100;
+/// Limit of pieces for one servo's response.
+const MAX_PIECES: usize = 4_000;
+/// Ratio of a spline's error to its scatter: with the best spacing bias and scatter are about
+/// equal, sqrt(2).
 const SPLINE_BIAS: f64 = 1.4;
 
-/// Candidates for one sweep, from one window of samples.
+/// Candidate curves for one sweep.
 pub(super) struct Candidates<'a> {
     sweep: &'a Sweep,
-    /// Samples of the sweep and of the rest beside it, in strictly increasing time.
+    /// Samples of the sweep and of the rest around it, in strictly increasing time.
     samples: &'a [AngleSample],
     origin: Stamp<Host>,
     observed: Vec<Observed>,
 }
 
-/// One of them.
+/// A candidate curve.
 struct Candidate {
     fit: SweepFit,
     pieces: PiecewiseCubic,
-    /// What is left in a row, degrees.
-    strange_deg: f64,
-    /// It is of few observations: a look at what a fit comes to.
-    is_look: bool,
+    /// Residual autocorrelation, degrees.
+    autocorrelation_deg: f64,
+    /// Whether it is a preliminary fit to few observations.
+    is_preliminary: bool,
 }
 
 impl Candidate {
-    /// Whether what is left in a row is less than a part of its error.
-    fn leaves_less_than(&self, part: f64) -> bool {
-        self.strange_deg < part * self.fit.sd_deg
+    /// Whether the residual autocorrelation is less than a part of the error.
+    fn has_autocorrelation_below(&self, part: f64) -> bool {
+        self.autocorrelation_deg < part * self.fit.sd_deg
     }
 }
 
 impl<'a> Candidates<'a> {
-    /// Those of `sweep` among `samples`, not reaching beyond `limits`.
+    /// Candidates of `sweep` among `samples` within `limits`.
     pub(super) fn new(
         sweep: &'a Sweep,
         samples: &'a [AngleSample],
         noise: &Noise,
         limits: (Stamp<Host>, Stamp<Host>),
     ) -> Option<Self> {
-        let from = sweep.start.saturating_add(-BESIDE).max(limits.0);
-        let to = sweep.end.saturating_add(BESIDE).min(limits.1);
+        let from = sweep.start.saturating_add(-REST_MARGIN).max(limits.0);
+        let to = sweep.end.saturating_add(REST_MARGIN).min(limits.1);
         let low = samples.partition_point(|s| s.host < from);
         let high = samples.partition_point(|s| s.host <= to);
         let samples = samples.get(low..high)?;
@@ -111,8 +110,7 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// The truest of them, with its pieces; of `method` alone where one is asked for. `None` where
-    /// there is none.
+    /// The candidate with the smallest error, or that of `method`. `None` without one.
     pub(super) fn best(&self, method: Option<Method>) -> Option<(SweepFit, PiecewiseCubic)> {
         let servo = |method: Method| match method {
             Method::Profile => Some(Servo::None),
@@ -129,44 +127,46 @@ impl<'a> Candidates<'a> {
             None => {
                 let mut all: Vec<Candidate> = Vec::new();
                 for method in [Method::Profile, Method::ProfileServo, Method::ProfileSwing] {
-                    let Some(mut one) = servo(method).and_then(|servo| self.look(servo, method))
+                    let Some(mut one) =
+                        servo(method).and_then(|servo| self.preliminary_fit(servo, method))
                     else {
                         continue;
                     };
-                    // The motion alone is quickly fitted, and mostly it is that; where a look
-                    // leaves as much as that, it is not.
-                    let doubtful = if method == Method::Profile { 1.0 } else { 0.25 };
-                    if one.leaves_less_than(doubtful) {
-                        self.look_closer(&mut one, servo(method));
+                    // The plain motion is quick to fit and mostly right. A preliminary fit with as
+                    // much autocorrelation as error shows that it is not.
+                    let threshold = if method == Method::Profile { 1.0 } else { 0.25 };
+                    if one.has_autocorrelation_below(threshold) {
+                        self.refit(&mut one, servo(method));
                     }
-                    // Of a motion that leaves nothing more would be fitted to scatter.
-                    let is_it = one.leaves_less_than(0.25);
+                    // Without residual autocorrelation more parameters would fit noise.
+                    let is_sufficient = one.has_autocorrelation_below(0.25);
                     all.push(one);
-                    if is_it {
+                    if is_sufficient {
                         break;
                     }
                 }
-                // Looks tell which it is, and where its fit is to begin.
+                // Preliminary fits choose the method and the start of its full fit.
                 if let Some(best) = least(&all).and_then(|best| all.get_mut(best)) {
                     let method = best.fit.method;
-                    self.look_closer(best, servo(method));
+                    self.refit(best, servo(method));
                 }
-                let settled = all.iter().any(|c| c.leaves_less_than(0.5));
+                let settled = all.iter().any(|c| c.has_autocorrelation_below(0.5));
                 if !settled {
                     all.extend(self.spline());
                 }
                 all
             }
         };
-        let strange = candidates
+        let least_autocorrelation = candidates
             .iter()
             .filter(|c| c.fit.method != Method::Spline)
-            .map(|c| c.strange_deg)
+            .map(|c| c.autocorrelation_deg)
             .min_by(f64::total_cmp);
         let best = least(&candidates)?;
         let mut best = candidates.swap_remove(best);
-        let is_strange = |off: f64| off > STRANGE_DEG && off > STRANGE * best.fit.sd_deg;
-        let off = strange.filter(|off| is_strange(*off));
+        let is_excessive =
+            |off: f64| off > MAX_AUTOCORRELATION_DEG && off > MAX_AUTOCORRELATION * best.fit.sd_deg;
+        let off = least_autocorrelation.filter(|off| is_excessive(*off));
         if let (Method::Spline, None, Some(off)) = (best.fit.method, method, off) {
             let remark = Remark::NotAsCommanded { off: Degrees(off) };
             best.fit.remarks.push(remark);
@@ -174,24 +174,28 @@ impl<'a> Candidates<'a> {
         Some((best.fit, best.pieces))
     }
 
-    /// What a fit comes to, by few observations; by all of them where they are few.
-    fn look(&self, servo: Servo, method: Method) -> Option<Candidate> {
+    /// A preliminary fit to few observations; a full one if there are few.
+    fn preliminary_fit(&self, servo: Servo, method: Method) -> Option<Candidate> {
         let guess = self.guess()?;
         let observed = condensed(&self.observed, &guess);
-        let Some(fit) = profile_fit::look(&observed, guess, servo) else {
+        let Some(fit) = profile_fit::preliminary(&observed, guess, servo) else {
             return self.profile(servo, method, None);
         };
-        let mut look = self.candidate(fit, method)?;
-        look.is_look = true;
-        Some(look)
+        let mut preliminary = self.candidate(fit, method)?;
+        preliminary.is_preliminary = true;
+        Some(preliminary)
     }
 
-    /// Makes a fit to all observations of a look, if that is what it is and there is one.
-    fn look_closer(&self, look: &mut Candidate, servo: Option<Servo>) {
-        if let (true, Some(servo)) = (look.is_look, servo)
-            && let Some(fit) = self.profile(servo, look.fit.method, look.fit.profile.as_ref())
+    /// Replaces a preliminary fit by a full one, if that exists.
+    fn refit(&self, preliminary: &mut Candidate, servo: Option<Servo>) {
+        if let (true, Some(servo)) = (preliminary.is_preliminary, servo)
+            && let Some(fit) = self.profile(
+                servo,
+                preliminary.fit.method,
+                preliminary.fit.profile.as_ref(),
+            )
         {
-            *look = fit;
+            *preliminary = fit;
         }
     }
 
@@ -205,8 +209,11 @@ impl<'a> Candidates<'a> {
     fn candidate(&self, fit: ProfileFit, method: Method) -> Option<Candidate> {
         let end_s = self.observed.last()?.at_s;
         let pieces = pieces(&fit, self.origin, end_s)?;
-        let remarks = fit.held.any().then_some(Remark::Regularised(fit.held));
-        let mut candidate = self.judged(method, pieces)?;
+        let remarks = fit
+            .regularised
+            .any()
+            .then_some(Remark::Regularised(fit.regularised));
+        let mut candidate = self.evaluated(method, pieces)?;
         candidate.fit.profile = Some(fit.profile);
         candidate.fit.condition = Some(fit.condition);
         candidate.fit.remarks.extend(remarks);
@@ -216,12 +223,12 @@ impl<'a> Candidates<'a> {
     fn spline(&self) -> Option<Candidate> {
         let end_s = self.observed.last()?.at_s;
         let fit = spline::fit(&self.observed, self.origin, 0.0, end_s)?;
-        let mut candidate = self.judged(Method::Spline, fit.pieces)?;
+        let mut candidate = self.evaluated(Method::Spline, fit.pieces)?;
         candidate.fit.sd_deg *= SPLINE_BIAS;
         Some(candidate)
     }
 
-    /// The motion as it was commanded, or as the sweep's ends tell it.
+    /// The commanded motion, completed by the sweep's ends.
     fn guess(&self) -> Option<Profile> {
         let sweep = self.sweep;
         let way_deg = sweep.to.0 - sweep.from.0;
@@ -243,7 +250,7 @@ impl<'a> Candidates<'a> {
             ramp(commanded.deceleration.0),
         );
         let mut speed_deg_s = speed.copysign(way_deg);
-        // A way too short for the cruise: both ramps shrink alike, and with them the speed.
+        // Too short for the cruise: both ramps shrink alike, and with them the speed.
         let part = (way_deg / speed_deg_s) / ((up + down) / 2.0);
         if part < 1.0 {
             (up, down, speed_deg_s) = (
@@ -251,7 +258,7 @@ impl<'a> Candidates<'a> {
                 down * part.sqrt(),
                 speed_deg_s * part.sqrt(),
             );
-            // Just so much that it counts as a triangle.
+            // Just enough to count as a triangle.
             speed_deg_s *= 1.0 + 1e-9;
         }
         let is_motion = way_deg != 0.0 && [up, down, speed_deg_s].iter().all(|x| x.is_finite());
@@ -267,8 +274,8 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// What a curve's residuals say of it.
-    fn judged(&self, method: Method, pieces: PiecewiseCubic) -> Option<Candidate> {
+    /// Error of a curve by its residuals.
+    fn evaluated(&self, method: Method, pieces: PiecewiseCubic) -> Option<Candidate> {
         let inside = |host: Stamp<Host>| self.sweep.start <= host && host <= self.sweep.end;
         let off: Vec<(f64, f64, f64)> = self
             .samples
@@ -293,7 +300,7 @@ impl<'a> Candidates<'a> {
             if n > 0.0 { sum / n } else { 0.0 }
         };
         let rms_deg = mean_square(&mut off.iter().map(|o| o.0)).sqrt();
-        let strange_deg = in_a_row(&off);
+        let autocorrelation_deg = residual_autocorrelation(&off);
         let scatter = mean_square(
             &mut pieces
                 .as_slice()
@@ -304,31 +311,31 @@ impl<'a> Candidates<'a> {
         let fit = SweepFit {
             method,
             rms_deg,
-            sd_deg: (scatter + strange_deg * strange_deg).sqrt(),
+            sd_deg: (scatter + autocorrelation_deg * autocorrelation_deg).sqrt(),
             delay: delay(&off),
             profile: None,
             condition: None,
             remarks: Vec::new(),
         };
-        // What is left in a row is an error of every point of the sweep.
-        let sd = |piece: &CubicPiece| f64::hypot(piece.sd_deg, strange_deg);
+        // Residual autocorrelation is an error of every point of the sweep.
+        let sd = |piece: &CubicPiece| f64::hypot(piece.sd_deg, autocorrelation_deg);
         let with_sd = pieces.as_slice().iter().map(|p| p.with_sd(sd(p))).collect();
         Some(Candidate {
             fit,
             pieces: PiecewiseCubic::new(with_sd, pieces.span().1)?,
-            strange_deg,
-            is_look: false,
+            autocorrelation_deg,
+            is_preliminary: false,
         })
     }
 }
 
-/// The one with the least error.
+/// The candidate with the smallest error.
 fn least(candidates: &[Candidate]) -> Option<usize> {
     let sd = |i: &usize| candidates.get(*i).map_or(f64::INFINITY, |c| c.fit.sd_deg);
     (0..candidates.len()).min_by(|a, b| sd(a).total_cmp(&sd(b)))
 }
 
-/// Samples for a fit. While the axis rests all samples say one thing, and weigh as one.
+/// Observations for a fit. A run of equal samples at rest weighs as one.
 fn observed(samples: &[AngleSample], noise: &Noise, origin: Stamp<Host>) -> Vec<Observed> {
     let rates = rates(samples);
     let mut observed: Vec<Observed> = samples
@@ -349,11 +356,11 @@ fn observed(samples: &[AngleSample], noise: &Noise, origin: Stamp<Host>) -> Vec<
     observed
 }
 
-/// The same with neighbours of the cruise put together where there are many, as a straight line
-/// tells no more by its parts.
+/// Merges neighbours of the cruise if there are many: parts of a straight line carry no more
+/// information.
 fn condensed(observed: &[Observed], guess: &Profile) -> Vec<Observed> {
     let [start, up, brake, end] = guess.corners_s();
-    // The guess may be off, and a servo comes after.
+    // The guess may be off, and the servo settles later.
     let beside = SETTLED_S + 0.5 * (up - start).max(end - brake);
     let is_straight = |o: &Observed| o.at_s > up + beside && o.at_s < brake - beside;
     let first = observed.partition_point(|o| !is_straight(o) && o.at_s < brake);
@@ -362,14 +369,14 @@ fn condensed(observed: &[Observed], guess: &Profile) -> Vec<Observed> {
         .max(first);
     let (before, rest) = observed.split_at_checked(first).unwrap_or((observed, &[]));
     let (straight, after) = rest.split_at_checked(last - first).unwrap_or((rest, &[]));
-    let group = straight.len() / MOST_STRAIGHT + 1;
-    let few = straight.chunks(group).filter_map(together);
+    let group = straight.len() / MAX_CRUISE_OBSERVATIONS + 1;
+    let few = straight.chunks(group).filter_map(merged);
     let few: Vec<Observed> = few.collect();
     [before, &few, after].concat()
 }
 
 /// Observations of a straight line as one.
-fn together(some: &[Observed]) -> Option<Observed> {
+fn merged(some: &[Observed]) -> Option<Observed> {
     let first = some.first()?;
     let (mut weight, mut late, mut ahead) = (0.0, 0.0, 0.0);
     for o in some {
@@ -389,14 +396,15 @@ fn is_alike(a: &Observed, b: &Observed) -> bool {
     (a.angle_deg - b.angle_deg).abs() < f64::EPSILON * 64.0
 }
 
-/// What residuals show that does not cancel over a row of them, root mean square, degrees: their
-/// means' squares, less what scatter alone would make of these.
-fn in_a_row(off: &[(f64, f64, f64)]) -> f64 {
+/// Residual autocorrelation by batch means, root mean square, degrees: the mean square of the means
+/// over batches of residuals, less its expectation for independent residuals.
+fn residual_autocorrelation(off: &[(f64, f64, f64)]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for row in off.chunks(ROW).filter(|row| row.len() > ROW / 2) {
+    for row in off.chunks(BATCH).filter(|row| row.len() > BATCH / 2) {
         let n = row.len() as f64;
         let mean = row.iter().map(|o| o.0).sum::<f64>() / n;
-        // Scatter by differences of neighbours: a slope within the row is no scatter.
+        // Scatter by differences of neighbours (von Neumann 1941), which a slope within the batch
+        // does not affect.
         let differences: f64 = row
             .windows(2)
             .map(|pair| match pair {
@@ -414,8 +422,8 @@ fn in_a_row(off: &[(f64, f64, f64)]) -> f64 {
     }
 }
 
-/// Between which delays every sample was taken within its bound: samples of the sweep's faster
-/// half, whose residual tells when the axis was where they say.
+/// Limits of a delay common to all samples: each was taken within its bound, and the residual of
+/// samples in the sweep's faster half shows when the axis was at their angle.
 fn delay(off: &[(f64, f64, f64)]) -> (Span, Span) {
     let fastest = off.iter().map(|o| o.1.abs()).fold(0.0, f64::max);
     let quick = off.iter().filter(|o| o.1.abs() > fastest / 2.0);
@@ -428,7 +436,7 @@ fn delay(off: &[(f64, f64, f64)]) -> (Span, Span) {
     if !low.is_finite() || !high.is_finite() {
         return (Span::ZERO, Span::ZERO);
     }
-    // Residuals have errors of their own: where they leave nothing between, the middle is it.
+    // Residuals have errors of their own: if the limits cross, their middle is taken.
     if high < low {
         let middle = (low + high) / 2.0;
         (low, high) = (middle, middle);
@@ -439,8 +447,8 @@ fn delay(off: &[(f64, f64, f64)]) -> (Span, Span) {
     )
 }
 
-/// A profile as cubics from the origin until `end_s`: its corners, behind them steps that grow as
-/// the servo's answer decays.
+/// A profile as cubics from the origin until `end_s`: its corners, and steps behind them that grow
+/// as the servo's response decays.
 fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<PiecewiseCubic> {
     let profile = &fit.profile;
     let mut at = vec![0.0, end_s];
@@ -449,7 +457,7 @@ fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<Piecewise
         at.push(corner);
         let inertia = profile.inertia_s2;
         let (mut since, lag) = (0.0, profile.lag_s);
-        // How quickly it answers, and after what time the answer is over.
+        // Time constant of the response, and its duration.
         let quick = if inertia > 0.0 {
             lag.min(inertia.sqrt())
         } else {
@@ -460,14 +468,14 @@ fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<Piecewise
         } else {
             0.0
         };
-        // Hermite's error is (step / quick)^4 / 384 of what is left: below 1e-6 degrees for any
-        // servo.
-        while quick > 0.0 && since < 20.0 * over && at.len() < MOST_PIECES {
+        // Hermite's error is (step / time constant)^4 / 384 of the response: below 1e-6 degrees for
+        // any servo.
+        while quick > 0.0 && since < 20.0 * over && at.len() < MAX_PIECES {
             since += quick / 8.0 * f64::exp((since / over / 4.0).min(3.0));
             at.push(corner + since);
         }
     }
-    // What the samples scatter it by changes along the cruise.
+    // The standard deviation varies along the cruise.
     let [_, up, brake, _] = corners;
     at.extend((1..32).map(|k| up + (brake - up) * f64::from(k) / 32.0));
     at.retain(|s| (0.0..=end_s).contains(s));
@@ -480,8 +488,7 @@ fn pieces(fit: &ProfileFit, origin: Stamp<Host>, end_s: f64) -> Option<Piecewise
         [a, b] if a < b => {
             let [from_s, to_s] = [a, b].map(|s| s.saturating_since(origin).as_secs_f64());
             let ns = b.saturating_since(*a).as_nanos() as f64;
-            // Just inside: at a corner of a profile without lag the acceleration jumps, and the
-            // speed does not.
+            // At a corner of a profile without lag the acceleration jumps, but not the speed.
             let ends = [from_s, to_s].map(|s| {
                 let (angle_deg, rate_deg_s) = profile.place(s);
                 [angle_deg, rate_deg_s * 1e-9]

@@ -1,8 +1,8 @@
 //! From sample to sample: the nearest one, a straight line, or a cubic with the speeds between
 //! neighbours.
 //!
-//! All three pass every sample, its error included, and know nothing of what the axis was told.
-//! That makes them cheap, possible while samples still come in, and right whatever moved the axis.
+//! All three pass through every sample, including its error, and do not use the command. They are
+//! cheap, possible while samples still come in, and independent of what moved the axis.
 
 use units::Span;
 
@@ -10,8 +10,7 @@ use super::AngleSample;
 use super::noise::{Noise, rates, seconds};
 use super::pieces::{CubicPiece, PiecewiseCubic};
 
-/// Each instant has the angle of the sample that is nearest to it. Samples are in strictly
-/// increasing time.
+/// The angle of the nearest sample. Samples are in strictly increasing time.
 pub(super) fn nearest(samples: &[AngleSample], noise: &Noise) -> Option<PiecewiseCubic> {
     let rates = rates(samples);
     let mut from = samples.first()?.host;
@@ -21,7 +20,7 @@ pub(super) fn nearest(samples: &[AngleSample], noise: &Noise) -> Option<Piecewis
             let half = next.host.saturating_since(sample.host).half();
             sample.host.saturating_add(half)
         });
-        // Mean square of what is even over the half intervals on both sides, which may differ.
+        // Mean square of a uniform distribution over the half intervals on both sides.
         let [a, b] = [
             sample.host.saturating_since(from),
             until.saturating_since(sample.host),
@@ -60,7 +59,7 @@ impl StreamingFit {
         self.last[1].as_ref()
     }
 
-    /// The line to a sample from the one before it; `None` of the first, and of one that is not
+    /// The line to a sample from the one before it; `None` for the first, and for one that is not
     /// later.
     pub(crate) fn add(&mut self, sample: AngleSample) -> Option<CubicPiece> {
         let [before, last] = self.last;
@@ -74,22 +73,22 @@ impl StreamingFit {
             let rate_before = (last.angle.0 - before.angle.0) / seconds(&before, &last);
             (rate - rate_before) * seconds(&last, &sample) / 8.0
         });
-        let noise = Noise::EVEN;
+        let noise = Noise::UNIFORM;
         let [a, b] = [last, sample].map(|s| noise.sd_deg(&s, rate));
         let sd = f64::sqrt((a * a + b * b) / 3.0 + bent * bent * (8.0 / 15.0));
         Some(CubicPiece::line(last.host, last.angle.0, rate * 1e-9).with_sd(sd))
     }
 }
 
-/// A cubic between neighbours whose speed at each sample is that of the parabola through it and its
-/// neighbours, and which never goes beyond them. Samples are in strictly increasing time.
+/// A cubic between neighbours that never leaves their range. Its speed at each sample is that of
+/// the parabola through it and its neighbours. Samples are in strictly increasing time.
 pub(super) fn hermite(samples: &[AngleSample], noise: &Noise) -> Option<PiecewiseCubic> {
     let rates = rates(samples);
     let speeds = parabolas(samples);
     between(samples, noise, &rates, |a, b, [sa, sb], i| {
         let ns = b.host.saturating_since(a.host).as_nanos() as f64;
         let speed = |i: usize| speeds.get(i).copied().unwrap_or_default() * 1e-9;
-        // The mean gain of a cubic convolution on noise is 0.81 (57/70, Keys 1981, kernel with a =
+        // The mean gain of a cubic convolution on noise is 57/70 = 0.81 (Keys 1981, kernel with a =
         // -1/2).
         let sd = f64::sqrt((sa * sa + sb * sb) / 2.0 * 57.0 / 70.0);
         let (from, to) = ([a.angle.0, speed(i)], [b.angle.0, speed(i + 1)]);
@@ -124,7 +123,7 @@ fn between(
     PiecewiseCubic::new(pieces, last.host)
 }
 
-/// By how much the speed changes around the stretch after sample `i`, times its length, degrees.
+/// Change of the speed around the interval after sample `i`, times its length, degrees.
 fn bend(samples: &[AngleSample], i: usize) -> f64 {
     let rate = |k: usize| {
         let (a, b) = (samples.get(k)?, samples.get(k + 1)?);
@@ -137,12 +136,12 @@ fn bend(samples: &[AngleSample], i: usize) -> f64 {
         .get(i)
         .zip(samples.get(i + 1))
         .map_or(0.0, |(a, b)| seconds(a, b));
-    // From the middle of the stretch before to that of the one after it is about two lengths.
+    // The middles of the intervals before and after are about two lengths apart.
     (after - before) / 2.0 * length
 }
 
-/// Degrees per second at each sample of the parabola through it and both neighbours; at the ends of
-/// the line to the only one.
+/// Degrees per second at each sample, of the parabola through it and both neighbours; at the ends,
+/// of the line to the only one.
 fn parabolas(samples: &[AngleSample]) -> Vec<f64> {
     let slope = |i: usize| {
         let (a, b) = (samples.get(i)?, samples.get(i + 1)?);
@@ -152,8 +151,8 @@ fn parabolas(samples: &[AngleSample]) -> Vec<f64> {
     (0..samples.len())
         .map(|i| match (i.checked_sub(1).and_then(slope), slope(i)) {
             (Some((before, h0)), Some((after, h1))) => {
-                // Of stamps that lie close together the parabola is wild: held to where the cubic
-                // does not leave the range of its ends (Fritsch and Carlson 1980).
+                // Between close stamps the parabola is unstable: limited so that the cubic does not
+                // leave the range of its ends (Fritsch and Carlson 1980).
                 let most = 3.0 * f64::min(before.abs(), after.abs());
                 let speed = (before * h1 + after * h0) / (h0 + h1);
                 if before * after > 0.0 {
@@ -168,7 +167,7 @@ fn parabolas(samples: &[AngleSample]) -> Vec<f64> {
         .collect()
 }
 
-/// In strictly increasing time; of several at one instant the first is kept.
+/// Sorts by time; of several samples at one instant the first is kept.
 pub(super) fn in_order(mut samples: Vec<AngleSample>) -> Vec<AngleSample> {
     samples.sort_by_key(|s| s.host);
     samples.dedup_by_key(|s| s.host);

@@ -1,30 +1,29 @@
-//! How far samples are off, judged by each other.
+//! Errors of samples, estimated from their neighbours.
 //!
-//! A sample's angle is the encoder's to a count, but at an instant known only within its bound: at
-//! speed the bound is worth degrees. How much of the bound errors really take up is told by samples
-//! and their neighbours, and held to what a bound can mean. A delay that all samples share does not
-//! show here.
+//! A sample's angle is exact to an encoder count, but its instant is known only within its bound,
+//! which is an error of the angle at speed. The share of the bound that errors take up follows from
+//! the deviations between neighbours. A delay common to all samples does not appear here.
 
 use units::Degrees;
 
 use super::AngleSample;
 
-/// The size of samples' errors.
+/// Size of the samples' errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// Standard deviation of a sample's instant as a part of its bound, 0 to 1.
+    /// Standard deviation of a sample's instant as a share of its bound, 0 to 1.
     pub share: f64,
-    /// Standard deviation of the angle itself, degrees: the encoder's count.
+    /// Standard deviation of the angle, degrees: the encoder's count.
     pub angle_sd_deg: f64,
 }
 
-/// Errors evenly spread over an interval have this standard deviation, in halves of it.
-const EVEN: f64 = 0.577_350_269_189_625_8;
+/// Standard deviation of a uniform distribution, in halves of its width: 1 / sqrt(3).
+const UNIFORM_SD: f64 = 0.577_350_269_189_625_8;
 
 impl Noise {
-    /// Evenly spread over the bounds: where nothing is known.
-    pub const EVEN: Self = Self {
-        share: EVEN,
+    /// Errors uniform over the bounds, if nothing is known.
+    pub const UNIFORM: Self = Self {
+        share: UNIFORM_SD,
         angle_sd_deg: 0.0,
     };
 
@@ -32,7 +31,7 @@ impl Noise {
     /// errors count as even over the bounds.
     #[must_use]
     pub fn of(samples: &[AngleSample], quantum: Degrees) -> Self {
-        let angle_sd_deg = quantum.0.abs() * EVEN / 2.0;
+        let angle_sd_deg = quantum.0.abs() * UNIFORM_SD / 2.0;
         let (mut seen, mut possible, mut unbounded, mut count) = (0.0, 0.0, 0.0, 0.0);
         for window in samples.windows(3) {
             let [a, b, c] = window else { continue };
@@ -64,7 +63,7 @@ impl Noise {
         let share = if possible > 0.0 {
             f64::sqrt(f64::max(seen, 0.0) / possible).min(1.0)
         } else {
-            EVEN
+            UNIFORM_SD
         };
         Self {
             share,
@@ -139,7 +138,7 @@ mod tests {
                 angle: Degrees(1.0),
             })
             .collect();
-        assert_eq!(Noise::of(&samples, Degrees(0.0015)).share, EVEN);
-        assert_eq!(Noise::of(&[], Degrees(0.0015)).share, EVEN);
+        assert_eq!(Noise::of(&samples, Degrees(0.0015)).share, UNIFORM_SD);
+        assert_eq!(Noise::of(&[], Degrees(0.0015)).share, UNIFORM_SD);
     }
 }

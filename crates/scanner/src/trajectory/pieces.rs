@@ -1,24 +1,21 @@
-//! A piecewise cubic over host time: what every method of knowing the angle ends as.
-//!
-//! So there is one way to ask, one cursor for the fast path, and no method that costs more than
-//! another once it is fitted. Left out: where the coefficients come from.
+//! A piecewise cubic over host time, the form of every method's result.
 
 use units::{Degrees, Host, Real, Stamp};
 
 use crate::clock::Moment;
 
-/// A cubic from its start until the next one's.
+/// A cubic, valid until the next piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubicPiece {
     /// Its start, the origin of its polynomial.
     pub from: Stamp<Host>,
-    /// Degrees, degrees per nanosecond, per square and per cube of it.
+    /// Degrees, degrees per nanosecond, and so on.
     pub deg: [f64; 4],
-    /// Standard deviation of the angle along it, degrees, beside what is the same for a whole scan.
+    /// Standard deviation of the angle along it, degrees, without errors common to a whole scan.
     pub sd_deg: f64,
 }
 
-/// Cubics in strictly increasing time, and where the last one ends.
+/// Cubics in strictly increasing time, and the end of the last one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PiecewiseCubic {
     pieces: Vec<CubicPiece>,
@@ -59,7 +56,7 @@ impl CubicPiece {
         }
     }
 
-    /// The same with a standard deviation.
+    /// The piece with a standard deviation.
     #[must_use]
     pub const fn with_sd(self, sd_deg: f64) -> Self {
         Self { sd_deg, ..self }
@@ -79,8 +76,8 @@ impl CubicPiece {
         c1 + ns * (2.0 * c2 + ns * (3.0 * c3))
     }
 
-    /// Variance of the angle where it changes by `deg_per_ns` and the instant has a standard
-    /// deviation, square radians.
+    /// Variance of the angle at a rate of `deg_per_ns` and a standard deviation of the instant,
+    /// square radians.
     #[inline(always)]
     pub(crate) fn variance_rad2(&self, deg_per_ns: f64, clock_sd_ns: f64) -> f64 {
         let (own, by_clock) = (
@@ -90,14 +87,14 @@ impl CubicPiece {
         own * own + by_clock * by_clock
     }
 
-    /// The coefficients about the instant `ns` after its start.
+    /// The coefficients of the polynomial about the instant `ns` after its start.
     #[inline(always)]
     pub(crate) fn about(&self, ns: f64) -> [f64; 4] {
         let [_, _, c2, c3] = self.deg;
         [self.at(ns), self.rate(ns), c2 + 3.0 * c3 * ns, c3]
     }
 
-    /// Not exceeded by the speed on its first `length_ns`, degrees per nanosecond.
+    /// An upper bound of the speed in its first `length_ns`, degrees per nanosecond.
     pub(crate) fn fastest(&self, length_ns: f64) -> f64 {
         let [_, c1, c2, c3] = self.deg;
         c1.abs() + length_ns * (2.0 * c2.abs() + length_ns * 3.0 * c3.abs())
@@ -109,8 +106,8 @@ impl CubicPiece {
 }
 
 impl PiecewiseCubic {
-    /// `pieces` until `end`. Of several that start at one instant the last is kept, and none that
-    /// starts at the end or later but the very first. `None` without pieces.
+    /// `pieces` until `end`. Of several with one start the last is kept; except for the first,
+    /// pieces that start at the end or later are dropped. `None` without pieces.
     #[must_use]
     pub fn new(mut pieces: Vec<CubicPiece>, end: Stamp<Host>) -> Option<Self> {
         pieces.sort_by_key(|piece| piece.from);
@@ -125,7 +122,7 @@ impl PiecewiseCubic {
         })
     }
 
-    /// From when to when there is an angle.
+    /// First and last instant with an angle.
     #[must_use]
     pub fn span(&self) -> (Stamp<Host>, Stamp<Host>) {
         let first = self.pieces.first().map_or(self.end, |piece| piece.from);
@@ -136,15 +133,14 @@ impl PiecewiseCubic {
         &self.pieces
     }
 
-    /// The piece that holds at an instant; `None` before the first and after the end, to the
-    /// nanosecond.
+    /// The piece at an instant; `None` before the first and after the end, to the nanosecond.
     #[must_use]
     pub fn piece(&self, at: Moment) -> Option<&CubicPiece> {
         let (first, end) = self.span();
         if at.host < first || end < at.host {
             return None;
         }
-        // To the nanosecond the first one's start belongs to it.
+        // The instant may be up to half a nanosecond before the first piece's start.
         let past = self.pieces.partition_point(|piece| at.reaches(piece.from));
         self.pieces.get(past.saturating_sub(1))
     }
@@ -156,7 +152,7 @@ impl PiecewiseCubic {
         Some(Degrees(piece.at(piece.since(at))))
     }
 
-    /// Puts `other` in place of what is here for the time that it covers.
+    /// Replaces the pieces within the time of `other`.
     pub(super) fn replace(&mut self, other: &Self) {
         let (from, to) = other.span();
         let (first, end) = self.span();
@@ -184,8 +180,7 @@ impl PiecewiseCubic {
         debug_assert!(first.min(from) == self.span().0);
     }
 
-    /// Adds what an instant that is off by `sd_ns` makes of each piece's deviation, at the speed in
-    /// its middle.
+    /// Adds an error of time `sd_ns` to each piece's deviation, at the speed in its middle.
     pub(super) fn widen(&mut self, sd_ns: f64) {
         let starts = self.pieces.iter().skip(1).map(|piece| piece.from);
         let ends: Vec<Stamp<Host>> = starts.chain([self.end]).collect();
@@ -195,14 +190,13 @@ impl PiecewiseCubic {
         }
     }
 
-    /// Takes away what ended before `host`.
+    /// Drops pieces that end before `host`.
     pub(crate) fn drop_before(&mut self, host: Stamp<Host>) {
         let past = self.pieces.partition_point(|piece| piece.from <= host);
         self.pieces.drain(..past.saturating_sub(1));
     }
 
-    /// Goes on with `piece` until `end`; a piece that does not start later than the last one takes
-    /// its place.
+    /// Continues with `piece` until `end`, in place of pieces that do not start earlier.
     pub(crate) fn append(&mut self, piece: CubicPiece, end: Stamp<Host>) {
         while self.pieces.len() > 1
             && self

@@ -1,31 +1,31 @@
-//! What holds the parameters of a motion that the samples do not tell: near what was commanded, as
-//! far as that may be off.
+//! Priors: parameters of a motion that the samples do not determine are regularised towards the
+//! command.
 //!
-//! A ramp that no sample sees is held alone. Where samples begin or end in the midst of the motion,
-//! or of its cruise alone, there are whole directions in which nothing changes (a later start and a
-//! farther beginning are one straight line), and every parameter is held; those that samples tell
-//! do not feel it.
+//! A ramp without samples is regularised alone. If the samples begin or end during the motion or
+//! cover its cruise alone, whole directions are undetermined (a later start and a farther beginning
+//! are one straight line), and every parameter is regularised. Priors do not affect parameters that
+//! the samples determine.
 
 use std::ops::Range;
 
 use super::profile::Profile;
 
-/// What the samples do not tell.
+/// Parameters regularised towards the command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RegularisedParameters {
-    /// When the motion began.
+    /// Start of the motion.
     pub start: bool,
-    /// The acceleration's duration.
+    /// Duration of the acceleration.
     pub ramp_up: bool,
-    /// The deceleration's duration.
+    /// Duration of the deceleration.
     pub ramp_down: bool,
-    /// Where the motion would have ended.
+    /// End of the motion.
     pub way: bool,
-    /// The servo's lag and its swing.
+    /// Lag and inertia of the servo.
     pub servo: bool,
 }
 
-/// Of which part of the motion a parameter is.
+/// The part of the motion that a parameter belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum MotionParameter {
     Start,
@@ -35,29 +35,29 @@ enum MotionParameter {
     Servo,
 }
 
-/// A parameter that is held: of what it is, its place among the parameters, how far it is off what
-/// was commanded, and how far it may be.
+/// A regularised parameter: its index, its deviation from the command, and the standard deviation
+/// expected of that.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prior {
     part: MotionParameter,
-    pub place: usize,
-    pub off: f64,
+    pub index: usize,
+    pub deviation: f64,
     pub sd: f64,
 }
 
-/// What a ramp or the way may be off what was commanded, as a part of it.
-const SHARE: f64 = 0.2;
-/// Likewise the start, seconds.
+/// Expected deviation of a ramp or the way from the command, relative.
+const RELATIVE_SD: f64 = 0.2;
+/// Expected deviation of the start, seconds.
 const START_SD_S: f64 = 0.1;
-/// Likewise the servo's times: 10 ms, the time constant of a servo of 15 Hz.
+/// Expected deviation of the servo's times, seconds: the time constant of a servo of 15 Hz.
 const SERVO_SD_S: f64 = 0.01;
-/// No ramp is shorter: below it acceleration has no meaning for a motor.
-pub(super) const SHORTEST_RAMP_S: f64 = 1e-6;
-/// The samples tell a parameter if they leave it less than this of how far it may be anyway.
-const TOLD: f64 = 0.5;
+/// Shortest ramp: below it acceleration has no meaning for a motor.
+pub(super) const MIN_RAMP_S: f64 = 1e-6;
+/// A prior decides if the parameter keeps more than this share of the prior's standard deviation.
+const DECISIVE_SHARE: f64 = 0.5;
 
 impl RegularisedParameters {
-    /// Everything.
+    /// Every parameter.
     pub(super) const ALL: Self = Self {
         start: true,
         ramp_up: true,
@@ -66,29 +66,28 @@ impl RegularisedParameters {
         servo: true,
     };
 
-    /// Whether anything was held.
+    /// Whether any parameter is regularised.
     #[must_use]
     pub const fn any(self) -> bool {
         self.start || self.ramp_up || self.ramp_down || self.way || self.servo
     }
 
-    /// Of all that was held what decided, the samples having less to say of it; `variances` are
-    /// what they and it leave to the parameters. At least one thing, as without any the fit had no
-    /// solution.
+    /// The parameters that priors rather than samples determine, by the `variances` of the fit. At
+    /// least one, as without priors the fit has no solution.
     pub(super) fn that_decided(priors: &[Prior], variances: &[f64]) -> Self {
-        let left = |prior: &Prior| {
-            let variance = variances.get(prior.place).copied().unwrap_or_default();
+        let remaining = |prior: &Prior| {
+            let variance = variances.get(prior.index).copied().unwrap_or_default();
             variance.max(0.0).sqrt() / prior.sd
         };
-        let most = priors.iter().map(left).fold(0.0, f64::max);
-        let mut held = Self::default();
+        let most = priors.iter().map(remaining).fold(0.0, f64::max);
+        let mut regularised = Self::default();
         for prior in priors {
-            let left = left(prior);
-            if left > TOLD || left >= most {
-                held.set(prior.part);
+            let remaining = remaining(prior);
+            if remaining > DECISIVE_SHARE || remaining >= most {
+                regularised.set(prior.part);
             }
         }
-        held
+        regularised
     }
 
     const fn set(&mut self, part: MotionParameter) {
@@ -112,51 +111,55 @@ impl RegularisedParameters {
     }
 }
 
-/// What holds the parameters of `now` near those of `then`: start, ramps, beginning, way in this
-/// order, and those of the servo, which are at `servo`.
+/// Priors of `now` towards the command `command`. The servo's parameters are at the indexes `servo`.
 pub(super) fn priors(
     now: &Profile,
-    then: &Profile,
-    held: RegularisedParameters,
+    command: &Profile,
+    regularised: RegularisedParameters,
     servo: Range<usize>,
 ) -> Vec<Prior> {
-    let ramp_sd = |s: f64| (SHARE * s).max(SHORTEST_RAMP_S);
+    let ramp_sd = |s: f64| (RELATIVE_SD * s).max(MIN_RAMP_S);
     let inertia_s = |profile: &Profile| profile.inertia_s2.sqrt();
     let all = [
         (
             MotionParameter::Start,
             0,
-            now.start_s - then.start_s,
+            now.start_s - command.start_s,
             START_SD_S,
         ),
         (
             MotionParameter::RampUp,
             1,
-            now.ramp_up_s - then.ramp_up_s,
-            ramp_sd(then.ramp_up_s),
+            now.ramp_up_s - command.ramp_up_s,
+            ramp_sd(command.ramp_up_s),
         ),
         (
             MotionParameter::RampDown,
             2,
-            now.ramp_down_s - then.ramp_down_s,
-            ramp_sd(then.ramp_down_s),
+            now.ramp_down_s - command.ramp_down_s,
+            ramp_sd(command.ramp_down_s),
         ),
         (
             MotionParameter::Way,
             4,
-            now.way_deg - then.way_deg,
-            SHARE * then.way_deg.abs(),
+            now.way_deg - command.way_deg,
+            RELATIVE_SD * command.way_deg.abs(),
         ),
     ];
-    let times = [now.lag_s - then.lag_s, inertia_s(now) - inertia_s(then)];
+    let times = [
+        now.lag_s - command.lag_s,
+        inertia_s(now) - inertia_s(command),
+    ];
     let times = times.into_iter().zip(servo);
     all.into_iter()
-        .chain(times.map(|(off, place)| (MotionParameter::Servo, place, off, SERVO_SD_S)))
-        .filter(|(part, ..)| held.has(*part))
-        .map(|(part, place, off, sd)| Prior {
+        .chain(
+            times.map(|(deviation, index)| (MotionParameter::Servo, index, deviation, SERVO_SD_S)),
+        )
+        .filter(|(part, ..)| regularised.has(*part))
+        .map(|(part, index, deviation, sd)| Prior {
             part,
-            place,
-            off,
+            index,
+            deviation,
             sd,
         })
         .collect()

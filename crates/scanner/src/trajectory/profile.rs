@@ -1,36 +1,34 @@
-//! The motion that was commanded: a trapezoid of the speed, behind a servo that lags.
+//! The commanded motion: a trapezoidal speed, behind a servo.
 //!
 //! Speed rises evenly over `ramp_up_s`, holds, and falls evenly over `ramp_down_s`; without a
-//! stretch of constant speed it is a triangle. The servo answers as 1 / (1 + lag s + inertia s2):
-//! without inertia a shaft that is always nearing its demand, with it one that may overshoot. In
-//! cruise it is behind by its lag. What is the same on both ramps and in cruise, a dead time, is in
-//! the start.
+//! cruise it is a triangle. The servo's response is 1 / (1 + lag s + inertia s^2): first order
+//! without inertia, with inertia it may overshoot. In the cruise the shaft is behind by the lag. A
+//! dead time is part of the start.
 //!
-//! Every function is written so that it stays exact where its parameters degenerate: a ramp of no
-//! length, a lag of none, a cruise of a quarter of an hour. Left out: how the parameters are found,
-//! which is `profile_fit`.
+//! Every function is exact for degenerate parameters: no ramp, no lag, a cruise of a quarter of an
+//! hour. `profile_fit` finds the parameters.
 
 mod swing;
 
 /// A profile move of the shaft, in seconds after an origin and degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile {
-    /// When it begins, seconds.
+    /// Start, seconds.
     pub start_s: f64,
-    /// Speed of the cruise, degrees per second; of a triangle the greatest. Signed as the way is.
+    /// Speed of the cruise, degrees per second; of a triangle the greatest. Signed as the way.
     pub speed_deg_s: f64,
     /// Duration of the acceleration, seconds.
     pub ramp_up_s: f64,
     /// Duration of the deceleration, seconds.
     pub ramp_down_s: f64,
-    /// Angle where it begins, degrees.
+    /// Angle at the start, degrees.
     pub from_deg: f64,
-    /// Its way, degrees; signed.
+    /// Way, degrees; signed.
     pub way_deg: f64,
-    /// Time constant of the servo, seconds; 0 where the shaft follows at once.
+    /// Time constant of the servo, seconds; 0 if the shaft follows at once.
     pub lag_s: f64,
-    /// Inertia of the servo, seconds squared: 1 / (2 pi f)2 of a natural frequency f, damped by lag
-    /// / (2 sqrt(inertia)); 0 of a servo of first order.
+    /// Inertia of the servo, seconds squared: 1 / (2 pi f)^2 for a natural frequency f, with
+    /// damping lag / (2 sqrt(inertia)); 0 for a servo of first order.
     pub inertia_s2: f64,
 }
 
@@ -45,7 +43,7 @@ impl Profile {
         self.way_deg / self.speed_deg_s + (self.ramp_up_s - self.ramp_down_s) / 2.0
     }
 
-    /// When the demand is at rest again, seconds after the start.
+    /// End of the demand, seconds after the start.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.braking_s() + self.ramp_down_s
@@ -88,11 +86,11 @@ impl Profile {
         )
     }
 
-    /// Angle at an instant, and how it changes with the parameters.
+    /// Angle at an instant, and its derivatives by the parameters.
     pub(super) fn with_gradient(&self, at_s: f64) -> (f64, Gradient) {
         let (up, down) = self.ramps(at_s);
         let v = self.speed_deg_s;
-        // The braking's start moves with way, speed and ramps.
+        // The start of the deceleration moves with way, speed and ramps.
         let later = v * down.rate;
         let angle = self.from_deg + v * (up.position - down.position);
         let gradient = [
@@ -108,15 +106,15 @@ impl Profile {
         (angle, gradient)
     }
 
-    /// Instants at which the motion is of another form, seconds, in order.
+    /// Instants at which the form of the demand changes, seconds, in order.
     pub(super) fn corners_s(&self) -> [f64; 4] {
         let brake = self.braking_s();
         [0.0, self.ramp_up_s, brake, brake + self.ramp_down_s].map(|s| self.start_s + s)
     }
 }
 
-/// What a demand that goes over to unit speed has brought about: position in seconds, speed, and
-/// the position's derivatives.
+/// Response to a demand that ramps to unit speed: position in seconds, speed, and derivatives of
+/// the position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ramp {
     position: f64,
@@ -135,15 +133,14 @@ impl Ramp {
         by_inertia: 0.0,
     };
 
-    /// `since` seconds after its beginning, of a ramp of `length` seconds behind a lag.
+    /// Response `since` seconds after the beginning of a ramp of `length` seconds, behind a servo.
     fn new(since: f64, length: f64, lag: f64, inertia: f64) -> Self {
         if since <= 0.0 {
             return Self::REST;
         }
         let demand = Self::demand(since, length);
         if lag <= 0.0 {
-            // The limit of the shaft's answer as the lag goes to zero: it is behind by speed times
-            // lag.
+            // The limit for a vanishing lag: the shaft is behind by speed times lag.
             return Self {
                 by_lag: -demand.rate,
                 ..demand
@@ -219,7 +216,7 @@ impl Ramp {
     }
 }
 
-/// What a lag leaves missing of a demanded speed, and its derivatives.
+/// Speed still missing behind a lag, and its derivatives.
 struct Missing {
     rate: f64,
     by_ramp: f64,
@@ -227,7 +224,7 @@ struct Missing {
 }
 
 impl Missing {
-    /// The speed that is missing alone.
+    /// The missing speed alone.
     fn rate(since: f64, length: f64, lag: f64) -> f64 {
         if since < length {
             since / length * mean_decay(since / lag)

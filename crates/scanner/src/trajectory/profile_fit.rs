@@ -1,19 +1,17 @@
-//! Finds the commanded motion in samples: least squares over start, speed, both ramps, beginning,
-//! way and, on request, the lag.
+//! Fits the commanded motion to samples: least squares over start, speed, both ramps, beginning,
+//! way and optionally the servo, by Levenberg-Marquardt (MINPACK, Moré 1978).
 //!
-//! In these parameters the problem is well posed (condition some tens) as long as the samples see
-//! both ramps; speed, acceleration and deceleration instead would not converge. Where a ramp is
-//! shorter than what the samples see, its length is held near what was commanded, and where the
-//! samples do not tell all of the motion (they begin or end in the midst of it) all parameters are;
-//! the fit says which of them that decided. A minimum is found by Levenberg and Marquardt's method
-//! (MINPACK's, Moré 1978). Left out: whether the motion was the commanded one at all; residuals
-//! tell, and `choose` asks them.
+//! In these parameters the problem is well conditioned (some tens) if the samples cover both ramps;
+//! with speed, acceleration and deceleration it would not converge. A ramp with too few samples is
+//! regularised towards the command, and so are all parameters if the samples do not cover the
+//! motion (`prior`). Whether the motion was the commanded one follows from the residuals
+//! (`choose`).
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
-use super::prior::{Prior, RegularisedParameters, SHORTEST_RAMP_S, priors};
+use super::prior::{MIN_RAMP_S, Prior, RegularisedParameters, priors};
 use super::profile::{Gradient, Profile};
 
 /// One observation: seconds after the origin, angle and its standard deviation in degrees.
@@ -24,34 +22,32 @@ pub(super) struct Observed {
     pub sd_deg: f64,
 }
 
-/// A profile that was found.
+/// A fitted profile.
 #[derive(Clone, Debug)]
 pub struct ProfileFit {
     /// The motion.
     pub profile: Profile,
-    /// Whether the cruise was never reached.
+    /// Whether the cruise is never reached.
     pub is_triangle: bool,
-    /// Condition number of the fit, its columns scaled to one length, what holds parameters among
-    /// them.
+    /// Condition number of the fit, columns scaled to unit length, priors included.
     pub condition: f64,
-    /// Which parameters were held near what was commanded, as the samples do not tell them.
-    pub held: RegularisedParameters,
-    /// Weighted sum of squares a degree of freedom: 1 where the samples are as good as they are
-    /// taken to be.
-    pub excess: f64,
+    /// Parameters regularised towards the command.
+    pub regularised: RegularisedParameters,
+    /// Reduced chi-squared: 1 if the samples' errors are as assumed.
+    pub reduced_chi2: f64,
     servo: Servo,
     covariance: DMatrix<f64>,
     priors: Vec<Prior>,
 }
 
-/// What is behind the demand.
+/// Response of the shaft to the demand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Servo {
-    /// A shaft that follows at once.
+    /// None: the shaft follows at once.
     None,
-    /// A lag.
+    /// First order: a lag.
     Lag,
-    /// A lag and inertia.
+    /// Second order: lag and inertia.
     Swing,
 }
 
@@ -61,43 +57,42 @@ impl Servo {
     }
 }
 
-/// Fewer samples than this within a ramp do not tell its length.
-const FEWEST_IN_RAMP: usize = 3;
-/// Above this the samples do not tell all parameters.
-const WORST_CONDITION: f64 = 1e6;
-/// A sum of squares that changes by less than this, as a part of it, is the least: of a thousand
-/// samples, parameters are then within a thirtieth of what these scatter them by.
-const LEAST: f64 = 1e-6;
-/// So many observations are enough for a look.
-const ENOUGH_TO_LOOK: usize = 100;
-/// Parameters that change by less than this, as a part of them, are found.
-const FOUND: f64 = 1e-9;
-/// What a lag is looked for from: that of a servo of 15 Hz.
-const USUAL_LAG_S: f64 = 0.01;
-/// No servo that was tuned swings longer.
-const LEAST_DAMPING: f64 = 0.1;
-/// A residual that no step leads to.
-const FAR_OFF: f64 = 1e9;
-/// No servo that moves a head is slower.
-const LONGEST_LAG_S: f64 = 1.0;
+/// Samples needed within a ramp to determine its length.
+const MIN_RAMP_SAMPLES: usize = 3;
+/// Above this the samples do not determine all parameters.
+const MAX_CONDITION: f64 = 1e6;
+/// Relative change of the sum of squares at convergence: with a thousand samples, parameters are
+/// then within a thirtieth of their standard deviation.
+const SQUARES_TOLERANCE: f64 = 1e-6;
+/// Observations of a preliminary fit.
+const PRELIMINARY_OBSERVATIONS: usize = 100;
+/// Relative change of the parameters at convergence.
+const PARAMETER_TOLERANCE: f64 = 1e-9;
+/// Initial lag: that of a servo of 15 Hz.
+const INITIAL_LAG_S: f64 = 0.01;
+/// Least damping of a tuned servo.
+const MIN_DAMPING: f64 = 0.1;
+/// Residual of parameters that are no motion.
+const INVALID_RESIDUAL: f64 = 1e9;
+/// Greatest lag of a servo that moves a head.
+const MAX_LAG_S: f64 = 1.0;
 
 impl ProfileFit {
     /// Standard deviation of the angle at an instant, degrees, from the scatter of the samples.
     #[must_use]
     pub fn sd_deg(&self, at_s: f64) -> f64 {
         let (_, row) = ProfileShape::of(self).row(&self.profile, at_s);
-        // Columns come as many as there are parameters.
+        // There are as many columns as parameters.
         let columns = self.covariance.column_iter().zip(row);
         let variance: f64 = columns
             .map(|(column, by)| by * column.iter().zip(row).map(|(c, by)| c * by).sum::<f64>())
             .sum();
-        (variance.max(0.0) * self.excess).sqrt()
+        (variance.max(0.0) * self.reduced_chi2).sqrt()
     }
 }
 
-/// Fits from `guess`, with the servo's parameters that it has, or from where a look has led,
-/// `begin`. `None` where there are fewer observations than parameters, or no minimum is found that
-/// is a motion at all.
+/// Fits from `guess`, or from the preliminary fit `begin`. `None` with fewer observations than
+/// parameters, or if no minimum is a motion.
 pub(super) fn fit(
     observed: &[Observed],
     guess: Profile,
@@ -106,8 +101,8 @@ pub(super) fn fit(
 ) -> Option<ProfileFit> {
     let [lag_s, inertia_s2] = match servo {
         Servo::None => [0.0; 2],
-        Servo::Lag => [USUAL_LAG_S, 0.0],
-        Servo::Swing => [2.0 * USUAL_LAG_S, USUAL_LAG_S * USUAL_LAG_S],
+        Servo::Lag => [INITIAL_LAG_S, 0.0],
+        Servo::Swing => [2.0 * INITIAL_LAG_S, INITIAL_LAG_S * INITIAL_LAG_S],
     };
     let guess = Profile {
         lag_s,
@@ -145,39 +140,44 @@ fn solve(
         inside.count()
     };
     let [up, cruise, brake, rest] = guess.corners_s();
-    let held = RegularisedParameters {
-        ramp_up: within(up, cruise) < FEWEST_IN_RAMP,
-        ramp_down: within(brake, rest) < FEWEST_IN_RAMP,
+    let regularised = RegularisedParameters {
+        ramp_up: within(up, cruise) < MIN_RAMP_SAMPLES,
+        ramp_down: within(brake, rest) < MIN_RAMP_SAMPLES,
         ..RegularisedParameters::default()
     };
-    let free = Problem::new(observed, guess, shape, held)
-        .beginning_at(begin.unwrap_or(&guess))
+    let free = Problem::new(observed, guess, shape, regularised)
+        .starting_at(begin.unwrap_or(&guess))
         .minimise();
     match free {
-        Some(free) if free.condition < WORST_CONDITION => Some(free),
+        Some(free) if free.condition < MAX_CONDITION => Some(free),
         _ => Problem::new(observed, guess, shape, RegularisedParameters::ALL)
             .minimise()
             .map(|fit| {
                 let variances = fit.covariance.diagonal();
-                let held = RegularisedParameters::that_decided(&fit.priors, variances.as_slice());
-                ProfileFit { held, ..fit }
+                let regularised =
+                    RegularisedParameters::that_decided(&fit.priors, variances.as_slice());
+                ProfileFit { regularised, ..fit }
             }),
     }
 }
 
-/// A fit to one observation in every few, for a look at what it comes to; `None` where there are
-/// too few for that, or they do not tell everything.
-pub(super) fn look(observed: &[Observed], guess: Profile, servo: Servo) -> Option<ProfileFit> {
-    let part = observed.len() / ENOUGH_TO_LOOK;
+/// A fit to every n-th observation; `None` with too few, or if they do not determine every
+/// parameter.
+pub(super) fn preliminary(
+    observed: &[Observed],
+    guess: Profile,
+    servo: Servo,
+) -> Option<ProfileFit> {
+    let part = observed.len() / PRELIMINARY_OBSERVATIONS;
     if part < 2 {
         return None;
     }
     let some: Vec<Observed> = observed.iter().copied().step_by(part).collect();
-    fit(&some, guess, servo, None).filter(|fit| !fit.held.any())
+    fit(&some, guess, servo, None).filter(|fit| !fit.regularised.any())
 }
 
-/// Which parameters a profile has: a triangle's speed follows from its way and its ramps, and there
-/// may be no lag.
+/// Free parameters of a profile: a triangle's speed follows from its way and its ramps, and the
+/// servo is optional.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct ProfileShape {
     is_triangle: bool,
@@ -196,7 +196,7 @@ impl ProfileShape {
         5 + !self.is_triangle as usize + self.servo.parameters()
     }
 
-    /// The parameters: start, ramps, beginning, way, then speed and lag where they are free.
+    /// The parameters: start, ramps, beginning, way, then speed and servo if free.
     fn parameters(self, profile: &Profile) -> Vec<f64> {
         let Profile {
             start_s,
@@ -218,8 +218,8 @@ impl ProfileShape {
         parameters
     }
 
-    /// The profile of parameters, which are first brought to where a motion is possible. The way
-    /// never changes its direction from that of `guess`.
+    /// The profile of parameters, limited to possible motions. The way keeps the direction of
+    /// `guess`.
     fn profile(self, parameters: &[f64], guess: &Profile) -> Option<Profile> {
         let &[
             start_s,
@@ -232,7 +232,7 @@ impl ProfileShape {
         else {
             return None;
         };
-        let [ramp_up_s, ramp_down_s] = [ramp_up_s, ramp_down_s].map(|s| s.max(SHORTEST_RAMP_S));
+        let [ramp_up_s, ramp_down_s] = [ramp_up_s, ramp_down_s].map(|s| s.max(MIN_RAMP_S));
         let mut rest = rest.iter().copied();
         let speed_deg_s = if self.is_triangle {
             2.0 * way_deg / (ramp_up_s + ramp_down_s)
@@ -240,12 +240,9 @@ impl ProfileShape {
             rest.next()?
         };
         let lag_s = rest.next().unwrap_or_default();
-        // As a time its effect is as even as the lag's, and on both sides of zero the same.
-        let inertia_s = rest.next().unwrap_or_default().abs().min(LONGEST_LAG_S);
-        let lag_s = lag_s.clamp(
-            LEAST_DAMPING * 2.0 * inertia_s,
-            LONGEST_LAG_S.max(inertia_s),
-        );
+        // As a time its effect is as linear as the lag's, and symmetric about zero.
+        let inertia_s = rest.next().unwrap_or_default().abs().min(MAX_LAG_S);
+        let lag_s = lag_s.clamp(MIN_DAMPING * 2.0 * inertia_s, MAX_LAG_S.max(inertia_s));
         let inertia_s2 = inertia_s * inertia_s;
         let is_motion = way_deg * guess.way_deg > 0.0
             && speed_deg_s * guess.speed_deg_s > 0.0
@@ -262,8 +259,7 @@ impl ProfileShape {
         })
     }
 
-    /// Angle at an instant and its derivatives by the parameters, of which as many count as there
-    /// are.
+    /// Angle at an instant, and its derivatives by the free parameters.
     fn row(self, profile: &Profile, at_s: f64) -> (f64, Gradient) {
         let (angle, [start, speed, up, down, from, way, lag, inertia]): (f64, Gradient) =
             profile.with_gradient(at_s);
@@ -288,13 +284,12 @@ impl ProfileShape {
     }
 }
 
-/// The problem as the solver sees it: one row an observation, and one for each parameter that is
-/// held.
+/// The least-squares problem: a row for each observation and each prior.
 struct Problem<'a> {
     observed: &'a [Observed],
     guess: Profile,
     shape: ProfileShape,
-    held: RegularisedParameters,
+    regularised: RegularisedParameters,
     profile: Profile,
     parameters: DVector<f64>,
 }
@@ -304,33 +299,33 @@ impl<'a> Problem<'a> {
         observed: &'a [Observed],
         guess: Profile,
         shape: ProfileShape,
-        held: RegularisedParameters,
+        regularised: RegularisedParameters,
     ) -> Self {
         Self {
             observed,
             guess,
             shape,
-            held,
+            regularised,
             profile: guess,
             parameters: DVector::from_vec(shape.parameters(&guess)),
         }
     }
 
-    fn beginning_at(mut self, start: &Profile) -> Self {
+    fn starting_at(mut self, start: &Profile) -> Self {
         self.set_params(&DVector::from_vec(self.shape.parameters(start)));
         self
     }
 
-    /// What holds parameters.
+    /// Priors of the regularised parameters.
     fn priors(&self) -> Vec<Prior> {
         let servo = self.shape.len() - self.shape.servo.parameters()..self.shape.len();
-        priors(&self.profile, &self.guess, self.held, servo)
+        priors(&self.profile, &self.guess, self.regularised, servo)
     }
 
     fn minimise(self) -> Option<ProfileFit> {
         let solver = LevenbergMarquardt::new()
-            .with_ftol(LEAST)
-            .with_xtol(FOUND)
+            .with_ftol(SQUARES_TOLERANCE)
+            .with_xtol(PARAMETER_TOLERANCE)
             .with_gtol(0.0)
             .with_patience(30);
         let (problem, report) = solver.minimize(self);
@@ -364,8 +359,8 @@ impl<'a> Problem<'a> {
             profile,
             is_triangle: problem.shape.is_triangle,
             condition,
-            held: problem.held,
-            excess: 2.0 * report.objective_function / freedom as f64,
+            regularised: problem.regularised,
+            reduced_chi2: 2.0 * report.objective_function / freedom as f64,
             servo: problem.shape.servo,
             covariance: &scale * inverse * &scale,
             priors: problem.priors(),
@@ -380,7 +375,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
     fn set_params(&mut self, parameters: &DVector<f64>) {
         self.parameters.copy_from(parameters);
-        // Where no motion has these parameters the residuals say so.
+        // The residuals report parameters that are no motion.
         if let Some(profile) = self.shape.profile(parameters.as_slice(), &self.guess) {
             self.profile = profile;
         }
@@ -396,13 +391,16 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
             .profile(self.parameters.as_slice(), &self.guess)
             .is_none()
         {
-            // No motion has these parameters: the solver is to turn back.
+            // Not a motion: the solver has to step back.
             let rows = self.observed.len() + self.priors().len();
-            return Some(DVector::from_element(rows, FAR_OFF));
+            return Some(DVector::from_element(rows, INVALID_RESIDUAL));
         }
         let off = |o: &Observed| (self.profile.angle_deg(o.at_s) - o.angle_deg) / o.sd_deg;
-        let held = self.priors().into_iter().map(|prior| prior.off / prior.sd);
-        let rows: Vec<f64> = self.observed.iter().map(off).chain(held).collect();
+        let regularised = self
+            .priors()
+            .into_iter()
+            .map(|prior| prior.deviation / prior.sd);
+        let rows: Vec<f64> = self.observed.iter().map(off).chain(regularised).collect();
         Some(DVector::from_vec(rows))
     }
 
@@ -416,7 +414,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
             }
         }
         for (i, prior) in priors.into_iter().enumerate() {
-            *jacobian.get_mut((self.observed.len() + i, prior.place))? = 1.0 / prior.sd;
+            *jacobian.get_mut((self.observed.len() + i, prior.index))? = 1.0 / prior.sd;
         }
         Some(jacobian)
     }

@@ -1,40 +1,40 @@
-//! A cubic spline through samples by least squares: for motion that nobody commanded.
+//! A cubic spline through samples by least squares, for motion without a command.
 //!
-//! Knots are evenly spaced, as far apart as the motion allows: the spacing with the least predicted
-//! error by generalised cross-validation (Craven and Wahba 1979) is taken. Where a stretch has no
-//! samples the spline is held straight by a slight stiffness, so that every system has a solution.
-//! Normal equations of B-splines have a band of four and are solved as such.
+//! Knots are evenly spaced. Their spacing has the least predicted error by generalised
+//! cross-validation (Craven and Wahba 1979). A slight stiffness keeps the spline straight in
+//! intervals without samples, so that every system has a solution. The normal equations of
+//! B-splines have bandwidth four and are solved as such.
 
 use units::{Host, Span, Stamp};
 
 use super::pieces::{CubicPiece, PiecewiseCubic};
 use super::profile_fit::Observed;
 
-/// A spline that was fitted.
+/// A fitted spline.
 #[derive(Clone, Debug)]
 pub(super) struct SplineFit {
     pub pieces: PiecewiseCubic,
-    /// Between knots.
+    /// Knot spacing.
     #[cfg(test)]
     pub spacing: Span,
 }
 
-/// A cubic touches four B-splines.
+/// A cubic overlaps four B-splines.
 const BAND: usize = 4;
-/// Spacings that are tried, each so many times the one before it.
+/// Ratio of successive spacings.
 const STEP: f64 = std::f64::consts::SQRT_2;
-/// The closest knots, in mean distances of samples, and the farthest, as a part of the whole.
+/// Closest knots in mean distances of samples, and farthest as a part of the whole.
 const CLOSEST: f64 = 2.0;
 const FARTHEST: f64 = 0.25;
-/// A spacing that is worse by so much is too wide for the motion, and so are all wider ones.
-const HOPELESS: f64 = 10.0;
-/// Stiffness against bending, beside the mean weight of samples in a knot's stretch.
+/// A score worse than the best by this factor ends the search: wider spacings are worse still.
+const MAX_SCORE_RATIO: f64 = 10.0;
+/// Stiffness against bending, relative to the mean weight of the samples per interval.
 const STIFFNESS: f64 = 1e-9;
-/// More knots than this are not tried: time grows with them.
-const MOST_KNOTS: usize = 100_000;
+/// Limit of knots, for the time of a fit.
+const MAX_KNOTS: usize = 100_000;
 
 /// Fits `observed`, in order of time and in seconds after `origin`, from `from_s` to `to_s`. `None`
-/// with fewer than four of them or no time.
+/// with fewer than four of them or without time.
 pub(super) fn fit(
     observed: &[Observed],
     origin: Stamp<Host>,
@@ -46,7 +46,7 @@ pub(super) fn fit(
         return None;
     }
     let mean = length / observed.len() as f64;
-    let closest = (CLOSEST * mean).max(length / MOST_KNOTS as f64);
+    let closest = (CLOSEST * mean).max(length / MAX_KNOTS as f64);
     let farthest = (FARTHEST * length).max(closest);
     let mut best: Option<(f64, Spline)> = None;
     let mut spacing = closest;
@@ -55,7 +55,7 @@ pub(super) fn fit(
         if let Some(spline) = Spline::fit(observed, from_s, length / knots as f64, knots) {
             let score = spline.score();
             match &best {
-                Some((least, _)) if score > HOPELESS * least => break,
+                Some((least, _)) if score > MAX_SCORE_RATIO * least => break,
                 Some((least, _)) if score >= *least => {}
                 _ => best = Some((score, spline)),
             }
@@ -78,11 +78,11 @@ struct Spline {
     factor: Banded,
     squares: f64,
     samples: usize,
-    /// Degrees of freedom that the spline takes.
-    taken: f64,
+    /// Degrees of freedom of the spline.
+    degrees_of_freedom: f64,
 }
 
-/// Values of the four B-splines over a stretch, `x` of it after its beginning.
+/// Values of the four B-splines over an interval, at `x` (0 to 1) in it.
 fn basis(x: f64) -> [f64; BAND] {
     let (y, x2, x3) = (1.0 - x, x * x, x * x * x);
     [
@@ -94,14 +94,14 @@ fn basis(x: f64) -> [f64; BAND] {
 }
 
 impl Spline {
-    fn fit(observed: &[Observed], from_s: f64, spacing_s: f64, stretches: usize) -> Option<Self> {
-        let count = stretches + BAND - 1;
+    fn fit(observed: &[Observed], from_s: f64, spacing_s: f64, intervals: usize) -> Option<Self> {
+        let count = intervals + BAND - 1;
         let mut normal = Banded::zeros(count);
         let mut right = vec![0.0; count];
         let place = |at_s: f64| {
-            let x = ((at_s - from_s) / spacing_s).clamp(0.0, stretches as f64);
-            let stretch = (x as usize).min(stretches - 1);
-            (stretch, basis(x - stretch as f64))
+            let x = ((at_s - from_s) / spacing_s).clamp(0.0, intervals as f64);
+            let interval = (x as usize).min(intervals - 1);
+            (interval, basis(x - interval as f64))
         };
         let mut weights = 0.0;
         for o in observed {
@@ -115,7 +115,7 @@ impl Spline {
                 }
             }
         }
-        let stiffness = STIFFNESS * weights / stretches as f64;
+        let stiffness = STIFFNESS * weights / intervals as f64;
         for k in 2..count {
             let bend = [(k - 2, 1.0), (k - 1, -2.0), (k, 1.0)];
             for (i, a) in bend {
@@ -133,7 +133,7 @@ impl Spline {
             factor,
             squares: 0.0,
             samples: observed.len(),
-            taken: 0.0,
+            degrees_of_freedom: 0.0,
         };
         for o in observed {
             let (first, values) = place(o.at_s);
@@ -141,19 +141,19 @@ impl Spline {
             let angle: f64 = around.iter().zip(values).map(|(c, b)| c * b).sum();
             spline.squares += ((angle - o.angle_deg) / o.sd_deg).powi(2);
         }
-        // A stretch without samples takes nothing.
-        spline.taken = (count as f64).min(observed.len() as f64 - 1.0);
+        // An interval without samples takes no degree of freedom.
+        spline.degrees_of_freedom = (count as f64).min(observed.len() as f64 - 1.0);
         Some(spline)
     }
 
-    fn excess(&self) -> f64 {
-        self.squares / (self.samples as f64 - self.taken).max(1.0)
+    fn reduced_chi2(&self) -> f64 {
+        self.squares / (self.samples as f64 - self.degrees_of_freedom).max(1.0)
     }
 
     /// Generalised cross-validation.
     fn score(&self) -> f64 {
         let n = self.samples as f64;
-        let left = (1.0 - self.taken / n).max(1.0 / n);
+        let left = (1.0 - self.degrees_of_freedom / n).max(1.0 / n);
         self.squares / n / (left * left)
     }
 
@@ -161,11 +161,11 @@ impl Spline {
         let at = |k: usize| {
             origin.saturating_add(Span::from_secs_f64(self.from_s + k as f64 * self.spacing_s))
         };
-        let stretches = self.coefficients.len() + 1 - BAND;
-        let excess = self.excess();
-        // Away from the ends the band's inverse is about the same everywhere there are samples:
-        // asked for in full at each knot, it would cost more than the fit.
-        let pieces = (0..stretches).map(|k| {
+        let intervals = self.coefficients.len() + 1 - BAND;
+        let reduced_chi2 = self.reduced_chi2();
+        // Away from the ends the inverse of the band matrix is about constant where there are
+        // samples; exact variances at each knot would cost more than the fit.
+        let pieces = (0..intervals).map(|k| {
             let (from, to) = (at(k), at(k + 1));
             let around = self.coefficients.get(k..k + BAND)?;
             let value = |weights: [f64; BAND]| -> f64 {
@@ -174,15 +174,15 @@ impl Spline {
             let ns = to.saturating_since(from).as_nanos().max(1) as f64;
             let slopes = [[-0.5, 0.0, 0.5, 0.0], [0.0, -0.5, 0.0, 0.5]].map(|w| value(w) / ns);
             let [begin, end] = [0.0, 1.0].map(|x| value(basis(x)));
-            let sd = (self.variance(k)? * excess).sqrt();
+            let sd = (self.variance(k)? * reduced_chi2).sqrt();
             Some(CubicPiece::hermite(from, ns, [begin, slopes[0]], [end, slopes[1]]).with_sd(sd))
         });
-        PiecewiseCubic::new(pieces.collect::<Option<Vec<_>>>()?, at(stretches))
+        PiecewiseCubic::new(pieces.collect::<Option<Vec<_>>>()?, at(intervals))
     }
 
-    /// Variance in the middle of stretch `k` where the samples are as good as they are taken to be.
+    /// Variance in the middle of interval `k` if the samples' errors are as assumed.
     fn variance(&self, k: usize) -> Option<f64> {
-        // Only what is near counts: the inverse of such a band falls off by three quarters a knot.
+        // The inverse of such a band matrix decays by three quarters per knot.
         const REACH: usize = 12;
         let (low, high) = (
             k.saturating_sub(REACH),
@@ -206,9 +206,9 @@ impl Spline {
     }
 }
 
-/// The lower triangle of a symmetric matrix with a band of four, or of its Cholesky factor.
+/// Lower triangle of a symmetric matrix of bandwidth four, or of its Cholesky factor.
 struct Banded {
-    /// Row by row: the element on the diagonal, the one left of it, and so on.
+    /// Rows: the diagonal element, the one left of it, and so on.
     rows: Vec<[f64; BAND]>,
 }
 
@@ -232,7 +232,7 @@ impl Banded {
         Some(())
     }
 
-    /// Cholesky's factor; `None` where the matrix is not positive definite.
+    /// The Cholesky factor; `None` if the matrix is not positive definite.
     fn factor(mut self) -> Option<Self> {
         for i in 0..self.rows.len() {
             for j in i.saturating_sub(BAND - 1)..=i {

@@ -1,11 +1,11 @@
-//! The answer of a servo with inertia.
+//! Response of a servo of second order.
 
 use super::Ramp;
 
-/// A servo 1 / (1 + b1 s + b2 s2): a demand of unit speed from 0 on it follows as t - b1 + g(t),
-/// where g is the solution of b2 g" + b1 g' + g = 0 with g(0) = b1 and g'(0) = -1. With C and S the
-/// cosine and the sine over w, a = b1 / (2 b2) and w2 = 1/b2 - a2, which may be negative, g =
-/// exp(-a t) (b1 C + (a b1 - 1) S).
+/// A servo 1 / (1 + b1 s + b2 s^2). It follows a demand of unit speed from 0 on as t - b1 + g(t),
+/// where g solves b2 g" + b1 g' + g = 0 with g(0) = b1 and g'(0) = -1. With C and S the cosine and
+/// the sine over w, a = b1 / (2 b2) and w2 = 1/b2 - a^2, which may be negative, g = exp(-a t) (b1 C
+/// + (a b1 - 1) S).
 struct Servo {
     lag: f64,
     inertia: f64,
