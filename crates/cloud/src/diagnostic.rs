@@ -1,26 +1,26 @@
-//! What a program found out about a scan beside its points, for sinks that keep it.
+//! Findings about a scan, for sinks that keep them.
 
-/// How good something is.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum DiagnosticLevel {
     /// As it should be.
     Ok = 0,
-    /// To be known by whoever uses the cloud.
+    /// A limitation that users of the cloud have to know.
     Warn = 1,
-    /// The cloud is not what was asked for.
+    /// The cloud is not the requested one.
     Error = 2,
 }
 
-/// One thing that was looked at.
+/// A finding about a scan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// What was looked at.
+    /// Subject.
     pub name: String,
-    /// How good it is.
+    /// Severity.
     pub level: DiagnosticLevel,
-    /// The finding in a sentence.
+    /// Finding, in a sentence.
     pub message: String,
-    /// Names and values behind it, in their order.
+    /// Names and values of the finding, in order.
     pub values: Vec<(String, String)>,
 }

@@ -1,4 +1,4 @@
-//! Why a sink could not take points.
+//! Errors of sinks.
 
 use std::error::Error;
 use std::io;
@@ -15,20 +15,20 @@ pub enum SinkError {
         format: &'static str,
         /// Points written whole before it.
         points: u64,
-        /// What the output said.
+        /// Error of the output.
         source: io::Error,
     },
-    /// The format's own library refused.
+    /// The library of the format failed.
     #[error("{format}: encoding failed after {points} points: {source}")]
     Encode {
         /// The format being written.
         format: &'static str,
         /// Points written whole before it.
         points: u64,
-        /// What the library said.
+        /// Error of the library.
         source: Box<dyn Error + Send + Sync>,
     },
-    /// A batch lacks a column that the sink asked for.
+    /// A batch lacks a column that the sink requested.
     #[error(transparent)]
     Columns(#[from] MissingColumns),
     /// A coordinate that the format cannot hold.
@@ -40,11 +40,11 @@ pub enum SinkError {
         format: &'static str,
         /// Which coordinate.
         axis: char,
-        /// Index of the point among all that the sink was given.
+        /// Index of the point among all points of the sink.
         point: u64,
         /// The coordinate.
         got_m: f64,
-        /// The greatest magnitude that fits.
+        /// Greatest magnitude of the format.
         limit_m: f64,
     },
     /// Calls in the wrong order: begin, then points, then finish.
@@ -52,12 +52,12 @@ pub enum SinkError {
     Order {
         /// The format being written.
         format: &'static str,
-        /// What may come.
+        /// Expected call.
         expected: &'static str,
-        /// What came.
+        /// Actual call.
         got: &'static str,
     },
-    /// A sink of another kind failed.
+    /// Another kind of sink failed.
     #[error(transparent)]
     Other(Box<dyn Error + Send + Sync>),
 }

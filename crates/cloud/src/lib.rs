@@ -1,12 +1,26 @@
-//! What a scan becomes: columns of points, where the tilt mount puts them, and the sinks that keep
-//! them.
+//! Point clouds: columns of points, the geometry of the tilt mount, and sinks that keep them.
 //!
-//! [`Points`] is a structure of arrays that holds only the columns someone asked for ([`Fields`]);
-//! [`mount`] is the paper's Eq. 4-6; a [`Sink`] takes batches of points; [`formats`] are the sinks
-//! that write a file, [`messages`] what a scan says in ROS 2's terms; [`read`] reads the positions
-//! of a file.
+//! [`Points`] is a structure of arrays with the requested columns ([`Fields`]). [`mount`] is Eq. 4-6
+//! of the paper. A [`Sink`] takes batches of points; [`formats`] are sinks that write files,
+//! [`messages`] encodes a scan as ROS 2 messages, [`read`] reads the positions of a file.
 //!
-//! Left out on purpose: where the points come from (`scanner`), and opening files (`io`).
+//! ```
+//! use std::io::Cursor;
+//!
+//! use cloud::formats::Format;
+//! use cloud::{Fields, Metadata, Point, Points, Sink};
+//!
+//! # fn main() -> Result<(), cloud::SinkError> {
+//! let mut points = Points::new(Fields::FILE);
+//! points.push(Point { position_m: [1.0, 2.0, 3.0], intensity: 40, ..Point::default() });
+//!
+//! let mut file = Format::Ply.writer(Cursor::new(Vec::new()), points.fields());
+//! file.begin(&Metadata::default())?;
+//! file.points(&points)?;
+//! assert_eq!(file.finish()?.points, 1);
+//! # Ok(())
+//! # }
+//! ```
 
 mod columns;
 mod diagnostic;

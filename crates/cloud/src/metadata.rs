@@ -1,20 +1,19 @@
-//! What a cloud says about itself beside its points.
+//! Description of a cloud.
 //!
-//! Free of any wall-clock time, user or host name: the same log must give the same file, bit for
-//! bit.
+//! It contains no wall-clock time, user or host name: the same log must give the same file.
 
-/// What a file says in its header, whatever the format.
+/// Contents of a file's header, for all formats.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Metadata {
-    /// Whether software stood in for the devices. Every format says so in the first place it has.
+    /// Whether the devices were simulated. Every format marks that as early as it can.
     pub simulated: bool,
-    /// What the points come from: the sensor and the rig.
+    /// Source of the points: the sensor and the rig.
     pub source: String,
     /// Name and version of the software that made the cloud.
     pub software: String,
-    /// What the time column counts from and whose clock it is, in words.
+    /// Epoch and clock of the time column, in words.
     pub time_reference: String,
-    /// Anything else; a text of several lines becomes several comments.
+    /// Further comments; several lines become several comments.
     pub comments: Vec<String>,
 }
 
@@ -23,8 +22,8 @@ pub struct Metadata {
 const LINE_CHARS: usize = 120;
 
 impl Metadata {
-    /// Everything as lines of printable ASCII, none empty, none longer than 120 characters. A cloud
-    /// from software devices says so in the first line, which starts with `SIMULATED`.
+    /// The metadata as lines of printable ASCII, none empty, none longer than 120 characters. For
+    /// simulated devices the first line starts with `SIMULATED`.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let mut text = Vec::new();
@@ -50,8 +49,8 @@ impl Metadata {
     }
 }
 
-/// Splits at control characters and at the longest line, and replaces what is not ASCII: PLY and
-/// LAS are ASCII formats, and their readers fail on anything else.
+/// Splits at control characters and at the longest line, and replaces non-ASCII characters, on
+/// which readers of PLY and LAS fail.
 fn printable(text: &str) -> Vec<String> {
     text.split(|c: char| c.is_control() && c != '\t')
         .flat_map(|line| {

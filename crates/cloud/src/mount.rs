@@ -11,29 +11,28 @@
 
 use units::{Degrees, Metres, Real};
 
-/// Where the lidar's origin is on the platform.
+/// Position of the lidar's origin on the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mount {
     /// Height of the lidar's origin above the tilt axis (d of Eq. 4-6); negative below it.
     pub d: Metres,
 }
 
-/// A tilt angle with its sine and cosine, so that the points of one firing can share them; or
-/// several of them.
+/// A tilt angle with its sine and cosine, shared by the points of a firing; or several of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tilt<V = f64> {
     sin: V,
     cos: V,
 }
 
-/// The greatest turn for [`Tilt::ahead`], radians either way.
+/// Greatest angle for [`Tilt::ahead`], radians either way.
 pub const MOST_AHEAD_RAD: f64 = 2e-3;
 
 impl Tilt {
     /// No tilt.
     pub const LEVEL: Self = Self { sin: 0.0, cos: 1.0 };
 
-    /// The tilt by `angle` (gamma): positive turns z (up) towards x (right).
+    /// The tilt by `angle` (gamma): positive from z (up) towards x (right).
     #[must_use]
     pub fn new(angle: Degrees) -> Self {
         let (sin, cos) = angle.to_radians().0.sin_cos();
@@ -42,8 +41,8 @@ impl Tilt {
 
     /// The tilts `ahead_rad` beyond this one, at most [`MOST_AHEAD_RAD`] either way.
     ///
-    /// Taylor's series about the angle ends at the third power, so that a point is off by at most
-    /// 2e-3 ^ 4 / 24 = 7e-13 of its distance.
+    /// The Taylor series of third order displaces a point by at most 2e-3 ^ 4 / 24 = 7e-13 of its
+    /// distance.
     #[inline(always)]
     #[must_use]
     pub fn ahead<V: Real>(self, ahead_rad: V) -> Tilt<V> {
@@ -80,14 +79,13 @@ impl Mount {
         ]
     }
 
-    /// How far a placed point (Eq. 4-6, metres) is from the tilt axis and from the axis that the
-    /// lidar's head turns about, square metres each: the arms by which errors of tilt and azimuth
-    /// move it.
+    /// Squared distances of a placed point (Eq. 4-6, metres) from the tilt axis and from the
+    /// lidar's spin axis: the lever arms of tilt and azimuth errors.
     #[inline(always)]
     #[must_use]
     pub fn arms_m2<V: Real>(&self, placed_m: [V; 3], tilt: Tilt<V>) -> [V; 2] {
         let [x, y, z] = placed_m;
-        // Back into the lidar's frame, where its head's axis is z.
+        // Back into the lidar's frame, where the spin axis is z.
         let across = x * tilt.cos - z * tilt.sin;
         [x * x + z * z, across * across + y * y]
     }
@@ -126,7 +124,7 @@ mod tests {
         ]
     }
 
-    /// The same by composing matrices: lift by d, then turn about Y.
+    /// Eq. 4-6 by composing matrices: lift by d, then rotate about Y.
     fn composed(position_m: [f64; 3], gamma: Degrees) -> [f64; 3] {
         let matrix = DMat4::from_rotation_y(gamma.to_radians().0)
             * DMat4::from_translation(DVec3::new(0.0, 0.0, PAPER.d.0));
@@ -160,7 +158,7 @@ mod tests {
         assert!(worst < 1e-13, "{worst} m");
     }
 
-    /// Why the module is f64: the same equations in f32 throughout, degrees included.
+    /// The reason for f64: the same equations in f32 throughout, degrees included.
     #[test]
     fn in_f32_the_equations_would_be_wrong_by_tens_of_micrometres() {
         let mut worst: f64 = 0.0;

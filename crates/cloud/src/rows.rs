@@ -25,7 +25,7 @@ impl NumberType {
     }
 }
 
-/// RowBuffer of one length, reused from batch to batch.
+/// Rows of one length, reused from batch to batch.
 #[derive(Clone, Debug)]
 pub(crate) struct RowBuffer {
     row_bytes: usize,
@@ -33,7 +33,7 @@ pub(crate) struct RowBuffer {
 }
 
 impl RowBuffer {
-    /// RowBuffer of `row_bytes` bytes (at least one).
+    /// A buffer for rows of `row_bytes` bytes (at least one).
     pub(crate) fn new(row_bytes: usize) -> Self {
         Self {
             row_bytes: row_bytes.max(1),

@@ -1,95 +1,93 @@
-//! Where points go.
+//! Sinks of points.
 //!
-//! A sink declares its columns and takes batches; producers compute only what is declared. Nothing
-//! here knows files: a writer, a live view, a message queue and a comparison with the truth are all
-//! sinks.
+//! A sink declares its columns and takes batches; producers compute only declared columns. A
+//! writer, a live view, a message queue and a comparison with the truth are all sinks.
 
 use crate::{Diagnostic, Fields, Metadata, Points, SinkError, Summary, TiltTrack};
 
-/// A small file that belongs beside a sink's own.
+/// A small file to be stored next to a sink's own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Companion {
-    /// Its name, in the same folder.
+    /// File name, in the same folder.
     pub name: &'static str,
-    /// What is in it.
+    /// Content.
     pub text: String,
 }
 
-/// Where points go. Only [`Sink::points`] is required. Calls come in the order begin, tilt, points
-/// and turn (any number), checks, finish, companion.
+/// A consumer of points. Only [`Sink::points`] is required. The order of calls is begin, tilt,
+/// points and revolution (any number), diagnostics, finish, companion.
 pub trait Sink {
-    /// Takes a batch, which has at least the columns of [`Sink::fields`]. The batch is reused
-    /// afterwards.
+    /// Takes a batch with at least the columns of [`Sink::fields`]. The batch is reused afterwards.
     ///
     /// # Errors
-    /// [`SinkError`] where the batch cannot be kept; the producer stops then and still calls
+    /// [`SinkError`] if the batch cannot be stored. The producer stops then, and still calls
     /// [`Sink::finish`].
     fn points(&mut self, batch: &Points) -> Result<(), SinkError>;
 
-    /// The columns that the sink wants beside the position; by default none.
+    /// The columns that the sink requests; none by default.
     fn fields(&self) -> Fields {
         Fields::NONE
     }
 
-    /// Called once before the first batch; by default does nothing.
+    /// Called once before the first batch; does nothing by default.
     ///
     /// # Errors
-    /// [`SinkError`] where the sink cannot start.
+    /// [`SinkError`] if the sink cannot start.
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
         let _ = metadata;
         Ok(())
     }
 
-    /// Whether [`Sink::tilt`] is worth calling; by default not.
+    /// Whether the sink uses [`Sink::tilt`]; not by default.
     fn wants_tilt(&self) -> bool {
         false
     }
 
-    /// Called at most once, after begin and before the first batch; by default does nothing.
+    /// Called at most once, after begin and before the first batch; does nothing by default.
     ///
     /// # Errors
-    /// [`SinkError`] where it cannot be kept.
+    /// [`SinkError`] if the track cannot be stored.
     fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
         let _ = track;
         Ok(())
     }
 
-    /// What came since the last time, or since the begin, is a turn of the lidar and what comes is
-    /// another; by default does nothing.
+    /// Ends a revolution of the lidar; does nothing by default.
     ///
     /// # Errors
-    /// [`SinkError`] where it cannot be kept.
+    /// [`SinkError`] if the points so far cannot be stored.
     fn revolution(&mut self) -> Result<(), SinkError> {
         Ok(())
     }
 
-    /// Called at most once, after the last batch: what was found out about the scan; by default
-    /// does nothing.
+    /// Called at most once, after the last batch, with the diagnostics of the scan; does nothing by
+    /// default.
     ///
     /// # Errors
-    /// [`SinkError`] where it cannot be kept.
+    /// [`SinkError`] if they cannot be stored.
     fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
         let _ = diagnostics;
         Ok(())
     }
 
-    /// What belongs beside the file `file_name` that the sink wrote; to be asked after finish. By
-    /// default nothing.
+    /// A further file for the folder of `file_name`, the sink's own; called after finish. None by
+    /// default.
     fn companion(&self, file_name: &str) -> Option<Companion> {
         let _ = file_name;
         None
     }
 
-    /// Called once after the last batch: what the sink stored. By default nothing.
+    /// Called once after the last batch. Returns the summary of the stored points; empty by
+    /// default.
     ///
     /// # Errors
-    /// [`SinkError`] where what was taken could not be completed.
+    /// [`SinkError`] if the output could not be completed.
     fn finish(&mut self) -> Result<Summary, SinkError> {
         Ok(Summary::default())
     }
 }
 
-/// Collects the whole cloud in memory, with the columns that it was made with.
+/// Collects the whole cloud in memory, with its own columns.
 impl Sink for Points {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         Ok(self.append(batch)?)
@@ -104,8 +102,8 @@ impl Sink for Points {
     }
 }
 
-/// Gives every batch to both. The summary is the first one's; both are finished even if the first
-/// fails.
+/// Passes every batch to both. The summary is that of the first; both are finished even if the
+/// first fails.
 impl<A: Sink, B: Sink> Sink for (A, B) {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         self.0.points(batch)?;
@@ -203,7 +201,7 @@ mod tests {
     use super::*;
     use crate::Point;
 
-    /// A sink with the one required method.
+    /// A sink with only the required method.
     struct Count(usize);
 
     impl Sink for Count {
@@ -226,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_wants_what_both_want_and_gives_to_both() {
+    fn a_pair_requests_the_columns_of_both_and_passes_to_both() {
         let mut whole = Points::new(Fields::RING);
         let mut pair: Box<dyn Sink + '_> =
             Box::new((&mut whole, (Count(0), Points::new(Fields::TIME))));
@@ -241,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_about_points_reaches_both_of_a_pair() {
+    fn calls_without_points_reach_both_of_a_pair() {
         #[derive(Default)]
         struct Heard(usize);
         impl Sink for Heard {

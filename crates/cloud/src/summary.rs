@@ -1,4 +1,4 @@
-//! Count and extent of points: what a writer reports when it finishes.
+//! Number and extent of points.
 
 /// An axis-aligned box in metres, ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,18 +9,17 @@ pub struct Bounds {
     pub max_m: [f64; 3],
 }
 
-/// How many points there were, and where.
+/// Number and extent of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Summary {
     /// Number of points.
     pub points: u64,
-    /// The box around them; `None` without points.
+    /// Bounding box; `None` without points.
     pub bounds: Option<Bounds>,
 }
 
 impl Bounds {
-    /// The box around columns x, y, z; NaN does not count. `None` where an axis has no number at
-    /// all.
+    /// The box around columns x, y, z; NaN is ignored. `None` if an axis has no number.
     #[must_use]
     pub fn of(columns_m: [&[f64]; 3]) -> Option<Self> {
         let mut bounds = Self {
@@ -52,17 +51,16 @@ impl Bounds {
     }
 }
 
-/// Numbers that are compared side by side: more than one comparison takes, so that none waits for
-/// the one before it.
+/// Independent comparisons: more than the latency of one, so that none waits for another.
 const LANES: usize = 16;
 
-/// Least and greatest number of a column; infinities the wrong way round where there is none.
+/// Least and greatest number of a column; infinities in reverse if there is none.
 fn extent(column: &[f64]) -> (f64, f64) {
     let (mut least, mut greatest) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
     let (chunks, rest) = column.as_chunks::<LANES>();
     for chunk in chunks {
         for ((least, greatest), &value) in least.iter_mut().zip(&mut greatest).zip(chunk) {
-            // NaN is neither less nor greater, so that every number wins over it.
+            // NaN is neither less nor greater, so that every number replaces it.
             *least = if value < *least { value } else { *least };
             *greatest = if value > *greatest { value } else { *greatest };
         }
@@ -77,7 +75,7 @@ fn extent(column: &[f64]) -> (f64, f64) {
 }
 
 impl Summary {
-    /// Adds what another summary counted.
+    /// Adds another summary.
     pub fn add(&mut self, other: Self) {
         self.points += other.points;
         self.bounds = match (self.bounds, other.bounds) {
@@ -125,7 +123,7 @@ mod tests {
         );
     }
 
-    /// Against the plain way, for every length around the lanes and NaN in every place.
+    /// Equal to a plain search, for every length around the lanes and NaN in every place.
     #[test]
     fn lanes_find_what_a_plain_search_finds() {
         for len in 0..=3 * LANES {
@@ -148,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_bounds_and_nan_does_not_widen_them() {
+    fn empty_clouds_have_no_bounds_and_nan_is_ignored() {
         assert_eq!(summary(&[]), Summary::default());
         assert_eq!(summary(&[[f64::NAN; 3]]).bounds, None);
         let bounds = summary(&[[f64::NAN, 1.0, 1.0], [2.0, 2.0, f64::NAN]]).bounds;

@@ -1,15 +1,15 @@
-//! How the platform tilted during a scan, for sinks that keep it beside the points.
+//! Tilt of the platform during a scan, for sinks that store it.
 
 use units::{Degrees, Host, Metres, Stamp};
 
-/// How the platform tilted.
+/// Tilt of the platform during a scan.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TiltTrack {
-    /// Height of the lidar's origin above the tilt axis, metres; `None` where the platform does not
-    /// tilt and points are in the lidar's frame.
+    /// Height of the lidar's origin above the tilt axis, metres; `None` for a fixed platform, whose
+    /// points are in the lidar's frame.
     pub mount: Option<Metres>,
-    /// Every measured angle that the points' tilt goes by, in the order of time.
+    /// Measured angles, in order of time.
     pub samples: Vec<(Stamp<Host>, Degrees)>,
-    /// When each sweep begins and ends, in the order of time; empty where sweeps are not known.
+    /// Begin and end of each sweep, in order of time; empty if unknown.
     pub sweeps: Vec<(Stamp<Host>, Stamp<Host>)>,
 }

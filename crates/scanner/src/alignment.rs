@@ -45,6 +45,7 @@ pub struct Alignment {
 
 /// Number of returns by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PlacementCounts {
     /// Points handed to the sink.
     pub points: u64,

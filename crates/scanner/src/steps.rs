@@ -35,6 +35,7 @@ pub enum SetClock {
 
 /// A step of a clock in mid-recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ClockStep {
     /// The clock.
     pub clock: SetClock,

@@ -37,6 +37,7 @@ pub enum Accuracy {
 
 /// Reason for a method.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MethodChoice {
     /// The requested tolerance.
     pub tolerance: Tolerance,
@@ -51,6 +52,7 @@ pub struct MethodChoice {
     "no method is within {tolerance}: the best, {}, is within {} mm there ({:.4} deg at {:.2} deg/s)",
     .best.name(), three_digits(.bound.0 * 1e3), .bound_angle.0, .fastest.0.abs()
 )]
+#[non_exhaustive]
 pub struct UnreachableTolerance {
     /// The requested tolerance.
     pub tolerance: Tolerance,
@@ -220,7 +222,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_would_do_is_no_coarser_than_it_must_be() {
+    fn suggested_tolerances_are_as_tight_as_possible() {
         let out = |bound_mm: f64| UnreachableTolerance {
             tolerance: "0.001mm@20m".parse().unwrap(),
             best: Method::Profile,

@@ -1,10 +1,8 @@
-//! CSV: a header row with units, one row a point, nothing rounded.
+//! CSV: a header row with units, one row per point, without rounding.
 //!
 //! `x_m,y_m,z_m,intensity,ring,time_s,tilt_deg`; metadata as lines that start with `#` before the
 //! header row. Coordinates and angles are the shortest decimals that read back to the same f64;
-//! times have their nine decimals, so no nanosecond is lost.
-//!
-//! Left out: quoting (no field needs it), other separators, reading.
+//! times have nine decimals. No field needs quoting.
 
 use std::io::{self, Write};
 
@@ -13,7 +11,7 @@ use crate::{Column, Fields, Metadata, Point, Points, Sink, SinkError, Summary};
 
 const FORMAT: &str = "csv";
 
-/// Writes CSV to anything that takes bytes, batch by batch.
+/// Writes CSV batch by batch.
 #[derive(Debug)]
 pub struct CsvWriter<W> {
     output: W,
@@ -35,14 +33,14 @@ impl<W: Write> CsvWriter<W> {
         }
     }
 
-    /// The same with other columns; only before [`Sink::begin`].
+    /// Sets the columns; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.fields = fields;
         self
     }
 
-    /// Gives the output back.
+    /// Returns the output.
     pub fn into_inner(self) -> W {
         self.output
     }
@@ -162,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_line_says_simulated_and_the_header_names_units() {
+    fn the_first_line_is_simulated_and_the_header_has_units() {
         let text = written(Fields::FILE, &cloud(2));
         assert!(text.starts_with("# SIMULATED"));
         let header = text.lines().find(|line| !line.starts_with('#'));
@@ -170,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_lost() {
+    fn values_are_exact() {
         let given = cloud(200);
         let text = written(Fields::ALL, &given);
         let rows: Vec<Vec<&str>> = text
@@ -210,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_disk_is_an_error_that_says_how_far_it_came() {
+    fn a_full_disk_is_an_error_with_the_number_of_points() {
         let mut writer = CsvWriter::new(SmallDisk::new(20_000));
         writer.begin(&metadata()).unwrap();
         writer.points(&cloud(10)).unwrap();

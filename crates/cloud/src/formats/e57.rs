@@ -1,17 +1,14 @@
 //! ASTM E57 (E2807), by the `e57` crate.
 //!
-//! One point cloud with its pose (none: the frame is the file's), bounds, limits, the times at
-//! which acquisition began and ended, and what the metadata says in its description; of software
-//! devices that begins with SIMULATED. A point has cartesianX, Y, Z (f32), intensity (0..=255),
-//! rowIndex (the ring) and timeStamp (f64 seconds after the begin, which is a whole second); the
-//! tilt and whatever else is asked for are attributes of an extension, which other readers leave
-//! out.
+//! One point cloud with its pose (identity), bounds, limits, the times at which acquisition began
+//! and ended, and the metadata in its description, which begins with SIMULATED for software
+//! devices. A point has cartesianX, Y, Z (f32), intensity (0..=255), rowIndex (the ring) and
+//! timeStamp (f64 seconds after a whole second). Tilt and further columns are attributes of an
+//! extension, which other readers ignore. There is no columnIndex, as a cloud of several
+//! revolutions is not a grid, and no creation date, as the same log must give the same bytes.
 //!
 //! The library's writer of a cloud borrows its writer of a file, so both live on a thread of their
-//! own; batches go there by a short queue.
-//!
-//! Left out: spherical coordinates, columnIndex (a cloud of many turns is no grid), images, a
-//! creation date (the same log must give the same bytes), reading.
+//! own, fed by a short queue.
 
 mod attributes;
 mod identity;
@@ -31,14 +28,14 @@ use super::{check_places, gps_time};
 use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const FORMAT: &str = "e57";
-/// Batches under way to the thread: enough that neither side waits for the other's hiccups.
+/// Batches in the queue: enough to decouple producer and encoder.
 const QUEUE: usize = 4;
 
-/// Writes E57 to an output that seeks and reads back what it wrote. It writes pages of 1 KiB: give
-/// it a buffered output.
+/// Writes E57 to an output that seeks and reads back what it wrote. It writes pages of 1 KiB: use a
+/// buffered output.
 ///
-/// A file whose output failed, or whose writer was dropped before [`Sink::finish`], is lost: what
-/// describes its points stands at the end.
+/// If the output fails, or the writer is dropped before [`Sink::finish`], the file is lost, as the
+/// description of its points is at the end.
 pub struct E57Writer<W: Read + Write + Seek + Send + 'static> {
     fields: Fields,
     stage: Stage,
@@ -46,7 +43,7 @@ pub struct E57Writer<W: Read + Write + Seek + Send + 'static> {
     output: Option<FallibleOutput<W>>,
     worker: Option<EncoderThread>,
     description: Vec<String>,
-    /// The whole second in which the first point was fired.
+    /// The whole second of the first point.
     start: Option<Stamp<Host>>,
     end: Option<Stamp<Host>>,
     summary: Summary,
@@ -74,7 +71,7 @@ impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
         }
     }
 
-    /// The same with other columns; only before [`Sink::begin`].
+    /// Sets the columns; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.fields = fields;
@@ -89,7 +86,7 @@ impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
         }
     }
 
-    /// What the output said comes first: the library was not told.
+    /// The error of the output, which the library does not see.
     fn written(&self) -> Result<(), SinkError> {
         match self.fault.get() {
             Some(source) => Err(SinkError::Write {
@@ -101,7 +98,7 @@ impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
         }
     }
 
-    /// Hands something on to the thread. If that has ended, it says why.
+    /// Sends a command to the thread; if it has ended, returns its error.
     fn order(&mut self, order: WorkerCommand) -> Result<(), SinkError> {
         self.written()?;
         let sent = self.worker.as_ref().map(|worker| worker.orders.send(order));
@@ -189,10 +186,10 @@ impl<W: Read + Write + Seek + Send + 'static> Sink for E57Writer<W> {
     }
 }
 
-/// The output is free once this returns.
+/// Waits until the output is no longer used.
 impl<W: Read + Write + Seek + Send + 'static> Drop for E57Writer<W> {
     fn drop(&mut self) {
-        // Nobody is left to tell.
+        // An error cannot be returned here.
         let _ = self.wait();
     }
 }

@@ -1,20 +1,18 @@
-//! An output whose failures the libraries that write formats never see.
+//! An output that hides its failures from the libraries that write formats.
 //!
-//! The `las` crate completes its file when its writer is dropped and panics if that fails, so on a
-//! full disk any error would end the program; others wrap what the system said in errors of their
-//! own, or lose it on a thread. [`FallibleOutput`] keeps the first error for us and from then on
-//! only pretends to write.
+//! The `las` crate completes its file when its writer is dropped and panics if that fails, so a
+//! full disk would abort the program. Others wrap the system's error, or lose it on a thread.
+//! [`FallibleOutput`] keeps the first error and from then on only pretends to write.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The first error of an [`FallibleOutput`].
+/// The first error of a [`FallibleOutput`].
 #[derive(Clone, Default)]
 pub(in crate::formats) struct WriteFault(Arc<Mutex<Option<io::Error>>>);
 
 impl WriteFault {
-    /// The error, again and again: what was pretended once stays lost. It is rebuilt because an
-    /// [`io::Error`] cannot be cloned.
+    /// The error, rebuilt for each caller, as an [`io::Error`] cannot be cloned.
     pub(in crate::formats) fn get(&self) -> Option<io::Error> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         kept.as_ref().map(|error| match error.raw_os_error() {
@@ -33,7 +31,7 @@ impl WriteFault {
 pub(in crate::formats) struct FallibleOutput<W> {
     inner: W,
     fault: WriteFault,
-    /// Where a pretended write would be; `None` while writing is real.
+    /// Position of pretended writes; `None` before the first error.
     pretended: Option<u64>,
 }
 
@@ -85,7 +83,7 @@ impl<W: Write + Seek> Write for FallibleOutput<W> {
     }
 }
 
-/// For formats that go back to what they wrote. Behind the first error there is nothing to read.
+/// For formats that read back. After the first error there is nothing to read.
 impl<W: Read + Write + Seek> Read for FallibleOutput<W> {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         if self.pretended.is_some() {
@@ -125,7 +123,7 @@ mod tests {
     use crate::formats::testing::SmallDisk;
 
     #[test]
-    fn the_first_error_is_kept_and_the_rest_pretended() {
+    fn after_the_first_error_writes_are_pretended() {
         let (mut output, fault) = FallibleOutput::new(SmallDisk::new(5));
         output.write_all(b"1234").unwrap();
         assert!(fault.get().is_none());

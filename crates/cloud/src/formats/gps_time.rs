@@ -14,7 +14,7 @@ const NS_PER_S: i64 = 1_000_000_000;
 const GPS_EPOCH_UNIX_S: i64 = 315_964_800;
 const ADJUSTMENT_S: i64 = 1_000_000_000;
 
-/// Unix times from which GPS is one second further ahead of UTC.
+/// Unix times of leap seconds since the GPS epoch.
 const LEAPS_UNIX_S: [i64; 18] = [
     362_793_600,   // 1981-07-01
     394_329_600,   // 1982-07-01
@@ -36,7 +36,7 @@ const LEAPS_UNIX_S: [i64; 18] = [
     1_483_228_800, // 2017-01-01
 ];
 
-/// GPS time less Unix time at a time, seconds.
+/// GPS time less Unix time, seconds.
 fn shift_s(unix_ns: i64) -> i64 {
     let unix_s = unix_ns.div_euclid(NS_PER_S);
     LEAPS_UNIX_S.partition_point(|&start| start <= unix_s) as i64 - GPS_EPOCH_UNIX_S

@@ -2,14 +2,11 @@
 //!
 //! Coordinates are in a local frame without a coordinate reference system, in 0.1 mm steps from
 //! offset 0, which reaches 214.7 km. Intensity is the reflectivity times 257, so that 0..=255 fills
-//! 0..=65535. `gps_time` is adjusted standard GPS time, got from the host's Unix time and the leap
-//! seconds. Ring, time (f64 Unix seconds), tilt (f32 degrees) and whatever else is asked for are
-//! extra bytes, described so that readers see them by name. A simulated cloud says so in the system
-//! identifier, in the text record, and by the synthetic flag of every point, which survives merging
-//! with other clouds.
-//!
-//! Left out: a creation date (the same log must give the same bytes), scan angle and edge flags
-//! (they speak of line scanners), colours, reading.
+//! 0..=65535. `gps_time` is adjusted standard GPS time, from the host's Unix time and the leap
+//! seconds. Ring, time (f64 Unix seconds), tilt (f32 degrees) and further columns are described
+//! extra bytes, which readers show by name. A simulated cloud is marked in the system identifier,
+//! in the text record, and by the synthetic flag of every point, which survives merging with other
+//! clouds. There is no creation date, as the same log must give the same bytes.
 
 mod extra_bytes;
 
@@ -28,11 +25,11 @@ use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const SCALE_M: f64 = 1e-4;
 const STEPS_PER_M: f64 = 1e4;
-/// The greatest coordinate that 32 bits of 0.1 mm hold.
+/// The greatest coordinate of 32 bits in 0.1 mm.
 const LIMIT_M: f64 = (i32::MAX as f64) / STEPS_PER_M;
 const INTENSITY_STEP: u16 = u16::MAX / u8::MAX as u16;
 
-/// Point format 6 (LAS 1.4 R15, section 2.6.7): where the fields stand that are not left zero.
+/// Offsets in point format 6 (LAS 1.4 R15, section 2.6.7); all other fields are zero.
 mod at {
     pub const XYZ: [usize; 3] = [0, 4, 8];
     pub const INTENSITY: usize = 12;
@@ -46,10 +43,10 @@ const ONE_OF_ONE: u8 = 0x11;
 /// Classification flag bit 0: not from a real lidar.
 const SYNTHETIC: u8 = 1;
 
-/// Writes LAS or LAZ, batch by batch, to an output that seeks. LAZ writes in small pieces: give it
-/// a buffered output.
+/// Writes LAS or LAZ batch by batch to an output that seeks. LAZ writes in small pieces: use a
+/// buffered output.
 ///
-/// Unlike PLY, a file whose output failed in mid-batch is lost: its header cannot be completed.
+/// Unlike with PLY, a file whose output failed is lost: its header cannot be completed.
 pub struct LasWriter<W: Write + Seek + Send + Sync + 'static> {
     format: &'static str,
     fields: Fields,
@@ -68,7 +65,7 @@ enum LasState<W: Write + Seek + Send + Sync + 'static> {
         writer: las::Writer<FallibleOutput<W>>,
         slab: PointData,
     },
-    /// The output went down with the library's writer.
+    /// The output was lost with the library's writer.
     Lost,
 }
 
@@ -97,7 +94,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
         }
     }
 
-    /// The same with other columns; only before [`Sink::begin`].
+    /// Sets the columns; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.fields = fields;
@@ -105,8 +102,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
         self
     }
 
-    /// Gives the output back, at its start; `None` where it was lost because writing the header
-    /// failed.
+    /// Returns the output at its start; `None` if writing the header failed.
     pub fn into_inner(self) -> Option<W> {
         match self.state {
             LasState::Idle(output) => Some(output.into_inner()),
@@ -152,7 +148,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
         }
     }
 
-    /// What the output said comes first: the library was not told.
+    /// The error of the output takes precedence, as the library does not see it.
     fn outcome<T>(&self, result: las::Result<T>) -> Result<T, SinkError> {
         match self.fault.get() {
             Some(source) => Err(SinkError::Write {
@@ -165,7 +161,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
     }
 }
 
-/// Writes a batch's points as records of format 6 into `rows`.
+/// Encodes a batch as records of format 6 into `rows`.
 fn encode(batch: &Points, flags: u8, extras: &[ExtraColumn], rows: &mut [u8], row_bytes: usize) {
     fill(
         rows,
@@ -193,7 +189,7 @@ fn encode(batch: &Points, flags: u8, extras: &[ExtraColumn], rows: &mut [u8], ro
     }
 }
 
-/// The first 32 characters: what LAS has room for. The text record has it all.
+/// The first 32 characters, the limit of LAS. The text record has the whole text.
 fn fitting(text: &str) -> String {
     let ascii = |c: char| {
         if c == ' ' || c.is_ascii_graphic() {

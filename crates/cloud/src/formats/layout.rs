@@ -1,4 +1,4 @@
-//! RowBuffer of little-endian bytes in PLY and PCD: f32 positions, then the requested columns.
+//! Rows of little-endian bytes in PLY and PCD: f32 positions, then the requested columns.
 
 use super::seconds::seconds;
 use crate::points::Values;
@@ -38,7 +38,7 @@ impl RowLayout {
         self.fields
     }
 
-    /// Names and kinds in their order.
+    /// Names and number types, in order.
     pub(super) fn properties(&self) -> impl Iterator<Item = (&'static str, NumberType)> {
         let columns = self.fields.columns();
         ["x", "y", "z"]

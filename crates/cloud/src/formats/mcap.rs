@@ -1,17 +1,16 @@
-//! MCAP with ROS 2's messages: opens in Foxglove, plays with `ros2 bag`.
+//! MCAP with ROS 2 messages: opens in Foxglove, plays with `ros2 bag`.
 //!
 //! Profile `ros2`, every channel CDR with its definition (`ros2msg`), chunks of 1 MiB compressed by
-//! LZ4, with an index. A cloud is a `PointCloud2` a sweep, or a turn of the lidar; one that would
-//! be longer than [`MOST_POINTS`] or [`MOST_SPAN`] goes on in further messages, as 42 seconds of a
-//! VLP-16, 360 MB, in one message are of no use to anybody. So memory stays bounded, too: a message
-//! is held once, at most 23 MB of it as usually made.
+//! LZ4, with an index. A cloud is one `PointCloud2` per sweep, or per revolution of the lidar. A
+//! cloud longer than [`MOST_POINTS`] or [`MOST_SPAN`] continues in further messages, as no reader
+//! handles a single message of 360 MB (42 seconds of a VLP-16). Memory is bounded: one message is
+//! held, 23 MB at most with the default columns.
 //!
-//! Beside the clouds: the tilt joint at every sample of the track, transforms at most every
-//! [`TRANSFORMS_EVERY`], how lidar and axis sit on each other (latched), what was found out about
-//! the scan. A message's log time is when what it says was complete: a cloud's is that of its last
-//! point, while its header has that of its first. Messages come in the order of their log times.
-//!
-//! Left out: organised clouds, the tilt as a column (the joint says it), reading.
+//! The file also contains the tilt joint at every sample of the track, transforms at most every
+//! [`TRANSFORMS_EVERY`], the mount of the lidar (latched), and the diagnostics of the scan. The log
+//! time of a message is when its content was complete: that of a cloud is the time of its last
+//! point, while its header has that of its first. Messages are in order of log time. The tilt is no
+//! column, as the joint carries it.
 
 mod bag;
 mod channels;
@@ -34,36 +33,35 @@ use crate::{Companion, Diagnostic, Fields, Metadata, Points, Sink, SinkError, Su
 pub use crate::messages::{MOST_POINTS, MOST_SPAN};
 
 const FORMAT: &str = "mcap";
-/// Transforms come no closer: on the steepest ramp, 500 deg/s^2, a straight line over this time is
-/// off by one step of the encoder.
+/// Least interval of transforms: on the steepest ramp, 500 deg/s^2, a straight line over it is off
+/// by one step of the encoder.
 pub const TRANSFORMS_EVERY: Span = Span::from_millis(5);
-/// Uncompressed bytes of a chunk, which a reader needs at once, save where a single message is
-/// longer.
+/// Uncompressed bytes of a chunk, which readers hold at once; a longer message makes a longer
+/// chunk.
 const CHUNK_BYTES: u64 = 1 << 20;
 
 /// Writes MCAP to an output that seeks.
 ///
-/// A file whose output failed cannot be completed; what a killed program leaves has its whole
-/// chunks, which `mcap recover` makes a file of.
+/// A file whose output failed cannot be completed; `mcap recover` restores its whole chunks.
 pub struct McapWriter<W: Write + Seek> {
     stage: Stage,
     clouds: Cutting,
     log: McapLog<W>,
 }
 
-/// Messages on their way into the file, in the order of time.
+/// Messages on their way into the file, in order of time.
 struct McapLog<W: Write + Seek> {
     fault: WriteFault,
     state: McapState<W>,
     hardware: String,
     track: TiltTrack,
-    /// Samples of the track that are written.
+    /// Number of written samples of the track.
     samples: usize,
     transformed: Option<Stamp<Host>>,
     cdr: Cdr,
     /// The time up to which messages are written.
     now: Option<Stamp<Host>>,
-    /// Points of the batches so far.
+    /// Points so far.
     points: u64,
 }
 
@@ -81,7 +79,7 @@ enum McapState<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> McapWriter<W> {
-    /// A writer into `output` with the columns of [`Fields::FILE`], but for the tilt; a cloud a
+    /// A writer into `output` with the columns of [`Fields::FILE`] without the tilt, one cloud per
     /// sweep.
     pub fn new(output: W) -> Self {
         let (output, fault) = FallibleOutput::new(output);
@@ -102,15 +100,14 @@ impl<W: Write + Seek> McapWriter<W> {
         }
     }
 
-    /// The same with other columns beside x, y, z, intensity, ring and time; only before
-    /// [`Sink::begin`].
+    /// Adds columns to x, y, z, intensity, ring and time; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.clouds = self.clouds.with_fields(fields);
         self
     }
 
-    /// The same with a cloud a turn of the lidar, as [`Sink::revolution`] tells; only before
+    /// Writes one cloud per revolution of the lidar, which [`Sink::revolution`] ends; only before
     /// [`Sink::begin`].
     #[must_use]
     pub fn by_revolution(mut self) -> Self {
@@ -118,7 +115,7 @@ impl<W: Write + Seek> McapWriter<W> {
         self
     }
 
-    /// Gives the output back; `None` where writing failed or was not finished.
+    /// Returns the output; `None` if writing failed or was not finished.
     pub fn into_inner(self) -> Option<W> {
         match self.log.state {
             McapState::Idle(output) | McapState::Done { output, .. } => Some(output.into_inner()),
@@ -136,7 +133,7 @@ impl<W: Write + Seek> McapLog<W> {
         }
     }
 
-    /// What the output said comes first: the library was not told.
+    /// The error of the output takes precedence, as the library does not see it.
     fn outcome<T>(&self, result: mcap::McapResult<T>) -> Result<T, SinkError> {
         match self.fault.get() {
             Some(source) => Err(SinkError::Write {
@@ -152,7 +149,7 @@ impl<W: Write + Seek> McapLog<W> {
         Time::of(stamp).map_err(|error| self.encoding(error))
     }
 
-    /// Writes what stands in `self.cdr`.
+    /// Writes the message in `self.cdr`.
     fn write(&mut self, topic: Topic, at: Stamp<Host>) -> Result<(), SinkError> {
         let cdr = std::mem::take(&mut self.cdr);
         let written = self.write_bytes(topic, at, cdr.bytes());
@@ -177,7 +174,7 @@ impl<W: Write + Seek> McapLog<W> {
         self.outcome(result)
     }
 
-    /// Writes all that was to be said by `at`; the first time also what always holds.
+    /// Writes all messages up to `at`; the first time also the static ones.
     fn go_on_to(&mut self, at: Stamp<Host>) -> Result<(), SinkError> {
         if self.now.is_none() {
             let first = self.track.samples.first().map(|sample| sample.0);
@@ -254,7 +251,7 @@ impl<W: Write + Seek> McapLog<W> {
     fn write_diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
         let last = self.track.samples.last().map(|sample| sample.0);
         let Some(end) = last.max(self.now) else {
-            // Nothing was said, so there is no time to say it at.
+            // Without messages there is no time.
             return Ok(());
         };
         self.go_on_to(end)?;
@@ -281,7 +278,7 @@ impl<W: Write + Seek> McapLog<W> {
     }
 }
 
-/// What the file says of itself, uncompressed.
+/// The metadata record, uncompressed.
 fn record(metadata: &Metadata) -> mcap::records::Metadata {
     let about = metadata.lines().join("\n");
     let simulated = metadata.simulated.to_string();

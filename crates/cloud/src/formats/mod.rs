@@ -1,23 +1,21 @@
-//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP and CSV, each a [`Sink`] over anything that writes
-//! (and seeks, where a count goes into a header).
+//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP and CSV, each a [`Sink`] over a writer.
 //!
-//! Nothing here opens, names or renames files, and nothing reads them. A writer stores intensity,
-//! ring, time and tilt ([`Fields::FILE`](crate::Fields::FILE)) unless `with_fields` asks otherwise.
+//! The default columns are intensity, ring, time and tilt ([`Fields::FILE`](crate::Fields::FILE)).
 //!
 //! | format | positions | time | order of writing |
 //! |---|---|---|---|
 //! | PLY | f32, within 4 um at 100 m | f64 Unix seconds, within 0.12 us | batch by batch |
 //! | PCD | f32, within 4 um at 100 m | f64 Unix seconds, within 0.12 us | batch by batch |
-//! | LAS, LAZ | 0.1 mm steps, within 0.05 mm | gps_time within 0.03 us until 2028 (then 0.06), and f64 Unix seconds | batch by batch |
-//! | E57 | f32, within 4 um at 100 m | f64 seconds after a whole second, within 0.01 ns in the first day | batch by batch, on a thread |
-//! | MCAP | f32, within 4 um at 100 m | exact stamps of messages, f32 seconds after them within 0.25 us | in the order of time |
+//! | LAS, LAZ | 0.1 mm steps | gps_time within 0.06 us, f64 Unix seconds | batch by batch |
+//! | E57 | f32, within 4 um at 100 m | f64 seconds after the start, within 0.01 ns | by a thread |
+//! | MCAP | f32, within 4 um at 100 m | stamp, f32 seconds after it within 0.25 us | by time |
 //! | CSV | exact | exact | batch by batch |
 
-pub mod csv;
-pub mod e57;
+mod csv;
+mod e57;
 mod fallible;
 mod gps_time;
-pub mod las;
+mod las;
 mod layout;
 pub mod mcap;
 pub mod pcd;
@@ -40,7 +38,7 @@ pub enum Format {
     Pcd,
     /// LAS 1.4, point format 6.
     Las,
-    /// The same, compressed by LASzip.
+    /// LAS compressed by LASzip.
     Laz,
     /// ASTM E57.
     E57,
@@ -50,11 +48,11 @@ pub enum Format {
     Csv,
 }
 
-/// No format goes by this extension.
+/// An extension without a format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no cloud format for {}: expected one of {}", shown(.got), expected())]
 pub struct UnsupportedFormat {
-    /// The extension without its dot; empty where the name has none.
+    /// The extension without its dot; empty if the name has none.
     pub got: String,
 }
 
@@ -96,10 +94,10 @@ impl Format {
         }
     }
 
-    /// The format that goes by `extension`, given without its dot and in any case.
+    /// The format of `extension`, given without its dot and in any case.
     ///
     /// # Errors
-    /// [`UnsupportedFormat`], whose message lists those that there are.
+    /// [`UnsupportedFormat`], whose message lists the formats.
     pub fn from_extension(extension: &str) -> Result<Self, UnsupportedFormat> {
         Self::ALL
             .into_iter()
@@ -109,10 +107,10 @@ impl Format {
             })
     }
 
-    /// The format that `path`'s extension names. The file is not looked at.
+    /// The format of `path`'s extension; the file is not read.
     ///
     /// # Errors
-    /// [`UnsupportedFormat`] where no format goes by it, or it has none.
+    /// [`UnsupportedFormat`] if the extension is missing or unknown.
     pub fn from_path(path: &Path) -> Result<Self, UnsupportedFormat> {
         let extension = path.extension().unwrap_or_default();
         Self::from_extension(&extension.to_string_lossy())
@@ -136,8 +134,8 @@ impl Format {
     }
 }
 
-/// Refuses a batch with a coordinate that is no number or beyond `limit_m`, in a format that cannot
-/// hold it, where `before` points came before the batch.
+/// Refuses a batch with a coordinate that is not a number or exceeds `limit_m`. `before` points
+/// came before the batch.
 pub(crate) fn check_places(
     format: &'static str,
     limit_m: f64,
@@ -187,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_extension_says_what_there_is() {
+    fn an_unknown_extension_lists_the_formats() {
         let error = Format::from_extension("xyz").unwrap_err();
         assert_eq!(
             error.to_string(),

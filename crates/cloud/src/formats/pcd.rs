@@ -1,8 +1,7 @@
-//! PCD 0.7, binary: the file of the Point Cloud Library, with a grid for organised clouds.
+//! PCD 0.7, binary: the format of the Point Cloud Library, with a grid for organised clouds.
 //!
-//! Unorganised clouds are one row as wide as they have points. An organised one has a row a ring
-//! and a column a firing; its cells without a return are points whose position is not a number.
-//! Left out: the compressed and the text form.
+//! An unorganised cloud is one row of all points. An organised one has a row per ring and a column
+//! per firing; cells without a return have NaN positions.
 
 use std::io::{self, Seek, SeekFrom, Write};
 
@@ -12,7 +11,7 @@ use crate::rows::NumberType;
 use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const FORMAT: &str = "pcd";
-/// Of u64::MAX: the counts are written once more when they are known, equally long.
+/// Digits of u64::MAX: the counts are written again at the end, with the same length.
 const DIGITS: usize = 20;
 
 /// Writes PCD.
@@ -28,7 +27,7 @@ pub struct PcdWriter<W> {
 }
 
 impl<W: Write + Seek> PcdWriter<W> {
-    /// A writer into `output` from where it stands, with the columns of [`Fields::FILE`].
+    /// A writer into `output` from its current position, with the columns of [`Fields::FILE`].
     pub fn new(output: W) -> Self {
         Self {
             output,
@@ -41,7 +40,7 @@ impl<W: Write + Seek> PcdWriter<W> {
         }
     }
 
-    /// A writer of an organised cloud of so many rows (at least one), whose points come row by row.
+    /// A writer of an organised cloud of `rows` rows (at least one), whose points come row by row.
     pub fn organised(output: W, rows: u64) -> Self {
         Self {
             rows: rows.max(1),
@@ -49,14 +48,14 @@ impl<W: Write + Seek> PcdWriter<W> {
         }
     }
 
-    /// The same with other columns; only before [`Sink::begin`].
+    /// Sets the columns; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.layout = RowLayout::new(fields);
         self
     }
 
-    /// Gives the output back.
+    /// Returns the output.
     pub fn into_inner(self) -> W {
         self.output
     }
@@ -82,7 +81,7 @@ impl<W: Write + Seek> PcdWriter<W> {
         self.output.write_all(head.as_bytes())
     }
 
-    /// The lines with the counts, always equally long.
+    /// The lines with the counts, of constant length.
     fn counts(&self) -> String {
         let (points, rows) = (self.points, self.rows);
         format!(
@@ -121,7 +120,7 @@ fn failed(points: u64) -> impl Fn(io::Error) -> SinkError {
     }
 }
 
-/// After a failed batch, [`Sink::finish`] still makes a whole file of the batches before it.
+/// After a failed batch, [`Sink::finish`] still completes a file of the batches before it.
 impl<W: Write + Seek> Sink for PcdWriter<W> {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         self.stage.points(FORMAT)?;
@@ -182,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn the_header_says_what_the_rows_are() {
+    fn the_header_describes_the_rows() {
         let cloud = cloud(12);
         let bytes = written(1, &cloud);
         let (head, data) = parsed(&bytes);

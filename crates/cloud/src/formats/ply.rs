@@ -2,15 +2,13 @@
 //!
 //! `float x y z` in metres, then by default `float intensity` (0..255), `uchar ring`, `double time`
 //! (Unix seconds of the host), `float tilt` (degrees). Intensity is a float because PCL's point
-//! types declare it so and PCL matches a field only if its type matches too; ring is a uchar
-//! because every reader knows that type: Open3D 0.20 skips a ushort and meshio fails on one. An f32
-//! coordinate is within 4 um of the truth at 100 m, an f32 tilt within 2e-6 deg at 45.
+//! types declare it so, and PCL matches fields by type. Ring is a uchar because every reader knows
+//! that type: Open3D 0.20 skips a ushort, and meshio fails on one. An f32 coordinate is within 4 um
+//! of the truth at 100 m, an f32 tilt within 2e-6 deg at 45.
 //!
-//! The vertex count is known last but stands first. [`PlyWriter`] seeks back; a comment of matching
-//! length beside the count takes up the slack, so that the count itself is a plain number for every
-//! reader. [`PlyPipe`] keeps the rows aside instead.
-//!
-//! Left out: faces, ASCII and big-endian PLY, reading.
+//! The vertex count is in the header but known at the end. [`PlyWriter`] seeks back; a comment
+//! before the count keeps its length constant, so that the count is a plain number for every
+//! reader. [`PlyPipe`] stores the rows in the meantime.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
@@ -21,8 +19,7 @@ use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const FORMAT: &str = "ply";
 
-/// Writes PLY to an output that seeks, batch by batch. Each batch is one write: the output needs no
-/// buffer.
+/// Writes PLY to an output that seeks. Each batch is one write: the output needs no buffer.
 #[derive(Debug)]
 pub struct PlyWriter<W> {
     output: W,
@@ -32,8 +29,9 @@ pub struct PlyWriter<W> {
     summary: Summary,
 }
 
-/// Writes PLY to an output that does not seek (a pipe): as the header has the count, the rows (29
-/// bytes a point) wait in a scratch file, or in memory (`Cursor<Vec<u8>>`), until [`Sink::finish`].
+/// Writes PLY to an output that does not seek, such as a pipe. The header contains the count, so
+/// the rows (29 bytes per point) wait in a scratch file, or in memory (`Cursor<Vec<u8>>`), until
+/// [`Sink::finish`].
 #[derive(Debug)]
 pub struct PlyPipe<W, S> {
     output: W,
@@ -68,7 +66,7 @@ fn tail(layout: &RowLayout) -> String {
     tail + "end_header\n"
 }
 
-/// The count as a header line, with a comment before it that makes every count equally long.
+/// The count as a header line, behind a comment that makes the length constant.
 fn count_lines(points: u64) -> String {
     const DIGITS: usize = 20; // of u64::MAX
     let count = points.to_string();
@@ -85,7 +83,7 @@ fn failed(points: u64) -> impl Fn(io::Error) -> SinkError {
 }
 
 impl<W: Write + Seek> PlyWriter<W> {
-    /// A writer into `output` from where it stands, with the columns of [`Fields::FILE`].
+    /// A writer into `output` from its current position, with the columns of [`Fields::FILE`].
     pub fn new(output: W) -> Self {
         Self {
             output,
@@ -96,14 +94,14 @@ impl<W: Write + Seek> PlyWriter<W> {
         }
     }
 
-    /// The same with other columns; only before [`Sink::begin`].
+    /// Sets the columns; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.layout = RowLayout::new(fields);
         self
     }
 
-    /// Gives the output back.
+    /// Returns the output.
     pub fn into_inner(self) -> W {
         self.output
     }
@@ -124,7 +122,7 @@ impl<W: Write + Seek> PlyWriter<W> {
     }
 }
 
-/// After a failed batch, [`Sink::finish`] still makes a whole file of the batches before it.
+/// After a failed batch, [`Sink::finish`] still completes a file of the batches before it.
 impl<W: Write + Seek> Sink for PlyWriter<W> {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         self.stage.points(FORMAT)?;
@@ -168,14 +166,14 @@ impl<W: Write, S: Read + Write + Seek> PlyPipe<W, S> {
         }
     }
 
-    /// The same with other columns; only before [`Sink::begin`].
+    /// Sets the columns; only before [`Sink::begin`].
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.layout = RowLayout::new(fields);
         self
     }
 
-    /// Gives the output back.
+    /// Returns the output.
     pub fn into_inner(self) -> W {
         self.output
     }

@@ -1,9 +1,9 @@
-//! Nanoseconds as the f64 seconds that files want, rounded once.
+//! Nanoseconds as f64 seconds, rounded once.
 
 const NS_PER_S: i64 = 1_000_000_000;
 
-/// `ns` nanoseconds in seconds. Whole seconds and fraction are converted apart, so that only their
-/// sum is rounded: `ns as f64 * 1e-9` rounds three times.
+/// `ns` nanoseconds in seconds. Whole seconds and fraction are converted separately, so that only
+/// their sum is rounded; `ns as f64 * 1e-9` rounds three times.
 pub(super) fn seconds(ns: i64) -> f64 {
     let whole = ns.div_euclid(NS_PER_S) as f64;
     let fraction = ns.rem_euclid(NS_PER_S) as f64 / NS_PER_S as f64;

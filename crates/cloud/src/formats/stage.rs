@@ -2,22 +2,22 @@
 
 use crate::SinkError;
 
-/// How far a writer has come.
+/// Progress of a writer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Stage {
     /// Nothing written.
     #[default]
     New,
-    /// The header is written, points may come.
+    /// The header is written; points may follow.
     Open,
-    /// A batch was cut off in the middle: no more points, but what was whole can be finished.
+    /// A batch failed: no more points, but the batches before it can be completed.
     Cut,
     /// Finished, or the header failed.
     Closed,
 }
 
 impl Stage {
-    /// Begins; until [`Stage::opened`] says that it worked, nothing else may come.
+    /// Begins; nothing else may follow before [`Stage::opened`].
     pub(super) fn begin(&mut self, format: &'static str) -> Result<(), SinkError> {
         match self {
             Self::New => {

@@ -1,4 +1,4 @@
-//! What the format tests share: a cloud, metadata, and outputs that keep or refuse bytes.
+//! Shared by the tests of formats: a cloud, metadata, and outputs that store or refuse bytes.
 
 use std::io::{self, Cursor, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex};
@@ -7,7 +7,7 @@ use units::{Degrees, Stamp};
 
 use crate::{Fields, Metadata, Point, Points};
 
-/// A second before 2100 begins: the hardest time that anyone will want.
+/// A second before 2100.
 pub const LATE_NS: i64 = 4_102_444_799_000_000_000;
 
 pub fn metadata() -> Metadata {
@@ -28,7 +28,7 @@ pub fn cloud(count: u32) -> Points {
     cloud_from(count, LATE_NS)
 }
 
-/// The same from `start_ns` on.
+/// `count` points from `start_ns` on.
 pub fn cloud_from(count: u32, start_ns: i64) -> Points {
     let mut points = Points::new(Fields::ALL);
     for i in 0..count {
@@ -84,7 +84,7 @@ impl Seek for SharedOutput {
     }
 }
 
-/// A disk with room for so many bytes; what is there already can be overwritten.
+/// A disk of limited size; written bytes can be overwritten.
 #[derive(Default)]
 pub struct SmallDisk {
     pub file: Cursor<Vec<u8>>,

@@ -23,7 +23,7 @@ impl Cdr {
         }
     }
 
-    /// Forgets the message and keeps the memory.
+    /// Removes the message and keeps the memory.
     pub fn clear(&mut self) {
         self.bytes.clear();
         self.bytes.extend_from_slice(&ENCAPSULATION);
@@ -60,8 +60,8 @@ impl Cdr {
         self.number(value.to_le_bytes());
     }
 
-    /// A `string`: its length with the zero that ends it, its bytes, the zero. What follows a zero
-    /// within is left out, for a reader in C would not see it.
+    /// A `string`: its length with the terminating zero, its bytes, the zero. Text after a zero is
+    /// dropped, as readers in C would not see it.
     pub fn string(&mut self, text: &str) {
         let text = text.split('\0').next().unwrap_or_default();
         self.length(text.len().saturating_add(1));
@@ -69,8 +69,7 @@ impl Cdr {
         self.bytes.push(0);
     }
 
-    /// The length of a sequence, before its elements. A sequence of more than [`u32::MAX`] elements
-    /// cannot be said; none here comes near.
+    /// The length of a sequence, before its elements; at most [`u32::MAX`].
     pub fn length(&mut self, elements: usize) {
         self.u32(u32::try_from(elements).unwrap_or(u32::MAX));
     }
@@ -83,19 +82,19 @@ impl Cdr {
         }
     }
 
-    /// Room for `count` more elements of a byte sequence whose length is written elsewhere.
+    /// Appends `count` elements to a byte sequence whose length is written elsewhere.
     pub(super) fn room(&mut self, count: usize) -> &mut [u8] {
         let start = self.bytes.len();
         self.bytes.resize(start + count, 0);
         self.bytes.get_mut(start..).unwrap_or_default()
     }
 
-    /// Takes the last byte back.
+    /// Removes the last byte.
     pub(super) fn pop(&mut self) {
         self.bytes.pop();
     }
 
-    /// Replaces the four bytes at `offset`, a number written before.
+    /// Replaces the number written at `offset`.
     pub(super) fn set_u32(&mut self, offset: usize, value: u32) {
         if let Some(place) = self.bytes.get_mut(offset..offset + 4) {
             place.copy_from_slice(&value.to_le_bytes());
@@ -115,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_stand_at_multiples_of_their_size_behind_the_header() {
+    fn numbers_are_aligned_to_their_size_after_the_header() {
         let mut cdr = Cdr::new();
         cdr.u8(7);
         cdr.u32(0x0102_0304);
@@ -149,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn cleared_is_as_new() {
+    fn a_cleared_message_equals_a_new_one() {
         let mut cdr = Cdr::new();
         cdr.string("something");
         cdr.clear();

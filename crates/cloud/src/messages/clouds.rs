@@ -1,8 +1,5 @@
-//! A scan as `sensor_msgs/PointCloud2`, one a sweep, handed over one after the other: what a
-//! network sends of a cloud that is being made, and a recording keeps of it.
-//!
-//! One message is held at a time, and the points wait while it is taken. Left out: where messages
-//! go, and what else is said of a scan.
+//! A scan as `sensor_msgs/PointCloud2` messages, one per sweep, for networks and recordings. One
+//! message is held at a time.
 
 use units::{Host, Stamp};
 
@@ -14,16 +11,17 @@ const FORMAT: &str = "ros2";
 
 /// A whole message.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Cloud<'a> {
-    /// Its bytes, encapsulation header included.
+    /// Encoded message, including the encapsulation header.
     pub bytes: &'a [u8],
-    /// Its points.
+    /// Number of points.
     pub points: u32,
-    /// The time of its first point, and of its last.
+    /// Times of the first and the last point.
     pub times: (Stamp<Host>, Stamp<Host>),
 }
 
-/// Cuts batches into messages, for a format that is named in its errors.
+/// Splits batches into messages. `format` is the name in errors.
 pub(crate) struct Cutting {
     format: &'static str,
     frames: Frames,
@@ -34,8 +32,8 @@ pub(crate) struct Cutting {
 }
 
 impl Cutting {
-    /// Into clouds a sweep with these columns beside x, y, z, intensity, ring and time, in frames
-    /// of these names.
+    /// One cloud per sweep, with these columns beside x, y, z, intensity, ring and time, in these
+    /// frames.
     pub(crate) fn new(format: &'static str, fields: Fields, frames: Frames) -> Self {
         Self {
             format,
@@ -47,13 +45,13 @@ impl Cutting {
         }
     }
 
-    /// The same with other columns; only before the first batch.
+    /// Sets the columns; only before the first batch.
     pub(crate) fn with_fields(self, fields: Fields) -> Self {
         let cloud = CloudMessage::new(fields);
         Self { cloud, ..self }
     }
 
-    /// The same with a cloud a turn of the lidar; only before the first batch.
+    /// Makes one cloud per revolution of the lidar; only before the first batch.
     pub(crate) fn by_revolution(self) -> Self {
         let cutter = Cutter::by_revolution();
         Self { cutter, ..self }
@@ -64,23 +62,23 @@ impl Cutting {
         self.cloud.fields()
     }
 
-    /// Of all batches so far.
+    /// Summary of all batches so far.
     pub(crate) const fn summary(&self) -> Summary {
         self.summary
     }
 
-    /// How the platform tilted: which frame clouds are in, and where they end.
+    /// Sets the track of the tilt: the frame of the clouds, and their ends.
     pub(crate) fn tilt(&mut self, track: &TiltTrack) {
         self.tilts = track.mount.is_some();
         self.cutter.sweep(&track.sweeps);
     }
 
-    /// A turn of the lidar ends.
+    /// Ends a revolution of the lidar.
     pub(crate) fn revolution(
         &mut self,
         take: impl FnOnce(Cloud<'_>) -> Result<(), SinkError>,
     ) -> Result<(), SinkError> {
-        match self.cutter.is_by_turns() {
+        match self.cutter.is_by_revolution() {
             true => self.end(take),
             false => Ok(()),
         }
@@ -93,7 +91,7 @@ impl Cutting {
         crate::formats::check_places(self.format, most, self.summary.points, batch)
     }
 
-    /// Adds a batch; what is whole by then is taken.
+    /// Adds a batch, and passes on complete clouds.
     pub(crate) fn points(
         &mut self,
         batch: &Points,
@@ -120,7 +118,7 @@ impl Cutting {
         Ok(())
     }
 
-    /// Has the cloud taken that there is, if there is one.
+    /// Passes on the current cloud, if it has points.
     pub(crate) fn end(
         &mut self,
         take: impl FnOnce(Cloud<'_>) -> Result<(), SinkError>,
@@ -152,14 +150,14 @@ impl Cutting {
     }
 }
 
-/// Gives each cloud to `take`.
+/// Passes each cloud to `take`.
 pub struct Clouds<F> {
     take: F,
     cutting: Cutting,
 }
 
 impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Clouds<F> {
-    /// Clouds with x, y, z, intensity, ring and time, in frames of these names.
+    /// Clouds with x, y, z, intensity, ring and time, in these frames.
     pub fn new(frames: Frames, take: F) -> Self {
         let cutting = Cutting::new(FORMAT, Fields::NONE, frames);
         Self { take, cutting }
@@ -202,7 +200,7 @@ mod tests {
     use crate::formats::mcap::McapWriter;
     use crate::formats::testing::{self, NOW_NS, metadata};
 
-    /// Two sweeps, and points before, in, between and behind them.
+    /// Two sweeps, and points before, in, between and after them.
     fn track() -> TiltTrack {
         let at = |ms: i64| Stamp::from_nanos(NOW_NS + ms * 1_000_000);
         TiltTrack {
@@ -228,7 +226,7 @@ mod tests {
         assert_eq!(sink.finish().unwrap().points, 2000);
     }
 
-    /// The same messages, bit for bit, as a recording has, whatever the batches.
+    /// The messages equal those of a recording, bit for bit, for any batches.
     #[test]
     fn clouds_are_those_of_a_recording() {
         let mut writer = McapWriter::new(Cursor::new(Vec::new()));
@@ -257,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_taken_ends_it() {
+    fn an_error_of_the_receiver_ends_it() {
         let mut sink = Clouds::new(Frames::default(), |_| {
             Err(SinkError::Order {
                 format: FORMAT,

@@ -1,4 +1,4 @@
-//! Where a cloud ends and the next message begins.
+//! Decides where a cloud ends and the next message begins.
 
 use std::ops::Range;
 
@@ -6,23 +6,23 @@ use units::{Host, Span, Stamp};
 
 use super::CloudMessage;
 
-/// Points of a message at most: 23 MB, four seconds of a VLP-16.
+/// Greatest number of points of a message: 23 MB, four seconds of a VLP-16.
 pub const MOST_POINTS: u32 = 1 << 20;
-/// Time of a message at most: its points' times are f32 after its stamp, which then step by 0.5 us.
+/// Greatest duration of a message: the f32 times of its points then have steps of 0.5 us.
 pub const MOST_SPAN: Span = Span::from_secs(8);
 
-/// Cuts points in the order of their times into clouds.
+/// Splits points, in order of time, into clouds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cutter {
     by_revolution: bool,
-    /// When sweeps end, in the order of time.
+    /// Ends of the sweeps, in order of time.
     sweep_ends: Vec<Stamp<Host>>,
-    /// Those that points have passed.
+    /// Number of ends that points have passed.
     passed: usize,
 }
 
 impl Cutter {
-    /// One that leaves it to others to say when a turn ends, and cuts only what is too long.
+    /// A cutter that limits the length only; the caller ends revolutions.
     pub(crate) fn by_revolution() -> Self {
         Self {
             by_revolution: true,
@@ -30,19 +30,19 @@ impl Cutter {
         }
     }
 
-    /// Whether others say when a cloud ends.
-    pub(crate) const fn is_by_turns(&self) -> bool {
+    /// Whether the caller ends clouds.
+    pub(crate) const fn is_by_revolution(&self) -> bool {
         self.by_revolution
     }
 
-    /// Cuts where these sweeps end, unless turns are told.
+    /// Sets the sweeps, unless the caller ends clouds.
     pub(crate) fn sweep(&mut self, sweeps: &[(Stamp<Host>, Stamp<Host>)]) {
         if !self.by_revolution {
             self.sweep_ends = sweeps.iter().map(|sweep| sweep.1).collect();
         }
     }
 
-    /// The end of those of `rows` that still belong to `cloud`.
+    /// End of those of `rows` that belong to `cloud`.
     pub(crate) fn end(
         &self,
         cloud: &CloudMessage,
@@ -67,8 +67,7 @@ impl Cutter {
         over.map_or(end, |over| rows.start + over)
     }
 
-    /// Goes on to the sweep in which `time` is, or which comes after it; whether it was in an
-    /// earlier one.
+    /// Advances to the sweep of `time`, or the next one; returns whether a sweep ended.
     pub(crate) fn go_on_to(&mut self, time: Stamp<Host>) -> bool {
         let before = self.passed;
         while self

@@ -1,10 +1,10 @@
-//! `diagnostic_msgs/DiagnosticArray`: how good a scan is.
+//! `diagnostic_msgs/DiagnosticArray`: the quality of a scan.
 
 use super::cdr::Cdr;
 use super::{Time, header};
 use crate::Diagnostic;
 
-/// Checks as they were found by `stamp`, of the device `hardware`.
+/// Findings at `stamp` about the device `hardware`.
 pub fn diagnostic_array(cdr: &mut Cdr, stamp: Time, hardware: &str, diagnostics: &[Diagnostic]) {
     cdr.clear();
     header(cdr, stamp, "");
@@ -29,7 +29,7 @@ mod tests {
     use crate::DiagnosticLevel;
 
     #[test]
-    fn checks_are_read_back() {
+    fn diagnostics_are_read_back() {
         let check = |level, values| Diagnostic {
             name: "clock".into(),
             level,

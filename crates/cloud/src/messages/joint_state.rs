@@ -5,8 +5,7 @@ use units::Degrees;
 use super::cdr::Cdr;
 use super::{TILT_JOINT, Time, header};
 
-/// The tilt joint as measured at `stamp`: its position alone, radians, as velocity and effort are
-/// not measured.
+/// The tilt joint at `stamp`: its position in radians, as velocity and effort are not measured.
 pub fn joint_state(cdr: &mut Cdr, stamp: Time, tilt: Degrees) {
     cdr.clear();
     header(cdr, stamp, "");
@@ -23,7 +22,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn says_one_joint_in_radians() {
+    fn the_joint_is_in_radians() {
         let mut cdr = Cdr::new();
         let stamp = Time { sec: 5, nanosec: 6 };
         joint_state(&mut cdr, stamp, Degrees(-45.0));

@@ -1,10 +1,9 @@
-//! What a scan says in ROS 2's messages: clouds, the tilt joint, transforms, diagnostics. Bytes
-//! alone: a recording keeps them ([`formats::mcap`](crate::formats::mcap)), a network would send
-//! the same.
+//! Scans as ROS 2 messages: clouds, the tilt joint, transforms, diagnostics. Encoding only; a
+//! recording ([`formats::mcap`](crate::formats::mcap)) and a network carry the same bytes.
 //!
-//! Frames: clouds of a tilting platform are in [`frames::BASE`], the frame of every other format (x
-//! right, y forward, z up, on the tilt axis); [`frames::ROOT`] is the same place with ROS's axes
-//! (REP 103: x forward, y left). Left out: reading messages, any transport.
+//! Clouds of a tilting platform are in [`frames::BASE`], the frame of every other format (x right,
+//! y forward, z up, on the tilt axis). [`frames::ROOT`] has the same origin and ROS's axes (REP
+//! 103: x forward, y left).
 
 pub mod cdr;
 mod clouds;
@@ -33,21 +32,21 @@ pub use trigger::{TRIGGER, trigger_response};
 pub mod frames {
     /// The scanner with ROS's axes: x forward, y left, z up.
     pub const ROOT: &str = "base_link";
-    /// The tilt axis, which does not tilt: x right, y forward, z up. What clouds are in.
+    /// The tilt axis, which does not tilt: x right, y forward, z up. Frame of clouds.
     pub const BASE: &str = "tilt_base";
     /// The tilting platform.
     pub const PLATFORM: &str = "tilt_platform";
-    /// The lidar: x right, y forward, z up. What clouds of a platform that does not tilt are in.
+    /// The lidar: x right, y forward, z up. Frame of clouds of a fixed platform.
     pub const LIDAR: &str = "lidar";
 }
 
 /// The joint between [`frames::BASE`] and [`frames::PLATFORM`].
 pub const TILT_JOINT: &str = "tilt";
 
-/// What may be said, each on a topic of its own.
+/// A message topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Topic {
-    /// Clouds, one a sweep.
+    /// Clouds, one per sweep.
     Points,
     /// Clouds while they are measured, some thousand points each.
     LivePoints,
@@ -55,21 +54,20 @@ pub enum Topic {
     JointStates,
     /// The platform against its base.
     Transforms,
-    /// How the parts of the scanner sit on each other; kept for whoever asks later.
+    /// Mount and axes of the scanner; latched.
     StaticTransforms,
-    /// How good the scan is.
+    /// Quality of the scan.
     Diagnostics,
 }
 
-/// A type of messages.
+/// A message type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MessageType {
-    /// Its full name, such as `sensor_msgs/msg/PointCloud2`.
+    /// Full name, such as `sensor_msgs/msg/PointCloud2`.
     pub name: &'static str,
-    /// Its definition with all that it is made of, in the form `ros2msg`.
+    /// Definition with all its parts, in the form `ros2msg`.
     pub definition: &'static str,
-    /// Its type hash (REP 2016), which subscribers of `rmw_zenoh` know it by: `RIHS01_` and a
-    /// SHA-256.
+    /// Type hash (REP 2016), which subscribers of `rmw_zenoh` match: `RIHS01_` and a SHA-256.
     pub hash: &'static str,
 }
 
@@ -84,7 +82,7 @@ impl Topic {
         Self::Diagnostics,
     ];
 
-    /// Its name: where the convention has one, that.
+    /// Name, the conventional one if there is one.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -97,7 +95,7 @@ impl Topic {
         }
     }
 
-    /// The type of its messages.
+    /// Type of the messages.
     #[must_use]
     pub const fn message_type(self) -> MessageType {
         let (name, definition, hash) = match self {
@@ -129,8 +127,7 @@ impl Topic {
         }
     }
 
-    /// Whether the last message is kept for subscribers that come later (durability "transient
-    /// local").
+    /// Whether the last message is kept for late subscribers (durability "transient local").
     #[must_use]
     pub const fn is_latched(self) -> bool {
         matches!(self, Self::StaticTransforms)
@@ -146,7 +143,7 @@ pub struct Time {
     pub nanosec: u32,
 }
 
-/// A time that ROS cannot say.
+/// A time outside the range of ROS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "messages: time {got_ns} ns, expected between 1970 and 2038, as ROS counts seconds in 31 bits"
@@ -191,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_said_from_1970_to_2038() {
+    fn times_range_from_1970_to_2038() {
         let of = |ns| Time::of(Stamp::from_nanos(ns));
         assert_eq!(
             of(1_795_226_733_000_000_001),
@@ -208,7 +205,7 @@ mod tests {
 
     /// Every type that a definition names is defined in it.
     #[test]
-    fn definitions_are_whole() {
+    fn definitions_are_complete() {
         for topic in Topic::ALL {
             let MessageType {
                 name, definition, ..

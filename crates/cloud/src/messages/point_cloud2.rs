@@ -1,9 +1,8 @@
-//! `sensor_msgs/PointCloud2`, filled batch by batch in the form in which it will go out, so that a
-//! cloud is held once.
+//! `sensor_msgs/PointCloud2`, encoded batch by batch, so that a cloud is held once.
 //!
 //! The fields of ROS 2's Velodyne driver in its order: x, y, z, intensity (float32), ring (uint16),
-//! time (float32, seconds after the header's stamp), 22 bytes a point without padding; then
-//! whatever else was asked for. Left out: organised clouds.
+//! time (float32, seconds after the header's stamp), 22 bytes per point without padding; then
+//! further columns. Clouds are unorganised.
 
 use std::ops::Range;
 
@@ -15,8 +14,8 @@ use crate::points::Values;
 use crate::rows::{NumberType, fill_values};
 use crate::{Column, Fields, MissingColumns, Points};
 
-/// The columns of a cloud message: intensity, ring and time are always there, the tilt never, as
-/// the joint says it.
+/// The columns of a cloud message: always intensity, ring and time, never the tilt, which the joint
+/// carries.
 #[must_use]
 pub fn fields_of(wanted: Fields) -> Fields {
     (wanted | Fields::INTENSITY | Fields::RING | Fields::TIME) - Fields::TILT
@@ -42,7 +41,7 @@ const fn datatype(number: NumberType) -> u8 {
     }
 }
 
-/// A cloud on its way into a message.
+/// A cloud message under construction.
 #[derive(Clone, Debug)]
 pub struct CloudMessage {
     columns: Fields,
@@ -54,7 +53,7 @@ pub struct CloudMessage {
     points: u32,
 }
 
-/// Where the message says what is only known at its end.
+/// Offsets of the numbers that are known at the end.
 #[derive(Clone, Copy, Debug, Default)]
 struct LengthPlaceholders {
     width: usize,
@@ -62,13 +61,13 @@ struct LengthPlaceholders {
     length: usize,
 }
 
-/// What keeps points out of a message.
+/// Why points do not fit a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CloudMessageError {
     /// A column is missing.
     #[error(transparent)]
     Columns(#[from] MissingColumns),
-    /// A time that ROS cannot say.
+    /// A time outside the range of ROS.
     #[error(transparent)]
     Time(#[from] UnsayableTime),
 }
@@ -93,34 +92,33 @@ impl CloudMessage {
         }
     }
 
-    /// Its columns beside the position.
+    /// Columns beside the position.
     #[must_use]
     pub const fn fields(&self) -> Fields {
         self.columns
     }
 
-    /// Points so far.
+    /// Number of points so far.
     #[must_use]
     pub const fn points(&self) -> u32 {
         self.points
     }
 
-    /// The stamp of its header, which is the time of its earliest point; and the time of its last.
-    /// Of an empty cloud both are 0.
+    /// The header's stamp, which is the time of the earliest point, and the time of the last. 0 for
+    /// an empty cloud.
     #[must_use]
     pub const fn times(&self) -> (Stamp<Host>, Stamp<Host>) {
         (self.first, self.last)
     }
 
-    /// Forgets the points and keeps the memory.
+    /// Removes the points and keeps the memory.
     pub fn clear(&mut self) {
         self.points = 0;
         self.first = Stamp::from_nanos(0);
         self.last = Stamp::from_nanos(0);
     }
 
-    /// Adds `rows` of a batch, in the frame `frame`, which is that of the first batch. The first
-    /// batch tells the header's stamp.
+    /// Adds `rows` of a batch. The first batch sets the header's stamp and `frame`.
     ///
     /// # Errors
     /// [`CloudMessageError`]; nothing is added then.
@@ -159,7 +157,7 @@ impl CloudMessage {
         Ok(())
     }
 
-    /// The whole message. More points may follow, for a longer one.
+    /// The complete message. More points may follow, for a longer one.
     pub fn message(&mut self) -> FinishedMessage<'_> {
         let bytes = u32::try_from(self.point_bytes)
             .unwrap_or(u32::MAX)
@@ -173,7 +171,7 @@ impl CloudMessage {
         FinishedMessage(&mut self.cdr)
     }
 
-    /// All before the points.
+    /// Writes everything before the points.
     fn begin(&mut self, first: Stamp<Host>, frame: &str) -> Result<(), UnsayableTime> {
         let stamp = Time::of(first)?;
         self.first = first;
@@ -206,7 +204,7 @@ impl CloudMessage {
     }
 }
 
-/// A whole message; what ends it is taken back when this is dropped.
+/// A complete message; its ending is removed on drop.
 #[derive(Debug)]
 pub struct FinishedMessage<'a>(&'a mut Cdr);
 
@@ -224,7 +222,7 @@ impl Drop for FinishedMessage<'_> {
     }
 }
 
-/// A number that is filled in later, and where it stands.
+/// Reserves a number to be filled in later, and returns its offset.
 fn place(cdr: &mut Cdr) -> usize {
     cdr.u32(0);
     cdr.len() - 4
@@ -303,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn the_usual_fields_are_the_velodyne_drivers() {
+    fn the_default_fields_are_the_velodyne_drivers() {
         let cloud = testing::cloud_from(100, START_NS);
         let mut message = CloudMessage::new(Fields::FILE);
         // In three batches, the middle one empty.
@@ -378,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_said_is_an_error() {
+    fn times_out_of_range_are_errors() {
         let mut message = CloudMessage::new(Fields::FILE);
         let late = testing::cloud(1);
         let error = message.push(&late, 0..1, "lidar").unwrap_err();

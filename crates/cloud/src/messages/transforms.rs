@@ -1,4 +1,4 @@
-//! `tf2_msgs/TFMessage`: where frames are in each other.
+//! `tf2_msgs/TFMessage`: poses of frames.
 
 use units::{Degrees, Metres};
 
@@ -13,12 +13,12 @@ pub struct Rotation {
 }
 
 impl Rotation {
-    /// None.
+    /// No rotation.
     pub const NONE: Self = Self {
         quaternion: [0.0, 0.0, 0.0, 1.0],
     };
 
-    /// The tilt by `angle`: about y, positive from z towards x, as Eq. 4-6 have it
+    /// The tilt by `angle`: about y, positive from z towards x, as in Eq. 4-6
     /// ([`crate::mount::Mount::place`]).
     #[must_use]
     pub fn tilt(angle: Degrees) -> Self {
@@ -28,7 +28,7 @@ impl Rotation {
         }
     }
 
-    /// From axes x right, y forward to ROS's x forward, y left: a quarter turn about z.
+    /// From x right, y forward to ROS's x forward, y left: 90 deg about z.
     #[must_use]
     pub const fn to_ros() -> Self {
         const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -38,21 +38,20 @@ impl Rotation {
     }
 }
 
-/// Where a frame is in another.
+/// Pose of a frame in another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform<'a> {
-    /// The frame in which the other one is.
+    /// Reference frame.
     pub parent: &'a str,
-    /// The frame that is there.
+    /// Described frame.
     pub child: &'a str,
     /// Its origin, metres.
     pub translation_m: [f64; 3],
-    /// Its turn.
+    /// Rotation.
     pub rotation: Rotation,
 }
 
-/// The names of a scanner's frames: those of [`frames`], behind a prefix where there are several
-/// scanners.
+/// Names of a scanner's frames: those of [`frames`], with a prefix to tell several scanners apart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
     root: String,
@@ -68,7 +67,7 @@ impl Default for Frames {
 }
 
 impl Frames {
-    /// The names behind `prefix`, such as `left/`.
+    /// The names with `prefix`, such as `left/`.
     #[must_use]
     pub fn with_prefix(prefix: &str) -> Self {
         let name = |name| format!("{prefix}{name}");
@@ -80,7 +79,7 @@ impl Frames {
         }
     }
 
-    /// What clouds are in: [`frames::BASE`] of a tilting platform, else [`frames::LIDAR`].
+    /// Frame of the clouds: [`frames::BASE`] for a tilting platform, else [`frames::LIDAR`].
     #[must_use]
     pub fn of_clouds(&self, tilts: bool) -> &str {
         match tilts {
@@ -89,7 +88,7 @@ impl Frames {
         }
     }
 
-    /// What always holds: ROS's axes, and of a tilting platform the lidar `mount` above the axis.
+    /// Static transforms: ROS's axes, and for a tilting platform the lidar `mount` above the axis.
     #[must_use]
     pub fn fixed(&self, mount: Option<Metres>) -> Vec<Transform<'_>> {
         let axes = Transform {
@@ -107,7 +106,7 @@ impl Frames {
         [axes].into_iter().chain(lidar).collect()
     }
 
-    /// The platform, tilted.
+    /// Pose of the tilted platform.
     #[must_use]
     pub fn tilted(&self, tilt: Degrees) -> Transform<'_> {
         Transform {
@@ -119,7 +118,7 @@ impl Frames {
     }
 }
 
-/// Transforms that hold at `stamp`.
+/// Transforms at `stamp`.
 pub fn tf_message(cdr: &mut Cdr, stamp: Time, transforms: &[Transform<'_>]) {
     cdr.clear();
     cdr.length(transforms.len());

@@ -1,16 +1,16 @@
-//! `std_srvs/srv/Trigger`: a request without content, and an answer that says whether it was done.
+//! `std_srvs/srv/Trigger`: a request without content, and a response with success or failure.
 
 use super::cdr::Cdr;
 
-/// The service's full name, its definition (request, three dashes, response), and its type hash,
-/// which is that of the service: request, response and event.
+/// Full name of the service, its definition (request, three dashes, response), and its type hash
+/// over request, response and event.
 pub const TRIGGER: super::MessageType = super::MessageType {
     name: "std_srvs/srv/Trigger",
     definition: "---\nbool success\nstring message\n",
     hash: "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f",
 };
 
-/// The answer.
+/// The response.
 pub fn trigger_response(cdr: &mut Cdr, success: bool, message: &str) {
     cdr.clear();
     cdr.u8(success.into());

@@ -25,7 +25,7 @@ macro_rules! define_spare {
         impl Points {
             /// Room for `R` more points, to be written and then counted by [`Points::keep`].
             ///
-            /// `None` never happens: the room is made first.
+            /// Never `None`: the room is made first.
             #[inline(always)]
             pub fn spare<const R: usize>(&mut self) -> Option<Spare<'_, R>> {
                 let (fields, row) = (self.fields, self.len);
@@ -46,7 +46,7 @@ macro_rules! define_spare {
 for_each_column!(define_spare);
 
 impl Points {
-    /// Counts the first `count` spare rows as points, as far as there are so many.
+    /// Counts the first `count` spare rows as points, as far as they exist.
     #[inline]
     pub fn keep(&mut self, count: usize) {
         self.len = (self.len + count).min(self.x_m.len());

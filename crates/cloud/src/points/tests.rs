@@ -152,7 +152,7 @@ fn a_batch_without_a_column_is_refused_whole() {
 }
 
 #[test]
-fn a_column_nobody_asked_for_costs_no_memory() {
+fn columns_not_requested_use_no_memory() {
     let points = Points::with_capacity(Fields::NONE, 1000);
     assert_eq!(points.time.capacity(), 0);
     assert_eq!(points.tilt_deg.capacity(), 0);

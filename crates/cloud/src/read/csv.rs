@@ -1,5 +1,5 @@
-//! SourceFile: a row a point. A header row may name the columns; x, y and z are found by name, in
-//! capitals or not, else they are the first three.
+//! Text with a row per point. A header row may name the columns; x, y and z are found by name in
+//! any case, otherwise they are the first three.
 
 use super::{Positions, ReadError, SourceFile};
 use crate::formats::Format;

@@ -18,7 +18,7 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
     let mut positions = Positions::new();
     for cloud in reader.pointclouds() {
         for point in reader.pointcloud_simple(&cloud).map_err(wrong)? {
-            // Directions without a range are shots without a return: no places.
+            // Directions without a range are shots without a return.
             positions.push(match point.map_err(wrong)?.cartesian {
                 CartesianCoordinate::Valid { x, y, z } => [x, y, z],
                 _ => [f64::NAN; 3],

@@ -9,7 +9,7 @@ use las::Reader;
 use super::{Positions, ReadError};
 use crate::formats::Format;
 
-/// Bytes read at a time: a header may promise more points than there are.
+/// Bytes read at a time: a header may declare more points than the file has.
 const BATCH_BYTES: u64 = 1 << 22;
 
 pub(super) fn positions(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError> {

@@ -1,7 +1,6 @@
-//! MCAP with ROS 2's messages, by the `mcap` crate: the points of every
-//! `sensor_msgs/msg/PointCloud2`, each in the frame that its message names.
-//!
-//! Left out: transforms between frames, and messages in other encodings than little-endian CDR.
+//! MCAP with ROS 2 messages, by the `mcap` crate: the points of every
+//! `sensor_msgs/msg/PointCloud2`, each in the frame of its message; without transforms between
+//! frames.
 
 use std::collections::HashSet;
 
@@ -13,7 +12,7 @@ use super::{Positions, ReadError, SourceNumber};
 use crate::formats::Format;
 use crate::messages::Topic;
 
-/// Bytes before a CDR message proper; alignment counts from behind them.
+/// Bytes before a CDR message; alignment counts from their end.
 const ENCAPSULATION: usize = 4;
 
 fn wrong(offset: usize, expected: &str, got: impl ToString) -> ReadError {
@@ -25,8 +24,8 @@ fn wrong(offset: usize, expected: &str, got: impl ToString) -> ReadError {
     }
 }
 
-/// A chunk or record may be so much larger than the whole file, and so large in any case: more is
-/// reserved for no file.
+/// Greatest size of a chunk or record, relative to the file and absolute: a limit of reserved
+/// memory.
 const TIMES_LARGER: usize = 256;
 const ANY_CASE: usize = 64 << 20;
 
@@ -60,7 +59,7 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
     Ok(clouds.positions)
 }
 
-/// What was read so far.
+/// Points read so far.
 #[derive(Default)]
 struct CloudCollector {
     /// Schemas of point clouds.
@@ -100,7 +99,7 @@ impl CloudCollector {
     }
 }
 
-/// A message, read from its beginning. Offsets of errors are within the message.
+/// Reads a message from its beginning. Offsets of errors are within the message.
 struct CdrReader<'a> {
     bytes: &'a [u8],
     at: usize,

@@ -1,9 +1,9 @@
-//! Clouds read back: where their points are, and nothing else of them.
+//! Reads the positions of clouds.
 //!
-//! What the formats of [`crate::formats`] write, and what other programs write in them: PLY and PCD
-//! as text or binary in any layout of columns, LAS and LAZ of every version that the `las` crate
-//! reads, E57, PointCloud2 in MCAP, text with a row a point. Positions are in metres as they stand
-//! in the file. Left out: all other columns, and opening files.
+//! The formats of [`crate::formats`], as written here and by other programs: PLY and PCD as text or
+//! binary in any layout of columns, LAS and LAZ of every version of the `las` crate, E57,
+//! PointCloud2 in MCAP, text with a row per point. Positions are in metres as in the file; other
+//! columns are ignored.
 
 mod csv;
 mod e57;
@@ -16,7 +16,7 @@ use thiserror::Error;
 
 use crate::formats::Format;
 
-/// Where points are: x, y and z in metres.
+/// x, y and z in metres.
 pub type Positions = Vec<[f64; 3]>;
 
 /// Why a cloud cannot be read.
@@ -25,29 +25,29 @@ pub type Positions = Vec<[f64; 3]>;
 pub struct ReadError {
     /// The format.
     pub format: Format,
-    /// Where, from 0.
+    /// Offset, from 0.
     pub offset: usize,
-    /// What should be there.
+    /// Expected content.
     pub expected: String,
-    /// What is there.
+    /// Actual content.
     pub got: String,
 }
 
-/// What a cloud's file has.
+/// Contents of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Read {
-    /// Where its points are.
+    /// Positions of the points.
     pub positions: Positions,
-    /// Rows that were left out, as some coordinate of theirs is no finite number: shots without a
-    /// return in organised clouds, and the like.
+    /// Rows left out for a coordinate that is not finite, such as shots without a return in
+    /// organised clouds.
     pub without_numbers: u64,
 }
 
-/// The positions of a cloud of this format. Whatever the format, rows with a coordinate that is no
-/// finite number are no points: they are left out and counted.
+/// The positions of a cloud. Rows with a coordinate that is not finite are left out and counted.
 ///
 /// # Errors
-/// [`ReadError`] for what is not of the format, or ends too early.
+/// [`ReadError`] if the bytes are not of the format, or end too early.
 pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Read, ReadError> {
     let mut positions = match format {
         Format::Ply => ply::positions(&bytes),
@@ -65,9 +65,9 @@ pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Read, ReadError> {
     })
 }
 
-/// A little-endian number somewhere in bytes.
+/// A little-endian number within bytes.
 trait ReadLe: Sized {
-    /// The number at an offset; `None` where the bytes end before.
+    /// The number at an offset; `None` if the bytes end before it.
     fn take(bytes: &[u8], at: usize) -> Option<Self>;
 }
 
@@ -106,7 +106,7 @@ impl SourceNumber {
         }
     }
 
-    /// The number at the begin of some bytes; `None` where they are too few.
+    /// The number at the beginning of some bytes; `None` if they are too few.
     fn read(self, bytes: &[u8], big_endian: bool) -> Option<f64> {
         fn take<const N: usize>(bytes: &[u8], big_endian: bool) -> Option<[u8; N]> {
             let mut bytes: [u8; N] = *bytes.first_chunk()?;
@@ -128,7 +128,7 @@ impl SourceNumber {
     }
 }
 
-/// A file and what to say of it.
+/// A file, with its format for errors.
 #[derive(Clone, Copy)]
 struct SourceFile<'a> {
     format: Format,
@@ -150,7 +150,7 @@ impl<'a> SourceFile<'a> {
         }
     }
 
-    /// The line at `offset` without its end, and where the next begins; `None` at the end of the
+    /// The line at `offset` without its end, and the offset of the next; `None` at the end of the
     /// file.
     fn line(&self, offset: usize) -> Result<Option<(&'a str, usize)>, ReadError> {
         let rest = self.bytes.get(offset..).unwrap_or_default();
@@ -168,8 +168,8 @@ impl<'a> SourceFile<'a> {
         }
     }
 
-    /// Points as text, a line each from `offset` on, numbers by `separated`; x, y and z stand at
-    /// these places. Empty lines and `#` are passed over.
+    /// Points as text, one per line from `offset` on, separated by `separated`, with the columns of
+    /// x, y and z. Empty lines and `#` are skipped.
     fn rows(
         &self,
         mut offset: usize,
@@ -198,7 +198,7 @@ impl<'a> SourceFile<'a> {
     }
 }
 
-/// Shortened for a message.
+/// Shortens a text for a message.
 fn shown(text: &str) -> String {
     format!("{:?}", text.chars().take(40).collect::<String>())
 }

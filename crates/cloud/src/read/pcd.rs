@@ -11,7 +11,7 @@ struct PcdField {
     count: usize,
 }
 
-/// What the header says.
+/// Contents of the header.
 #[derive(Default)]
 struct PcdHeader {
     names: Vec<String>,
@@ -105,8 +105,8 @@ impl PcdHeader {
     }
 }
 
-/// Where x, y and z are: the number of the word in a row of text, the byte in a row, the byte
-/// before the column's first in one long row.
+/// Columns of x, y and z: index of the word in a row of text, byte offset in a row, and stride of
+/// the column in compressed data.
 struct PcdReader<'a> {
     text: SourceFile<'a>,
     start: usize,
@@ -191,7 +191,7 @@ impl<'a> PcdReader<'a> {
             .collect())
     }
 
-    /// Two sizes, then all of the first column, all of the second...
+    /// Two sizes, then column by column.
     fn compressed(&self) -> Result<Positions, ReadError> {
         let bytes = self.text.bytes.get(self.start..).unwrap_or_default();
         let size = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
@@ -224,9 +224,9 @@ impl<'a> PcdReader<'a> {
     }
 }
 
-/// LZF: runs of new bytes (0..32: so many and one more), and copies of what came before (three bits
-/// of length and 13 of distance, length in a byte of its own from 7 on). `None` for anything else,
-/// or another size than `whole`.
+/// LZF: runs of new bytes (control below 32: that many and one more), and copies of earlier ones
+/// (three bits of length and 13 of distance; a length from 7 on has a byte of its own). `None` for
+/// anything else, or another size than `whole`.
 fn unpack(packed: &[u8], whole: usize) -> Option<Vec<u8>> {
     let mut out: Vec<u8> = Vec::new();
     let mut bytes = packed.iter().copied();
@@ -245,7 +245,7 @@ fn unpack(packed: &[u8], whole: usize) -> Option<Vec<u8>> {
             };
             let back = (usize::from(control & 31) << 8 | usize::from(bytes.next()?)) + 1;
             let from = out.len().checked_sub(back)?;
-            // It may reach into what it writes.
+            // A copy may overlap its own output.
             for from in from..from + length + 2 {
                 out.push(*out.get(from)?);
             }

@@ -23,7 +23,7 @@ fn written(format: Format, points: &crate::Points) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_written_is_read_back() {
+fn messages_are_read_back() {
     let points = cloud(3_000);
     for format in Format::ALL {
         let bytes = written(format, &points);
@@ -61,7 +61,7 @@ fn every_prefix_of_a_file_is_an_error_or_its_first_points() {
 /// Whatever byte of a file is another, there is an error or there are points: nothing panics, and
 /// nothing is reserved that a header merely promises.
 #[test]
-fn any_byte_may_be_another() {
+fn changed_bytes_never_panic() {
     let points = cloud(5);
     for format in Format::ALL {
         let bytes = written(format, &points);
@@ -148,7 +148,7 @@ fn other_programs_text() {
 }
 
 #[test]
-fn errors_say_where_and_what() {
+fn errors_name_offset_and_content() {
     for (format, text, words) in [
         (
             Format::Csv,
@@ -215,7 +215,7 @@ fn errors_say_where_and_what() {
 
 /// Rows without a place are left out and counted, whatever the format that can have them.
 #[test]
-fn what_is_no_finite_number_is_left_out_and_counted() {
+fn non_finite_rows_are_left_out_and_counted() {
     let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\nnan nan nan\n4 inf 6\n7 8 9\n";
     let pcd = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n1 2 3\nnan nan nan\n4 inf 6\n7 8 9\n";
     let csv = "x,y,z\n1,2,3\nnan,NaN,nan\n4,inf,6\n7,8,9\n";

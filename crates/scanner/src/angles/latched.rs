@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn delays_of_single_frames_do_not_show() {
+    fn delays_of_single_frames_have_no_effect() {
         // One in seven SYNCs and one in five answers is held up by a millisecond or more.
         let there = |i| if i % 7 == 3 { 1_900 } else { 70 + i % 3 };
         let back = |i| if i % 5 == 2 { 4_000 } else { 72 + i % 2 };
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_that_starts_anew_has_a_new_clock() {
+    fn a_restarted_drive_has_a_new_clock() {
         let (mut samples, mut truth) = stream(500, 3_000_000_000, |_| 70, |_| 70);
         let (mut after, after_truth) = stream(500, 17, |_| 70, |_| 70);
         for sample in &mut after {
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn a_few_samples_stand_in_the_middle() {
+    fn few_samples_are_at_the_middle() {
         let (stream, _) = stream(3, 17, |_| 70, |_| 90);
         let (samples, _) = angle_samples(&stream, gearing());
         assert_eq!(samples[1].host.as_nanos(), EPOCH + 1_080_000);

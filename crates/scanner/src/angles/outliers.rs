@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flipped_bit_is_left_out_wherever_it_moves_the_platform() {
+    fn flipped_bits_are_discarded() {
         for bit in 8..31 {
             let mut stream = samples((0..100).map(|i| -0.05625 * f64::from(i)), 1_000);
             stream[40].angle.0 += 0.0015 * f64::from(1 << bit);
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hardest_motion_is_left_alone() {
+    fn the_hardest_motion_has_no_outliers() {
         // Triangles at 15,000 deg/s2, polled every 5 ms, 60 ms and at random.
         for step_us in [1_000, 5_000, 60_000] {
             let angle = |t: f64| {
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_that_stays_is_no_flipped_bit() {
+    fn a_lasting_jump_is_kept() {
         let mut jumped = samples((0..50).map(|i| if i < 20 { 0.0 } else { 30.0 }), 1_000);
         assert_eq!(discard(&mut jumped), 0);
         assert_eq!(discard(&mut Vec::new()), 0);

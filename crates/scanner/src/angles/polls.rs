@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_stands_in_the_middle_of_its_poll() {
+    fn a_sample_is_at_the_middle_of_its_poll() {
         let (samples, _) = with_shared_sd(&[poll(100, 50)], gearing());
         assert_eq!(samples[0].host.as_nanos(), 125_000);
         assert_eq!(samples[0].bound.as_nanos(), 25_000);
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn the_slowest_tenth_is_left_out() {
+    fn the_slowest_tenth_is_dropped() {
         let polls: Vec<_> = (0..100)
             .map(|i| poll(i * 1_000, if i % 20 == 10 { 5_000 } else { 500 + i }))
             .collect();
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_poll_on_a_ramp_stays_if_it_is_better_than_the_line_across_the_hole() {
+    fn a_slow_poll_on_a_ramp_stays_if_better_than_the_line_across_the_gap() {
         let at = |position, poll| ShaftSample {
             position: Quadcounts(position),
             ..poll

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn unix_times_are_the_recordings_own() {
+    fn unix_times_are_used_as_they_are() {
         let table = AngleTable::new(vec![(1.6e9, -1.0), (1.6e9 + 1.0, -2.0)]).unwrap();
         assert_eq!(table.time(), TableTime::Unix);
         let samples = table

@@ -309,7 +309,7 @@ fn delays_are_no_steps() {
 
 /// Below 10 ms a step is absorbed: the bound says so.
 #[test]
-fn what_is_too_small_to_be_found_is_within_the_bound() {
+fn steps_too_small_to_be_found_are_within_the_bound() {
     for by in [
         100_000, 2_000_000, 8_000_000, -100_000, -2_000_000, -8_000_000,
     ] {
@@ -332,7 +332,7 @@ fn what_is_too_small_to_be_found_is_within_the_bound() {
 
 /// A damaged stamp, early by minutes, is left out; the clock does not bend to it.
 #[test]
-fn a_stray_packet_is_left_out() {
+fn an_early_packet_is_ignored() {
     let recorded = Recorded::new(20, Some(2_500));
     let mut seen = recorded.stepped(&[]);
     seen.arrivals[7_000].device += Span::from_secs(90);

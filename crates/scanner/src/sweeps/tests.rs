@@ -146,7 +146,7 @@ fn a_sweep_that_was_cut_short_keeps_the_angle_it_reached() {
 }
 
 #[test]
-fn a_drive_that_forgot_its_position_ends_the_sweep_where_it_last_knew_it() {
+fn a_drive_that_lost_its_position_ends_the_sweep() {
     let mut axis = Axis::new();
     axis.command(-45.0, 0x1F);
     axis.travel(-20.0, 45.0);

@@ -17,6 +17,7 @@ use crate::sweeps::Sweep;
 
 /// A curve through a sweep.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SweepFit {
     /// The method.
     pub method: Method,

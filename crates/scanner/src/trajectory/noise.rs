@@ -109,7 +109,7 @@ mod tests {
     use units::{Span, Stamp};
 
     #[test]
-    fn what_errors_take_up_of_their_bounds_is_found() {
+    fn the_share_of_errors_in_their_bounds_is_found() {
         // 50 deg/s at 1 kHz, bounds of 0.5 ms; errors of +-0.1 ms alternate irregularly.
         let samples: Vec<_> = (0..2_000i64)
             .map(|i| {
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn at_rest_nothing_is_told_and_errors_count_as_even() {
+    fn at_rest_errors_count_as_uniform() {
         let samples: Vec<_> = (0..100i64)
             .map(|i| AngleSample {
                 host: Stamp::from_nanos(i * 1_000_000),

@@ -12,6 +12,7 @@ mod swing;
 
 /// A profile move of the shaft, in seconds after an origin and degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Profile {
     /// Start, seconds.
     pub start_s: f64,

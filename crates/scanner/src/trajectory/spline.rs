@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn knots_are_as_close_as_the_motion_asks() {
+    fn knots_are_as_close_as_the_motion_requires() {
         let spacing = |hertz: f64| {
             let motion = move |t: f64| (t * hertz * std::f64::consts::TAU).sin();
             let mut noise = 1u32;
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_in_the_samples_is_bridged() {
+    fn a_gap_in_the_samples_is_bridged() {
         let mut samples = observed(400, 2.0, |t| 5.0 * t);
         samples.retain(|o| !(0.9..1.2).contains(&o.at_s));
         let fit = fit(&samples, Stamp::from_nanos(0), 0.0, 2.0).unwrap();
@@ -347,13 +347,13 @@ mod tests {
     }
 
     #[test]
-    fn too_few_samples_are_no_spline() {
+    fn too_few_samples_give_no_spline() {
         assert!(fit(&observed(3, 1.0, |t| t), Stamp::from_nanos(0), 0.0, 1.0).is_none());
         assert!(fit(&observed(9, 1.0, |t| t), Stamp::from_nanos(0), 1.0, 1.0).is_none());
     }
 
     #[test]
-    fn the_band_solves_as_the_full_matrix_does() {
+    fn the_banded_solution_equals_the_dense_one() {
         use nalgebra::{DMatrix, DVector};
         let count = 12;
         let mut band = Banded::zeros(count);

@@ -57,7 +57,7 @@ fn identical_timestamps_do_not_divide_by_zero() {
 }
 
 #[test]
-fn the_bound_sees_slow_polls_and_holes() {
+fn the_bound_contains_slow_polls_and_gaps() {
     let all = [(Stamp::from_nanos(0), Stamp::from_nanos(1_000_000_000))];
     let moving = |holes: &[i64], bound_us: i64| {
         let samples = (0..100)

@@ -1,5 +1,4 @@
-//! Columns as attributes of E57 points: what the standard has a place for, and an extension for the
-//! rest.
+//! Columns as attributes of E57 points: standard ones, and an extension for the rest.
 
 use e57::{RawValues, Record, RecordDataType, RecordName, RecordValue};
 use units::{Host, Stamp};
@@ -8,7 +7,7 @@ use crate::{Column, Fields, Point};
 
 /// The extension's prefix in attribute names.
 pub(super) const NAMESPACE: &str = "velomotion";
-/// What its name stands for. Nothing needs to be there.
+/// URL of the extension; a name only.
 pub(super) const URL: &str = "https://velomotion.invalid/e57/1";
 
 const SINGLE: RecordDataType = RecordDataType::Single {
@@ -21,13 +20,13 @@ const DOUBLE: RecordDataType = RecordDataType::Double {
 };
 const BYTE: RecordDataType = RecordDataType::Integer { min: 0, max: 255 };
 
-/// Which attributes a point has.
+/// The attributes of a point.
 pub(super) struct PointAttributes {
     columns: Vec<Column>,
 }
 
 impl PointAttributes {
-    /// Those for positions and `fields`.
+    /// The attributes of positions and `fields`.
     pub(super) fn new(fields: Fields) -> Self {
         Self {
             columns: fields.columns().collect(),
@@ -42,7 +41,7 @@ impl PointAttributes {
             .any(|name| matches!(name, RecordName::Unknown { .. }))
     }
 
-    /// Their declarations.
+    /// Declarations of the attributes.
     pub(super) fn prototype(&self) -> Vec<Record> {
         let axes = [
             RecordName::CartesianX,
@@ -60,7 +59,7 @@ impl PointAttributes {
         axes.into_iter().chain(columns).collect()
     }
 
-    /// Their values.
+    /// Values of the attributes.
     pub(super) fn values(&self, point: &Point, start: Stamp<Host>) -> RawValues {
         let mut values = RawValues::with_capacity(3 + self.columns.len());
         values.extend(point.position_m.map(|v| RecordValue::Single(v as f32)));

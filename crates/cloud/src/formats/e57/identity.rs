@@ -1,5 +1,5 @@
-//! Names of files that are the same for the same cloud and differ for others, as E57 wants a
-//! globally unique identifier and the same log must give the same bytes.
+//! File identifiers that are equal for equal clouds and differ otherwise. E57 requires a globally
+//! unique identifier, and the same log must give the same bytes.
 
 use units::{Host, Stamp};
 
@@ -21,8 +21,8 @@ impl Hash {
     }
 }
 
-/// A UUID (version 8: made by a rule of one's own, RFC 9562) in braces, of what a cloud says, its
-/// count and bounds and its times.
+/// A UUID in braces (version 8: own rule, RFC 9562) of a cloud's description, count, bounds and
+/// times.
 pub(super) fn of(
     description: &[String],
     summary: Summary,

@@ -19,7 +19,7 @@ fn written(fields: Fields, batches: &[Points]) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_read_back_is_what_was_written() {
+fn files_are_read_back() {
     let cloud = cloud_from(20_000, NOW_NS + 123);
     let bytes = written(Fields::ALL, std::slice::from_ref(&cloud));
     let mut file = E57Reader::new(Cursor::new(bytes)).unwrap();
@@ -141,7 +141,7 @@ fn the_same_points_give_the_same_bytes_and_others_another_identity() {
 }
 
 #[test]
-fn what_it_says_cannot_break_the_description() {
+fn metadata_cannot_break_the_description() {
     let file = SharedOutput::default();
     let mut writer = E57Writer::new(file.clone());
     let metadata = Metadata {
@@ -157,7 +157,7 @@ fn what_it_says_cannot_break_the_description() {
 }
 
 #[test]
-fn a_place_that_is_none_is_refused_and_what_was_whole_is_kept() {
+fn invalid_positions_are_refused_and_complete_batches_kept() {
     let file = SharedOutput::default();
     let mut writer = E57Writer::new(file.clone());
     writer.begin(&metadata()).unwrap();
@@ -209,7 +209,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
 /// A writer that is not finished leaves what no reader takes for a cloud, and lets go of its
 /// output.
 #[test]
-fn a_writer_that_is_dropped_leaves_no_cloud() {
+fn a_dropped_writer_leaves_no_cloud() {
     let file = SharedOutput::default();
     let mut writer = E57Writer::new(file.clone());
     writer.begin(&metadata()).unwrap();

@@ -1,4 +1,4 @@
-//! The thread on which the library's writers live.
+//! The thread that owns the library's writers.
 
 use std::io::{Read, Seek, Write};
 use std::sync::mpsc::Receiver;
@@ -9,24 +9,24 @@ use units::{Host, Stamp};
 use super::attributes::{NAMESPACE, PointAttributes, URL};
 use crate::{Metadata, Points};
 
-/// What the thread is to do.
+/// Commands to the thread.
 pub(super) enum WorkerCommand {
-    /// Write these points, whose times count from a stamp.
+    /// Write these points, with times relative to a stamp.
     Points(Box<Points>, Stamp<Host>),
     /// Complete the file.
     Finish(FileEnding),
 }
 
-/// What is known at the end.
+/// Attributes known at the end.
 pub(super) struct FileEnding {
-    /// The file's identity in place of [`PLACEHOLDER`].
+    /// The file's identifier, in place of [`PLACEHOLDER`].
     pub(super) identity: String,
-    /// When acquisition began and ended, GPS seconds; `None` where no point has a time.
+    /// Begin and end of acquisition, GPS seconds; `None` without times.
     pub(super) start_gps_s: Option<f64>,
     pub(super) end_gps_s: Option<f64>,
 }
 
-/// What is known at the begin.
+/// Attributes known at the beginning.
 pub(super) struct CloudDescription {
     name: String,
     description: String,
@@ -50,16 +50,16 @@ impl CloudDescription {
     }
 }
 
-/// Text for a CDATA section, which only its own end can break.
+/// Text for a CDATA section, without its end mark.
 fn text(text: &str) -> String {
     text.replace("]]>", "]] >")
 }
 
-/// Stands in the file's description until its identity is known.
+/// Stands for the file's identifier until that is known.
 const PLACEHOLDER: &str = "{00000000-0000-8000-8000-000000000000}";
 
-/// Does what it is told until the file is complete. Where nobody is left to tell it anything, the
-/// file stays as it is.
+/// Executes commands until the file is complete. If the sender is dropped, the file stays
+/// incomplete.
 pub(super) fn run<W: Read + Write + Seek>(
     output: W,
     attributes: &PointAttributes,

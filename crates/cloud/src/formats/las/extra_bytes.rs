@@ -1,5 +1,5 @@
-//! The extra bytes of a point and the record that describes them (LAS 1.4 R15, section 5.5:
-//! `LASF_Spec` 4, 192 bytes a dimension), so that readers show them by name.
+//! Extra bytes of a point, and the record that describes them (LAS 1.4 R15, section 5.5:
+//! `LASF_Spec` 4, 192 bytes per dimension), so that readers show them by name.
 
 use las::Vlr;
 
@@ -52,17 +52,17 @@ pub(super) fn layout(fields: Fields) -> Vec<ExtraColumn> {
     extras
 }
 
-/// Bytes of them in a point; at most 27, with every column.
+/// Number of extra bytes of a point; at most 27, with every column.
 pub(super) fn length(extras: &[ExtraColumn]) -> u16 {
     extras.iter().map(|extra| extra.number.bytes() as u16).sum()
 }
 
-/// The record that describes them.
+/// The record that describes the extra bytes.
 pub(super) fn record(extras: &[ExtraColumn]) -> Vlr {
     let mut data = Vec::with_capacity(extras.len() * RECORD_BYTES);
     for extra in extras {
         if let Some((number, description)) = kind(extra.column) {
-            // Data types of table 24.
+            // Data type codes of section 5.5.
             let code = match number {
                 NumberType::U8 => 1,
                 NumberType::U16 => 3,
@@ -70,8 +70,8 @@ pub(super) fn record(extras: &[ExtraColumn]) -> Vlr {
                 NumberType::F64 => 10,
             };
             let mut record = [0; RECORD_BYTES];
-            // Bytes 0 and 1 are reserved; options (byte 3) stay 0: no nodata, minimum, maximum,
-            // scale or offset.
+            // Bytes 0 and 1 are reserved. Options (byte 3) stay 0: no nodata, minimum, maximum,
+            // scale, offset.
             put(&mut record, 2, &[code]);
             put(&mut record, NAME_AT, extra.column.name().as_bytes());
             put(&mut record, DESCRIPTION_AT, description.as_bytes());

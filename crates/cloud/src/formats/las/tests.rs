@@ -62,7 +62,7 @@ fn the_points_come_back_from_las_and_laz() {
 }
 
 #[test]
-fn the_header_carries_counts_bounds_and_who_wrote_it() {
+fn the_header_has_counts_bounds_and_software() {
     let batches = [cloud(300)];
     let expected = batches[0].summary().bounds.unwrap();
     for (bytes, compressed) in both(&batches).into_iter().zip([false, true]) {
@@ -95,7 +95,7 @@ fn the_header_carries_counts_bounds_and_who_wrote_it() {
 }
 
 #[test]
-fn a_real_cloud_is_not_called_simulated() {
+fn a_real_cloud_is_not_marked_simulated() {
     let metadata = Metadata {
         simulated: false,
         ..metadata()
@@ -107,7 +107,7 @@ fn a_real_cloud_is_not_called_simulated() {
 }
 
 #[test]
-fn every_column_can_be_asked_for_or_none() {
+fn every_set_of_columns_can_be_requested() {
     let given = cloud(20);
     for (fields, extra) in [(Fields::NONE, 0), (Fields::ALL, 27)] {
         let writer = LasWriter::laz(Cursor::new(vec![])).with_fields(fields);
@@ -142,7 +142,7 @@ fn the_same_points_give_the_same_bytes() {
 }
 
 #[test]
-fn long_and_foreign_names_are_cut_not_refused() {
+fn long_and_non_ascii_names_are_shortened() {
     let metadata = Metadata {
         source: "Größe ".repeat(20),
         software: "v".repeat(100),
@@ -231,7 +231,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
 }
 
 #[test]
-fn what_a_full_disk_cut_off_cannot_be_finished() {
+fn a_file_cut_off_by_a_full_disk_cannot_be_finished() {
     let header = both(&[])[0].len() as u64;
     let mut writer = LasWriter::las(SmallDisk::new(header + 500));
     writer.begin(&metadata()).unwrap();
@@ -253,7 +253,7 @@ fn what_a_full_disk_cut_off_cannot_be_finished() {
 }
 
 #[test]
-fn a_writer_that_is_dropped_leaves_a_file_of_what_it_had() {
+fn a_dropped_writer_leaves_a_file_of_its_batches() {
     let file = crate::formats::testing::SharedOutput::default();
     let mut writer = LasWriter::laz(file.clone());
     writer.begin(&metadata()).unwrap();

@@ -1,8 +1,6 @@
-//! What `ros2 bag` wants to know beside the messages: the qualities of service with which topics
-//! were offered, and `metadata.yaml`.
+//! Qualities of service and `metadata.yaml`, which `ros2 bag` needs besides the messages.
 //!
-//! In version 5 of rosbag2's format, which Humble and everything after it read. There policies are
-//! numbers (rmw/types.h).
+//! Version 5 of rosbag2's format, read by Humble and later. Policies are numbers (rmw/types.h).
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -13,8 +11,8 @@ use crate::messages::Topic;
 
 const VERSION: u32 = 5;
 
-/// The record that rosbag2's own writer leaves. Without metadata in it readers take qualities of
-/// service as numbers, the form of every version before 9; newer ones would else look for names.
+/// The metadata record of rosbag2's own writer. Without it readers expect qualities of service as
+/// numbers, the form before version 9; with a newer one as names.
 pub(super) fn record() -> mcap::records::Metadata {
     mcap::records::Metadata {
         name: "rosbag2".to_owned(),
@@ -22,8 +20,7 @@ pub(super) fn record() -> mcap::records::Metadata {
     }
 }
 
-/// The quality of service of a topic as YAML: reliable; kept for late subscribers or not; keep the
-/// last messages; no deadlines.
+/// Quality of service of a topic as YAML: reliable, latched or not, keep last, no deadlines.
 pub(super) fn quality(topic: Topic) -> String {
     let (durability, depth) = if topic.is_latched() { (1, 1) } else { (2, 10) };
     let never = "\n    sec: 9223372036\n    nsec: 854775807";
@@ -43,7 +40,7 @@ pub(super) fn companion(file_name: &str, channels: &McapChannels) -> Companion {
     for (topic, count) in channels.counts() {
         let (name, kind) = (topic.name(), topic.message_type().name);
         let quality = quoted(&quality(topic));
-        // Writing into a string does not fail.
+        // Writing into a string cannot fail.
         let _ = write!(
             topics,
             "\n    - topic_metadata:\n        name: {name}\n        type: {kind}\n        serialization_format: cdr\n        \

@@ -1,4 +1,4 @@
-//! The channels of a recording: a topic each, declared when the first message comes.
+//! The channels of a recording, one per topic, declared with the first message.
 
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
@@ -10,7 +10,7 @@ use units::{Host, Stamp};
 use super::bag;
 use crate::messages::Topic;
 
-/// What was written on each topic.
+/// Messages written per topic.
 #[derive(Clone, Debug, Default)]
 pub(super) struct McapChannels {
     by_topic: BTreeMap<Topic, McapChannel>,
@@ -24,7 +24,7 @@ struct McapChannel {
 }
 
 impl McapChannels {
-    /// Writes a message that was complete at `at`, not before 1970.
+    /// Writes a message complete at `at`, not before 1970.
     pub(super) fn write<W: Write + Seek>(
         &mut self,
         writer: &mut Writer<W>,
@@ -54,14 +54,14 @@ impl McapChannels {
         Ok(())
     }
 
-    /// Topics that have messages, and how many.
+    /// Topics with messages, and their number.
     pub(super) fn counts(&self) -> impl Iterator<Item = (Topic, u32)> + '_ {
         self.by_topic
             .iter()
             .map(|(topic, channel)| (*topic, channel.messages))
     }
 
-    /// McapLog times of the first and the last message, nanoseconds since 1970.
+    /// Log times of the first and the last message, nanoseconds since 1970.
     pub(super) const fn times(&self) -> Option<(u64, u64)> {
         self.times
     }

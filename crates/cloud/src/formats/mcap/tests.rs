@@ -111,7 +111,7 @@ fn new() -> McapWriter<Cursor<Vec<u8>>> {
 }
 
 #[test]
-fn a_cloud_a_sweep_whatever_the_batches() {
+fn clouds_per_sweep_are_independent_of_batches() {
     let all: Vec<i64> = (0..=100).chain(150..=250).map(|ms| ms * MS).collect();
     for batch in [7, 101, 1000] {
         let batches: Vec<Points> = all
@@ -128,7 +128,7 @@ fn a_cloud_a_sweep_whatever_the_batches() {
 }
 
 #[test]
-fn a_cloud_a_turn_where_turns_are_told() {
+fn revolutions_split_clouds() {
     let batches = [
         points([0, MS]),
         points([]),
@@ -157,7 +157,7 @@ fn all_messages_are_there_in_the_order_of_their_times() {
 }
 
 #[test]
-fn long_clouds_go_on_in_further_messages() {
+fn long_clouds_continue_in_further_messages() {
     // By number.
     let most = MOST_POINTS as i64;
     let batches: Vec<Points> = (0..9)
@@ -174,7 +174,7 @@ fn long_clouds_go_on_in_further_messages() {
 }
 
 #[test]
-fn a_platform_that_does_not_tilt_is_in_the_lidars_frame() {
+fn a_fixed_platform_is_in_the_lidars_frame() {
     let messages = read(&written(new(), None, &[points([0])]));
     let topics: Vec<&str> = messages.iter().map(|m| m.topic.as_str()).collect();
     assert_eq!(topics, ["/tf_static", "/velomotion/points", "/diagnostics"]);
@@ -192,7 +192,7 @@ fn an_empty_cloud_is_a_file_too() {
 }
 
 #[test]
-fn the_file_says_whose_it_is_and_is_the_same_every_time() {
+fn the_file_has_its_source_and_is_reproducible() {
     let cloud = cloud_from(1000, NOW_NS);
     let bytes = written(new(), Some(&track()), std::slice::from_ref(&cloud));
     assert_eq!(bytes, written(new(), Some(&track()), &[cloud]));
@@ -259,7 +259,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
 }
 
 #[test]
-fn what_a_killed_writer_leaves_has_its_whole_chunks() {
+fn an_aborted_file_has_its_complete_chunks() {
     let file = SharedOutput::default();
     let mut writer = McapWriter::new(file.clone());
     writer.begin(&metadata()).unwrap();
@@ -286,7 +286,7 @@ fn what_a_killed_writer_leaves_has_its_whole_chunks() {
 }
 
 #[test]
-fn what_cannot_be_said_is_refused_and_what_was_whole_is_kept() {
+fn times_out_of_range_are_refused_and_complete_batches_kept() {
     let mut writer = new();
     writer.begin(&metadata()).unwrap();
     writer.points(&points([0, 1])).unwrap();

@@ -83,7 +83,7 @@ fn written(fields: Fields, batches: &[Points]) -> (Vec<u8>, Vec<u8>) {
 }
 
 #[test]
-fn the_header_says_what_the_rows_are() {
+fn the_header_describes_the_rows() {
     let (bytes, _) = written(Fields::FILE, &[cloud(7), cloud(5)]);
     let read = read(&bytes);
     assert_eq!(read.vertices, 12);

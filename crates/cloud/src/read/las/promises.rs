@@ -1,17 +1,14 @@
-//! Whether a LAS or LAZ file promises no more than its bytes can hold.
+//! Checks that a LAS or LAZ file declares no more than its bytes can hold.
 //!
-//! The crates that read it reserve what a header, a table or a chunk promises before they look
-//! whether it is there: one byte of a file may then take all memory, or more than there is, which
-//! ends the program. So whatever is reserved is looked at beforehand: records, extended records
-//! (LAS 1.4 R15, 2.4 to 2.7), the table of chunks and the layers of each (LASzip's own description
-//! of its record and its chunks). Left out: whether it is true.
+//! The libraries reserve what a header, a table or a chunk declares before they read it; one byte
+//! of a file could otherwise take all memory.
 
 use crate::read::ReadLe;
 
-/// What is wrong: where, what should be there, and what is.
+/// Offset of an error, expected and actual content.
 pub(super) type Wrong = (usize, &'static str, String);
 
-/// Where the header says what.
+/// Offsets in the header.
 const MINOR: usize = 25;
 const HEADER_SIZE: usize = 94;
 const DATA_AT: usize = 96;
@@ -20,19 +17,18 @@ const POINT_FORMAT: usize = 104;
 const POINT_SIZE: usize = 105;
 const EXTENDED_AT: usize = 235;
 const EXTENDED: usize = 243;
-/// The bits of the format that say that points are compressed.
+/// Bits of the format that mark compressed points.
 const COMPRESSED: u8 = 0xC0;
-/// Bytes in front of what a record holds, and of an extended one; where either says how many it
-/// holds.
+/// Sizes of the headers of a record and of an extended one, and offsets of their lengths.
 const HEAD: usize = 54;
 const HEAD_LENGTH: usize = 20;
 const EXTENDED_HEAD: usize = 60;
-/// The record that says how points are compressed.
+/// The record that describes the compression.
 const LASZIP: (&[u8], u16) = (b"laszip encoded\0\0", 22_204);
 /// Its compressor for points of format 6 and above.
 const LAYERED: u16 = 3;
-/// Its items: number, bytes where they are given, whether they come in layers, and in how many;
-/// where it is not said, a layer a byte.
+/// Items of a point: number, bytes if given, whether they are layered, and number of layers; if not
+/// given, a layer per byte.
 const ITEMS: [(u16, Option<u16>, bool, Option<u16>); 10] = [
     (0, None, false, Some(0)),
     (6, Some(20), false, Some(0)),
@@ -46,7 +42,7 @@ const ITEMS: [(u16, Option<u16>, bool, Option<u16>); 10] = [
     (14, None, true, None),
 ];
 
-/// Looks at everything that is reserved by what the file says; `points` is how many it promises.
+/// Checks everything that is reserved by declared sizes; `points` is the declared number.
 pub(super) fn kept(bytes: &[u8], points: u64) -> Result<(), Wrong> {
     let header = LasHeader::read(bytes).ok_or((
         bytes.len(),
@@ -90,7 +86,7 @@ impl LasHeader {
     }
 }
 
-/// Extended records behind the points.
+/// Extended records after the points.
 fn extended(bytes: &[u8], header: &LasHeader) -> Result<(), Wrong> {
     if header.minor < 4 {
         return Ok(());
@@ -117,7 +113,7 @@ fn extended(bytes: &[u8], header: &LasHeader) -> Result<(), Wrong> {
     Ok(())
 }
 
-/// What the compressor's record says.
+/// Contents of the compression record.
 struct Compressor {
     kind: u16,
     /// Bytes of a point, item by item.
@@ -132,8 +128,8 @@ fn compressed(bytes: &[u8], header: &LasHeader) -> Result<(), Wrong> {
         "a record of LASzip",
         "none that is whole".to_owned(),
     ))?;
-    // Where the table is is said in front of the chunks, or at the end of the file if that could
-    // not be written.
+    // The offset of the table is before the chunks, or at the end of the file if it could not be
+    // written.
     let said = |at: usize| u64::take(bytes, at).filter(|&table| table > header.data as u64);
     let table = said(header.data)
         .or_else(|| said(bytes.len().checked_sub(8)?))
@@ -146,7 +142,7 @@ fn compressed(bytes: &[u8], header: &LasHeader) -> Result<(), Wrong> {
         "none within the file".to_owned(),
     );
     let (table, chunks) = chunks.ok_or(missing)?;
-    // Every chunk has a point at least, as it is.
+    // Every chunk has at least one uncompressed point.
     let start = header.data.saturating_add(8);
     let there = table.saturating_sub(start);
     if (chunks as usize)
@@ -182,7 +178,7 @@ fn compressor(bytes: &[u8], header: &LasHeader) -> Option<Compressor> {
                     .iter()
                     .find(|(id, known, ..)| *id == item && known.is_none_or(|known| known == size));
                 let (_, _, is_layered, own) = known?;
-                // Items of later formats have layers, earlier ones none.
+                // Items of later formats are layered, earlier ones are not.
                 if *is_layered != (kind == LAYERED) {
                     return None;
                 }
@@ -200,8 +196,8 @@ fn compressor(bytes: &[u8], header: &LasHeader) -> Option<Compressor> {
     None
 }
 
-/// Chunks stand one behind the other: a point as it is, how many there are, how long each layer is,
-/// and the layers.
+/// Consecutive chunks: an uncompressed point, the number of points, the length of each layer, and
+/// the layers.
 fn layers(
     bytes: &[u8],
     compressor: &Compressor,

@@ -16,7 +16,7 @@ fn card() -> Profile {
 }
 
 #[test]
-fn the_cards_sweep_takes_its_time_and_its_way() {
+fn the_reference_sweep_has_its_duration_and_way() {
     let card = card();
     assert!((card.duration_s() - 0.9125).abs() < 1e-12);
     assert_eq!(card.angle_deg(0.0), 0.0);

@@ -196,7 +196,7 @@ impl Run {
 /// The bar: worst below 0.011 degrees and root mean square below 0.0028, of which the ripple alone,
 /// unseen by any encoder, is 0.0021.
 #[test]
-fn the_best_curve_through_a_real_drives_polls_is_as_true_as_its_gear() {
+fn the_best_curve_through_a_real_drives_polls_is_as_accurate_as_its_gear() {
     for damping in [0.7, 1.0] {
         let seeds = 1..=4;
         let errors: Vec<_> = seeds
@@ -241,7 +241,7 @@ fn the_best_curve_through_a_real_drives_polls_is_as_true_as_its_gear() {
 /// At SYNC, 1 kHz, with the drive's own time: samples are so good that a spline sees what a servo
 /// of first order does not have.
 #[test]
-fn where_samples_are_good_the_curve_follows_them() {
+fn accurate_samples_are_followed() {
     let run = Drive {
         round_trip_s: (0.1e-3, 0.14e-3),
         spikes: 0.0,
@@ -256,7 +256,7 @@ fn where_samples_are_good_the_curve_follows_them() {
 
 /// A method never does worse than the cheaper one before it on what it is made for.
 #[test]
-fn each_method_has_its_place() {
+fn each_method_is_best_somewhere() {
     let run = CARD.run();
     let rms = |method| run.error(&run.trajectory(Some(method))).1;
     let [nearest, linear, profile, servo] = [
@@ -274,7 +274,7 @@ fn each_method_has_its_place() {
 
 /// A hand on the head: for a tenth of a second the shaft is held back by up to a degree.
 #[test]
-fn a_motion_that_was_not_commanded_is_followed_and_said() {
+fn motion_without_command_is_followed_and_reported() {
     let mut run = CARD.run();
     for sample in &mut run.samples {
         let t = (sample.host - Stamp::from_nanos(EPOCH)).as_secs_f64();
@@ -410,7 +410,7 @@ fn polls_that_all_have_one_round_trip() {
 }
 
 #[test]
-fn two_samples_and_three_are_joined_by_lines() {
+fn two_or_three_samples_are_connected_by_lines() {
     let run = CARD.run();
     for count in [1, 2, 3, 5] {
         let step = run.samples.len() / count;
