@@ -41,6 +41,7 @@ impl<W: Write> CsvWriter<W> {
     }
 
     /// Returns the output.
+    #[cfg(test)]
     pub fn into_inner(self) -> W {
         self.output
     }

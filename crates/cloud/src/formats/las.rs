@@ -103,6 +103,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
     }
 
     /// Returns the output at its start; `None` if writing the header failed.
+    #[cfg(test)]
     pub fn into_inner(self) -> Option<W> {
         match self.state {
             LasState::Idle(output) => Some(output.into_inner()),

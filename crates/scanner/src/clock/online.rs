@@ -53,7 +53,6 @@ struct OnlineState {
     /// Lengths of the last intervals between prompt packets, as a ring.
     intervals: [f64; INTERVALS],
     turn: usize,
-    median: f64,
 }
 
 impl OnlineClock {
@@ -94,14 +93,6 @@ impl OnlineClock {
         Some(ClockSegment::straight(line, self.whole).moment(device, x))
     }
 
-    /// Running estimate of the median delay above the clock.
-    #[must_use]
-    pub fn residual(&self) -> Span {
-        self.state
-            .as_ref()
-            .map_or(Span::ZERO, |state| span(state.median))
-    }
-
     /// Greatest error of the clock now, without the constant delay: growth and drift over the two
     /// longest of the last 32 intervals between prompt packets. Statistical: it holds at 99 of 100
     /// packets from the first second on; it is 1 s until two such intervals are known.
@@ -133,7 +124,6 @@ impl OnlineState {
             late: None,
             intervals: [0.0; INTERVALS],
             turn: 0,
-            median: 0.0,
         }
     }
 
@@ -165,8 +155,6 @@ impl OnlineState {
     fn follow(&mut self, at: (f64, f64)) {
         let (x, y) = at;
         let late = y - self.target(x);
-        let step = 0.02 * self.median + 100.0;
-        self.median = (self.median + if late > self.median { step } else { -step }).max(0.0);
         if late < 0.0 {
             let now = x.max(self.last.0);
             self.from = (now, self.offset(now));
