@@ -11,7 +11,7 @@ use std::convert::identity;
 use units::{Degrees, Host, Lidar, Stamp};
 
 use crate::columns::for_each_column;
-use crate::{Bounds, Column, Fields, MissingColumns, Summary};
+use crate::{Bounds, Column, Fields, MissingColumns, SinkError, Summary};
 
 pub use spare::Spare;
 
@@ -277,6 +277,31 @@ impl Points {
             points: self.len() as u64,
             bounds: Bounds::of([self.x_m(), self.y_m(), self.z_m()]),
         }
+    }
+}
+
+impl Points {
+    /// Checks that every coordinate is a number within `limit_m`, for a format that cannot hold
+    /// others. `before` points came before these.
+    pub(crate) fn check_coordinates(
+        &self,
+        format: &'static str,
+        limit_m: f64,
+        before: u64,
+    ) -> Result<(), SinkError> {
+        for (axis, column) in [('x', self.x_m()), ('y', self.y_m()), ('z', self.z_m())] {
+            let is_outside = |value: &f64| value.is_nan() || value.abs() > limit_m;
+            if let Some(index) = column.iter().position(is_outside) {
+                return Err(SinkError::Coordinate {
+                    format,
+                    axis,
+                    point: before + index as u64,
+                    got_m: column.get(index).copied().unwrap_or(f64::NAN),
+                    limit_m,
+                });
+            }
+        }
+        Ok(())
     }
 }
 

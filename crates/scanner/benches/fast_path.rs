@@ -23,7 +23,7 @@ use scanner::Alignment;
 const BYTES_PER_POINT: usize = 5 * 8 + 2;
 const BATCH: usize = 1 << 12;
 
-/// Takes batches and looks at nothing but their number.
+/// Counts points.
 #[derive(Default)]
 struct Count(usize);
 
@@ -107,7 +107,7 @@ fn table(recording: &Recording, runs: usize, only: &str) {
     }
 }
 
-/// The product's own second pass.
+/// The second pass.
 fn place(recording: &Recording, alignment: &Alignment, sink: &mut dyn Sink) {
     let options = Options::default();
     black_box(scanner::place(recording.records(), alignment, options, sink).unwrap());
@@ -146,7 +146,7 @@ fn one_by_one(recording: &Recording, alignment: &Alignment, batch: &mut Points) 
     }
 }
 
-/// Columns as points have them, to be written without any thought.
+/// Columns of points, to be written without computation.
 struct Columns {
     wide: [Vec<f64>; 5],
     narrow: [Vec<u8>; 2],
@@ -162,7 +162,7 @@ impl Columns {
         }
     }
 
-    /// Thirty-two rows of every column at a time, as points come.
+    /// Thirty-two rows of every column at a time.
     fn write(&mut self) {
         self.value = self.value.wrapping_add(1);
         let value = black_box(self.value);

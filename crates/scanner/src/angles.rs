@@ -9,7 +9,7 @@ use units::{Degrees, Host, Span, Stamp};
 
 pub(crate) use outliers::discard as discard_outliers;
 pub(crate) use polls::{SlowPollFilter, sample, with_shared_sd};
-pub use table::{AngleTable, TableTime};
+pub use table::{AngleTable, AngleTableError, TableTime};
 
 /// The platform's angle at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

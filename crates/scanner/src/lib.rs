@@ -38,7 +38,7 @@ pub mod tolerance;
 pub mod trajectory;
 
 pub use alignment::{Alignment, PlacementCounts};
-pub use angles::{AngleSample, AngleTable, TableTime};
+pub use angles::{AngleSample, AngleTable, AngleTableError, TableTime};
 pub use config::{LidarConfig, ScanConfig, SweepPlan};
 pub use error::ScanError;
 pub use live::Live;

@@ -1,5 +1,5 @@
-//! The live cloud against a replay of the same records: the same points, up to what the streaming
-//! clock and trajectory lack.
+//! The live cloud equals a replay of the same records, up to the errors of the streaming clock and
+//! trajectory.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use std::collections::HashMap;

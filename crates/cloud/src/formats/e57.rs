@@ -23,8 +23,8 @@ use units::{Host, Stamp};
 use self::attributes::PointAttributes;
 use self::worker::{FileEnding, WorkerCommand};
 use super::fallible::{FallibleOutput, WriteFault};
+use super::gps_time;
 use super::stage::Stage;
-use super::{check_places, gps_time};
 use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 const FORMAT: &str = "e57";
@@ -140,7 +140,7 @@ impl<W: Read + Write + Seek + Send + 'static> Sink for E57Writer<W> {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         self.stage.points(FORMAT)?;
         batch.fields().require(self.fields)?;
-        check_places(FORMAT, f64::from(f32::MAX), self.summary.points, batch)?;
+        batch.check_coordinates(FORMAT, f64::from(f32::MAX), self.summary.points)?;
         self.note_times(batch);
         let start = self.start.unwrap_or(Stamp::from_nanos(0));
         if let Err(error) = self.order(WorkerCommand::Points(Box::new(batch.clone()), start)) {

@@ -15,7 +15,6 @@ use std::io::{Seek, Write};
 use las::{Builder, GpsTimeType, PointData, PointDataBuilder, Transform, Vector, Vlr};
 
 use self::extra_bytes::ExtraColumn;
-use super::check_places;
 use super::fallible::{FallibleOutput, WriteFault};
 use super::gps_time;
 use super::seconds::seconds;
@@ -218,7 +217,7 @@ impl<W: Write + Seek + Send + Sync + 'static> Sink for LasWriter<W> {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         self.stage.points(self.format)?;
         batch.fields().require(self.fields)?;
-        check_places(self.format, LIMIT_M, self.summary.points, batch)?;
+        batch.check_coordinates(self.format, LIMIT_M, self.summary.points)?;
         let LasState::Open { writer, slab } = &mut self.state else {
             return Err(SinkError::Order {
                 format: self.format,

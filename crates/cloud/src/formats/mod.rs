@@ -27,7 +27,7 @@ use std::fmt;
 use std::io::{Read, Seek, Write};
 use std::path::Path;
 
-use crate::{Fields, Points, Sink, SinkError};
+use crate::{Fields, Sink};
 
 /// A file format for clouds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -132,32 +132,6 @@ impl Format {
             Self::Csv => Box::new(csv::CsvWriter::new(output).with_fields(fields)),
         }
     }
-}
-
-/// Refuses a batch with a coordinate that is not a number or exceeds `limit_m`. `before` points
-/// came before the batch.
-pub(crate) fn check_places(
-    format: &'static str,
-    limit_m: f64,
-    before: u64,
-    batch: &Points,
-) -> Result<(), SinkError> {
-    for (axis, column) in [('x', batch.x_m()), ('y', batch.y_m()), ('z', batch.z_m())] {
-        let outside = column
-            .iter()
-            .enumerate()
-            .find(|(_, value)| value.is_nan() || value.abs() > limit_m);
-        if let Some((index, &got_m)) = outside {
-            return Err(SinkError::Coordinate {
-                format,
-                axis,
-                point: before + index as u64,
-                got_m,
-                limit_m,
-            });
-        }
-    }
-    Ok(())
 }
 
 impl fmt::Display for Format {

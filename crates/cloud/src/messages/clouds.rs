@@ -88,7 +88,7 @@ impl Cutting {
     pub(crate) fn check(&self, batch: &Points) -> Result<(), SinkError> {
         batch.fields().require(self.fields())?;
         let most = f64::from(f32::MAX);
-        crate::formats::check_places(self.format, most, self.summary.points, batch)
+        batch.check_coordinates(self.format, most, self.summary.points)
     }
 
     /// Adds a batch, and passes on complete clouds.

@@ -22,10 +22,7 @@ pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
         ScanError::NoSweep => {
             "the recording ended before a sweep began: --tilt none gives its points in the sensor's own frame"
         }
-        ScanError::TableElsewhere { .. }
-        | ScanError::TableShort { .. }
-        | ScanError::TableRange { .. }
-        | ScanError::TableOrder { .. } => {
+        ScanError::Table(_) => {
             "give times as Unix seconds like the recording's, or as seconds since its first packet"
         }
         ScanError::NoBound => "omit --tolerance, or use the angles of the log",

@@ -79,8 +79,8 @@ impl Recording {
         })
     }
 
-    /// Clock and angle, the platform going from 0 to -45 degrees and back at 56.25 deg/s, polled
-    /// every millisecond.
+    /// Clock and angle of a platform that goes from 0 to -45 degrees and back at 56.25 deg/s,
+    /// polled every millisecond.
     pub fn tilting(&self) -> Alignment {
         let hosts = || self.datagrams.iter().map(|(host, _)| *host);
         let (from, to) = (hosts().min().unwrap(), hosts().max().unwrap());
@@ -109,7 +109,7 @@ fn swing_deg(t: f64) -> f64 {
     -(45.0 - (way - 45.0).abs())
 }
 
-/// Of a classic pcap file in microseconds and this machine's byte order, Ethernet.
+/// Datagrams of a classic pcap file in microseconds and this machine's byte order, Ethernet.
 fn datagrams(bytes: &[u8]) -> Vec<(Stamp<Host>, std::ops::Range<usize>)> {
     let mut at = FILE_HEADER;
     let mut datagrams = Vec::new();
@@ -130,7 +130,7 @@ fn datagrams(bytes: &[u8]) -> Vec<(Stamp<Host>, std::ops::Range<usize>)> {
     datagrams
 }
 
-/// Gives every data packet the time that it says itself.
+/// Stamps every data packet with its own time.
 fn restamp(bytes: &[u8], datagrams: &mut [(Stamp<Host>, std::ops::Range<usize>)]) {
     for (host, range) in datagrams {
         if let [.., a, b, c, d, _, _] = bytes[range.clone()] {
@@ -140,12 +140,12 @@ fn restamp(bytes: &[u8], datagrams: &mut [(Stamp<Host>, std::ops::Range<usize>)]
     }
 }
 
-/// Seconds that runs of something took.
+/// Run times, seconds.
 #[derive(Clone, Debug)]
 pub struct Timing(Vec<f64>);
 
 impl Timing {
-    /// Runs every work once for nothing and then `runs` times, one after the other.
+    /// Runs every work once to warm up, and then `runs` times, in turns.
     pub fn in_turns(runs: usize, work: &mut [&mut dyn FnMut()]) -> Vec<Self> {
         for work in work.iter_mut() {
             work();

@@ -1,15 +1,52 @@
 //! A table of angles over time, measured by another rig.
 
+use thiserror::Error;
 use units::{Degrees, Host, Span, Stamp};
 
 use super::AngleSample;
 use crate::clock::Arrival;
-use crate::error::ScanError;
 
 /// Angles over time, in strictly increasing time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngleTable {
     rows: Vec<(f64, f64)>,
+}
+
+/// Why a table of angles is unusable.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum AngleTableError {
+    /// The table is of another time.
+    #[error(
+        "the tilt angles cover {table_from_s:.3}..{table_to_s:.3} s, the recording {recording_from_s:.3}..{recording_to_s:.3} s: they do not overlap"
+    )]
+    Elsewhere {
+        /// First time of the table.
+        table_from_s: f64,
+        /// Last time of the table.
+        table_to_s: f64,
+        /// First packet.
+        recording_from_s: f64,
+        /// Last packet.
+        recording_to_s: f64,
+    },
+    /// A table with fewer than two rows.
+    #[error("tilt angles: expected at least two rows of time_s,angle_deg, got {rows}")]
+    Short {
+        /// Rows with numbers.
+        rows: usize,
+    },
+    /// A table with a number out of range.
+    #[error("tilt angles: row {row}: expected seconds within +-1e10 and degrees within +-3600")]
+    Range {
+        /// Row, counted from 1 over the rows with numbers.
+        row: usize,
+    },
+    /// A table whose times do not increase.
+    #[error("tilt angles: row {row} is not later than the row before it")]
+    Order {
+        /// Row, counted from 1 over the rows with numbers.
+        row: usize,
+    },
 }
 
 /// Clock of a table's times.
@@ -28,20 +65,20 @@ impl AngleTable {
     /// Rows of (seconds, degrees), in strictly increasing time.
     ///
     /// # Errors
-    /// [`ScanError::TableShort`] with fewer than two rows, [`ScanError::TableRange`] for times and
-    /// angles that cannot be, [`ScanError::TableOrder`] where time does not increase.
-    pub fn new(rows: Vec<(f64, f64)>) -> Result<Self, ScanError> {
+    /// [`AngleTableError::Short`] with fewer than two rows, [`AngleTableError::Range`] for times and
+    /// angles that cannot be, [`AngleTableError::Order`] where time does not increase.
+    pub fn new(rows: Vec<(f64, f64)>) -> Result<Self, AngleTableError> {
         if rows.len() < 2 {
-            return Err(ScanError::TableShort { rows: rows.len() });
+            return Err(AngleTableError::Short { rows: rows.len() });
         }
         if let Some(row) = rows.iter().position(|r| !in_range(*r)) {
-            return Err(ScanError::TableRange { row: row + 1 });
+            return Err(AngleTableError::Range { row: row + 1 });
         }
         let back = rows
             .windows(2)
             .position(|w| matches!(w, [a, b] if b.0 <= a.0));
         match back {
-            Some(row) => Err(ScanError::TableOrder { row: row + 2 }),
+            Some(row) => Err(AngleTableError::Order { row: row + 2 }),
             None => Ok(Self { rows }),
         }
     }
@@ -56,10 +93,13 @@ impl AngleTable {
     }
 
     /// The rows as samples in host time.
-    pub(crate) fn samples(&self, arrivals: &[Arrival]) -> Result<Vec<AngleSample>, ScanError> {
+    pub(crate) fn samples(
+        &self,
+        arrivals: &[Arrival],
+    ) -> Result<Vec<AngleSample>, AngleTableError> {
         let hosts = || arrivals.iter().map(|a| a.host);
         let (Some(first), Some(last)) = (hosts().min(), hosts().max()) else {
-            return Err(ScanError::NoLidarPackets);
+            return Ok(Vec::new());
         };
         let epoch: Stamp<Host> = match self.time() {
             TableTime::Unix => Stamp::from_nanos(0),
@@ -82,7 +122,7 @@ impl AngleTable {
             return Ok(samples);
         }
         let seconds = |host: Stamp<Host>| (host.saturating_since(epoch)).as_secs_f64();
-        Err(ScanError::TableElsewhere {
+        Err(AngleTableError::Elsewhere {
             table_from_s: self.rows.first().map_or(0.0, |r| r.0),
             table_to_s: self.rows.last().map_or(0.0, |r| r.0),
             recording_from_s: seconds(first),
@@ -144,14 +184,17 @@ mod tests {
     #[test]
     fn time_must_increase() {
         let rows = vec![(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)];
-        assert_eq!(AngleTable::new(rows), Err(ScanError::TableOrder { row: 3 }));
+        assert_eq!(
+            AngleTable::new(rows),
+            Err(AngleTableError::Order { row: 3 })
+        );
         assert_eq!(
             AngleTable::new(vec![(0.0, 0.0)]),
-            Err(ScanError::TableShort { rows: 1 })
+            Err(AngleTableError::Short { rows: 1 })
         );
         for bad in [(f64::NAN, 0.0), (9e18, 0.0), (1.0, f64::INFINITY)] {
             let table = AngleTable::new(vec![(0.0, 0.0), bad]);
-            assert_eq!(table, Err(ScanError::TableRange { row: 2 }));
+            assert_eq!(table, Err(AngleTableError::Range { row: 2 }));
         }
     }
 }

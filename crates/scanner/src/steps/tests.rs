@@ -1,4 +1,4 @@
-//! Steps of either clock and what only looks like one.
+//! Steps of either clock, and delays that resemble them.
 
 use units::{Lidar, Span};
 
@@ -20,15 +20,14 @@ impl Noise {
     }
 }
 
-/// A recording of a lidar at 30 ppm and of a drive that is polled, as it would be had nobody set a
-/// clock.
+/// A recording of a lidar at 30 ppm and of a polled drive, without clock steps.
 struct Recorded {
     packets: Vec<Arrival>,
     /// Request and answer.
     polls: Vec<(i64, i64)>,
 }
 
-/// One record after the other, as in the file.
+/// Records in the order of the file.
 enum Entry {
     Packet(Arrival),
     Poll(i64, i64),
@@ -66,7 +65,7 @@ impl Recorded {
         Self { packets, polls }
     }
 
-    /// As recorded by a host whose clock is set at true times.
+    /// The recording of a host whose clock is set at these true times.
     fn stepped(&self, steps: &[(i64, i64)]) -> Seen {
         let clock = |host: i64| {
             let past = steps.iter().filter(|(when, _)| *when <= host - EPOCH);
@@ -107,7 +106,7 @@ impl Recorded {
     }
 }
 
-/// What a survey has when all is read.
+/// Contents of a survey after the last record.
 #[derive(Default)]
 struct Seen {
     arrivals: Vec<Arrival>,
@@ -120,8 +119,8 @@ impl Seen {
         Timeline::new(&self.arrivals, &self.monotonic).unwrap()
     }
 
-    /// Greatest error of clock and polls against what was, in microseconds, a constant aside; how
-    /// many polls are off by a round trip or more.
+    /// Greatest error of clock and polls in microseconds, without a constant, and the number of
+    /// polls off by a round trip or more.
     fn errors(&self, timeline: &Timeline, truth: &Recorded) -> (f64, usize) {
         let clock = truth.packets.iter().zip(&self.arrivals).map(|(was, seen)| {
             let since = was.device.as_nanos() - EPOCH;
@@ -149,8 +148,8 @@ fn only(timeline: &Timeline) -> ClockStep {
     step
 }
 
-/// NTP, a leap second, somebody at the keyboard: from 12 ms to a year, both ways, with the drive
-/// polled and without one.
+/// Steps by NTP, a leap second or a user, from 12 ms to a year, both ways, with and without a
+/// polled drive.
 #[test]
 fn the_hosts_clock_is_set() {
     for poll_us in [Some(2_500), Some(1_000), Some(60_000), None] {
@@ -179,7 +178,7 @@ fn the_hosts_clock_is_set() {
                 assert!(apart < 30_000_000, "{by} at {apart} ns, {poll_us:?}");
                 let (worst_us, polls_off) = seen.errors(&timeline, &recorded);
                 assert!(worst_us < 5.0, "{by}, {poll_us:?}: {worst_us} us");
-                // At 60 ms a poll a pause may hide a step of less.
+                // With a poll every 60 ms a pause may hide a smaller step.
                 let most = usize::from(poll_us == Some(60_000) && by_ms < 60) * 2;
                 assert!(polls_off <= most, "{by}, {poll_us:?}: {polls_off} polls");
             }
@@ -187,7 +186,7 @@ fn the_hosts_clock_is_set() {
     }
 }
 
-/// Two in one recording add up, and may undo each other.
+/// Two steps in one recording add up, and may undo each other.
 #[test]
 fn the_hosts_clock_is_set_twice() {
     let recorded = Recorded::new(60, Some(2_500));
@@ -207,7 +206,7 @@ fn the_hosts_clock_is_set_twice() {
     }
 }
 
-/// In the first second, or the last, a step is one, too.
+/// Steps in the first and the last second are found too.
 #[test]
 fn the_hosts_clock_is_set_near_the_ends() {
     let recorded = Recorded::new(20, Some(2_500));
@@ -226,8 +225,8 @@ fn the_hosts_clock_is_set_near_the_ends() {
     }
 }
 
-/// The lidar's clock is set by its first pulse, forward or back, or begins anew after an outage: a
-/// piece of its own, and no host time is touched.
+/// The lidar's clock is set by its first pulse, forward or back, or restarts after an outage: it
+/// gets another piece, and host times are not affected.
 #[test]
 fn the_lidars_clock_is_set() {
     for poll_us in [Some(2_500), None] {
@@ -269,8 +268,8 @@ fn the_lidars_clock_is_set() {
     }
 }
 
-/// A network that stands still hands on what it held all at once, be it at the end of a recording
-/// or from its start; a link that loses packets, or a host that is paused, changes nothing either.
+/// A stalled network delivers its packets all at once, also at the end of a recording or from its
+/// start. Neither that nor lost packets nor a paused host are steps.
 #[test]
 fn delays_are_no_steps() {
     for (from, length) in [
@@ -307,7 +306,7 @@ fn delays_are_no_steps() {
     assert_eq!(recorded.stepped(&[]).timeline().steps, []);
 }
 
-/// Below 10 ms a step is absorbed: the bound says so.
+/// A step below 10 ms is absorbed, and the bound contains it.
 #[test]
 fn steps_too_small_to_be_found_are_within_the_bound() {
     for by in [
@@ -330,7 +329,7 @@ fn steps_too_small_to_be_found_are_within_the_bound() {
     }
 }
 
-/// A damaged stamp, early by minutes, is left out; the clock does not bend to it.
+/// A damaged stamp, early by minutes, is ignored and does not bend the clock.
 #[test]
 fn an_early_packet_is_ignored() {
     let recorded = Recorded::new(20, Some(2_500));
@@ -347,7 +346,7 @@ fn an_early_packet_is_ignored() {
     assert!(worst.max().unwrap() < 5_000);
 }
 
-/// Of few packets nothing is a step, and nothing panics.
+/// With few packets there are no steps, and nothing panics.
 #[test]
 fn a_handful_of_packets() {
     for count in 1..40 {

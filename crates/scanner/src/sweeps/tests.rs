@@ -15,8 +15,7 @@ fn ms(ms: i64) -> Stamp<Host> {
     Stamp::from_nanos(ms * 1_000_000)
 }
 
-/// A watch and the samples of an axis that is told to go to each angle in turn, at `speed` without
-/// ramps, 1 s apart.
+/// Samples of an axis that goes to each angle in turn, at `speed` without ramps, 1 s apart.
 struct Axis {
     watch: MoveWatch,
     samples: Vec<AngleSample>,

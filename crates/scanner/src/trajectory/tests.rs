@@ -73,12 +73,12 @@ fn the_bound_contains_slow_polls_and_gaps() {
             .unwrap()
             .bound_deg(&all)
     };
-    // 50 deg/s: 1 ms of doubt is 0.05 deg, and from rest to 50 deg/s at once within a millisecond,
-    // or within 11 ms, 50 x 0.011 / 4.
+    // At 50 deg/s, 1 ms of uncertainty is 0.05 deg; the change from rest to 50 deg/s within a
+    // millisecond, or within 11 ms, is 50 x 0.011 / 4.
     assert!((moving(&[], 1_000) - (0.05 + 0.0125)).abs() < 1e-3);
     let hole: Vec<i64> = (45..55).collect();
     assert!((moving(&hole, 0) - 50.0 * 0.011 / 4.0).abs() < 1e-3);
-    // The line from 44 to 55 ms is off where the axis set off, at 50 ms.
+    // The line from 44 to 55 ms is wrong where the axis set off, at 50 ms.
     assert!(moving(&hole, 0) >= 50.0 * 5e-3 * 6.0 / 11.0);
     assert!(moving(&[], 0) < 0.02);
 }
@@ -96,7 +96,7 @@ fn leaving_one_out_sees_noise_but_not_uniform_motion() {
     assert!((rms.unwrap() - 0.2).abs() < 1e-9);
 }
 
-/// Jitter may bring two stamps together; the speed between them is then anything.
+/// Jitter may bring two stamps together; the speed between them is then arbitrary.
 #[test]
 fn a_cubic_stays_between_its_samples_however_close_their_stamps_are() {
     let samples = vec![

@@ -1,5 +1,5 @@
-//! The fast path against the definition: every model, return mode and option, any angle over time,
-//! any spans.
+//! The fast path against the definition: every model, return mode and option, any trajectory, any
+//! spans.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ const PRODUCTS: [(u8, i64); 4] = [
     (0x28, 55_296),
 ];
 
-/// Packets of a turning sensor, filled with what `noise` gives.
+/// Packets of a spinning sensor, filled from `noise`.
 fn packets(product: (u8, i64), dual: bool, pace_cdeg: u32, noise: &[u8]) -> Vec<(i64, Vec<u8>)> {
     let (byte, period_ns) = product;
     let blocks = if dual { 6 } else { 12 };
@@ -42,7 +42,7 @@ fn packets(product: (u8, i64), dual: bool, pace_cdeg: u32, noise: &[u8]) -> Vec<
                 bytes.extend([0xFF, 0xEE]);
                 bytes.extend((azimuth as u16).to_le_bytes());
                 for _ in 0..32 {
-                    // One in four is no return; pairs are equal now and then.
+                    // One in four is no return; some pairs are equal.
                     let (a, b) = (noise.next().unwrap(), noise.next().unwrap());
                     let distance = if a < 64 {
                         0
@@ -72,7 +72,7 @@ fn records(packets: &[(i64, Vec<u8>)]) -> impl Iterator<Item = Record<'_>> {
     })
 }
 
-/// By the definition, one point after the other.
+/// By the definition, point by point.
 fn slow(
     alignment: &Alignment,
     options: Options,
@@ -113,8 +113,8 @@ fn fast(
     (points, placed)
 }
 
-/// The same points in the same order: places within a nanometre, times within a nanosecond, all
-/// else to the bit.
+/// The same points in the same order: positions within a nanometre, times within a nanosecond, all
+/// else bit-identical.
 fn assert_same(fast: &(Points, PlacementCounts), slow: &(Points, PlacementCounts)) {
     assert_eq!(fast.1, slow.1);
     assert_eq!(fast.0.len(), slow.0.len());
@@ -149,8 +149,7 @@ fn clock(seconds: i64, ppm: &[i64; 4]) -> LidarClock {
 }
 
 prop_compose! {
-    /// Samples at irregular times around the packets, of an axis that moves at up to 500 deg/s
-    /// either way.
+    /// Samples at irregular times around the packets, of an axis at up to 500 deg/s either way.
     fn any_trajectory()(
         steps in prop::collection::vec((1i64..4_000_000, -500.0..500.0f64), 2..200),
         begin in -5_000_000i64..20_000_000,
@@ -208,7 +207,7 @@ prop_compose! {
     }
 }
 
-/// Registers of every width that this processor has.
+/// Registers of every width of this processor.
 fn levels() -> Vec<Level> {
     let detected = Level::new();
     #[cfg(not(target_arch = "x86_64"))]
@@ -293,7 +292,7 @@ proptest! {
         }
     }
 
-    /// What a block becomes depends on nothing that came before it, to the bit.
+    /// The points of a block do not depend on earlier blocks, bit for bit.
     #[test]
     fn a_recording_from_its_middle_gives_the_same_points(
         dual: bool,

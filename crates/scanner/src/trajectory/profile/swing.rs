@@ -47,8 +47,8 @@ impl Servo {
                 s: decay * sin / w,
             };
         }
-        // Two poles: the slow one's rate is the product, 1/b2, over the quick one's, so that no
-        // digits are lost.
+        // Two poles: the slow one's rate is the product, 1/b2, over the fast one's, which avoids
+        // cancellation.
         let quick = self.a + w;
         let slow = 1.0 / self.inertia / quick;
         let (quick, slow) = (f64::exp(-quick * t), f64::exp(-slow * t));
@@ -75,8 +75,8 @@ impl Servo {
         (g, whole - (whole * c + (self.a * whole - self.lag) * s))
     }
 
-    /// The same, and the integral's derivatives by lag and inertia: those of C and S by a and w2
-    /// are -t C, -t S, -t S / 2 and (t C - S) / (2 w2), and a and w2 are functions of both.
+    /// g, its integral, and the integral's derivatives by lag and inertia. Those of C and S by a
+    /// and w2 are -t C, -t S, -t S / 2 and (t C - S) / (2 w2), and a and w2 are functions of both.
     fn behind_with_gradient(&self, t: f64) -> Behind {
         if t <= 0.0 {
             return Behind::default();
@@ -100,7 +100,7 @@ impl Servo {
         } = *self;
         let phase = w2 * t * t;
         let s_by_w2 = if phase.abs() < SMALL_PHASE {
-            // The difference would lose its digits.
+            // Series, as the difference would cancel.
             f64::exp(-a * t) * t * t * t * (-1.0 / 6.0 + phase / 60.0 - phase * phase / 1680.0)
         } else {
             (t * c - s) / (2.0 * w2)
@@ -126,7 +126,7 @@ impl Servo {
     }
 }
 
-/// g, its integral, and that one's derivatives.
+/// g, its integral, and the integral's derivatives.
 #[derive(Clone, Copy, Debug, Default)]
 struct Behind {
     g: f64,
@@ -135,10 +135,10 @@ struct Behind {
     by_inertia: f64,
 }
 
-/// When so many of its decay times have gone by, the answer is over: exp(-40) is nothing beside 1.
+/// Decay times after which the response is over: exp(-40) is negligible.
 const OVER: f64 = 40.0;
-/// Below it (t C - S) / (2 w2) is a series: three terms are good to 1e-11 there, the difference to
-/// as much above.
+/// Below it (t C - S) / (2 w2) is a series: three terms are good to 1e-11 there, as is the
+/// difference above.
 const SMALL_PHASE: f64 = 1e-2;
 
 /// Position and speed behind a ramp of `length` seconds.

@@ -22,7 +22,7 @@ fn the_reference_sweep_has_its_duration_and_way() {
     assert_eq!(card.angle_deg(0.0), 0.0);
     assert!((card.angle_deg(2.0) + 45.0).abs() < 1e-12);
     assert!((card.angle_deg(0.1 + 0.9125 / 2.0) + 22.5).abs() < 1e-12);
-    // In cruise a lag is a delay.
+    // In the cruise a lag is a delay.
     let slow = Profile {
         lag_s: 0.0106,
         ..card
@@ -30,7 +30,8 @@ fn the_reference_sweep_has_its_duration_and_way() {
     assert!((slow.angle_deg(0.5) - card.angle_deg(0.5 - 0.0106)).abs() < 1e-3);
 }
 
-/// A second way: the demand's speed by cases, the servo's differential equation by small steps.
+/// An independent computation: the demand's speed by cases, the servo's differential equation by
+/// small steps.
 fn stepped(profile: &Profile, until_s: f64) -> f64 {
     let speed = |t: f64| {
         let t = t - profile.start_s;
@@ -83,8 +84,8 @@ fn the_closed_form_is_the_servo_stepped_through() {
     }
 }
 
-/// The servo's own two, whose closed forms are the least obvious: underdamped, overdamped, and
-/// where both poles meet.
+/// The derivatives by the servo's parameters, whose closed forms are the least obvious:
+/// underdamped, overdamped, and with a double pole.
 #[test]
 fn derivatives_by_lag_and_inertia_are_differences() {
     for damping in [
@@ -118,7 +119,7 @@ fn derivatives_by_lag_and_inertia_are_differences() {
                     off < 1e-4 * profile.speed_deg_s.abs(),
                     "{said}: {by_lag} {difference}"
                 );
-                // As the fit has it, by the inertia's root: degrees a second, too.
+                // By the root of the inertia, as in the fit: also degrees per second.
                 let root = profile.inertia_s2.sqrt();
                 let difference = by(|p| &mut p.inertia_s2, profile.inertia_s2 * 1e-5);
                 let off = 2.0 * root * (by_inertia - difference).abs();
@@ -150,7 +151,7 @@ prop_compose! {
 proptest! {
     #[test]
     fn derivatives_are_differences(profile in any_profile(), part in -0.05..1.2f64) {
-        // Away from the corners, where a difference reaches over.
+        // Away from the corners, which a difference would span.
         let at = profile.start_s + part * profile.duration_s();
         let near = profile.corners_s().iter().any(|corner| (corner - at).abs() < 1e-5);
         prop_assume!(!near && profile.ramp_up_s > 1e-4 && profile.ramp_down_s > 1e-4);

@@ -1,5 +1,5 @@
-//! A drive as they are: a servo of second order at 15 Hz, gear ripple that its encoder does not
-//! see, polls of 0.8 to 2.5 ms with spikes, an encoder of 0.0015 degrees.
+//! A realistic drive: a servo of second order at 15 Hz, gear ripple that its encoder does not see,
+//! polls of 0.8 to 2.5 ms with spikes, an encoder of 0.0015 degrees.
 
 use super::*;
 use crate::sweeps::Commanded;
@@ -20,13 +20,13 @@ impl Noise {
     }
 }
 
-/// What a drive and its polls are like.
+/// Properties of a drive and its polls.
 #[derive(Clone, Copy)]
 pub struct Drive {
     pub speed: f64,
     pub acceleration: f64,
     pub way: f64,
-    /// Natural frequency and damping of the servo; `None`: it follows at once.
+    /// Natural frequency and damping of the servo; `None` if it follows at once.
     pub servo: Option<(f64, f64)>,
     pub ripple_deg: f64,
     pub hertz: f64,
@@ -139,12 +139,12 @@ impl Drive {
 }
 
 impl Run {
-    /// Worst and root mean square difference to the platform during the sweep, degrees, after the
-    /// constant delay that suits best, which comes with them in seconds.
+    /// Greatest and root mean square difference to the platform during the sweep, degrees, after
+    /// the best constant delay; and that delay, seconds.
     pub fn error(&self, trajectory: &Trajectory) -> (f64, f64, f64) {
         let truth = |t: f64| {
             let at = self.shaft[(t / STEP_S) as usize];
-            // Once a motor turn.
+            // Once per motor revolution.
             at + self.ripple_deg * (at * 120.0).to_radians().sin()
         };
         let from = (self.sweep.start - Stamp::from_nanos(EPOCH)).as_secs_f64();
@@ -193,8 +193,8 @@ impl Run {
     }
 }
 
-/// The bar: worst below 0.011 degrees and root mean square below 0.0028, of which the ripple alone,
-/// unseen by any encoder, is 0.0021.
+/// Limits: 0.011 degrees at most and 0.0028 root mean square, of which the ripple alone, unseen by
+/// any encoder, is 0.0021.
 #[test]
 fn the_best_curve_through_a_real_drives_polls_is_as_accurate_as_its_gear() {
     for damping in [0.7, 1.0] {
@@ -220,7 +220,7 @@ fn the_best_curve_through_a_real_drives_polls_is_as_accurate_as_its_gear() {
                 let bound = best.bound_deg(&[(run.sweep.start, run.sweep.end)]);
                 let (worst, rms, delay) = run.error(&best);
                 assert!(worst < 0.011 && worst < bound, "{worst}, bound {bound}");
-                // What it says of itself holds, the ripple aside that it cannot know of.
+                // Its own error estimate holds, without the ripple.
                 assert!(
                     rms.hypot(0.0021) < 2.0 * fit.sd_deg.hypot(0.0021),
                     "{rms} {fit:?}"
@@ -238,8 +238,8 @@ fn the_best_curve_through_a_real_drives_polls_is_as_accurate_as_its_gear() {
     }
 }
 
-/// At SYNC, 1 kHz, with the drive's own time: samples are so good that a spline sees what a servo
-/// of first order does not have.
+/// At SYNC, 1 kHz, with the drive's own time: the samples are so good that a spline shows what a
+/// servo of first order lacks.
 #[test]
 fn accurate_samples_are_followed() {
     let run = Drive {
@@ -254,7 +254,7 @@ fn accurate_samples_are_followed() {
     assert!(worst < 0.005 && rms < 0.0024, "{worst} {rms}");
 }
 
-/// A method never does worse than the cheaper one before it on what it is made for.
+/// On the motion it is made for, a method is never worse than the cheaper one before it.
 #[test]
 fn each_method_is_best_somewhere() {
     let run = CARD.run();
@@ -272,7 +272,7 @@ fn each_method_is_best_somewhere() {
     );
 }
 
-/// A hand on the head: for a tenth of a second the shaft is held back by up to a degree.
+/// For a tenth of a second the shaft is held back by up to a degree.
 #[test]
 fn motion_without_command_is_followed_and_reported() {
     let mut run = CARD.run();
@@ -295,12 +295,12 @@ fn motion_without_command_is_followed_and_reported() {
     };
     let off = best.angle(at).unwrap().0 - run.shaft[55_000] - 1.0;
     assert!(off.abs() < 0.05, "{off}");
-    // The commanded motion alone would be half a degree off, and knows it.
+    // The commanded motion alone would be half a degree off, and reports it.
     let forced = run.trajectory(Some(Method::ProfileServo));
     assert!(forced.fits()[0].sd_deg > 0.1 && forced.fits()[0].rms_deg > 0.1);
 }
 
-/// A limit switch ends the sweep half way: the samples after it are at rest elsewhere.
+/// A limit switch ends the sweep half way: later samples are at rest elsewhere.
 #[test]
 fn a_sweep_cut_short_keeps_its_angles() {
     let run = Drive { way: -20.0, ..CARD }.run();
@@ -317,7 +317,7 @@ fn a_sweep_cut_short_keeps_its_angles() {
     assert!(stopped.error(&best).0 < 0.011);
 }
 
-/// Way shorter than v2/a: the cruise is never reached.
+/// A way shorter than v^2/a: the cruise is never reached.
 #[test]
 fn a_triangle_is_a_motion_too() {
     for way in [-3.0, 3.0, -0.4] {
@@ -333,8 +333,7 @@ fn a_triangle_is_a_motion_too() {
     }
 }
 
-/// Degenerate profiles: an acceleration that no sample sees, a speed of next to nothing, a way of
-/// two counts.
+/// Degenerate profiles: an acceleration without samples, a speed near zero, a way of two counts.
 #[test]
 fn degenerate_profiles_are_fitted_or_joined() {
     let still = Drive {
@@ -379,7 +378,7 @@ fn degenerate_profiles_are_fitted_or_joined() {
             assert!(fit.condition.is_none_or(|c| c < 1e6), "{name}: {fit:?}");
         }
     }
-    // Of ramps that no sample sees it is said that they are taken as commanded.
+    // Ramps without samples are reported as regularised.
     let run = Drive {
         acceleration: 50_000.0,
         ..still
@@ -396,7 +395,7 @@ fn degenerate_profiles_are_fitted_or_joined() {
     ));
 }
 
-/// A filter by round-trip time must not leave nothing.
+/// A filter by round-trip time must keep some polls.
 #[test]
 fn polls_that_all_have_one_round_trip() {
     let run = Drive {
@@ -436,7 +435,7 @@ fn two_or_three_samples_are_connected_by_lines() {
     }
 }
 
-/// Both ways and back, each sweep with a motion of its own.
+/// Both ways, each sweep with a motion of its own.
 #[test]
 fn several_sweeps_have_a_fit_each() {
     let one = Drive {
