@@ -237,6 +237,44 @@ pub fn locked() -> BTreeSet<String> {
     names.map(str::to_owned).collect()
 }
 
+/// The entry of a crate that may depend on every other.
+pub const ANYTHING: &str = "anything";
+
+/// The crates that each crate may depend on, in the order of the table in `ARCHITECTURE.md`.
+pub fn allowed_dependencies() -> Vec<(String, Vec<String>)> {
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    let rows = text
+        .lines()
+        .skip_while(|line| !line.ends_with("| may depend on |"))
+        .skip(2)
+        .take_while(|line| line.starts_with('|'));
+    let mut crates: Vec<(String, Vec<String>)> = Vec::new();
+    for row in rows {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let [names, _, allowed] = cells[..] else {
+            panic!("three cells in {row}");
+        };
+        let names = names
+            .split(", ")
+            .map(|name| name.trim_matches('`').to_owned());
+        let allowed: Vec<String> = match allowed {
+            "-" => Vec::new(),
+            "all of the above" => crates.iter().map(|(name, _)| name.clone()).collect(),
+            list => match list.strip_suffix(" and what it uses") {
+                Some(base) => {
+                    let used = crates.iter().find(|(name, _)| name == base);
+                    let used = used.map(|(_, used)| used.clone()).unwrap_or_default();
+                    [vec![base.to_owned()], used].concat()
+                }
+                None => list.split(", ").map(str::to_owned).collect(),
+            },
+        };
+        crates.extend(names.map(|name| (name, allowed.clone())));
+    }
+    assert!(!crates.is_empty(), "ARCHITECTURE.md has a table of crates");
+    crates
+}
+
 fn table(path: &Path) -> Table {
     let text =
         std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));

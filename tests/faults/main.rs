@@ -397,10 +397,11 @@ fn cell(cell: &Cell) -> String {
 fn page(columns: &[Vec<Cell>]) -> String {
     let mut page = String::from(
         "# Faults\n\n\
-         What becomes of a sweep when something goes wrong 0.7 s into it: 45 degrees at 30 deg/s with ramps of 500 deg/s2, over each way to the drive.\n\
-         In every case the log and the cloud of what was swept are saved. The stop is the quick stop sent by the client, counted from the beginning of the\n\
-         fault; then the worst point of the cloud against the simulated truth. *Warned*: the report says that angles may be off, and by how much.\n\n\
-         A CAN controller lets no damaged frame through, but destroys it on the bus and has it sent again: there, what a serial line would corrupt comes late.\n\n",
+         Faults that occur 0.7 s into a sweep of 45 degrees at 30 deg/s with ramps of 500 deg/s2, on each link to the drive. In every\n\
+         case the log and the cloud of the part already swept are saved. *Stop* is the time from the fault to the client's quick stop;\n\
+         then follows the worst point error of the cloud against the simulated truth. *Warned*: the report warns of uncertain angles\n\
+         and gives a bound.\n\n\
+         A CAN controller discards damaged frames and repeats them: what corrupts a serial line only delays CAN.\n\n",
     );
     page.push_str("| fault |");
     for (_, name) in WAYS {
@@ -414,19 +415,19 @@ fn page(columns: &[Vec<Cell>]) -> String {
         }
         page.push('\n');
     }
-    page.push_str("\n## What is said\n\n| fault | over | message |\n|---|---|---|\n");
+    page.push_str("\n## Messages\n\n| fault | over | message |\n|---|---|---|\n");
     for (row, (name, _, _)) in FAULTS.iter().enumerate() {
         for (message, over) in messages(columns, row) {
             writeln!(page, "| {name} | {} | {message} |", over.join(", ")).unwrap();
         }
     }
     page.push_str(
-        "\nMade by `VELOMOTION_BLESS=1 cargo test -p velomotion-tests --test faults`, in virtual time; the test fails where the page is not what happens.\n",
+        "\nMade by `VELOMOTION_BLESS=1 cargo test -p velomotion-tests --test faults`, in virtual time.\nThe test fails if the page differs from the result.\n",
     );
     page
 }
 
-/// What is said of a fault, with the ways over which it is.
+/// Messages of a fault, each with the links that report it.
 fn messages(columns: &[Vec<Cell>], row: usize) -> Vec<(&str, Vec<&'static str>)> {
     let mut messages: Vec<(&str, Vec<&'static str>)> = Vec::new();
     for (column, (_, way)) in columns.iter().zip(WAYS) {

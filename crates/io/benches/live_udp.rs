@@ -1,7 +1,7 @@
 //! Loss and cost of receiving and recording three sensors at the dual-return rate on loopback, as
 //! `capture` does.
 //!
-//! `cargo bench -p io --bench live_udp -- --seconds 60 [--log FILE]`
+//! `cargo bench -p velomotion-io --bench live_udp -- --seconds 60 [--log FILE]`
 //!
 //! The sensors are a process of their own that sends 1206 bytes every 663.552 us (12 sequences of
 //! 55.296 us, VLP-16 user manual 63-9243, 9.3.2) and 512 bytes every 6.8 ms for each, numbered,

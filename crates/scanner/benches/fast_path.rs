@@ -1,7 +1,7 @@
 //! UDP payloads in memory to tilted points in memory: points per second on one core, beside what
 //! memory itself allows.
 //!
-//! `cargo bench -p scanner --bench fast_path [-- --runs N --only LINE]`
+//! `cargo bench -p velomotion-scanner --bench fast_path [-- --runs N --only LINE]`
 //!
 //! Points have x, y, z, intensity, ring, time and tilt: 42 bytes. The platform swings at 56.25
 //! deg/s, its angle is polled every millisecond. Every line is the least time of all runs and the

@@ -1,4 +1,4 @@
-//! How many points the shipped scenes give, beside Table 4 of the paper: `cargo run --release -p sim --example scan_counts`.
+//! How many points the shipped scenes give, beside Table 4 of the paper: `cargo run --release -p velomotion-sim --example scan_counts`.
 //!
 //! The simulator's engine makes them, with all effects that the scene files ask for. What decides whether a beam returns is light
 //! (`reflectance`), the scanner's own frame and tripod (`own_shadow`), and the sensor's 1 to 100 m.

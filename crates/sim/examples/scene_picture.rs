@@ -1,4 +1,4 @@
-//! A picture of a scene, PNG on standard output: `cargo run --release -p sim --example scene_picture -- hall > hall.png`.
+//! A picture of a scene, PNG on standard output: `cargo run --release -p velomotion-sim --example scene_picture -- hall > hall.png`.
 //!
 //! Above, the scene from outside in sunlight, with what a level VLP-16 at the origin meets in one turn; nearer walls and the
 //! ceiling of what encloses the scanner are cut away. Below, all that can be seen from the scanner, 360 by 105 degrees: nearer is brighter and

@@ -23,7 +23,7 @@ fn said(command: &mut Command) -> String {
 fn built(features: &[&str], into: &Path) -> PathBuf {
     said(
         Command::new(env!("CARGO"))
-            .args(["build", "--release", "--locked", "-p", "sim"])
+            .args(["build", "--release", "--locked", "-p", "velomotion-sim"])
             .args(["--example", EXAMPLE, "--no-default-features"])
             .args(features)
             .arg("--target-dir")
