@@ -5,6 +5,7 @@
 //! connection set. Not implemented: SDO block transfer, LSS, and the server side of an SDO
 //! transfer, which is part of a device.
 
+mod abort_code;
 pub mod cob_id;
 pub mod emcy;
 mod error;
@@ -18,6 +19,7 @@ pub mod sdo;
 pub mod slcan;
 pub mod sync;
 
+pub use abort_code::AbortCode;
 pub use cob_id::{CobId, CommunicationObject, CommunicationObject as Channel, NodeId, PdoNumber};
 pub use error::{CanFrameError, MessageError, MessageKind};
 pub use frame::{CanFrame, CanId, ExtendedId, SOCKETCAN_LEN};

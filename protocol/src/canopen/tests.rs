@@ -17,7 +17,7 @@ use super::{
     BusMessage, CanFrame, CanId, CobId, ExtendedId, MessageError, MessageKind, NodeId, PdoNumber,
 };
 use crate::Bounded;
-use crate::epos2::CommError;
+use crate::canopen::AbortCode;
 
 fn node(id: u8) -> NodeId {
     NodeId::new(id).unwrap()
@@ -126,14 +126,14 @@ fn sdo_messages() -> Vec<(&'static str, BusMessage)> {
             "581#8041600000000206",
             say(SdoResponse::Abort {
                 address,
-                error: CommError::NO_OBJECT
+                error: AbortCode::NO_OBJECT
             })
         ),
         (
             "601#8041600000000405",
             ask(SdoRequest::Abort {
                 address,
-                error: CommError::TIMEOUT
+                error: AbortCode::TIMEOUT
             })
         ),
         (

@@ -7,7 +7,6 @@
 //! drive.
 
 pub mod cia402;
-pub mod comm_error;
 mod crc;
 pub mod device_error;
 mod error;
@@ -17,8 +16,9 @@ pub mod objects;
 pub mod rs232;
 pub mod usb;
 
+/// The error code of a serial answer, equal to an SDO abort code.
+pub use crate::canopen::AbortCode as CommError;
 pub use crate::{Bounded, Full};
-pub use comm_error::CommError;
 pub use device_error::DeviceError;
 pub use error::{SerialFrameError, SerialFrameError as FrameError, SerialLayer};
 pub use frame::{MAX_WORDS, SerialFrame, SerialFrame as Frame, Words};

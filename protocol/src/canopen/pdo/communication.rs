@@ -108,7 +108,7 @@ mod tests {
     /// Defaults of the device description for node 1: TPDO1 in use, TPDO2 to 4 not, no remote
     /// frames.
     #[test]
-    fn the_epos2s_defaults() {
+    fn defaults_of_a_real_unit() {
         let node = NodeId::new(1).unwrap();
         let values = [0x4000_0181, 0xC000_0281, 0xC000_0381, 0xC000_0481];
         for (value, number) in values.into_iter().zip(PdoNumber::ALL) {

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::canopen::cob_id::{CommunicationObject, NodeId};
 use crate::canopen::frame::CanFrame;
-use crate::epos2::objects::{Address, Scalar};
+use crate::canopen::{Address, Scalar};
 
 /// The client of one node's SDO server, for objects of up to `N` bytes (at least 4).
 #[derive(Clone, Debug)]

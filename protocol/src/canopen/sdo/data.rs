@@ -1,8 +1,8 @@
 //! Encoding of data in SDO messages: up to four bytes in the first message, or segments of up to
 //! seven.
 
-use crate::epos2::Bounded;
-use crate::epos2::objects::Scalar;
+use crate::Bounded;
+use crate::canopen::Scalar;
 
 /// Bit of the first message: the number of bytes is indicated.
 const SIZE_INDICATED: u8 = 1 << 0;

@@ -5,7 +5,7 @@
 //! travel in the first exchange (expedited transfer), more in segments of seven (segmented transfer).
 //! [`SdoTransfer`] holds the rules of one transfer, [`SdoClient`] adds time limits and stale responses.
 //! Both are state machines without I/O. Block transfer is not supported: its messages are `Unknown`,
-//! and a node aborts them with [`crate::epos2::CommError::COMMAND`].
+//! and a node aborts them with [`AbortCode::COMMAND`](crate::canopen::AbortCode::COMMAND).
 //!
 //! [`SdoTransfer`] is generic over the capacity of a segment: the EPOS2 carries the same transfers over
 //! its serial links, in segments of up to 63 bytes.
@@ -24,7 +24,7 @@ pub use request::{GenericSdoRequest, SdoRequest};
 pub use response::{GenericSdoResponse, SdoResponse};
 pub use transfer::{SdoTransfer, TransferDirection, TransferStep};
 
-use crate::epos2::objects::Address;
+use crate::canopen::Address;
 
 /// Data bytes of every SDO message.
 const LEN: usize = 8;

@@ -3,16 +3,17 @@
 use thiserror::Error;
 
 use super::TransferDirection;
+use crate::Bounded;
+use crate::canopen::AbortCode;
 use crate::canopen::error::MessageError;
-use crate::epos2::objects::{Address, Scalar};
-use crate::epos2::{Bounded, CommError};
+use crate::canopen::{Address, Scalar};
 
 /// Why a transfer failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum TransferError {
     /// The node aborted the transfer.
     #[error("SDO: aborted by the node: {0}")]
-    Aborted(CommError),
+    Aborted(AbortCode),
     /// No response within the time limit.
     #[error("SDO: no response in time, expected {expected}")]
     Timeout {
@@ -73,18 +74,18 @@ pub enum TransferError {
 impl TransferError {
     /// The abort code to send to the node; `None` if the node itself aborted.
     #[must_use]
-    pub const fn abort_code(&self) -> Option<CommError> {
+    pub const fn abort_code(&self) -> Option<AbortCode> {
         match self {
             Self::Aborted(_) => None,
-            Self::Timeout { .. } => Some(CommError::TIMEOUT),
-            Self::Toggle { .. } => Some(CommError::TOGGLE),
-            Self::Size { .. } => Some(CommError::LENGTH),
-            Self::TooLong { .. } => Some(CommError::MEMORY),
-            Self::Cancelled => Some(CommError::GENERAL),
+            Self::Timeout { .. } => Some(AbortCode::TIMEOUT),
+            Self::Toggle { .. } => Some(AbortCode::TOGGLE),
+            Self::Size { .. } => Some(AbortCode::LENGTH),
+            Self::TooLong { .. } => Some(AbortCode::MEMORY),
+            Self::Cancelled => Some(AbortCode::GENERAL),
             Self::OtherObject { .. }
             | Self::Unexpected { .. }
             | Self::EmptySegment
-            | Self::Message(_) => Some(CommError::COMMAND),
+            | Self::Message(_) => Some(AbortCode::COMMAND),
         }
     }
 

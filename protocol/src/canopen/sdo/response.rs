@@ -2,12 +2,12 @@
 
 use super::data::{GenericSdoSegment, Initiate, SEGMENT_LEN, TOGGLE, toggle_bit};
 use super::{ABORT, GenericSdoRequest, LEN, address, command, message};
+use crate::canopen::AbortCode;
+use crate::canopen::Address;
 use crate::canopen::cob_id::{CommunicationObject, NodeId};
 use crate::canopen::error::{MessageError, MessageKind};
 use crate::canopen::frame::CanFrame;
 use crate::canopen::message::{bytes, wrong_id};
-use crate::epos2::CommError;
-use crate::epos2::objects::Address;
 
 /// Server command specifiers.
 const UPLOAD_SEGMENT: u8 = 0;
@@ -45,7 +45,7 @@ pub enum GenericSdoResponse<const L: usize> {
         /// The object of the transfer.
         address: Address,
         /// The abort code.
-        error: CommError,
+        error: AbortCode,
     },
     /// Another command specifier (5 and 6: block transfer).
     Unknown([u8; LEN]),
@@ -93,7 +93,7 @@ impl<const L: usize> GenericSdoResponse<L> {
             INITIATE_DOWNLOAD => Self::InitiateDownload { address },
             ABORT => Self::Abort {
                 address,
-                error: CommError(u32::from_le_bytes(rest)),
+                error: AbortCode(u32::from_le_bytes(rest)),
             },
             _ => Self::Unknown(bytes),
         }

@@ -9,14 +9,15 @@ use std::vec::Vec;
 use units::{Host, Span, Stamp};
 
 use super::*;
+use crate::canopen::AbortCode;
+use crate::canopen::tests as objects;
+use crate::canopen::{Address, Scalar};
 use crate::canopen::{CanFrame, MessageError, NodeId};
-use crate::epos2::CommError;
-use crate::epos2::objects::{self, Address, Scalar};
 
 const ROOM: usize = 40;
 type Client = SdoClient<ROOM>;
 
-const NAME: Address = objects::DEVICE_NAME;
+const NAME: Address = Address::new(0x1008, 0);
 const STATUS: Address = objects::STATUSWORD.address;
 const POSITION: Address = objects::POSITION_ACTUAL.address;
 
@@ -46,7 +47,7 @@ fn part(toggle: bool, last: bool, bytes: &[u8]) -> SdoResponse {
     SdoResponse::UploadSegment(SdoSegment {
         toggle,
         last,
-        bytes: crate::epos2::Bounded::from_slice(bytes).unwrap(),
+        bytes: crate::Bounded::from_slice(bytes).unwrap(),
     })
 }
 
@@ -74,7 +75,7 @@ fn play(address: Address, answers: &[SdoResponse]) -> (SdoOutcome<ROOM>, Vec<Sdo
     (outcome, sent(&mut client, at(0)))
 }
 
-fn failure(address: Address, answers: &[SdoResponse]) -> (TransferError, Option<CommError>) {
+fn failure(address: Address, answers: &[SdoResponse]) -> (TransferError, Option<AbortCode>) {
     let (outcome, last) = play(address, answers);
     let told = match last.as_slice() {
         [] => None,
@@ -155,7 +156,7 @@ fn a_segmented_read() {
 
 #[test]
 fn what_the_node_refuses_is_typed_and_not_aborted_again() {
-    let error = CommError::NO_OBJECT;
+    let error = AbortCode::NO_OBJECT;
     let address = NAME;
     let refused = SdoResponse::Abort { address, error };
     let expected = (TransferError::Aborted(error), None);
@@ -170,11 +171,11 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
     let (expected, got) = (NAME, POSITION);
     assert_eq!(
         failure(NAME, &[other]),
-        (OtherObject { expected, got }, Some(CommError::COMMAND))
+        (OtherObject { expected, got }, Some(AbortCode::COMMAND))
     );
     let abort = SdoResponse::Abort {
         address: POSITION,
-        error: CommError::RANGE,
+        error: AbortCode::RANGE,
     };
     assert!(matches!(failure(NAME, &[abort]).0, OtherObject { .. }));
     assert_eq!(
@@ -184,7 +185,7 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
                 expected: false,
                 got: true
             },
-            Some(CommError::TOGGLE)
+            Some(AbortCode::TOGGLE)
         )
     );
     // The same segment twice.
@@ -202,7 +203,7 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
                 expected: "an upload response (4x)",
                 got: 0x60
             },
-            Some(CommError::COMMAND)
+            Some(AbortCode::COMMAND)
         )
     );
     for stray in [
@@ -215,7 +216,7 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
     let (expected, got) = (5, 3);
     assert_eq!(
         failure(NAME, &[sized(NAME, 5), part(false, true, b"EPO")]),
-        (Size { expected, got }, Some(CommError::LENGTH))
+        (Size { expected, got }, Some(AbortCode::LENGTH))
     );
     let (expected, got) = (5, 7);
     assert_eq!(
@@ -225,7 +226,7 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
     let (max, got) = (ROOM, ROOM + 1);
     assert_eq!(
         failure(NAME, &[sized(NAME, 41)]),
-        (TooLong { max, got }, Some(CommError::MEMORY))
+        (TooLong { max, got }, Some(AbortCode::MEMORY))
     );
     assert_eq!(
         failure(NAME, &[sized(NAME, 41_000_000)]).0,
@@ -236,7 +237,7 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
     );
     assert_eq!(
         failure(NAME, &[sized(NAME, 5), part(false, false, b"")]),
-        (EmptySegment, Some(CommError::COMMAND))
+        (EmptySegment, Some(AbortCode::COMMAND))
     );
 }
 
@@ -363,7 +364,7 @@ fn time_runs_from_when_a_request_was_sent() {
         sent(&mut client, at(250)),
         [SdoRequest::Abort {
             address: NAME,
-            error: CommError::TIMEOUT
+            error: AbortCode::TIMEOUT
         }]
     );
 }
@@ -437,7 +438,7 @@ fn an_answer_that_nobody_is_owed_is_no_late_one() {
         SdoResponse::InitiateDownload { address: NAME },
         SdoResponse::Abort {
             address: NAME,
-            error: CommError::STATE,
+            error: AbortCode::STATE,
         },
     ] {
         let mut client = client();
@@ -459,7 +460,7 @@ fn an_answer_in_order_settles_what_was_owed() {
         expedited(STATUS, &[0x40, 1]),
         SdoResponse::Abort {
             address: STATUS,
-            error: CommError::STATE,
+            error: AbortCode::STATE,
         },
     ] {
         let mut client = client();

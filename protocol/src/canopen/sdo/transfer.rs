@@ -4,8 +4,8 @@ use super::{
     Expedited, GenericSdoRequest, GenericSdoResponse, GenericSdoSegment, Initiate, SEGMENT_LEN,
     SdoValue, TransferError,
 };
-use crate::epos2::Bounded;
-use crate::epos2::objects::Address;
+use crate::Bounded;
+use crate::canopen::Address;
 
 /// Direction of a transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

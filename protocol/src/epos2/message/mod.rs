@@ -16,7 +16,7 @@ pub use segmented::{
     WriteSegment,
 };
 
-use super::comm_error::CommError;
+use super::CommError;
 use super::error::{SerialFrameError, SerialLayer};
 use super::frame::{SerialFrame, Words};
 use crate::canopen::Address;

@@ -1,23 +1,24 @@
-//! Communication errors: the first two words of each answer, equal to SDO abort codes
-//! (Communication Guide, "Communication Errors").
+//! SDO abort codes (CiA 301, "Abort SDO transfer protocol"), which EPOS2 drives also send as error
+//! codes of serial answers; names and manufacturer-specific codes (0F00FFxx) are those of the maxon
+//! Communication Guide.
 
 use core::fmt;
 
-/// The error code of an answer; 0 is none.
+/// An SDO abort code; 0 is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct CommError(pub u32);
+pub struct AbortCode(pub u32);
 
-/// Constants and table of the codes: code, name in the maxon guide, meaning.
+/// Constants and table of the codes: code, name, meaning.
 macro_rules! codes {
     ($($id:ident = $code:literal, $name:literal, $meaning:literal;)*) => {
-        impl CommError {
+        impl AbortCode {
             $(
                 #[doc = concat!($name, ": ", $meaning, ".")]
                 pub const $id: Self = Self($code);
             )*
         }
 
-        const TABLE: &[(CommError, &str, &str)] = &[$((CommError::$id, $name, $meaning),)*];
+        const TABLE: &[(AbortCode, &str, &str)] = &[$((AbortCode::$id, $name, $meaning),)*];
     };
 }
 
@@ -56,8 +57,8 @@ codes! {
     CAN_ID = 0x0F00_FFB9, "Error CAN Id", "wrong CAN id";
 }
 
-impl CommError {
-    /// Whether the command was carried out.
+impl AbortCode {
+    /// Whether there is no error.
     #[must_use]
     pub const fn is_none(self) -> bool {
         self.0 == 0
@@ -76,9 +77,9 @@ impl CommError {
     }
 }
 
-impl core::error::Error for CommError {}
+impl core::error::Error for AbortCode {}
 
-impl fmt::Display for CommError {
+impl fmt::Display for AbortCode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match TABLE.iter().find(|(code, ..)| code == self) {
             Some((_, name, meaning)) => write!(f, "{:08X} {name}: {meaning}", self.0),
@@ -103,8 +104,8 @@ mod tests {
 
     #[test]
     fn words_are_low_first() {
-        assert_eq!(CommError::NO_OBJECT.to_words(), [0x0000, 0x0602]);
-        assert_eq!(CommError::from_words(0xFFC0, 0x0F00), CommError::NMT_STATE);
+        assert_eq!(AbortCode::NO_OBJECT.to_words(), [0x0000, 0x0602]);
+        assert_eq!(AbortCode::from_words(0xFFC0, 0x0F00), AbortCode::NMT_STATE);
     }
 
     #[test]
@@ -112,11 +113,11 @@ mod tests {
         extern crate std;
         use std::string::ToString as _;
         assert_eq!(
-            CommError::NO_OBJECT.to_string(),
+            AbortCode::NO_OBJECT.to_string(),
             "06020000 Object does not exist Error: no such index in the object dictionary"
         );
         assert_eq!(
-            CommError(0xDEAD_BEEF).to_string(),
+            AbortCode(0xDEAD_BEEF).to_string(),
             "DEADBEEF (not a code the maxon guide lists)"
         );
     }
