@@ -1,7 +1,8 @@
-//! A day of scans, one a minute, through what a daemon keeps in memory: the list of scans, their clouds and pictures, the live view, the
-//! lidar's monitor, and the events of nine clients, one of whom never reads. How much memory the process has, hour by hour.
+//! A day of scans, one per minute, through what a daemon keeps in memory: the list of scans, their
+//! clouds and thumbnails, the live preview, the lidar's statistics, and the events of nine clients,
+//! one of which never reads. Prints the memory of the process hour by hour.
 //!
-//! Left out: devices and sockets. Times are those of the day that is made up, not of a clock.
+//! Devices and sockets are not used. Times are those of the made-up day, not of a clock.
 //!
 //! `cargo bench -p velomotion-tests --bench day [-- SCANS]`; it fails where memory grows after the second hour.
 
@@ -9,14 +10,15 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
-use daemon::hub::{Event, Hub};
-use daemon::maker::{self, Making};
-use daemon::points::Watching;
-use daemon::scans::{LOG, ScanState, Scans};
-use daemon::shared::{Shared, World};
+use daemon::cloud_builder::{self, CloudJob};
+use daemon::scans::{LOG, Scans};
+use daemon::state::DaemonState;
 use engine::capture::request::CaptureRequest;
 use engine::config::Config;
-use engine::devices::profile as devices;
+use engine::devices::profile;
+use engine::service::events::{Event, Events, PointsRequest};
+use engine::service::scan_record::ScanState;
+use engine::service::{DeviceService, Environment, Lifetime, ServiceOptions};
 use io::log::OwnedRecord;
 use io::recording::Recording;
 use scanner::Accuracy;
@@ -36,39 +38,52 @@ fn main() {
     let mut config: Config =
         toml::from_str("device = 'sim'\n[daemon]\nkeep_scans = 100\nreserve_bytes = 1000").unwrap();
     config.daemon.scans = Some(folder.path().to_owned());
-    let device = devices::choose(&config, None).unwrap();
-    let (orders, _inbox) = channel();
+    let (name, device) = profile::choose(&config, None).unwrap();
+    let (service, _thread) = DeviceService::start(ServiceOptions {
+        config,
+        name,
+        device,
+        lifetime: Lifetime::Command {
+            lidar: false,
+            interrupt: Arc::default(),
+        },
+        environment: Environment::default(),
+    })
+    .unwrap();
     let kept = Scans::open(folder.path()).unwrap();
-    let shared = Arc::new(Shared::new(config, device, kept, World::default(), orders));
-    let (logs, wanted) = channel();
-    let making = Arc::clone(&shared);
-    let maker = std::thread::spawn(move || maker::run(&making, &wanted));
-    let readers: Vec<_> = (0..8).map(|_| reader(&shared.hub)).collect();
+    let (jobs, queue) = channel();
+    let free_bytes = Arc::new(io::files::free_bytes);
+    let state = Arc::new(DaemonState::new(service, kept, free_bytes, jobs.clone()));
+    let building = Arc::clone(&state);
+    let builder = std::thread::spawn(move || cloud_builder::run(&building, &queue));
+    let readers: Vec<_> = (0..8).map(|_| reader(state.events())).collect();
+    let _points = PointsRequest::new(state.events(), true);
 
     let begin = Instant::now();
     let mut after_two_hours = None;
-    println!("| scans | kept | memory, MB | clients dropped |\n|---|---|---|---|");
+    println!("| scans | kept | memory, MB | idle client lags |\n|---|---|---|---|");
     for number in 0..scans {
-        let idle = shared.hub.subscribe(true);
-        let id = one(&shared, &log, &records);
-        let making = Making {
+        let idle = state.events().subscribe_client().unwrap();
+        let id = one(&state, &log, &records);
+        let job = CloudJob {
             id: id.clone(),
             accuracy: Accuracy::Best,
             truth: None,
             lost_records: 0,
         };
-        logs.send(making).unwrap();
-        // A minute of the pulse, while the cloud is made.
-        (0..60).for_each(|_| shared.tell_status());
-        finished(&shared, &id);
+        jobs.send(job).unwrap();
+        // A minute of status events, while the cloud is made.
+        (0..60).for_each(|_| state.service.send_status());
+        finished(&state, &id);
+        let lags = idle.has_lagged();
         drop(idle);
         if (number + 1) % (scans / 12).max(1) == 0 {
             let memory = memory_mb();
             println!(
                 "| {} | {} | {memory:.0} | {} |",
                 number + 1,
-                shared.scans.list().len(),
-                shared.hub.dropped()
+                state.scans.list().len(),
+                lags
             );
             if number + 1 >= scans / 6 {
                 after_two_hours.get_or_insert(memory);
@@ -81,12 +96,13 @@ fn main() {
         last <= first * GROWTH,
         "memory grew from {first:.0} to {last:.0} MB"
     );
-    drop(logs);
-    maker.join().unwrap();
-    assert!(shared.scans.list().len() <= 100, "more scans than are kept");
+    drop(jobs);
+    state.close_cloud_jobs();
+    builder.join().unwrap();
+    assert!(state.scans.list().len() <= 100, "more scans than are kept");
     assert_eq!(
         readers.len(),
-        shared.hub.len(),
+        state.events().clients(),
         "a client that read was dropped"
     );
 }
@@ -108,60 +124,63 @@ fn records(log: &Captured) -> Vec<OwnedRecord> {
     records
 }
 
-/// One capture, as the keeper tells of it.
-fn one(shared: &Shared, log: &Captured, records: &[OwnedRecord]) -> String {
+/// One capture, with the events of its motion.
+fn one(state: &DaemonState, log: &Captured, records: &[OwnedRecord]) -> String {
     let asked = CaptureRequest {
         speed_deg_s: 56.25,
         ..CaptureRequest::default()
     };
-    let id = shared.scans.begin(&asked, true).unwrap().id.clone();
-    std::fs::copy(log.log(), shared.scans.place(&id).join(LOG)).unwrap();
+    let id = state.scans.begin(&asked, true).unwrap().id.clone();
+    std::fs::copy(log.log(), state.scans.place(&id).join(LOG)).unwrap();
     let config = scanner::ScanConfig::default();
-    let watching = Watching::start(&id, &config, &shared.feed, &shared.hub);
+    let preview = state.service.start_preview(&id, &config);
+    let mut tap = state.service.packet_tap();
     for (number, record) in records.iter().enumerate() {
         let record = record.as_record();
-        shared.monitor.lock().unwrap().observe(&record);
-        shared.feed.record(&record);
+        tap(&record);
         if number % 50 == 0 {
-            shared.hub.tell(Event::Motion {
+            state.events().send(Event::Motion {
                 angle_deg: 0.0,
                 speed_deg_s: 56.25,
                 left_s: None,
                 packets: number as u64,
                 at: record.host,
             });
-            shared.scans.say(&id, "warning: something is said");
+            state.scans.say(&id, "warning: a message");
         }
     }
-    drop(watching);
-    shared.change_scan(&id, |record| record.state = ScanState::Making);
+    drop(preview);
+    state.change_scan(&id, |record| record.state = ScanState::Making);
     id
 }
 
-fn finished(shared: &Shared, id: &str) {
+fn finished(state: &DaemonState, id: &str) {
     let begin = Instant::now();
-    while !shared.scans.view(id).unwrap().state.is_final() {
+    while !state.scans.view(id).unwrap().state.is_final() {
         assert!(
             begin.elapsed() < Duration::from_secs(60),
             "{id} is never made"
         );
         std::thread::sleep(Duration::from_millis(2));
     }
-    let state = shared.scans.view(id).unwrap();
-    assert_eq!(state.state, ScanState::Whole, "{:?}", state.why);
+    let scan = state.scans.view(id).unwrap();
+    assert_eq!(scan.state, ScanState::Whole, "{:?}", scan.why);
 }
 
 /// A client that reads everything.
-fn reader(hub: &Arc<Hub>) -> std::thread::JoinHandle<()> {
-    let mut subscription = hub.subscribe(true).unwrap();
+fn reader(events: &Arc<Events>) -> std::thread::JoinHandle<()> {
+    let mut subscription = events.subscribe_client().unwrap();
     std::thread::spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread()
             .build()
             .unwrap();
         runtime.block_on(async {
-            while let Some(told) = subscription.next().await {
-                // As a socket wants them.
-                drop((told.json(), told.points(1)));
+            while let Ok(event) = subscription.next().await {
+                // As a socket needs it.
+                match &*event {
+                    Event::Points(frame) => drop(frame.bytes(1)),
+                    event => drop(serde_json::to_string(event)),
+                }
             }
         });
     })

@@ -8,9 +8,10 @@ use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
 use daemon::client::Client;
-use daemon::scans::{CLOUD, LOG, ScanState, ScanView};
+use daemon::scans::{CLOUD, LOG};
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
+use engine::service::scan_record::{ScanState, ScanView};
 use io::recording::Recording;
 use scanner::{Accuracy, TiltSource};
 

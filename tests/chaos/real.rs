@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use daemon::scans::{ScanState, ScanView};
 use engine::capture::request::CaptureRequest;
+use engine::service::scan_record::{ScanState, ScanView};
 use serde_json::Value;
 use tempfile::TempDir;
 use units::Span;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use daemon::scans::ScanState;
+use engine::service::scan_record::ScanState;
 
 use crate::plan::ROWS;
 use crate::real::{Came, Made};

@@ -2,12 +2,13 @@
 
 use std::fs::File;
 
-use daemon::scans::{LOG, ScanState, Scans};
+use daemon::scans::{LOG, Scans};
 use drive::DriveError;
-use engine::capture::log_recorder::Recorded;
+use engine::capture::log_recorder::LogCounts;
 use engine::capture::request::CaptureRequest;
-use engine::capture::run::Ended;
+use engine::capture::run::RecordingEnd;
 use engine::devices::drive_session::SessionError;
+use engine::service::scan_record::ScanState;
 use io::recording::Recording;
 use units::{Host, Span, Stamp};
 use velomotion_tests::capture::{Captured, Rejoined, Setting};
@@ -86,11 +87,11 @@ fn last_packet(captured: &Captured) -> Option<Stamp<Host>> {
 
 /// The recording is over: its cloud waits to be made.
 fn done(scans: &Scans, id: &str, ended: Result<(), SessionError>) -> Result<(), String> {
-    let recorded = Recorded {
+    let counts = LogCounts {
         lidar: io::udp::ListenCounts::default(),
         log: io::log::RecorderCounts::default(),
     };
-    let outcome = Ended::new(ended, Ok(recorded)).outcome();
+    let outcome = RecordingEnd::new(ended, Ok(counts)).outcome();
     scans
         .change(id, |record| {
             record.state = ScanState::Making;

@@ -21,8 +21,8 @@ fn daemon(bench: &Bench, folder: &Path) -> Daemon {
     });
     let daemon = daemon.unwrap();
     let connected = || {
-        let status = daemon.shared().status();
-        let well = daemon::view::DeviceState::Connected;
+        let status = daemon.state().service.status();
+        let well = engine::service::status::DeviceState::Connected;
         status.drive.state == well && status.lidar.state == well
     };
     while !connected() {
@@ -86,7 +86,7 @@ fn bad_requests_are_refused_as_described_and_nothing_moves() {
     ];
     fuzz(&daemon, folder.path(), &bad);
     assert!(!bench.has_moved(), "a bad request moved the axis");
-    assert!(daemon.shared().scans.list().is_empty());
+    assert!(daemon.state().scans.list().is_empty());
     daemon.stop(|| true).unwrap();
 }
 

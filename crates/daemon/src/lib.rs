@@ -1,30 +1,21 @@
-//! `velomotion daemon`: one process that has the drive and the lidar, keeps the scans, and answers whoever asks.
+//! `velomotion daemon`: serves the devices over HTTP, keeps scans on disk and makes their clouds.
 //!
-//! Threads of their own do what must not wait: the keeper has the devices, the lidar is heard, the log written, the live view made, clouds made
-//! of logs. A small runtime serves HTTP. Nothing that a client does or leaves undone reaches the devices but through [`keeper::Order`].
-//! Left out: the page itself (`web/`), and other protocols, which are subscribers of [`hub::Hub`].
+//! The device thread belongs to [`engine::service`]. Threads of the daemon make clouds and monitor
+//! disk and lidar; a small runtime serves HTTP.
 
 pub mod client;
+pub mod cloud_builder;
+pub mod disk_quota;
+pub mod health_monitor;
 pub mod http;
-pub mod hub;
-pub mod keeper;
 pub mod limits;
-pub mod line;
-pub mod maker;
-pub mod monitor;
-pub mod motions;
-pub mod orders;
+pub mod local;
 pub mod plan;
-pub mod points;
-pub mod pulse;
-pub mod reach;
-pub mod room;
-pub mod ros2;
+pub mod ros2_bridge;
 pub mod scans;
-pub mod shared;
 pub mod sockets;
+pub mod state;
 pub mod thumbnail;
-pub mod view;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -32,151 +23,174 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Sender, channel};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use engine::config::Config;
-use engine::devices::profile as devices;
+use engine::devices::profile;
 use engine::failure::{Failure, Kind};
-use http::server::Server;
-use keeper::{Keeper, Order};
+use engine::service::{DeviceService, DeviceThread, Environment, Lifetime, ServiceOptions};
+use http::server::{self, Server, UnixSocket};
 use limits::Waits;
 use scans::Scans;
-use shared::{Shared, World};
+use state::{DaemonState, FreeBytes};
 
-/// How a daemon is to be.
-#[derive(Clone, Default)]
+/// Between two looks whether the cloud builder has ended.
+const POLL: Duration = Duration::from_millis(20);
+
+/// Options of a daemon.
+#[derive(Clone)]
 pub struct Options {
     /// The configuration.
     pub config: Config,
-    /// The device, where it is not the configuration's own.
+    /// Name of the device's profile, where it is not the configuration's.
     pub device: Option<String>,
     /// The address, where it is not the configuration's.
     pub listen: Option<SocketAddr>,
-    /// Folder of the Unix socket, where it is not the usual one.
+    /// Folder of the Unix socket, where it is not the default.
     pub runtime: Option<PathBuf>,
-    /// What lasts too long.
+    /// Time limits.
     pub waits: Waits,
-    /// The machine.
-    pub world: World,
+    /// The machine's devices and clocks.
+    pub environment: Environment,
+    /// Free bytes on the disk of a path.
+    pub free_bytes: Arc<FreeBytes>,
 }
 
-/// A daemon that runs.
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            config: Config::default(),
+            device: None,
+            listen: None,
+            runtime: None,
+            waits: Waits::default(),
+            environment: Environment::default(),
+            free_bytes: Arc::new(io::files::free_bytes),
+        }
+    }
+}
+
+/// A running daemon.
 pub struct Daemon {
-    shared: Arc<Shared>,
+    state: Arc<DaemonState>,
     server: Server,
-    keeper: JoinHandle<()>,
-    maker: JoinHandle<()>,
-    pulse: JoinHandle<()>,
-    pulse_end: Sender<()>,
-    ros2: Option<ros2::Ros2>,
+    address: SocketAddr,
+    devices: DeviceThread,
+    cloud_builder: JoinHandle<()>,
+    health_monitor: JoinHandle<()>,
+    health_monitor_end: Sender<()>,
+    ros2: Option<ros2_bridge::Bridge>,
     /// Keeps other daemons out of the scans folder.
     _lock: std::fs::File,
 }
 
 impl Daemon {
-    /// Starts everything. Devices that are not there are waited for.
+    /// Starts everything. Absent devices are waited for.
     ///
     /// # Errors
-    /// [`Kind::Usage`] where it may not listen there or this build lacks what is configured, [`Kind::BadInput`] for a wrong configuration or a folder that cannot be written,
+    /// [`Kind::Usage`] where the address is not allowed or this build lacks a configured feature,
+    /// [`Kind::BadInput`] for a wrong configuration or a folder that cannot be written,
     /// [`Kind::NoDevice`] where another daemon has the device.
     pub fn start(options: Options) -> Result<Self, Failure> {
-        let Options {
-            config,
-            device,
-            listen,
-            runtime,
-            waits,
-            world,
-        } = options;
-        let listen = listen.unwrap_or(config.daemon.listen);
+        let config = options.config;
+        let listen = options.listen.unwrap_or(config.daemon.listen);
         config.daemon.check(listen)?;
-        ros2::check(config.daemon.ros2.as_ref())?;
-        let (name, device) = devices::choose(&config, device.as_deref())?;
-        let runtime = runtime.unwrap_or_else(sockets::folder);
+        ros2_bridge::check(config.daemon.ros2.as_ref())?;
+        let (name, device) = profile::choose(&config, options.device.as_deref())?;
+        let runtime = options.runtime.unwrap_or_else(sockets::folder);
         let socket = runtime.join(sockets::name(&name, &device)?);
         let folder = config.daemon.folder()?;
-        // Before a scan is touched: the folder may be another daemon's.
-        let bound = http::server::Bound::bind(listen, &socket)?;
+        // The sockets first: the scans folder may be that of another daemon.
+        let unix = UnixSocket::bind(&socket)?;
+        let (tcp, address) = server::bind_tcp(listen)?;
         let lock = scans::lock(&folder)?;
         let scans = Scans::open(&folder)?;
-        let (orders, inbox) = channel();
-        let shared = Arc::new(Shared::new(config, (name, device), scans, world, orders));
-        shared.look_at_disk();
-        let ros2 = ros2::start(&shared)?;
-        let (logs, wanted) = channel();
-        for left in maker::left_over(&shared) {
-            // The other end is right here.
-            let _ = logs.send(left);
+        let (service, devices) = DeviceService::start(ServiceOptions {
+            config,
+            name,
+            device,
+            lifetime: Lifetime::Resident,
+            environment: options.environment,
+        })?;
+        let (jobs, queue) = channel();
+        let state = DaemonState::new(service, scans, options.free_bytes, jobs.clone());
+        let state = Arc::new(state);
+        state.refresh_disk();
+        let ros2 = ros2_bridge::start(&state)?;
+        for unfinished in cloud_builder::unfinished(&state) {
+            // The receiver is `queue`.
+            let _ = jobs.send(unfinished);
         }
-        let keeper = Keeper::new(&shared, inbox, logs)?;
-        let keeper = thread("keeper", move || keeper.run())?;
-        let making = Arc::clone(&shared);
-        let maker = thread("cloud", move || maker::run(&making, &wanted))?;
-        let (pulse_end, end) = channel();
-        let looking = Arc::clone(&shared);
-        let pulse = thread("pulse", move || pulse::run(&looking, &end))?;
-        let server = bound.serve(&shared, waits)?;
+        drop(jobs);
+        let building = Arc::clone(&state);
+        let cloud_builder = thread("clouds", move || cloud_builder::run(&building, &queue))?;
+        let (health_monitor_end, end) = channel();
+        let monitored = Arc::clone(&state);
+        let health_monitor = thread("health", move || health_monitor::run(&monitored, &end))?;
+        let server = http::serve(&state, (tcp, address), unix, options.waits)?;
         Ok(Self {
-            shared,
+            state,
             server,
-            keeper,
-            maker,
-            pulse,
-            pulse_end,
+            address,
+            devices,
+            cloud_builder,
+            health_monitor,
+            health_monitor_end,
             ros2,
             _lock: lock,
         })
     }
 
-    /// Where it listens.
+    /// The TCP address.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
-        self.server.address()
+        self.address
     }
 
-    /// What its threads share: for other protocols, and for tests.
+    /// The shared state.
     #[must_use]
-    pub fn shared(&self) -> &Arc<Shared> {
-        &self.shared
+    pub fn state(&self) -> &Arc<DaemonState> {
+        &self.state
     }
 
-    /// Whether the thread that has the devices is gone, which it should never be.
+    /// Whether the device thread has ended, which is a defect.
     #[must_use]
     pub fn is_broken(&self) -> bool {
-        self.keeper.is_finished()
+        self.devices.is_finished()
     }
 
-    /// Stops the axis, finishes the log, makes the cloud, lets the clients go. `hurry` is looked at: true leaves clouds to the next start.
+    /// Stops the axis, finishes log and cloud, disconnects the clients. Once `hurry` returns true,
+    /// clouds are left to the next start.
     ///
     /// # Errors
     /// [`Kind::DeviceFault`] where a thread had panicked.
     pub fn stop(self, hurry: impl Fn() -> bool) -> Result<(), Failure> {
-        let shared = &self.shared;
-        shared.ending.store(true, Ordering::Release);
-        let reason = Failure::new(
-            Kind::Interrupted,
-            "the daemon was stopped in the middle of this scan",
-        )
-        .help("scan again for the rest");
-        shared.interrupt(Some(reason));
-        // A keeper that is gone needs no waking.
-        let _ = shared.order(Order::Wake);
-        let kept = self.keeper.join();
-        // The keeper had the only sender of logs: the maker ends after the last one.
-        while !self.maker.is_finished() {
+        let state = &self.state;
+        state.service.shut_down(
+            Failure::new(
+                Kind::Interrupted,
+                "the daemon was stopped in the middle of this scan",
+            )
+            .help("scan again for the rest"),
+        );
+        let devices = self.devices.join();
+        state.close_cloud_jobs();
+        while !self.cloud_builder.is_finished() {
             if hurry() {
-                shared.abandon.store(true, Ordering::Release);
+                state.abandon.store(true, Ordering::Release);
             }
-            std::thread::sleep(std::time::Duration::from_millis(20));
+            std::thread::sleep(POLL);
         }
-        let made = self.maker.join();
-        let sent = self.ros2.is_none_or(ros2::Ros2::stop);
-        drop(self.pulse_end);
-        let looked = self.pulse.join();
-        self.server.stop();
-        if kept.is_err() || made.is_err() || looked.is_err() || !sent {
+        let clouds = self.cloud_builder.join().is_ok();
+        let ros2 = self.ros2.is_none_or(ros2_bridge::Bridge::stop);
+        drop(self.health_monitor_end);
+        let health = self.health_monitor.join().is_ok();
+        let events = Arc::clone(state.events());
+        self.server.stop(events.clients_gone());
+        if !(devices && clouds && ros2 && health) {
             return Err(
                 Failure::new(Kind::DeviceFault, "a thread of the daemon had panicked")
-                    .help("see whether the axis stands; run with -vv and report what it says"),
+                    .help("check that the axis is at rest; run with -vv and report the messages"),
             );
         }
         Ok(())
@@ -186,7 +200,7 @@ impl Daemon {
 fn thread(name: &str, run: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, Failure> {
     let builder = std::thread::Builder::new().name(name.to_owned());
     builder.spawn(run).map_err(|error| {
-        Failure::new(Kind::NoDevice, format!("no thread for the {name}: {error}"))
+        Failure::new(Kind::NoDevice, format!("no thread for {name}: {error}"))
             .help("end other programs; see ulimit -u")
     })
 }

@@ -1,6 +1,10 @@
-//! How much of everything there may be at most: what docs/src/daemon.md states.
+//! Limits of requests, connections and times, as docs/src/daemon.md states them.
 
 use std::time::Duration;
+
+pub use engine::service::events::{QUEUE, SUBSCRIBERS};
+pub use engine::service::live_preview::{FRAME_POINTS, WAITING_RECORDS};
+pub use engine::service::scan_record::NAME_BYTES;
 
 /// Largest body of a request, bytes.
 pub const BODY_BYTES: usize = 16 << 10;
@@ -10,48 +14,37 @@ pub const TARGET_BYTES: usize = 2 << 10;
 pub const HEAD_BYTES: usize = 16 << 10;
 /// Headers of a request.
 pub const HEADERS: usize = 64;
-/// Connections over TCP; one more takes the place of the oldest that has not shown the token, or is closed.
+/// Connections over TCP; one more revokes the oldest without the token, or is closed.
 pub const CONNECTIONS: usize = 64;
-/// Of those from one other host that have not shown the token; one more takes the place of the oldest of them.
+/// Connections of one other host without the token; one more revokes the oldest of them.
 pub const SHARE: usize = CONNECTIONS / 4;
-/// Connections over the Unix socket; one more takes the place of the oldest.
+/// Connections over the Unix socket; one more revokes the oldest.
 pub const LOCAL_CONNECTIONS: usize = 32;
-/// WebSocket clients.
-pub const SUBSCRIBERS: usize = 32;
-/// Messages that may wait for a client.
-pub const QUEUE: usize = 256;
 /// Longest message of a WebSocket client, bytes.
 pub const CLIENT_MESSAGE_BYTES: usize = 1 << 10;
-/// Clouds that are made for downloads at once.
+/// Clouds made for downloads at once.
 pub const MAKING: usize = 2;
 /// Downloads at once.
 pub const DOWNLOADS: usize = 8;
-/// Browsers that are signed in.
+/// Browsers signed in.
 pub const SIGNED_IN: usize = 64;
-/// Points of a live frame.
-pub const FRAME_POINTS: usize = 16_384;
-/// Longest name of a scan, bytes.
-pub const NAME_BYTES: usize = 60;
-/// Records that may wait for the live view.
-pub const LIVE_RECORDS: usize = 8_192;
-
-/// Sentences that are kept of a scan.
+/// Messages kept of a scan.
 pub const MESSAGES: usize = 100;
 
-/// What lasts too long. Tests take shorter ones.
+/// Time limits. Tests take shorter ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Waits {
-    /// For the headers of a request, from when the connection is free for one.
+    /// Headers of a request, from when the connection is free for one.
     pub headers: Duration,
-    /// For the body of a request.
+    /// Body of a request.
     pub body: Duration,
     /// Between pings of a WebSocket client.
     pub ping: Duration,
     /// Silence of a WebSocket client.
     pub silence: Duration,
-    /// For a client that takes nothing of what it is sent and has shown no right to more than the page that signs in.
+    /// Writes to a client that has proved no authorisation and takes nothing.
     pub write: Duration,
-    /// For any other client that takes nothing of its download, or of whatever it is sent.
+    /// Writes to any other client that takes nothing.
     pub download: Duration,
 }
 

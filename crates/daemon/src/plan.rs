@@ -1,23 +1,21 @@
-//! What a capture would be, before anything moves: time, resolution, bytes.
-
-use std::path::PathBuf;
+//! Estimate of a capture before anything moves: time, resolution, bytes.
 
 use protocol::vlp16::models;
 
-use super::pulse::disk_full;
-use super::shared::Shared;
-use super::view::PlanView;
+use crate::health_monitor::disk_full;
+use crate::state::DaemonState;
 use engine::capture::request::{CapturePlan, CaptureRequest};
 use engine::failure::Failure;
+use serde::Serialize;
 
-/// Bytes a second of the log where the lidar has not been heard: VLP-16 in dual return, 1508 packets of 1206 bytes with their heads, position
-/// packets, and the drive.
+/// Bytes per second of the log of an unknown lidar: VLP-16 in dual return, 1508 packets of 1206
+/// bytes with headers, position packets, and the drive.
 const LOG_BYTES_S: f64 = 2.2e6;
 /// Bytes of a packet and its frames in a log.
 const PACKET_BYTES: f64 = 1_320.0;
 /// Bytes of a data packet alone.
 const PAYLOAD_BYTES: f64 = 1_206.0;
-/// Bytes a second of the drive's share of a log: up to 1000 polls of two frames.
+/// Bytes per second of the drive's part of a log: up to 1000 polls of two frames.
 const DRIVE_BYTES_S: f64 = 2e5;
 /// Rows of a PLY, and channels of a packet.
 const ROW_BYTES: f64 = 29.0;
@@ -26,31 +24,49 @@ const CHANNELS: f64 = 384.0;
 const PACKETS_S: f64 = 1_508.0;
 /// Homing and the rest before the first sweep, seconds.
 const BEFORE_S: f64 = 15.0;
-/// Turns a minute of a lidar that was not heard.
+/// Revolutions per minute of an unknown lidar.
 const RPM: f64 = 600.0;
 
-/// The capture that is asked for, decided, with files named so.
-///
-/// # Errors
-/// As [`CapturePlan::of`].
-pub fn setup(
-    shared: &Shared,
-    asked: &CaptureRequest,
-    cloud: PathBuf,
-    log: PathBuf,
-) -> Result<CapturePlan, Failure> {
-    let device = (shared.name.as_str(), &shared.device);
-    CapturePlan::of(asked, &shared.config, device, cloud, log)
+/// Estimate of a capture.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CaptureEstimate {
+    /// The request.
+    pub asked: CaptureRequest,
+    /// Speed of the motor, whole revolutions per minute.
+    pub motor_rpm: u32,
+    /// Tilt speed at this motor speed; short sweeps do not reach it.
+    pub cruise_deg_s: f64,
+    /// Time of one sweep.
+    pub sweep_s: f64,
+    /// Time of all moves, without homing.
+    pub moves_s: f64,
+    /// Tilt between two revolutions of the lidar, degrees: the resolution where a beam is
+    /// perpendicular to the tilt axis.
+    pub step_deg: Option<f64>,
+    /// Mean angle between rays that are neighbours in elevation.
+    pub resolution_deg: Option<f64>,
+    /// Estimated time of homing, seconds; absent while the axis is not homed.
+    pub homing_s: Option<f64>,
+    /// Revolutions of the lidar per sweep.
+    pub frames: Option<f64>,
+    /// Bytes of disk space that it may need.
+    pub bytes: u64,
+    /// The same as text.
+    pub headline: Vec<String>,
 }
 
-/// What a capture would be.
+/// Estimates a capture.
 #[must_use]
-pub fn plan(shared: &Shared, asked: &CaptureRequest, setup: &CapturePlan) -> PlanView {
-    let lidar = shared.lidar();
+pub fn estimate(
+    state: &DaemonState,
+    asked: &CaptureRequest,
+    plan: &CapturePlan,
+) -> CaptureEstimate {
+    let lidar = state.service.lidar();
     let rpm = lidar.rpm.unwrap_or(RPM);
-    let sweeps = || setup.steps.iter().filter(|step| step.sweep);
+    let sweeps = || plan.steps.iter().filter(|step| step.sweep);
     let seconds = |step: &engine::capture::moves::Step| step.plan.duration.as_secs_f64();
-    let moves_s: f64 = setup.steps.iter().map(seconds).sum();
+    let moves_s: f64 = plan.steps.iter().map(seconds).sum();
     let sweeps_s: f64 = sweeps().map(seconds).sum();
     let first = sweeps().next().map(|step| step.plan);
     let packets_s = match lidar.packets_per_s {
@@ -62,7 +78,7 @@ pub fn plan(shared: &Shared, asked: &CaptureRequest, setup: &CapturePlan) -> Pla
         _ => LOG_BYTES_S,
     };
     let bytes = (moves_s + BEFORE_S) * log_s + sweeps_s * packets_s * CHANNELS * ROW_BYTES;
-    PlanView {
+    CaptureEstimate {
         asked: asked.clone(),
         motor_rpm: first.map_or(0, |plan| plan.speed.0),
         cruise_deg_s: first.map_or(0.0, |plan| plan.cruise.0),
@@ -74,15 +90,16 @@ pub fn plan(shared: &Shared, asked: &CaptureRequest, setup: &CapturePlan) -> Pla
             let turns = tilt_deg / plan.cruise.0.abs() * rpm / 60.0;
             resolution_deg(lidar.model, tilt_deg, turns)
         }),
-        homing_s: homing_s(shared),
+        homing_s: homing_s(state),
         frames: first.map(|plan| plan.duration.as_secs_f64() * rpm / 60.0),
         bytes: bytes as u64,
-        headline: setup.headline(),
+        headline: plan.headline(),
     }
 }
 
-/// The paper's vertical resolution: what is seen from the lowest laser at one end of a sweep to the highest at the other, shared by all lasers in
-/// all turns, ramps left out. A lidar that was not heard is a VLP-16.
+/// The paper's vertical resolution: the angle from the lowest laser at one end of a sweep to the
+/// highest at the other, divided by all lasers in all revolutions, without ramps. An unknown lidar
+/// is taken for a VLP-16.
 fn resolution_deg(model: Option<&str>, tilt_deg: f64, turns: f64) -> f64 {
     let known = models::ALL
         .into_iter()
@@ -96,36 +113,39 @@ fn resolution_deg(model: Option<&str>, tilt_deg: f64, turns: f64) -> f64 {
     analysis::device::vertical_resolution_deg(tilt_deg + high - low, count, turns)
 }
 
-/// How long the axis takes to its home from where it stands: at the speed of the search, what it does around the switch left out.
-fn homing_s(shared: &Shared) -> Option<f64> {
-    let homing = &shared.config.axis.homing;
-    let angle_deg = shared.drive().angle_deg?;
+/// Time of homing from the present angle at the speed of the search, without the search of the edge.
+fn homing_s(state: &DaemonState) -> Option<f64> {
+    let homing = &state.service.config().axis.homing;
+    let angle_deg = state.service.angle_deg()?;
     Some((angle_deg - homing.to_deg).abs() / homing.speed_deg_s)
 }
 
-/// Most points of a log of so many bytes: all of it packets, and every channel of each a return.
+/// Most points of a log: all of it packets with a return in every channel.
 #[must_use]
 pub fn most_points(log_bytes: u64) -> u64 {
     (log_bytes as f64 / PAYLOAD_BYTES * CHANNELS) as u64
 }
 
-/// Most bytes of the cloud of a log of so many bytes.
+/// Most bytes of the cloud of a log.
 #[must_use]
 pub fn most_cloud_bytes(log_bytes: u64) -> u64 {
     (most_points(log_bytes) as f64 * ROW_BYTES) as u64
 }
 
-/// Bytes that the scans that are being recorded or made may need beyond what they have.
+/// Bytes that scans being recorded or made may still need.
 #[must_use]
-pub fn still_needed(shared: &Shared) -> u64 {
-    let under_way = shared.scans.under_way();
+pub fn still_needed(state: &DaemonState) -> u64 {
+    let under_way = state.scans.under_way();
     let needed = under_way.iter().map(|scan| {
         let asked = scan.head.asked.as_ref();
         let planned = asked.and_then(|asked| {
-            let setup = setup(shared, asked, "cloud".into(), "log".into()).ok()?;
-            Some(plan(shared, asked, &setup).bytes)
+            let plan = state
+                .service
+                .plan(asked, "cloud".into(), "log".into())
+                .ok()?;
+            Some(estimate(state, asked, &plan).bytes)
         });
-        // Of a log that was found nobody knows what it was to be: its cloud is to come.
+        // The request of a log that was found is unknown; its cloud is still to come.
         match planned {
             Some(whole) => whole.saturating_sub(scan.bytes),
             None => most_cloud_bytes(scan.log_bytes.unwrap_or(0)),
@@ -134,7 +154,7 @@ pub fn still_needed(shared: &Shared) -> u64 {
     needed.fold(0, u64::saturating_add)
 }
 
-/// What is said of room that is promised.
+/// The words for bytes promised to scans under way.
 #[must_use]
 pub fn promise(bytes: u64) -> String {
     match bytes {
@@ -146,16 +166,16 @@ pub fn promise(bytes: u64) -> String {
     }
 }
 
-/// Refuses a capture for which there is no room.
+/// Refuses a capture without enough disk space.
 ///
 /// # Errors
-/// [`disk_full`], saying how much it would need.
-pub fn fits(shared: &Shared, plan: &PlanView) -> Result<(), Failure> {
-    let reserve = shared.settings().reserve_bytes;
-    let Ok(free) = (shared.world.free_bytes)(shared.scans.folder()) else {
+/// [`disk_full`], with the bytes needed.
+pub fn fits(state: &DaemonState, plan: &CaptureEstimate) -> Result<(), Failure> {
+    let reserve = state.settings().reserve_bytes;
+    let Ok(free) = (state.free_bytes)(state.scans.folder()) else {
         return Ok(());
     };
-    let promised = still_needed(shared);
+    let promised = still_needed(state);
     if free.saturating_sub(reserve).saturating_sub(promised) >= plan.bytes {
         return Ok(());
     }

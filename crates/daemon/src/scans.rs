@@ -3,7 +3,6 @@
 //! Left out: how scans are made.
 
 mod found;
-mod record;
 mod summary;
 
 use std::cmp::Ordering;
@@ -15,12 +14,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use io::files::{NewFile, Overwrite};
 
-pub use record::{ScanHead, ScanRecord, ScanState, ScanView, WholeView, check_name};
-
-use super::limits::MESSAGES;
+use crate::limits::MESSAGES;
 use engine::capture::request::CaptureRequest;
 use engine::failure::{Failure, Kind};
 use engine::output::file_failure;
+use engine::service::scan_record::{
+    ScanDetails, ScanHead, ScanRecord, ScanState, ScanView, check_name,
+};
 use found::found;
 
 /// The log in a scan's folder.
@@ -267,9 +267,9 @@ impl Scans {
 
     /// A scan with everything.
     #[must_use]
-    pub fn whole(&self, id: &str) -> Option<WholeView> {
+    pub fn whole(&self, id: &str) -> Option<ScanDetails> {
         let record = self.record(id)?;
-        Some(WholeView {
+        Some(ScanDetails {
             scan: self.view_of(&record),
             messages: record.messages,
             recording: record.recording,

@@ -10,6 +10,6 @@ pub mod devices;
 pub mod failure;
 pub mod output;
 pub mod reconstruct;
-pub mod stop_socket;
+pub mod service;
 
 pub use failure::{Failure, Kind};

@@ -1,28 +1,29 @@
-//! Beginning and stopping captures, and what one would be.
+//! Captures: plan, begin, stop.
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::sync::{Arc, mpsc};
 
 use axum::body::Bytes;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
 use axum::http::{HeaderMap, StatusCode, header};
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
+use engine::capture::request::CaptureRequest;
+use engine::failure::{Failure, Kind};
+use engine::service::events::Event;
+use engine::service::scan_record::check_name;
+use engine::service::status::AxisTask;
+use engine::service::{AxisLease, DeviceService, LeaseError};
 use serde::de::DeserializeOwned;
 
 use super::Api;
-use super::refusal::Refusal;
-use crate::hub::Event;
-use crate::keeper::Order;
-use crate::shared::{Refused, Shared};
-use crate::view::{DeviceState, Doing};
-use crate::{plan as plans, scans};
-use engine::capture::request::CaptureRequest;
+use super::refusal::{Reason, Refusal};
+use crate::plan as plans;
+use crate::state::{Counters, DaemonState};
 
-/// The body of a request, which is to be JSON.
+/// Reads the JSON body of a request.
 ///
 /// # Errors
-/// [`Refusal`] where it is not JSON, or not what is asked for.
+/// [`Refusal`] where it is not JSON, or not the expected object.
 pub fn body<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> Result<T, Refusal> {
     let content = headers
         .get(header::CONTENT_TYPE)
@@ -31,12 +32,12 @@ pub fn body<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> Result<T,
     if !kind.is_some_and(|kind| kind.eq_ignore_ascii_case("application/json")) {
         return Err(Refusal::new(
             StatusCode::UNSUPPORTED_MEDIA_TYPE,
-            "usage",
+            Reason::Usage,
             "expected a body in JSON",
             "send Content-Type: application/json",
         ));
     }
-    // The derived readers take a list for an object, its fields in order: nobody has described that.
+    // Derived deserializers also accept a list of the fields, which is not documented.
     let begin = body.iter().find(|byte| !byte.is_ascii_whitespace());
     if begin != Some(&b'{') {
         return Err(Refusal::usage("the body: expected a JSON object"));
@@ -50,66 +51,47 @@ pub async fn begin(
     headers: HeaderMap,
     bytes: Bytes,
 ) -> Result<Response, Refusal> {
-    let asked: CaptureRequest = body(&headers, &bytes)?;
-    let shared = Arc::clone(&api.shared);
-    heard(&shared).await;
-    answered(&shared).await;
-    // Files are made, which may take a disk its time.
-    let id = super::with_disk(move || start(&shared, &asked)).await??;
-    let (shared, begun) = (Arc::clone(&api.shared), id.clone());
-    let view = super::with_disk(move || shared.scans.view(&begun)).await?;
-    let view = view.ok_or_else(|| Refusal::no_scan(&id))?;
-    let mut response = super::json(StatusCode::CREATED, &view);
+    let request: CaptureRequest = body(&headers, &bytes)?;
+    let state = Arc::clone(&api.state);
+    state.service.wait_for_lidar().await;
+    state.service.wait_for_reads().await;
+    let id = super::with_disk(move || start(&state, &request)).await??;
+    let (state, begun) = (Arc::clone(&api.state), id.clone());
+    let scan = super::with_disk(move || state.scans.view(&begun)).await?;
+    let scan = scan.ok_or_else(|| Refusal::no_scan(&id))?;
+    let mut response = super::json(StatusCode::CREATED, &scan);
     if let Ok(location) = format!("/api/v1/scans/{id}").parse() {
         response.headers_mut().insert(header::LOCATION, location);
     }
     Ok(response)
 }
 
-/// Begins a capture; the scan's id.
+/// Begins a capture and returns the scan's id.
 ///
 /// # Errors
-/// [`Refusal`] where it cannot be, or not now.
-pub fn start(shared: &Shared, asked: &CaptureRequest) -> Result<String, Refusal> {
-    // A scan that is being recorded is why there may be no room, and not what is to be said.
-    let doing = shared.activity().doing;
-    if doing != Doing::Idle {
-        return Err(Refused::Busy(doing).into());
+/// [`Refusal`] where it is not possible, or not now.
+pub fn start(state: &Arc<DaemonState>, request: &CaptureRequest) -> Result<String, Refusal> {
+    let service = &state.service;
+    // A busy axis is reported rather than the disk space that its scan may need.
+    let task = service.activity().doing;
+    if task != AxisTask::Idle {
+        return Err(LeaseError::Busy(task).into());
     }
-    // Refused before anything is made.
-    shared.drive_is_there()?;
-    shared.lidar_is_heard()?;
-    let dry = plans::setup(shared, asked, "cloud".into(), "log".into())?;
-    plans::fits(shared, &plans::plan(shared, asked, &dry))?;
-    shared.take(Doing::Capturing, None)?;
-    let begun = ordered(shared, asked);
-    if begun.is_err() {
-        shared.set_idle();
-    }
-    begun
-}
-
-/// The same with the axis taken.
-fn ordered(shared: &Shared, asked: &CaptureRequest) -> Result<String, Refusal> {
-    let record = shared.scans.begin(asked, shared.simulated())?;
+    service.require_drive()?;
+    service.require_lidar()?;
+    let plan = service.plan(request, "cloud".into(), "log".into())?;
+    plans::fits(state, &plans::estimate(state, request, &plan))?;
+    let lease = service.lease(AxisTask::Capturing)?;
+    let record = state.scans.begin(request, service.simulated())?;
     let id = record.id.clone();
-    shared.note(|activity| activity.scan = Some(id.clone()));
-    let (cloud, log) = (shared.cloud(&id), shared.log(&id));
-    let sent = plans::setup(shared, asked, cloud, log)
-        .map_err(Refused::Failure)
-        .and_then(|setup| {
-            shared.order(Order::Capture {
-                setup: Box::new(setup),
-                id: id.clone(),
-            })
-        });
-    if let Err(refused) = sent {
-        // Who is refused has begun no scan.
-        shared.scans.forget(&id);
-        return Err(refused.into());
+    lease.set_scan(&id);
+    if let Err(error) = run(state, request, &id, lease) {
+        state.scans.forget(&id);
+        return Err(error.into());
     }
-    if let Some(scan) = shared.scans.view(&id) {
-        shared.hub.tell(Event::Scan {
+    Counters::count(&state.counters.captures);
+    if let Some(scan) = state.scans.view(&id) {
+        state.events().send(Event::Scan {
             scan: Box::new(scan),
             deleted: false,
         });
@@ -117,74 +99,43 @@ fn ordered(shared: &Shared, asked: &CaptureRequest) -> Result<String, Refusal> {
     Ok(id)
 }
 
+/// Hands a capture to the device thread, and its end to a thread that may wait for the disk.
+fn run(
+    state: &Arc<DaemonState>,
+    request: &CaptureRequest,
+    id: &str,
+    lease: AxisLease,
+) -> Result<(), LeaseError> {
+    let plan = state
+        .service
+        .plan(request, state.cloud(id), state.log(id))?;
+    let ending = || Failure::new(Kind::Interrupted, "the daemon is ending").help("start it again");
+    let jobs = state.cloud_jobs().ok_or_else(ending)?;
+    let (begun, capture) = mpsc::channel::<tokio::sync::oneshot::Receiver<_>>();
+    let (own_state, own_id, accuracy) = (Arc::clone(state), id.to_owned(), plan.accuracy);
+    std::thread::Builder::new()
+        .name("scan".to_owned())
+        .spawn(move || {
+            if let Ok(end) = capture.recv()
+                && let Ok(result) = end.blocking_recv()
+            {
+                own_state.capture_ended(&own_id, accuracy, result, &jobs);
+            }
+        })
+        .map_err(|error| {
+            Failure::new(Kind::NoDevice, format!("no thread for the scan: {error}"))
+                .help("end other programs; see ulimit -u")
+        })?;
+    // The thread waits for it.
+    let _ = begun.send(state.service.capture(lease, plan)?);
+    Ok(())
+}
+
 /// `POST /captures/stop`.
-pub async fn stop(State(api): State<Arc<Api>>) -> Response {
-    let (stopped, scan) = end(&api.shared).await;
+pub async fn stop(State(service): State<Arc<DeviceService>>) -> Response {
+    let (stopped, scan) = service.stop_capture().await;
     let body = serde_json::json!({ "stopped": stopped, "scan": scan });
     super::json(StatusCode::OK, &body)
-}
-
-/// Stops a capture and waits until the axis stands: whether there was one, and the scan. What else moves the axis is let alone.
-pub async fn end(shared: &Shared) -> (bool, Option<String>) {
-    let mut activity = shared.follow();
-    // It may have been begun this moment: then its scan has no name yet.
-    if activity.borrow().doing != Doing::Capturing {
-        return (false, None);
-    }
-    let stopped = shared.interrupt(None);
-    let mut scan: Option<String> = None;
-    loop {
-        {
-            let now = activity.borrow_and_update();
-            let another = now.scan.is_some() && scan.is_some() && now.scan != scan;
-            if now.doing == Doing::Idle || another {
-                break;
-            }
-            scan = scan.or_else(|| now.scan.clone());
-        }
-        // The sender lives as long as `shared`.
-        if activity.changed().await.is_err() {
-            break;
-        }
-    }
-    (stopped, scan)
-}
-
-/// How long a lidar is waited for that may have been switched on a moment ago: it is looked for every second.
-const HEARD: Duration = Duration::from_secs(3);
-/// Between two looks.
-const LOOK: Duration = Duration::from_millis(50);
-
-/// Waits for a lidar that nobody has heard yet; not for one that is known to be silent.
-async fn heard(shared: &Shared) {
-    let unknown = || {
-        let lidar = shared.lidar();
-        lidar.state == DeviceState::Absent && lidar.problem.is_none()
-    };
-    let mut left = HEARD;
-    while unknown() && !left.is_zero() {
-        tokio::time::sleep(LOOK).await;
-        left = left.saturating_sub(LOOK);
-    }
-}
-
-/// How long a question to the drive is waited for.
-const ANSWERED: Duration = Duration::from_secs(5);
-
-/// Waits until nobody asks the drive something: a question must not have a move refused.
-pub async fn answered(shared: &Shared) {
-    let mut activity = shared.follow();
-    let asks = activity.wait_for(|activity| !activity.only_asks);
-    let _ = tokio::time::timeout(ANSWERED, asks).await;
-}
-
-/// Waits until the axis stands. What moves it has its own limits of time.
-pub async fn idle(shared: &Shared) {
-    let mut activity = shared.follow();
-    // The sender lives as long as `shared`.
-    let _ = activity
-        .wait_for(|activity| activity.doing == Doing::Idle)
-        .await;
 }
 
 /// `GET /plan`.
@@ -192,11 +143,12 @@ pub async fn plan(
     State(api): State<Arc<Api>>,
     query: Result<Query<CaptureRequest>, QueryRejection>,
 ) -> Result<Response, Refusal> {
-    let Query(asked) = query?;
-    let shared = &api.shared;
-    if let Some(name) = &asked.name {
-        scans::check_name(name)?;
+    let Query(request) = query?;
+    let state = &api.state;
+    if let Some(name) = &request.name {
+        check_name(name)?;
     }
-    let setup = plans::setup(shared, &asked, "cloud".into(), "log".into())?;
-    Ok(super::json(StatusCode::OK, &plans::plan(shared, &asked, &setup)).into_response())
+    let plan = state.service.plan(&request, "cloud".into(), "log".into())?;
+    let estimate = plans::estimate(state, &request, &plan);
+    Ok(super::json(StatusCode::OK, &estimate))
 }

@@ -1,4 +1,5 @@
-//! A scan's files. A cloud in another form is made of the log into a file without a name, and sent from there: never all of it in memory.
+//! Files of scans. A cloud in another format is made from the log into an unnamed file and streamed
+//! from there, never all of it in memory.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -22,8 +23,8 @@ use tokio::sync::{OwnedSemaphorePermit, mpsc};
 
 use super::Api;
 use super::refusal::Refusal;
+use crate::disk_quota::{self, DiskQuota, QuotaFile};
 use crate::plan;
-use crate::room::{self, Room, Roomy};
 use crate::scans::{LOG, THUMBNAIL};
 use engine::failure::{Failure, Kind};
 use engine::output::Buffered;
@@ -36,15 +37,15 @@ const PIECE: usize = 256 << 10;
 /// Pieces that wait for the client.
 const PIECES: usize = 2;
 
-/// How a cloud is wanted.
+/// Query of `GET /scans/ID/cloud`.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Wanted {
-    /// The format by its extension; PLY.
+pub struct CloudQuery {
+    /// Format by its extension; PLY by default.
     format: Option<String>,
-    /// A column sd.
+    /// Whether to add the column sd.
     uncertainty: bool,
-    /// A column echo.
+    /// Whether to add the column echo.
     echo: bool,
 }
 
@@ -52,12 +53,12 @@ pub struct Wanted {
 pub async fn cloud(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
-    query: Result<Query<Wanted>, QueryRejection>,
+    query: Result<Query<CloudQuery>, QueryRejection>,
 ) -> Result<Response, Refusal> {
     let Query(wanted) = query?;
     let name = wanted.format.as_deref().unwrap_or("ply");
     let format = Format::from_extension(name).map_err(|error| Refusal::usage(error.to_string()))?;
-    let record = api.shared.scans.record(&id);
+    let record = api.state.scans.record(&id);
     let record = record.ok_or_else(|| Refusal::no_scan(&id))?;
     if !record.state.is_final() {
         return Err(Failure::new(Kind::Incomplete, "the scan is being made")
@@ -69,13 +70,13 @@ pub async fn cloud(
     let plain = !wanted.uncertainty && !wanted.echo;
     if format == Format::Ply
         && plain
-        && let Ok(stored) = open(api.shared.cloud(&id)).await?
+        && let Ok(stored) = open(api.state.cloud(&id)).await?
     {
         return stream(&api, stored, &file_name, content_type("ply"), permit);
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
     let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
-    let (points, shared) = (record.points, Arc::clone(&api.shared));
+    let (points, state) = (record.points, Arc::clone(&api.state));
     let accuracy = record.head.asked.and_then(|asked| asked.accuracy().ok());
     let mut fields = Fields::FILE;
     if wanted.uncertainty {
@@ -84,17 +85,17 @@ pub async fn cloud(
     if wanted.echo {
         fields |= Fields::ECHO;
     }
-    let log = api.shared.log(&id);
-    let gone = Gone::default();
-    let interrupt = Arc::clone(&gone.0);
+    let log = api.state.log(&id);
+    let client = ClientGuard::default();
+    let interrupt = Arc::clone(&client.0);
     let made = tokio::task::spawn_blocking(move || {
         let _making = making;
         let log_bytes = || std::fs::metadata(&log).map_or(0, |there| there.len());
         let points = points.unwrap_or_else(|| plan::most_points(log_bytes()));
-        let room = Room::take(&shared, room::most_bytes(format, points));
+        let quota = DiskQuota::take(&state, disk_quota::most_bytes(format, points));
         make(
             &log,
-            (shared.scans.folder(), &room.map_err(Refusal::no_room)?),
+            (state.scans.folder(), &quota.map_err(Refusal::no_room)?),
             format,
             fields,
             accuracy.unwrap_or(Accuracy::Best),
@@ -106,9 +107,9 @@ pub async fn cloud(
             Kind::Incomplete,
             "a defect of the program ended the making of the cloud",
         )
-        .help("run velomotion replay on the log with -vv and report what it says")
+        .help("run velomotion replay on the log with -vv and report the messages")
     })??;
-    drop(gone);
+    drop(client);
     stream(
         &api,
         file,
@@ -118,20 +119,20 @@ pub async fn cloud(
     )
 }
 
-/// Tells the making that the client went away.
+/// Interrupts the making of a cloud when its client disconnects.
 #[derive(Default)]
-struct Gone(Arc<AtomicBool>);
+struct ClientGuard(Arc<AtomicBool>);
 
-impl Drop for Gone {
+impl Drop for ClientGuard {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Relaxed);
     }
 }
 
-/// Makes a cloud as `velomotion replay` does, into a file without a name.
+/// Makes a cloud as `velomotion replay` does, into an unnamed file.
 fn make(
     log: &FilePath,
-    (folder, room): (&FilePath, &Arc<Room>),
+    (folder, quota): (&FilePath, &Arc<DiskQuota>),
     format: Format,
     fields: Fields,
     accuracy: Accuracy,
@@ -157,7 +158,7 @@ fn make(
         interrupt,
     };
     let mut file = io::files::scratch_in(folder).map_err(cannot)?;
-    let out = Roomy::new(file.try_clone().map_err(cannot)?, Arc::clone(room));
+    let out = QuotaFile::new(file.try_clone().map_err(cannot)?, Arc::clone(quota));
     let out = Buffered::new(out);
     let mut sink = format.writer(out, fields);
     let output = PathBuf::from(format!("cloud.{}", format.extension()));
@@ -165,7 +166,7 @@ fn make(
         sink.finish()
             .map_err(|error| engine::output::sink_failure(&output, &error))
     });
-    made.map_err(|failure| match room.refused() {
+    made.map_err(|failure| match quota.refused() {
         Some(full) => Refusal::no_room(full.clone()),
         None => failure.into(),
     })?;
@@ -177,10 +178,10 @@ fn make(
 
 /// `GET /scans/ID/log`.
 pub async fn log(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<Response, Refusal> {
-    let record = api.shared.scans.record(&id);
+    let record = api.state.scans.record(&id);
     record.ok_or_else(|| Refusal::no_scan(&id))?;
     let permit = downloading(&api)?;
-    let file = open(api.shared.log(&id)).await?;
+    let file = open(api.state.log(&id)).await?;
     let file = file.map_err(|_| Refusal::no_file(LOG))?;
     let name = format!("velomotion-{id}.pcapng");
     stream(&api, file, &name, content_type("pcapng"), permit)
@@ -191,10 +192,10 @@ pub async fn thumbnail(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
 ) -> Result<Response, Refusal> {
-    let record = api.shared.scans.record(&id);
+    let record = api.state.scans.record(&id);
     record.ok_or_else(|| Refusal::no_scan(&id))?;
     let permit = downloading(&api)?;
-    let file = open(api.shared.scans.place(&id).join(THUMBNAIL)).await?;
+    let file = open(api.state.scans.place(&id).join(THUMBNAIL)).await?;
     let file = file.map_err(|_| Refusal::no_file(THUMBNAIL))?;
     let name = format!("velomotion-{id}.png");
     stream(&api, file, &name, content_type("png"), permit)
@@ -209,7 +210,7 @@ fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
 /// A file and its length.
 type Opened = (File, u64);
 
-/// Opens a file that is there. What is no file, such as a pipe, has no end.
+/// Opens a regular file; anything else may have no end.
 ///
 /// # Errors
 /// As [`super::with_disk`]; within, the disk's own.

@@ -1,37 +1,41 @@
-//! What happens, over a WebSocket: JSON as text, live points as binary. Who does not read is disconnected, not waited for.
+//! Events over a WebSocket: JSON as text, points as binary. Slow clients are disconnected.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
-use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade};
+use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket, WebSocketUpgrade};
 use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::response::Response;
+use engine::service::events::{Event, NoEvent, PointsRequest, Subscription};
 use serde::Deserialize;
 
 use super::Api;
-use super::refusal::Refusal;
-use crate::hub::{Event, Subscription, Told};
+use super::refusal::{Reason, Refusal};
 use crate::limits::CLIENT_MESSAGE_BYTES;
 
-/// Most of every so many points that can be left out.
-const THINNEST: usize = 1_000;
+/// Highest thinning of points: one in this many is sent.
+const MAX_THIN: usize = 1_000;
 /// RFC 6455, 7.4.1: going away, policy violation.
 const GOING_AWAY: u16 = 1001;
 const POLICY: u16 = 1008;
+/// Between two checks whether a client that takes nothing has missed events.
+const LAG_POLL: Duration = Duration::from_millis(50);
+/// Wait for a close frame to be sent.
+const CLOSE_WAIT: Duration = Duration::from_millis(200);
 
-/// What a client wants to be told.
+/// Query of `GET /events`.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Wanted {
+pub struct EventsQuery {
     points: bool,
     thin: usize,
 }
 
-impl Default for Wanted {
+impl Default for EventsQuery {
     fn default() -> Self {
         Self {
             points: true,
@@ -43,110 +47,136 @@ impl Default for Wanted {
 /// `GET /events`.
 pub async fn events(
     State(api): State<Arc<Api>>,
-    query: Result<Query<Wanted>, QueryRejection>,
+    query: Result<Query<EventsQuery>, QueryRejection>,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Result<Response, Refusal> {
-    let Query(wanted) = query?;
-    if !(1..=THINNEST).contains(&wanted.thin) {
+    let Query(query) = query?;
+    if !(1..=MAX_THIN).contains(&query.thin) {
         return Err(Refusal::usage(format!(
-            "thin: expected 1 to {THINNEST}, got {}",
-            wanted.thin
+            "thin: expected 1 to {MAX_THIN}, got {}",
+            query.thin
         )));
     }
     let upgrade = upgrade.map_err(|rejection| {
         Refusal::new(
             StatusCode::BAD_REQUEST,
-            "usage",
+            Reason::Usage,
             rejection.body_text(),
             "this path is for WebSockets",
         )
     })?;
-    let too_many = || Refusal::too_many("WebSocket clients");
-    let permit = Arc::clone(&api.sockets).try_acquire_owned();
-    let permit = permit.map_err(|_| too_many())?;
-    let subscription = api.shared.hub.subscribe(wanted.points);
-    let subscription = subscription.ok_or_else(too_many)?;
+    let subscription = api.state.events().subscribe_client();
+    let subscription = subscription.ok_or_else(|| Refusal::too_many("WebSocket clients"))?;
+    let points = PointsRequest::new(api.state.events(), query.points);
     let upgrade = upgrade
         .max_message_size(CLIENT_MESSAGE_BYTES)
         .max_frame_size(CLIENT_MESSAGE_BYTES);
     Ok(upgrade.on_upgrade(move |socket| async move {
-        serve(&api, socket, subscription, wanted).await;
-        drop(permit);
+        serve(&api, socket, subscription, query).await;
+        drop(points);
     }))
 }
 
-/// How a client was lost.
-enum Lost {
-    /// It went away, or the network did.
+/// Why a client is disconnected.
+enum Disconnect {
+    /// The client or the network closed the connection.
     Gone,
     /// It did not read.
-    Behind,
-    /// The daemon ends.
+    Lagged,
+    /// The daemon is ending.
     Ending,
 }
 
-async fn serve(api: &Api, mut socket: WebSocket, mut subscription: Subscription, wanted: Wanted) {
-    let behind = subscription.left_behind();
+async fn serve(
+    api: &Api,
+    mut socket: WebSocket,
+    mut subscription: Subscription,
+    query: EventsQuery,
+) {
     let mut closing = api.closing.clone();
-    let lost = tokio::select! {
-        lost = talk(api, &mut socket, &mut subscription, wanted) => lost,
-        () = behind.notified() => Lost::Behind,
-        _ = closing.wait_for(|closing| *closing) => Lost::Ending,
+    let reason = tokio::select! {
+        reason = forward(api, &mut socket, &mut subscription, query) => reason,
+        _ = closing.wait_for(|closing| *closing) => Disconnect::Ending,
     };
     drop(subscription);
-    let (code, reason) = match lost {
-        Lost::Gone => return,
-        Lost::Behind => (POLICY, "too slow"),
-        Lost::Ending => (GOING_AWAY, "the daemon ends"),
+    let (code, text) = match reason {
+        Disconnect::Gone => return,
+        Disconnect::Lagged => {
+            api.state.events().count_disconnected();
+            (POLICY, "too slow")
+        }
+        Disconnect::Ending => (GOING_AWAY, "the daemon ends"),
     };
     let close = Message::Close(Some(CloseFrame {
         code,
-        reason: reason.into(),
+        reason: text.into(),
     }));
-    // Who does not read does not read this either.
-    let _ = tokio::time::timeout(std::time::Duration::from_millis(200), socket.send(close)).await;
+    // A client that does not read will not read this either.
+    let _ = tokio::time::timeout(CLOSE_WAIT, socket.send(close)).await;
 }
 
-async fn talk(
+async fn forward(
     api: &Api,
     socket: &mut WebSocket,
     subscription: &mut Subscription,
-    wanted: Wanted,
-) -> Lost {
-    let status = Box::new(api.shared.status());
-    let first = Told::from(Event::Status { status });
-    if socket.send(Message::Text(first.json())).await.is_err() {
-        return Lost::Gone;
+    query: EventsQuery,
+) -> Disconnect {
+    let status = Box::new(api.state.service.status());
+    let first = Message::Text(json(&Event::Status { status }));
+    if let Err(reason) = send(socket, first, subscription).await {
+        return reason;
     }
     let mut ping = tokio::time::interval(api.waits.ping);
-    let mut heard = Instant::now();
+    let mut last_message = Instant::now();
     loop {
-        tokio::select! {
-            told = subscription.next() => {
-                let Some(told) = told else { return Lost::Behind };
-                if socket.send(message(&told, wanted)).await.is_err() {
-                    return Lost::Gone;
+        let message = tokio::select! {
+            event = subscription.next() => match event.as_deref() {
+                Ok(Event::Points(_)) if !query.points => continue,
+                Ok(Event::Points(frame)) => Message::Binary(frame.bytes(query.thin)),
+                Ok(event) => Message::Text(json(event)),
+                Err(NoEvent::Lagged(_)) => return Disconnect::Lagged,
+                Err(NoEvent::Closed) => return Disconnect::Ending,
+            },
+            received = socket.recv() => match received {
+                Some(Ok(Message::Close(_)) | Err(_)) | None => return Disconnect::Gone,
+                // Messages of a client only show that it is alive.
+                Some(Ok(_)) => {
+                    last_message = Instant::now();
+                    continue;
                 }
-            }
-            said = socket.recv() => match said {
-                Some(Ok(Message::Close(_)) | Err(_)) | None => return Lost::Gone,
-                // Nothing that a client says means anything here, but that it is there.
-                Some(Ok(_)) => heard = Instant::now(),
             },
             _ = ping.tick() => {
-                if heard.elapsed() > api.waits.silence
-                    || socket.send(Message::Ping(Bytes::new())).await.is_err()
-                {
-                    return Lost::Gone;
+                if last_message.elapsed() > api.waits.silence {
+                    return Disconnect::Gone;
+                }
+                Message::Ping(Bytes::new())
+            }
+        };
+        if let Err(reason) = send(socket, message, subscription).await {
+            return reason;
+        }
+    }
+}
+
+/// Sends a message, unless the client takes nothing while events are lost.
+async fn send(
+    socket: &mut WebSocket,
+    message: Message,
+    subscription: &Subscription,
+) -> Result<(), Disconnect> {
+    let mut sending = std::pin::pin!(socket.send(message));
+    loop {
+        tokio::select! {
+            sent = sending.as_mut() => return sent.map_err(|_| Disconnect::Gone),
+            () = tokio::time::sleep(LAG_POLL) => {
+                if subscription.has_lagged() {
+                    return Err(Disconnect::Lagged);
                 }
             }
         }
     }
 }
 
-fn message(told: &Told, wanted: Wanted) -> Message {
-    match told.points(wanted.thin) {
-        Some(bytes) => Message::Binary(bytes),
-        None => Message::Text(told.json()),
-    }
+fn json(event: &Event) -> Utf8Bytes {
+    serde_json::to_string(event).unwrap_or_default().into()
 }

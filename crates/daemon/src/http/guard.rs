@@ -1,6 +1,6 @@
-//! Who may ask for what: the token, the browser's cookie, Origin and Host; and the length of what is asked for.
+//! Authorisation of requests by token, browser cookie, Origin and Host, and their length limits.
 //!
-//! Over the Unix socket its permissions decide, and nothing here does.
+//! On the Unix socket its file permissions decide alone.
 
 use std::collections::VecDeque;
 use std::io::Read;
@@ -14,14 +14,14 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
 use super::Api;
-use super::guests::{Guest, Standing};
+use super::connection_limits::{Connection, Trust};
 use super::page;
-use super::refusal::Refusal;
+use super::refusal::{Reason, Refusal};
 use crate::limits::{BODY_BYTES, SIGNED_IN, TARGET_BYTES, Waits};
 use engine::config::daemon::equal;
 use engine::config::origin::Origin;
 
-/// How a request came.
+/// Transport of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Peer {
     /// Over the Unix socket.
@@ -32,11 +32,11 @@ pub enum Peer {
 
 /// The cookie's name.
 const COOKIE: &str = "velomotion";
-/// How long a browser keeps it: 30 days.
+/// Lifetime of the cookie: 30 days.
 const COOKIE_S: u32 = 30 * 24 * 3600;
 const SECRET_BYTES: usize = 16;
 
-/// Browsers that are signed in: a secret each, until the daemon ends.
+/// Secrets of the browsers that are signed in, until the daemon ends.
 #[derive(Debug, Default)]
 pub struct Sessions {
     secrets: Mutex<VecDeque<String>>,
@@ -63,14 +63,14 @@ impl Sessions {
 
     fn has(&self, given: &str) -> bool {
         let secrets = self.secrets.lock().unwrap_or_else(PoisonError::into_inner);
-        // All are looked at, whichever it is.
+        // All are compared, so that the time taken tells nothing.
         secrets.iter().fold(false, |found, secret| {
             found | equal(secret.as_bytes(), given.as_bytes())
         })
     }
 }
 
-/// Refuses what is too long, and takes the body within its time.
+/// Refuses requests that are too long, or whose body takes too long.
 pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) -> Response {
     let target = request
         .uri()
@@ -79,7 +79,7 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
     if target > TARGET_BYTES {
         return Refusal::new(
             StatusCode::URI_TOO_LONG,
-            "limit",
+            Reason::Limit,
             format!("path and query have more than {TARGET_BYTES} bytes"),
             "no request needs as much",
         )
@@ -92,7 +92,7 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
     let too_large = || {
         Refusal::new(
             StatusCode::PAYLOAD_TOO_LARGE,
-            "limit",
+            Reason::Limit,
             format!("the body has more than {BODY_BYTES} bytes, or did not come whole"),
             "no request needs as much",
         )
@@ -106,7 +106,7 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
         Ok(Err(_)) => too_large(),
         Err(_elapsed) => Refusal::new(
             StatusCode::REQUEST_TIMEOUT,
-            "limit",
+            Reason::Limit,
             "the body did not come in time",
             "send it at once",
         )
@@ -114,20 +114,20 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
     }
 }
 
-/// Refuses whoever may not ask.
+/// Refuses requests without authorisation.
 pub async fn guard(
     State((api, peer)): State<(Arc<Api>, Peer)>,
     request: Request,
     next: Next,
 ) -> Response {
     match check(&api, peer, &request) {
-        Ok(standing) => {
-            if let Some(guest) = request.extensions().get::<Arc<Guest>>() {
-                guest.rise(standing);
+        Ok(trust) => {
+            if let Some(connection) = request.extensions().get::<Arc<Connection>>() {
+                connection.raise(trust);
             }
             next.run(request).await
         }
-        // A person is shown where to sign in.
+        // A browser gets the page that signs in.
         Err(refusal) if wants_page(&request) && refusal.1 => {
             super::page::sign_in(StatusCode::UNAUTHORIZED).into_response()
         }
@@ -144,18 +144,18 @@ fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
     headers.get(name)?.to_str().ok()
 }
 
-/// What the request shows of who asks; or the refusal, and whether signing in would help.
-fn check(api: &Api, peer: Peer, request: &Request) -> Result<Standing, (Refusal, bool)> {
+/// The trust that a request proves; or the refusal, and whether signing in would help.
+fn check(api: &Api, peer: Peer, request: &Request) -> Result<Trust, (Refusal, bool)> {
     let Peer::Tcp(own) = peer else {
-        return Ok(Standing::Admitted);
+        return Ok(Trust::Local);
     };
     let (headers, path) = (request.headers(), request.uri().path());
-    let token = api.shared.settings().token.as_ref();
+    let token = api.state.settings().token.as_ref();
     let host = text(headers, header::HOST).unwrap_or_default();
     if token.is_none() && !is_own_name(host, own) {
         return Err((
             denied(
-                format!("this daemon is not called {host:?}"),
+                format!("{host:?} is not a name of this daemon"),
                 "use http://127.0.0.1, or set a token to let others in under another name",
             ),
             false,
@@ -166,10 +166,10 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Standing, (Refusal,
         || headers.contains_key(header::UPGRADE);
     if changes && let Some(origin) = headers.get(header::ORIGIN) {
         let origin = origin.to_str().unwrap_or_default();
-        if !may_change(origin, host, &api.shared.settings().origins) {
+        if !may_change(origin, host, &api.state.settings().origins) {
             return Err((
                 denied(
-                    format!("a page of {origin:?} may not do this"),
+                    format!("a page of {origin:?} is not allowed to do this"),
                     "use the daemon's own page, or a program that sends no Origin; a proxy with TLS in front of the daemon is named by \
                      origins = [\"https://...\"] under [daemon] of the configuration",
                 ),
@@ -178,22 +178,22 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Standing, (Refusal,
         }
     }
     if page::is_open(path) {
-        return Ok(Standing::Stranger);
+        return Ok(Trust::None);
     }
     let Some(token) = token else {
-        return Ok(Standing::Admitted);
+        return Ok(Trust::Local);
     };
     let bearer = text(headers, header::AUTHORIZATION)
         .and_then(|value| value.split_once(' '))
         .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
         .is_some_and(|(_, given)| token.is(given.trim().as_bytes()));
     if bearer || cookie(headers).is_some_and(|secret| api.sessions.has(secret)) {
-        return Ok(Standing::Trusted);
+        return Ok(Trust::Token);
     }
     Err((
         Refusal::new(
             StatusCode::UNAUTHORIZED,
-            "denied",
+            Reason::Denied,
             "the token is missing or wrong",
             "send Authorization: Bearer TOKEN with the token of the daemon's configuration",
         ),
@@ -201,7 +201,7 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Standing, (Refusal,
     ))
 }
 
-/// Whether a page from there may ask for changes: the daemon's own, which speaks HTTP and is called `host`, or one that is `listed`.
+/// Whether a page of this origin may request changes: the daemon's own at `host`, or a `listed` one.
 fn may_change(origin: &str, host: &str, listed: &[Origin]) -> bool {
     origin.parse().is_ok_and(|origin: Origin| {
         Origin::of_host(host).as_ref() == Some(&origin) || listed.contains(&origin)
@@ -209,7 +209,7 @@ fn may_change(origin: &str, host: &str, listed: &[Origin]) -> bool {
 }
 
 fn denied(error: String, help: &str) -> Refusal {
-    Refusal::new(StatusCode::FORBIDDEN, "denied", error, help)
+    Refusal::new(StatusCode::FORBIDDEN, Reason::Denied, error, help)
 }
 
 fn cookie(headers: &HeaderMap) -> Option<&str> {
@@ -219,7 +219,7 @@ fn cookie(headers: &HeaderMap) -> Option<&str> {
         .find_map(|(name, value)| (name == COOKIE).then_some(value))
 }
 
-/// Whether a browser that asks for `host` asks for this machine by a name of its own, whatever a foreign DNS says.
+/// Whether `host` names this machine without DNS, which another machine could answer.
 fn is_own_name(host: &str, own: IpAddr) -> bool {
     let name = match host.strip_prefix('[') {
         Some(rest) => rest.split_once(']').map_or(rest, |(name, _)| name),
@@ -236,7 +236,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_this_machine() {
+    fn names_of_this_machine_are_recognised() {
         let own: IpAddr = "127.0.0.1".parse().unwrap();
         for host in [
             "localhost",
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn the_oldest_browser_is_forgotten() {
+    fn the_oldest_session_is_dropped() {
         let sessions = Sessions::default();
         let secret = |cookie: &str| cookie.split(['=', ';']).nth(1).unwrap().to_owned();
         let first = secret(&sessions.begin().unwrap());

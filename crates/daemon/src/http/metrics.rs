@@ -1,4 +1,4 @@
-//! Figures for Prometheus, collected when they are asked for.
+//! Metrics for Prometheus, collected on request.
 
 use std::fmt;
 use std::sync::Arc;
@@ -14,29 +14,28 @@ use prometheus_client::metrics::gauge::ConstGauge;
 use prometheus_client::registry::Registry;
 
 use super::Api;
-use super::refusal::Refusal;
-use crate::ros2::counts::Counts;
-use crate::shared::Shared;
-use crate::view::{DeviceState, Doing};
+use super::refusal::{Reason, Refusal};
+use crate::state::DaemonState;
+use engine::service::status::{AxisTask, DeviceState};
 
 /// `GET /metrics`.
 pub async fn metrics(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
     let mut registry = Registry::with_prefix("velomotion");
-    registry.register_collector(Box::new(Figures(Arc::clone(&api.shared))));
-    let mut said = String::new();
-    text::encode(&mut said, &registry).map_err(|error| {
+    registry.register_collector(Box::new(Figures(Arc::clone(&api.state))));
+    let mut metrics = String::new();
+    text::encode(&mut metrics, &registry).map_err(|error| {
         Refusal::new(
             StatusCode::INTERNAL_SERVER_ERROR,
-            "incomplete",
+            Reason::Incomplete,
             error.to_string(),
             "this is a defect of the program",
         )
     })?;
     let content = "application/openmetrics-text; version=1.0.0; charset=utf-8";
-    Ok(([(header::CONTENT_TYPE, content)], said).into_response())
+    Ok(([(header::CONTENT_TYPE, content)], metrics).into_response())
 }
 
-struct Figures(Arc<Shared>);
+struct Figures(Arc<DaemonState>);
 
 impl fmt::Debug for Figures {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -46,33 +45,33 @@ impl fmt::Debug for Figures {
 
 impl Collector for Figures {
     fn encode(&self, mut encoder: DescriptorEncoder<'_>) -> fmt::Result {
-        let status = self.0.status();
+        let status = self.0.service.status();
         let (drive, lidar, disk) = (&status.drive, &status.lidar, &status.disk);
         let connected = |state| f64::from(u8::from(state == DeviceState::Connected));
         let gauges = [
             (
                 "drive_connected",
-                "Whether the drive is there and well",
+                "1 if the drive is connected and without fault",
                 connected(drive.state),
             ),
             (
                 "lidar_connected",
-                "Whether the lidar is there and well",
+                "1 if the lidar is connected and without fault",
                 connected(lidar.state),
             ),
             (
                 "capturing",
-                "Whether a scan is recorded",
-                f64::from(u8::from(status.activity.doing == Doing::Capturing)),
+                "1 while a scan is recorded",
+                f64::from(u8::from(status.activity.doing == AxisTask::Capturing)),
             ),
             (
                 "tilt_angle_degrees",
-                "Where the axis is, NaN while that is not known",
+                "Angle of the axis, NaN while unknown",
                 drive.angle_deg.unwrap_or(f64::NAN),
             ),
             (
                 "tilt_speed_degrees_per_second",
-                "How fast it moves",
+                "Speed of the axis",
                 drive.speed_deg_s,
             ),
             (
@@ -82,14 +81,14 @@ impl Collector for Figures {
             ),
             (
                 "lidar_rpm",
-                "Turns of the lidar a minute, NaN while that is not known",
+                "Revolutions of the lidar per minute, NaN while unknown",
                 lidar.rpm.unwrap_or(f64::NAN),
             ),
-            ("scans", "Scans that are kept", disk.scans as f64),
-            ("scans_bytes", "Bytes of them", disk.scans_bytes as f64),
+            ("scans", "Scans kept", disk.scans as f64),
+            ("scans_bytes", "Bytes of the scans", disk.scans_bytes as f64),
             (
                 "disk_free_bytes",
-                "Free bytes on their disk",
+                "Free bytes on the disk of the scans",
                 disk.free_bytes.map_or(f64::NAN, |free| free as f64),
             ),
             (
@@ -112,22 +111,14 @@ impl Collector for Figures {
             ),
             (
                 "lidar_dropped_packets",
-                "Packets for which this machine was too slow",
+                "Packets dropped because this machine was too slow",
                 lidar.dropped_by_kernel,
             ),
-            (
-                "captures",
-                "Captures that were begun",
-                of(&counters.captures),
-            ),
-            (
-                "captures_whole",
-                "Captures that are whole",
-                of(&counters.whole),
-            ),
+            ("captures", "Captures begun", of(&counters.captures)),
+            ("captures_whole", "Complete captures", of(&counters.whole)),
             (
                 "captures_partial",
-                "Captures that are not whole",
+                "Incomplete captures",
                 of(&counters.partial),
             ),
             (
@@ -138,33 +129,32 @@ impl Collector for Figures {
             (
                 "drive_connects",
                 "Times that the drive's port was opened",
-                of(&counters.connects),
+                self.0.service.connects(),
             ),
             (
                 "event_clients_dropped",
-                "WebSocket clients that did not read",
+                "WebSocket clients disconnected because they did not read",
                 status.clients.dropped,
             ),
-            (
-                "requests",
-                "Requests that were answered",
-                of(&counters.requests),
-            ),
+            ("requests", "Requests answered", of(&counters.requests)),
             (
                 "requests_refused",
-                "Of those, refused",
+                "Requests refused",
                 of(&counters.refused),
             ),
         ];
-        let ros2 = self.0.settings().ros2.as_ref().map(|_| &self.0.ros2);
-        if let Some(ros2) = ros2 {
+        for (name, help, value) in counts {
+            put(&mut encoder, name, help, &ConstCounter::new(value))?;
+        }
+        #[cfg(feature = "ros2")]
+        if self.0.settings().ros2.is_some() {
+            let ros2 = &self.0.ros2;
             let gauge = ConstGauge::new(f64::from(u8::from(ros2.is_connected())));
             let help = "Whether a zenoh router is connected";
             put(&mut encoder, "ros2_connected", help, &gauge)?;
-        }
-        let ros2 = ros2.map(Counts::counters).into_iter().flatten();
-        for (name, help, value) in counts.into_iter().chain(ros2) {
-            put(&mut encoder, name, help, &ConstCounter::new(value))?;
+            for (name, help, value) in ros2.counters() {
+                put(&mut encoder, name, help, &ConstCounter::new(value))?;
+            }
         }
         Ok(())
     }

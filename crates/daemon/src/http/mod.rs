@@ -1,10 +1,11 @@
-//! The daemon's HTTP: one list of routes, each answered by a function of a few lines. docs/src/daemon.md and `openapi.json` say what they mean.
+//! The daemon's HTTP: lists of routes, each answered by a function of a few lines.
+//! docs/src/daemon.md and `openapi.json` document them.
 
 pub mod captures;
+pub mod connection_limits;
 pub mod download;
 pub mod events;
 pub mod guard;
-pub mod guests;
 pub mod metrics;
 pub mod page;
 pub mod refusal;
@@ -12,6 +13,7 @@ pub mod scans;
 pub mod server;
 pub mod tilt;
 
+use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
 
 use axum::Router;
@@ -20,19 +22,21 @@ use axum::http::StatusCode;
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, delete, get, post};
-use tokio::sync::Semaphore;
-use tokio::sync::watch;
+use engine::failure::Failure;
+use engine::service::DeviceService;
+use tokio::sync::{Semaphore, watch};
 
-use super::limits::{DOWNLOADS, MAKING, SUBSCRIBERS, Waits};
-use super::shared::{Counters, Shared};
+use crate::limits::{CONNECTIONS, DOWNLOADS, LOCAL_CONNECTIONS, MAKING, Waits};
+use crate::state::{Counters, DaemonState};
 use guard::{Peer, Sessions};
 use refusal::Refusal;
+use server::{Server, UnixSocket};
 
 /// What requests are answered with.
 pub struct Api {
     /// The daemon's state.
-    pub shared: Arc<Shared>,
-    /// What lasts too long.
+    pub state: Arc<DaemonState>,
+    /// Time limits.
     pub waits: Waits,
     /// Browsers that are signed in.
     pub sessions: Sessions,
@@ -40,43 +44,31 @@ pub struct Api {
     pub making: Arc<Semaphore>,
     /// Permits for downloads.
     pub downloads: Arc<Semaphore>,
-    /// Permits for WebSockets.
-    pub sockets: Arc<Semaphore>,
-    /// True once everybody is to leave.
+    /// True once the server is ending.
     pub closing: watch::Receiver<bool>,
 }
 
-impl Api {
-    /// Of a daemon.
-    #[must_use]
-    pub fn new(shared: &Arc<Shared>, waits: Waits, closing: watch::Receiver<bool>) -> Self {
-        Self {
-            shared: Arc::clone(shared),
-            waits,
-            sessions: Sessions::default(),
-            making: Arc::new(Semaphore::new(MAKING)),
-            downloads: Arc::new(Semaphore::new(DOWNLOADS)),
-            sockets: Arc::new(Semaphore::new(SUBSCRIBERS)),
-            closing,
-        }
-    }
-}
+type Routes<S> = Vec<(&'static str, MethodRouter<S>)>;
 
-type Route = (&'static str, MethodRouter<Arc<Api>>);
-
-/// Every route of the API.
-fn routes() -> Vec<Route> {
+/// Routes that need nothing but the devices.
+fn device_routes() -> Routes<Arc<DeviceService>> {
     vec![
-        ("/api/v1/openapi.json", get(page::openapi)),
         ("/api/v1/status", get(status)),
-        ("/api/v1/plan", get(captures::plan)),
-        ("/api/v1/captures", post(captures::begin)),
         ("/api/v1/captures/stop", post(captures::stop)),
         ("/api/v1/tilt", get(tilt::status)),
         ("/api/v1/tilt/home", post(tilt::home)),
         ("/api/v1/tilt/goto", post(tilt::goto)),
         ("/api/v1/tilt/stop", post(tilt::stop)),
         ("/api/v1/tilt/clear", post(tilt::clear)),
+    ]
+}
+
+/// Routes of a daemon.
+fn daemon_routes() -> Routes<Arc<Api>> {
+    vec![
+        ("/api/v1/openapi.json", get(page::openapi)),
+        ("/api/v1/plan", get(captures::plan)),
+        ("/api/v1/captures", post(captures::begin)),
         ("/api/v1/scans", get(scans::list)),
         (
             "/api/v1/scans/{id}",
@@ -90,15 +82,19 @@ fn routes() -> Vec<Route> {
     ]
 }
 
-/// Everything that is answered, for requests that come by `peer`.
-pub fn router(api: &Arc<Api>, peer: Peer) -> Router {
-    let router = routes()
-        .into_iter()
-        .fold(Router::new(), |router, (path, methods)| {
-            router.route(path, methods)
-        });
-    router
+fn router<S: Clone + Send + Sync + 'static>(routes: Routes<S>) -> Router<S> {
+    let routes = routes.into_iter();
+    routes.fold(Router::new(), |router, (path, methods)| {
+        router.route(path, methods)
+    })
+}
+
+/// The router of a daemon for requests that come over `peer`.
+fn daemon_router(api: &Arc<Api>, peer: Peer) -> Router {
+    let devices = router(device_routes()).with_state(Arc::clone(&api.state.service));
+    router(daemon_routes())
         .route("/login", post(page::login))
+        .merge(devices)
         .fallback(page::asset)
         .method_not_allowed_fallback(no_method)
         .layer(from_fn_with_state(api.waits, guard::limits))
@@ -107,10 +103,53 @@ pub fn router(api: &Arc<Api>, peer: Peer) -> Router {
         .with_state(Arc::clone(api))
 }
 
+/// The router of a command's own service.
+pub(crate) fn command_router(service: &Arc<DeviceService>, waits: Waits) -> Router {
+    router(device_routes())
+        .fallback(in_use)
+        .method_not_allowed_fallback(no_method)
+        .layer(from_fn_with_state(waits, guard::limits))
+        .with_state(Arc::clone(service))
+}
+
+/// Serves a daemon over TCP and its Unix socket.
+///
+/// # Errors
+/// Where the system gives no threads.
+pub(crate) fn serve(
+    state: &Arc<DaemonState>,
+    (tcp, address): (TcpListener, SocketAddr),
+    unix: UnixSocket,
+    waits: Waits,
+) -> Result<Server, Failure> {
+    let mut server = Server::start(waits)?;
+    let api = Arc::new(Api {
+        state: Arc::clone(state),
+        waits,
+        sessions: Sessions::default(),
+        making: Arc::new(Semaphore::new(MAKING)),
+        downloads: Arc::new(Semaphore::new(DOWNLOADS)),
+        closing: server.closing(),
+    });
+    let router = daemon_router(&api, Peer::Tcp(address.ip()));
+    server.accept_tcp(tcp, router, CONNECTIONS)?;
+    server.accept_unix(unix, daemon_router(&api, Peer::Local), LOCAL_CONNECTIONS)?;
+    Ok(server)
+}
+
+async fn in_use() -> Refusal {
+    Refusal::new(
+        StatusCode::CONFLICT,
+        refusal::Reason::NoDevice,
+        "another velomotion command uses the device",
+        "wait for its end, or stop it (tilt stop)",
+    )
+}
+
 async fn no_method() -> Refusal {
     Refusal::new(
         StatusCode::METHOD_NOT_ALLOWED,
-        "usage",
+        refusal::Reason::Usage,
         "this path does not have that method",
         "GET /api/v1/openapi.json lists paths and methods",
     )
@@ -118,7 +157,7 @@ async fn no_method() -> Refusal {
 
 async fn count(State(api): State<Arc<Api>>, request: Request, next: Next) -> Response {
     let response = next.run(request).await;
-    let counters = &api.shared.counters;
+    let counters = &api.state.counters;
     Counters::count(&counters.requests);
     if response.status().is_client_error() {
         Counters::count(&counters.refused);
@@ -126,28 +165,29 @@ async fn count(State(api): State<Arc<Api>>, request: Request, next: Next) -> Res
     response
 }
 
-async fn status(State(api): State<Arc<Api>>) -> Response {
-    json(StatusCode::OK, &api.shared.status())
+async fn status(State(service): State<Arc<DeviceService>>) -> Response {
+    json(StatusCode::OK, &service.status())
 }
 
-/// Does what may wait for a disk, beside the threads that answer: a stop must get through whatever the disk does.
+/// Runs what may wait for a disk on a thread that answers no requests: a stop is answered whatever
+/// the disk does.
 ///
 /// # Errors
-/// [`Refusal`] after a defect in it.
+/// [`Refusal`] after a panic in it.
 pub async fn with_disk<T: Send + 'static>(
     what: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, Refusal> {
     tokio::task::spawn_blocking(what).await.map_err(|_| {
         Refusal::new(
             StatusCode::INTERNAL_SERVER_ERROR,
-            "incomplete",
+            refusal::Reason::Incomplete,
             "a defect of the program",
-            "run the daemon with -vv and report what it says",
+            "run the daemon with -vv and report the messages",
         )
     })
 }
 
-/// An answer in JSON.
+/// A response in JSON.
 pub fn json(status: StatusCode, body: &impl serde::Serialize) -> Response {
     match serde_json::to_vec(body) {
         Ok(body) => {
@@ -159,8 +199,8 @@ pub fn json(status: StatusCode, body: &impl serde::Serialize) -> Response {
         }
         Err(error) => Refusal::new(
             StatusCode::INTERNAL_SERVER_ERROR,
-            "incomplete",
-            format!("cannot be said in JSON: {error}"),
+            refusal::Reason::Incomplete,
+            format!("the answer has no JSON form: {error}"),
             "this is a defect of the program",
         )
         .into_response(),
@@ -172,9 +212,8 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// Methods that a route answers, by what the router itself says of it.
-    fn methods(of: &str) -> BTreeSet<String> {
-        let (_, router) = routes().into_iter().find(|(path, _)| *path == of).unwrap();
+    /// Methods of a route, from the debug form of its router.
+    fn methods<S>(router: &MethodRouter<S>) -> BTreeSet<String> {
         let shown = format!("{router:?}");
         ["get", "post", "put", "delete", "patch"]
             .into_iter()
@@ -187,17 +226,24 @@ mod tests {
     fn the_description_has_every_route_and_no_other() {
         let described: serde_json::Value = serde_json::from_str(page::OPENAPI).unwrap();
         let paths = described["paths"].as_object().unwrap();
-        let ours: BTreeSet<&str> = routes().iter().map(|(path, _)| *path).collect();
+        let devices = device_routes();
+        let devices = devices
+            .iter()
+            .map(|(path, router)| (*path, methods(router)));
+        let daemon = daemon_routes();
+        let daemon = daemon.iter().map(|(path, router)| (*path, methods(router)));
+        let ours: std::collections::BTreeMap<&str, _> = devices.chain(daemon).collect();
         let theirs: BTreeSet<&str> = paths.keys().map(String::as_str).collect();
-        let extra: BTreeSet<&str> = ["/", "/login"].into();
-        assert_eq!(ours.union(&extra).copied().collect::<BTreeSet<_>>(), theirs);
-        for path in ours {
+        let mut all: BTreeSet<&str> = ours.keys().copied().collect();
+        all.extend(["/", "/login"]);
+        assert_eq!(all, theirs);
+        for (path, methods) in ours {
             let described = paths[path].as_object().unwrap().keys();
             let described: BTreeSet<String> = described
                 .filter(|key| *key != "parameters")
                 .cloned()
                 .collect();
-            assert_eq!(methods(path), described, "{path}");
+            assert_eq!(methods, described, "{path}");
         }
     }
 

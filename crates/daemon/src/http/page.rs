@@ -10,7 +10,7 @@ use serde::Deserialize;
 
 use super::Api;
 use super::captures;
-use super::refusal::Refusal;
+use super::refusal::{Reason, Refusal};
 
 /// The API in OpenAPI 3.1.
 pub const OPENAPI: &str = include_str!("openapi.json");
@@ -71,7 +71,7 @@ pub async fn asset(request: Request) -> Response {
     let Some((_, content, bytes)) = ASSETS.iter().find(|(own, _, _)| *own == path) else {
         return Refusal::new(
             StatusCode::NOT_FOUND,
-            "not-found",
+            Reason::NotFound,
             format!("there is nothing at {path}"),
             "GET /api/v1/openapi.json lists what there is",
         )
@@ -130,13 +130,13 @@ pub async fn login(
         }
         false => captures::body::<Login>(&headers, &bytes)?.token,
     };
-    let right = api.shared.settings().token.as_ref();
+    let right = api.state.settings().token.as_ref();
     if !right.is_none_or(|token| token.is(given.as_bytes())) {
         return Ok(match form {
             true => sign_in(StatusCode::UNAUTHORIZED),
             false => Refusal::new(
                 StatusCode::UNAUTHORIZED,
-                "denied",
+                Reason::Denied,
                 "the token is wrong",
                 "it is in the daemon's configuration, under [daemon]",
             )
@@ -146,7 +146,7 @@ pub async fn login(
     let cookie = api.sessions.begin().map_err(|error| {
         Refusal::new(
             StatusCode::CONFLICT,
-            "incomplete",
+            Reason::Incomplete,
             format!("the system gives no random bytes: {error}"),
             "use Authorization: Bearer TOKEN",
         )

@@ -1,32 +1,70 @@
-//! Whatever is refused or goes wrong, in one form: error, help, kind.
+//! Refused and failed requests, all in one form: error, help, kind.
 
 use std::fmt;
 
 use axum::extract::rejection::QueryRejection;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
+use engine::failure::{Failure, Kind};
+use engine::service::LeaseError;
+use engine::service::status::AxisTask;
 use serde::Serialize;
 
-use crate::shared::Refused;
-use crate::view::Doing;
-use engine::failure::{Failure, Kind};
-
-/// An answer that says no.
+/// A refused request.
 #[derive(Clone, Debug, Serialize)]
 pub struct Refusal {
     #[serde(skip)]
     status: StatusCode,
     error: String,
     help: Option<String>,
-    kind: &'static str,
+    kind: Reason,
+}
+
+/// Reason of a refusal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reason {
+    /// Invalid request.
+    Usage,
+    /// A file is missing or invalid.
+    BadInput,
+    /// A device is absent.
+    NoDevice,
+    /// A device reports a fault or does not answer.
+    DeviceFault,
+    /// Not all could be done.
+    Incomplete,
+    /// The operation was stopped.
+    Interrupted,
+    /// The axis is busy.
+    Busy,
+    /// No such scan, file or path.
+    NotFound,
+    /// Not allowed.
+    Denied,
+    /// A limit is exceeded.
+    Limit,
+}
+
+impl From<Kind> for Reason {
+    fn from(kind: Kind) -> Self {
+        match kind {
+            Kind::Usage => Self::Usage,
+            Kind::BadInput => Self::BadInput,
+            Kind::NoDevice => Self::NoDevice,
+            Kind::DeviceFault => Self::DeviceFault,
+            Kind::Incomplete => Self::Incomplete,
+            Kind::Interrupted => Self::Interrupted,
+        }
+    }
 }
 
 impl Refusal {
-    /// One that says so.
+    /// A refusal with an error and what to do about it.
     #[must_use]
     pub fn new(
         status: StatusCode,
-        kind: &'static str,
+        kind: Reason,
         error: impl Into<String>,
         help: impl Into<String>,
     ) -> Self {
@@ -38,20 +76,14 @@ impl Refusal {
         }
     }
 
-    /// Whether the axis is busy: it may be free a moment later.
-    #[must_use]
-    pub fn is_busy(&self) -> bool {
-        self.kind == "busy"
-    }
-
-    /// What was asked for cannot be.
+    /// Invalid request.
     #[must_use]
     pub fn usage(error: impl Into<String>) -> Self {
         Self::new(
             StatusCode::BAD_REQUEST,
-            "usage",
+            Reason::Usage,
             error,
-            "GET /api/v1/openapi.json says what there is to ask for",
+            "GET /api/v1/openapi.json describes all requests",
         )
     }
 
@@ -60,9 +92,9 @@ impl Refusal {
     pub fn no_scan(id: &str) -> Self {
         Self::new(
             StatusCode::NOT_FOUND,
-            "not-found",
+            Reason::NotFound,
             format!("there is no scan {id:?}"),
-            "GET /api/v1/scans lists those that there are",
+            "GET /api/v1/scans lists all scans",
         )
     }
 
@@ -71,13 +103,13 @@ impl Refusal {
     pub fn no_file(what: &str) -> Self {
         Self::new(
             StatusCode::NOT_FOUND,
-            "not-found",
+            Reason::NotFound,
             format!("this scan has no {what}"),
-            "its state and why say more",
+            "see its state and why",
         )
     }
 
-    /// Too little room on the disk.
+    /// Too little disk space.
     #[must_use]
     pub fn no_room(failure: Failure) -> Self {
         Self {
@@ -86,12 +118,12 @@ impl Refusal {
         }
     }
 
-    /// Too many at once.
+    /// Too many of something at once.
     #[must_use]
     pub fn too_many(what: &str) -> Self {
         Self::new(
             StatusCode::TOO_MANY_REQUESTS,
-            "limit",
+            Reason::Limit,
             format!("too many {what} at once"),
             "try again when others have ended",
         )
@@ -115,40 +147,35 @@ impl IntoResponse for Refusal {
 }
 
 impl From<Failure> for Refusal {
-    /// What a person asked for in vain is 400, what the devices or the disk do not do now 409.
+    /// Invalid requests are 400, failures of devices and disk 409.
     fn from(failure: Failure) -> Self {
-        let (status, kind) = match failure.kind {
-            Kind::Usage => (StatusCode::BAD_REQUEST, "usage"),
-            Kind::BadInput => (StatusCode::CONFLICT, "bad-input"),
-            Kind::NoDevice => (StatusCode::CONFLICT, "no-device"),
-            Kind::DeviceFault => (StatusCode::CONFLICT, "device-fault"),
-            Kind::Incomplete => (StatusCode::CONFLICT, "incomplete"),
-            Kind::Interrupted => (StatusCode::CONFLICT, "interrupted"),
-        };
         Self {
-            status,
+            status: match failure.kind {
+                Kind::Usage => StatusCode::BAD_REQUEST,
+                _ => StatusCode::CONFLICT,
+            },
             error: failure.message,
             help: failure.help,
-            kind,
+            kind: failure.kind.into(),
         }
     }
 }
 
-impl From<Refused> for Refusal {
-    fn from(refused: Refused) -> Self {
-        match refused {
-            Refused::Failure(failure) => failure.into(),
-            Refused::Busy(doing) => Self::new(
+impl From<LeaseError> for Refusal {
+    fn from(error: LeaseError) -> Self {
+        match error {
+            LeaseError::Failure(failure) => failure.into(),
+            LeaseError::Busy(task) => Self::new(
                 StatusCode::CONFLICT,
-                "busy",
+                Reason::Busy,
                 format!(
                     "the axis is busy: {}",
-                    match doing {
-                        Doing::Capturing => "a scan is recorded",
-                        Doing::Homing => "it is homing",
-                        Doing::Moving => "it moves",
-                        Doing::Connecting => "the drive is being set up",
-                        Doing::Stopping | Doing::Idle => "it is being stopped",
+                    match task {
+                        AxisTask::Capturing => "a scan is recorded",
+                        AxisTask::Homing => "it is homing",
+                        AxisTask::Moving => "it moves",
+                        AxisTask::Connecting => "the drive is being set up",
+                        AxisTask::Stopping | AxisTask::Idle => "it is being stopped",
                     }
                 ),
                 "wait until it is done, or stop it (POST /api/v1/tilt/stop, tilt stop)",

@@ -1,4 +1,4 @@
-//! The scans that are kept.
+//! The scans kept.
 
 use std::sync::Arc;
 
@@ -9,9 +9,9 @@ use serde::Serialize;
 
 use super::Api;
 use super::refusal::Refusal;
-use crate::hub::Event;
-use crate::scans::ScanView;
 use engine::failure::{Failure, Kind};
+use engine::service::events::Event;
+use engine::service::scan_record::ScanView;
 
 /// `GET /scans`.
 pub async fn list(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
@@ -19,15 +19,15 @@ pub async fn list(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
     struct List {
         scans: Vec<ScanView>,
     }
-    let shared = Arc::clone(&api.shared);
-    let scans = super::with_disk(move || shared.scans.list()).await?;
+    let state = Arc::clone(&api.state);
+    let scans = super::with_disk(move || state.scans.list()).await?;
     Ok(super::json(StatusCode::OK, &List { scans }))
 }
 
 /// `GET /scans/ID`.
 pub async fn one(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<Response, Refusal> {
-    let (shared, asked) = (Arc::clone(&api.shared), id.clone());
-    let scan = super::with_disk(move || shared.scans.whole(&asked)).await?;
+    let (state, asked) = (Arc::clone(&api.state), id.clone());
+    let scan = super::with_disk(move || state.scans.whole(&asked)).await?;
     let scan = scan.ok_or_else(|| Refusal::no_scan(&id))?;
     Ok(super::json(StatusCode::OK, &scan))
 }
@@ -37,14 +37,14 @@ pub async fn delete(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
 ) -> Result<StatusCode, Refusal> {
-    let (shared, asked) = (Arc::clone(&api.shared), id.clone());
+    let (state, asked) = (Arc::clone(&api.state), id.clone());
     let deleted = super::with_disk(move || {
-        let deleted = shared.scans.delete(&asked);
-        shared.look_at_disk();
+        let deleted = state.scans.delete(&asked);
+        state.refresh_disk();
         deleted
     });
     let deleted = deleted.await?.map_err(|failure| {
-        // Not the request is wrong, but its time.
+        // The request is valid, only too early.
         let kind = match failure.kind {
             Kind::Usage => Kind::Incomplete,
             kind => kind,
@@ -52,7 +52,7 @@ pub async fn delete(
         Failure { kind, ..failure }
     })?;
     let scan = deleted.ok_or_else(|| Refusal::no_scan(&id))?;
-    api.shared.hub.tell(Event::Scan {
+    api.state.events().send(Event::Scan {
         scan: Box::new(scan),
         deleted: true,
     });

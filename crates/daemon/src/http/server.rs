@@ -1,6 +1,8 @@
-//! The sockets: TCP and Unix, each connection with its limits, and a runtime of their own.
+//! The sockets, TCP and Unix, with the limits of their connections, and the runtime that serves
+//! them.
 
 use std::convert::Infallible;
+use std::future::Future;
 use std::net::{IpAddr, SocketAddr, TcpListener as StdTcpListener};
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener as StdUnixListener, UnixStream};
@@ -11,6 +13,7 @@ use std::time::Duration;
 use axum::Router;
 use axum::http::Request;
 use axum::serve::Listener;
+use engine::failure::{Failure, Kind};
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::{Service, service_fn};
@@ -19,178 +22,203 @@ use hyper_util::service::TowerToHyperService;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, UnixListener};
 use tokio::runtime::{Builder, Runtime};
-use tokio::sync::{Semaphore, mpsc, watch};
+use tokio::sync::{mpsc, watch};
 
-use super::guard::Peer;
-use super::guests::{Guests, Paced, Place};
-use super::{Api, router};
-use crate::limits::{CONNECTIONS, HEAD_BYTES, HEADERS, LOCAL_CONNECTIONS, SUBSCRIBERS, Waits};
-use crate::shared::Shared;
-use engine::failure::{Failure, Kind};
+use super::connection_limits::{ConnectionLimits, ConnectionSlot, TimedStream};
+use crate::limits::{HEAD_BYTES, HEADERS, Waits};
 
-/// How long answers that are on their way are waited for at the end.
-const LAST: Duration = Duration::from_secs(2);
+/// Wait for answers under way at the end.
+const CLOSE_WAIT: Duration = Duration::from_secs(2);
 
-/// Sockets that are bound.
-pub struct Bound {
-    tcp: StdTcpListener,
-    address: SocketAddr,
-    unix: StdUnixListener,
-    socket: Socket,
+fn cannot_listen(place: &str, error: &std::io::Error) -> Failure {
+    Failure::new(Kind::Usage, format!("cannot listen on {place}: {error}")).help(
+        "end the program that has it, or choose another address with --listen (port 0 takes any that is free)",
+    )
 }
 
-/// The Unix socket's file, removed at the end.
-struct Socket(PathBuf);
+/// Binds a TCP address.
+///
+/// # Errors
+/// [`Kind::Usage`] where it is not available.
+pub(crate) fn bind_tcp(listen: SocketAddr) -> Result<(StdTcpListener, SocketAddr), Failure> {
+    let bind = || {
+        let tcp = StdTcpListener::bind(listen)?;
+        tcp.set_nonblocking(true)?;
+        let address = tcp.local_addr()?;
+        Ok((tcp, address))
+    };
+    bind().map_err(|error| cannot_listen(&listen.to_string(), &error))
+}
 
-impl Drop for Socket {
+/// A bound Unix socket. Dropping it removes its file.
+pub(crate) struct UnixSocket {
+    listener: StdUnixListener,
+    file: SocketFile,
+}
+
+struct SocketFile(PathBuf);
+
+impl Drop for SocketFile {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(&self.0);
     }
 }
 
-/// Sockets that are answered.
-pub struct Server {
-    runtime: Runtime,
-    address: SocketAddr,
-    closing: watch::Sender<bool>,
-    /// Ends once no connection is left.
-    staying: mpsc::Receiver<Infallible>,
-    sockets: Arc<Semaphore>,
-    _socket: Socket,
-}
-
-impl Bound {
-    /// Binds both.
+impl UnixSocket {
+    /// Binds a socket for its user and group.
     ///
     /// # Errors
-    /// [`Kind::NoDevice`] where another daemon has the device, [`Kind::Usage`] where the address cannot be had.
-    pub fn bind(listen: SocketAddr, socket: &Path) -> Result<Self, Failure> {
-        if UnixStream::connect(socket).is_ok() {
+    /// [`Kind::NoDevice`] where another service answers there, [`Kind::Usage`] where it cannot be
+    /// bound.
+    pub(crate) fn bind(path: &Path) -> Result<Self, Failure> {
+        if UnixStream::connect(path).is_ok() {
             return Err(Failure::new(
                 Kind::NoDevice,
-                format!("another daemon has this device ({})", socket.display()),
+                format!("another daemon has this device ({})", path.display()),
             )
             .help("use that one, or end it first"));
         }
-        let cannot = |what: String, error: &std::io::Error| {
-            Failure::new(Kind::Usage, format!("cannot listen on {what}: {error}")).help(
-                "end the program that has it, or choose another address with --listen (port 0 takes any that is free)",
-            )
+        // A file that nothing answers at was left by a process that was killed.
+        let _ = std::fs::remove_file(path);
+        let bind = || {
+            let listener = StdUnixListener::bind(path)?;
+            let file = SocketFile(path.to_owned());
+            std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o660))?;
+            listener.set_nonblocking(true)?;
+            Ok(Self { listener, file })
         };
-        let tcp = StdTcpListener::bind(listen).map_err(|e| cannot(listen.to_string(), &e))?;
-        let address = tcp
-            .local_addr()
-            .map_err(|e| cannot(listen.to_string(), &e))?;
-        // Nobody answers there: it was left by one that was killed.
-        let _ = std::fs::remove_file(socket);
-        let name = socket.display().to_string();
-        let unix = StdUnixListener::bind(socket).map_err(|e| cannot(name.clone(), &e))?;
-        let socket = Socket(socket.to_owned());
-        let permissions = std::fs::Permissions::from_mode(0o660);
-        std::fs::set_permissions(&socket.0, permissions).map_err(|e| cannot(name.clone(), &e))?;
-        for blocking in [tcp.set_nonblocking(true), unix.set_nonblocking(true)] {
-            blocking.map_err(|e| cannot(name.clone(), &e))?;
-        }
-        Ok(Self {
-            tcp,
-            address,
-            unix,
-            socket,
-        })
+        bind().map_err(|error| cannot_listen(&path.display().to_string(), &error))
     }
+}
 
-    /// Answers from now on.
+/// A running server.
+pub struct Server {
+    runtime: Runtime,
+    waits: Waits,
+    closing: watch::Sender<bool>,
+    /// Cloned by every connection.
+    open: mpsc::Sender<Infallible>,
+    /// Closed once no connection is left.
+    all_closed: mpsc::Receiver<Infallible>,
+    files: Vec<SocketFile>,
+}
+
+fn no_runtime(error: std::io::Error) -> Failure {
+    Failure::new(
+        Kind::NoDevice,
+        format!("no runtime for the server: {error}"),
+    )
+    .help("end other programs; see ulimit -u")
+}
+
+impl Server {
+    /// Starts the runtime.
     ///
     /// # Errors
     /// Where the system gives no threads.
-    pub fn serve(self, shared: &Arc<Shared>, waits: Waits) -> Result<Server, Failure> {
-        let cannot = |error: std::io::Error| {
-            Failure::new(
-                Kind::NoDevice,
-                format!("no runtime for the server: {error}"),
-            )
-            .help("end other programs; see ulimit -u")
-        };
+    pub(crate) fn start(waits: Waits) -> Result<Self, Failure> {
         let runtime = Builder::new_multi_thread()
             .worker_threads(2)
             .thread_name("http")
             .enable_all()
             .build()
-            .map_err(cannot)?;
-        let (closing, close) = watch::channel(false);
-        let api = Arc::new(Api::new(shared, waits, close.clone()));
-        let (stay, staying) = mpsc::channel(1);
-        let inside = runtime.enter();
-        let tcp = TcpListener::from_std(self.tcp).map_err(cannot)?;
-        let unix = UnixListener::from_std(self.unix).map_err(cannot)?;
-        drop(inside);
-        let door = |most| Door {
-            guests: Guests::new(most),
-            stay: stay.clone(),
-            closing: close.clone(),
-            waits,
-        };
-        let (open, open_door) = (
-            router(&api, Peer::Tcp(self.address.ip())),
-            door(CONNECTIONS),
-        );
-        let (local, local_door) = (router(&api, Peer::Local), door(LOCAL_CONNECTIONS));
-        runtime.spawn(async move {
-            open_door.keep(open, tcp, remote).await;
-        });
-        runtime.spawn(async move {
-            local_door.keep(local, unix, |_| None).await;
-        });
-        Ok(Server {
+            .map_err(no_runtime)?;
+        let (open, all_closed) = mpsc::channel(1);
+        Ok(Self {
             runtime,
-            address: self.address,
-            closing,
-            staying,
-            sockets: Arc::clone(&api.sockets),
-            _socket: self.socket,
+            waits,
+            closing: watch::Sender::new(false),
+            open,
+            all_closed,
+            files: Vec::new(),
         })
     }
-}
 
-impl Server {
-    /// Where TCP is listened to.
-    #[must_use]
-    pub const fn address(&self) -> SocketAddr {
-        self.address
+    /// Becomes true when the server ends.
+    pub(crate) fn closing(&self) -> watch::Receiver<bool> {
+        self.closing.subscribe()
     }
 
-    /// Takes no more requests, sends what is on its way for a moment, and ends.
-    pub fn stop(mut self) {
-        self.closing.send_replace(true);
-        let all = u32::try_from(SUBSCRIBERS).unwrap_or(u32::MAX);
-        self.runtime.block_on(async {
-            // Every connection has a sender, and every WebSocket a permit.
+    /// Serves a TCP socket with at most this many connections.
+    pub(crate) fn accept_tcp(
+        &mut self,
+        listener: StdTcpListener,
+        router: Router,
+        connections: usize,
+    ) -> Result<(), Failure> {
+        let inside = self.runtime.enter();
+        let listener = TcpListener::from_std(listener).map_err(no_runtime)?;
+        drop(inside);
+        let acceptor = self.acceptor(connections);
+        self.runtime
+            .spawn(acceptor.run(router, listener, remote_host));
+        Ok(())
+    }
+
+    /// Serves a Unix socket with at most this many connections.
+    pub(crate) fn accept_unix(
+        &mut self,
+        socket: UnixSocket,
+        router: Router,
+        connections: usize,
+    ) -> Result<(), Failure> {
+        let inside = self.runtime.enter();
+        let listener = UnixListener::from_std(socket.listener).map_err(no_runtime)?;
+        drop(inside);
+        self.files.push(socket.file);
+        let acceptor = self.acceptor(connections);
+        self.runtime.spawn(acceptor.run(router, listener, |_| None));
+        Ok(())
+    }
+
+    fn acceptor(&self, connections: usize) -> Acceptor {
+        Acceptor {
+            limits: ConnectionLimits::new(connections),
+            open: self.open.clone(),
+            closing: self.closing.subscribe(),
+            waits: self.waits,
+        }
+    }
+
+    /// Takes no more requests, waits a moment for answers under way and for `upgraded`
+    /// connections, and ends.
+    pub fn stop(self, upgraded: impl Future<Output = ()>) {
+        let Self {
+            runtime,
+            closing,
+            open,
+            mut all_closed,
+            ..
+        } = self;
+        closing.send_replace(true);
+        drop(open);
+        runtime.block_on(async {
             let ended = async {
-                let _ = self.staying.recv().await;
-                drop(self.sockets.acquire_many(all).await);
+                let _ = all_closed.recv().await;
+                upgraded.await;
             };
-            let _ = tokio::time::timeout(LAST, ended).await;
+            let _ = tokio::time::timeout(CLOSE_WAIT, ended).await;
         });
-        self.runtime.shutdown_timeout(LAST);
+        runtime.shutdown_timeout(CLOSE_WAIT);
     }
 }
 
-/// The host that a connection comes from, if it is another.
-fn remote(address: &SocketAddr) -> Option<IpAddr> {
+/// The host of a connection, if it is not this machine.
+fn remote_host(address: &SocketAddr) -> Option<IpAddr> {
     let ip = address.ip().to_canonical();
     (!ip.is_loopback()).then_some(ip)
 }
 
-/// Lets connections in.
-struct Door {
-    guests: Arc<Guests>,
-    stay: mpsc::Sender<Infallible>,
+/// Accepts the connections of a socket.
+struct Acceptor {
+    limits: Arc<ConnectionLimits>,
+    open: mpsc::Sender<Infallible>,
     closing: watch::Receiver<bool>,
     waits: Waits,
 }
 
-impl Door {
-    async fn keep<L: Listener>(
+impl Acceptor {
+    async fn run<L: Listener>(
         mut self,
         router: Router,
         mut listener: L,
@@ -201,36 +229,36 @@ impl Door {
                 accepted = listener.accept() => accepted,
                 _ = self.closing.wait_for(|closing| *closing) => return,
             };
-            let Some(place) = self.guests.enter(host(&address)) else {
-                // Dropped, which closes it.
+            let Some(slot) = self.limits.enter(host(&address)) else {
+                // Dropping the stream closes the connection.
                 continue;
             };
             let (waits, router, closing) = (self.waits, router.clone(), self.closing.clone());
-            let stay = self.stay.clone();
+            let open = self.open.clone();
             tokio::spawn(async move {
                 tokio::select! {
-                    () = talk(stream, &place, router, waits, closing) => {}
-                    () = place.needed() => {}
+                    () = serve(stream, &slot, router, waits, closing) => {}
+                    () = slot.revoked() => {}
                 }
-                drop(stay);
+                drop(open);
             });
         }
     }
 }
 
-async fn talk<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
+async fn serve<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
     stream: S,
-    place: &Place,
+    slot: &ConnectionSlot,
     router: Router,
     waits: Waits,
     mut closing: watch::Receiver<bool>,
 ) {
-    let guest = Arc::clone(&place.guest);
-    let stream = Paced::new(stream, Arc::clone(&guest), waits);
+    let connection = Arc::clone(&slot.connection);
+    let stream = TimedStream::new(stream, Arc::clone(&connection), waits);
     let router = TowerToHyperService::new(router);
-    // Whoever checks a request tells what it shows.
+    // The guard records in it what a request proves.
     let answer = service_fn(move |mut request: Request<Incoming>| {
-        request.extensions_mut().insert(Arc::clone(&guest));
+        request.extensions_mut().insert(Arc::clone(&connection));
         router.call(request)
     });
     let connection = http1::Builder::new()
@@ -242,10 +270,10 @@ async fn talk<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
         .with_upgrades();
     let mut connection = std::pin::pin!(connection);
     let close = async {
-        // What it gives back is no thing to hold while waiting.
+        // The guard that it returns is not held across an await.
         drop(closing.wait_for(|closing| *closing).await);
     };
-    // What is wrong with a connection is the client's affair, who has been told where that could be.
+    // Errors of a connection have been answered where that was possible.
     tokio::select! {
         _ = connection.as_mut() => return,
         () = close => {}

@@ -1,4 +1,4 @@
-//! The axis by hand.
+//! Jogs of the axis. A command's own service answers these requests, too.
 
 use std::sync::Arc;
 
@@ -6,120 +6,104 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
+use engine::capture::jog::{JogRequest, Report};
+use engine::service::{DeviceService, Stopped};
 use serde::{Deserialize, Serialize};
-use tokio::sync::oneshot;
 
-use super::Api;
-use super::captures::{answered, body, idle};
+use super::captures::body;
 use super::refusal::Refusal;
-use crate::keeper::{Order, tilt_order};
-use crate::shared::Shared;
-use crate::view::Doing;
-use engine::capture::jog::JogRequest;
-use engine::capture::jog::Report;
-use engine::failure::{Failure, Kind};
 
-/// A move by hand, as the command's `tilt goto`.
+type Service = State<Arc<DeviceService>>;
+
+/// Body of `POST /tilt/goto`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Goto {
-    /// Where to.
+    /// Target, degrees.
     pub to_deg: f64,
-    /// How fast.
-    #[serde(default = "slow")]
+    /// Speed, degrees per second.
+    #[serde(default = "default_speed")]
     pub speed_deg_s: f64,
-    /// Acceleration; the device's own where it is left out.
+    /// Acceleration, degrees per second squared; the device's own by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accel_deg_s2: Option<f64>,
 }
 
-/// As the command does.
-fn slow() -> f64 {
+/// The default of `tilt goto --speed`.
+const fn default_speed() -> f64 {
     10.0
 }
 
-/// Has the keeper do it, and waits for it. It goes on where the client does not wait.
-async fn does(shared: &Shared, request: JogRequest) -> Result<Report, Refusal> {
-    let (doing, commands) = tilt_order(request, shared)?;
-    let only_asks = matches!(request, JogRequest::Status);
-    if !only_asks {
-        answered(shared).await;
-    }
-    shared.take(doing, None)?;
-    shared.note(|activity| activity.only_asks = only_asks);
-    let (answer, done) = oneshot::channel();
-    if let Err(refused) = shared.order(Order::Tilt { commands, answer }) {
-        shared.set_idle();
-        return Err(refused.into());
-    }
-    match done.await {
-        Ok(answer) => Ok(answer?),
-        Err(_) => Err(Failure::new(Kind::Interrupted, "the daemon is ending")
-            .help("the axis is stopped; start the daemon again")
-            .into()),
-    }
+/// Answer to `POST /tilt/stop` of a service that ends with its command.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoppedCommand {
+    /// Name of the device's profile.
+    pub device: String,
+    /// Whether the axis was stopped.
+    pub stopped: bool,
 }
 
-/// How often a stop is tried while others begin moves.
-const STOPS: usize = 16;
-
-fn said(report: &Report) -> Response {
-    super::json(StatusCode::OK, report)
+/// Answer to `POST /tilt/stop`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum StopAnswer {
+    /// Of a daemon: the drive's state.
+    Report(Box<Report>),
+    /// Of a command.
+    Command(StoppedCommand),
 }
 
-/// `GET /tilt`. While the axis is busy, and for a moment after it was asked, what is known of it: however many look, moves are not refused
-/// for it.
-pub async fn status(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
-    let shared = &api.shared;
-    let busy = shared.activity().doing != Doing::Idle;
-    let known = if busy {
-        shared.report()
-    } else {
-        shared.fresh_report()
-    };
-    if let Some(mut report) = known {
-        report.angle_deg = shared.drive().angle_deg;
-        return Ok(said(&report));
+fn ok(answer: &impl Serialize) -> Response {
+    super::json(StatusCode::OK, answer)
+}
+
+async fn jog(service: &Arc<DeviceService>, request: JogRequest) -> Result<Response, Refusal> {
+    Ok(ok(&service.run_jog(request).await?))
+}
+
+/// `GET /tilt`. Answered from the last report while the axis is busy and shortly after, so that
+/// clients that look do not keep motions waiting.
+pub async fn status(State(service): Service) -> Result<Response, Refusal> {
+    match service.known_report() {
+        Some(report) => Ok(ok(&report)),
+        None => jog(&service, JogRequest::Status).await,
     }
-    Ok(said(&does(shared, JogRequest::Status).await?))
 }
 
 /// `POST /tilt/home`.
-pub async fn home(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
-    Ok(said(&does(&api.shared, JogRequest::Home).await?))
+pub async fn home(State(service): Service) -> Result<Response, Refusal> {
+    jog(&service, JogRequest::Home).await
 }
 
 /// `POST /tilt/goto`.
 pub async fn goto(
-    State(api): State<Arc<Api>>,
+    State(service): Service,
     headers: HeaderMap,
     bytes: Bytes,
 ) -> Result<Response, Refusal> {
-    let wanted: Goto = body(&headers, &bytes)?;
+    let target: Goto = body(&headers, &bytes)?;
     let request = JogRequest::Goto {
-        to_deg: wanted.to_deg,
-        speed_deg_s: wanted.speed_deg_s,
-        accel_deg_s2: wanted.accel_deg_s2,
+        to_deg: target.to_deg,
+        speed_deg_s: target.speed_deg_s,
+        accel_deg_s2: target.accel_deg_s2,
     };
-    Ok(said(&does(&api.shared, request).await?))
+    jog(&service, request).await
 }
 
-/// `POST /tilt/stop`: whatever moves is stopped, and the brake set.
-pub async fn stop(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
-    let shared = &api.shared;
-    for _ in 0..STOPS {
-        shared.interrupt(None);
-        idle(shared).await;
-        // Somebody else may have been quicker: he is stopped, too.
-        match does(shared, JogRequest::Stop).await {
-            Err(refused) if refused.is_busy() => {}
-            done => return Ok(said(&done?)),
-        }
-    }
-    Ok(said(&does(shared, JogRequest::Stop).await?))
+/// `POST /tilt/stop`: stops any motion and sets the brake.
+pub async fn stop(State(service): Service) -> Result<Response, Refusal> {
+    let answer = match service.stop_axis().await? {
+        Stopped::Reported(report) => StopAnswer::Report(report),
+        Stopped::ByCommand => StopAnswer::Command(StoppedCommand {
+            device: service.device().0.to_owned(),
+            stopped: true,
+        }),
+    };
+    Ok(ok(&answer))
 }
 
 /// `POST /tilt/clear`.
-pub async fn clear(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
-    Ok(said(&does(&api.shared, JogRequest::ClearFaults).await?))
+pub async fn clear(State(service): Service) -> Result<Response, Refusal> {
+    jog(&service, JogRequest::ClearFaults).await
 }

@@ -4,8 +4,9 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::{CLOUD, LOG, RECORD, ScanHead, ScanRecord, ScanState};
+use super::{CLOUD, LOG, RECORD};
 use engine::failure::{Failure, Kind};
+use engine::service::scan_record::{ScanHead, ScanRecord, ScanState};
 
 /// What a folder says about its scan. One that says nothing, but has a log, is a scan all the same.
 pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {

@@ -1,13 +1,12 @@
-//! A scan that is incomplete in a few sentences: what went wrong, what there is of it, what to do. No file's place is in them: whoever reads them
-//! in a browser has no use for one.
+//! Summary of an incomplete scan for people: what went wrong, what is kept, what to do. It names no
+//! folders, which are of no use in a browser.
 
 use std::path::Path;
 
-use super::{ScanRecord, ScanState};
-use engine::capture::run::NO_CLOUD;
 use engine::failure::Failure;
+use engine::service::scan_record::{ScanRecord, ScanState};
 
-/// What is said of a scan in `place`; nothing of one that is whole or has not ended.
+/// The summary of a scan in `place`; `None` for a complete scan or one under way.
 pub(super) fn of(record: &ScanRecord, place: &Path, has_log: bool) -> Option<String> {
     let left = match (record.state, record.waits_for_room, has_log) {
         (ScanState::Partial, ..) => "What was captured is kept.",
@@ -22,7 +21,7 @@ pub(super) fn of(record: &ScanRecord, place: &Path, has_log: bool) -> Option<Str
     let (why, help) = match &record.why {
         Some(why) => (
             why.message.replace(&format!("{place}/"), ""),
-            todo(why, &place),
+            help_sentences(why, record.no_cloud.as_deref(), &place),
         ),
         None => (String::new(), Vec::new()),
     };
@@ -31,13 +30,14 @@ pub(super) fn of(record: &ScanRecord, place: &Path, has_log: bool) -> Option<Str
     Some(all.join(" "))
 }
 
-/// What to do, a sentence a line. Lines on where a file is are for whoever reads the API, but for the one that says why there is no cloud.
-fn todo(why: &Failure, place: &str) -> Vec<String> {
+/// The help, one sentence per line. Lines that name a folder are left out, except the one on the
+/// missing cloud.
+fn help_sentences(why: &Failure, no_cloud: Option<&str>, place: &str) -> Vec<String> {
     let help = why.help.as_deref().unwrap_or_default();
     let mut lines: Vec<String> = Vec::new();
     let wanted = help
         .lines()
-        .filter(|line| !line.contains(place) || line.starts_with(NO_CLOUD))
+        .filter(|line| !line.contains(place) || Some(*line) == no_cloud)
         .map(|line| line.replace(&format!("{place}/"), ""));
     for line in wanted {
         let goes_on = line.starts_with('(') || lines.last().is_some_and(|l| l.ends_with(','));
@@ -49,7 +49,7 @@ fn todo(why: &Failure, place: &str) -> Vec<String> {
     lines.iter().map(|line| sentence(line)).collect()
 }
 
-/// With a capital at its begin and a stop at its end.
+/// The line with a capital first letter and a full stop.
 fn sentence(line: &str) -> String {
     let mut letters = line.chars();
     let Some(first) = letters.next() else {
@@ -65,14 +65,25 @@ fn sentence(line: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scans::{CLOUD, LOG, ScanHead};
-    use engine::capture::run::{self as job, Outcome};
+    use crate::scans::{CLOUD, LOG};
+    use engine::capture::run::{self, Outcome};
     use engine::failure::Kind;
+    use engine::service::scan_record::ScanHead;
 
     const PLACE: &str = "/data/my scans/hall";
 
     fn said(state: ScanState, why: Failure, waits: bool, has_log: bool) -> String {
-        let record = ScanRecord::new(ScanHead {
+        said_of(state, why, waits, has_log, None)
+    }
+
+    fn said_of(
+        state: ScanState,
+        why: Failure,
+        waits: bool,
+        has_log: bool,
+        no_cloud: Option<String>,
+    ) -> String {
+        let mut record = ScanRecord::new(ScanHead {
             id: "hall".to_owned(),
             name: None,
             state,
@@ -84,6 +95,7 @@ mod tests {
             points: None,
             duration_s: None,
         });
+        record.no_cloud = no_cloud;
         of(&record, Path::new(PLACE), has_log).unwrap()
     }
 
@@ -94,7 +106,7 @@ mod tests {
             failure: recording,
             ..Outcome::default()
         };
-        job::conclude(Err(making), outcome, (&files[0], &files[1])).unwrap_err()
+        run::conclude(Err(making), outcome, (&files[0], &files[1])).unwrap_err()
     }
 
     #[test]
@@ -113,13 +125,12 @@ mod tests {
             "The cloud cloud.ply could not be written: disk full. \
              The log is kept: its cloud is made as soon as the disk has room. Free some space."
         );
-        let both = without_cloud(
-            Some(stopped()),
-            Failure::new(Kind::BadInput, format!("{PLACE}/log.pcapng: no packet")),
-        );
+        let making = Failure::new(Kind::BadInput, format!("{PLACE}/log.pcapng: no packet"));
+        let no_cloud = Some(run::no_cloud(&making));
+        let both = without_cloud(Some(stopped()), making);
         assert!(both.help.as_ref().unwrap().contains(PLACE), "{both:?}");
         assert_eq!(
-            said(ScanState::Failed, both, false, true),
+            said_of(ScanState::Failed, both, false, true, no_cloud),
             "Stopped by the user. The log is kept. There is no cloud: log.pcapng: no packet."
         );
         let silent = Failure::new(Kind::NoDevice, "no lidar")

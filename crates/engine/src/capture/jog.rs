@@ -1,4 +1,4 @@
-//! The axis by hand: what a wish becomes for the drive's client, and how the axis then stands. For the command, and for the daemon.
+//! Motion of the axis outside captures, and reports on the drive's state.
 
 use drive::{CommandOutcome, DeviceError, DriveCommand, DriveEvent, DriveStatus};
 use io::port::Port;
@@ -10,7 +10,7 @@ use crate::devices::drive_session::{Session, SessionError};
 use crate::devices::profile as devices;
 use crate::failure::{Failure, Kind};
 
-/// What the drive said about itself.
+/// State of the drive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Name of the device's profile.
@@ -21,19 +21,19 @@ pub struct Report {
     pub statusword: u16,
     /// Mode of operation (6061).
     pub mode: i8,
-    /// Whether the axis knows where it is.
+    /// Whether the axis is homed.
     pub referenced: bool,
-    /// Absent while the axis does not know where it is.
+    /// Angle, degrees; absent while the axis is not homed.
     pub angle_deg: Option<f64>,
     /// Position, quadcounts.
     pub position_qc: i32,
-    /// Speed of the motor.
+    /// Speed of the motor, revolutions per minute.
     pub velocity_rpm: i32,
     /// Whether the lower limit switch is pressed.
     pub negative_limit: bool,
-    /// Whether the upper one is.
+    /// Whether the upper limit switch is pressed.
     pub positive_limit: bool,
-    /// Whether the home switch is.
+    /// Whether the home switch is pressed.
     pub home_switch: bool,
     /// The error history, newest first.
     pub faults: Vec<Fault>,
@@ -46,9 +46,9 @@ pub struct Report {
 pub struct Fault {
     /// Four hexadecimal digits.
     pub code: String,
-    /// What the guides call it.
+    /// Name in the Firmware Specification.
     pub name: Option<String>,
-    /// What it means.
+    /// Meaning.
     pub meaning: Option<String>,
     /// What to do about it.
     pub remedy: Option<String>,
@@ -126,27 +126,27 @@ pub fn commands(
 /// Whether a move may home the axis first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Homing {
-    /// Only where that is what was asked for.
+    /// Only on request.
     AsAsked,
     /// Before any move.
     First,
 }
 
-/// Runs the commands and asks how the axis then stands.
+/// Runs the commands and reads the drive's state.
 ///
 /// # Errors
 /// [`SessionError`].
-pub fn ask<P: Port>(
+pub fn run<P: Port>(
     session: &mut Session<P>,
     commands: &[DriveCommand],
     homing: Homing,
-    told: &mut dyn FnMut(&DriveEvent),
+    on_event: &mut dyn FnMut(&DriveEvent),
 ) -> Result<DriveStatus, SessionError> {
     for command in commands {
         if homing == Homing::First && matches!(command, DriveCommand::Goto(_)) {
-            session.run(DriveCommand::Home, told)?;
+            session.run(DriveCommand::Home, on_event)?;
         }
-        session.run(*command, told)?;
+        session.run(*command, on_event)?;
     }
     match session.run(DriveCommand::Status, &mut |_| {})? {
         CommandOutcome::Status(status) => Ok(status),
@@ -155,7 +155,7 @@ pub fn ask<P: Port>(
 }
 
 impl Report {
-    /// The report on what the drive called `device` said.
+    /// The report on the drive called `device`.
     #[must_use]
     pub fn new(device: &str, status: &DriveStatus, simulated: bool) -> Self {
         Self {
@@ -178,7 +178,7 @@ impl Report {
     }
 }
 
-/// A fault of the drive with what is known of it.
+/// A fault of the drive with its meaning and remedy.
 #[must_use]
 pub fn fault(error: DeviceError) -> Fault {
     let meaning = error.meaning();
@@ -190,7 +190,7 @@ pub fn fault(error: DeviceError) -> Fault {
     }
 }
 
-/// Why the axis was not moved, with what to do about it.
+/// The failure of a motion, with what to do about it.
 #[must_use]
 pub fn failure(error: &SessionError) -> Failure {
     let kind = match error {
@@ -198,7 +198,7 @@ pub fn failure(error: &SessionError) -> Failure {
         _ => Kind::DeviceFault,
     };
     let help = error.help().unwrap_or_else(|| {
-        "the axis stands, its power stage off, its brake set if it has one".to_owned()
+        "the axis is at rest, its power stage off, its brake set if it has one".to_owned()
     });
     Failure::new(kind, error.to_string()).help(help)
 }

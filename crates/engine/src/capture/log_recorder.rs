@@ -1,4 +1,4 @@
-//! A recording under way: both devices' traffic into one log.
+//! Records the traffic of both devices to one log.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -12,32 +12,32 @@ use scanner::ScanConfig;
 use crate::devices::lidar_receiver::LidarReceiver;
 use crate::failure::{Failure, Kind};
 
-/// A recording under way.
-pub struct Recording {
+/// A recording in progress.
+pub struct CaptureLog {
     log: LogRecorder,
-    hearing: Arc<LidarReceiver>,
-    /// What was heard before it began.
+    lidar: Arc<LidarReceiver>,
+    /// Counts before it began.
     before: ListenCounts,
     packets_before: u64,
 }
 
-/// What was recorded.
+/// Counts of a recording.
 #[derive(Clone, Copy, Debug)]
-pub struct Recorded {
-    /// What the lidar's sockets heard and the kernel dropped.
+pub struct LogCounts {
+    /// Packets received, and dropped by the kernel.
     pub lidar: ListenCounts,
-    /// What is in the log.
+    /// Records in the log.
     pub log: RecorderCounts,
 }
 
-impl Recording {
-    /// Makes the log and records from now on what `hearing` hears.
+impl CaptureLog {
+    /// Creates the log and records what `lidar` receives from now on.
     ///
     /// # Errors
-    /// [`Kind::Usage`] where the log exists and may not be replaced, [`Kind::BadInput`] where it cannot be made, and where the lidar's
-    /// sockets have failed.
+    /// [`Kind::Usage`] where the log exists, [`Kind::BadInput`] where it cannot be created, and where
+    /// the lidar's sockets have failed.
     pub fn start(
-        hearing: &Arc<LidarReceiver>,
+        lidar: &Arc<LidarReceiver>,
         path: &Path,
         config: &ScanConfig,
         link: DriveLink,
@@ -55,52 +55,54 @@ impl Recording {
         let writer =
             LogWriter::create(path, &head, Overwrite::Refuse).map_err(|e| log_failure(&e))?;
         let log = LogRecorder::to_disk(writer).map_err(|e| log_failure(&e))?;
-        let packets_before = hearing.packets();
-        let before = hearing.record_to(Some(log.handle()))?;
+        let packets_before = lidar.packets();
+        let before = lidar.record_to(Some(log.handle()))?;
         Ok(Self {
             log,
-            hearing: Arc::clone(hearing),
+            lidar: Arc::clone(lidar),
             before,
             packets_before,
         })
     }
 
-    /// Where the drive's records go.
+    /// The log, for the drive's records.
     #[must_use]
     pub fn handle(&self) -> RecorderHandle {
         self.log.handle()
     }
 
-    /// Lidar packets heard so far.
+    /// Lidar packets so far.
     #[must_use]
     pub fn packets(&self) -> u64 {
-        self.hearing.packets().saturating_sub(self.packets_before)
+        self.lidar.packets().saturating_sub(self.packets_before)
     }
 
-    /// Whether the log cannot be written any more.
+    /// Whether writing the log has failed.
     #[must_use]
     pub fn failed(&self) -> bool {
         self.log.failed()
     }
 
-    /// Takes what has come until now and closes the log; `waiting` is called every few milliseconds until the disk has it.
+    /// Writes everything received until now and closes the log. Calls `waiting` every few
+    /// milliseconds until the disk has it.
     ///
     /// # Errors
-    /// [`Kind::Incomplete`] where the log could not be written to its end or the lidar's socket failed; what was written stays.
-    pub fn finish(self, waiting: &mut dyn FnMut()) -> Result<Recorded, Failure> {
-        let heard = self.hearing.record_to(None);
+    /// [`Kind::Incomplete`] where the log could not be written completely or the lidar's socket
+    /// failed; what was written stays.
+    pub fn finish(self, waiting: &mut dyn FnMut()) -> Result<LogCounts, Failure> {
+        let counts = self.lidar.record_to(None);
         let log = self
             .log
             .finish_while(waiting)
             .map_err(|e| log_failure(&e))?;
-        Ok(Recorded {
-            lidar: since(heard?, self.before),
+        Ok(LogCounts {
+            lidar: since(counts?, self.before),
             log,
         })
     }
 }
 
-/// What was heard between two counts.
+/// The difference of two counts.
 fn since(now: ListenCounts, before: ListenCounts) -> ListenCounts {
     ListenCounts {
         data: now.data.saturating_sub(before.data),

@@ -82,6 +82,7 @@ impl CaptureRequest {
 }
 
 /// A checked capture: moves, files, metadata.
+#[derive(Clone)]
 pub struct CapturePlan {
     /// Name of the device's profile.
     pub name: String,

@@ -1,8 +1,6 @@
-//! A capture from the first packet to the verdict, whoever asked for it: the command with devices of its own, or the daemon with those that
-//! it keeps.
+//! A capture from the first packet to the report on it, with devices that the caller has opened.
 //!
-//! Whatever ends it early, the axis is stopped first, then the log is closed. Opening devices, and saying things to people, is left to the
-//! caller.
+//! Whatever ends it early, the axis is stopped first, then the log is closed.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,9 +15,9 @@ use scanner::{ScanConfig, TiltSource};
 use sim::Truth;
 use units::{Degrees, Host, Stamp};
 
-use crate::capture::completeness::{self as wholeness, Watch};
-use crate::capture::log_recorder::{Recorded, Recording};
-use crate::capture::moves::{self as motion, MoveProgress, Step};
+use crate::capture::completeness::{self, SilenceWatch};
+use crate::capture::log_recorder::{CaptureLog, LogCounts};
+use crate::capture::moves::{self, MoveProgress, Step};
 use crate::capture::request::CapturePlan;
 use crate::devices::drive_session::{Session, SessionError};
 use crate::devices::lidar_receiver::LidarReceiver;
@@ -30,98 +28,101 @@ use crate::reconstruct::replay::{self, Reconstruction, TimeReference};
 use crate::reconstruct::report::{Reception, ScanReport};
 use crate::reconstruct::source::Source;
 
-/// Begins the line that says why there is no cloud of what else went wrong.
-pub const NO_CLOUD: &str = "there is no cloud: ";
-/// A lidar that turns sends 754 packets a second; one that sends none in this time will not send any during the sweep.
+/// Wait for the first packet. A lidar in rotation sends 754 packets per second: one that sends none
+/// in this time will send none during the sweep.
 const LIDAR_WAIT: Duration = Duration::from_secs(2);
+/// Between two looks for the first packet.
+const LIDAR_POLL: Duration = Duration::from_millis(5);
 
 /// What a capture works with.
-pub struct Job<'a> {
-    /// What was decided beforehand.
-    pub setup: &'a CapturePlan,
-    /// Set by whoever wants the axis to stop.
+pub struct CaptureJob<'a> {
+    /// The plan.
+    pub plan: &'a CapturePlan,
+    /// Set by whatever wants the axis to stop.
     pub interrupt: &'a Arc<AtomicBool>,
     /// The lidar.
-    pub hearing: &'a Arc<LidarReceiver>,
+    pub lidar: &'a Arc<LidarReceiver>,
     /// The drive's port.
     pub port: &'a mut dyn Port,
     /// How the drive is attached.
     pub link: DriveLink,
     /// Speed of an RS232 line.
     pub rs232_baud: Option<u32>,
-    /// Whoever else looks at the drive's records. It may not wait.
-    pub onlooker: &'a dyn Fn(&Record<'_>),
+    /// Called with each of the drive's records. It may not block.
+    pub tap: &'a dyn Fn(&Record<'_>),
 }
 
-/// What happens on the way.
+/// Progress of a capture.
 #[derive(Clone, Copy, Debug)]
 pub enum CaptureEvent<'a> {
-    /// The moves begin: the lidar is heard.
-    Begins,
-    /// Move number `number`, from 0, of the plan begins.
+    /// The lidar sends packets; the moves begin.
+    Started,
+    /// A move begins.
     Move {
-        /// Which.
+        /// Its number, from 0.
         number: usize,
-        /// What.
+        /// The move.
         step: &'a Step,
     },
-    /// The axis is somewhere.
+    /// The axis moved.
     Moved {
-        /// When the drive said so.
+        /// Time of the drive's answer.
         at: Stamp<Host>,
-        /// Where.
+        /// Angle.
         angle: Degrees,
         /// Lidar packets of this capture so far.
         packets: u64,
     },
-    /// The drive client's own words.
+    /// Progress of the drive client.
     Progress(&'a CommandProgress),
-    /// The axis has made its last move.
-    Over,
-    /// The disk is waited for, every few milliseconds.
+    /// The last move has ended.
+    MotionEnded,
+    /// The log is being written to disk; sent every few milliseconds.
     Saving,
-    /// Something to be said.
-    Warning(&'a str),
 }
 
-/// How a recording ended: both halves, for either may have failed.
-pub struct Ended {
+/// The end of a recording: motion and log, either of which may have failed.
+pub struct RecordingEnd {
     motion: Result<(), SessionError>,
-    recorded: Result<Recorded, Failure>,
-    /// Why the capture itself had the axis stopped.
+    log: Result<LogCounts, Failure>,
+    /// Why the capture itself stopped the axis.
     stopped: Option<Failure>,
 }
 
-/// What there is to say of a recording whatever becomes of its cloud.
+/// What a recording has to report, whatever becomes of its cloud.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     /// What went wrong.
     pub failure: Option<Failure>,
-    /// Records that were lost on the way to the log.
+    /// Records lost on the way to the log.
     pub lost_records: u64,
-    /// What was heard.
+    /// Counts of packets.
     pub reception: Option<Reception>,
+    /// What is doubtful about it.
+    pub warnings: Vec<String>,
 }
 
 /// Records both devices while the axis makes its moves.
 ///
 /// # Errors
 /// [`Failure`] where nothing moved and nothing is recorded: no log is left then.
-pub fn record(job: Job<'_>, told: &mut dyn FnMut(CaptureEvent<'_>)) -> Result<Ended, Failure> {
-    let Job {
-        setup, interrupt, ..
+pub fn record(
+    job: CaptureJob<'_>,
+    on_event: &mut dyn FnMut(CaptureEvent<'_>),
+) -> Result<RecordingEnd, Failure> {
+    let CaptureJob {
+        plan, interrupt, ..
     } = job;
     let scan = ScanConfig {
         rs232_baud: job.rs232_baud,
-        ..setup.scan.clone()
+        ..plan.scan.clone()
     };
-    let recording = Recording::start(job.hearing, &setup.log, &scan, job.link)?;
-    if let Err(failure) = await_lidar(&recording, setup, interrupt) {
-        // Nothing has moved and nothing is recorded.
-        let unwanted = recording
+    let recorder = CaptureLog::start(job.lidar, &plan.log, &scan, job.link)?;
+    if let Err(failure) = await_lidar(&recorder, plan, interrupt) {
+        let unwanted = recorder
             .finish(&mut || {})
-            .map_or(0, |heard| heard.lidar.unwanted);
-        let _ = std::fs::remove_file(&setup.log);
+            .map_or(0, |counts| counts.lidar.unwanted);
+        let _ = std::fs::remove_file(&plan.log);
         return Err(match unwanted {
             0 => failure,
             _ => Failure {
@@ -133,78 +134,71 @@ pub fn record(job: Job<'_>, told: &mut dyn FnMut(CaptureEvent<'_>)) -> Result<En
             },
         });
     }
-    told(CaptureEvent::Begins);
-    let (log, onlooker) = (recording.handle(), job.onlooker);
+    on_event(CaptureEvent::Started);
+    let (log, tap) = (recorder.handle(), job.tap);
     let port = RecordingPort::new(job.port, job.link, move |record| {
         log.record(record);
-        onlooker(record);
+        tap(record);
     });
-    let client = DriveClient::new(setup.axis.clone(), job.link);
+    let client = DriveClient::new(plan.axis.clone(), job.link);
     let mut session = Session::new(client, port, Arc::clone(interrupt));
-    let gearing = setup.axis.gearing;
+    let gearing = plan.axis.gearing;
     let mut number = 0;
-    let mut watch = Watch::new(recording.packets());
-    let motion = motion::run(&mut session, &setup.steps, &mut |what| {
-        if recording.failed() || watch.silent(recording.packets()) {
+    let mut watch = SilenceWatch::new(recorder.packets());
+    let motion = moves::run(&mut session, &plan.steps, &mut |event| {
+        if recorder.failed() || watch.silent(recorder.packets()) {
             // A sweep that is not recorded is not worth making.
             interrupt.store(true, Ordering::Relaxed);
         }
-        match what {
+        match event {
             MoveProgress::Step(step) => {
-                told(CaptureEvent::Move { number, step });
+                on_event(CaptureEvent::Move { number, step });
                 number += 1;
             }
             MoveProgress::Event(DriveEvent::Sample(ShaftSample {
                 answer, position, ..
-            })) => told(CaptureEvent::Moved {
+            })) => on_event(CaptureEvent::Moved {
                 at: *answer,
                 angle: gearing.angle(*position),
-                packets: recording.packets(),
+                packets: recorder.packets(),
             }),
-            MoveProgress::Event(DriveEvent::Progress(step)) => told(CaptureEvent::Progress(step)),
+            MoveProgress::Event(DriveEvent::Progress(step)) => {
+                on_event(CaptureEvent::Progress(step))
+            }
             MoveProgress::Event(event) => tracing::debug!(?event),
         }
     });
-    told(CaptureEvent::Over);
+    on_event(CaptureEvent::MotionEnded);
     drop(session);
-    let recorded = recording.finish(&mut || told(CaptureEvent::Saving));
-    if let Ok(Recorded { lidar, .. }) = &recorded
-        && lidar.without_kernel_time > 0
-    {
-        told(CaptureEvent::Warning(&format!(
-            "{} lidar packets came without a kernel time: their times are less certain",
-            lidar.without_kernel_time
-        )));
-    }
-    Ok(Ended {
+    let log = recorder.finish(&mut || on_event(CaptureEvent::Saving));
+    Ok(RecordingEnd {
         stopped: watch.failure(),
-        ..Ended::new(motion, recorded)
+        ..RecordingEnd::new(motion, log)
     })
 }
 
-/// Waits for the first packet: a sweep without a lidar is a sweep for nothing.
+/// Waits for the first packet, before anything moves.
 fn await_lidar(
-    recording: &Recording,
-    setup: &CapturePlan,
+    recorder: &CaptureLog,
+    plan: &CapturePlan,
     interrupt: &AtomicBool,
 ) -> Result<(), Failure> {
-    let pause = Duration::from_millis(5);
     let mut waited = Duration::ZERO;
-    while recording.packets() == 0 {
+    while recorder.packets() == 0 {
         if interrupt.load(Ordering::Relaxed) {
             return Err(Failure::new(Kind::Interrupted, "stopped by the user")
                 .help("nothing had moved yet"));
         }
         if waited >= LIDAR_WAIT {
-            return Err(silence(&listen_config(&setup.device)));
+            return Err(silence(&listen_config(&plan.device)));
         }
-        std::thread::sleep(pause);
-        waited += pause;
+        std::thread::sleep(LIDAR_POLL);
+        waited += LIDAR_POLL;
     }
     Ok(())
 }
 
-/// Nothing came to where a lidar was to be heard.
+/// The failure of a lidar that sends nothing.
 #[must_use]
 pub fn silence(config: &ListenConfig) -> Failure {
     let data = config.data_port;
@@ -230,24 +224,24 @@ pub fn silence(config: &ListenConfig) -> Failure {
     ))
 }
 
-/// Makes the cloud of what was recorded.
+/// Makes the cloud of a recorded capture.
 ///
 /// # Errors
 /// As [`replay::make`].
 pub fn cloud(
-    setup: &CapturePlan,
+    plan: &CapturePlan,
     truth: Option<&Truth>,
     lost_records: u64,
     interrupt: &AtomicBool,
     target: Target,
 ) -> Result<ScanReport, Failure> {
-    let source = Source::open(&setup.log, None)?;
+    let source = Source::open(&plan.log, None)?;
     let request = Reconstruction {
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
         time: TimeReference::Host,
-        accuracy: setup.accuracy,
+        accuracy: plan.accuracy,
         pace: None,
         truth,
         lost_records,
@@ -256,29 +250,26 @@ pub fn cloud(
     replay::make(&request, target)
 }
 
-impl Ended {
-    /// Of its two halves.
+impl RecordingEnd {
+    /// The end of a motion and of its log.
     #[must_use]
-    pub const fn new(
-        motion: Result<(), SessionError>,
-        recorded: Result<Recorded, Failure>,
-    ) -> Self {
+    pub const fn new(motion: Result<(), SessionError>, log: Result<LogCounts, Failure>) -> Self {
         Self {
             motion,
-            recorded,
+            log,
             stopped: None,
         }
     }
 
-    /// What went wrong with the moves.
+    /// Why the motion failed.
     #[must_use]
     pub fn motion_error(&self) -> Option<&SessionError> {
         self.motion.as_ref().err()
     }
 
-    /// Whether the axis stands.
+    /// Whether the axis is at rest.
     #[must_use]
-    pub fn stands(&self) -> bool {
+    pub fn at_rest(&self) -> bool {
         !self.motion.as_ref().is_err_and(SessionError::may_move)
     }
 
@@ -288,35 +279,44 @@ impl Ended {
         matches!(self.motion, Err(SessionError::Port(_)))
     }
 
-    /// Records that were lost on the way to the log.
-    #[must_use]
-    pub fn lost_records(&self) -> u64 {
-        self.recorded.as_ref().map_or(0, lost_records)
-    }
-
-    /// What there is to say of it. What went wrong first is what the user must hear first.
+    /// The report on it. What went wrong first comes first.
     #[must_use]
     pub fn outcome(self) -> Outcome {
-        let lost_records = self.lost_records();
-        let reception = self.recorded.as_ref().ok().map(reception);
-        let failure = match (self.motion, self.recorded) {
+        let counts = self.log.as_ref().ok();
+        let lost_records = counts.map_or(0, lost_records);
+        let reception = counts.map(reception);
+        let without_time = counts.map_or(0, |counts| counts.lidar.without_kernel_time);
+        let warnings = match without_time {
+            0 => Vec::new(),
+            count => vec![format!(
+                "{count} lidar packets came without a kernel time: their times are less certain"
+            )],
+        };
+        let failure = match (self.motion, self.log) {
             // The log's failure is why the session was interrupted.
             (Err(SessionError::Interrupted), Err(failure)) | (Ok(()), Err(failure)) => {
                 Some(failure)
             }
             (Err(SessionError::Interrupted), Ok(_)) if self.stopped.is_some() => self.stopped,
-            (Err(error), recorded) => Some(motion_failure(&error, recorded.err())),
-            (Ok(()), Ok(recorded)) => loss(&recorded),
+            (Err(error), log) => Some(motion_failure(&error, log.err())),
+            (Ok(()), Ok(counts)) => loss(&counts),
         };
         Outcome {
             failure,
             lost_records,
             reception,
+            warnings,
         }
     }
 }
 
-/// Says how it ended: a scan, and what is incomplete of it, be it that packets never came.
+/// The line of help that says why there is no cloud of a capture that failed otherwise.
+#[must_use]
+pub fn no_cloud(failure: &Failure) -> String {
+    format!("there is no cloud: {}", failure.message)
+}
+
+/// Joins the cloud and the outcome of its recording: a scan, and why it is incomplete.
 ///
 /// # Errors
 /// Where there is no cloud.
@@ -331,20 +331,13 @@ pub fn conclude(
             cloud.display(),
             log.display()
         ),
-        Err(failure) => format!(
-            "{NO_CLOUD}{}\nthe log is {}",
-            failure.message,
-            log.display()
-        ),
+        Err(failure) => format!("{}\nthe log is {}", no_cloud(failure), log.display()),
     };
-    let missing = || wholeness::missing(made.as_ref().ok()?);
-    let failure = outcome.failure.clone().or_else(missing).map(|failure| {
-        let help = failure
-            .help
-            .clone()
-            .map_or(saved.clone(), |help| format!("{help}\n{saved}"));
-        failure.help(help)
-    });
+    let missing = || completeness::missing(made.as_ref().ok()?);
+    let failure = outcome
+        .failure
+        .or_else(missing)
+        .map(|failure| add_help(failure, &saved));
     match (made, failure) {
         (Ok(scan), failure) => {
             let scan = ScanReport {
@@ -358,8 +351,8 @@ pub fn conclude(
     }
 }
 
-/// Why there is no cloud of a capture that went well: its log is saved, and what the log cannot be used for without being asked, such
-/// as a choice between two lidars, `replay` can be told.
+/// The failure of a complete capture whose cloud cannot be made without a choice, such as one of
+/// two lidars, that `replay` offers.
 fn without_cloud(failure: Failure, log: &Path) -> Failure {
     let kind = match failure.kind {
         Kind::BadInput => Kind::Incomplete,
@@ -369,16 +362,19 @@ fn without_cloud(failure: Failure, log: &Path) -> Failure {
         "the log is saved: velomotion replay {} makes the cloud",
         log.display()
     );
-    let help = failure
-        .help
-        .as_ref()
-        .map_or(saved.clone(), |help| format!("{help}\n{saved}"));
-    Failure { kind, ..failure }.help(help)
+    add_help(Failure { kind, ..failure }, &saved)
 }
 
-/// What the lidar's sockets and the log did.
-fn reception(recorded: &Recorded) -> Reception {
-    let Recorded { lidar, log } = recorded;
+fn add_help(failure: Failure, line: &str) -> Failure {
+    let help = match &failure.help {
+        Some(help) => format!("{help}\n{line}"),
+        None => line.to_owned(),
+    };
+    failure.help(help)
+}
+
+fn reception(counts: &LogCounts) -> Reception {
+    let LogCounts { lidar, log } = counts;
     Reception {
         packets: lidar.data + lidar.position,
         dropped_by_kernel: lidar.dropped,
@@ -388,45 +384,42 @@ fn reception(recorded: &Recorded) -> Reception {
     }
 }
 
-fn lost_records(recorded: &Recorded) -> u64 {
-    recorded.lidar.dropped + recorded.log.dropped + recorded.log.refused
+fn lost_records(counts: &LogCounts) -> u64 {
+    counts.lidar.dropped + counts.log.dropped + counts.log.refused
 }
 
-/// What was lost is said, never passed over.
-fn loss(recorded: &Recorded) -> Option<Failure> {
+/// The failure of a recording with losses.
+fn loss(counts: &LogCounts) -> Option<Failure> {
     let losses = [
         (
-            recorded.lidar.dropped,
+            counts.lidar.dropped,
             "lidar packets that this machine was too slow for",
         ),
-        (
-            recorded.log.dropped,
-            "records that the disk was too slow for",
-        ),
-        (recorded.log.refused, "records that the log cannot hold"),
+        (counts.log.dropped, "records that the disk was too slow for"),
+        (counts.log.refused, "records that the log cannot hold"),
     ];
-    let said: Vec<String> = losses
+    let losses: Vec<String> = losses
         .into_iter()
         .filter(|(count, _)| *count > 0)
         .map(|(count, what)| format!("{count} {what}"))
         .collect();
-    (!said.is_empty()).then(|| {
+    (!losses.is_empty()).then(|| {
         Failure::new(
             Kind::Incomplete,
-            format!("the recording lost {}", said.join(", ")),
+            format!("the recording lost {}", losses.join(", ")),
         )
         .help("close other programs, record to a faster disk, and scan again if the holes matter")
     })
 }
 
-fn motion_failure(error: &SessionError, recorded: Option<Failure>) -> Failure {
+fn motion_failure(error: &SessionError, log: Option<Failure>) -> Failure {
     let kind = match error {
         SessionError::Interrupted => Kind::Interrupted,
         SessionError::NotStopped(_) | SessionError::Drive(_) | SessionError::Port(_) => {
             Kind::DeviceFault
         }
     };
-    let also = recorded.map_or(String::new(), |failure| {
+    let also = log.map_or(String::new(), |failure| {
         format!("; and {}", failure.message)
     });
     let failure = Failure::new(kind, format!("{error}{also}"));

@@ -1,94 +1,103 @@
-//! `velomotion capture`: home, sweep, record, and make the cloud of what was recorded, with devices of its own or through a daemon that
-//! has them.
+//! `velomotion capture`: homes, sweeps, records, and makes the cloud.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::SystemTime;
 
-use io::udp::ListenConfig;
-use sim::Truth;
+use daemon::client::Client;
+use daemon::local::LocalService;
+use engine::capture::request::{CapturePlan, CaptureRequest};
+use engine::capture::run;
+use engine::config::{self, Config};
+use engine::default_paths;
+use engine::devices::profile;
+use engine::failure::{Failure, Kind};
+use engine::output::{self, Aside, Target};
+use engine::reconstruct::report::ScanReport;
 
-use super::{CommandOutput, through_daemon};
+use super::CommandOutput;
+use super::device_backend::{DaemonCapture, LocalCapture, Recording, record};
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::Progress;
-use daemon::client::Client;
-use engine::capture::request::CapturePlan;
-use engine::capture::request::CaptureRequest;
-use engine::capture::run::{self as job, CaptureEvent, Ended, Job};
-use engine::config;
-use engine::default_paths;
-use engine::devices::drive_port as ports;
-use engine::devices::drive_port::Looks;
-use engine::devices::lidar_receiver::LidarReceiver;
-use engine::devices::lidar_sockets::{LidarSockets, listen_config};
-use engine::devices::profile;
-use engine::devices::simulated::{self, Simulated};
-use engine::failure::{Failure, Kind};
-use engine::output::{self, Aside, Target};
-use engine::stop_socket::Control;
 
 /// Runs the command.
 ///
 /// # Errors
-/// [`Failure`] where nothing was recorded, or no cloud came of it.
+/// [`Failure`] where nothing was recorded, or no cloud was made.
 pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, Failure> {
-    let setup = plan(arguments, common)?;
-    output::one_for_stdout(Some(&setup.cloud), common.json)?;
-    output::log_is_file(&setup.log, "--log")?;
-    let target = Target::open(&setup.cloud, arguments.output.fields(), setup.force)?;
-    output::check_free(&setup.log, setup.force)?;
+    let config = config::load(common.config.as_deref())?;
+    let plan = plan(arguments, common, &config)?;
+    output::one_for_stdout(Some(&plan.cloud), common.json)?;
+    output::log_is_file(&plan.log, "--log")?;
+    let target = Target::open(&plan.cloud, arguments.output.fields(), plan.force)?;
+    output::check_free(&plan.log, plan.force)?;
     let interrupt = signals::interrupt_flag()?;
     let mut progress = Progress::new(common);
-    for line in setup.headline() {
+    for line in plan.headline() {
         progress.say(&line);
     }
-
-    if let Some(client) = Client::find(&setup.name, &setup.device) {
-        let what = (&setup, target);
-        return through_daemon::capture(&client, arguments, what, &interrupt, &mut progress);
-    }
-    let older_log = Aside::put(&setup.log)?;
-    let (truth, ended) = if profile::simulated(&setup.device) {
-        simulate(&setup, &interrupt, &mut progress)?
-    } else {
-        let place = ports::place(
-            &setup.name,
-            &setup.device,
-            Looks::Once,
-            &io::discover::discover,
-        )?;
-        let ear = LidarSockets::bind(&listen_config(&setup.device))?;
-        (
-            None,
-            record(&setup, ear, &place, &interrupt, &mut progress)?,
-        )
+    let client = Client::find(&plan.name, &plan.device);
+    let mut by_daemon = match &client {
+        Some(client) => Some(DaemonCapture::begin(client, &arguments.into())?),
+        None => None,
     };
-    // The stop is over; from here on Ctrl-C means the making of the cloud.
+    let older_log = Aside::put(&plan.log)?;
+    let recording = match &mut by_daemon {
+        Some(capture) => record(capture, &plan, &interrupt, &mut progress)?,
+        None => record_locally(&plan, config, &interrupt, &mut progress)?,
+    };
+    // The stop is over: from here on Ctrl-C ends the making of the cloud.
     interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
     let stdout = target.is_stdout();
-    let made = job::cloud(
-        &setup,
+    let Recording { outcome, truth } = recording;
+    let mut made = run::cloud(
+        &plan,
         truth.as_ref(),
-        ended.lost_records(),
+        outcome.lost_records,
         &interrupt,
         target,
     );
-    // A log without a sweep is not worth an older one; any other is.
+    if let (Ok(scan), Some(capture)) = (&mut made, &by_daemon)
+        && plan.scan.simulated
+    {
+        scan.truth = capture.truth(&interrupt)?;
+    }
+    // A log without a sweep does not replace an older one.
     if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
         older_log.replaced();
     }
-    let (scan, failure) = job::conclude(made, ended.outcome(), (&setup.cloud, &setup.log))?;
+    let (scan, failure): (ScanReport, _) = run::conclude(made, outcome, (&plan.cloud, &plan.log))?;
     Ok(CommandOutput::scan(&scan, failure, stdout))
 }
 
+/// Records with the devices of this process, which are closed before the cloud is made.
+fn record_locally(
+    plan: &CapturePlan,
+    config: Config,
+    interrupt: &Arc<AtomicBool>,
+    progress: &mut Progress,
+) -> Result<Recording, Failure> {
+    let device = (plan.name.clone(), plan.device.clone());
+    let local = LocalService::start(config, device, true, interrupt)?;
+    if let Some(warning) = local.port_warning() {
+        progress.say(&format!("warning: {warning}"));
+    }
+    let recorded = LocalCapture::begin(&local, plan.clone())
+        .and_then(|mut capture| record(&mut capture, plan, interrupt, progress));
+    local.stop();
+    recorded
+}
+
 /// Checks the arguments against the axis and plans the moves.
-fn plan(arguments: &cli::Capture, common: &Common) -> Result<CapturePlan, Failure> {
+fn plan(
+    arguments: &cli::Capture,
+    common: &Common,
+    config: &Config,
+) -> Result<CapturePlan, Failure> {
     let start = SystemTime::now();
-    let config = config::load(common.config.as_deref())?;
-    let (name, device) = profile::choose(&config, common.device.as_deref())?;
+    let (name, device) = profile::choose(config, common.device.as_deref())?;
     let simulated = profile::simulated(&device);
     let cloud = arguments
         .output
@@ -103,7 +112,7 @@ fn plan(arguments: &cli::Capture, common: &Common) -> Result<CapturePlan, Failur
         force: arguments.output.force,
         ..CapturePlan::of(
             &CaptureRequest::from(arguments),
-            &config,
+            config,
             (&name, &device),
             cloud,
             log,
@@ -111,66 +120,4 @@ fn plan(arguments: &cli::Capture, common: &Common) -> Result<CapturePlan, Failur
     };
     output::two_files(&plan.log, &plan.cloud)?;
     Ok(plan)
-}
-
-/// The same, against software devices that are started for it; with what truly happened.
-fn simulate(
-    setup: &CapturePlan,
-    interrupt: &Arc<AtomicBool>,
-    progress: &mut Progress,
-) -> Result<(Option<Truth>, Ended), Failure> {
-    let ear = LidarSockets::bind(&ListenConfig {
-        address: setup.device.lidar,
-        data_port: 0,
-        position_port: Some(0),
-        ..ListenConfig::default()
-    })?;
-    let rig = simulated::rig(&setup.axis, &setup.scan, io::clock::now());
-    let devices = Simulated::start(rig, ear.ports())?;
-    let path = devices.port().to_owned();
-    let ended = record(setup, ear, &path, interrupt, progress);
-    let truth = devices.stop();
-    Ok((Some(truth?), ended?))
-}
-
-/// Records both devices while the axis makes its moves.
-fn record(
-    setup: &CapturePlan,
-    ear: LidarSockets,
-    place: &Path,
-    interrupt: &Arc<AtomicBool>,
-    progress: &mut Progress,
-) -> Result<Ended, Failure> {
-    let mut opened = ports::open(&setup.device, place)?;
-    if let Some(warning) = &opened.warning {
-        progress.say(&format!("warning: {warning}"));
-    }
-    let hearing = Arc::new(LidarReceiver::start(ear, Box::new(|_| {}))?);
-    let control = Control::listen(place, interrupt);
-    let job = Job {
-        setup,
-        interrupt,
-        hearing: &hearing,
-        port: &mut *opened.port,
-        link: opened.link,
-        rs232_baud: opened.rs232_baud,
-        onlooker: &|_| {},
-    };
-    let ended = job::record(job, &mut |happening| show(happening, progress));
-    if let Some(control) = control {
-        control.ended(ended.as_ref().map_or(true, Ended::stands));
-    }
-    ended
-}
-
-/// What a person at the terminal sees of it.
-fn show(happening: CaptureEvent<'_>, progress: &mut Progress) {
-    match happening {
-        CaptureEvent::Begins | CaptureEvent::Saving => {}
-        CaptureEvent::Move { step, .. } => progress.begin_move(&step.plan),
-        CaptureEvent::Moved { at, angle, packets } => progress.moved(at, angle, packets),
-        CaptureEvent::Progress(step) => tracing::info!(?step),
-        CaptureEvent::Over => progress.end_move(),
-        CaptureEvent::Warning(text) => progress.say(&format!("warning: {text}")),
-    }
 }

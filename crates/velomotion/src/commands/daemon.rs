@@ -1,4 +1,4 @@
-//! `velomotion daemon`: until it is told to end.
+//! `velomotion daemon`: runs until a signal.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,8 +14,8 @@ use daemon::{Daemon, Options};
 use engine::config;
 use engine::failure::{Failure, Kind};
 
-/// How often signals are looked at.
-const LOOK: Duration = Duration::from_millis(100);
+/// Between two polls of signals.
+const SIGNAL_POLL: Duration = Duration::from_millis(100);
 
 /// Runs the command.
 ///
@@ -30,46 +30,44 @@ pub fn run(arguments: &cli::Daemon, common: &Common) -> Result<CommandOutput, Fa
         ..Options::default()
     })?;
     greet(&daemon, common);
-    // Without a service manager there is nobody to tell.
+    // Without a service manager this does nothing.
     let _ = sd_notify::notify(&[
         NotifyState::Ready,
         NotifyState::Status(&format!("http://{}/", daemon.address())),
     ]);
     while !interrupt.load(Ordering::Acquire) && !daemon.is_broken() {
-        std::thread::sleep(LOOK);
+        std::thread::sleep(SIGNAL_POLL);
     }
     let broken = daemon.is_broken();
     let _ = sd_notify::notify(&[
         NotifyState::Stopping,
-        NotifyState::Status("stops the axis and saves what there is"),
+        NotifyState::Status("stops the axis and saves the scan"),
     ]);
     end(daemon, &interrupt)?;
     if broken {
-        return Err(
-            Failure::new(Kind::DeviceFault, "the thread that has the devices is gone")
-                .help("see whether the axis stands; run with -vv and report what it says"),
-        );
+        return Err(Failure::new(Kind::DeviceFault, "the device thread is gone")
+            .help("check that the axis is at rest; run with -vv and report the messages"));
     }
     Ok(CommandOutput::nothing())
 }
 
-/// Ends it. Whoever asks once more does not wait for clouds.
+/// Ends the daemon. A second signal ends the wait for clouds.
 fn end(daemon: Daemon, interrupt: &Arc<AtomicBool>) -> Result<(), Failure> {
     interrupt.store(false, Ordering::Release);
     daemon.stop(|| interrupt.load(Ordering::Acquire))
 }
 
 fn greet(daemon: &Daemon, common: &Common) {
-    let shared = daemon.shared();
+    let state = daemon.state();
     let address = daemon.address();
-    let folder = shared.scans.folder().display();
+    let folder = state.scans.folder().display();
     if common.json {
         let object = serde_json::json!({
             "address": address.to_string(),
             "scans": folder.to_string(),
-            "simulated": shared.simulated(),
+            "simulated": state.service.simulated(),
         });
-        // The address is what whoever started this waits for.
+        // Programs that start a daemon wait for this line.
         let mut out = std::io::stdout().lock();
         let _ = std::io::Write::write_all(&mut out, format!("{object}\n").as_bytes());
         let _ = std::io::Write::flush(&mut out);
@@ -78,10 +76,10 @@ fn greet(daemon: &Daemon, common: &Common) {
     if common.quiet {
         return;
     }
-    if shared.simulated() {
+    if state.service.simulated() {
         to_stderr("SIMULATED: simulated devices in a generated hall, not a real scan");
     }
-    let who = match (address.ip().is_loopback(), &shared.settings().token) {
+    let who = match (address.ip().is_loopback(), &state.settings().token) {
         (true, None) => "only from this machine",
         (true, Some(_)) => "only from this machine, with the token",
         (false, _) => "with the token",

@@ -3,12 +3,12 @@
 pub mod analyze;
 pub mod capture;
 pub mod daemon;
+pub mod device_backend;
 pub mod doctor;
 pub mod firmware_sim;
 pub mod info;
 pub mod replay;
 pub mod simulate;
-pub mod through_daemon;
 pub mod tilt;
 pub mod tradeoff;
 

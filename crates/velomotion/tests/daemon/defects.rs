@@ -3,18 +3,18 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use daemon::view::Doing;
 use engine::failure::Kind;
+use engine::service::status::AxisTask;
 use serde_json::json;
 
 use crate::rig::{Rig, sweep, wait};
 
 /// A daemon whose keeper panics once, the next time that it shows that it is alive while it does `when`, after the flag is set.
-fn fragile(when: Doing) -> (Rig, Arc<AtomicBool>) {
+fn fragile(when: AxisTask) -> (Rig, Arc<AtomicBool>) {
     let defect = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&defect);
     let rig = Rig::with("", move |options| {
-        options.world.beat = Arc::new(move |doing| {
+        options.environment.heartbeat = Arc::new(move |doing| {
             if doing == when && set.swap(false, Ordering::AcqRel) {
                 panic!("a defect, made up by a test");
             }
@@ -25,7 +25,7 @@ fn fragile(when: Doing) -> (Rig, Arc<AtomicBool>) {
 
 #[test]
 fn a_panic_while_the_axis_moves_stops_it_and_the_daemon_goes_on() {
-    let (rig, defect) = fragile(Doing::Capturing);
+    let (rig, defect) = fragile(AxisTask::Capturing);
     let mut attempt = 0;
     let scan = loop {
         let id = sweep(rig.address);
@@ -62,7 +62,7 @@ fn a_panic_while_the_axis_moves_stops_it_and_the_daemon_goes_on() {
 
 #[test]
 fn a_keeper_that_is_gone_ends_the_daemon_with_an_error() {
-    let (mut rig, defect) = fragile(Doing::Idle);
+    let (mut rig, defect) = fragile(AxisTask::Idle);
     rig.ready();
     defect.store(true, Ordering::Release);
     wait("the keeper's end", || {

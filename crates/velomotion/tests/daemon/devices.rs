@@ -77,14 +77,7 @@ fn a_drive_that_is_unplugged_is_missed_and_found_again() {
     assert!(gone["problem"]["help"].is_string(), "{gone}");
     let _unit = Drive::plug(&link);
     drive(&rig, "connected");
-    assert_eq!(
-        rig.daemon()
-            .shared()
-            .counters
-            .connects
-            .load(std::sync::atomic::Ordering::Relaxed),
-        2
-    );
+    assert_eq!(rig.daemon().state().service.connects(), 2);
 }
 
 #[test]
@@ -94,7 +87,7 @@ fn a_drive_that_is_looked_for_is_found_wherever_its_cable_comes_back() {
     let on_the_bus = Arc::clone(&units);
     let rig = Rig::with("", |options| {
         bench(options, "");
-        options.world.plugged = Arc::new(move || ConnectedDevices {
+        options.environment.plugged = Arc::new(move || ConnectedDevices {
             epos2: on_the_bus.lock().unwrap().clone(),
             ..ConnectedDevices::default()
         });
@@ -191,13 +184,14 @@ fn after_a_sleep_nothing_is_taken_for_granted() {
     let told = Arc::clone(&slept);
     let rig = Rig::with("", |options| {
         bench(options, &format!("port = '{}'", link.display()));
-        options.world.suspended = Arc::new(move || Span::from_nanos(told.load(Ordering::Relaxed)));
+        options.environment.suspended =
+            Arc::new(move || Span::from_nanos(told.load(Ordering::Relaxed)));
     });
     drive(&rig, "connected");
     assert_eq!(rig.post("/api/v1/tilt/home", &json!({})).status, 200);
-    let shared = rig.daemon().shared();
-    let connects = || shared.counters.connects.load(Ordering::Relaxed);
-    let heard = Arc::downgrade(&shared.hearing().unwrap());
+    let service = &rig.daemon().state().service;
+    let connects = || service.connects();
+    let heard = Arc::downgrade(&service.receiver().unwrap());
     let mut events = connect(rig.address, "?points=false").unwrap();
     // Less than half a second is no sleep.
     slept.store(400_000_000, Ordering::Relaxed);
@@ -228,7 +222,7 @@ fn after_a_sleep_nothing_is_taken_for_granted() {
     assert_eq!(connects(), 2);
     // The lidar's sockets are others: a network that came back may have forgotten the old ones.
     wait("other sockets", || {
-        let now = shared.hearing()?;
+        let now = service.receiver()?;
         (!std::ptr::eq(heard.as_ptr(), Arc::as_ptr(&now))).then_some(())
     });
     wait("the end of the old ones", || {

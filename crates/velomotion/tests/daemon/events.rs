@@ -3,6 +3,7 @@
 use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
+use engine::service::events::MessageLevel;
 use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket};
 
@@ -83,7 +84,7 @@ fn eight_clients_during_a_sweep_hear_the_same_and_the_capture_loses_nothing() {
         let thinned = connect(rig.address, "?thin=10").unwrap();
         let thinned = std::thread::spawn(move || listen(thinned));
         wait("all nine", || {
-            (rig.daemon().shared().hub.len() == 9).then_some(())
+            (rig.daemon().state().events().clients() == 9).then_some(())
         });
         let scan = rig.scan(&json!({"speed_deg_s": 56.25}));
         let heard: Vec<Heard> = clients.into_iter().map(|c| c.join().unwrap()).collect();
@@ -120,17 +121,17 @@ fn eight_clients_during_a_sweep_hear_the_same_and_the_capture_loses_nothing() {
 fn who_stops_reading_is_dropped() {
     let rig = Rig::new();
     let mut idle = connect(rig.address, "").unwrap();
-    let hub = &rig.daemon().shared().hub;
-    wait("it is there", || (hub.len() == 1).then_some(()));
+    let events = rig.daemon().state().events();
+    wait("it is there", || (events.clients() == 1).then_some(()));
     // More than the sockets' buffers hold; nobody who tells is kept waiting.
     let long = "x".repeat(100_000);
     let mut told = 0;
-    while hub.dropped() == 0 {
-        hub.say(daemon::hub::Level::Info, long.clone(), None);
+    while events.disconnected() == 0 {
+        events.message(MessageLevel::Info, long.clone(), None);
         told += 1;
         assert!(told < 10_000, "never dropped");
     }
-    assert!(hub.is_empty());
+    assert_eq!(events.clients(), 0);
     // It finds the end once it reads again.
     let mut read = 0;
     while idle.read().is_ok() {

@@ -74,7 +74,7 @@ fn the_book_states_the_limits() {
             "records that wait for the live view",
             format!(
                 "{}, more are left out of it",
-                thousands(limits::LIVE_RECORDS)
+                thousands(limits::WAITING_RECORDS)
             ),
         ),
         (
@@ -275,7 +275,7 @@ fn a_client_that_says_too_much_is_disconnected() {
     // Whatever was on its way, then the end.
     while socket.read().is_ok() {}
     wait("its place", || {
-        rig.daemon().shared().hub.is_empty().then_some(())
+        (rig.daemon().state().events().clients() == 0).then_some(())
     });
 }
 
@@ -287,7 +287,7 @@ fn a_client_that_does_not_answer_pings_is_disconnected() {
     });
     let silent = connect(rig.address, "?points=false").unwrap();
     wait("its place", || {
-        rig.daemon().shared().hub.is_empty().then_some(())
+        (rig.daemon().state().events().clients() == 0).then_some(())
     });
     drop(silent);
 }

@@ -7,7 +7,6 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use daemon::limits::Waits;
-use daemon::shared::World;
 use daemon::{Daemon, Options};
 use engine::config::Config;
 use serde_json::{Value, json};
@@ -40,7 +39,6 @@ impl Rig {
             listen: Some("127.0.0.1:0".parse().unwrap()),
             runtime: Some(folder.path().to_owned()),
             waits: Waits::default(),
-            world: World::default(),
             ..Options::default()
         };
         change(&mut options);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 
 use cloud::formats::Format;
-use daemon::{Daemon, Options, room};
+use daemon::{Daemon, Options, disk_quota};
 use serde_json::json;
 use units::Span;
 
@@ -103,7 +103,7 @@ fn a_scan_that_is_stopped_is_partial_and_kept() {
 
     // Another sweep is interrupted by the daemon's end: it is there when the next one starts.
     let second = sweep(rig.address);
-    let config = rig.daemon().shared().config.clone();
+    let config = rig.daemon().state().service.config().clone();
     rig.daemon.take().unwrap().stop(|| false).unwrap();
     let folder = rig.folder.path().to_owned();
     let again = Daemon::start(Options {
@@ -113,7 +113,7 @@ fn a_scan_that_is_stopped_is_partial_and_kept() {
         ..Options::default()
     })
     .unwrap();
-    let second = again.shared().scans.whole(&second).unwrap();
+    let second = again.state().scans.whole(&second).unwrap();
     assert!(second.scan.points > Some(0), "{second:?}");
     let why = second.scan.head.why.unwrap();
     assert!(why.message.contains("the daemon was stopped"), "{why:?}");
@@ -166,7 +166,7 @@ fn a_log_whose_end_never_reached_the_disk_makes_no_whole_scan() {
     rig.ready();
     let id = rig.whole_scan(&json!({"speed_deg_s": 56.25}))["id"].clone();
     let id = id.as_str().unwrap();
-    let config = rig.daemon().shared().config.clone();
+    let config = rig.daemon().state().service.config().clone();
     rig.daemon.take().unwrap().stop(|| true).unwrap();
     // As a power cut leaves it while the cloud is made, on a disk that said it had the log and did not. In the folder lies more than ours.
     let place = rig.log(id).parent().unwrap().to_owned();
@@ -212,7 +212,7 @@ fn a_disk_that_is_nearly_full_ends_a_scan_and_begins_none() {
     let told = Arc::clone(&free);
     let rig = Rig::with("", |options| {
         options.config.daemon.reserve_bytes = 1_000_000_000;
-        options.world.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
+        options.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
     });
     let id = sweep(rig.address);
     free.store(999_999_999, Ordering::Relaxed);
@@ -240,16 +240,11 @@ fn a_machine_that_has_slept_connects_anew_and_the_scan_is_partial() {
     let slept = Arc::new(AtomicI64::new(0));
     let told = Arc::clone(&slept);
     let rig = Rig::with("", |options| {
-        options.world.suspended = Arc::new(move || Span::from_nanos(told.load(Ordering::Relaxed)));
+        options.environment.suspended =
+            Arc::new(move || Span::from_nanos(told.load(Ordering::Relaxed)));
     });
     rig.ready();
-    let connects = || {
-        rig.daemon()
-            .shared()
-            .counters
-            .connects
-            .load(Ordering::Relaxed)
-    };
+    let connects = || rig.daemon().state().service.connects();
     let id = sweep(rig.address);
     let before = connects();
     slept.store(3_600_000_000_000, Ordering::Relaxed);
@@ -272,7 +267,7 @@ fn a_sleep_that_only_its_end_shows_makes_a_scan_partial() {
     let told = Arc::clone(&slept);
     let rig = Rig::with("", |options| {
         // Nobody but whoever has the drive gets to look at the clocks in time.
-        options.world.suspended =
+        options.environment.suspended =
             Arc::new(
                 move || match std::thread::current().name() == Some("keeper") {
                     true => Span::from_nanos(told.load(Ordering::Relaxed)),
@@ -308,7 +303,7 @@ fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
     let disk = || {
         let (told, looked) = (Arc::clone(&free), Arc::clone(&looks));
         move |options: &mut Options| {
-            options.world.free_bytes = Arc::new(move |_| {
+            options.free_bytes = Arc::new(move |_| {
                 looked.fetch_add(1, Ordering::SeqCst);
                 Ok(told.load(Ordering::SeqCst))
             });
@@ -354,7 +349,7 @@ fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
     });
     waits(&rig.get(&format!("/api/v1/scans/{id}")).json());
     // Not for ever: the next start knows of it.
-    let config = rig.daemon().shared().config.clone();
+    let config = rig.daemon().state().service.config().clone();
     rig.daemon.take().unwrap().stop(|| false).unwrap();
     waits(&written(&rig, &id));
     let mut options = Options {
@@ -386,7 +381,7 @@ fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
         let told = written(&rig, &id);
         (told["state"] == "partial" && told["waits_for_room"] == false).then_some(())
     });
-    let counters = &rig.daemon().shared().counters;
+    let counters = &rig.daemon().state().counters;
     let counts = [&counters.partial, &counters.failed].map(|count| count.load(Ordering::Relaxed));
     assert_eq!(counts, [1, 0]);
 }
@@ -396,7 +391,7 @@ fn a_scan_that_waits_for_room_can_be_deleted() {
     let free = Arc::new(AtomicU64::new(u64::MAX));
     let told = Arc::clone(&free);
     let rig = Rig::with("", |options| {
-        options.world.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
+        options.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
     });
     let id = sweep(rig.address);
     free.store(0, Ordering::Relaxed);
@@ -415,7 +410,7 @@ fn a_download_takes_no_room_that_a_scan_was_promised() {
     );
     let (told, left) = (Arc::clone(&free), Arc::clone(&looks));
     let rig = Rig::with("", |options| {
-        options.world.free_bytes = Arc::new(move |_| {
+        options.free_bytes = Arc::new(move |_| {
             let lasts = |left: u64| left.checked_sub(1);
             match left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, lasts) {
                 Ok(_) => Ok(told.load(Ordering::Relaxed)),
@@ -433,7 +428,7 @@ fn a_download_takes_no_room_that_a_scan_was_promised() {
         format!("/api/v1/scans/{id}/cloud?format={format}&uncertainty=true&echo=true")
     };
     for format in Format::ALL {
-        let most = room::most_bytes(format, points);
+        let most = disk_quota::most_bytes(format, points);
         // The reserve of these tests, and not a byte less.
         free.store(1_000 + most - 1, Ordering::Relaxed);
         let refused = rig.get(&path(format));
@@ -458,7 +453,7 @@ fn a_download_takes_no_room_that_a_scan_was_promised() {
     // While a scan runs that may need more than is left.
     let running = sweep(rig.address);
     free.store(
-        1_000 + room::most_bytes(Format::Pcd, points),
+        1_000 + disk_quota::most_bytes(Format::Pcd, points),
         Ordering::Relaxed,
     );
     let refused = rig.get(&path(Format::Pcd));

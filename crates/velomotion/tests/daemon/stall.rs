@@ -23,7 +23,7 @@ fn a_disk_that_stalls_keeps_nobody_from_stopping_the_axis() {
     let waiting = Arc::new(AtomicBool::new(false));
     let (disk, waits) = (Arc::clone(&stalls), Arc::clone(&waiting));
     let rig = Rig::with("", |options| {
-        options.world.free_bytes = Arc::new(move |_| {
+        options.free_bytes = Arc::new(move |_| {
             while disk.load(Ordering::Acquire) {
                 waits.store(true, Ordering::Release);
                 std::thread::sleep(Duration::from_millis(1));

@@ -98,7 +98,7 @@ fn a_sweep_is_heard_whole_by_everybody_and_the_capture_loses_nothing() {
             })
             .collect();
         wait("all eight", || {
-            (rig.daemon().shared().hub.len() == 8).then_some(())
+            (rig.daemon().state().events().clients() == 8).then_some(())
         });
         let scan = rig.scan(&json!({ "speed_deg_s": 56.25 }));
         let live: Vec<u64> = sockets.into_iter().map(|s| s.join().unwrap()).collect();

@@ -1,5 +1,5 @@
-//! How `rmw_zenoh_cpp` (Jazzy and later) names things: keys, liveliness tokens, gids, attachments. As in its sources
-//! (`liveliness_utils.cpp`, `attachment_helpers.cpp`, `qos.cpp`).
+//! Names of `rmw_zenoh_cpp` (Jazzy and later): keys, liveliness tokens, gids, attachments, as in its
+//! `liveliness_utils.cpp`, `attachment_helpers.cpp` and `qos.cpp`.
 
 use cloud::messages::MessageType;
 use xxhash_rust::xxh3::xxh3_128;

@@ -1,7 +1,8 @@
-//! The session with the router, and what is offered there: a node, its publishers and its services.
+//! The session with the router: a node, its publishers and its services.
 //!
-//! Every message is sent so that it waits for the network (`CongestionControl::Block`, at most zenoh's 5 s, after which the connection is begun
-//! anew), by threads that have nothing else to do. Clouds of sweeps give way to live ones, and those to all that is small.
+//! Messages wait for the network (`CongestionControl::Block`, at most zenoh's 5 s, after which the
+//! connection is opened again) on threads that do nothing else. Clouds of sweeps have the lowest
+//! priority, then live clouds, then all small messages.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
@@ -14,25 +15,26 @@ use zenoh::qos::{CongestionControl, Priority};
 use zenoh::query::Query;
 use zenoh::{Session, Wait};
 
-use super::latched::Latched;
-use super::rmw::{self, Entity, Gid, Quality};
-use super::{calls, calls::Service};
-use crate::hub::inside::{SweepRequest, Wants};
-use crate::shared::Shared;
 use engine::config::ros2::Ros2;
+use engine::service::events::PointsRequest;
 
-/// How long a router is waited for before the daemon looks whether it ends.
+use crate::calls::{self, Service};
+use crate::latched::Latched;
+use crate::rmw::{self, Entity, Gid, Quality};
+use crate::{Context, Counts};
+
+/// Wait for a router before the bridge looks whether it ends.
 const CONNECT_MS: u32 = 2_000;
-/// Between two tries meanwhile, and while a lost router is waited for.
+/// First and longest interval between connection attempts.
 const RETRY_MS: (u32, u32) = (250, 2_000);
 
-/// What zenoh says when something cannot be.
+/// An error of zenoh.
 pub type Error = zenoh::Error;
 
-/// Number of a request, and who sent it.
+/// Number and sender of a request.
 pub type Request = (i64, Gid);
 
-/// What each topic offers: as ROS 2's own drivers, broadcasters and updaters do.
+/// QoS of a topic, as ROS 2's own drivers, broadcasters and updaters have it.
 const fn quality(topic: Topic) -> Quality {
     let (reliable, latched, depth) = match topic {
         Topic::Points | Topic::JointStates | Topic::Diagnostics => (true, false, 10),
@@ -55,7 +57,7 @@ const fn priority(topic: Topic) -> Priority {
     }
 }
 
-/// The topic's full name: what belongs to the whole robot by convention is in no namespace.
+/// Full name of a topic. Topics of the whole robot are in no namespace by convention.
 fn name(settings: &Ros2, topic: Topic) -> String {
     match topic {
         Topic::Transforms | Topic::StaticTransforms | Topic::Diagnostics => topic.name().to_owned(),
@@ -65,10 +67,10 @@ fn name(settings: &Ros2, topic: Topic) -> String {
 
 /// A session.
 pub struct Link {
-    shared: Arc<Shared>,
+    counts: Arc<Counts>,
     session: Session,
     channels: BTreeMap<Topic, Channel>,
-    /// Held for what it offers.
+    /// Declare the node, publishers and services until dropped.
     _offers: Vec<LivelinessToken>,
 }
 
@@ -83,11 +85,8 @@ struct Channel {
 
 impl Link {
     /// Connects and declares everything; calls of services go to `calls`.
-    pub fn open(
-        shared: &Arc<Shared>,
-        settings: &Ros2,
-        inbox: &calls::Inbox,
-    ) -> Result<Self, Error> {
+    pub fn open(context: &Context, inbox: &calls::Inbox) -> Result<Self, Error> {
+        let settings = &context.settings;
         let config = serde_json::json!({
             "mode": "client",
             "connect": {
@@ -129,25 +128,24 @@ impl Link {
             )?);
         }
         Ok(Self {
-            shared: Arc::clone(shared),
+            counts: Arc::clone(&context.counts),
             session,
             channels,
             _offers: offers,
         })
     }
 
-    /// Whether a router is connected; it is remembered for others.
-    pub fn look(&self) -> bool {
+    /// Updates and returns whether a router is connected.
+    pub fn update_connection(&self) -> bool {
         let info = self.session.info();
         // The other side may be a peer as well.
         let connected =
             info.routers_zid().wait().next().is_some() || info.peers_zid().wait().next().is_some();
-        let counts = &self.shared.ros2;
-        counts.connected.store(connected, Ordering::Relaxed);
+        self.counts.connected.store(connected, Ordering::Relaxed);
         connected
     }
 
-    /// Whether anybody subscribes to it.
+    /// Whether a topic has subscribers.
     pub fn is_watched(&self, topic: Topic) -> bool {
         let channel = self.channels.get(&topic);
         channel.is_some_and(|channel| {
@@ -160,19 +158,14 @@ impl Link {
         })
     }
 
-    /// Has `wish` want points while anybody subscribes to them.
-    pub fn follow(&self, wish: &SweepRequest) -> Result<(), Error> {
+    /// Switches `request` on while the live cloud has subscribers.
+    pub fn follow(&self, request: &Arc<PointsRequest>) -> Result<(), Error> {
         let Some(channel) = self.channels.get(&Topic::LivePoints) else {
             return Ok(());
         };
         let change = {
-            let wish = wish.clone();
-            move |watched| {
-                wish.set(match watched {
-                    true => Wants::Points,
-                    false => Wants::Events,
-                });
-            }
+            let request = Arc::clone(request);
+            move |watched| request.set(watched)
         };
         let first = channel.publisher.matching_status().wait()?;
         change(first.matching());
@@ -181,7 +174,7 @@ impl Link {
         listener.background().wait()
     }
 
-    /// Sends a message, where anybody subscribes to it; whether it was sent.
+    /// Sends a message to a topic with subscribers. Returns whether it was sent.
     pub fn send(&self, topic: Topic, bytes: &[u8]) -> Result<bool, Error> {
         if !self.is_watched(topic) {
             return Ok(false);
@@ -190,7 +183,7 @@ impl Link {
             return Ok(false);
         };
         channel.send(&self.session, bytes)?;
-        let counts = &self.shared.ros2;
+        let counts = &self.counts;
         counts.messages.fetch_add(1, Ordering::Relaxed);
         match topic {
             Topic::Points => counts.clouds.fetch_add(1, Ordering::Relaxed),
@@ -200,11 +193,11 @@ impl Link {
         Ok(true)
     }
 
-    /// Takes everything back.
+    /// Closes the session.
     pub fn close(self) {
-        let connected = &self.shared.ros2.connected;
+        let connected = &self.counts.connected;
         connected.store(false, Ordering::Relaxed);
-        // Whoever is on the other side finds out otherwise, too.
+        // The router notices a lost session by itself, too.
         let _ = self.session.close().wait();
     }
 }
@@ -256,7 +249,7 @@ impl Channel {
     }
 }
 
-/// Who asks; `None`, after that was said, where it is no client of `rmw_zenoh`.
+/// Number and sender of a query. Queries without an attachment of `rmw_zenoh` are refused.
 pub fn request(query: &Query) -> Option<Request> {
     let attachment = query.attachment().map(|attachment| attachment.to_bytes());
     let request = attachment.and_then(|bytes| rmw::request_of(&bytes));

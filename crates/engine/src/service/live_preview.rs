@@ -1,23 +1,29 @@
-//! Points while they are measured: what the page gets to see of a sweep that goes on.
+//! Points of a sweep while it is recorded.
 //!
-//! `scanner::Live` runs on a thread of its own, behind a bounded queue that nobody waits for: what does not fit is left out of the view and
-//! counted; the log has it. The binary layout is that of docs/src/daemon.md.
+//! `scanner::Live` runs on a thread of its own behind a bounded queue. Records that do not fit are
+//! left out of the preview and counted; the log has them. docs/src/daemon.md describes the binary
+//! layout.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use bytes::Bytes;
 use cloud::{Fields, Points, Sink, SinkError};
 use io::log::OwnedRecord;
 use protocol::record::Record;
 use scanner::{Live, ScanConfig};
 
-use super::hub::{Event, Hub};
-use super::limits::{FRAME_POINTS, LIVE_RECORDS};
+use super::events::{Event, Events};
+use super::locked;
 
-/// What a frame carries beside positions.
+/// Points of a frame.
+pub const FRAME_POINTS: usize = 16_384;
+/// Records that may wait for the preview.
+pub const WAITING_RECORDS: usize = 8_192;
+/// Columns of a frame besides positions.
 const FIELDS: [Fields; 5] = [
     Fields::INTENSITY,
     Fields::RING,
@@ -25,33 +31,44 @@ const FIELDS: [Fields; 5] = [
     Fields::TILT,
     Fields::SD,
 ];
-/// How old the first point of a frame gets before it is sent.
-const PAUSE: Duration = Duration::from_millis(50);
-const HEAD: usize = 32;
+/// Age of the first point at which a frame is sent.
+const FRAME_INTERVAL: Duration = Duration::from_millis(50);
+/// Bytes of a frame before its columns.
+const HEADER_BYTES: usize = 32;
+/// Bytes per point: position, time and sd as f32, intensity and ring as u8.
+const POINT_BYTES: usize = 22;
 
-/// Some thousand points of a sweep that goes on.
+/// Some thousand points of a sweep in progress.
 #[derive(Clone, Debug)]
-pub struct Frame {
-    /// The scan's id.
+pub struct PreviewFrame {
+    /// Id of the scan.
     pub scan: Arc<str>,
     /// Number of this frame within the scan.
     pub number: u32,
-    /// Records that were left out of the view so far.
+    /// Records left out of the preview so far.
     pub left_out: u32,
     /// The points, with intensity, ring, time, tilt and sd.
     pub points: Points,
+    /// All points in the binary layout, encoded for the first client that wants them.
+    encoded: OnceLock<Bytes>,
 }
 
-impl Frame {
+impl PreviewFrame {
     /// Every `thin`-th point in the binary layout.
     #[must_use]
-    pub fn encode(&self, thin: usize) -> Vec<u8> {
-        let thin = thin.max(1);
+    pub fn bytes(&self, thin: usize) -> Bytes {
+        match thin {
+            0 | 1 => self.encoded.get_or_init(|| self.encode(1).into()).clone(),
+            _ => self.encode(thin).into(),
+        }
+    }
+
+    fn encode(&self, thin: usize) -> Vec<u8> {
         let points = &self.points;
         let count = points.len().div_ceil(thin);
         let first_ns = points.time().first().map_or(0, |time| time.as_nanos());
         let tilt = points.tilt_deg().last().copied().unwrap_or(f64::NAN);
-        let mut bytes = Vec::with_capacity(HEAD + 22 * count);
+        let mut bytes = Vec::with_capacity(HEADER_BYTES + POINT_BYTES * count);
         bytes.extend_from_slice(b"VMP1");
         bytes.extend_from_slice(&u32::try_from(count).unwrap_or(u32::MAX).to_le_bytes());
         bytes.extend_from_slice(&(first_ns as f64 * 1e-9).to_le_bytes());
@@ -73,15 +90,15 @@ impl Frame {
     }
 }
 
-/// Where both devices put their records while a scan is watched. Clones are of one place.
+/// Where both devices put their records while a preview runs. Clones share it.
 #[derive(Clone, Default)]
-pub struct Feed {
-    place: Arc<Mutex<Option<Way>>>,
+pub(super) struct PreviewInput {
+    queue: Arc<Mutex<Option<PreviewQueue>>>,
 }
 
 #[derive(Clone)]
-struct Way {
-    queue: SyncSender<Message>,
+struct PreviewQueue {
+    sender: SyncSender<Message>,
     left_out: Arc<AtomicU64>,
 }
 
@@ -90,70 +107,73 @@ enum Message {
     End,
 }
 
-impl Feed {
-    /// Hands a record over without waiting, if a scan is watched.
-    pub fn record(&self, record: &Record<'_>) {
-        let place = self.place.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some(way) = &*place else { return };
-        match way.queue.try_send(Message::Record(record.into())) {
+impl PreviewInput {
+    /// Hands a record over without waiting, if a preview runs.
+    pub(super) fn record(&self, record: &Record<'_>) {
+        let queue = locked(&self.queue);
+        let Some(queue) = &*queue else { return };
+        match queue.sender.try_send(Message::Record(record.into())) {
             Ok(()) | Err(TrySendError::Disconnected(_)) => {}
             Err(TrySendError::Full(_)) => {
-                way.left_out.fetch_add(1, Ordering::Relaxed);
+                queue.left_out.fetch_add(1, Ordering::Relaxed);
             }
         }
     }
 
-    fn put(&self, way: Option<Way>) {
-        *self.place.lock().unwrap_or_else(PoisonError::into_inner) = way;
+    fn set(&self, queue: Option<PreviewQueue>) {
+        *locked(&self.queue) = queue;
     }
 }
 
-/// A scan that is watched. Dropped, the watching ends.
-pub struct Watching {
-    feed: Feed,
-    queue: SyncSender<Message>,
+/// A preview of one scan. Dropping it ends the preview.
+pub struct LivePreview {
+    input: PreviewInput,
+    sender: SyncSender<Message>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Watching {
-    /// Watches the scan `id` of devices that are configured so, by what comes through `feed`. `None` where that cannot be: a scan is worth
-    /// making all the same.
-    #[must_use]
-    pub fn start(id: &str, config: &ScanConfig, feed: &Feed, hub: &Arc<Hub>) -> Option<Self> {
-        let (queue, inbox) = sync_channel(LIVE_RECORDS);
+impl LivePreview {
+    /// Starts the preview of the scan `id`. `None` where there is no thread for it: the scan is
+    /// worth recording all the same.
+    pub(super) fn start(
+        id: &str,
+        config: &ScanConfig,
+        input: &PreviewInput,
+        events: &Arc<Events>,
+    ) -> Option<Self> {
+        let (sender, inbox) = sync_channel(WAITING_RECORDS);
         let left_out = Arc::new(AtomicU64::new(0));
-        let frames = Frames::new(id, hub, &left_out);
+        let frames = FrameSink::new(id, events, &left_out);
         let config = config.clone();
         let thread = std::thread::Builder::new()
             .name("live points".to_owned())
-            .spawn(move || watch(&config, frames, &inbox))
+            .spawn(move || run(&config, frames, &inbox))
             .ok()?;
-        let way = Way {
-            queue: queue.clone(),
+        input.set(Some(PreviewQueue {
+            sender: sender.clone(),
             left_out,
-        };
-        feed.put(Some(way));
+        }));
         Some(Self {
-            feed: feed.clone(),
-            queue,
+            input: input.clone(),
+            sender,
             thread: Some(thread),
         })
     }
 }
 
-impl Drop for Watching {
+impl Drop for LivePreview {
     fn drop(&mut self) {
-        self.feed.put(None);
-        // Waits where the queue is full, of a thread that does nothing but empty it.
-        let _ = self.queue.send(Message::End);
+        self.input.set(None);
+        // A full queue is emptied by the thread, which does nothing else.
+        let _ = self.sender.send(Message::End);
         if let Some(thread) = self.thread.take() {
-            // A panic there loses the view, not the scan.
+            // A panic there loses the preview, not the scan.
             let _ = thread.join();
         }
     }
 }
 
-fn watch(config: &ScanConfig, mut frames: Frames, inbox: &Receiver<Message>) {
+fn run(config: &ScanConfig, mut frames: FrameSink, inbox: &Receiver<Message>) {
     let Ok(mut live) = Live::new(config, lidar::Options::default(), &mut frames) else {
         return;
     };
@@ -167,21 +187,21 @@ fn watch(config: &ScanConfig, mut frames: Frames, inbox: &Receiver<Message>) {
     frames.send();
 }
 
-/// A sink that sends frames.
-struct Frames {
+/// A sink that sends frames as events.
+struct FrameSink {
     scan: Arc<str>,
-    hub: Arc<Hub>,
+    events: Arc<Events>,
     left_out: Arc<AtomicU64>,
     points: Points,
     since: Instant,
     number: u32,
 }
 
-impl Frames {
-    fn new(id: &str, hub: &Arc<Hub>, left_out: &Arc<AtomicU64>) -> Self {
+impl FrameSink {
+    fn new(id: &str, events: &Arc<Events>, left_out: &Arc<AtomicU64>) -> Self {
         Self {
             scan: id.into(),
-            hub: Arc::clone(hub),
+            events: Arc::clone(events),
             left_out: Arc::clone(left_out),
             points: Points::new(fields()),
             since: Instant::now(),
@@ -195,11 +215,12 @@ impl Frames {
         }
         let points = std::mem::replace(&mut self.points, Points::new(fields()));
         let left_out = self.left_out.load(Ordering::Relaxed);
-        self.hub.tell(Event::Points(Box::new(Frame {
+        self.events.send(Event::Points(Box::new(PreviewFrame {
             scan: Arc::clone(&self.scan),
             number: self.number,
             left_out: u32::try_from(left_out).unwrap_or(u32::MAX),
             points,
+            encoded: OnceLock::new(),
         })));
         self.number += 1;
     }
@@ -211,10 +232,9 @@ fn fields() -> Fields {
         .fold(Fields::NONE, |all, field| all | field)
 }
 
-impl Sink for Frames {
+impl Sink for FrameSink {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
-        // Unasked is absent.
-        if !self.hub.wants_points() {
+        if !self.events.wants_points() {
             return Ok(());
         }
         if self.points.is_empty() {
@@ -226,7 +246,7 @@ impl Sink for Frames {
                 self.send();
             }
         }
-        if self.since.elapsed() >= PAUSE {
+        if self.since.elapsed() >= FRAME_INTERVAL {
             self.send();
         }
         Ok(())
@@ -244,7 +264,7 @@ mod tests {
     use units::{Degrees, Stamp};
 
     #[test]
-    fn the_layout_is_as_documented() {
+    fn the_binary_layout_is_as_documented() {
         let mut points = Points::new(fields());
         for number in 0..5_u8 {
             points.push(Point {
@@ -257,11 +277,12 @@ mod tests {
                 ..Point::default()
             });
         }
-        let frame = Frame {
+        let frame = PreviewFrame {
             scan: "hall".into(),
             number: 7,
             left_out: 2,
             points,
+            encoded: OnceLock::new(),
         };
         let bytes = frame.encode(2);
         let f32_at = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());

@@ -1,8 +1,9 @@
-//! The last message of a topic, kept for subscribers that come later (durability "transient local").
+//! The last message of a topic, kept for later subscribers (durability "transient local").
 //!
-//! `rmw_zenoh` uses the advanced publisher of `zenoh-ext` for that, whose agreement with its subscribers is kept here: a token and a queryable at
-//! `KEY/@adv/pub/ZID/uhlc/_`, asked by whoever subscribes later or finds the token later, and samples told apart by their timestamps. Left out: numbered
-//! samples and their recovery, which one message over TCP does not need.
+//! `rmw_zenoh` uses the advanced publisher of `zenoh-ext` for this. Its protocol is kept: a token
+//! and a queryable at `KEY/@adv/pub/ZID/uhlc/_`, queried by later subscribers, which tell samples
+//! apart by their timestamps. Numbered samples and their recovery are left out: one message over
+//! TCP needs none.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -11,9 +12,9 @@ use zenoh::query::{Query, Queryable};
 use zenoh::time::Timestamp;
 use zenoh::{Session, Wait};
 
-use super::link::Error;
+use crate::link::Error;
 
-/// What is kept.
+/// The message kept.
 #[derive(Default)]
 struct Kept {
     bytes: Vec<u8>,
@@ -21,7 +22,7 @@ struct Kept {
     time: Option<Timestamp>,
 }
 
-/// Answers those who come later.
+/// Answers later subscribers.
 pub struct Latched {
     kept: Arc<Mutex<Kept>>,
     _queryable: Queryable<()>,
@@ -29,7 +30,7 @@ pub struct Latched {
 }
 
 impl Latched {
-    /// For what is sent with `key` by the session `zid`.
+    /// For messages that the session `zid` sends with `key`.
     pub fn declare(session: &Session, zid: &str, key: &str) -> Result<Self, Error> {
         let kept = Arc::new(Mutex::new(Kept::default()));
         let place = format!("{key}/@adv/pub/{zid}/uhlc/_");
@@ -50,7 +51,7 @@ impl Latched {
         })
     }
 
-    /// This is the last message.
+    /// Keeps the last message.
     pub fn keep(&self, bytes: &[u8], attachment: &[u8], time: Timestamp) {
         *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = Kept {
             bytes: bytes.to_vec(),

@@ -1,6 +1,7 @@
-//! What happens, as messages: live clouds, the joint and its transform, diagnostics.
+//! Events as messages: live clouds, the joint and its transform, diagnostics.
 
-use std::time::Duration;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use cloud::messages::cdr::Cdr;
 use cloud::messages::{
@@ -9,61 +10,66 @@ use cloud::messages::{
 use cloud::{Diagnostic, DiagnosticLevel, Fields};
 use units::{Degrees, Host, Metres, Stamp};
 
-use super::link::{Error, Link};
-use super::{rmw, threads::Stop};
-use crate::hub::Event;
-use crate::hub::inside::Wants;
-use crate::points::Frame;
-use crate::shared::Shared;
-use crate::view::{DeviceState, Doing, Status};
-use engine::config::ros2::Ros2;
 use engine::failure::Failure;
+use engine::service::events::{Event, NoEvent, PointsRequest};
+use engine::service::live_preview::PreviewFrame;
+use engine::service::status::{AxisTask, DeviceState, ServiceStatus};
+use tokio::runtime::Runtime;
 
-/// How often it is looked whether the daemon ends.
-pub const LOOK: Duration = Duration::from_millis(100);
+use crate::bridge::{STOP_POLL, report_connection};
+use crate::link::{Error, Link};
+use crate::{Context, Counts, rmw};
 
 /// Makes messages of events.
-struct Teller<'a> {
-    shared: &'a Shared,
+struct Publisher<'a> {
+    context: &'a Context,
     link: &'a Link,
     node: String,
     frames: Frames,
     cloud: CloudMessage,
     cdr: Cdr,
-    /// The time of the last angle that was sent.
-    told: Option<Stamp<Host>>,
+    /// Time of the last angle sent.
+    last_angle: Option<Stamp<Host>>,
 }
 
-/// Until the daemon ends.
-pub fn run(shared: &Shared, settings: &Ros2, link: &Link, stop: &Stop) -> Result<(), Error> {
-    let mut teller = Teller {
-        shared,
+/// Publishes events until the bridge ends.
+pub(crate) fn run(context: &Context, link: &Link, runtime: &Runtime) -> Result<(), Error> {
+    let settings = &context.settings;
+    let mut publisher = Publisher {
+        context,
         link,
         node: settings.namespace.resolve("/").trim_matches('/').to_owned(),
         frames: Frames::with_prefix(&settings.frame_prefix.0),
         cloud: CloudMessage::new(Fields::NONE),
         cdr: Cdr::new(),
-        told: None,
+        last_angle: None,
     };
-    if !teller.node.is_empty() {
-        teller.node.push('/');
+    if !publisher.node.is_empty() {
+        publisher.node.push('/');
     }
-    teller.node.push_str(rmw::NODE);
-    teller.tell_mount()?;
-    let missed = &shared.ros2.missed;
-    let inside = shared.hub.subscribe_inside(Wants::Events, missed);
-    link.follow(&inside.wish())?;
-    while !stop.is_set() {
-        let Ok(told) = inside.next(LOOK) else {
-            continue;
+    publisher.node.push_str(rmw::NODE);
+    publisher.send_mount()?;
+    let events = context.devices().events();
+    let mut subscription = events.subscribe();
+    link.follow(&Arc::new(PointsRequest::new(events, false)))?;
+    while !context.stop.is_set() {
+        let next = async { tokio::time::timeout(STOP_POLL, subscription.next()).await };
+        let event = match runtime.block_on(next) {
+            Ok(Ok(event)) => event,
+            Ok(Err(NoEvent::Lagged(missed))) => {
+                context.counts.missed.fetch_add(missed, Ordering::Relaxed);
+                continue;
+            }
+            Ok(Err(NoEvent::Closed)) => return Ok(()),
+            Err(_elapsed) => continue,
         };
-        let sent = match &told.event {
-            Event::Points(frame) => teller.tell_frame(frame),
-            Event::Motion { angle_deg, at, .. } => teller.tell_angle(*at, Degrees(*angle_deg)),
+        let sent = match &*event {
+            Event::Points(frame) => publisher.send_points(frame),
+            Event::Motion { angle_deg, at, .. } => publisher.send_angle(*at, Degrees(*angle_deg)),
             Event::Status { status } => {
-                let status_sent = teller.tell_status(status);
-                super::threads::tell_connection(shared, settings, link);
-                status_sent
+                let sent = publisher.send_status(status);
+                report_connection(context, link);
+                sent
             }
             Event::Scan { .. } | Event::Message { .. } => Ok(()),
         };
@@ -74,17 +80,17 @@ pub fn run(shared: &Shared, settings: &Ros2, link: &Link, stop: &Stop) -> Result
     Ok(())
 }
 
-impl Teller<'_> {
-    /// How lidar and axis sit on each other.
-    fn tell_mount(&mut self) -> Result<(), Error> {
-        let mount = Metres(self.shared.config.mount.d_m);
+impl Publisher<'_> {
+    /// Sends the mount of the lidar on the axis.
+    fn send_mount(&mut self) -> Result<(), Error> {
+        let mount = Metres(self.context.devices().config().mount.d_m);
         let stamp = Time::of(io::clock::now())?;
         tf_message(&mut self.cdr, stamp, &self.frames.fixed(Some(mount)));
         self.link.send(Topic::StaticTransforms, self.cdr.bytes())?;
         Ok(())
     }
 
-    fn tell_frame(&mut self, frame: &Frame) -> Result<(), Error> {
+    fn send_points(&mut self, frame: &PreviewFrame) -> Result<(), Error> {
         self.cloud.clear();
         let name = self.frames.of_clouds(true);
         self.cloud
@@ -96,9 +102,9 @@ impl Teller<'_> {
         Ok(())
     }
 
-    /// The axis was there then. A time is said once, as receivers want it.
-    fn tell_angle(&mut self, at: Stamp<Host>, angle: Degrees) -> Result<(), Error> {
-        if self.told.is_some_and(|told| at <= told) {
+    /// Sends the angle at a time. Each time is sent once, as transform buffers expect.
+    fn send_angle(&mut self, at: Stamp<Host>, angle: Degrees) -> Result<(), Error> {
+        if self.last_angle.is_some_and(|last| at <= last) {
             return Ok(());
         }
         let stamp = Time::of(at)?;
@@ -106,17 +112,17 @@ impl Teller<'_> {
         self.link.send(Topic::JointStates, self.cdr.bytes())?;
         tf_message(&mut self.cdr, stamp, &[self.frames.tilted(angle)]);
         self.link.send(Topic::Transforms, self.cdr.bytes())?;
-        self.told = Some(at);
+        self.last_angle = Some(at);
         Ok(())
     }
 
-    fn tell_status(&mut self, status: &Status) -> Result<(), Error> {
+    fn send_status(&mut self, status: &ServiceStatus) -> Result<(), Error> {
         let now = io::clock::now();
-        // While it stands it is where it was; while it moves, samples say where.
-        if let (Doing::Idle, Some(angle)) = (status.activity.doing, status.drive.angle_deg) {
-            self.tell_angle(now, Degrees(angle))?;
+        // The last angle holds while the axis is at rest; samples give it during motion.
+        if let (AxisTask::Idle, Some(angle)) = (status.activity.doing, status.drive.angle_deg) {
+            self.send_angle(now, Degrees(angle))?;
         }
-        let checks = checks(&self.node, status, self.shared);
+        let checks = checks(&self.node, status, &self.context.counts);
         diagnostic_array(&mut self.cdr, Time::of(now)?, &status.device, &checks);
         self.link.send(Topic::Diagnostics, self.cdr.bytes())?;
         Ok(())
@@ -149,8 +155,8 @@ fn values<const N: usize>(values: [(&str, String); N]) -> Vec<(String, String)> 
     values.map(|(key, value)| (key.to_owned(), value)).to_vec()
 }
 
-/// The status as diagnostics have it.
-fn checks(node: &str, status: &Status, shared: &Shared) -> Vec<Diagnostic> {
+/// The status as diagnostics.
+fn checks(node: &str, status: &ServiceStatus, counts: &Counts) -> Vec<Diagnostic> {
     let (drive, lidar, disk) = (&status.drive, &status.lidar, &status.disk);
     let known = |value: Option<f64>| value.map_or("unknown".to_owned(), |v| format!("{v:.3}"));
     let drive = device(
@@ -201,11 +207,8 @@ fn checks(node: &str, status: &Status, shared: &Shared) -> Vec<Diagnostic> {
             ),
         ]),
     };
-    let counters = shared.ros2.counters();
-    let missed = shared
-        .ros2
-        .missed
-        .load(std::sync::atomic::Ordering::Relaxed);
+    let counters = counts.counters();
+    let missed = counts.missed.load(Ordering::Relaxed);
     let network = Diagnostic {
         name: format!("{node}: ros2"),
         level: if missed > 0 {

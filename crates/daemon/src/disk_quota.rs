@@ -1,27 +1,28 @@
-//! Room on the disk for clouds. Those made for downloads take nothing of what is left free, nor of what a capture was promised; a scan's own may
-//! have what is left free, which is what it is for.
+//! Quotas of disk space for clouds. A cloud made for a download leaves the reserve and what captures
+//! may still need; a scan's own cloud may use the reserve.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, OnceLock};
 
 use cloud::formats::Format;
 
-use super::plan;
-use super::pulse::disk_full;
-use super::shared::Shared;
 use engine::failure::{Failure, Kind};
 
-/// Bytes that a scan's own cloud leaves for its record and others'.
+use crate::health_monitor::disk_full;
+use crate::plan;
+use crate::state::DaemonState;
+
+/// Bytes that a scan's own cloud leaves for records of scans.
 const RECORDS: u64 = 1 << 20;
-/// Bytes that are written between two looks at the disk.
+/// Bytes written between two checks of the disk.
 const STEP: u64 = 1 << 20;
-/// Most bytes of a point with all columns: as text some 20 a number.
+/// Most bytes of a point with all columns: as text, about 8 columns of 20 characters.
 const TEXT_ROW_BYTES: u64 = 160;
 const ROW_BYTES: u64 = 64;
-/// Most bytes beside the points.
+/// Most bytes of a file's header.
 const HEAD_BYTES: u64 = 64 << 10;
 
-/// Most bytes of a cloud of so many points.
+/// Most bytes of a cloud with this many points.
 #[must_use]
 pub fn most_bytes(format: Format, points: u64) -> u64 {
     let row = match format {
@@ -31,59 +32,59 @@ pub fn most_bytes(format: Format, points: u64) -> u64 {
     points.saturating_mul(row).saturating_add(HEAD_BYTES)
 }
 
-/// The room that a file may take.
-pub struct Room {
-    shared: Arc<Shared>,
-    of: Of,
+/// The disk space that a file may use.
+pub struct DiskQuota {
+    state: Arc<DaemonState>,
+    purpose: Purpose,
     refused: OnceLock<Failure>,
 }
 
-/// Whose the file is.
+/// Purpose of the file.
 #[derive(Clone, Copy)]
-enum Of {
+enum Purpose {
     Download,
     Scan,
 }
 
-impl Room {
-    /// For a file of at most so many bytes.
+impl DiskQuota {
+    /// The quota of a download of at most this many bytes.
     ///
     /// # Errors
-    /// [`disk_full`] where it would not leave `reserve_bytes` and what scans that are under way may still need.
-    pub fn take(shared: &Arc<Shared>, bytes: u64) -> Result<Arc<Self>, Failure> {
-        let room = Self::new(shared, Of::Download);
-        room.look(bytes)?;
-        Ok(Arc::new(room))
+    /// [`disk_full`] where it would not leave `reserve_bytes` and what captures may still need.
+    pub fn take(state: &Arc<DaemonState>, bytes: u64) -> Result<Arc<Self>, Failure> {
+        let quota = Self::new(state, Purpose::Download);
+        quota.check(bytes)?;
+        Ok(Arc::new(quota))
     }
 
-    /// For the cloud of a scan: as far as the disk goes.
+    /// The quota of a scan's own cloud: the whole disk.
     #[must_use]
-    pub fn of_scan(shared: &Arc<Shared>) -> Arc<Self> {
-        Arc::new(Self::new(shared, Of::Scan))
+    pub fn of_scan(state: &Arc<DaemonState>) -> Arc<Self> {
+        Arc::new(Self::new(state, Purpose::Scan))
     }
 
-    fn new(shared: &Arc<Shared>, of: Of) -> Self {
+    fn new(state: &Arc<DaemonState>, purpose: Purpose) -> Self {
         Self {
-            shared: Arc::clone(shared),
-            of,
+            state: Arc::clone(state),
+            purpose,
             refused: OnceLock::new(),
         }
     }
 
-    /// Whether so many bytes more may be written.
-    fn look(&self, bytes: u64) -> Result<(), Failure> {
-        let shared = &self.shared;
-        let reserve = shared.settings().reserve_bytes;
-        let Ok(free) = (shared.world.free_bytes)(shared.scans.folder()) else {
+    /// Checks whether this many more bytes may be written.
+    fn check(&self, bytes: u64) -> Result<(), Failure> {
+        let state = &self.state;
+        let reserve = state.settings().reserve_bytes;
+        let Ok(free) = (state.free_bytes)(state.scans.folder()) else {
             return Ok(());
         };
-        if let Of::Scan = self.of {
+        if let Purpose::Scan = self.purpose {
             return match free.saturating_sub(RECORDS) >= bytes {
                 true => Ok(()),
                 false => Err(full(free)),
             };
         }
-        let promised = plan::still_needed(shared);
+        let promised = plan::still_needed(state);
         if free.saturating_sub(reserve).saturating_sub(promised) >= bytes {
             return Ok(());
         }
@@ -97,59 +98,59 @@ impl Room {
         Err(Failure { message, ..failure })
     }
 
-    /// Why something was not written.
+    /// Why a write was refused.
     #[must_use]
     pub fn refused(&self) -> Option<&Failure> {
         self.refused.get()
     }
 }
 
-/// No room for the cloud of a scan.
+/// The failure of a scan's cloud without disk space.
 fn full(free: u64) -> Failure {
     let message = format!("the disk is full: {} MB free", free / 1_000_000);
     Failure::new(Kind::Incomplete, message)
         .help("free some space on the disk of the scans, or delete scans: the cloud is made then")
 }
 
-/// A file that ends where the room does: a scan may have begun since, or another file have grown.
-pub struct Roomy<F> {
+/// A file whose writes are held to a quota, which is checked again as the file grows.
+pub struct QuotaFile<F> {
     file: F,
-    room: Arc<Room>,
-    /// Bytes until the next look.
+    quota: Arc<DiskQuota>,
+    /// Bytes until the next check.
     left: u64,
 }
 
-impl<F> Roomy<F> {
-    /// That file.
+impl<F> QuotaFile<F> {
+    /// A file with its quota.
     #[must_use]
-    pub const fn new(file: F, room: Arc<Room>) -> Self {
+    pub const fn new(file: F, quota: Arc<DiskQuota>) -> Self {
         Self {
             file,
-            room,
+            quota,
             left: 0,
         }
     }
 }
 
-impl<F: Write> Roomy<F> {
+impl<F: Write> QuotaFile<F> {
     fn refuse(&self, failure: Failure) -> io::Error {
         let error = io::Error::new(io::ErrorKind::StorageFull, failure.message.clone());
-        // The first word counts.
-        let _ = self.room.refused.set(failure);
+        // The first refusal counts.
+        let _ = self.quota.refused.set(failure);
         error
     }
 }
 
-impl<F: Write> Write for Roomy<F> {
+impl<F: Write> Write for QuotaFile<F> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let wanted = bytes.len() as u64;
         if self.left < wanted {
-            let room = self.room.look(wanted);
-            room.map_err(|failure| self.refuse(failure))?;
+            let checked = self.quota.check(wanted);
+            checked.map_err(|failure| self.refuse(failure))?;
             self.left = STEP.max(wanted);
         }
         let written = match self.file.write(bytes) {
-            // Others were quicker.
+            // Other programs wrote meanwhile.
             Err(error) if error.kind() == io::ErrorKind::StorageFull => {
                 return Err(self.refuse(full(0)));
             }
@@ -164,13 +165,13 @@ impl<F: Write> Write for Roomy<F> {
     }
 }
 
-impl<F: Read> Read for Roomy<F> {
+impl<F: Read> Read for QuotaFile<F> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         self.file.read(into)
     }
 }
 
-impl<F: Seek> Seek for Roomy<F> {
+impl<F: Seek> Seek for QuotaFile<F> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
     }

@@ -1,6 +1,5 @@
-//! What was sent and what was not, for `/metrics` and for diagnostics.
+//! Counters of sent and missed messages, for `/metrics` and diagnostics.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Counters since the start.
@@ -8,20 +7,20 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub struct Counts {
     /// Whether a router is connected.
     pub connected: AtomicBool,
-    /// Messages that were sent, of every topic.
+    /// Messages sent, of all topics.
     pub messages: AtomicU64,
-    /// Of those: clouds of whole sweeps, and parts of long ones.
+    /// Clouds of sweeps sent, and parts of long ones.
     pub clouds: AtomicU64,
-    /// Of those: live clouds.
+    /// Live clouds sent.
     pub frames: AtomicU64,
-    /// Calls of services that were answered.
+    /// Service calls answered.
     pub calls: AtomicU64,
-    /// What was to be sent, and was left out because the network took too long.
-    pub missed: Arc<AtomicU64>,
+    /// Messages left out because the network took too long.
+    pub missed: AtomicU64,
 }
 
 impl Counts {
-    /// Names, what they are, and values: counters for Prometheus.
+    /// Names, descriptions and values of the counters for Prometheus.
     #[must_use]
     pub fn counters(&self) -> [(&'static str, &'static str, u64); 5] {
         let of = |counter: &AtomicU64| counter.load(Ordering::Relaxed);

@@ -1,9 +1,9 @@
-//! The services: both `std_srvs/srv/Trigger`, so that any ROS 2 can call them.
+//! The services, both of type `std_srvs/srv/Trigger`.
 //!
-//! `start_capture` answers when the capture has begun, `stop_capture` when the axis stands. There is a `start_capture` only where the configuration says
-//! which capture: everybody whom the router lets in can call it.
+//! `start_capture` answers when the capture has begun, `stop_capture` when the axis is at rest.
+//! `start_capture` is offered only if a capture is configured: every client of the router can call
+//! it.
 
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
@@ -14,35 +14,34 @@ use zenoh::liveliness::LivelinessToken;
 use zenoh::query::Query;
 use zenoh::{Session, Wait};
 
-use super::events::LOOK;
-use super::link::{self, Error, Request};
-use super::rmw::{self, Entity, Quality};
-use super::threads::Stop;
-use crate::http::captures;
-use crate::shared::Shared;
 use engine::config::ros2::Ros2;
+
+use crate::Context;
+use crate::bridge::STOP_POLL;
+use crate::link::{self, Error, Request};
+use crate::rmw::{self, Entity, Quality};
 
 /// Calls that wait for their answers.
 const WAITING: usize = 8;
 
-/// What ROS 2's services offer (`rmw_qos_profile_services_default`).
+/// QoS of services (`rmw_qos_profile_services_default`).
 const QUALITY: Quality = Quality {
     reliable: true,
     latched: false,
     depth: 10,
 };
 
-/// What can be called.
+/// A service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Service {
     /// Begins a capture.
     Start,
-    /// Stops it.
+    /// Stops the capture.
     Stop,
 }
 
 impl Service {
-    /// Those that this configuration offers.
+    /// The services that a configuration offers.
     pub fn offered(settings: &Ros2) -> Vec<Self> {
         match settings.capture {
             Some(_) => vec![Self::Start, Self::Stop],
@@ -65,10 +64,10 @@ pub struct Call {
     request: Request,
 }
 
-/// Where calls go.
+/// The sending end of the queue of calls.
 pub type Inbox = SyncSender<Call>;
 
-/// A place for calls.
+/// A queue of calls.
 pub fn queue() -> (Inbox, Receiver<Call>) {
     sync_channel(WAITING)
 }
@@ -87,7 +86,7 @@ pub fn declare(
         .declare_queryable(rmw::key(settings, &name, &TRIGGER))
         .complete(true)
         .callback(move |query| {
-            // zenoh's own thread: it is not kept. What is no call moves nothing.
+            // Runs on a thread of zenoh, which must not wait.
             let Some(request) = link::request(&query) else {
                 return;
             };
@@ -110,39 +109,33 @@ pub fn declare(
     session.liveliness().declare_token(token).wait()
 }
 
-/// Until the daemon ends.
-pub fn run(
-    shared: &Arc<Shared>,
-    settings: &Ros2,
-    calls: &Receiver<Call>,
-    runtime: &Runtime,
-    stop: &Stop,
-) {
-    while !stop.is_set() {
-        let Ok(call) = calls.recv_timeout(LOOK) else {
+/// Answers calls until the bridge ends.
+pub(crate) fn run(context: &Context, calls: &Receiver<Call>, runtime: &Runtime) {
+    while !context.stop.is_set() {
+        let Ok(call) = calls.recv_timeout(STOP_POLL) else {
             continue;
         };
         let (done, message) = match call.service {
-            Service::Start => begin(shared, settings),
-            Service::Stop => (true, runtime.block_on(end(shared))),
+            Service::Start => start_capture(context),
+            Service::Stop => (true, runtime.block_on(stop_capture(context))),
         };
         answer(&call, done, &message);
-        shared.ros2.calls.fetch_add(1, Ordering::Relaxed);
+        context.counts.calls.fetch_add(1, Ordering::Relaxed);
     }
 }
 
-fn begin(shared: &Shared, settings: &Ros2) -> (bool, String) {
-    let Some(asked) = &settings.capture else {
+fn start_capture(context: &Context) -> (bool, String) {
+    let Some(request) = &context.settings.capture else {
         return (false, "no capture is configured".to_owned());
     };
-    match captures::start(shared, asked) {
+    match context.scans.start_capture(request) {
         Ok(id) => (true, id),
-        Err(refusal) => (false, refusal.to_string()),
+        Err(error) => (false, error),
     }
 }
 
-async fn end(shared: &Shared) -> String {
-    match captures::end(shared).await {
+async fn stop_capture(context: &Context) -> String {
+    match context.devices().stop_capture().await {
         (true, Some(scan)) => format!("stopped {scan}"),
         _ => "nothing was being captured".to_owned(),
     }

@@ -1,59 +1,61 @@
-//! What is known of a scan: in its folder, in lists, with everything.
+//! Records of scans: as stored in their folder, in lists, and in full.
 
 use std::ops::{Deref, DerefMut};
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::limits::NAME_BYTES;
-use engine::capture::request::CaptureRequest;
-use engine::capture::run::Outcome;
-use engine::failure::{Failure, Kind};
-use engine::reconstruct::report::Reception;
+use crate::capture::request::CaptureRequest;
+use crate::capture::run::Outcome;
+use crate::failure::{Failure, Kind};
+use crate::reconstruct::report::Reception;
 
-/// How far a scan is.
+/// Longest name of a scan, bytes.
+pub const NAME_BYTES: usize = 60;
+
+/// State of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ScanState {
-    /// The devices are being recorded.
+    /// The devices are recorded.
     Recording,
     /// The log is complete, the cloud is being made.
     Making,
-    /// All that was asked for is there.
+    /// Complete.
     Whole,
-    /// Less than what was asked for.
+    /// Incomplete.
     Partial,
     /// There is no cloud.
     Failed,
 }
 
 impl ScanState {
-    /// Whether nothing is to be expected any more.
+    /// Whether the state does not change any more.
     #[must_use]
     pub const fn is_final(self) -> bool {
         matches!(self, Self::Whole | Self::Partial | Self::Failed)
     }
 }
 
-/// What a scan is known by, wherever it is told of.
+/// The part of a scan's record that every form of it has.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScanHead {
     /// The name of its folder.
     pub id: String,
-    /// What the user called it.
+    /// Name given by the user.
     #[serde(default)]
     pub name: Option<String>,
-    /// How far it is.
+    /// State.
     pub state: ScanState,
     /// Why it is incomplete.
     pub why: Option<Failure>,
-    /// Whether the disk was full when its cloud was made: it is made of the log once there is room.
+    /// Whether its cloud is made as soon as the disk has room.
     #[serde(default)]
     pub waits_for_room: bool,
-    /// When it was begun, Unix seconds.
+    /// Start, Unix seconds.
     pub started_s: f64,
     /// Whether the devices were software.
     pub simulated: bool,
-    /// What was asked for; absent where nobody knows any more, or a later program knows more of.
+    /// The request; absent where it is lost, or was written by a later version.
     #[serde(default, deserialize_with = "if_understood")]
     pub asked: Option<CaptureRequest>,
     /// Points of the cloud.
@@ -62,43 +64,48 @@ pub struct ScanHead {
     pub duration_s: Option<f64>,
 }
 
-/// What was asked for, where it can be read: requests with options that nobody knows are refused, but a scan that was made is a scan.
+/// The request, if this version can read it. New requests with unknown options are refused, but the
+/// scan of one is kept.
 fn if_understood<'de, D: Deserializer<'de>>(from: D) -> Result<Option<CaptureRequest>, D::Error> {
     let value = Option::<serde_json::Value>::deserialize(from)?;
     Ok(value.and_then(|value| serde_json::from_value(value).ok()))
 }
 
-/// What is kept of a scan beside its files: `scan.json`.
+/// The file `scan.json` in a scan's folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScanRecord {
-    /// What it is known by.
+    /// Head.
     #[serde(flatten)]
     pub head: ScanHead,
-    /// Scans are numbered as they are made: clocks may be set, and what is newest must not hang on them.
+    /// Scans are numbered in their order, which a clock that is set cannot change.
     #[serde(default)]
     pub number: u64,
-    /// Whether the file could not be read: then nothing is written over it, and the scan stays until somebody deletes it.
+    /// Whether the file could not be read. It is not overwritten then, and the scan is deleted only
+    /// on request.
     #[serde(skip)]
     pub unreadable: bool,
-    /// What was said on the way.
+    /// Messages during the capture.
     #[serde(default)]
     pub messages: Vec<String>,
-    /// What went wrong with the recording itself.
+    /// Why the recording is incomplete.
     #[serde(default)]
     pub recording: Option<Failure>,
-    /// Records that were lost.
+    /// Records lost on the way to the log.
     #[serde(default)]
     pub lost_records: u64,
-    /// What was heard.
+    /// Counts of packets.
     #[serde(default)]
     pub reception: Option<Reception>,
-    /// What `capture --json` prints.
+    /// The line of `why` that says why there is no cloud.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_cloud: Option<String>,
+    /// The object that `capture --json` prints.
     #[serde(default)]
     pub report: Option<serde_json::Value>,
 }
 
 impl ScanRecord {
-    /// Of a scan of which nothing has been told yet.
+    /// A record of a scan that begins.
     #[must_use]
     pub const fn new(head: ScanHead) -> Self {
         Self {
@@ -109,54 +116,56 @@ impl ScanRecord {
             recording: None,
             lost_records: 0,
             reception: None,
+            no_cloud: None,
             report: None,
         }
     }
 
-    /// What there is to say of its recording.
+    /// The outcome of its recording.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         Outcome {
             failure: self.recording.clone(),
             lost_records: self.lost_records,
             reception: self.reception,
+            warnings: Vec::new(),
         }
     }
 }
 
-/// A scan as a list shows it.
+/// A scan in a list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScanView {
-    /// What it is known by.
+    /// Head.
     #[serde(flatten)]
     pub head: ScanHead,
-    /// All its files.
+    /// Bytes of all its files.
     pub bytes: u64,
-    /// Its log.
+    /// Bytes of its log.
     pub log_bytes: Option<u64>,
-    /// Its cloud.
+    /// Bytes of its cloud.
     pub cloud_bytes: Option<u64>,
-    /// Whether there is a picture.
+    /// Whether it has a thumbnail.
     pub thumbnail: bool,
-    /// Why it is incomplete and what there is of it, in sentences for people, without files' places.
+    /// Why it is incomplete and what it has, in sentences without file names.
     pub summary: Option<String>,
 }
 
-/// One with everything.
+/// A scan in full.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WholeView {
-    /// As in the list.
+pub struct ScanDetails {
+    /// As in a list.
     #[serde(flatten)]
     pub scan: ScanView,
-    /// What was said on the way.
+    /// Messages during the capture.
     pub messages: Vec<String>,
-    /// What went wrong with the recording itself.
+    /// Why the recording is incomplete.
     pub recording: Option<Failure>,
-    /// Records that were lost.
+    /// Records lost on the way to the log.
     pub lost_records: u64,
-    /// What was heard.
+    /// Counts of packets.
     pub reception: Option<Reception>,
-    /// What `capture --json` prints.
+    /// The object that `capture --json` prints.
     pub report: Option<serde_json::Value>,
 }
 
@@ -182,7 +191,7 @@ impl Deref for ScanView {
     }
 }
 
-/// Refuses a name that cannot be part of an id.
+/// Refuses a name that may not be part of an id.
 ///
 /// # Errors
 /// [`Kind::Usage`].

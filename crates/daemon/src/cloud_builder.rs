@@ -1,5 +1,5 @@
-//! The thread that makes clouds of logs: after each capture, at the start of those that were never made, and where the disk was full once there
-//! is room.
+//! The thread that makes clouds from logs: after each capture, at the start for scans without one,
+//! and after a full disk as soon as it has room.
 
 use std::fs;
 use std::io::Write;
@@ -16,52 +16,54 @@ use io::files::{NewFile, Overwrite};
 use scanner::{Accuracy, TiltSource};
 use sim::Truth;
 
-use super::hub::Level;
-use super::plan;
-use super::room::{Room, Roomy};
-use super::scans::{ScanState, THUMBNAIL};
-use super::shared::{Counters, Shared};
-use crate::thumbnail;
-use engine::capture::run as job;
+use engine::capture::run;
 use engine::failure::{Failure, Kind};
 use engine::output::{Buffered, Target, file_failure};
 use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
+use engine::service::events::MessageLevel;
+use engine::service::scan_record::ScanState;
 
-/// How often it is looked whether there is room again.
-const LOOK: Duration = Duration::from_secs(1);
+use crate::disk_quota::{DiskQuota, QuotaFile};
+use crate::plan;
+use crate::scans::THUMBNAIL;
+use crate::state::{Counters, DaemonState};
+use crate::thumbnail;
 
-/// A log that waits for its cloud.
-pub struct Making {
-    /// The scan.
+/// Between two checks whether the disk has room again.
+const ROOM_POLL: Duration = Duration::from_secs(1);
+
+/// A log whose cloud is to be made.
+pub struct CloudJob {
+    /// Id of the scan.
     pub id: String,
-    /// How accurate the cloud is to be.
+    /// Accuracy of the cloud.
     pub accuracy: Accuracy,
-    /// What truly happened, where a simulator knows.
+    /// The simulator's truth, where the devices were software.
     pub truth: Option<Truth>,
-    /// Records that were lost on the way to the log.
+    /// Records lost on the way to the log.
     pub lost_records: u64,
 }
 
-/// Those that were never made.
+/// Jobs of scans whose cloud was not finished.
 #[must_use]
-pub fn left_over(shared: &Shared) -> Vec<Making> {
-    let ids = shared.scans.unfinished().into_iter();
-    let making = ids.map(|id| {
-        clean(&shared.scans.place(&id));
-        once_more(shared, id)
+pub(crate) fn unfinished(state: &DaemonState) -> Vec<CloudJob> {
+    let ids = state.scans.unfinished().into_iter();
+    let jobs = ids.map(|id| {
+        clean(&state.scans.place(&id));
+        job_again(state, id)
     });
-    making.collect()
+    jobs.collect()
 }
 
-/// The log of a scan whose making has ended before there was a cloud.
-fn once_more(shared: &Shared, id: String) -> Making {
-    let record = shared.scans.record(&id);
+/// The job of a scan, made from its record.
+fn job_again(state: &DaemonState, id: String) -> CloudJob {
+    let record = state.scans.record(&id);
     let lost_records = record.as_ref().map_or(0, |record| record.lost_records);
     let asked = record.and_then(|record| record.head.asked);
-    Making {
+    CloudJob {
         accuracy: asked
             .and_then(|asked| asked.accuracy().ok())
             .unwrap_or(Accuracy::Best),
@@ -71,83 +73,83 @@ fn once_more(shared: &Shared, id: String) -> Making {
     }
 }
 
-/// The oldest of those for which there was no room, if there is room now: of nothing that is left free or a scan was promised.
-fn with_room_now(shared: &Arc<Shared>) -> Option<Making> {
-    if shared.is_ending() {
+/// The job of the oldest scan that waits for room, if there is room now. Reserved bytes and those
+/// promised to captures do not count.
+fn job_with_room(state: &Arc<DaemonState>) -> Option<CloudJob> {
+    if state.service.is_ending() {
         return None;
     }
-    let id = shared.scans.waiting().into_iter().next()?;
-    let log_bytes = fs::metadata(shared.log(&id)).map_or(0, |there| there.len());
-    Room::take(shared, plan::most_cloud_bytes(log_bytes)).ok()?;
-    shared.change_scan(&id, |record| {
+    let id = state.scans.waiting().into_iter().next()?;
+    let log_bytes = fs::metadata(state.log(&id)).map_or(0, |there| there.len());
+    DiskQuota::take(state, plan::most_cloud_bytes(log_bytes)).ok()?;
+    state.change_scan(&id, |record| {
         record.state = ScanState::Making;
         record.waits_for_room = false;
     });
-    Some(once_more(shared, id))
+    Some(job_again(state, id))
 }
 
-/// Removes what was half written. Whatever else lies there is somebody's.
+/// Removes half-written files.
 fn clean(place: &Path) {
     let Ok(entries) = fs::read_dir(place) else {
         return;
     };
     for entry in entries.flatten() {
         if io::files::is_half_written(&entry.file_name()) {
-            // What cannot be removed only takes room.
+            // A file that cannot be removed only takes room.
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// Makes clouds until nobody sends logs any more.
-pub fn run(shared: &Arc<Shared>, logs: &Receiver<Making>) {
+/// Makes clouds until the queue is closed.
+pub fn run(state: &Arc<DaemonState>, queue: &Receiver<CloudJob>) {
     loop {
-        let making = match logs.recv_timeout(LOOK) {
-            Ok(making) => making,
+        let job = match queue.recv_timeout(ROOM_POLL) {
+            Ok(job) => job,
             Err(RecvTimeoutError::Disconnected) => return,
-            Err(RecvTimeoutError::Timeout) => match with_room_now(shared) {
-                Some(making) => making,
+            Err(RecvTimeoutError::Timeout) => match job_with_room(state) {
+                Some(job) => job,
                 None => continue,
             },
         };
-        if shared.abandon.load(Ordering::Acquire) {
-            // Its state says that the cloud is to be made: the next start does it.
+        if state.abandon.load(Ordering::Acquire) {
+            // The next start makes the cloud.
             continue;
         }
-        make(shared, &making);
-        shared.retain();
+        build(state, &job);
+        state.delete_excess_scans();
     }
 }
 
-fn make(shared: &Arc<Shared>, making: &Making) {
-    let id = making.id.as_str();
-    let room = Room::of_scan(shared);
-    let made = catch_unwind(AssertUnwindSafe(|| cloud(shared, making, &room)));
+fn build(state: &Arc<DaemonState>, job: &CloudJob) {
+    let id = job.id.as_str();
+    let quota = DiskQuota::of_scan(state);
+    let made = catch_unwind(AssertUnwindSafe(|| cloud(state, job, &quota)));
     let made = made.unwrap_or_else(|_| {
         Err(Failure::new(
             Kind::Incomplete,
             "a defect of the program ended the making of the cloud",
         )
-        .help("run velomotion replay on the log with -vv and report what it says"))
+        .help("run velomotion replay on the log with -vv and report the messages"))
     });
-    if shared.abandon.load(Ordering::Acquire) {
+    if state.abandon.load(Ordering::Acquire) {
         return;
     }
-    let Some(record) = shared.scans.record(id) else {
+    let Some(record) = state.scans.record(id) else {
         return;
     };
-    let (cloud, log) = (shared.cloud(id), shared.log(id));
+    let (cloud, log) = (state.cloud(id), state.log(id));
     if made.is_ok()
-        && let Err(failure) = picture(&cloud, &shared.scans.place(id).join(THUMBNAIL))
+        && let Err(failure) = make_thumbnail(&cloud, &state.scans.place(id).join(THUMBNAIL))
     {
-        // The cloud is what counts.
-        shared
-            .hub
-            .say(Level::Warning, failure.message, failure.help);
+        let events = state.events();
+        events.message(MessageLevel::Warning, failure.message, failure.help);
     }
-    let waits = made.is_err() && room.refused().is_some();
-    let concluded = job::conclude(made, record.outcome(), (&cloud, &log));
-    let counters = &shared.counters;
+    let waits = made.is_err() && quota.refused().is_some();
+    let no_cloud = made.as_ref().err().map(run::no_cloud);
+    let concluded = run::conclude(made, record.outcome(), (&cloud, &log));
+    let counters = &state.counters;
     match &concluded {
         Ok((scan, None)) => {
             tracing::info!("scan {id}: whole, {} points", scan.points);
@@ -157,14 +159,13 @@ fn make(shared: &Arc<Shared>, making: &Making) {
             tracing::warn!("scan {id}: partial, {} points: {why}", scan.points);
             Counters::count(&counters.partial);
         }
-        // What is to come of it is not known yet.
         Err(why) if waits => tracing::error!("scan {id}: no cloud until there is room: {why}"),
         Err(why) => {
             tracing::error!("scan {id}: no cloud: {why}");
             Counters::count(&counters.failed);
         }
     }
-    shared.change_scan(id, |record| match concluded {
+    state.change_scan(id, |record| match concluded {
         Ok((scan, why)) => {
             record.state = match &why {
                 None => ScanState::Whole,
@@ -177,20 +178,21 @@ fn make(shared: &Arc<Shared>, making: &Making) {
         }
         Err(why) => {
             record.state = ScanState::Failed;
+            record.no_cloud = no_cloud;
             record.waits_for_room = waits;
             record.why = Some(why);
         }
     });
 }
 
-/// Draws the cloud for lists, whatever happens in that.
-fn picture(cloud: &Path, to: &Path) -> Result<(), Failure> {
+/// Makes the thumbnail of a cloud. A panic in it is a failure.
+fn make_thumbnail(cloud: &Path, to: &Path) -> Result<(), Failure> {
     catch_unwind(|| draw(cloud, to)).unwrap_or_else(|_| {
         Err(Failure::new(
             Kind::Incomplete,
-            format!("{}: a defect of the program: no picture", to.display()),
+            format!("{}: a defect of the program: no thumbnail", to.display()),
         )
-        .help("the scan is complete without it; run the daemon with -vv and report what it says"))
+        .help("the scan is complete without it; run the daemon with -vv and report the messages"))
     })
 }
 
@@ -198,7 +200,7 @@ fn draw(cloud: &Path, to: &Path) -> Result<(), Failure> {
     let cannot = |error: &dyn std::fmt::Display| {
         Failure::new(
             Kind::Incomplete,
-            format!("{}: no picture: {error}", to.display()),
+            format!("{}: no thumbnail: {error}", to.display()),
         )
         .help("the scan is complete without it; see whether the disk is full")
     };
@@ -209,24 +211,28 @@ fn draw(cloud: &Path, to: &Path) -> Result<(), Failure> {
     file.commit().map_err(|error| file_failure(&error))
 }
 
-fn cloud(shared: &Shared, making: &Making, room: &Arc<Room>) -> Result<ScanReport, Failure> {
-    let target = Target::file(&shared.cloud(&making.id), true, |file| {
-        let file = Buffered::new(Roomy::new(file, Arc::clone(room)));
+fn cloud(
+    state: &DaemonState,
+    job: &CloudJob,
+    quota: &Arc<DiskQuota>,
+) -> Result<ScanReport, Failure> {
+    let target = Target::file(&state.cloud(&job.id), true, |file| {
+        let file = Buffered::new(QuotaFile::new(file, Arc::clone(quota)));
         Format::Ply.writer(file, Fields::FILE)
     })?;
-    let source = Source::open(&shared.log(&making.id), None)?;
+    let source = Source::open(&state.log(&job.id), None)?;
     let request = Reconstruction {
         recording: &source,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
         time: TimeReference::Host,
-        accuracy: making.accuracy,
+        accuracy: job.accuracy,
         pace: None,
-        truth: making.truth.as_ref(),
-        lost_records: making.lost_records,
-        interrupt: &shared.abandon,
+        truth: job.truth.as_ref(),
+        lost_records: job.lost_records,
+        interrupt: &state.abandon,
     };
-    replay::make(&request, target).map_err(|failure| match room.refused() {
+    replay::make(&request, target).map_err(|failure| match quota.refused() {
         Some(full) => full.clone(),
         None => failure,
     })

@@ -1,0 +1,94 @@
+//! A device service in the process of one command, reachable over the Unix socket that a daemon of
+//! the device would have.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use engine::config::{Config, Device};
+use engine::devices::profile;
+use engine::failure::{Failure, Kind};
+use engine::service::{DeviceService, DeviceThread, Environment, Lifetime, ServiceOptions};
+
+use crate::http::command_router;
+use crate::http::server::{Server, UnixSocket};
+use crate::limits::{LOCAL_CONNECTIONS, Waits};
+use crate::sockets;
+
+/// A device service of one command.
+pub struct LocalService {
+    service: Arc<DeviceService>,
+    thread: DeviceThread,
+    server: Option<Server>,
+}
+
+impl LocalService {
+    /// Opens the devices, and the lidar if it is needed. `interrupt` stops the axis.
+    ///
+    /// # Errors
+    /// Where a device cannot be opened.
+    pub fn start(
+        config: Config,
+        (name, device): (String, Device),
+        lidar: bool,
+        interrupt: &Arc<AtomicBool>,
+    ) -> Result<Self, Failure> {
+        // Software devices belong to their command alone.
+        let socket = match profile::simulated(&device) {
+            true => None,
+            false => Some(sockets::folder().join(sockets::name(&name, &device)?)),
+        };
+        let (service, thread) = DeviceService::start(ServiceOptions {
+            config,
+            name,
+            device,
+            lifetime: Lifetime::Command {
+                lidar,
+                interrupt: Arc::clone(interrupt),
+            },
+            environment: Environment::default(),
+        })?;
+        let server = socket.and_then(|socket| {
+            serve(&service, &socket)
+                .inspect_err(|failure| {
+                    tracing::debug!("other commands cannot stop the axis: {failure}");
+                })
+                .ok()
+        });
+        Ok(Self {
+            service,
+            thread,
+            server,
+        })
+    }
+
+    /// The devices.
+    #[must_use]
+    pub fn service(&self) -> &Arc<DeviceService> {
+        &self.service
+    }
+
+    /// What is doubtful about the drive's port.
+    #[must_use]
+    pub fn port_warning(&self) -> Option<&str> {
+        self.thread.port_warning.as_deref()
+    }
+
+    /// Closes the devices and the socket, after the answers under way.
+    pub fn stop(self) {
+        self.service
+            .shut_down(Failure::new(Kind::Interrupted, "the command has ended"));
+        // A panic has been reported by the order that it ended.
+        let _ = self.thread.join();
+        if let Some(server) = self.server {
+            server.stop(std::future::ready(()));
+        }
+    }
+}
+
+fn serve(service: &Arc<DeviceService>, socket: &std::path::Path) -> Result<Server, Failure> {
+    let waits = Waits::default();
+    let unix = UnixSocket::bind(socket)?;
+    let mut server = Server::start(waits)?;
+    server.accept_unix(unix, command_router(service, waits), LOCAL_CONNECTIONS)?;
+    Ok(server)
+}

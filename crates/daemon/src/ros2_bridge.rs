@@ -1,0 +1,93 @@
+//! The ROS 2 bridge of a daemon, in builds with the feature `ros2`.
+
+use std::sync::Arc;
+
+use engine::config::ros2::Ros2;
+use engine::failure::{Failure, Kind};
+
+use crate::state::DaemonState;
+
+#[cfg(feature = "ros2")]
+pub use ros2::Bridge;
+
+/// The bridge, which this build does not have.
+#[cfg(not(feature = "ros2"))]
+pub enum Bridge {}
+
+#[cfg(not(feature = "ros2"))]
+impl Bridge {
+    /// Ends it.
+    pub fn stop(self) -> bool {
+        match self {}
+    }
+}
+
+/// Refuses a configuration with ROS 2 in a build without it.
+///
+/// # Errors
+/// [`Kind::Usage`].
+pub fn check(settings: Option<&Ros2>) -> Result<(), Failure> {
+    if settings.is_none() || cfg!(feature = "ros2") {
+        return Ok(());
+    }
+    Err(Failure::new(
+        Kind::Usage,
+        "[daemon.ros2] is configured, and this velomotion was built without ROS 2",
+    )
+    .help(
+        "install the package, which has it, or build with: cargo build --release --features ros2;\n\
+         or take [daemon.ros2] out of the configuration",
+    ))
+}
+
+/// Starts the bridge where it is configured.
+///
+/// # Errors
+/// As [`check`], and as the bridge's own start.
+pub fn start(state: &Arc<DaemonState>) -> Result<Option<Bridge>, Failure> {
+    check(state.settings().ros2.as_ref())?;
+    #[cfg(feature = "ros2")]
+    if let Some(settings) = &state.settings().ros2 {
+        let scans: Arc<dyn ros2::ScanService> = state.clone();
+        let counts = Arc::clone(&state.ros2);
+        return Bridge::start(&scans, settings.clone(), counts).map(Some);
+    }
+    Ok(None)
+}
+
+#[cfg(feature = "ros2")]
+impl ros2::ScanService for Arc<DaemonState> {
+    fn devices(&self) -> &Arc<engine::service::DeviceService> {
+        &self.service
+    }
+
+    fn start_capture(
+        &self,
+        request: &engine::capture::request::CaptureRequest,
+    ) -> Result<String, String> {
+        crate::http::captures::start(self, request).map_err(|refusal| refusal.to_string())
+    }
+
+    fn log(&self, scan: &str) -> std::path::PathBuf {
+        DaemonState::log(self, scan)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_build_without_ros_2_refuses_its_configuration() {
+        assert!(check(None).is_ok());
+        let checked = check(Some(&Ros2::default()));
+        match cfg!(feature = "ros2") {
+            true => assert!(checked.is_ok()),
+            false => {
+                let failure = checked.unwrap_err();
+                assert_eq!(failure.kind, Kind::Usage);
+                assert!(failure.help.unwrap().contains("--features ros2"));
+            }
+        }
+    }
+}

@@ -1,0 +1,738 @@
+//! The owner of the devices: one thread runs captures and jogs, one after the other, for every
+//! client.
+//!
+//! A client that moves the axis holds its [`AxisLease`]; dropping the lease makes the axis idle.
+//! [`DeviceService::stop`] stops the motion of whoever holds it. Status is a `watch`, events are a
+//! `broadcast`: neither makes the device thread wait.
+
+mod device_thread;
+mod drive_connection;
+pub mod events;
+mod execute;
+mod lease;
+mod lidar_stats;
+pub mod live_preview;
+mod motion_reporter;
+mod open_devices;
+pub mod scan_record;
+pub mod status;
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
+use std::time::{Duration, Instant};
+
+use io::discover::ConnectedDevices;
+use sim::Truth;
+use tokio::sync::{oneshot, watch};
+use units::{Rpm, Span};
+
+pub use device_thread::DeviceThread;
+pub use lease::{AxisLease, LeaseError};
+
+use crate::capture::jog::{self, JogRequest, Report};
+use crate::capture::request::CapturePlan;
+use crate::capture::run::{self, Outcome};
+use crate::config::{Config, Device};
+use crate::devices::lidar_receiver::{LidarReceiver, PacketTap};
+use crate::devices::{lidar_sockets, profile};
+use crate::failure::{Failure, Kind};
+use device_thread::Order;
+use events::{Event, Events, MessageLevel};
+use lease::StopSignal;
+use lidar_stats::LidarStats;
+use live_preview::{LivePreview, PreviewInput};
+use status::{
+    Activity, AxisStatus, AxisTask, ClientsStatus, DeviceState, DiskStatus, DriveSnapshot,
+    LidarStatus, ServiceStatus,
+};
+
+/// A report of the drive younger than this is not asked for again.
+const REPORT_LIFETIME: Duration = Duration::from_millis(500);
+/// A lidar that sends nothing for this long is absent: it sends 754 packets per second.
+const LIDAR_SILENCE: Duration = Duration::from_secs(2);
+/// Wait for a lidar that may have been switched on a moment ago; it is looked for every second.
+const LIDAR_WAIT: Duration = Duration::from_secs(3);
+const LIDAR_POLL: Duration = Duration::from_millis(50);
+/// Wait for a request that only reads the drive's state.
+const READ_WAIT: Duration = Duration::from_secs(5);
+/// Attempts of a stop while other clients begin moves.
+const STOP_ATTEMPTS: usize = 16;
+/// Suspensions shorter than this are the difference of two clock readings.
+const SHORTEST_SUSPENSION: Span = Span::from_millis(500);
+
+/// What the service takes from the machine. Tests replace it.
+#[derive(Clone)]
+pub struct Environment {
+    /// Lists the devices that are plugged in.
+    pub plugged: Arc<dyn Fn() -> ConnectedDevices + Send + Sync>,
+    /// Time that the machine has been suspended since it was booted.
+    pub suspended: Arc<dyn Fn() -> Span + Send + Sync>,
+    /// Called on the device thread at every heartbeat.
+    pub heartbeat: Arc<dyn Fn(AxisTask) + Send + Sync>,
+}
+
+impl Default for Environment {
+    fn default() -> Self {
+        Self {
+            plugged: Arc::new(io::discover::discover),
+            suspended: Arc::new(io::clock::suspended),
+            heartbeat: Arc::new(|_| {}),
+        }
+    }
+}
+
+/// How long the service keeps its devices.
+#[derive(Clone)]
+pub enum Lifetime {
+    /// Until it ends: absent devices are waited for, lost ones are opened again.
+    Resident,
+    /// For one command: devices are opened once, at the start, and errors end the command.
+    Command {
+        /// Whether the lidar is needed.
+        lidar: bool,
+        /// Flag that stops whatever moves the axis, such as that of Ctrl-C.
+        interrupt: Arc<AtomicBool>,
+    },
+}
+
+/// What a service is made of.
+pub struct ServiceOptions {
+    /// The configuration.
+    pub config: Config,
+    /// Name of the device's profile.
+    pub name: String,
+    /// The device.
+    pub device: Device,
+    /// How long the devices are kept.
+    pub lifetime: Lifetime,
+    /// The machine.
+    pub environment: Environment,
+}
+
+/// The end of a capture whose motion began.
+pub struct CaptureEnd {
+    /// What became of the recording.
+    pub outcome: Outcome,
+    /// The simulator's truth, where the devices are software.
+    pub truth: Option<Truth>,
+}
+
+/// The end of a capture, or why nothing was recorded.
+pub type CaptureResult = Result<CaptureEnd, Failure>;
+
+/// Who stopped the axis.
+#[derive(Clone, Debug)]
+pub enum Stopped {
+    /// This service, which then asked the drive for its state.
+    Reported(Box<Report>),
+    /// The command that owns this service, which ends now.
+    ByCommand,
+}
+
+/// State that clients follow. Locked for moments only, never while a device or disk is waited for.
+#[derive(Clone, Default)]
+struct State {
+    activity: Activity,
+    /// Stop signal of the current lease.
+    stop: Option<StopSignal>,
+    drive: DriveSnapshot,
+    lidar: LidarStatus,
+    disk: DiskStatus,
+    report: Option<Report>,
+    /// Time of the report, unless something has happened since.
+    reported_at: Option<Instant>,
+    /// Whether the axis may move although no lease is held.
+    may_move: bool,
+}
+
+/// The devices and their status.
+pub struct DeviceService {
+    config: Config,
+    name: String,
+    device: Device,
+    axis: drive::AxisConfig,
+    lifetime: Lifetime,
+    environment: Environment,
+    events: Arc<Events>,
+    state: watch::Sender<State>,
+    preview: PreviewInput,
+    receiver: Mutex<Option<Arc<LidarReceiver>>>,
+    lidar_stats: Arc<Mutex<LidarStats>>,
+    orders: mpsc::Sender<Order>,
+    ending: AtomicBool,
+    connects: AtomicU64,
+    started: Instant,
+    started_s: f64,
+    /// Last heartbeat of the device thread, milliseconds after the start.
+    heartbeat_ms: AtomicU64,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn now_s() -> f64 {
+    io::clock::now().as_nanos() as f64 * 1e-9
+}
+
+impl DeviceService {
+    /// Starts the device thread. A service for one command has its devices open when this returns.
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] where the configuration describes no valid axis; for one command, also
+    /// where a device cannot be opened.
+    pub fn start(options: ServiceOptions) -> Result<(Arc<Self>, DeviceThread), Failure> {
+        let (orders, inbox) = mpsc::channel();
+        let axis = profile::axis(&options.config.axis)?;
+        // A command prints its own messages.
+        let resident = matches!(options.lifetime, Lifetime::Resident);
+        let service = Arc::new(Self {
+            config: options.config,
+            name: options.name,
+            device: options.device,
+            axis,
+            lifetime: options.lifetime,
+            environment: options.environment,
+            events: Arc::new(Events::new(resident)),
+            state: watch::Sender::new(State::default()),
+            preview: PreviewInput::default(),
+            receiver: Mutex::default(),
+            lidar_stats: Arc::default(),
+            orders,
+            ending: AtomicBool::new(false),
+            connects: AtomicU64::new(0),
+            started: Instant::now(),
+            started_s: now_s(),
+            heartbeat_ms: AtomicU64::new(0),
+        });
+        let thread = DeviceThread::start(&service, inbox)?;
+        Ok((service, thread))
+    }
+
+    /// The configuration.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// The name of the device's profile, and the device.
+    #[must_use]
+    pub fn device(&self) -> (&str, &Device) {
+        (&self.name, &self.device)
+    }
+
+    /// Whether the devices are software.
+    #[must_use]
+    pub fn simulated(&self) -> bool {
+        profile::simulated(&self.device)
+    }
+
+    /// The events.
+    #[must_use]
+    pub fn events(&self) -> &Arc<Events> {
+        &self.events
+    }
+
+    /// Whether the service is ending.
+    #[must_use]
+    pub fn is_ending(&self) -> bool {
+        self.ending.load(Ordering::Acquire)
+    }
+
+    /// Times that the drive's port was opened.
+    #[must_use]
+    pub fn connects(&self) -> u64 {
+        self.connects.load(Ordering::Relaxed)
+    }
+
+    /// Time since the last heartbeat of the device thread.
+    #[must_use]
+    pub fn time_since_heartbeat(&self) -> Duration {
+        let last = Duration::from_millis(self.heartbeat_ms.load(Ordering::Relaxed));
+        self.started.elapsed().saturating_sub(last)
+    }
+
+    /// Total time that the machine has been suspended.
+    #[must_use]
+    pub fn suspended(&self) -> Span {
+        (self.environment.suspended)()
+    }
+
+    fn heartbeat(&self) {
+        let now = u64::try_from(self.started.elapsed().as_millis()).unwrap_or(u64::MAX);
+        self.heartbeat_ms.store(now, Ordering::Relaxed);
+        let task = self.state.borrow().activity.doing;
+        (self.environment.heartbeat)(task);
+    }
+
+    /// Plans a capture into these files.
+    ///
+    /// # Errors
+    /// As [`CapturePlan::of`].
+    pub fn plan(
+        &self,
+        request: &crate::capture::request::CaptureRequest,
+        cloud: std::path::PathBuf,
+        log: std::path::PathBuf,
+    ) -> Result<CapturePlan, Failure> {
+        CapturePlan::of(request, &self.config, self.device(), cloud, log)
+    }
+
+    // Leases and motion.
+
+    /// Takes the axis for a task, if it is idle.
+    ///
+    /// # Errors
+    /// [`LeaseError`] where the axis is busy, the drive is not connected, or the service is ending.
+    pub fn lease(self: &Arc<Self>, task: AxisTask) -> Result<AxisLease, LeaseError> {
+        if matches!(self.lifetime, Lifetime::Resident) {
+            self.require_drive()?;
+        }
+        let interrupt = match &self.lifetime {
+            Lifetime::Resident => None,
+            Lifetime::Command { interrupt, .. } => Some(Arc::clone(interrupt)),
+        };
+        AxisLease::take(self, task, interrupt)
+    }
+
+    /// # Errors
+    /// [`LeaseError`] where the drive is not connected.
+    pub fn require_drive(&self) -> Result<(), LeaseError> {
+        let state = self.state.borrow();
+        let drive = &state.drive;
+        if drive.state != DeviceState::Absent {
+            return Ok(());
+        }
+        Err(LeaseError::Failure(drive.problem.clone().unwrap_or_else(
+            || {
+                Failure::new(Kind::NoDevice, "the drive is not connected yet")
+                    .help("wait a moment, and look at the status")
+            },
+        )))
+    }
+
+    /// # Errors
+    /// [`LeaseError`] where the lidar sends nothing.
+    pub fn require_lidar(&self) -> Result<(), LeaseError> {
+        let state = self.state.borrow();
+        let lidar = &state.lidar;
+        if lidar.state == DeviceState::Connected {
+            return Ok(());
+        }
+        Err(LeaseError::Failure(lidar.problem.clone().unwrap_or_else(
+            || {
+                Failure::new(Kind::NoDevice, "no packet of the lidar has arrived yet")
+                    .help("wait a moment, and look at the status")
+            },
+        )))
+    }
+
+    /// Begins a capture with the axis leased. It goes on if the receiver is dropped.
+    ///
+    /// # Errors
+    /// [`LeaseError`] where the device thread is gone.
+    pub fn capture(
+        &self,
+        lease: AxisLease,
+        plan: CapturePlan,
+    ) -> Result<oneshot::Receiver<CaptureResult>, LeaseError> {
+        let (answer, result) = oneshot::channel();
+        let plan = Box::new(plan);
+        self.order(Order::Capture {
+            lease,
+            plan,
+            answer,
+        })?;
+        Ok(result)
+    }
+
+    /// Begins a jog. It goes on if the receiver is dropped.
+    ///
+    /// # Errors
+    /// [`LeaseError`]; [`Kind::Usage`] for a move that the axis cannot make.
+    pub fn jog(
+        self: &Arc<Self>,
+        request: JogRequest,
+    ) -> Result<oneshot::Receiver<Result<Report, Failure>>, LeaseError> {
+        let commands = jog::commands(request, &self.config, &self.device)?;
+        let task = match request {
+            JogRequest::Home => AxisTask::Homing,
+            JogRequest::Goto { .. } => AxisTask::Moving,
+            JogRequest::Status | JogRequest::Stop | JogRequest::ClearFaults => AxisTask::Stopping,
+        };
+        let lease = self.lease(task)?;
+        if matches!(request, JogRequest::Status) {
+            self.update_activity(|activity| activity.reads_only = true);
+        }
+        let (answer, report) = oneshot::channel();
+        self.order(Order::Jog {
+            lease,
+            commands,
+            answer,
+        })?;
+        Ok(report)
+    }
+
+    /// Runs a jog to its end.
+    ///
+    /// # Errors
+    /// As [`DeviceService::jog`], and where the motion failed.
+    pub async fn run_jog(self: &Arc<Self>, request: JogRequest) -> Result<Report, LeaseError> {
+        let commands = jog::commands(request, &self.config, &self.device);
+        commands?;
+        if !matches!(request, JogRequest::Status) {
+            self.wait_for_reads().await;
+        }
+        match self.jog(request)?.await {
+            Ok(report) => Ok(report?),
+            Err(_) => Err(LeaseError::Failure(
+                Failure::new(Kind::Interrupted, "the daemon is ending")
+                    .help("the axis is stopped; start the daemon again"),
+            )),
+        }
+    }
+
+    /// Stops whatever moves the axis. Returns whether anything did.
+    pub fn stop(&self, reason: Option<Failure>) -> bool {
+        let stop = self.state.borrow().stop.clone();
+        if let Some(stop) = &stop {
+            stop.request(reason);
+        }
+        stop.is_some()
+    }
+
+    /// Stops whatever moves the axis, waits until it is at rest, and sets the brake.
+    ///
+    /// # Errors
+    /// [`LeaseError`] where the axis could not be stopped.
+    pub async fn stop_axis(self: &Arc<Self>) -> Result<Stopped, LeaseError> {
+        if let Lifetime::Command { .. } = self.lifetime {
+            self.stop(None);
+            self.wait_idle().await;
+            return match self.state.borrow().may_move {
+                false => Ok(Stopped::ByCommand),
+                true => Err(LeaseError::Failure(
+                    Failure::new(
+                        Kind::DeviceFault,
+                        "the command that uses the drive could not stop the axis",
+                    )
+                    .help("switch the motor's supply off if the axis moves"),
+                )),
+            };
+        }
+        let mut attempts = 0;
+        loop {
+            attempts += 1;
+            self.stop(None);
+            self.wait_idle().await;
+            match self.run_jog(JogRequest::Stop).await {
+                // Another client was quicker: its motion is stopped, too.
+                Err(LeaseError::Busy(_)) if attempts < STOP_ATTEMPTS => {}
+                done => return done.map(|report| Stopped::Reported(Box::new(report))),
+            }
+        }
+    }
+
+    /// Stops a capture and waits until the axis is at rest; other motion goes on. Returns whether
+    /// there was a capture, and the scan's id.
+    pub async fn stop_capture(&self) -> (bool, Option<String>) {
+        let mut state = self.state.subscribe();
+        if state.borrow().activity.doing != AxisTask::Capturing {
+            return (false, None);
+        }
+        let stopped = self.stop(None);
+        // A capture that began a moment ago has no id yet.
+        let mut scan: Option<String> = None;
+        loop {
+            {
+                let state = state.borrow_and_update();
+                let now = &state.activity;
+                let another = now.scan.is_some() && scan.is_some() && now.scan != scan;
+                if now.doing == AxisTask::Idle || another {
+                    break;
+                }
+                scan = scan.or_else(|| now.scan.clone());
+            }
+            // The sender lives as long as `self`.
+            if state.changed().await.is_err() {
+                break;
+            }
+        }
+        (stopped, scan)
+    }
+
+    /// Waits until the axis is idle. All motion has time limits of its own.
+    async fn wait_idle(&self) {
+        let mut state = self.state.subscribe();
+        let idle = |state: &State| state.activity.doing == AxisTask::Idle;
+        let _ = state.wait_for(idle).await;
+    }
+
+    /// Waits for requests that only read the drive's state: they must not have a motion refused.
+    pub async fn wait_for_reads(&self) {
+        let mut state = self.state.subscribe();
+        let none = state.wait_for(|state| !state.activity.reads_only);
+        let _ = tokio::time::timeout(READ_WAIT, none).await;
+    }
+
+    /// Waits for the first packet of a lidar that is not known to be silent.
+    pub async fn wait_for_lidar(&self) {
+        let unknown = || {
+            let state = self.state.borrow();
+            state.lidar.state == DeviceState::Absent && state.lidar.problem.is_none()
+        };
+        let mut left = LIDAR_WAIT;
+        while unknown() && !left.is_zero() {
+            tokio::time::sleep(LIDAR_POLL).await;
+            left = left.saturating_sub(LIDAR_POLL);
+        }
+    }
+
+    /// Ends the service: stops the axis for `reason`, refuses new leases. [`DeviceThread::join`]
+    /// waits for the end.
+    pub fn shut_down(&self, reason: Failure) {
+        // Before the stop: a lease taken later sees the flag, one taken earlier is stopped.
+        self.ending.store(true, Ordering::Release);
+        self.stop(Some(reason));
+        // A device thread that is gone needs no waking.
+        let _ = self.order(Order::Wake);
+    }
+
+    /// Opens the devices again: the machine was suspended, and they may be others now.
+    pub fn reopen(&self, reason: Failure) {
+        self.stop(Some(reason));
+        // A device thread that is gone has no devices.
+        let _ = self.order(Order::Reopen);
+    }
+
+    fn order(&self, order: Order) -> Result<(), LeaseError> {
+        self.orders.send(order).map_err(|_| LeaseError::ending())
+    }
+
+    // Status.
+
+    /// The status as it is known now, without waiting for a device.
+    #[must_use]
+    pub fn status(&self) -> ServiceStatus {
+        let axis = &self.config.axis;
+        let state = self.state.borrow();
+        ServiceStatus {
+            version: env!("CARGO_PKG_VERSION"),
+            device: self.name.clone(),
+            simulated: self.simulated(),
+            started_s: self.started_s,
+            now_s: now_s(),
+            activity: state.activity.clone(),
+            drive: state.drive.clone(),
+            lidar: state.lidar.clone(),
+            axis: AxisStatus {
+                min_deg: axis.min_deg,
+                max_deg: axis.max_deg,
+                max_speed_deg_s: axis.max_speed_deg_s,
+                min_speed_deg_s: self.axis.gearing.rate(Rpm(1)).0.abs(),
+                max_accel_deg_s2: axis.max_accel_deg_s2,
+                accel_deg_s2: self.device.accel_deg_s2,
+                home_deg: axis.homing.to_deg,
+            },
+            disk: state.disk,
+            clients: ClientsStatus {
+                events: self.events.clients(),
+                dropped: self.events.disconnected(),
+            },
+        }
+    }
+
+    /// Sends the status to all subscribers.
+    pub fn send_status(&self) {
+        if self.events.has_subscribers() {
+            let status = Box::new(self.status());
+            self.events.send(Event::Status { status });
+        }
+    }
+
+    /// The task of the axis.
+    #[must_use]
+    pub fn activity(&self) -> Activity {
+        self.state.borrow().activity.clone()
+    }
+
+    /// The lidar's status.
+    #[must_use]
+    pub fn lidar(&self) -> LidarStatus {
+        self.state.borrow().lidar.clone()
+    }
+
+    /// Angle of the axis, degrees; `None` while unknown.
+    #[must_use]
+    pub fn angle_deg(&self) -> Option<f64> {
+        self.state.borrow().drive.angle_deg
+    }
+
+    /// Sets the status of the disk.
+    pub fn set_disk(&self, disk: DiskStatus) {
+        self.state.send_modify(|state| state.disk = disk);
+    }
+
+    /// The drive's report where it need not be asked: while the axis is busy, and shortly after
+    /// the last report.
+    #[must_use]
+    pub fn known_report(&self) -> Option<Report> {
+        let state = self.state.borrow();
+        let busy = state.activity.doing != AxisTask::Idle;
+        let fresh = |at: Instant| at.elapsed() < REPORT_LIFETIME;
+        if !busy && !state.reported_at.is_some_and(fresh) {
+            return None;
+        }
+        let mut report = state.report.clone()?;
+        report.angle_deg = state.drive.angle_deg;
+        Some(report)
+    }
+
+    fn is_referenced(&self) -> bool {
+        let state = self.state.borrow();
+        state
+            .report
+            .as_ref()
+            .is_some_and(|report| report.referenced)
+    }
+
+    fn set_report(&self, report: Option<Report>) {
+        self.state.send_modify(|state| {
+            state.reported_at = report.is_some().then(Instant::now);
+            state.report = report;
+        });
+    }
+
+    fn update_activity(&self, change: impl FnOnce(&mut Activity)) {
+        self.state.send_modify(|state| change(&mut state.activity));
+    }
+
+    /// Changes the drive's status and reports a change of its state.
+    fn update_drive(&self, change: impl FnOnce(&mut DriveSnapshot)) {
+        let mut changed = None;
+        self.state.send_modify(|state| {
+            let drive = &mut state.drive;
+            let before = (drive.state, drive.problem.clone());
+            change(drive);
+            let after = (drive.state, drive.problem.clone());
+            if before != after {
+                state.reported_at = None;
+                changed = Some(after);
+            }
+        });
+        self.report_device("drive", changed);
+    }
+
+    /// Changes the lidar's status and reports a change of its state.
+    fn update_lidar(&self, change: impl FnOnce(&mut LidarStatus)) {
+        let mut changed = None;
+        self.state.send_modify(|state| {
+            let lidar = &mut state.lidar;
+            let before = (lidar.state, lidar.problem.clone());
+            change(lidar);
+            let after = (lidar.state, lidar.problem.clone());
+            if before != after {
+                state.reported_at = None;
+                changed = Some(after);
+            }
+        });
+        self.report_device("lidar", changed);
+    }
+
+    fn report_device(&self, device: &str, changed: Option<(DeviceState, Option<Failure>)>) {
+        let Some((state, problem)) = changed else {
+            return;
+        };
+        match (state, problem) {
+            (_, Some(problem)) => {
+                let text = format!("{device}: {}", problem.message);
+                self.events.message(MessageLevel::Error, text, problem.help);
+            }
+            (DeviceState::Connected, None) => {
+                let text = format!("{device}: connected");
+                self.events.message(MessageLevel::Info, text, None);
+            }
+            (DeviceState::Absent | DeviceState::Fault, None) => {}
+        }
+        self.send_status();
+    }
+
+    // The lidar.
+
+    /// Takes records of the lidar into its statistics and the preview.
+    #[must_use]
+    pub fn packet_tap(&self) -> PacketTap {
+        let (stats, preview) = (Arc::clone(&self.lidar_stats), self.preview.clone());
+        Box::new(move |record| {
+            locked(&stats).observe(record);
+            preview.record(record);
+        })
+    }
+
+    /// Starts the preview of a scan. `None` where there is no thread for it.
+    #[must_use]
+    pub fn start_preview(&self, scan: &str, config: &scanner::ScanConfig) -> Option<LivePreview> {
+        LivePreview::start(scan, config, &self.preview, &self.events)
+    }
+
+    /// The receiver of the lidar's packets.
+    #[must_use]
+    pub fn receiver(&self) -> Option<Arc<LidarReceiver>> {
+        locked(&self.receiver).clone()
+    }
+
+    fn set_receiver(&self, receiver: Option<Arc<LidarReceiver>>) {
+        let old = std::mem::replace(&mut *locked(&self.receiver), receiver);
+        // Joins its thread, without the lock.
+        drop(old);
+    }
+
+    /// Updates the lidar's status from the packets received; called every second.
+    pub fn refresh_lidar(&self) {
+        let Some(receiver) = self.receiver() else {
+            return;
+        };
+        let counts = receiver.counts();
+        drop(receiver);
+        let summary = locked(&self.lidar_stats).summary();
+        let (state, problem) = match &counts {
+            Err(failure) => (DeviceState::Fault, Some(failure.clone())),
+            Ok(_) if summary.silence >= LIDAR_SILENCE => {
+                let config = lidar_sockets::listen_config(&self.device);
+                (DeviceState::Absent, Some(run::silence(&config)))
+            }
+            Ok(_) if summary.packets > 0 => (DeviceState::Connected, None),
+            Ok(_) => (DeviceState::Absent, None),
+        };
+        self.update_lidar(|lidar| {
+            lidar.state = state;
+            lidar.problem = problem;
+            lidar.model = summary.model;
+            lidar.return_mode = summary.return_mode;
+            lidar.rpm = summary.rpm;
+            lidar.packets = summary.packets;
+            lidar.packets_per_s = summary.packets_per_s;
+            lidar.lost_packets = summary.lost_packets;
+            if let Ok(counts) = counts {
+                lidar.dropped_by_kernel = counts.dropped;
+            }
+        });
+    }
+}
+
+/// The failure of a capture during which the machine was suspended, from the total time suspended
+/// before and after it.
+#[must_use]
+pub fn suspension(before: Span, after: Span) -> Option<Failure> {
+    let suspended = after - before;
+    (suspended >= SHORTEST_SUSPENSION).then(|| {
+        Failure::new(
+            Kind::Incomplete,
+            format!(
+                "the machine was suspended for {:.0} s",
+                suspended.as_secs_f64()
+            ),
+        )
+        .help("scan again; see whether the machine may sleep while it scans (systemd-inhibit)")
+    })
+}

@@ -1,0 +1,123 @@
+//! Statistics of the lidar's packets for the status: rate, losses, rotation.
+//!
+//! Every packet is examined, so only the first block of each is. Recordings have the decoder's
+//! statistics instead.
+
+use std::time::{Duration, Instant};
+
+use lidar::{Options, Timekeeper};
+use protocol::record::{Record, Wire};
+use protocol::vlp16::{DataPacket, Model};
+use units::{Lidar, Stamp};
+
+use crate::reconstruct::contents::return_mode_name;
+
+/// One revolution, hundredths of a degree.
+const REVOLUTION: i64 = 36_000;
+/// Longer gaps are a lidar that was off, not lost packets.
+const LONGEST_GAP_NS: i64 = 1_000_000_000;
+
+/// Statistics of all packets so far.
+pub(super) struct LidarStats {
+    timekeeper: Timekeeper,
+    last: Option<(Stamp<Lidar>, i64)>,
+    /// Azimuth swept and its time since the last summary.
+    swept_cdeg: i64,
+    swept_ns: i64,
+    mode: Option<String>,
+    model: Option<&'static str>,
+    lost: u64,
+    packets: u64,
+    /// Time and packets of the last summary.
+    last_summary: (Instant, u64),
+    /// Time of the last summary that had new packets.
+    last_packets: Instant,
+}
+
+/// A summary of the statistics; fields as in the lidar's status.
+pub(super) struct LidarSummary {
+    pub(super) model: Option<&'static str>,
+    pub(super) return_mode: Option<String>,
+    pub(super) rpm: Option<f64>,
+    pub(super) packets: u64,
+    pub(super) packets_per_s: f64,
+    pub(super) lost_packets: u64,
+    /// Time since a summary had new packets.
+    pub(super) silence: Duration,
+}
+
+impl Default for LidarStats {
+    fn default() -> Self {
+        Self {
+            timekeeper: Timekeeper::new(Options::default()),
+            last: None,
+            swept_cdeg: 0,
+            swept_ns: 0,
+            mode: None,
+            model: None,
+            lost: 0,
+            packets: 0,
+            last_summary: (Instant::now(), 0),
+            last_packets: Instant::now(),
+        }
+    }
+}
+
+impl LidarStats {
+    /// Takes in a record of the lidar.
+    pub(super) fn observe(&mut self, record: &Record<'_>) {
+        let Wire::Lidar { payload, .. } = record.wire else {
+            return;
+        };
+        self.packets += 1;
+        let Some(timing) = self.timekeeper.packet(record.host, payload) else {
+            return;
+        };
+        let Ok(packet) = DataPacket::new(payload) else {
+            return;
+        };
+        let azimuth = packet
+            .block(0)
+            .map_or(0, |block| i64::from(block.azimuth_cdeg()));
+        let now = (timing.first_firing, azimuth);
+        if let Some((then, before)) = self.last.replace(now) {
+            let gap = timing.first_firing.saturating_since(then).as_nanos();
+            let fill = timing.fill.as_nanos().max(1);
+            if (0..LONGEST_GAP_NS).contains(&gap) {
+                // To the nearest whole number of packets.
+                let packets = (gap + fill / 2) / fill;
+                self.lost += u64::try_from(packets - 1).unwrap_or(0);
+            }
+            if (1..3 * fill).contains(&gap) {
+                self.swept_cdeg += (azimuth - before).rem_euclid(REVOLUTION);
+                self.swept_ns += gap;
+            }
+        }
+        if self.packets % 256 == 1 {
+            self.mode = Some(return_mode_name(packet.return_mode()));
+            self.model = Model::of(packet.product()).map(|model| model.name);
+        }
+    }
+
+    /// The statistics so far, and rates since the last summary.
+    pub(super) fn summary(&mut self) -> LidarSummary {
+        let now = (Instant::now(), self.packets);
+        let (before, packets_before) = std::mem::replace(&mut self.last_summary, now);
+        if self.packets != packets_before {
+            self.last_packets = now.0;
+        }
+        let passed = before.elapsed().max(Duration::from_millis(1)).as_secs_f64();
+        let minutes = self.swept_ns as f64 * 1e-9 / 60.0;
+        let rpm = (self.swept_ns > 0).then(|| self.swept_cdeg as f64 / REVOLUTION as f64 / minutes);
+        (self.swept_cdeg, self.swept_ns) = (0, 0);
+        LidarSummary {
+            model: self.model,
+            return_mode: self.mode.clone(),
+            rpm,
+            packets: self.packets,
+            packets_per_s: (self.packets - packets_before) as f64 / passed,
+            lost_packets: self.lost,
+            silence: self.last_packets.elapsed(),
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Reports of the moving axis, 20 times per second.
+
+use std::time::{Duration, Instant};
+
+use drive::{CommandProgress, MovePlan};
+use units::{Degrees, Gearing, Host, Stamp};
+
+use super::DeviceService;
+use super::events::Event;
+
+/// Between two reports.
+const INTERVAL: Duration = Duration::from_millis(50);
+
+/// Turns samples of the shaft into status and events.
+pub(super) struct MotionReporter<'a> {
+    service: &'a DeviceService,
+    last: Option<(Instant, Stamp<Host>, Degrees)>,
+    /// Planned end of the move.
+    until: Option<Instant>,
+    /// Whether the axis was homed before it began to search its home again.
+    referenced: bool,
+}
+
+impl<'a> MotionReporter<'a> {
+    pub(super) const fn new(service: &'a DeviceService) -> Self {
+        Self {
+            service,
+            last: None,
+            until: None,
+            referenced: false,
+        }
+    }
+
+    /// Takes in the drive client's progress, except the start of a move.
+    pub(super) fn progress(&mut self, step: &CommandProgress, gearing: &Gearing) {
+        match step {
+            CommandProgress::Homing => {
+                self.referenced = self.service.is_referenced();
+                self.service
+                    .update_activity(|activity| activity.homes = true);
+                self.service.send_status();
+            }
+            // The demand counts from the old zero, which must be known.
+            CommandProgress::Searching { at, demand } if self.referenced => {
+                let packets = self.service.activity().packets;
+                self.moved(*at, gearing.angle(*demand), packets);
+            }
+            step => {
+                self.service.heartbeat();
+                tracing::debug!(?step);
+            }
+        }
+    }
+
+    /// Takes in the start of move number `step` of `steps`.
+    pub(super) fn begin(&mut self, plan: &MovePlan, step: usize, steps: usize) {
+        let seconds = plan.duration.as_secs_f64().max(0.0);
+        self.until = Duration::try_from_secs_f64(seconds)
+            .ok()
+            .and_then(|duration| Instant::now().checked_add(duration));
+        self.service.update_activity(|activity| {
+            activity.step = step;
+            activity.steps = steps;
+            activity.from_deg = Some(plan.from.0);
+            activity.to_deg = Some(plan.to.0);
+            activity.left_s = Some(seconds);
+            activity.homes = false;
+        });
+        self.service.send_status();
+    }
+
+    /// Takes in the axis's angle at a time.
+    pub(super) fn moved(&mut self, at: Stamp<Host>, angle: Degrees, packets: u64) {
+        let mut speed = 0.0;
+        if let Some((reported, before, from)) = self.last {
+            if reported.elapsed() < INTERVAL {
+                return;
+            }
+            let seconds = at.saturating_since(before).as_secs_f64();
+            if seconds > 0.0 {
+                speed = (angle.0 - from.0) / seconds;
+            }
+        }
+        self.last = Some((Instant::now(), at, angle));
+        self.service.heartbeat();
+        self.report(at, angle, speed, packets);
+    }
+
+    fn report(&self, at: Stamp<Host>, angle: Degrees, speed_deg_s: f64, packets: u64) {
+        let left_s = self.until.map(|until| {
+            until
+                .saturating_duration_since(Instant::now())
+                .as_secs_f64()
+        });
+        self.service.state.send_modify(|state| {
+            state.activity.left_s = left_s;
+            state.activity.packets = packets;
+            state.drive.angle_deg = Some(angle.0);
+            state.drive.speed_deg_s = speed_deg_s;
+        });
+        self.service.events.send(Event::Motion {
+            angle_deg: angle.0,
+            speed_deg_s,
+            left_s,
+            packets,
+            at,
+        });
+    }
+
+    /// Takes in the end of the motion.
+    pub(super) fn end(&mut self) {
+        self.until = None;
+        if let Some((_, at, angle)) = self.last.take() {
+            self.report(at, angle, 0.0, self.service.activity().packets);
+        }
+    }
+}

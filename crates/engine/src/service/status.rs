@@ -1,0 +1,182 @@
+//! Status of the devices and of what they do, in the form that clients read (docs/src/daemon.md).
+
+use serde::Serialize;
+
+use crate::capture::jog::Fault;
+use crate::failure::Failure;
+
+/// What the axis is used for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AxisTask {
+    /// Nothing.
+    #[default]
+    Idle,
+    /// The drive was found and is being configured.
+    Connecting,
+    /// The axis searches its home position.
+    Homing,
+    /// The axis moves to an angle.
+    Moving,
+    /// A scan is recorded.
+    Capturing,
+    /// The axis is being stopped, or a short request is under way.
+    Stopping,
+}
+
+/// The task of the axis and its progress.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Activity {
+    /// The task.
+    pub doing: AxisTask,
+    /// Id of the scan.
+    pub scan: Option<String>,
+    /// Whether the task only reads the drive's state.
+    #[serde(skip)]
+    pub reads_only: bool,
+    /// Whether the axis is homing, which every capture begins with.
+    pub homes: bool,
+    /// Number of the move, from 1; 0 before the first.
+    pub step: usize,
+    /// Number of moves.
+    pub steps: usize,
+    /// Start of the move, degrees.
+    pub from_deg: Option<f64>,
+    /// End of the move, degrees.
+    pub to_deg: Option<f64>,
+    /// Time left of the move, seconds.
+    pub left_s: Option<f64>,
+    /// Lidar packets of this capture so far.
+    pub packets: u64,
+}
+
+/// State of a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DeviceState {
+    /// Not connected.
+    #[default]
+    Absent,
+    /// Connected and without fault.
+    Connected,
+    /// Connected, with a problem.
+    Fault,
+}
+
+/// The drive.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DriveSnapshot {
+    /// State.
+    pub state: DeviceState,
+    /// What is wrong and what to do about it.
+    pub problem: Option<Failure>,
+    /// Port.
+    pub port: Option<String>,
+    /// usb, rs232 or can.
+    pub link: Option<&'static str>,
+    /// State of the CiA 402 state machine.
+    pub cia402: Option<String>,
+    /// Whether the axis is homed.
+    pub referenced: bool,
+    /// Angle of the axis, degrees; absent while unknown.
+    pub angle_deg: Option<f64>,
+    /// Speed of the axis, degrees per second.
+    pub speed_deg_s: f64,
+    /// Error history, newest first.
+    pub faults: Vec<Fault>,
+}
+
+/// The lidar.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct LidarStatus {
+    /// State.
+    pub state: DeviceState,
+    /// What is wrong and what to do about it.
+    pub problem: Option<Failure>,
+    /// Model.
+    pub model: Option<&'static str>,
+    /// strongest, last or dual.
+    pub return_mode: Option<String>,
+    /// Revolutions per minute.
+    pub rpm: Option<f64>,
+    /// Data and position packets so far.
+    pub packets: u64,
+    /// Packets in the last second.
+    pub packets_per_s: f64,
+    /// Data packets missing by the lidar's own time.
+    pub lost_packets: u64,
+    /// Packets dropped by the kernel because this program was too slow.
+    pub dropped_by_kernel: u64,
+}
+
+/// Limits and defaults of the axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AxisStatus {
+    /// Smallest angle, degrees.
+    pub min_deg: f64,
+    /// Largest angle, degrees.
+    pub max_deg: f64,
+    /// Highest speed, degrees per second.
+    pub max_speed_deg_s: f64,
+    /// Lowest speed: one revolution of the motor per minute.
+    pub min_speed_deg_s: f64,
+    /// Highest acceleration, degrees per second squared.
+    pub max_accel_deg_s2: f64,
+    /// Default acceleration, degrees per second squared.
+    pub accel_deg_s2: f64,
+    /// Angle at which homing ends, degrees.
+    pub home_deg: f64,
+}
+
+/// The disk of the scans.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct DiskStatus {
+    /// Free bytes; absent where the system does not report them.
+    pub free_bytes: Option<u64>,
+    /// Bytes that are left free.
+    pub reserve_bytes: u64,
+    /// Scans kept.
+    pub scans: u64,
+    /// Bytes of the scans.
+    pub scans_bytes: u64,
+    /// Most scans kept.
+    pub keep_scans: u64,
+    /// Most bytes of scans kept.
+    pub keep_bytes: u64,
+}
+
+/// Event clients.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ClientsStatus {
+    /// Connected clients.
+    pub events: usize,
+    /// Clients disconnected because they did not read.
+    pub dropped: u64,
+}
+
+/// Status of the whole service: the body of `GET /api/v1/status`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ServiceStatus {
+    /// Version of the program.
+    pub version: &'static str,
+    /// Name of the device's profile.
+    pub device: String,
+    /// Whether the devices are software.
+    pub simulated: bool,
+    /// Start of the service, Unix seconds.
+    pub started_s: f64,
+    /// Time of this status, Unix seconds.
+    pub now_s: f64,
+    /// Task of the axis.
+    pub activity: Activity,
+    /// The drive.
+    pub drive: DriveSnapshot,
+    /// The lidar.
+    pub lidar: LidarStatus,
+    /// The axis.
+    pub axis: AxisStatus,
+    /// The disk.
+    pub disk: DiskStatus,
+    /// Clients.
+    pub clients: ClientsStatus,
+}

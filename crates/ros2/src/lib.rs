@@ -1,0 +1,56 @@
+//! The ROS 2 bridge: clouds, the tilt joint, transforms, diagnostics, and services that begin and
+//! stop a capture, in the format of `rmw_zenoh` and without an installation of ROS
+//! (docs/src/ros2.md).
+//!
+//! Four threads: one follows events, one queues finished scans, one sends their clouds, one answers
+//! calls. Nothing waits for them: what the network does not take is left out and counted. ROS 2's
+//! parameters, actions, time from `/clock`, and DDS are left out.
+#![cfg(feature = "zenoh")]
+
+mod bridge;
+mod calls;
+mod clouds;
+mod counts;
+mod events;
+mod latched;
+mod link;
+mod rmw;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use engine::capture::request::CaptureRequest;
+use engine::config::ros2::Ros2 as Ros2Config;
+use engine::service::DeviceService;
+
+pub use bridge::Bridge;
+pub use counts::Counts;
+
+/// What keeps the scans: a daemon.
+pub trait ScanService: Send + Sync {
+    /// The devices.
+    fn devices(&self) -> &Arc<DeviceService>;
+
+    /// Begins a capture and returns the scan's id.
+    ///
+    /// # Errors
+    /// Why it cannot be begun.
+    fn start_capture(&self, request: &CaptureRequest) -> Result<String, String>;
+
+    /// The log of a scan.
+    fn log(&self, scan: &str) -> PathBuf;
+}
+
+/// What all threads of the bridge share.
+pub(crate) struct Context {
+    pub(crate) scans: Arc<dyn ScanService>,
+    pub(crate) settings: Ros2Config,
+    pub(crate) counts: Arc<Counts>,
+    pub(crate) stop: bridge::StopFlag,
+}
+
+impl Context {
+    pub(crate) fn devices(&self) -> &Arc<DeviceService> {
+        self.scans.devices()
+    }
+}

@@ -1,0 +1,386 @@
+//! Captures and jogs by a daemon that has the device, or by a device service of this process: both
+//! report and write the same.
+
+use std::io::Write;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use daemon::client::Client;
+use daemon::http::tilt::{Goto, StopAnswer};
+use daemon::local::LocalService;
+use engine::capture::request::{CapturePlan, CaptureRequest};
+use engine::capture::run::Outcome;
+use engine::failure::{Failure, Kind};
+use engine::output::{self, file_failure, overwrite};
+use engine::reconstruct::report;
+use engine::service::scan_record::{ScanDetails, ScanState, ScanView};
+use engine::service::status::AxisTask;
+use engine::service::{CaptureResult, LeaseError};
+use io::files::NewFile;
+use serde::Deserialize;
+use sim::Truth;
+use tokio::sync::oneshot;
+use units::{Degrees, Span, Stamp};
+
+use crate::cli::TiltVerb;
+use crate::terminal::Progress;
+
+/// Between two polls of a capture's progress.
+const PROGRESS_POLL: Duration = Duration::from_millis(50);
+/// Between two polls of Ctrl-C.
+const INTERRUPT_POLL: Duration = Duration::from_millis(5);
+/// Polls of the progress between two updates of the lidar's status: 1 s.
+const LIDAR_REFRESH: u32 = 20;
+
+/// A recorded capture.
+pub struct Recording {
+    /// What became of it.
+    pub outcome: Outcome,
+    /// The simulator's truth, of a capture of this process with software devices.
+    pub truth: Option<Truth>,
+}
+
+/// Progress of a capture.
+#[derive(Default)]
+pub struct CaptureProgress {
+    /// Messages so far.
+    messages: Vec<String>,
+    /// The axis, until the recording has ended.
+    axis: Option<AxisProgress>,
+    /// The end.
+    end: Option<Recording>,
+}
+
+/// Progress of the axis during a capture.
+pub struct AxisProgress {
+    /// Number of the move, from 1.
+    step: usize,
+    packets: u64,
+    angle_deg: Option<f64>,
+}
+
+/// What records a capture.
+pub trait CaptureBackend {
+    /// Looks how far the capture is.
+    ///
+    /// # Errors
+    /// Where nothing was recorded, or the backend is gone.
+    fn poll(&mut self, plan: &CapturePlan) -> Result<CaptureProgress, Failure>;
+
+    /// Stops the capture.
+    ///
+    /// # Errors
+    /// Where the backend is gone.
+    fn stop(&mut self) -> Result<(), Failure>;
+}
+
+/// Waits for the end of a capture and shows its progress. Ctrl-C stops it.
+///
+/// # Errors
+/// Where nothing was recorded.
+pub fn record(
+    backend: &mut dyn CaptureBackend,
+    plan: &CapturePlan,
+    interrupt: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<Recording, Failure> {
+    let (mut printed, mut stopped, mut step) = (0, false, 0);
+    let begin = Instant::now();
+    loop {
+        if interrupt.load(Ordering::Relaxed) && !stopped {
+            stopped = true;
+            backend.stop()?;
+        }
+        let now = backend.poll(plan)?;
+        for message in now.messages.iter().skip(printed) {
+            progress.say(message);
+        }
+        printed = now.messages.len();
+        match now.axis {
+            Some(axis) => {
+                if axis.step != step {
+                    step = axis.step;
+                    let begun = step.checked_sub(1).and_then(|step| plan.steps.get(step));
+                    if let Some(step) = begun {
+                        progress.begin_move(&step.plan);
+                    }
+                }
+                if let Some(angle) = axis.angle_deg {
+                    let since = i64::try_from(begin.elapsed().as_nanos()).unwrap_or(i64::MAX);
+                    let at = Stamp::from_nanos(0).saturating_add(Span::from_nanos(since));
+                    progress.moved(at, Degrees(angle), axis.packets);
+                }
+            }
+            None => progress.end_move(),
+        }
+        if let Some(end) = now.end {
+            progress.end_move();
+            return Ok(end);
+        }
+        std::thread::sleep(PROGRESS_POLL);
+    }
+}
+
+/// A capture by the devices of this process.
+pub struct LocalCapture<'a> {
+    local: &'a LocalService,
+    result: oneshot::Receiver<CaptureResult>,
+    polls: u32,
+}
+
+impl<'a> LocalCapture<'a> {
+    /// Begins a capture, whose log goes to its place at once.
+    ///
+    /// # Errors
+    /// Where the axis cannot be moved.
+    pub fn begin(local: &'a LocalService, plan: CapturePlan) -> Result<Self, Failure> {
+        let service = local.service();
+        let lease = service.lease(AxisTask::Capturing).map_err(lease_failure)?;
+        let result = service.capture(lease, plan).map_err(lease_failure)?;
+        Ok(Self {
+            local,
+            result,
+            polls: 0,
+        })
+    }
+}
+
+impl CaptureBackend for LocalCapture<'_> {
+    fn poll(&mut self, _: &CapturePlan) -> Result<CaptureProgress, Failure> {
+        let service = self.local.service();
+        match self.result.try_recv() {
+            Ok(result) => {
+                let end = result?;
+                let warnings = end.outcome.warnings.iter();
+                return Ok(CaptureProgress {
+                    messages: warnings.map(|line| format!("warning: {line}")).collect(),
+                    axis: None,
+                    end: Some(Recording {
+                        outcome: end.outcome,
+                        truth: end.truth,
+                    }),
+                });
+            }
+            Err(oneshot::error::TryRecvError::Empty) => {}
+            Err(oneshot::error::TryRecvError::Closed) => return Err(thread_gone()),
+        }
+        self.polls += 1;
+        if self.polls.is_multiple_of(LIDAR_REFRESH) {
+            service.refresh_lidar();
+        }
+        let activity = service.activity();
+        Ok(CaptureProgress {
+            axis: Some(AxisProgress {
+                step: activity.step,
+                packets: activity.packets,
+                angle_deg: service.angle_deg(),
+            }),
+            ..CaptureProgress::default()
+        })
+    }
+
+    fn stop(&mut self) -> Result<(), Failure> {
+        // Ctrl-C has stopped it already: the device thread polls the same flag.
+        Ok(())
+    }
+}
+
+/// A capture by a daemon.
+pub struct DaemonCapture<'a> {
+    client: &'a Client,
+    id: String,
+}
+
+impl<'a> DaemonCapture<'a> {
+    /// Begins a capture.
+    ///
+    /// # Errors
+    /// As without a daemon.
+    pub fn begin(client: &'a Client, request: &CaptureRequest) -> Result<Self, Failure> {
+        let scan: ScanView = client.post("/api/v1/captures", request)?;
+        Ok(Self {
+            client,
+            id: scan.head.id,
+        })
+    }
+
+    fn details(&self) -> Result<ScanDetails, Failure> {
+        self.client.get(&format!("/api/v1/scans/{}", self.id))
+    }
+
+    /// What the daemon's simulator knows of the cloud, once the daemon has made its own.
+    ///
+    /// # Errors
+    /// Where the daemon is gone.
+    pub fn truth(&self, interrupt: &AtomicBool) -> Result<Option<report::TruthErrors>, Failure> {
+        loop {
+            let details = self.details()?;
+            if details.scan.state.is_final() || interrupt.load(Ordering::Relaxed) {
+                let truth = details
+                    .report
+                    .as_ref()
+                    .and_then(|report| report.get("truth"));
+                return Ok(truth.and_then(|truth| serde_json::from_value(truth.clone()).ok()));
+            }
+            std::thread::sleep(PROGRESS_POLL);
+        }
+    }
+
+    /// Copies the daemon's log to the user's place.
+    fn fetch_log(&self, log: &Path) -> Result<(), Failure> {
+        let mut file = NewFile::create(log, overwrite(false)).map_err(|e| file_failure(&e))?;
+        self.client
+            .download(&format!("/api/v1/scans/{}/log", self.id), &mut file)?;
+        file.flush()
+            .map_err(|error| output::sink_failure(log, &cloud::SinkError::Other(error.into())))?;
+        file.commit().map_err(|error| file_failure(&error))
+    }
+}
+
+impl CaptureBackend for DaemonCapture<'_> {
+    fn poll(&mut self, plan: &CapturePlan) -> Result<CaptureProgress, Failure> {
+        /// The part of the status that is shown.
+        #[derive(Deserialize)]
+        struct Status {
+            activity: Activity,
+            drive: Drive,
+        }
+        #[derive(Deserialize)]
+        struct Activity {
+            step: usize,
+            packets: u64,
+        }
+        #[derive(Deserialize)]
+        struct Drive {
+            angle_deg: Option<f64>,
+        }
+        let details = self.details()?;
+        if details.scan.state == ScanState::Recording {
+            let status: Status = self.client.get("/api/v1/status")?;
+            return Ok(CaptureProgress {
+                messages: details.messages,
+                axis: Some(AxisProgress {
+                    step: status.activity.step,
+                    packets: status.activity.packets,
+                    angle_deg: status.drive.angle_deg,
+                }),
+                end: None,
+            });
+        }
+        // The log is complete. The daemon's own cloud is not waited for.
+        if details.scan.log_bytes.is_none() {
+            return Err(details.scan.head.why.unwrap_or_else(|| {
+                Failure::new(Kind::Incomplete, "the daemon made no log").help("see its messages")
+            }));
+        }
+        self.fetch_log(&plan.log)?;
+        Ok(CaptureProgress {
+            messages: details.messages,
+            axis: None,
+            end: Some(Recording {
+                outcome: Outcome {
+                    failure: details.recording,
+                    lost_records: details.lost_records,
+                    reception: details.reception,
+                    warnings: Vec::new(),
+                },
+                truth: None,
+            }),
+        })
+    }
+
+    fn stop(&mut self) -> Result<(), Failure> {
+        let _: serde_json::Value = self.client.post("/api/v1/captures/stop", &())?;
+        Ok(())
+    }
+}
+
+/// Runs a jog by the devices of this process.
+///
+/// # Errors
+/// Where the axis cannot be moved, or the motion failed.
+pub fn jog_locally(local: &LocalService, verb: TiltVerb) -> Result<StopAnswer, Failure> {
+    let answer = local.service().jog(verb.into()).map_err(lease_failure)?;
+    let report = answer
+        .blocking_recv()
+        .unwrap_or_else(|_| Err(thread_gone()))?;
+    Ok(StopAnswer::Report(Box::new(report)))
+}
+
+fn lease_failure(error: LeaseError) -> Failure {
+    match error {
+        LeaseError::Failure(failure) => failure,
+        LeaseError::Busy(_) => Failure::new(Kind::NoDevice, "another command moves the axis")
+            .help("wait for its end, or stop it (tilt stop)"),
+    }
+}
+
+fn thread_gone() -> Failure {
+    Failure::new(Kind::DeviceFault, "the device thread is gone")
+        .help("check that the axis is at rest; run with -vv and report the messages")
+}
+
+/// Runs a jog by a daemon. Ctrl-C stops the axis; during a request that moves nothing it ends the
+/// wait.
+///
+/// # Errors
+/// As without a daemon.
+pub fn jog_by_daemon(
+    client: &Client,
+    verb: TiltVerb,
+    interrupt: &AtomicBool,
+) -> Result<StopAnswer, Failure> {
+    let own = client.clone();
+    let request = std::thread::spawn(move || send(&own, verb));
+    let moves = matches!(verb, TiltVerb::Home | TiltVerb::Goto { .. });
+    let mut stop: Option<JoinHandle<Result<StopAnswer, Failure>>> = None;
+    while !request.is_finished() {
+        if interrupt.swap(false, Ordering::Relaxed) {
+            if !moves || stop.is_some() {
+                return Err(Failure::new(
+                    Kind::Interrupted,
+                    format!(
+                        "the daemon at {} has not answered",
+                        client.socket().display()
+                    ),
+                )
+                .help("tilt status reports the axis; switch the motor's supply off if it moves and must not"));
+            }
+            let own = client.clone();
+            stop = Some(std::thread::spawn(move || send(&own, TiltVerb::Stop)));
+        }
+        if let Some(stop) = stop.take_if(|stop| stop.is_finished()) {
+            joined(stop)?;
+        }
+        std::thread::sleep(INTERRUPT_POLL);
+    }
+    joined(request)
+}
+
+fn joined(request: JoinHandle<Result<StopAnswer, Failure>>) -> Result<StopAnswer, Failure> {
+    request.join().unwrap_or_else(|_| {
+        Err(
+            Failure::new(Kind::Incomplete, "the thread of the request panicked")
+                .help("this is a defect of the program; run with -vv and report the messages"),
+        )
+    })
+}
+
+fn send(client: &Client, verb: TiltVerb) -> Result<StopAnswer, Failure> {
+    match verb {
+        TiltVerb::Status | TiltVerb::Faults { clear: false } => client.get("/api/v1/tilt"),
+        TiltVerb::Faults { clear: true } => client.post("/api/v1/tilt/clear", &()),
+        TiltVerb::Home => client.post("/api/v1/tilt/home", &()),
+        TiltVerb::Stop => client.post("/api/v1/tilt/stop", &()),
+        TiltVerb::Goto { to, speed, accel } => {
+            let goto = Goto {
+                to_deg: to,
+                speed_deg_s: speed,
+                accel_deg_s2: accel,
+            };
+            client.post("/api/v1/tilt/goto", &goto)
+        }
+    }
+}
