@@ -1,7 +1,7 @@
 //! The 2018 paper's analysis of scan patterns, made again: patterns of `sim`, measured by `analysis`.
 
 use analysis::density::{
-    Counts, Icosahedron, Locator, Statistics, TOLERANCE_RAD, bands, holes, largest_hole, rows,
+    BinCounts, Icosahedron, Locator, Statistics, TOLERANCE_RAD, bands, holes, largest_hole, rows,
 };
 use glam::DVec3;
 use sim::patterns::{AXIS, Pattern, PatternRequest};
@@ -12,7 +12,7 @@ fn pattern(text: &str) -> Pattern {
 
 fn statistics(directions: &[DVec3]) -> Statistics {
     let locator = Locator::new(&Icosahedron::new(4).unwrap());
-    Counts::new(&locator, directions).unwrap().statistics()
+    BinCounts::new(&locator, directions).unwrap().statistics()
 }
 
 /// A row of the table of densities as printed.
@@ -152,7 +152,7 @@ fn poles_on_the_tilt_axis_are_densest() {
         );
         // The densest bins of all are at the poles.
         let icosahedron = Icosahedron::new(4).unwrap();
-        let counts = Counts::new(&Locator::new(&icosahedron), &directions).unwrap();
+        let counts = BinCounts::new(&Locator::new(&icosahedron), &directions).unwrap();
         let densest = icosahedron
             .bins()
             .iter()

@@ -12,7 +12,7 @@
 use std::env;
 use std::time::{Duration, Instant};
 
-use analysis::density::{Counts, Icosahedron, Locator, TOLERANCE_RAD, largest_hole};
+use analysis::density::{BinCounts, Icosahedron, Locator, TOLERANCE_RAD, largest_hole};
 use sim::patterns::PatternRequest;
 
 const PATTERNS: [&str; 4] = [
@@ -38,7 +38,7 @@ fn main() {
             .and_then(|wish| wish.build())
             .expect("a pattern");
         let directions = pattern.directions();
-        let count = || Counts::new(&locator, &directions).expect("directions");
+        let count = || BinCounts::new(&locator, &directions).expect("directions");
         let all = least(rounds, || {
             std::hint::black_box(count());
         });

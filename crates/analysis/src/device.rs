@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// A sensor on a tilt axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Device {
+pub struct TiltedSensor {
     /// Nearest and farthest that the sensor itself measures, metres.
     pub reach_m: [f64; 2],
     /// Lowest and highest laser, degrees above the sensor's own horizontal.
@@ -19,7 +19,7 @@ pub struct Device {
 
 /// From where to where a device sees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct View {
+pub struct VisibleRange {
     /// Nearest and farthest point that it can have, metres from the origin of the base.
     pub range_m: [f64; 2],
     /// Lowest and highest ray towards -x, degrees above the horizontal: the paper's forwards.
@@ -28,10 +28,10 @@ pub struct View {
     pub backwards_deg: [f64; 2],
 }
 
-impl Device {
+impl TiltedSensor {
     /// From where to where it sees.
     #[must_use]
-    pub fn view(&self) -> View {
+    pub fn view(&self) -> VisibleRange {
         let [low, high] = self.elevations_deg;
         let [least, most] = self.tilt_deg;
         // The rays to the left and to the right of the sensor, by their angle above -x: over the zenith, 90, and on to +x, 180.
@@ -40,7 +40,7 @@ impl Device {
             [180.0 - high + least, 180.0 - low + most],
         ];
         let [highest, lowest] = side(&fans, 180.0).map(|angle| 180.0 - angle);
-        View {
+        VisibleRange {
             range_m: self.range_m(),
             forwards_deg: side(&fans, 0.0),
             backwards_deg: [lowest, highest],
@@ -95,7 +95,7 @@ mod tests {
 
     use super::*;
 
-    const VELOMOTION: Device = Device {
+    const VELOMOTION: TiltedSensor = TiltedSensor {
         reach_m: [1.0, 100.0],
         elevations_deg: [-15.0, 15.0],
         d_m: 0.06,
@@ -119,7 +119,7 @@ mod tests {
             (near - 0.986_176).abs() < 1e-6 && (far - 100.015_546).abs() < 1e-6,
             "{near} {far}"
         );
-        let on_axis = Device {
+        let on_axis = TiltedSensor {
             d_m: 0.0,
             ..VELOMOTION
         };
@@ -127,7 +127,7 @@ mod tests {
     }
 
     /// By Eq. 4-6, ray by ray.
-    fn sampled(device: &Device) -> ([f64; 2], [f64; 2], [f64; 2]) {
+    fn sampled(device: &TiltedSensor) -> ([f64; 2], [f64; 2], [f64; 2]) {
         let mount = Mount::new(Metres(device.d_m));
         let wider =
             |range: &mut [f64; 2], value: f64| *range = [range[0].min(value), range[1].max(value)];
@@ -164,26 +164,26 @@ mod tests {
     fn sampling_finds_the_same() {
         let devices = [
             VELOMOTION,
-            Device {
+            TiltedSensor {
                 d_m: -0.2,
                 ..VELOMOTION
             },
-            Device {
+            TiltedSensor {
                 elevations_deg: [-30.67, 10.67],
                 tilt_deg: [-20.0, 35.0],
                 ..VELOMOTION
             },
             // Over the zenith to the other side.
-            Device {
+            TiltedSensor {
                 tilt_deg: [0.0, 180.0],
                 ..VELOMOTION
             },
-            Device {
+            TiltedSensor {
                 tilt_deg: [40.0, 100.0],
                 ..VELOMOTION
             },
             // So far above the axis that the nearest point is not at the nearest range.
-            Device {
+            TiltedSensor {
                 d_m: 3.0,
                 reach_m: [0.0, 10.0],
                 elevations_deg: [-30.0, 0.0],

@@ -4,6 +4,7 @@
 
 pub mod density;
 pub mod device;
+mod draw;
 pub mod figures;
 pub mod k;
 pub mod tradeoff;

@@ -4,14 +4,14 @@ use glam::DVec3;
 
 /// A closed ball in rings from the bottom to the top, each cut into sectors.
 #[derive(Clone, Copy)]
-pub(crate) struct Ball {
+pub(crate) struct BallMesh {
     /// Rings, the two of triangles at the ends included.
     pub rings: usize,
     /// Sectors of a ring.
     pub sectors: usize,
 }
 
-impl Ball {
+impl BallMesh {
     /// Its vertices: each direction from the middle as `place` moves it. The ends come first, then ring after ring from below.
     pub fn vertices(self, place: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
         let mut vertices = vec![place(DVec3::NEG_Z), place(DVec3::Z)];
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn a_ball_is_closed_and_its_triangles_face_outward() {
-        let ball = Ball {
+        let ball = BallMesh {
             rings: 12,
             sectors: 20,
         };

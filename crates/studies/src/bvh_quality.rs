@@ -5,14 +5,14 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, Spread, Study, StudyError, Trade, Value, Work,
-    in_rounds,
+    Bench, Effort, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, TimingSpread,
+    Trade, Work, in_rounds,
 };
 use glam::DVec3;
 use sim::cast::{Caster, Hit, Mesh, Object, Quality, Ray, Rays, Reach, Surface, Threads};
 use sim::scenery::{Scenery, no_files, shipped};
 
-use crate::ball::Ball;
+use crate::ball::BallMesh;
 use crate::shots::Shots;
 
 /// The study.
@@ -24,11 +24,11 @@ const BEAMS: usize = 16;
 const SCAN_RAYS: f64 = 3_000_000.0;
 
 /// With its boulders 100,000 triangles.
-const CAVE: Ball = Ball {
+const CAVE: BallMesh = BallMesh {
     rings: 201,
     sectors: 220,
 };
-const CAVE_AT_A_LOOK: Ball = Ball {
+const CAVE_AT_A_LOOK: BallMesh = BallMesh {
     rings: 31,
     sectors: 40,
 };
@@ -60,7 +60,7 @@ impl Study for BvhQuality {
         "Quality of the tree of boxes"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
         let plan = bench.plan(3, 9);
         let shots = Shots::of("quarry", bench.size(48, 14_000))?;
         let rays = rays(&shots)?;
@@ -69,8 +69,8 @@ impl Study for BvhQuality {
             Effort::Full => CAVE,
         };
         let scenes = [
-            Scene::new("cave", cave(walls)?)?,
-            Scene::new("quarry", quarry(shots.seed)?)?,
+            BvhScene::new("cave", cave(walls)?)?,
+            BvhScene::new("quarry", quarry(shots.seed)?)?,
         ];
         (bench.say)(&format!("{} rays, {} rounds", rays.len(), plan.rounds));
         let mut work: Vec<Work<'_, StudyError>> = Vec::new();
@@ -99,63 +99,54 @@ impl Study for BvhQuality {
         drop(work);
         let rows = named.into_iter().zip(times.chunks(2));
         let rows = rows.filter_map(|((name, label, scene, differ), times)| match times {
-            [build, trace] => Some(Row {
-                name: format!("{scene}, {name}"),
-                label: label.to_owned(),
-                group: scene,
-                values: values(*build, trace.times(1.0 / rays.len() as f64), differ),
-            }),
+            [build, trace] => Some(Row::new(
+                format!("{scene}, {name}"),
+                label,
+                scene,
+                values(*build, trace.times(1.0 / rays.len() as f64), differ),
+            )),
             _ => None,
         });
-        Ok(Findings {
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: about(&scenes, rays.len()),
             choice: "scene, tree",
             columns: columns(),
             rows: rows.collect(),
-            trades: vec![Trade {
-                cost: 0,
-                loss: 1,
-                joined: false,
-                apart: true,
-            }],
+            trades: vec![Trade::new(0, 1).by_group()],
         })
     }
 }
 
-fn columns() -> Vec<Column> {
+fn columns() -> Vec<StudyColumn> {
     [
         ("build_ms", "build, ms"),
         ("trace_ns_per_ray", "ns a ray"),
         ("scan_ms", "built and 3 M rays, ms"),
         ("hits_that_differ", "hits that differ"),
     ]
-    .map(|(key, heading)| Column {
-        key,
-        heading,
-        scale: Scale::Log,
-    })
+    .map(StudyColumn::log)
     .into()
 }
 
 /// Of a row, by the seconds of a build and of a ray.
-fn values(build: Spread, ray: Spread, differ: usize) -> Vec<Value> {
-    let scan = Spread {
+fn values(build: TimingSpread, ray: TimingSpread, differ: usize) -> Vec<Measurement> {
+    let scan = TimingSpread {
         median: build.median + SCAN_RAYS * ray.median,
         min: build.min + SCAN_RAYS * ray.min,
         max: build.max + SCAN_RAYS * ray.max,
         runs: build.runs,
     };
     vec![
-        Value::Timed(build.times(1e3)),
-        Value::Timed(ray.times(1e9)),
-        Value::Timed(scan.times(1e3)),
-        Value::Computed(differ as f64),
+        Measurement::Timed(build.times(1e3)),
+        Measurement::Timed(ray.times(1e9)),
+        Measurement::Timed(scan.times(1e3)),
+        Measurement::Computed(differ as f64),
     ]
 }
 
-fn about(scenes: &[Scene], rays: usize) -> Vec<String> {
+fn about(scenes: &[BvhScene], rays: usize) -> Vec<String> {
     let counts: Vec<String> = scenes
         .iter()
         .map(|scene| {
@@ -178,12 +169,12 @@ fn about(scenes: &[Scene], rays: usize) -> Vec<String> {
 }
 
 /// What rays are cast at.
-struct Scene {
+struct BvhScene {
     name: &'static str,
     objects: Vec<Object>,
 }
 
-impl Scene {
+impl BvhScene {
     fn new(name: &'static str, objects: Vec<Object>) -> Result<Self, StudyError> {
         let scene = Self { name, objects };
         if scene.meshes().next().is_none() {
@@ -254,13 +245,13 @@ fn quarry(seed: u64) -> Result<Vec<Object>, StudyError> {
 
 /// Boulders in the cave, and how they are cut.
 const BOULDERS: u32 = 50;
-const BOULDER: Ball = Ball {
+const BOULDER: BallMesh = BallMesh {
     rings: 11,
     sectors: 12,
 };
 
 /// A lumpy cave about the origin with boulders in it.
-fn cave(walls: Ball) -> Result<Vec<Object>, StudyError> {
+fn cave(walls: BallMesh) -> Result<Vec<Object>, StudyError> {
     let mut vertices = walls.vertices(|along| {
         let lumps = (7.0 * along.x).sin() * (9.0 * along.y).cos()
             + 0.3 * (31.0 * along.z + 17.0 * along.x).sin();
@@ -305,7 +296,7 @@ mod tests {
         let findings = BvhQuality.measure(&mut bench).unwrap();
         assert_eq!(findings.rows.len(), 2 * QUALITIES.len());
         for row in &findings.rows {
-            let values: Vec<f64> = row.values.iter().map(Value::middle).collect();
+            let values: Vec<f64> = row.values.iter().map(Measurement::middle).collect();
             assert_eq!(values[3], 0.0, "{row:?}");
             assert!((values[0] - 3.0).abs() < 1e-9, "{row:?}");
             assert!(values[1] > 0.0, "{row:?}");
@@ -322,7 +313,7 @@ mod tests {
         let shots = Shots::of("quarry", 8).unwrap();
         let rays = rays(&shots).unwrap();
         let moved = cave(BOULDER).unwrap();
-        let scene = Scene::new("cave", moved).unwrap();
+        let scene = BvhScene::new("cave", moved).unwrap();
         let caster = scene.caster(Quality::default()).unwrap();
         let mut met = hits(&caster, &rays);
         assert!(met.iter().flatten().count() * 2 > rays.len());
@@ -330,6 +321,6 @@ mod tests {
         let first = met.iter_mut().flatten().next().unwrap();
         first.range_m = first.range_m.next_up();
         assert_eq!(differing(&met, &hits(&caster, &rays)), 1);
-        assert!(Scene::new("empty", Vec::new()).is_err());
+        assert!(BvhScene::new("empty", Vec::new()).is_err());
     }
 }

@@ -3,7 +3,8 @@
 use std::hint::black_box;
 
 use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+    Bench, Effort, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work,
+    in_rounds,
 };
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
 use sim::packet_clock::{ArrivalLink, Oscillator, PACKET_NS, PacketClock, TimedPacket};
@@ -39,7 +40,7 @@ impl Study for Clocks {
         "The lidar's clock from its packets"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
         let (seconds, seeds) = match bench.effort {
             Effort::Quick => (5, 1),
             Effort::Full => (45, 4),
@@ -65,44 +66,37 @@ impl Study for Clocks {
         }
         let times = in_rounds(bench.clock, plan, &mut work)?;
         let rows = named.into_iter().zip(times);
-        let rows = rows.map(|((name, label, link, off), time)| Row {
-            name: format!("{link}, {name}"),
-            label: label.to_owned(),
-            group: link,
-            values: vec![
-                Value::Timed(time.times(1e9 / packets as f64)),
-                Value::Computed(off.bias_us),
-                Value::Computed(off.worst_us),
-            ],
+        let rows = rows.map(|((name, label, link, off), time)| {
+            Row::new(
+                format!("{link}, {name}"),
+                label,
+                link,
+                vec![
+                    Measurement::Timed(time.times(1e9 / packets as f64)),
+                    Measurement::Computed(off.bias_us),
+                    Measurement::Computed(off.worst_us),
+                ],
+            )
         });
-        Ok(Findings {
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: about(seconds, recordings.first().map_or(0, Vec::len)),
             choice: "link, clock",
             columns: columns(),
             rows: rows.collect(),
-            trades: vec![Trade {
-                cost: 0,
-                loss: 2,
-                joined: false,
-                apart: true,
-            }],
+            trades: vec![Trade::new(0, 2).by_group()],
         })
     }
 }
 
-fn columns() -> Vec<Column> {
+fn columns() -> Vec<StudyColumn> {
     [
         ("time_ns_per_packet", "ns a packet"),
         ("bias_us", "bias, us"),
         ("worst_error_us", "worst error, us"),
     ]
-    .map(|(key, heading)| Column {
-        key,
-        heading,
-        scale: Scale::Log,
-    })
+    .map(StudyColumn::log)
     .into()
 }
 
@@ -137,13 +131,13 @@ fn recordings(link: ArrivalLink, seconds: i64, seeds: u64) -> Vec<Vec<TimedPacke
 }
 
 /// How far a clock is off, microseconds.
-struct Off {
+struct ClockError {
     bias_us: f64,
     worst_us: f64,
 }
 
 /// Averaged over recordings.
-fn off(recordings: &[Vec<TimedPacket>], method: Method) -> Result<Off, StudyError> {
+fn off(recordings: &[Vec<TimedPacket>], method: Method) -> Result<ClockError, StudyError> {
     let (mut bias_us, mut worst_us) = (0.0, 0.0);
     for packets in recordings {
         let hosts =
@@ -160,7 +154,7 @@ fn off(recordings: &[Vec<TimedPacket>], method: Method) -> Result<Off, StudyErro
         worst_us += worst;
     }
     let n = recordings.len() as f64;
-    Ok(Off {
+    Ok(ClockError {
         bias_us: bias_us / n,
         worst_us: worst_us / n,
     })

@@ -6,24 +6,24 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::placing::worst_m;
 use ::cloud::formats::Format;
 use ::cloud::{Fields, Metadata, Points, read};
-use analysis::tradeoff::pattern::Sweep;
+use analysis::tradeoff::pattern::TiltSweep;
 use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, SeededNoise, Study, StudyError, Trade, Value,
-    Work, in_rounds,
+    Bench, Effort, Measurement, Row, SeededNoise, Study, StudyColumn, StudyError, StudyFindings,
+    Trade, Work, in_rounds,
 };
 use protocol::vlp16::models::VLP_16;
 use sim::scenes;
 use sim::sensor::{LidarMount, LidarSensor};
 
 use crate::granularity::place_packets;
-use crate::workload::{Ray, Workload};
+use crate::workload::{SimulatedShot, Workload};
 use engine::output::Buffered;
 
 /// The study.
 pub(super) struct Formats;
 
 /// A million points.
-const SWEEP: Sweep = Sweep {
+const SWEEP: TiltSweep = TiltSweep {
     way_deg: 45.0,
     speed_deg_s: 13.0,
     accel_deg_s2: 500.0,
@@ -42,7 +42,7 @@ impl Study for Formats {
         "Point formats"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
         let seconds = match bench.effort {
             Effort::Quick => 0.15,
             Effort::Full => SWEEP.duration_s(),
@@ -68,47 +68,36 @@ impl Study for Formats {
             write(format, &empty, &[])?;
             let of_points = bytes.len().saturating_sub(empty.content().len());
             let per_point = of_points as f64 / points as f64;
-            rows.push(Row {
-                name: format!(".{format}"),
-                label: format!(".{format}"),
-                group: "velomotion's writers",
-                values: vec![
-                    Value::Timed(time.times(1e6 / points as f64)),
-                    Value::Computed(per_point),
-                    Value::Computed(error_m * 1e6),
+            rows.push(Row::new(
+                format!(".{format}"),
+                format!(".{format}"),
+                "velomotion's writers",
+                vec![
+                    Measurement::Timed(time.times(1e6 / points as f64)),
+                    Measurement::Computed(per_point),
+                    Measurement::Computed(error_m * 1e6),
                 ],
-            });
+            ));
         }
-        Ok(Findings {
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: about(points),
             choice: "format",
             columns: columns(),
             rows,
-            trades: [0, 1]
-                .map(|cost| Trade {
-                    cost,
-                    loss: 2,
-                    joined: false,
-                    apart: false,
-                })
-                .into(),
+            trades: [0, 1].map(|cost| Trade::new(cost, 2)).into(),
         })
     }
 }
 
-fn columns() -> Vec<Column> {
+fn columns() -> Vec<StudyColumn> {
     [
         ("time_s_per_million_points", "s a million points"),
         ("bytes_per_point", "bytes a point"),
         ("worst_error_um", "worst error of a place, um"),
     ]
-    .map(|(key, heading)| Column {
-        key,
-        heading,
-        scale: Scale::Log,
-    })
+    .map(StudyColumn::log)
     .into()
 }
 
@@ -131,7 +120,7 @@ fn hall(seconds: f64) -> Result<Points, StudyError> {
     let (sensor, mount) = (LidarSensor::vlp16(), LidarMount::above(0.06));
     let range = sensor.range();
     let mut noise = SeededNoise(1);
-    let answer = |ray: &Ray| {
+    let answer = |ray: &SimulatedShot| {
         let beam = sensor.ray(ray.laser, ray.azimuth_deg, ray.tilt_deg, &mount);
         let hit = beam.and_then(|(origin, way)| scene.cast(origin, way, range.min_m, range.max_m));
         hit.map_or((0, 0), |hit| {

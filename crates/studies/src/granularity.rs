@@ -2,9 +2,11 @@
 
 use std::hint::black_box;
 
-use crate::placing::{BLOCK, Exact, FIRING, Head, PACKET, Places, RETURN, Shot, place, worst_m};
+use crate::placing::{
+    BLOCK, Exact, FIRING, PACKET, PlacedPoints, RETURN, SensorGeometry, Shot, place, worst_m,
+};
 use analysis::tradeoff::{
-    Bench, Column, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+    Bench, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work, in_rounds,
 };
 use cloud::{Fields, Points, Sink, SinkError};
 use drive::record::Wire;
@@ -18,52 +20,36 @@ pub(crate) struct Granularity;
 
 const RANGE_M: f64 = 100.0;
 
-type Kernel = fn(&[Shot], &Head, (&Exact, &Exact), &mut Places<f64>);
+type Kernel = fn(&[Shot], &SensorGeometry, (&Exact, &Exact), &mut PlacedPoints<f64>);
 
 /// Name, label, group and loop.
-const WAYS: [(&str, &str, &str, Kernel); 7] = [
+type GranularityChoice = (&'static str, &'static str, &'static str, Kernel);
+
+const fn choice<const AZIMUTH: u8, const TILT: u8>(
+    name: &'static str,
+    label: &'static str,
+    group: &'static str,
+) -> GranularityChoice {
     (
-        "tilt a packet, azimuth a return",
-        "packet",
-        "tilt alone",
-        place::<f64, Exact, Exact, RETURN, PACKET>,
-    ),
-    (
-        "tilt a block, azimuth a return",
-        "block",
-        "tilt alone",
-        place::<f64, Exact, Exact, RETURN, BLOCK>,
-    ),
-    (
-        "tilt a firing, azimuth a return",
-        "firing",
-        "tilt alone",
-        place::<f64, Exact, Exact, RETURN, FIRING>,
-    ),
-    (
+        name,
+        label,
+        group,
+        place::<f64, Exact, Exact, AZIMUTH, TILT>,
+    )
+}
+
+const WAYS: [GranularityChoice; 7] = [
+    choice::<RETURN, PACKET>("tilt a packet, azimuth a return", "packet", "tilt alone"),
+    choice::<RETURN, BLOCK>("tilt a block, azimuth a return", "block", "tilt alone"),
+    choice::<RETURN, FIRING>("tilt a firing, azimuth a return", "firing", "tilt alone"),
+    choice::<BLOCK, PACKET>(
         "tilt a packet, azimuth a block",
         "packet",
         "tilt and azimuth",
-        place::<f64, Exact, Exact, BLOCK, PACKET>,
     ),
-    (
-        "both a block",
-        "block",
-        "tilt and azimuth",
-        place::<f64, Exact, Exact, BLOCK, BLOCK>,
-    ),
-    (
-        "both a firing",
-        "firing",
-        "tilt and azimuth",
-        place::<f64, Exact, Exact, FIRING, FIRING>,
-    ),
-    (
-        "both a return",
-        "return",
-        "tilt and azimuth",
-        place::<f64, Exact, Exact, RETURN, RETURN>,
-    ),
+    choice::<BLOCK, BLOCK>("both a block", "block", "tilt and azimuth"),
+    choice::<FIRING, FIRING>("both a firing", "firing", "tilt and azimuth"),
+    choice::<RETURN, RETURN>("both a return", "return", "tilt and azimuth"),
 ];
 
 impl Study for Granularity {
@@ -75,14 +61,14 @@ impl Study for Granularity {
         "How often angles are worked out"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
         let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
         let alignment = packets.alignment()?;
         let (shots, truth) = (packets.shots(&alignment), definition(&packets, &alignment));
         let (head, points) = (head(), truth.len());
         let mut errors_m = Vec::new();
         for (_, _, _, kernel) in WAYS {
-            let mut out = Places::new(points);
+            let mut out = PlacedPoints::new(points);
             kernel(&shots, &head, (&Exact, &Exact), &mut out);
             errors_m.push(out.worst_m(&truth));
         }
@@ -104,39 +90,28 @@ impl Study for Granularity {
             "velomotion",
         );
         let rows = named.into_iter().chain([own]).zip(times).zip(errors_m);
-        let rows = rows.map(|(((name, label, group), time), error_m)| Row {
-            name: name.to_owned(),
-            label: label.to_owned(),
-            group,
-            values: vec![
-                Value::Timed(time.times(1e9 / points as f64)),
-                Value::Computed(error_m * 1e3),
-            ],
+        let rows = rows.map(|(((name, label, group), time), error_m)| {
+            Row::new(
+                name,
+                label,
+                group,
+                vec![
+                    Measurement::Timed(time.times(1e9 / points as f64)),
+                    Measurement::Computed(error_m * 1e3),
+                ],
+            )
         });
-        Ok(Findings {
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: about(points),
             choice: "angles per",
             columns: vec![
-                Column {
-                    key: "time_ns_per_point",
-                    heading: "ns a point",
-                    scale: Scale::Log,
-                },
-                Column {
-                    key: "worst_error_mm",
-                    heading: "worst error, mm at 100 m",
-                    scale: Scale::Log,
-                },
+                StudyColumn::log(("time_ns_per_point", "ns a point")),
+                StudyColumn::log(("worst_error_mm", "worst error, mm at 100 m")),
             ],
             rows: rows.collect(),
-            trades: vec![Trade {
-                cost: 0,
-                loss: 1,
-                joined: true,
-                apart: false,
-            }],
+            trades: vec![Trade::new(0, 1).joined()],
         })
     }
 }
@@ -154,10 +129,14 @@ fn about(points: usize) -> Vec<String> {
     ]
 }
 
-fn kernels<'a>(shots: &'a [Shot], head: &'a Head, points: usize) -> Vec<Work<'a, StudyError>> {
+fn kernels<'a>(
+    shots: &'a [Shot],
+    head: &'a SensorGeometry,
+    points: usize,
+) -> Vec<Work<'a, StudyError>> {
     WAYS.iter()
         .map(|(_, _, _, kernel)| {
-            let mut out = Places::new(points);
+            let mut out = PlacedPoints::new(points);
             let work: Work<'a, StudyError> = Box::new(move || {
                 kernel(black_box(shots), head, (&Exact, &Exact), &mut out);
                 black_box(&out);
@@ -193,8 +172,8 @@ pub(crate) fn place_packets(
 }
 
 /// Every return by itself, as `scanner` defines its place.
-fn definition(packets: &Workload, alignment: &Alignment) -> Places<f64> {
-    let mut places = Places::new(0);
+fn definition(packets: &Workload, alignment: &Alignment) -> PlacedPoints<f64> {
+    let mut places = PlacedPoints::new(0);
     let mut each = |firing: &lidar::Firing<'_>| {
         for point in firing.points().filter_map(|point| alignment.place(&point)) {
             let [x, y, z] = point.position_m;
@@ -217,7 +196,7 @@ fn definition(packets: &Workload, alignment: &Alignment) -> Places<f64> {
 fn own_error_m(
     packets: &Workload,
     alignment: &Alignment,
-    truth: &Places<f64>,
+    truth: &PlacedPoints<f64>,
 ) -> Result<f64, StudyError> {
     let mut cloud = Points::new(Fields::NONE);
     place_packets(packets, alignment, &mut cloud)?;

@@ -24,7 +24,7 @@ mod workload;
 use std::error::Error;
 use std::path::PathBuf;
 
-use analysis::tradeoff::{self, Bench, Book, Effort, Machine, Report, Study, text};
+use analysis::tradeoff::{self, Bench, Book, Effort, Machine, Study, StudyReport, text};
 use clap::Parser;
 
 /// Measures the choices behind velomotion's own arithmetic.
@@ -75,7 +75,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             say: &mut |line| eprintln!("  {line}"),
         })?);
     }
-    let report = Report {
+    let report = StudyReport {
         program: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
         effort,
         machine: Machine::current(|path| std::fs::read_to_string(path).ok()),

@@ -41,7 +41,7 @@ pub struct Shot {
 
 /// One laser.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Beam {
+pub struct LaserGeometry {
     /// Elevation, degrees.
     pub elevation_deg: f64,
     /// How far above the lidar's origin it starts, metres.
@@ -52,9 +52,9 @@ pub struct Beam {
 
 /// The lidar and how it sits on the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Head {
+pub struct SensorGeometry {
     /// Its lasers in firing order.
-    pub beams: [Beam; LASERS],
+    pub beams: [LaserGeometry; LASERS],
     /// A count of distance, metres.
     pub unit_m: f64,
     /// Height above the tilt axis, metres (d of Eq. 4-6).
@@ -62,7 +62,7 @@ pub struct Head {
 }
 
 /// f32 or f64.
-pub trait Number:
+pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + 'static
 {
     /// The nearest of these numbers.
@@ -77,7 +77,7 @@ pub trait Number:
 
 macro_rules! number {
     ($float:ty) => {
-        impl Number for $float {
+        impl Real for $float {
             #[inline(always)]
             fn of(x: f64) -> Self {
                 x as $float
@@ -101,7 +101,7 @@ number!(f32);
 number!(f64);
 
 /// Sine and cosine of an angle that grows.
-pub trait Sine<T: Number> {
+pub trait Sine<T: Real> {
     /// Of an angle in degrees.
     fn at(&self, degrees: T) -> (T, T);
 
@@ -117,7 +117,7 @@ pub trait Sine<T: Number> {
 #[derive(Clone, Copy, Debug)]
 pub struct Exact;
 
-impl<T: Number> Sine<T> for Exact {
+impl<T: Real> Sine<T> for Exact {
     #[inline(always)]
     fn at(&self, degrees: T) -> (T, T) {
         degrees.radians().sin_cos()
@@ -126,15 +126,15 @@ impl<T: Number> Sine<T> for Exact {
 
 /// Those of the nearest hundredth of a degree.
 #[derive(Clone, Debug)]
-pub struct Table<T>(Vec<(T, T)>);
+pub struct SineTable<T>(Vec<(T, T)>);
 
-impl<T: Number> Default for Table<T> {
+impl<T: Real> Default for SineTable<T> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<T: Number> Table<T> {
+impl<T: Real> SineTable<T> {
     /// The table, [`TABLE_STEPS`] long.
     #[must_use]
     pub fn new() -> Self {
@@ -146,7 +146,7 @@ impl<T: Number> Table<T> {
     }
 }
 
-impl<T: Number> Sine<T> for Table<T> {
+impl<T: Real> Sine<T> for SineTable<T> {
     #[inline(always)]
     fn at(&self, degrees: T) -> (T, T) {
         // Angles here are above -360 degrees.
@@ -161,7 +161,7 @@ impl<T: Number> Sine<T> for Table<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct Addition;
 
-impl<T: Number> Sine<T> for Addition {
+impl<T: Real> Sine<T> for Addition {
     #[inline(always)]
     fn at(&self, degrees: T) -> (T, T) {
         degrees.radians().sin_cos()
@@ -181,7 +181,7 @@ impl<T: Number> Sine<T> for Addition {
 
 /// Columns of places, metres.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Places<T> {
+pub struct PlacedPoints<T> {
     /// x (right).
     pub x_m: Vec<T>,
     /// y (forward).
@@ -190,7 +190,7 @@ pub struct Places<T> {
     pub z_m: Vec<T>,
 }
 
-impl<T: Number> Places<T> {
+impl<T: Real> PlacedPoints<T> {
     /// Room for so many.
     #[must_use]
     pub fn new(len: usize) -> Self {
@@ -210,7 +210,7 @@ impl<T: Number> Places<T> {
 
     /// The greatest distance of any place from its own of `truth`, metres; infinite where one has more than the other.
     #[must_use]
-    pub fn worst_m(&self, truth: &Places<f64>) -> f64 {
+    pub fn worst_m(&self, truth: &PlacedPoints<f64>) -> f64 {
         worst_m(
             [&self.x_m, &self.y_m, &self.z_m],
             [&truth.x_m, &truth.y_m, &truth.z_m],
@@ -221,7 +221,7 @@ impl<T: Number> Places<T> {
 /// The greatest distance of any place of columns x, y, z from its own of `truth`, metres. Infinite where the columns are not of one
 /// length or a distance is not a number.
 #[must_use]
-pub fn worst_m<T: Number>(places_m: [&[T]; 3], truth_m: [&[f64]; 3]) -> f64 {
+pub fn worst_m<T: Real>(places_m: [&[T]; 3], truth_m: [&[f64]; 3]) -> f64 {
     let [x, y, z] = places_m;
     let [tx, ty, tz] = truth_m;
     let lengths = [y.len(), z.len(), tx.len(), ty.len(), tz.len()];
@@ -243,11 +243,11 @@ pub fn worst_m<T: Number>(places_m: [&[T]; 3], truth_m: [&[f64]; 3]) -> f64 {
 
 /// Places every return, its azimuth and tilt taken once a `AZIMUTH` and once a `TILT` ([`PACKET`], [`BLOCK`], [`FIRING`] or
 /// [`RETURN`]), each with its own sine. Room beyond the returns is left as it is; returns beyond the room are dropped.
-pub fn place<T: Number, A: Sine<T>, G: Sine<T>, const AZIMUTH: u8, const TILT: u8>(
+pub fn place<T: Real, A: Sine<T>, G: Sine<T>, const AZIMUTH: u8, const TILT: u8>(
     shots: &[Shot],
-    head: &Head,
+    head: &SensorGeometry,
     (azimuth_sine, tilt_sine): (&A, &G),
-    out: &mut Places<T>,
+    out: &mut PlacedPoints<T>,
 ) {
     let unit = T::of(head.unit_m);
     let rays: [(T, T, T); LASERS] = head.beams.map(|beam| {
@@ -323,9 +323,9 @@ mod tests {
     const TILT_DEG_NS: f64 = -56.25e-9;
     const FIRING_NS: f64 = 55_296.0;
 
-    fn head() -> Head {
-        Head {
-            beams: std::array::from_fn(|i| Beam {
+    fn head() -> SensorGeometry {
+        SensorGeometry {
+            beams: std::array::from_fn(|i| LaserGeometry {
                 elevation_deg: 2.0 * i as f64 - 15.0,
                 rise_m: 0.0112 - 0.0015 * i as f64,
                 delay_ns: 2_304.0 * i as f64,
@@ -347,9 +347,9 @@ mod tests {
     }
 
     /// Every return by rotations composed as matrices.
-    fn slow(shots: &[Shot]) -> Places<f64> {
+    fn slow(shots: &[Shot]) -> PlacedPoints<f64> {
         let head = head();
-        let mut places = Places::new(0);
+        let mut places = PlacedPoints::new(0);
         for shot in shots {
             for (beam, count) in head.beams.iter().zip(shot.counts) {
                 if count == 0 {
@@ -370,9 +370,9 @@ mod tests {
         places
     }
 
-    fn worst_mm<T: Number, S: Sine<T>, const AZIMUTH: u8, const TILT: u8>(sine: &S) -> f64 {
+    fn worst_mm<T: Real, S: Sine<T>, const AZIMUTH: u8, const TILT: u8>(sine: &S) -> f64 {
         let shots = shots(15_000);
-        let mut out = Places::new(returns(&shots));
+        let mut out = PlacedPoints::new(returns(&shots));
         place::<T, S, S, AZIMUTH, TILT>(&shots, &head(), (sine, sine), &mut out);
         out.worst_m(&slow(&shots)) * 1e3
     }
@@ -419,7 +419,11 @@ mod tests {
     fn numbers_and_tables_err_as_their_steps_say() {
         within(worst_mm::<f32, _, RETURN, RETURN>(&Exact), 0.005, 0.1);
         within(worst_mm::<f32, _, RETURN, RETURN>(&Addition), 0.005, 0.1);
-        within(worst_mm::<f64, _, RETURN, RETURN>(&Table::new()), 8.5, 12.4);
+        within(
+            worst_mm::<f64, _, RETURN, RETURN>(&SineTable::new()),
+            8.5,
+            12.4,
+        );
     }
 
     #[test]
@@ -427,7 +431,7 @@ mod tests {
         let mut shots = shots(2);
         shots[0].counts[3] = 0;
         assert_eq!(returns(&shots), 31);
-        let mut out = Places::<f64>::new(31);
+        let mut out = PlacedPoints::<f64>::new(31);
         place::<f64, _, _, RETURN, RETURN>(&shots, &head(), (&Exact, &Exact), &mut out);
         within(out.worst_m(&slow(&shots)), 0.0, 1e-12);
     }

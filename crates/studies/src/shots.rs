@@ -37,8 +37,8 @@ impl Shots {
         let mut simulation = scene.simulation;
         simulation.returns = ReturnMode::Dual;
         let all = simulation.motion.end_s() * 1e9 / f64::from(VLP_16.firing_period_ns);
-        let taken = Arc::new(Mutex::new(Taken::default()));
-        let take = Take {
+        let taken = Arc::new(Mutex::new(CollectedFirings::default()));
+        let take = FiringCollector {
             every: ((all / firings.max(1) as f64) as u64).max(1),
             taken: Arc::clone(&taken),
         };
@@ -80,25 +80,25 @@ impl Shots {
 
 /// What was taken so far.
 #[derive(Debug, Default)]
-struct Taken {
+struct CollectedFirings {
     surroundings: Option<Surroundings>,
     firings: Vec<(Firing, Echoes)>,
 }
 
 /// The effect that takes firings, one group of `every`.
 #[derive(Clone, Debug)]
-struct Take {
+struct FiringCollector {
     every: u64,
-    taken: Arc<Mutex<Taken>>,
+    taken: Arc<Mutex<CollectedFirings>>,
 }
 
-impl Effect for Take {
+impl Effect for FiringCollector {
     fn name(&self) -> &'static str {
         "take"
     }
 }
 
-impl BeamEffect for Take {
+impl BeamEffect for FiringCollector {
     fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
         if (firing.number / TOGETHER).is_multiple_of(self.every) {
             let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);

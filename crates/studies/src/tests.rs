@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use analysis::tradeoff::{Bench, Effort, Findings, Value};
+use analysis::tradeoff::{Bench, Effort, Measurement, StudyFindings};
 
 use crate::STUDIES;
 
@@ -21,7 +21,7 @@ fn every_study_is_complete() {
 }
 
 /// Every row has every column, spreads are in order, and every trade has a front.
-fn check_complete(findings: &Findings) {
+fn check_complete(findings: &StudyFindings) {
     assert!(findings.rows.len() > 3 && findings.columns.len() > 1);
     let names: BTreeSet<&str> = findings.rows.iter().map(|row| row.name.as_str()).collect();
     assert_eq!(names.len(), findings.rows.len(), "{names:?}");
@@ -29,12 +29,12 @@ fn check_complete(findings: &Findings) {
         assert_eq!(row.values.len(), findings.columns.len(), "{row:?}");
         for value in &row.values {
             match value {
-                Value::Timed(spread) => {
+                Measurement::Timed(spread) => {
                     assert!(0.0 < spread.min && spread.min <= spread.median, "{row:?}");
                     assert!(spread.median <= spread.max && spread.runs > 1, "{row:?}");
                 }
                 // An unknown bound is infinite.
-                Value::Computed(x) => assert!(*x >= 0.0, "{row:?}"),
+                Measurement::Computed(x) => assert!(*x >= 0.0, "{row:?}"),
             }
         }
     }

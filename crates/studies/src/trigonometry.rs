@@ -3,10 +3,11 @@
 use std::hint::black_box;
 
 use crate::placing::{
-    Addition, Exact, Head, LASERS, Number, Places, RETURN, Shot, Sine, Table, place,
+    Addition, Exact, LASERS, PlacedPoints, RETURN, Real, SensorGeometry, Shot, Sine, SineTable,
+    place,
 };
 use analysis::tradeoff::{
-    Bench, Column, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+    Bench, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work, in_rounds,
 };
 
 use crate::workload::{Workload, all_at, cruise_deg, cruise_s, head};
@@ -17,7 +18,7 @@ pub(crate) struct Trigonometry;
 const RANGE_M: f64 = 100.0;
 
 /// A way with its name, its label, its group and how far it is off.
-struct Way<'a> {
+struct PlacingMethod<'a> {
     name: String,
     label: &'static str,
     group: &'static str,
@@ -26,10 +27,10 @@ struct Way<'a> {
 }
 
 /// What every way works on.
-struct Setting {
+struct TrigonometrySetup {
     shots: Vec<Shot>,
-    head: Head,
-    truth: Places<f64>,
+    head: SensorGeometry,
+    truth: PlacedPoints<f64>,
 }
 
 impl Study for Trigonometry {
@@ -41,14 +42,14 @@ impl Study for Trigonometry {
         "Numbers and sines"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
         let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
         let shots = packets.shots(&packets.alignment()?);
         let (head, points) = (head(), shots.len() * LASERS);
-        let mut truth = Places::new(points);
+        let mut truth = PlacedPoints::new(points);
         place::<f64, _, _, RETURN, RETURN>(&shots, &head, (&Exact, &Exact), &mut truth);
-        let setting = Setting { shots, head, truth };
-        let (wide, narrow) = (Table::<f64>::new(), Table::<f32>::new());
+        let setting = TrigonometrySetup { shots, head, truth };
+        let (wide, narrow) = (SineTable::<f64>::new(), SineTable::<f32>::new());
         let mut ways = ways("f64", &setting, &wide);
         ways.extend(self::ways("f32", &setting, &narrow));
 
@@ -60,39 +61,22 @@ impl Study for Trigonometry {
             .unzip();
         let times = in_rounds(bench.clock, plan, &mut work)?;
         let rows = named.into_iter().zip(times);
-        let rows = rows.map(|((name, label, group, error_m), time)| Row {
-            name,
-            label: label.to_owned(),
-            group,
-            values: vec![
-                Value::Timed(time.times(1e9 / points as f64)),
-                Value::Computed(error_m * 1e3),
-            ],
+        let rows = rows.map(|((name, label, group, error_m), time)| {
+            let time_ns = Measurement::Timed(time.times(1e9 / points as f64));
+            let error_mm = Measurement::Computed(error_m * 1e3);
+            Row::new(name, label, group, vec![time_ns, error_mm])
         });
-        Ok(Findings {
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: about(points),
             choice: "numbers, sine and cosine",
             columns: vec![
-                Column {
-                    key: "time_ns_per_point",
-                    heading: "ns a point",
-                    scale: Scale::Log,
-                },
-                Column {
-                    key: "worst_error_mm",
-                    heading: "worst error, mm at 100 m",
-                    scale: Scale::Log,
-                },
+                StudyColumn::log(("time_ns_per_point", "ns a point")),
+                StudyColumn::log(("worst_error_mm", "worst error, mm at 100 m")),
             ],
             rows: rows.collect(),
-            trades: vec![Trade {
-                cost: 0,
-                loss: 1,
-                joined: false,
-                apart: false,
-            }],
+            trades: vec![Trade::new(0, 1)],
         })
     }
 }
@@ -103,18 +87,18 @@ fn about(points: usize) -> Vec<String> {
             "The same tilt, {points} points at {RANGE_M} m, each return with its own azimuth and tilt. Eq. 1-6 are worked out in f64 or wholly in f32, angles \
              and distances included. The error is the distance to where f64 and the library's sine put the point."
         ),
-        "Library: sine and cosine of both angles for every return. Table: those of the nearest hundredth of a degree, 36,000 places; azimuth table: \
+        "Library: sine and cosine of both angles for every return. SineTable: those of the nearest hundredth of a degree, 36,000 places; azimuth table: \
              for the azimuth alone. Addition: the library's for the first laser of a firing, carried on to the others by the sum's sine and cosine, of a little angle whose series \
          ends at the third power; velomotion does this in f64, a block at a time."
             .to_owned(),
     ]
 }
 
-fn ways<'a, T: Number>(
+fn ways<'a, T: Real>(
     group: &'static str,
-    setting: &'a Setting,
-    table: &'a Table<T>,
-) -> Vec<Way<'a>> {
+    setting: &'a TrigonometrySetup,
+    table: &'a SineTable<T>,
+) -> Vec<PlacingMethod<'a>> {
     vec![
         way::<T, _, _>((group, "library"), setting, (&Exact, &Exact)),
         way::<T, _, _>((group, "azimuth table"), setting, (table, &Exact)),
@@ -123,15 +107,15 @@ fn ways<'a, T: Number>(
     ]
 }
 
-fn way<'a, T: Number, A: Sine<T>, G: Sine<T>>(
+fn way<'a, T: Real, A: Sine<T>, G: Sine<T>>(
     (group, label): (&'static str, &'static str),
-    setting: &'a Setting,
+    setting: &'a TrigonometrySetup,
     sines: (&'a A, &'a G),
-) -> Way<'a> {
-    let Setting { shots, head, truth } = setting;
-    let mut out = Places::<T>::new(truth.len());
+) -> PlacingMethod<'a> {
+    let TrigonometrySetup { shots, head, truth } = setting;
+    let mut out = PlacedPoints::<T>::new(truth.len());
     place::<T, A, G, RETURN, RETURN>(shots, head, sines, &mut out);
-    Way {
+    PlacingMethod {
         name: format!("{group}, {label}"),
         label,
         group,

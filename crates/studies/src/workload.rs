@@ -3,7 +3,7 @@
 //! 10 turns a second, one return a firing and laser, distances as the study asks for. Packets arrive as they are full, at no
 //! delay. Left out: everything that makes clocks hard; other studies are about that.
 
-use crate::placing::{Beam, Head, LASERS, Shot};
+use crate::placing::{LASERS, LaserGeometry, SensorGeometry, Shot};
 use analysis::tradeoff::{Bench, Effort, StudyError};
 use drive::record::{Record, Wire};
 use firmware_sim::vlp16::{DATA_PORT, DataPacketBuilder, PacketModel, ReturnMode};
@@ -23,7 +23,7 @@ const FIRINGS: u64 = 24;
 pub(crate) type Tilt = fn(f64) -> f64;
 
 /// A laser's shot, to be answered with a distance in counts (0 for none) and a reflectivity.
-pub(crate) struct Ray {
+pub(crate) struct SimulatedShot {
     pub laser: usize,
     pub azimuth_deg: f64,
     pub tilt_deg: f64,
@@ -38,7 +38,11 @@ pub(crate) struct Workload {
 
 impl Workload {
     /// `seconds` of a tilt, the last packet filled.
-    pub fn new(tilt_deg: Tilt, seconds: f64, mut answer: impl FnMut(&Ray) -> (u16, u8)) -> Self {
+    pub fn new(
+        tilt_deg: Tilt,
+        seconds: f64,
+        mut answer: impl FnMut(&SimulatedShot) -> (u16, u8),
+    ) -> Self {
         let firing_ns = u64::from(VLP_16.firing_period_ns);
         let count = (seconds * 1e9 / (firing_ns * FIRINGS) as f64).ceil() as u64;
         let mut builder = DataPacketBuilder::new(PacketModel::Vlp16, ReturnMode::Strongest);
@@ -50,7 +54,7 @@ impl Workload {
                 let returns: [_; 16] = std::array::from_fn(|laser| {
                     let delay = VLP_16.lasers.get(laser).map_or(0, |l| l.delay_ns);
                     let t_ns = (start_ns + u64::from(delay)) as f64;
-                    answer(&Ray {
+                    answer(&SimulatedShot {
                         laser,
                         azimuth_deg: (t_ns * AZIMUTH_DEG_NS) % 360.0,
                         tilt_deg: tilt_deg(t_ns * 1e-9),
@@ -135,15 +139,18 @@ impl Workload {
 }
 
 /// The VLP-16 at the height of the configuration's mount.
-pub(crate) fn head() -> Head {
+pub(crate) fn head() -> SensorGeometry {
     let beam = |i: usize| {
-        VLP_16.lasers.get(i).map_or(Beam::default(), |laser| Beam {
-            elevation_deg: laser.elevation_deg,
-            rise_m: laser.vertical_offset_m,
-            delay_ns: f64::from(laser.delay_ns),
-        })
+        VLP_16
+            .lasers
+            .get(i)
+            .map_or(LaserGeometry::default(), |laser| LaserGeometry {
+                elevation_deg: laser.elevation_deg,
+                rise_m: laser.vertical_offset_m,
+                delay_ns: f64::from(laser.delay_ns),
+            })
     };
-    Head {
+    SensorGeometry {
         beams: std::array::from_fn(beam),
         unit_m: VLP_16.distance_unit_m,
         d_m: ScanConfig::default().mount.d_m,
@@ -164,7 +171,7 @@ pub(crate) const fn cruise_s(bench: &Bench<'_>) -> f64 {
 }
 
 /// Something `range_m` away in every direction.
-pub(crate) fn all_at(range_m: f64) -> impl FnMut(&Ray) -> (u16, u8) {
+pub(crate) fn all_at(range_m: f64) -> impl FnMut(&SimulatedShot) -> (u16, u8) {
     let count = (range_m / VLP_16.distance_unit_m) as u16;
     move |_| (count, 40)
 }

@@ -13,14 +13,14 @@
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
-use analysis::k::{self, Counts, Edges, Estimate, KError, Registers};
+use analysis::k::{self, Edges, Estimate, KError, PairCounts, Registers};
 use glam::DVec3;
 
 #[allow(dead_code, reason = "the tests' patterns, of which one is wanted here")]
 #[path = "../../src/k/tests/patterns.rs"]
 mod patterns;
 
-const USUAL: [&str; 14] = [
+const USUAL: [&str; 13] = [
     "exact:1",
     "exact:30",
     "exact:72",
@@ -32,7 +32,6 @@ const USUAL: [&str; 14] = [
     "turned:788",
     "sampled:30",
     "sampled:72",
-    "gridded:72",
     "harmonics:30",
     "harmonics:72",
 ];
@@ -56,7 +55,7 @@ fn all_cpu_s() -> f64 {
 }
 
 enum Found {
-    Counts(Counts),
+    PairCounts(PairCounts),
     Estimate(Estimate),
 }
 
@@ -70,19 +69,18 @@ fn run(what: &str, points: &[DVec3], frames: usize, edges: &Edges) -> Result<Fou
         "sampled" => {
             return k::sampled(points, edges, &k::Sampling::default()).map(Found::Estimate);
         }
-        "gridded" => return k::gridded(points, edges, 24).map(Found::Estimate),
         "harmonics" => return k::harmonics(points, edges, 64).map(Found::Estimate),
         _ => {
             let step_rad = std::f64::consts::PI / frames as f64;
-            let turning = k::Turning {
+            let rotation = k::FrameRotation {
                 axis: DVec3::Y,
                 step_rad,
                 frames,
             };
-            k::turned(points, &turning, edges, one)
+            k::turned(points, &rotation, edges, one)
         }
     };
-    counts.map(Found::Counts)
+    counts.map(Found::PairCounts)
 }
 
 fn main() {
@@ -109,7 +107,7 @@ fn main() {
             cpu = all_cpu_s() - all;
         }
         match found {
-            Found::Counts(counts) => println!(
+            Found::PairCounts(counts) => println!(
                 "{words}: {} points, {cpu:.3} CPU s, {wall:.3} s; bins 1, 2, 151: {} {} {}",
                 points.len(),
                 counts.counts[0],
@@ -118,12 +116,12 @@ fn main() {
             ),
             Found::Estimate(of) => {
                 let step_rad = std::f64::consts::PI / f64::from(frames);
-                let turning = k::Turning {
+                let rotation = k::FrameRotation {
                     axis: DVec3::Y,
                     step_rad,
                     frames: frames as usize,
                 };
-                let exact: Estimate = k::turned(&points, &turning, &edges, NonZeroUsize::MIN)
+                let exact: Estimate = k::turned(&points, &rotation, &edges, NonZeroUsize::MIN)
                     .expect("an RMBL is turned")
                     .into();
                 let off = of

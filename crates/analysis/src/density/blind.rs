@@ -10,13 +10,13 @@ use std::collections::{BinaryHeap, HashMap};
 use glam::DVec3;
 use serde::Serialize;
 
-use super::hole::{Depth, Done, Hole, Search};
+use super::hole::{CellOutcome, Hole, HoleSearch, RegionDepth};
 use super::nearby::Nearby;
 use super::{DensityError, check};
 
 /// Holes about one angle from an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct HoleRow {
     /// Angle from the axis, the mean of theirs, degrees.
     pub from_axis_deg: f64,
     /// How many there are.
@@ -27,14 +27,14 @@ pub struct Row {
 
 /// Angles from an axis that no point has.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Band {
+pub struct EmptyBand {
     /// Where it begins: the angle of the last point before, or 0; degrees.
     pub from_deg: f64,
     /// Where it ends: the angle of the next point, or 180.
     pub to_deg: f64,
 }
 
-impl Band {
+impl EmptyBand {
     /// How wide it is, degrees.
     #[must_use]
     pub fn width_deg(&self) -> f64 {
@@ -57,21 +57,21 @@ pub fn holes(
     directions: &[DVec3],
     least_rad: f64,
     most: usize,
-    depth_rad: Depth<'_>,
+    depth_rad: RegionDepth<'_>,
 ) -> Result<Vec<Hole>, DensityError> {
     check(directions)?;
     if !(least_rad > 0.0 && least_rad.is_finite()) {
         return Err(DensityError::Least { got: least_rad });
     }
     let nearby = Nearby::new(directions);
-    let mut list = List::new(least_rad, most);
+    let mut list = HoleList::new(least_rad, most);
     looked_for(&nearby, &mut list, depth_rad);
     Ok(list.listed)
 }
 
 /// Fills a list; says how many cells were looked into. Those that lie in a hole already listed are not: all their holes would be left out.
-fn looked_for(nearby: &Nearby, list: &mut List, depth_rad: Depth<'_>) -> usize {
-    let mut search = Search::new(nearby, EXACT * list.least_rad, depth_rad);
+fn looked_for(nearby: &Nearby, list: &mut HoleList, depth_rad: RegionDepth<'_>) -> usize {
+    let mut search = HoleSearch::new(nearby, EXACT * list.least_rad, depth_rad);
     let mut looked = 0;
     while let Some(next) = search.next() {
         // Nothing to come is larger than the bound.
@@ -86,12 +86,12 @@ fn looked_for(nearby: &Nearby, list: &mut List, depth_rad: Depth<'_>) -> usize {
         search.tolerance_rad = EXACT * next.bound_rad;
         let keep = |hole: &Hole| depth_rad(hole.centre) >= 0.0;
         match search.look_into(&next, list.least_rad) {
-            Done::Cut => {}
-            Done::Holes(centres) => {
+            CellOutcome::Cut => {}
+            CellOutcome::Holes(centres) => {
                 let holes = centres.into_iter().filter_map(|c| search.at(c));
                 holes.filter(keep).for_each(|hole| list.add(hole));
             }
-            Done::Tiny => {
+            CellOutcome::Tiny => {
                 let hole = Hole {
                     centre: next.middle,
                     radius_rad: next.free_rad,
@@ -108,7 +108,7 @@ fn looked_for(nearby: &Nearby, list: &mut List, depth_rad: Depth<'_>) -> usize {
 }
 
 /// Holes whose middles lie in no larger one, the largest first.
-struct List {
+struct HoleList {
     least_rad: f64,
     most: usize,
     listed: Vec<Hole>,
@@ -120,7 +120,7 @@ struct List {
     wide: Vec<Hole>,
 }
 
-impl List {
+impl HoleList {
     fn new(least_rad: f64, most: usize) -> Self {
         Self {
             least_rad,
@@ -222,7 +222,7 @@ impl Eq for BySize {}
 
 /// Holes by their angle from an axis: where two that follow each other are more than `apart_rad` apart, another row begins.
 #[must_use]
-pub fn rows(holes: &[Hole], axis: DVec3, apart_rad: f64) -> Vec<Row> {
+pub fn rows(holes: &[Hole], axis: DVec3, apart_rad: f64) -> Vec<HoleRow> {
     let mut angles: Vec<(f64, f64)> = holes
         .iter()
         .map(|hole| (from_axis(hole.centre, axis), hole.radius_rad))
@@ -233,7 +233,7 @@ pub fn rows(holes: &[Hole], axis: DVec3, apart_rad: f64) -> Vec<Row> {
         .map(|row| {
             let sum: f64 = row.iter().map(|(angle, _)| angle).sum();
             let radius = row.iter().map(|(_, radius)| *radius).fold(0.0, f64::max);
-            Row {
+            HoleRow {
                 from_axis_deg: (sum / row.len() as f64).to_degrees(),
                 holes: row.len(),
                 radius_deg: radius.to_degrees(),
@@ -246,7 +246,11 @@ pub fn rows(holes: &[Hole], axis: DVec3, apart_rad: f64) -> Vec<Row> {
 ///
 /// # Errors
 /// [`DensityError::Direction`] for what is none.
-pub fn bands(directions: &[DVec3], axis: DVec3, least_rad: f64) -> Result<Vec<Band>, DensityError> {
+pub fn bands(
+    directions: &[DVec3],
+    axis: DVec3,
+    least_rad: f64,
+) -> Result<Vec<EmptyBand>, DensityError> {
     check(directions)?;
     let mut angles: Vec<f64> = directions.iter().map(|d| from_axis(*d, axis)).collect();
     angles.extend([0.0, std::f64::consts::PI]);
@@ -255,7 +259,7 @@ pub fn bands(directions: &[DVec3], axis: DVec3, least_rad: f64) -> Result<Vec<Ba
         .iter()
         .zip(angles.iter().skip(1))
         .filter(|(from, to)| *to - *from >= least_rad)
-        .map(|(from, to)| Band {
+        .map(|(from, to)| EmptyBand {
             from_deg: from.to_degrees(),
             to_deg: to.to_degrees(),
         })
@@ -298,7 +302,7 @@ mod tests {
         let all = bands(&[], DVec3::Y, 1.0).unwrap();
         assert_eq!(
             all,
-            [Band {
+            [EmptyBand {
                 from_deg: 0.0,
                 to_deg: 180.0
             }]
@@ -371,7 +375,7 @@ mod tests {
                 360,
             ));
             let nearby = Nearby::new(&points);
-            let mut list = List::new(1.95_f64.to_radians(), usize::MAX);
+            let mut list = HoleList::new(1.95_f64.to_radians(), usize::MAX);
             let belt = |at: DVec3| {
                 3.0_f64.to_radians() - (from_axis(at, DVec3::Y) - 82.0_f64.to_radians()).abs()
             };

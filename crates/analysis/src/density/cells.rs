@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// A cell: face of the cube, how often it was cut, and where it is among the 4^level of the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Cell {
+pub(super) struct CubeCell {
     face: u8,
     pub level: u8,
     /// Bits of column and row in turn.
@@ -16,7 +16,7 @@ pub(super) struct Cell {
 /// Cells are cut no finer: then they are 1e-9 rad wide.
 pub(super) const MOST_CUTS: u8 = 31;
 
-impl Cell {
+impl CubeCell {
     /// The six faces.
     pub fn faces() -> [Self; 6] {
         [0, 1, 2, 3, 4, 5].map(|face| Self {
@@ -137,10 +137,11 @@ mod tests {
             let (a, z) = (f64::from(k) * 2.4, f64::from(k) / 1_000.0 - 0.999_5);
             let r = (1.0 - z * z).sqrt();
             let direction = DVec3::new(r * a.cos(), r * a.sin(), z);
-            let mut open = Cell::faces().to_vec();
+            let mut open = CubeCell::faces().to_vec();
             for level in 0..=20 {
-                let number = Cell::of(direction, level);
-                let own: Vec<Cell> = open.into_iter().filter(|c| c.number() == number).collect();
+                let number = CubeCell::of(direction, level);
+                let own: Vec<CubeCell> =
+                    open.into_iter().filter(|c| c.number() == number).collect();
                 assert_eq!(own.len(), 1);
                 let (middle, radius) = own[0].ball();
                 assert!(direction.distance(middle) <= radius);

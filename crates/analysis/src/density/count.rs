@@ -10,7 +10,7 @@ use super::{DensityError, Locator, SPHERE_DEG2, check};
 
 /// Points in each bin.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Counts(Vec<u64>);
+pub struct BinCounts(Vec<u64>);
 
 /// What the numbers of points in bins are like.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -50,7 +50,7 @@ impl Statistics {
 
 /// A class of a histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Class {
+pub struct HistogramClass {
     /// The fewest points of a bin in it.
     pub from: u64,
     /// The most.
@@ -62,7 +62,7 @@ pub struct Class {
 /// Directions that a thread counts at a time.
 const CHUNK: usize = 1 << 16;
 
-impl Counts {
+impl BinCounts {
     /// Counts directions, in time linear in their number.
     ///
     /// # Errors
@@ -135,19 +135,19 @@ impl Counts {
 
     /// A histogram of at most `classes` equally wide classes (at least one) from 0 to the fullest bin.
     #[must_use]
-    pub fn histogram(&self, classes: usize) -> Vec<Class> {
+    pub fn histogram(&self, classes: usize) -> Vec<HistogramClass> {
         let most = self.0.iter().copied().max().unwrap_or(0);
         self.histogram_by((most + 1).div_ceil(classes.max(1) as u64))
     }
 
     /// A histogram of classes of this width (at least 1) from 0 to the fullest bin.
     #[must_use]
-    pub fn histogram_by(&self, width: u64) -> Vec<Class> {
+    pub fn histogram_by(&self, width: u64) -> Vec<HistogramClass> {
         let most = self.0.iter().copied().max().unwrap_or(0);
         let width = width.max(1);
         let number = most / width + 1;
-        let mut histogram: Vec<Class> = (0..number)
-            .map(|class| Class {
+        let mut histogram: Vec<HistogramClass> = (0..number)
+            .map(|class| HistogramClass {
                 from: class * width,
                 to: (class + 1) * width - 1,
                 bins: 0,
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn counts_are_those_of_one_after_the_other() {
         let (locator, directions) = (locator(3), lattice(200_000));
-        let counts = Counts::new(&locator, &directions).unwrap();
+        let counts = BinCounts::new(&locator, &directions).unwrap();
         let mut slow = vec![0; 1_280];
         for bin in locator.bins_of(&directions).unwrap() {
             slow[bin as usize] += 1;
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn all_in_one_bin() {
         let locator = locator(4);
-        let counts = Counts::new(&locator, &vec![DVec3::Y; 5_120]).unwrap();
+        let counts = BinCounts::new(&locator, &vec![DVec3::Y; 5_120]).unwrap();
         let statistics = counts.statistics();
         assert_eq!(
             (statistics.min, statistics.max, statistics.empty),
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn of_some_bins_only() {
-        let counts = Counts(vec![4, 0, 8, 100]);
+        let counts = BinCounts(vec![4, 0, 8, 100]);
         let some = counts.statistics_of(|bin| bin < 3);
         assert_eq!(some.coverage(), Some(2.0 / 3.0));
         assert_eq!(some.sd_over_mean(), Some(some.sd / 4.0));
@@ -251,15 +251,15 @@ mod tests {
         let locator = locator(1);
         for n in 0..3 {
             let directions = &[DVec3::Z, DVec3::NEG_Z][..n];
-            let statistics = Counts::new(&locator, directions).unwrap().statistics();
+            let statistics = BinCounts::new(&locator, directions).unwrap().statistics();
             assert_eq!(statistics.empty, 80 - n);
             assert_eq!(statistics.max, n.min(1) as u64);
             assert!((statistics.mean - n as f64 / 80.0).abs() < 1e-15);
         }
-        let none = Counts::new(&locator, &[]).unwrap();
+        let none = BinCounts::new(&locator, &[]).unwrap();
         assert_eq!(
             none.histogram(8),
-            [Class {
+            [HistogramClass {
                 from: 0,
                 to: 0,
                 bins: 80
@@ -279,7 +279,7 @@ mod tests {
         for (place, wrong) in [0, 65_536, 140_000, 199_999].into_iter().zip(wrong) {
             let mut directions = lattice(200_000);
             directions[place] = wrong;
-            let error = Counts::new(&locator, &directions).unwrap_err();
+            let error = BinCounts::new(&locator, &directions).unwrap_err();
             let said = error.to_string();
             assert!(
                 said.starts_with(&format!("density: point {place}: expected a direction")),
@@ -290,7 +290,7 @@ mod tests {
 
     #[test]
     fn classes_of_a_histogram_hold_every_bin_once() {
-        let counts = Counts::new(&locator(2), &lattice(9_999)).unwrap();
+        let counts = BinCounts::new(&locator(2), &lattice(9_999)).unwrap();
         for classes in [0, 1, 2, 7, 100] {
             let histogram = counts.histogram(classes);
             assert!(histogram.len() <= classes.max(1));

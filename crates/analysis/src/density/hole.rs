@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
 
-use super::cells::{Cell, MOST_CUTS};
+use super::cells::{CubeCell, MOST_CUTS};
 use super::nearby::{Nearby, SAME};
 use super::{DensityError, check};
 
@@ -26,7 +26,7 @@ pub struct Hole {
 
 /// The largest hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Largest {
+pub struct LargestHole {
     /// A hole.
     pub hole: Hole,
     /// No hole is larger, radians.
@@ -44,7 +44,7 @@ pub const TOLERANCE_RAD: f64 = 1e-6;
 pub fn largest_hole(
     directions: &[DVec3],
     tolerance_rad: f64,
-) -> Result<Option<Largest>, DensityError> {
+) -> Result<Option<LargestHole>, DensityError> {
     largest_hole_within(directions, tolerance_rad, &EVERYWHERE)
 }
 
@@ -56,15 +56,15 @@ pub fn largest_hole(
 pub fn largest_hole_within(
     directions: &[DVec3],
     tolerance_rad: f64,
-    depth_rad: Depth<'_>,
-) -> Result<Option<Largest>, DensityError> {
+    depth_rad: RegionDepth<'_>,
+) -> Result<Option<LargestHole>, DensityError> {
     check(directions)?;
     let nearby = Nearby::new(directions);
-    Ok(Search::new(&nearby, tolerance_rad.max(TOLERANCE_RAD), depth_rad).largest())
+    Ok(HoleSearch::new(&nearby, tolerance_rad.max(TOLERANCE_RAD), depth_rad).largest())
 }
 
 /// How deep in a region a direction is, radians.
-pub type Depth<'a> = &'a dyn Fn(DVec3) -> f64;
+pub type RegionDepth<'a> = &'a dyn Fn(DVec3) -> f64;
 
 /// The whole sphere.
 pub(super) const EVERYWHERE: fn(DVec3) -> f64 = |_| f64::INFINITY;
@@ -75,21 +75,21 @@ const FEW: usize = 10;
 const MANY: usize = 1_000;
 
 /// A search for holes.
-pub(super) struct Search<'a> {
+pub(super) struct HoleSearch<'a> {
     nearby: &'a Nearby,
     /// Cells of a quarter of it are small enough.
     pub tolerance_rad: f64,
-    depth_rad: Depth<'a>,
-    open: BinaryHeap<Open>,
+    depth_rad: RegionDepth<'a>,
+    open: BinaryHeap<OpenCell>,
     pub best: Option<Hole>,
 }
 
 /// A cell that is to be looked into.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Open {
+pub(super) struct OpenCell {
     /// No hole about any of its points is larger, radians.
     pub bound_rad: f64,
-    cell: Cell,
+    cell: CubeCell,
     pub middle: DVec3,
     /// Its ball, through the sphere.
     ball: f64,
@@ -99,7 +99,7 @@ pub(super) struct Open {
     inside: bool,
 }
 
-impl Open {
+impl OpenCell {
     /// How far its points are from its middle at most, radians.
     pub fn reach_rad(&self) -> f64 {
         angle(self.ball)
@@ -107,17 +107,17 @@ impl Open {
 }
 
 /// What became of a cell.
-pub(super) enum Done {
+pub(super) enum CellOutcome {
     /// It was cut.
     Cut,
-    /// All holes that cannot grow about its points; some of others, too ([`Search::at`] tells how large they are).
+    /// All holes that cannot grow about its points; some of others, too ([`HoleSearch::at`] tells how large they are).
     Holes(Vec<DVec3>),
     /// Too small to be cut: the hole about its middle stands for all about its points.
     Tiny,
 }
 
-impl<'a> Search<'a> {
-    pub fn new(nearby: &'a Nearby, tolerance_rad: f64, depth_rad: Depth<'a>) -> Self {
+impl<'a> HoleSearch<'a> {
+    pub fn new(nearby: &'a Nearby, tolerance_rad: f64, depth_rad: RegionDepth<'a>) -> Self {
         let mut search = Self {
             nearby,
             tolerance_rad,
@@ -125,13 +125,13 @@ impl<'a> Search<'a> {
             open: BinaryHeap::new(),
             best: None,
         };
-        for cell in Cell::faces() {
+        for cell in CubeCell::faces() {
             search.open(cell);
         }
         search
     }
 
-    fn largest(mut self) -> Option<Largest> {
+    fn largest(mut self) -> Option<LargestHole> {
         let mut bound_rad = 0.0;
         while let Some(next) = self.next() {
             let best_rad = self.best.map_or(0.0, |hole| hole.radius_rad);
@@ -140,29 +140,29 @@ impl<'a> Search<'a> {
                 break;
             }
             match self.look_to_the_edge(&next) {
-                Done::Cut => {}
-                Done::Holes(centres) => centres.into_iter().for_each(|c| {
+                CellOutcome::Cut => {}
+                CellOutcome::Holes(centres) => centres.into_iter().for_each(|c| {
                     self.at(c);
                 }),
-                Done::Tiny => {
+                CellOutcome::Tiny => {
                     bound_rad = next.bound_rad.max(bound_rad);
                     self.at(next.middle);
                 }
             }
         }
         let hole = self.best?;
-        Some(Largest {
+        Some(LargestHole {
             hole,
             bound_rad: bound_rad.max(hole.radius_rad),
         })
     }
 
     /// The cell that promises most.
-    pub fn next(&mut self) -> Option<Open> {
+    pub fn next(&mut self) -> Option<OpenCell> {
         self.open.pop()
     }
 
-    fn open(&mut self, cell: Cell) {
+    fn open(&mut self, cell: CubeCell) {
         let (middle, ball) = cell.ball();
         let depth_rad = (self.depth_rad)(middle);
         if depth_rad < -angle(ball) {
@@ -172,7 +172,7 @@ impl<'a> Search<'a> {
             if depth_rad >= 0.0 {
                 self.keep(hole);
             }
-            self.open.push(Open {
+            self.open.push(OpenCell {
                 bound_rad: hole.radius_rad + angle(ball),
                 cell,
                 middle,
@@ -209,26 +209,26 @@ impl<'a> Search<'a> {
     }
 
     /// Does with a cell what is to be done: of its holes, those of at least `least_rad`.
-    pub fn look_into(&mut self, next: &Open, least_rad: f64) -> Done {
+    pub fn look_into(&mut self, next: &OpenCell, least_rad: f64) -> CellOutcome {
         let reach = next.free_rad + 2.0 * angle(next.ball);
         let points = self.nearby.within(next.middle, chord(reach) + SAME, MANY);
         if let Some(points) = points {
             if let Some(few) = distinct(&points) {
                 let large = next.bound_rad > FRAC_PI_2 - 1e-6;
-                return Done::Holes(centres(&few, next, least_rad, large));
+                return CellOutcome::Holes(centres(&few, next, least_rad, large));
             }
             if grow(&points, next) {
-                return Done::Holes(Vec::new());
+                return CellOutcome::Holes(Vec::new());
             }
         } else if self.all_grow(next, chord(reach) + SAME) {
-            return Done::Holes(Vec::new());
+            return CellOutcome::Holes(Vec::new());
         }
         self.cut(next)
     }
 
     /// [`grow`] where there are too many points to look at: away from the nearest. So it is about a pole of a circle full of points, where cells would have
     /// to be cut very fine before few of its points matter.
-    fn all_grow(&self, within: &Open, distance: f64) -> bool {
+    fn all_grow(&self, within: &OpenCell, distance: f64) -> bool {
         let nearest = self.nearby.nearest_point(within.middle);
         let way = nearest.map(|p| -p.reject_from_normalized(within.middle));
         way.and_then(DVec3::try_normalize).is_some_and(|way| {
@@ -238,7 +238,7 @@ impl<'a> Search<'a> {
     }
 
     /// The same where holes at the edge of the region count as they are, though they could grow out of it.
-    pub fn look_to_the_edge(&mut self, next: &Open) -> Done {
+    pub fn look_to_the_edge(&mut self, next: &OpenCell) -> CellOutcome {
         if next.inside {
             self.look_into(next, next.free_rad)
         } else {
@@ -246,21 +246,21 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn cut(&mut self, next: &Open) -> Done {
+    fn cut(&mut self, next: &OpenCell) -> CellOutcome {
         if angle(next.ball) < 0.25 * self.tolerance_rad || next.cell.level >= MOST_CUTS {
-            return Done::Tiny;
+            return CellOutcome::Tiny;
         }
         for cell in next.cell.cut() {
             self.open(cell);
         }
-        Done::Cut
+        CellOutcome::Cut
     }
 }
 
 /// Whether all holes about points of a cell grow if they are moved one way, and so none of them is as large as it can be: all points that matter lie behind
 /// the plane across that way, by more than the cell's ball. Moved along u from x in the cell, the distance to p grows where u p < (u x)(x p); u is
 /// at right angles to the middle, so that the right side is no more than the ball's radius.
-fn grow(points: &[DVec3], within: &Open) -> bool {
+fn grow(points: &[DVec3], within: &OpenCell) -> bool {
     let sum: DVec3 = points
         .iter()
         .map(|p| p.reject_from_normalized(within.middle))
@@ -315,7 +315,7 @@ fn is_held(centre: DVec3, points: &[DVec3]) -> bool {
 }
 
 /// The middles of holes about points of a cell that touch three of these points; where they may be larger than a hemisphere, two or one.
-fn centres(points: &[DVec3], within: &Open, least_rad: f64, large: bool) -> Vec<DVec3> {
+fn centres(points: &[DVec3], within: &OpenCell, least_rad: f64, large: bool) -> Vec<DVec3> {
     let mut centres = Vec::new();
     let reach = (within.ball + 1e-6) * (within.ball + 1e-6);
     let mut add = |direction: DVec3| {
@@ -359,26 +359,26 @@ fn chord(angle_rad: f64) -> f64 {
     2.0 * (0.5 * angle_rad.min(std::f64::consts::PI)).sin()
 }
 
-impl Ord for Open {
+impl Ord for OpenCell {
     fn cmp(&self, other: &Self) -> Ordering {
         let by_bound = self.bound_rad.total_cmp(&other.bound_rad);
         by_bound.then_with(|| self.cell.cmp(&other.cell))
     }
 }
 
-impl PartialOrd for Open {
+impl PartialOrd for OpenCell {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Open {
+impl PartialEq for OpenCell {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Open {}
+impl Eq for OpenCell {}
 
 #[cfg(test)]
 mod tests;

@@ -12,7 +12,7 @@ pub const MOST_LEVEL: u32 = 8;
 
 /// A face: a triangle of great circles, and what encloses it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Face {
+pub struct IcosahedronFace {
     /// Corners, length 1, anticlockwise seen from outside.
     pub corners: [DVec3; 3],
     /// The middle of the corners, on the sphere.
@@ -24,10 +24,10 @@ pub struct Face {
 /// The faces of every level down to one.
 #[derive(Clone, Debug)]
 pub struct Icosahedron {
-    levels: Vec<Vec<Face>>,
+    levels: Vec<Vec<IcosahedronFace>>,
 }
 
-impl Face {
+impl IcosahedronFace {
     fn new(corners: [DVec3; 3]) -> Self {
         let [a, b, c] = corners;
         let centre = (a + b + c).normalize();
@@ -68,7 +68,9 @@ impl Icosahedron {
         }
         let mut levels = vec![base()];
         for _ in 0..level {
-            let cut = levels.last().map(|faces| faces.iter().flat_map(Face::cut));
+            let cut = levels
+                .last()
+                .map(|faces| faces.iter().flat_map(IcosahedronFace::cut));
             let cut = cut.map(Iterator::collect).unwrap_or_default();
             levels.push(cut);
         }
@@ -83,19 +85,19 @@ impl Icosahedron {
 
     /// The bins: the faces of the last level.
     #[must_use]
-    pub fn bins(&self) -> &[Face] {
+    pub fn bins(&self) -> &[IcosahedronFace] {
         self.levels.last().map_or(&[], Vec::as_slice)
     }
 
     /// The faces of all levels, the 20 first.
     #[must_use]
-    pub fn levels(&self) -> &[Vec<Face>] {
+    pub fn levels(&self) -> &[Vec<IcosahedronFace>] {
         &self.levels
     }
 }
 
 /// The 20 faces.
-fn base() -> Vec<Face> {
+fn base() -> Vec<IcosahedronFace> {
     let phi = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mut corners = Vec::with_capacity(12);
     for short in [1.0, -1.0] {
@@ -116,7 +118,7 @@ fn base() -> Vec<Face> {
                 if near(a, b) && near(b, c) && near(c, a) {
                     let outwards = a.dot(b.cross(c)) > 0.0;
                     let corners = if outwards { [a, b, c] } else { [a, c, b] };
-                    faces.push(Face::new(corners.map(DVec3::normalize)));
+                    faces.push(IcosahedronFace::new(corners.map(DVec3::normalize)));
                 }
             }
         }
@@ -136,7 +138,7 @@ mod tests {
             let bins = Icosahedron::new(level).unwrap();
             assert_eq!(bins.bins().len(), 20 << (2 * level));
             assert_eq!(bins.level(), level);
-            let area: f64 = bins.bins().iter().map(Face::area_sr).sum();
+            let area: f64 = bins.bins().iter().map(IcosahedronFace::area_sr).sum();
             assert!((area - 4.0 * PI).abs() < 1e-11, "{level}: {area}");
         }
         assert_eq!(

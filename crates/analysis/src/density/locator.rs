@@ -7,8 +7,8 @@
 use glam::DVec3;
 
 use super::DensityError;
-use super::cells::Cell;
-use super::icosahedron::{Face, Icosahedron};
+use super::cells::CubeCell;
+use super::icosahedron::{Icosahedron, IcosahedronFace};
 
 /// Finds bins.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ impl Locator {
             centres: icosahedron.bins().iter().map(|bin| bin.centre).collect(),
         };
         let mut found = Vec::new();
-        for cell in Cell::all(cuts) {
+        for cell in CubeCell::all(cuts) {
             let (middle, radius) = cell.ball();
             candidates(icosahedron, middle, radius + MARGIN, &mut found);
             locator.candidates.extend_from_slice(&found);
@@ -55,7 +55,7 @@ impl Locator {
     #[inline]
     #[must_use]
     pub fn bin(&self, direction: DVec3) -> u32 {
-        let cell = Cell::of(direction, self.cuts);
+        let cell = CubeCell::of(direction, self.cuts);
         let range = |i: usize| self.starts.get(i).map_or(0, |&start| start as usize);
         let candidates = self.candidates.get(range(cell)..range(cell + 1));
         let mut nearest = (f64::NEG_INFINITY, 0);
@@ -87,7 +87,7 @@ impl Locator {
 
 /// The bins whose centres can be nearest to something at most `radius` from `middle`, ascending.
 fn candidates(icosahedron: &Icosahedron, middle: DVec3, radius: f64, found: &mut Vec<u32>) {
-    let centre = |face: &Face| face.centre.distance(middle);
+    let centre = |face: &IcosahedronFace| face.centre.distance(middle);
     // Down to some bin nearby: no farther than this need be looked.
     let mut best = usize::MAX;
     for faces in icosahedron.levels() {

@@ -19,11 +19,11 @@ mod nearby;
 use glam::DVec3;
 use thiserror::Error;
 
-pub use blind::{Band, Row, bands, holes, rows};
-pub use count::{Class, Counts, Statistics};
+pub use blind::{EmptyBand, HoleRow, bands, holes, rows};
+pub use count::{BinCounts, HistogramClass, Statistics};
 pub use gaps::{gaps, quantile};
-pub use hole::{Depth, Hole, Largest, TOLERANCE_RAD, largest_hole, largest_hole_within};
-pub use icosahedron::{Face, Icosahedron, MOST_LEVEL};
+pub use hole::{Hole, LargestHole, RegionDepth, TOLERANCE_RAD, largest_hole, largest_hole_within};
+pub use icosahedron::{Icosahedron, IcosahedronFace, MOST_LEVEL};
 pub use locator::Locator;
 
 /// Square degrees of the whole sphere.

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::cells::Cell;
+use super::cells::CubeCell;
 
 /// Points, sorted into cells.
 #[derive(Clone, Debug)]
@@ -14,11 +14,11 @@ pub(super) struct Nearby {
     /// Where the points of each cell of the last level begin, and the end.
     starts: Vec<u32>,
     /// Per level and cell: its middle, and how far off it its points are; negative where it has none.
-    levels: Vec<Vec<Ball>>,
+    levels: Vec<Vec<CellBall>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Ball {
+struct CellBall {
     middle: DVec3,
     radius: f64,
 }
@@ -42,7 +42,7 @@ impl Nearby {
         let cells = 6_usize << (2 * depth);
         let of: Vec<u32> = directions
             .iter()
-            .map(|direction| Cell::of(*direction, depth) as u32)
+            .map(|direction| CubeCell::of(*direction, depth) as u32)
             .collect();
         let mut starts = vec![0_u32; cells + 1];
         for &cell in &of {
@@ -124,8 +124,8 @@ impl Nearby {
         true
     }
 
-    fn balls(&self, depth: u8) -> Vec<Vec<Ball>> {
-        let mut cells = Cell::faces().to_vec();
+    fn balls(&self, depth: u8) -> Vec<Vec<CellBall>> {
+        let mut cells = CubeCell::faces().to_vec();
         let mut levels = Vec::new();
         for level in 0..=depth {
             let below = 2 * (depth - level);
@@ -140,7 +140,7 @@ impl Nearby {
                 } else {
                     farthest.sqrt()
                 };
-                Ball { middle, radius }
+                CellBall { middle, radius }
             });
             levels.push(balls.collect());
             if level < depth {

@@ -2,18 +2,18 @@
 //!
 //! Left out: which scan is best: that depends on what it is for.
 
-use super::{Scan, Scans};
-use crate::tradeoff::number::short;
-use crate::tradeoff::svg::escaped;
+use super::{AnalyzedScan, AnalyzedScans};
+use crate::draw::escaped;
+use crate::draw::number::short;
 
 /// How far K is from that of points at random at its farthest, a share of the sphere; none without pairs.
-pub(super) fn farthest(scan: &Scan) -> Option<f64> {
+pub(super) fn farthest(scan: &AnalyzedScan) -> Option<f64> {
     let k = &scan.k;
     k.has_pairs().then(|| k.d_max.max(-k.d_min))
 }
 
 /// A sentence a scan, and which is the most even; empty without scans.
-pub(super) fn conclusions(scans: &Scans) -> String {
+pub(super) fn conclusions(scans: &AnalyzedScans) -> String {
     let mut items = String::new();
     for scan in &scans.scans {
         items += &format!(
@@ -32,7 +32,7 @@ pub(super) fn conclusions(scans: &Scans) -> String {
     html
 }
 
-fn of_one(scan: &Scan) -> String {
+fn of_one(scan: &AnalyzedScan) -> String {
     let percent = |share: Option<f64>| format!("{:.1} %", 100.0 * share.unwrap_or(0.0));
     let sphere = percent(scan.counts.statistics().coverage());
     let hole = format!("{:.2}\u{b0}", scan.hole_deg);
@@ -54,7 +54,7 @@ fn of_one(scan: &Scan) -> String {
 }
 
 /// Which of several is best at what.
-fn of_all(scans: &[Scan]) -> Option<String> {
+fn of_all(scans: &[AnalyzedScan]) -> Option<String> {
     if scans.len() < 2 {
         return None;
     }
@@ -64,7 +64,7 @@ fn of_all(scans: &[Scan]) -> Option<String> {
         even.name,
         farthest(even)?
     );
-    let uneven = |scan: &Scan| scan.in_view.as_ref()?.statistics.sd_over_mean();
+    let uneven = |scan: &AnalyzedScan| scan.in_view.as_ref()?.statistics.sd_over_mean();
     if let Some(best) = least(scans, uneven) {
         let value = short(uneven(best).unwrap_or(0.0));
         sentence += &format!(
@@ -72,7 +72,7 @@ fn of_all(scans: &[Scan]) -> Option<String> {
             best.name
         );
     }
-    let hole = |scan: &Scan| scan.in_view.as_ref()?.hole_deg;
+    let hole = |scan: &AnalyzedScan| scan.in_view.as_ref()?.hole_deg;
     if let Some(best) = least(scans, hole) {
         let value = hole(best).unwrap_or(0.0);
         sentence += &format!(
@@ -84,7 +84,10 @@ fn of_all(scans: &[Scan]) -> Option<String> {
 }
 
 /// The scan with the least of something that some have.
-fn least(scans: &[Scan], of: impl Fn(&Scan) -> Option<f64>) -> Option<&Scan> {
+fn least(
+    scans: &[AnalyzedScan],
+    of: impl Fn(&AnalyzedScan) -> Option<f64>,
+) -> Option<&AnalyzedScan> {
     let known = scans.iter().filter_map(|scan| Some((scan, of(scan)?)));
     let least = known.min_by(|a, b| a.1.total_cmp(&b.1));
     least.map(|(scan, _)| scan)

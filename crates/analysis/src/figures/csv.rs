@@ -4,13 +4,13 @@
 
 use std::fmt::Write;
 
-use super::Scans;
+use super::AnalyzedScans;
 use super::curves::middles_deg;
 use super::histogram::class_width;
 
 /// K on a sphere of 10 m at the upper edges of bins, its difference from points at random, the same over the sphere's area, and the derivative at the bins' middles.
 #[must_use]
-pub fn k(scans: &Scans) -> String {
+pub fn k(scans: &AnalyzedScans) -> String {
     let mut csv =
         "pattern,theta_deg,k_m2,k_minus_csr_m2,d,theta_middle_deg,derivative_m2_rad\n".to_owned();
     for scan in &scans.scans {
@@ -32,7 +32,7 @@ pub fn k(scans: &Scans) -> String {
 
 /// Points in each bin, and where its middle is.
 #[must_use]
-pub fn density(scans: &Scans) -> String {
+pub fn density(scans: &AnalyzedScans) -> String {
     let mut csv = "pattern,bin,x,y,z,count\n".to_owned();
     for scan in &scans.scans {
         let name = field(&scan.name);
@@ -52,7 +52,7 @@ pub fn density(scans: &Scans) -> String {
 
 /// Bins by their points, in the classes of the figure.
 #[must_use]
-pub fn histogram(scans: &Scans) -> String {
+pub fn histogram(scans: &AnalyzedScans) -> String {
     let mut csv = "pattern,from,to,bins\n".to_owned();
     for scan in &scans.scans {
         let name = field(&scan.name);

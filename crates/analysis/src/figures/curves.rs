@@ -4,10 +4,10 @@
 
 use std::f64::consts::PI;
 
-use super::frame::{At, MARGIN, TITLE, WIDTH, document, legend, levels, stroke, text};
-use super::{SPHERE_M, Scans};
-use crate::tradeoff::Scale;
-use crate::tradeoff::svg::scale::Axis;
+use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, document, legend, levels, stroke, text};
+use super::{AnalyzedScans, SPHERE_M};
+use crate::draw::Scale;
+use crate::draw::axis::PlotAxis;
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = WIDTH - MARGIN - 6.0;
@@ -20,7 +20,7 @@ type Curve = Vec<(f64, f64)>;
 
 /// The figure: two plots over the angle, one under the other.
 #[must_use]
-pub fn curves(scans: &Scans) -> String {
+pub fn curves(scans: &AnalyzedScans) -> String {
     let area = 4.0 * PI * SPHERE_M * SPHERE_M;
     let mut about = "K - K_csr over the area of the sphere, and its first derivative, over the angle from 0 to 180 degrees. Above 0 points cluster, below they keep apart.".to_owned();
     let (mut differences, mut slopes): (Vec<Curve>, Vec<Curve>) = (Vec::new(), Vec::new());
@@ -60,17 +60,17 @@ pub(super) fn middles_deg(upper_rad: &[f64]) -> impl Iterator<Item = f64> {
 
 fn plot(title: &str, curves: &[Curve], top: f64) -> String {
     let values = curves.iter().flatten().map(|(_, value)| *value);
-    let y = Axis::new(Scale::Linear, values.chain([0.0]), BOTTOM, TOP);
+    let y = PlotAxis::new(Scale::Linear, values.chain([0.0]), BOTTOM, TOP);
     let x = |degrees: f64| LEFT + (RIGHT - LEFT) * degrees / 180.0;
     let mut svg = format!("<g transform=\"translate(0 {top})\">\n");
-    svg += &text(MARGIN, 14.0, At::Start, "tv-ink", title);
+    svg += &text(MARGIN, 14.0, TextAnchor::Start, "tv-ink", title);
     for degrees in (0..=180).step_by(30).map(f64::from) {
         let at = x(degrees);
         svg += &format!("<path class=\"tv-grid\" d=\"M{at:.1} {TOP}V{BOTTOM}\"/>\n");
         svg += &text(
             at,
             BOTTOM + 15.0,
-            At::Middle,
+            TextAnchor::Middle,
             "tv-soft tv-small",
             &format!("{degrees}\u{b0}"),
         );
@@ -78,7 +78,7 @@ fn plot(title: &str, curves: &[Curve], top: f64) -> String {
     svg += &text(
         f64::midpoint(LEFT, RIGHT),
         BOTTOM + 30.0,
-        At::Middle,
+        TextAnchor::Middle,
         "tv-soft tv-small",
         "angle between two points, degrees",
     );

@@ -5,9 +5,9 @@
 use glam::DVec3;
 
 use super::colour::Shades;
-use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, scale_name, text};
-use super::{Scan, Scans};
-use crate::density::Face;
+use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, document, heading, scale_name, text};
+use super::{AnalyzedScan, AnalyzedScans};
+use crate::density::IcosahedronFace;
 
 /// The finest level whose bins are drawn: finer ones are drawn together, as there are more of them than dots.
 const FINEST: usize = 5;
@@ -56,12 +56,12 @@ const SIDES: [Side; 3] = [
 
 /// The figure: a row a scan, a column a side.
 #[must_use]
-pub fn density(scans: &Scans) -> String {
+pub fn density(scans: &AnalyzedScans) -> String {
     let levels = scans.bins.levels();
     let drawn = levels.len().saturating_sub(1).min(FINEST);
     let faces = levels.get(drawn).map_or(&[][..], Vec::as_slice);
     let within = 1_usize << (2 * (levels.len().saturating_sub(1) - drawn));
-    let together = |scan: &Scan| -> Vec<u64> {
+    let together = |scan: &AnalyzedScan| -> Vec<u64> {
         let parts = scan.counts.by_bin().chunks(within);
         parts.map(|part| part.iter().sum()).collect()
     };
@@ -80,7 +80,7 @@ pub fn density(scans: &Scans) -> String {
     document(&title, &about, top + 58.0, &body)
 }
 
-fn about(scans: &Scans, shades: &Shades) -> String {
+fn about(scans: &AnalyzedScans, shades: &Shades) -> String {
     let mut about = format!(
         "Hemispheres seen from +x, from -y and from +z, a row a scan; bins from {} to {} points, darker is more.",
         shades.low, shades.high
@@ -95,7 +95,13 @@ fn about(scans: &Scans, shades: &Shades) -> String {
     about
 }
 
-fn row(scan: &Scan, faces: &[Face], counts: &[u64], shades: &Shades, top: f64) -> String {
+fn row(
+    scan: &AnalyzedScan,
+    faces: &[IcosahedronFace],
+    counts: &[u64],
+    shades: &Shades,
+    top: f64,
+) -> String {
     let s = scan.counts.statistics();
     let more = format!(
         "{} points; a bin {:.3} on average, sd {:.2}, from {} to {}; {} empty",
@@ -108,13 +114,19 @@ fn row(scan: &Scan, faces: &[Face], counts: &[u64], shades: &Shades, top: f64) -
         let y = top + 30.0 + RADIUS;
         svg += &sphere(side, faces, counts, shades, (x, y));
         let below = y + RADIUS + 18.0;
-        svg += &text(x, below, At::Middle, "tv-soft tv-small", side.caption);
+        svg += &text(
+            x,
+            below,
+            TextAnchor::Middle,
+            "tv-soft tv-small",
+            side.caption,
+        );
         let names = [
             (x + RADIUS + 5.0, y + 4.0, side.right_name),
             (x - 3.0, y - RADIUS - 3.0, side.up_name),
         ];
         for (x, y, name) in names {
-            svg += &text(x, y, At::Start, "tv-soft tv-small", name);
+            svg += &text(x, y, TextAnchor::Start, "tv-soft tv-small", name);
         }
     }
     svg
@@ -123,7 +135,7 @@ fn row(scan: &Scan, faces: &[Face], counts: &[u64], shades: &Shades, top: f64) -
 /// One hemisphere: a path a colour. Triangles have an edge of their own colour, so that no seam shows.
 fn sphere(
     side: &Side,
-    faces: &[Face],
+    faces: &[IcosahedronFace],
     counts: &[u64],
     shades: &Shades,
     (x, y): (f64, f64),
@@ -163,7 +175,7 @@ fn sphere(
     svg + "</g>\n"
 }
 
-fn triangle(path: &mut String, side: &Side, face: &Face) {
+fn triangle(path: &mut String, side: &Side, face: &IcosahedronFace) {
     let place = |corner: DVec3| {
         let size = RADIUS * FINE;
         let (right, up) = (corner.dot(side.right), corner.dot(side.up));
@@ -210,7 +222,7 @@ fn scale(shades: &Shades, top: f64) -> String {
         svg += &text(
             x,
             y + high + 16.0,
-            At::Middle,
+            TextAnchor::Middle,
             "tv-soft tv-small",
             &tick.to_string(),
         );
@@ -222,7 +234,7 @@ fn scale(shades: &Shades, top: f64) -> String {
     svg + &text(
         x + 30.0,
         bottom - 2.0,
-        At::Start,
+        TextAnchor::Start,
         "tv-soft tv-small",
         "without a point",
     )

@@ -2,9 +2,9 @@
 //!
 //! Left out: what is drawn.
 
-use crate::tradeoff::svg::labels::width;
-use crate::tradeoff::svg::scale::Axis;
-use crate::tradeoff::svg::{STYLE, escaped};
+use crate::draw::axis::PlotAxis;
+use crate::draw::labels::width;
+use crate::draw::{STYLE, escaped};
 
 /// Width of a figure, pixels.
 pub(super) const WIDTH: f64 = 720.0;
@@ -34,18 +34,18 @@ pub(super) fn document(title: &str, about: &str, height: f64, body: &str) -> Str
 
 /// Where a text stands.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum At {
+pub(super) enum TextAnchor {
     Start,
     Middle,
     End,
 }
 
 /// A small text.
-pub(super) fn text(x: f64, y: f64, at: At, class: &str, text: &str) -> String {
+pub(super) fn text(x: f64, y: f64, at: TextAnchor, class: &str, text: &str) -> String {
     let anchor = match at {
-        At::Start => "start",
-        At::Middle => "middle",
-        At::End => "end",
+        TextAnchor::Start => "start",
+        TextAnchor::Middle => "middle",
+        TextAnchor::End => "end",
     };
     format!(
         "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{}</text>\n",
@@ -69,8 +69,8 @@ pub(super) fn short_name(name: &str) -> String {
 pub(super) fn heading(name: &str, more: &str, y: f64) -> String {
     let name = short_name(name);
     let beside = MARGIN + width(&name) * 1.12 + 16.0;
-    text(MARGIN, y, At::Start, "tv-ink", &name)
-        + &text(beside, y, At::Start, "tv-soft tv-small", more)
+    text(MARGIN, y, TextAnchor::Start, "tv-ink", &name)
+        + &text(beside, y, TextAnchor::Start, "tv-soft tv-small", more)
 }
 
 /// Colours of curves, on light and on dark: no two of the first ten are alike.
@@ -139,14 +139,20 @@ pub(super) fn legend(names: &[&str], mut y: f64) -> (String, f64) {
             y += 18.0;
         }
         svg += &format!("<path {} d=\"M{x:.1} {y:.1}h36\"/>\n", stroke(number));
-        svg += &text(x + 42.0, y + 4.0, At::Start, "tv-soft tv-small", &name);
+        svg += &text(
+            x + 42.0,
+            y + 4.0,
+            TextAnchor::Start,
+            "tv-soft tv-small",
+            &name,
+        );
         x += wide;
     }
     (svg, y + 14.0)
 }
 
 /// Lines across for the ticks of an upright axis, with their labels on the left.
-pub(super) fn levels(axis: &Axis, left: f64, right: f64) -> String {
+pub(super) fn levels(axis: &PlotAxis, left: f64, right: f64) -> String {
     let mut svg = String::new();
     for tick in axis.ticks() {
         svg += &format!(
@@ -156,7 +162,7 @@ pub(super) fn levels(axis: &Axis, left: f64, right: f64) -> String {
         svg += &text(
             left - 6.0,
             tick.at + 4.0,
-            At::End,
+            TextAnchor::End,
             "tv-soft tv-small",
             &tick.label,
         );
@@ -166,5 +172,5 @@ pub(super) fn levels(axis: &Axis, left: f64, right: f64) -> String {
 
 /// What a scale of colours is of, before it.
 pub(super) fn scale_name(y: f64, name: &str) -> String {
-    text(MARGIN, y + 10.0, At::Start, "tv-ink tv-small", name)
+    text(MARGIN, y + 10.0, TextAnchor::Start, "tv-ink tv-small", name)
 }

@@ -2,10 +2,10 @@
 //!
 //! Left out: the text's histogram, whose classes are each scan's own.
 
-use super::frame::{At, MARGIN, TITLE, WIDTH, colour, document, heading, levels, text};
-use super::{Scan, Scans};
-use crate::tradeoff::Scale;
-use crate::tradeoff::svg::scale::Axis;
+use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, colour, document, heading, levels, text};
+use super::{AnalyzedScan, AnalyzedScans};
+use crate::draw::Scale;
+use crate::draw::axis::PlotAxis;
 
 /// Classes, about.
 const CLASSES: u64 = 60;
@@ -17,22 +17,22 @@ const ROW: f64 = 182.0;
 
 /// The width of the classes of a scan, in points a bin: so that its fullest bin is in about the sixtieth.
 #[must_use]
-pub fn class_width(scan: &Scan) -> u64 {
+pub fn class_width(scan: &AnalyzedScan) -> u64 {
     (fullest(scan) + 1).div_ceil(CLASSES)
 }
 
 /// The most points of a bin.
-fn fullest(scan: &Scan) -> u64 {
+fn fullest(scan: &AnalyzedScan) -> u64 {
     scan.counts.by_bin().iter().copied().max().unwrap_or(0)
 }
 
 /// The figure: a plot a scan, one under the other; upwards all have one scale, across each its own, as scans of a turn and of minutes have nothing in common there.
 #[must_use]
-pub fn histogram(scans: &Scans) -> String {
-    let classes = |scan: &Scan| scan.counts.histogram_by(class_width(scan));
+pub fn histogram(scans: &AnalyzedScans) -> String {
+    let classes = |scan: &AnalyzedScan| scan.counts.histogram_by(class_width(scan));
     let all = scans.scans.iter().flat_map(classes);
     let most = all.map(|class| class.bins).max().unwrap_or(1);
-    let y = Axis::new(Scale::Log, [1.0, most as f64].into_iter(), BOTTOM, TOP);
+    let y = PlotAxis::new(Scale::Log, [1.0, most as f64].into_iter(), BOTTOM, TOP);
     let mut body = String::new();
     let mut about =
         "The number of bins in classes of points a bin, on a logarithmic scale.".to_owned();
@@ -45,7 +45,7 @@ pub fn histogram(scans: &Scans) -> String {
         );
         // Up to the end of the fullest class.
         let end = (fullest(scan) / width + 1) * width;
-        let x = Axis::new(Scale::Linear, [0.0, end as f64].into_iter(), LEFT, RIGHT);
+        let x = PlotAxis::new(Scale::Linear, [0.0, end as f64].into_iter(), LEFT, RIGHT);
         body += &format!("<g transform=\"translate(0 {top:.0})\">\n");
         body += &plot(scan, number, width, &x, &y);
         body += "</g>\n";
@@ -59,7 +59,7 @@ pub fn histogram(scans: &Scans) -> String {
     )
 }
 
-fn plot(scan: &Scan, number: usize, width: u64, x: &Axis, y: &Axis) -> String {
+fn plot(scan: &AnalyzedScan, number: usize, width: u64, x: &PlotAxis, y: &PlotAxis) -> String {
     let s = scan.counts.statistics();
     let more = format!(
         "mean {:.3} (line), sd {:.2} (dashed), {} to {} points a bin, classes of {width}",
@@ -97,7 +97,7 @@ fn plot(scan: &Scan, number: usize, width: u64, x: &Axis, y: &Axis) -> String {
     svg
 }
 
-fn grid(x: &Axis, y: &Axis) -> String {
+fn grid(x: &PlotAxis, y: &PlotAxis) -> String {
     let mut svg = String::new();
     for tick in x.ticks() {
         svg += &format!(
@@ -107,7 +107,7 @@ fn grid(x: &Axis, y: &Axis) -> String {
         svg += &text(
             tick.at,
             BOTTOM + 14.0,
-            At::Middle,
+            TextAnchor::Middle,
             "tv-soft tv-small",
             &tick.label,
         );
@@ -121,7 +121,7 @@ fn grid(x: &Axis, y: &Axis) -> String {
     svg += &text(
         RIGHT - 6.0,
         TOP + 14.0,
-        At::End,
+        TextAnchor::End,
         "tv-soft tv-small",
         "points a bin across, bins up",
     );

@@ -22,7 +22,7 @@ pub use histogram::{class_width, histogram};
 pub use page::{FILES, page};
 pub use planes::{CELL_M, Planes, planes};
 
-use crate::density::{Counts, Icosahedron, Statistics};
+use crate::density::{BinCounts, Icosahedron, Statistics};
 use crate::k::KCurve;
 
 /// Radius of the paper's hollow sphere, metres: what square metres of a K function are of.
@@ -30,7 +30,7 @@ pub const SPHERE_M: f64 = 10.0;
 
 /// What is known of one scan.
 #[derive(Clone, Debug)]
-pub struct Scan {
+pub struct AnalyzedScan {
     /// What it is called.
     pub name: String,
     /// Points with a direction.
@@ -43,8 +43,8 @@ pub struct Scan {
     pub in_view: Option<InView>,
     /// What may mislead.
     pub warnings: Vec<String>,
-    /// Points a bin of [`Scans::bins`].
-    pub counts: Counts,
+    /// Points a bin of [`AnalyzedScans::bins`].
+    pub counts: BinCounts,
     /// K on a sphere of [`SPHERE_M`].
     pub k: KCurve,
     /// How its pairs were counted.
@@ -64,7 +64,7 @@ pub struct InView {
 
 /// Scans side by side.
 #[derive(Clone, Debug)]
-pub struct Scans {
+pub struct AnalyzedScans {
     /// Program and version.
     pub program: String,
     /// What was asked for, as on the command line.
@@ -72,5 +72,5 @@ pub struct Scans {
     /// The bins.
     pub bins: Icosahedron,
     /// The scans, in the order asked for.
-    pub scans: Vec<Scan>,
+    pub scans: Vec<AnalyzedScan>,
 }

@@ -4,10 +4,10 @@
 
 use super::conclusion::{conclusions, farthest};
 use super::frame::short_name;
-use super::{CELL_M, SPHERE_M, Scan, Scans, curves, density, histogram, planes};
-use crate::tradeoff::html::STYLE;
-use crate::tradeoff::number::short;
-use crate::tradeoff::svg::escaped;
+use super::{AnalyzedScan, AnalyzedScans, CELL_M, SPHERE_M, curves, density, histogram, planes};
+use crate::draw::PAGE_STYLE;
+use crate::draw::escaped;
+use crate::draw::number::short;
 
 /// What stands beside the page in its folder, and is linked from it: names, and what they are.
 pub const FILES: [(&str, &str); 8] = [
@@ -42,7 +42,7 @@ const EVERY_DEG: f64 = 15.0;
 
 /// The page.
 #[must_use]
-pub fn page(scans: &Scans) -> String {
+pub fn page(scans: &AnalyzedScans) -> String {
     let names: Vec<String> = scans
         .scans
         .iter()
@@ -52,8 +52,8 @@ pub fn page(scans: &Scans) -> String {
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Scan patterns: {title}</title>\n<style>{STYLE}{MORE_STYLE}</style>\n</head>\n<body>\n\
-         <header>\n<h1>Scan patterns: {title}</h1>\n<p class=\"soft\">{}: <code>{}</code></p>\n<nav>\n",
+         <title>AnalyzedScan patterns: {title}</title>\n<style>{PAGE_STYLE}{MORE_STYLE}</style>\n</head>\n<body>\n\
+         <header>\n<h1>AnalyzedScan patterns: {title}</h1>\n<p class=\"soft\">{}: <code>{}</code></p>\n<nav>\n",
         escaped(&scans.program),
         escaped(&scans.command)
     );
@@ -65,13 +65,13 @@ pub fn page(scans: &Scans) -> String {
     for (id, heading, content) in &sections {
         page += &format!("<section id=\"{id}\">\n<h2>{heading}</h2>\n{content}</section>\n");
     }
-    page + "</main>\n<footer>After: Analysis of 3D Scan Measurement Distribution with Application to a Multi-Beam Lidar on a Rotating Platform (2018). \
+    page + "</main>\n<footer>After: Analysis of 3D AnalyzedScan Measurement Distribution with Application to a Multi-Beam Lidar on a Rotating Platform (2018). \
             Directions are seen from the origin, on the tilt axis y; x is right, z is up.</footer>\n</body>\n</html>\n"
 }
 
 type Section = (&'static str, &'static str, String);
 
-fn sections(scans: &Scans) -> Vec<Section> {
+fn sections(scans: &AnalyzedScans) -> Vec<Section> {
     let bins = scans.bins.bins().len();
     let cell = short(CELL_M);
     vec![
@@ -155,7 +155,7 @@ fn headings(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-fn rows(scans: &Scans, row: impl Fn(&Scan) -> Vec<String>) -> Vec<Vec<String>> {
+fn rows(scans: &AnalyzedScans, row: impl Fn(&AnalyzedScan) -> Vec<String>) -> Vec<Vec<String>> {
     let all = scans.scans.iter();
     all.map(|scan| {
         std::iter::once(scan.name.clone())
@@ -165,7 +165,7 @@ fn rows(scans: &Scans, row: impl Fn(&Scan) -> Vec<String>) -> Vec<Vec<String>> {
     .collect()
 }
 
-fn summary(scans: &Scans) -> String {
+fn summary(scans: &AnalyzedScans) -> String {
     let mut html = conclusions(scans);
     for scan in &scans.scans {
         for warning in &scan.warnings {
@@ -213,7 +213,7 @@ fn summary(scans: &Scans) -> String {
 /// Where a number is not known.
 const NONE: &str = "-";
 
-fn densities(scans: &Scans) -> String {
+fn densities(scans: &AnalyzedScans) -> String {
     let rows = rows(scans, |scan| {
         let s = scan.counts.statistics();
         vec![
@@ -244,7 +244,7 @@ fn densities(scans: &Scans) -> String {
     )
 }
 
-fn plane_table(scans: &Scans) -> String {
+fn plane_table(scans: &AnalyzedScans) -> String {
     let rows = rows(scans, |scan| {
         let planes = &scan.planes;
         vec![
@@ -264,8 +264,8 @@ fn plane_table(scans: &Scans) -> String {
     table("What the pictures show", &headings(&words), &rows)
 }
 
-fn extremes(scans: &Scans) -> String {
-    let at = |scan: &Scan, extreme: f64| {
+fn extremes(scans: &AnalyzedScans) -> String {
+    let at = |scan: &AnalyzedScan, extreme: f64| {
         let found = scan.k.d.iter().position(|d| (*d - extreme).abs() <= 0.0);
         let theta = found.and_then(|bin| scan.k.theta_rad.get(bin));
         theta.map_or("0".to_owned(), |theta| format!("{:.1}", theta.to_degrees()))
@@ -306,7 +306,7 @@ fn extremes(scans: &Scans) -> String {
 }
 
 /// The curves at angles some degrees apart.
-fn k_table(scans: &Scans) -> String {
+fn k_table(scans: &AnalyzedScans) -> String {
     let mut words = vec!["angle up to, deg".to_owned()];
     words.extend(scans.scans.iter().map(|scan| scan.name.clone()));
     let thetas = scans

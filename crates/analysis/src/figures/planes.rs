@@ -5,9 +5,9 @@
 
 use glam::DVec3;
 
-use super::Scans;
+use super::AnalyzedScans;
 use super::colour::colour;
-use super::frame::{At, MARGIN, TITLE, WIDTH, document, heading, scale_name, text};
+use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, document, heading, scale_name, text};
 
 /// How far below the ground is, metres.
 const GROUND_M: f64 = 1.5;
@@ -131,7 +131,7 @@ const NAMES: [(&str, &str, &str); 3] = [
 
 /// The figure: a row a scan, a column a plane.
 #[must_use]
-pub fn planes(scans: &Scans) -> String {
+pub fn planes(scans: &AnalyzedScans) -> String {
     let mut body = String::new();
     let mut about = "Where rays meet the ground 1.5 m below and the walls at x = 10 m and y = 10 m, in squares of 0.1 m, darker is more.".to_owned();
     let mut top = TITLE;
@@ -179,7 +179,7 @@ fn panel(cells: &[u32], (name, right, up): (&str, &str, &str), left: f64, top: f
     svg += &text(
         left + PANEL / 2.0,
         bottom + 15.0,
-        At::Middle,
+        TextAnchor::Middle,
         "tv-soft tv-small",
         &caption,
     );
@@ -226,7 +226,13 @@ fn scale(top: f64) -> String {
         svg += &format!(
             "<rect fill=\"{colour}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"14\" height=\"12\"/>\n"
         );
-        svg += &text(x + 18.0, y + 10.0, At::Start, "tv-soft tv-small", &name);
+        svg += &text(
+            x + 18.0,
+            y + 10.0,
+            TextAnchor::Start,
+            "tv-soft tv-small",
+            &name,
+        );
         x += 71.0;
     }
     svg

@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::*;
 use crate::density::Locator;
+use crate::draw::escaped;
+use crate::draw::xml::elements;
 use crate::k::{Edges, exact};
-use crate::tradeoff::svg::escaped;
-use crate::tradeoff::svg::tests::elements;
 
 /// A lidar's grid: rings at some elevations about z, turned about y to these tilts.
 fn grid(azimuths: u32, tilts_deg: &[f64]) -> Vec<DVec3> {
@@ -28,26 +28,26 @@ fn grid(azimuths: u32, tilts_deg: &[f64]) -> Vec<DVec3> {
     points
 }
 
-fn scan(name: &str, directions: &[DVec3], level: u32) -> Scan {
+fn scan(name: &str, directions: &[DVec3], level: u32) -> AnalyzedScan {
     let locator = Locator::new(&Icosahedron::new(level).unwrap());
     let counts = exact(directions, &Edges::equal(37).unwrap(), NonZeroUsize::MIN).unwrap();
-    Scan {
+    AnalyzedScan {
         name: name.to_owned(),
         points: directions.len() as u64,
         scan_s: Some(0.1),
         hole_deg: 55.5,
         in_view: None,
         warnings: Vec::new(),
-        counts: Counts::new(&locator, directions).unwrap(),
+        counts: BinCounts::new(&locator, directions).unwrap(),
         k: KCurve::of_counts(&counts, SPHERE_M),
         method: "exact",
         planes: Planes::new(directions),
     }
 }
 
-fn scans(level: u32) -> Scans {
+fn scans(level: u32) -> AnalyzedScans {
     let tilts: Vec<f64> = (0..12).map(|k| 15.0 * f64::from(k)).collect();
-    Scans {
+    AnalyzedScans {
         program: "velomotion 1.0".to_owned(),
         command: "velomotion analyze a,b <c> & \"d\"".to_owned(),
         bins: Icosahedron::new(level).unwrap(),
@@ -58,7 +58,7 @@ fn scans(level: u32) -> Scans {
     }
 }
 
-fn all_figures(scans: &Scans) -> [String; 4] {
+fn all_figures(scans: &AnalyzedScans) -> [String; 4] {
     [
         density(scans),
         histogram(scans),
@@ -132,7 +132,7 @@ fn levels_beyond_what_is_drawn_go_together_and_keep_every_point() {
     let (coarse, fine) = (scans(5), scans(6));
     assert!(density(&fine).contains("(20480 bins)"));
     // As many triangles, though the bins are four times as many.
-    let size = |scans: &Scans| density(scans).matches('l').count();
+    let size = |scans: &AnalyzedScans| density(scans).matches('l').count();
     assert!(
         size(&fine).abs_diff(size(&coarse)) < 60,
         "{} {}",
@@ -144,7 +144,7 @@ fn levels_beyond_what_is_drawn_go_together_and_keep_every_point() {
 #[test]
 fn what_holds_nothing_is_drawn_too() {
     let mut scans = scans(2);
-    let none = Scan {
+    let none = AnalyzedScan {
         hole_deg: 180.0,
         scan_s: None,
         ..scan("nothing", &[], 2)
@@ -234,7 +234,7 @@ fn tables_have_the_very_numbers() {
     }
 }
 
-fn page_is_whole(page: &str, scans: &Scans) {
+fn page_is_whole(page: &str, scans: &AnalyzedScans) {
     let alone = page.replace("http://www.w3.org/2000/svg", "");
     for outside in [
         "http:", "https:", "src=", "<script", "<link", "@import", "url(",
@@ -322,7 +322,7 @@ fn curves_are_told_apart_where_they_coincide() {
     let mut scans = scans(2);
     let one = scans.scans.swap_remove(0);
     scans.scans = (0..10)
-        .map(|number| Scan {
+        .map(|number| AnalyzedScan {
             name: format!("scan {number}"),
             ..one.clone()
         })

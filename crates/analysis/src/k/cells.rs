@@ -18,18 +18,18 @@ const PART_SIDE: u32 = PARTS as u32;
 
 /// Points by cell; empty cells are left out.
 #[derive(Debug, Default)]
-pub(super) struct Cells {
+pub(super) struct PointCells {
     /// Points by cell, and by part within a cell.
-    items: Vec<Item>,
-    /// Coordinates, in two layouts of every cell, each with [`ROW`] more than it has points: it starts again. None for [`Cells::new`].
+    items: Vec<CellPoint>,
+    /// Coordinates, in two layouts of every cell, each with [`ROW`] more than it has points: it starts again.
     pub columns: [Vec<f32>; 3],
-    pub cells: Vec<Cell>,
+    pub cells: Vec<PointCell>,
     pub around: Circles,
 }
 
 /// One cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cell {
+pub(super) struct PointCell {
     /// Its first place in the order.
     pub first: usize,
     /// Its points.
@@ -38,7 +38,7 @@ pub(super) struct Cell {
     pub layouts: [(usize, usize); 2],
 }
 
-impl Cell {
+impl PointCell {
     /// The place in the order of what is so far along a layout.
     pub(super) fn place(&self, layout: usize, along: usize) -> usize {
         let step = self.layouts.get(layout).map_or(1, |(_, step)| *step) as u64;
@@ -50,9 +50,9 @@ impl Cell {
 
 /// Numbers that look like chance (splitmix64).
 #[derive(Clone, Debug)]
-pub(super) struct Chance(u64);
+pub(super) struct DrawSource(u64);
 
-impl Chance {
+impl DrawSource {
     pub(super) const fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -74,7 +74,7 @@ pub(super) const fn scaled(bits: u64, below: usize) -> usize {
 
 /// A point while it is sorted.
 #[derive(Clone, Copy, Debug, Default)]
-struct Item {
+struct CellPoint {
     at: [f32; 3],
     index: u32,
 }
@@ -82,27 +82,18 @@ struct Item {
 /// Steps of the two layouts, over the number of points: 32 pairs of both are a lattice of rank 1 over all pairs, one in every 32nd of either cell.
 const STEPS: [f64; 2] = [1.0 / 32.0, 7.0 / 32.0];
 
-impl Cells {
-    /// With so many cells along each of the cube's edges.
-    pub(super) fn new(points: &[DVec3], side: usize) -> Self {
-        Self::sorted(points, side, 1)
-    }
-
-    /// The same, laid out for draws.
-    pub(super) fn laid_out(points: &[DVec3], side: usize) -> Self {
-        Self::sorted(points, side, PARTS)
-    }
-
+impl PointCells {
     /// Where the point stood that is now at this place.
     pub(super) fn index(&self, place: usize) -> Option<usize> {
         self.items.get(place).map(|item| item.index as usize)
     }
 
-    fn sorted(points: &[DVec3], side: usize, parts: usize) -> Self {
+    /// Sorts points into cells, `side` of them along each edge of the cube.
+    pub(super) fn new(points: &[DVec3], side: usize) -> Self {
         let all = 6 * side * side;
-        let grid = Grid::new(side, parts);
+        let grid = CubeGrid::new(side);
         let squares: Vec<u32> = points.iter().map(|p| grid.square(*p)).collect();
-        let mut next = vec![0_u32; all * parts * parts];
+        let mut next = vec![0_u32; all * PARTS * PARTS];
         for &square in &squares {
             if let Some(count) = next.get_mut(square as usize) {
                 *count += 1;
@@ -110,28 +101,26 @@ impl Cells {
         }
         let mut lens = Vec::with_capacity(all);
         let mut sum = 0_u32;
-        for cell in next.chunks_mut(parts * parts) {
+        for cell in next.chunks_mut(PARTS * PARTS) {
             let before = sum;
             for start in cell {
                 sum += std::mem::replace(start, sum);
             }
             lens.push((sum - before) as usize);
         }
-        let mut items = vec![Item::default(); points.len()];
+        let mut items = vec![CellPoint::default(); points.len()];
         for ((index, p), &square) in (0_u32..).zip(points).zip(&squares) {
             if let Some(next) = next.get_mut(square as usize) {
                 if let Some(item) = items.get_mut(*next as usize) {
                     let at = p.as_vec3().to_array();
-                    *item = Item { at, index };
+                    *item = CellPoint { at, index };
                 }
                 *next += 1;
             }
         }
         let mut sorted = Self::default();
-        if parts > 1 {
-            let room = 2 * (points.len() + all.min(points.len()) * ROW);
-            sorted.columns = std::array::from_fn(|_| Vec::with_capacity(room));
-        }
+        let room = 2 * (points.len() + all.min(points.len()) * ROW);
+        sorted.columns = std::array::from_fn(|_| Vec::with_capacity(room));
         let mut circles = Vec::with_capacity(all);
         let mut rest = items.as_slice();
         let mut first = 0;
@@ -139,11 +128,8 @@ impl Cells {
             let (of, behind) = rest.split_at(len.min(rest.len()));
             rest = behind;
             circles.push(around(of));
-            let layouts = match parts {
-                1 => [(0, 1); 2],
-                _ => STEPS.map(|step| sorted.lay_out(of, step)),
-            };
-            sorted.cells.push(Cell {
+            let layouts = STEPS.map(|step| sorted.lay_out(of, step));
+            sorted.cells.push(PointCell {
                 first,
                 len,
                 layouts,
@@ -156,7 +142,7 @@ impl Cells {
     }
 
     /// Adds one layout of a cell; where it begins, and its step.
-    fn lay_out(&mut self, of: &[Item], share: f64) -> (usize, usize) {
+    fn lay_out(&mut self, of: &[CellPoint], share: f64) -> (usize, usize) {
         let step = coprime((of.len() as f64 * share) as usize, of.len());
         let [x, y, z] = &mut self.columns;
         let start = x.len();
@@ -190,7 +176,7 @@ fn coprime(from: usize, len: usize) -> usize {
 }
 
 /// The circle around some, in sixteen lanes. Its middle is what it is, however sums are rounded, as the radius is measured from it.
-fn around(of: &[Item]) -> Circle {
+fn around(of: &[CellPoint]) -> Circle {
     let mut sums = [[0.0_f32; LANES]; 3];
     for items in of.chunks(LANES) {
         for (lane, item) in items.iter().enumerate() {
@@ -243,17 +229,16 @@ fn around(of: &[Item]) -> Circle {
 const ALONG: [u8; PARTS * PARTS] = [0, 1, 14, 15, 3, 2, 13, 12, 4, 7, 8, 11, 5, 6, 9, 10];
 
 /// Squares on the faces of a cube.
-struct Grid {
+struct CubeGrid {
     side: usize,
-    parts: usize,
     /// Squares along an edge, half of them.
     half: f32,
 }
 
-impl Grid {
-    const fn new(side: usize, parts: usize) -> Self {
-        let half = (side * parts) as f32 * 0.5;
-        Self { side, parts, half }
+impl CubeGrid {
+    const fn new(side: usize) -> Self {
+        let half = (side * PARTS) as f32 * 0.5;
+        Self { side, half }
     }
 
     /// The face by the greatest coordinate, then the square: the cell, and the part of it.
@@ -273,14 +258,11 @@ impl Grid {
         let over = 1.0 / w.abs().max(f32::MIN_POSITIVE);
         // About the arc tangent over pi/4, so that squares are about even.
         let even = |t: f32| t * (1.273 - 0.273 * t.abs());
-        let most = (self.side * self.parts - 1) as u32;
+        let most = (self.side * PARTS - 1) as u32;
         let place = |t: f32| (((even(t * over) + 1.0) * self.half) as u32).min(most);
         let face = face + u32::from(w < 0.0);
-        let (side, parts) = (self.side as u32, self.parts as u32);
+        let side = self.side as u32;
         let (u, v) = (place(u), place(v));
-        if parts == 1 {
-            return (face * side + u) * side + v;
-        }
         let part = (u % PART_SIDE) * PART_SIDE + v % PART_SIDE;
         let cell = (face * side + u / PART_SIDE) * side + v / PART_SIDE;
         let along = ALONG.get(part as usize).copied().unwrap_or(0);

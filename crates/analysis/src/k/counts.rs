@@ -6,7 +6,7 @@ use super::Edges;
 
 /// Pairs in bins of angle: exact.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Counts {
+pub struct PairCounts {
     /// The bins.
     pub edges: Edges,
     /// Pairs in each bin; together `n (n - 1) / 2`.
@@ -18,7 +18,7 @@ pub struct Counts {
     pub on_edges: u64,
 }
 
-impl Counts {
+impl PairCounts {
     /// All pairs: `n (n - 1) / 2`.
     #[must_use]
     pub const fn pairs(&self) -> u64 {

@@ -3,7 +3,7 @@
 //! `K(t) = 8 pi R2 / (n (n - 1)) x #{i < j : angle <= t}`, of complete spatial randomness `K_csr(t) = 2 pi R2 (1 - cos t)`. Their difference over the area of
 //! the sphere is `D`, which does not know of R. Left out: pictures of it.
 
-use super::{Counts, Edges, Estimate};
+use super::{Edges, Estimate, PairCounts};
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -33,7 +33,7 @@ pub struct KCurve {
 impl KCurve {
     /// Of exact counts, on a sphere of this radius.
     #[must_use]
-    pub fn of_counts(counts: &Counts, radius_m: f64) -> Self {
+    pub fn of_counts(counts: &PairCounts, radius_m: f64) -> Self {
         let all = counts.pairs();
         let share = |sum: u64| sum as f64 / all as f64;
         let sums = counts.cumulative().into_iter().filter(|_| all > 0);

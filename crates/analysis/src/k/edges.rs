@@ -30,14 +30,14 @@ pub(super) const F64_BAND: f64 = 1e-15;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edges {
     bins: usize,
-    inner: Vec<Edge>,
+    inner: Vec<BinEdge>,
     /// Cosines of the inner edges in f32.
     cosines_f32: Vec<f32>,
 }
 
 /// One inner edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Edge {
+struct BinEdge {
     cosine: Dd,
     /// How far from it the real cosine may be.
     slack: f64,
@@ -52,7 +52,7 @@ impl Edges {
         let whole = u32::try_from(bins).ok();
         let whole = whole.filter(|_| (1..=MOST_BINS).contains(&bins));
         let whole = whole.ok_or(KError::Bins { got: bins })?;
-        let inner: Vec<Edge> = (1..whole).map(|part| Edge::new(part, whole)).collect();
+        let inner: Vec<BinEdge> = (1..whole).map(|part| BinEdge::new(part, whole)).collect();
         Ok(Self {
             bins,
             cosines_f32: inner.iter().map(|edge| edge.cosine.hi as f32).collect(),
@@ -128,7 +128,7 @@ impl Edges {
     }
 }
 
-impl Edge {
+impl BinEdge {
     /// `cos(part / whole pi)`. It is rational only for 0, 1/3, 1/2, 2/3 and 1 (Niven 1956); those are kept exactly.
     fn new(part: u32, whole: u32) -> Self {
         let exact = |cosine: f64| Self {

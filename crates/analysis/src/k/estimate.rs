@@ -2,20 +2,15 @@
 //!
 //! Left out: the methods.
 
-use super::{Counts, Edges};
+use super::{Edges, PairCounts};
 use serde::Serialize;
 
 /// How far a share of pairs may be off: a share is a count over `n (n - 1) / 2`, as `D` is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
-pub enum Bound {
+pub enum ErrorBound {
     /// Nothing is off.
     Exact,
-    /// Proven for every set of points: one number a bin.
-    Proven {
-        /// Of the share up to the bin's upper edge.
-        shares: Vec<f64>,
-    },
     /// None: how far it is off has been measured for some scans, and is not known of others.
     Unknown,
     /// Holds for all bins at once with a probability over the method's own draws, whatever the points: one number a bin.
@@ -27,16 +22,14 @@ pub enum Bound {
     },
 }
 
-impl Bound {
+impl ErrorBound {
     /// The largest over all bins; infinite where none is known.
     #[must_use]
     pub fn largest(&self) -> f64 {
         match self {
             Self::Exact => 0.0,
             Self::Unknown => f64::INFINITY,
-            Self::Proven { shares } | Self::Confidence { shares, .. } => {
-                shares.iter().copied().fold(0.0, f64::max)
-            }
+            Self::Confidence { shares, .. } => shares.iter().copied().fold(0.0, f64::max),
         }
     }
 
@@ -46,9 +39,7 @@ impl Bound {
         match self {
             Self::Exact => 0.0,
             Self::Unknown => f64::INFINITY,
-            Self::Proven { shares } | Self::Confidence { shares, .. } => {
-                shares.get(bin).copied().unwrap_or(0.0)
-            }
+            Self::Confidence { shares, .. } => shares.get(bin).copied().unwrap_or(0.0),
         }
     }
 }
@@ -63,7 +54,7 @@ pub struct Estimate {
     /// The share of all pairs up to the upper edge of each bin, 0 to 1; the last is 1.
     pub shares: Vec<f64>,
     /// How far each may be off.
-    pub bound: Bound,
+    pub bound: ErrorBound,
     /// Directions.
     pub points: usize,
     /// Pairs that lie on an inner edge within rounding ([`super::ON_EDGE`]): counted, or of samples estimated; none where the method cannot tell. Where they are a share of
@@ -79,15 +70,15 @@ impl Estimate {
             method,
             shares: edges.upper_rad().iter().map(csr).collect(),
             edges: edges.clone(),
-            bound: Bound::Exact,
+            bound: ErrorBound::Exact,
             points,
             on_edges: Some(0),
         }
     }
 }
 
-impl From<Counts> for Estimate {
-    fn from(counts: Counts) -> Self {
+impl From<PairCounts> for Estimate {
+    fn from(counts: PairCounts) -> Self {
         if counts.points < 2 {
             return Self::without_pairs("exact", &counts.edges, counts.points);
         }
@@ -96,7 +87,7 @@ impl From<Counts> for Estimate {
         Self {
             method: "exact",
             shares: shares.into_iter().map(|sum| sum as f64 / all).collect(),
-            bound: Bound::Exact,
+            bound: ErrorBound::Exact,
             points: counts.points,
             on_edges: Some(counts.on_edges),
             edges: counts.edges,

@@ -11,19 +11,19 @@ use glam::DVec3;
 
 use super::edges::{ON_EDGE, dot};
 use super::lanes::{LANES, Portable};
-use super::leaf_pair::{Judge, Rows, Tally, edges, leaf_pair, rows, thresholds};
-use super::notes::Noting;
-use super::others::{Bits, Others};
+use super::leaf_pair::{ExactBinTest, PairCounter, Rows, edges, leaf_pair, rows, thresholds};
+use super::leaves_by_edge_count::{Bits, LeavesByEdgeCount};
 use super::outline::Outline;
 use super::plain::check;
-use super::tree::{BLOCK_LEAVES, Block, Tree};
-use super::{Counts, Edges, KError, Registers};
+use super::sign_mask::SignMask;
+use super::tree::{BLOCK_LEAVES, LeafBlock, Tree};
+use super::{Edges, KError, PairCounts, Registers};
 
 /// Counts every pair of directions, on so many threads; the counts do not hang on how many.
 ///
 /// # Errors
 /// [`KError::NotUnit`] and [`KError::TooMany`] for what are not directions, [`KError::Undecided`].
-pub fn exact(points: &[DVec3], edges: &Edges, threads: NonZeroUsize) -> Result<Counts, KError> {
+pub fn exact(points: &[DVec3], edges: &Edges, threads: NonZeroUsize) -> Result<PairCounts, KError> {
     exact_by(Registers::Best, points, edges, threads)
 }
 
@@ -36,18 +36,18 @@ pub fn exact_by(
     points: &[DVec3],
     edges: &Edges,
     threads: NonZeroUsize,
-) -> Result<Counts, KError> {
+) -> Result<PairCounts, KError> {
     check(points)?;
     let level = registers.level();
     let tree = Tree::new(points);
     let next = AtomicUsize::new(0);
     let work = || {
-        let judge = ByReals::new(&tree.points, edges);
-        let mut one = One {
+        let exact_test = QueuedExactTest::new(&tree.points, edges);
+        let mut one = ExactWorker {
             tree: &tree,
             edges,
-            tally: Tally::new(edges.bins()),
-            judge,
+            counter: PairCounter::new(edges.bins()),
+            exact_test,
         };
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         if let Some(avx512) = level.as_avx512() {
@@ -80,7 +80,7 @@ pub fn exact_by(
             *count = count.wrapping_add_signed(of);
         }
     }
-    Ok(Counts {
+    Ok(PairCounts {
         edges: edges.clone(),
         counts,
         points: points.len(),
@@ -105,11 +105,11 @@ pub(super) fn on_threads<T: Send>(threads: NonZeroUsize, work: &(impl Fn() -> T 
 }
 
 /// Sides by the real numbers.
-struct ByReals<'a> {
+struct QueuedExactTest<'a> {
     points: &'a [DVec3],
     edges: &'a Edges,
     /// To be judged together, as their points have to be fetched from far.
-    waiting: Vec<Waiting>,
+    waiting: Vec<QueuedPair>,
     /// What judged pairs are beyond each edge, less what had been said of them.
     beyond: Vec<i64>,
     on_edges: u64,
@@ -117,13 +117,13 @@ struct ByReals<'a> {
 }
 
 /// A pair, an edge, and whether it is counted as beyond that.
-struct Waiting {
+struct QueuedPair {
     edge: usize,
     pair: (usize, usize),
     said: bool,
 }
 
-impl<'a> ByReals<'a> {
+impl<'a> QueuedExactTest<'a> {
     fn new(points: &'a [DVec3], edges: &'a Edges) -> Self {
         Self {
             points,
@@ -153,7 +153,7 @@ impl<'a> ByReals<'a> {
     #[inline(never)]
     fn settle(&mut self) {
         let mut waiting = std::mem::take(&mut self.waiting);
-        for Waiting { edge, pair, said } in waiting.drain(..) {
+        for QueuedPair { edge, pair, said } in waiting.drain(..) {
             let (Some(&a), Some(&b)) = (self.points.get(pair.0), self.points.get(pair.1)) else {
                 continue;
             };
@@ -172,33 +172,36 @@ impl<'a> ByReals<'a> {
     }
 }
 
-impl Judge for ByReals<'_> {
+impl ExactBinTest for QueuedExactTest<'_> {
     #[inline(always)]
-    fn doubt(&mut self, edge: usize, a: usize, b: usize, said: bool) {
+    fn recheck(&mut self, edge: usize, a: usize, b: usize, said: bool) {
         let pair = (a, b);
-        self.waiting.push(Waiting { edge, pair, said });
+        self.waiting.push(QueuedPair { edge, pair, said });
     }
 }
 
 /// What one thread counts.
-struct One<'a> {
+struct ExactWorker<'a> {
     tree: &'a Tree,
     edges: &'a Edges,
-    tally: Tally,
-    judge: ByReals<'a>,
+    counter: PairCounter,
+    exact_test: QueuedExactTest<'a>,
 }
 
-impl One<'_> {
+impl ExactWorker<'_> {
     fn done(self) -> Result<(Vec<i64>, u64), KError> {
-        match self.judge.wrong {
+        match self.exact_test.wrong {
             Some(wrong) => Err(wrong),
-            None => Ok((self.tally.counts(&self.judge.beyond), self.judge.on_edges)),
+            None => Ok((
+                self.counter.counts(&self.exact_test.beyond),
+                self.exact_test.on_edges,
+            )),
         }
     }
 
     /// Takes blocks until none is left, each with all that are not before it.
     #[inline(always)]
-    fn all<L: Noting>(&mut self, on: L, next: &AtomicUsize) {
+    fn all<L: SignMask>(&mut self, on: L, next: &AtomicUsize) {
         let tree = self.tree;
         let thresholds = thresholds::<L>(self.edges);
         let mut waiting = Vec::new();
@@ -229,7 +232,7 @@ impl One<'_> {
     }
 
     /// Whether all pairs of a block and a node behind it are in one bin; they are counted then.
-    fn is_in_one_bin(&mut self, block: &Block, at: usize) -> bool {
+    fn is_in_one_bin(&mut self, block: &LeafBlock, at: usize) -> bool {
         let tree = self.tree;
         let Some(node) = tree.nodes.get(at) else {
             return false;
@@ -252,7 +255,7 @@ impl One<'_> {
             return false;
         };
         let pairs = tree.points_of(block.first, block.end) * tree.points_of(first.first, end.end);
-        if let Some(from) = self.tally.from.get_mut(bin(least)) {
+        if let Some(from) = self.counter.from.get_mut(bin(least)) {
             *from += pairs as u64;
         }
         true
@@ -260,12 +263,17 @@ impl One<'_> {
 
     /// All pairs of leaves of two blocks, or of one with itself.
     #[inline(always)]
-    fn blocks<L: Noting>(&mut self, on: L, (block, other): (&Block, &Block), thresholds: &[f32]) {
+    fn blocks<L: SignMask>(
+        &mut self,
+        on: L,
+        (block, other): (&LeafBlock, &LeafBlock),
+        thresholds: &[f32],
+    ) {
         let tree = self.tree;
         // So many rows at most are added to a lane.
-        self.tally.settle(BLOCK_LEAVES * BLOCK_LEAVES * LANES * 2);
+        self.counter.settle(BLOCK_LEAVES * BLOCK_LEAVES * LANES * 2);
         // All reaches first: none waits for another then.
-        let mut found = [(0, Others::default()); BLOCK_LEAVES];
+        let mut found = [(0, LeavesByEdgeCount::default()); BLOCK_LEAVES];
         for (leaf, found) in (block.first..block.end).zip(&mut found) {
             *found = self.reached(on, leaf, other);
         }
@@ -282,14 +290,19 @@ impl One<'_> {
             self.few::<L, 4>(on, leaves, others, thresholds);
             self.many(on, leaves, others, thresholds);
         }
-        self.judge.settle();
+        self.exact_test.settle();
     }
 
     /// What full leaves of a block behind this one are how far off, and from which; pairs with those that are not full are counted.
     #[inline(always)]
-    fn reached<L: Noting>(&mut self, on: L, leaf: usize, other: &Block) -> (usize, Others) {
+    fn reached<L: SignMask>(
+        &mut self,
+        on: L,
+        leaf: usize,
+        other: &LeafBlock,
+    ) -> (usize, LeavesByEdgeCount) {
         let tree = self.tree;
-        let mut others = Others::default();
+        let mut others = LeavesByEdgeCount::default();
         let Some(around) = tree.around_leaves.one(leaf) else {
             return (other.end, others);
         };
@@ -318,53 +331,53 @@ impl One<'_> {
 
     /// A leaf with others that it has so many edges to.
     #[inline(always)]
-    fn few<L: Noting, const E: usize>(
+    fn few<L: SignMask, const E: usize>(
         &mut self,
         on: L,
         (leaf, rows, start): (usize, &Rows, usize),
-        others: &Others,
+        others: &LeavesByEdgeCount,
         thresholds: &[f32],
     ) {
         for at in others.of::<E>() {
             let (first, _) = others.bins(at);
-            self.tally.add(first, Some((LANES * LANES) as u64));
+            self.counter.add(first, Some((LANES * LANES) as u64));
             if E == 0 {
                 continue;
             }
             let of = thresholds.get(first..).and_then(<[f32]>::first_chunk);
             if let (Some(b), Some(of)) = (self.tree.leaves.get(start + at), of) {
                 let places = (leaf * LANES, (start + at) * LANES, first);
-                let (tally, judge) = (&mut self.tally, &mut self.judge);
+                let (counter, exact_test) = (&mut self.counter, &mut self.exact_test);
                 // From memory each time: a compiler that keeps 48 numbers in registers of sixteen lanes has to put them all away again.
                 let rows = std::hint::black_box(rows);
-                edges::<L, E>(on, rows, b, places, *of, tally, judge);
+                edges::<L, E>(on, rows, b, places, *of, counter, exact_test);
             }
         }
     }
 
     /// The same with more edges.
     #[inline(always)]
-    fn many<L: Noting>(
+    fn many<L: SignMask>(
         &mut self,
         on: L,
         (leaf, rows, start): (usize, &Rows, usize),
-        others: &Others,
+        others: &LeavesByEdgeCount,
         thresholds: &[f32],
     ) {
         for at in Bits(others.many) {
             let bins = others.bins(at);
-            self.tally.add(bins.0, Some((LANES * LANES) as u64));
+            self.counter.add(bins.0, Some((LANES * LANES) as u64));
             if let Some(b) = self.tree.leaves.get(start + at) {
                 let places = (leaf * LANES, (start + at) * LANES);
-                let (tally, judge) = (&mut self.tally, &mut self.judge);
-                leaf_pair(on, (rows, b), places, bins, thresholds, tally, judge);
+                let (counter, exact_test) = (&mut self.counter, &mut self.exact_test);
+                leaf_pair(on, (rows, b), places, bins, thresholds, counter, exact_test);
             }
         }
     }
 
     /// A leaf with others of which one is not full, or with itself.
     #[inline(always)]
-    fn not_full<L: Noting>(
+    fn not_full<L: SignMask>(
         &mut self,
         on: L,
         leaf: usize,
@@ -388,10 +401,10 @@ impl One<'_> {
             let start = if leaf == other { a + 1 } else { other * LANES };
             for b in start..end(other) {
                 let mut bin = first;
-                while bin < last && self.judge.is_beyond(bin, a, b) {
+                while bin < last && self.exact_test.is_beyond(bin, a, b) {
                     bin += 1;
                 }
-                if let Some(from) = self.tally.from.get_mut(bin) {
+                if let Some(from) = self.counter.from.get_mut(bin) {
                     *from += 1;
                 }
             }

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::plain::check;
-use super::{Bound, Edges, Estimate, KError};
+use super::{Edges, ErrorBound, Estimate, KError};
 
 /// The highest degree: `sin^m` near the poles does not underflow before where it no longer counts.
 pub const MOST_DEGREE: usize = 512;
@@ -21,7 +21,7 @@ const PLACES: usize = 16;
 /// Rings that are summed at once.
 const AT_ONCE: usize = 8;
 
-/// Estimates by harmonics up to a degree; 64 is usual. How far it is off is not known: [`Bound::Unknown`].
+/// Estimates by harmonics up to a degree; 64 is usual. How far it is off is not known: [`ErrorBound::Unknown`].
 ///
 /// # Errors
 /// [`KError::NotUnit`] and [`KError::TooMany`] for what are not directions, [`KError::Degree`] for 0 and for degrees above [`MOST_DEGREE`].
@@ -45,7 +45,7 @@ pub fn harmonics(points: &[DVec3], edges: &Edges, degree: usize) -> Result<Estim
         method: "harmonics",
         edges: edges.clone(),
         shares,
-        bound: Bound::Unknown,
+        bound: ErrorBound::Unknown,
         points: points.len(),
         on_edges: None,
     })
@@ -100,7 +100,7 @@ fn rings(points: &[DVec3], degree: usize) -> Vec<Ring> {
             *sum += f64::from(z);
         }
     }
-    let waves = Waves::new(degree, places);
+    let waves = RingWaves::new(degree, places);
     let rings = grid.chunks(places).zip(&z_sums);
     let rings = rings.filter_map(|(counts, z_sum)| {
         let all: u64 = counts.iter().copied().map(u64::from).sum();
@@ -139,12 +139,12 @@ fn eighths(x: f32, y: f32) -> f32 {
 }
 
 /// Cosines and sines of the middles of a quarter of the places, for every m.
-struct Waves {
+struct RingWaves {
     quarter: usize,
     waves: Vec<[Vec<f64>; 2]>,
 }
 
-impl Waves {
+impl RingWaves {
     fn new(degree: usize, places: usize) -> Self {
         let quarter = places / 4;
         let angle = |m: usize, place: usize| {
@@ -360,7 +360,11 @@ mod tests {
         let counts: Vec<u32> = (0..places as u32)
             .map(|p| (p * p * 7 + 3 * p) % 11)
             .collect();
-        for (m, [re, im]) in Waves::new(degree, places).sums(&counts).iter().enumerate() {
+        for (m, [re, im]) in RingWaves::new(degree, places)
+            .sums(&counts)
+            .iter()
+            .enumerate()
+        {
             let (mut cosines, mut sines) = (0.0, 0.0);
             for (place, count) in counts.iter().enumerate() {
                 let phi = (place as f64 + 0.5) * 2.0 * PI / places as f64;

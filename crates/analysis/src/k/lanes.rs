@@ -13,10 +13,10 @@ pub(super) const LANES: usize = 16;
 /// Numbers of sixteen lanes on a line of the cache of their own.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
-pub(super) struct Line<T>(pub [T; LANES]);
+pub(super) struct AlignedLanes<T>(pub [T; LANES]);
 
 /// Sixteen lanes.
-pub(super) trait Lanes: Copy {
+pub(super) trait SimdLanes: Copy {
     /// Whose registers.
     type S: Simd;
 
@@ -30,7 +30,7 @@ pub(super) trait Lanes: Copy {
 #[derive(Clone, Copy)]
 pub(super) struct Portable<S>(pub S);
 
-impl<S: Simd> Lanes for Portable<S> {
+impl<S: Simd> SimdLanes for Portable<S> {
     type S = S;
 
     #[inline(always)]
@@ -50,7 +50,7 @@ impl<S: Simd> Lanes for Portable<S> {
 pub(super) struct Wide(pub Avx512);
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-impl Lanes for Wide {
+impl SimdLanes for Wide {
     type S = Avx512;
 
     #[inline(always)]
@@ -70,7 +70,7 @@ impl Lanes for Wide {
 pub(super) struct Half(pub Avx2);
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-impl Lanes for Half {
+impl SimdLanes for Half {
     type S = Avx2;
 
     #[inline(always)]

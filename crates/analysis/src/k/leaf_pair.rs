@@ -6,8 +6,8 @@
 use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
 
 use super::Edges;
-use super::lanes::{LANES, Lanes, Line};
-use super::notes::Noting;
+use super::lanes::{AlignedLanes, LANES, SimdLanes};
+use super::sign_mask::SignMask;
 use super::tree::Leaf;
 
 /// How far a dot product less a cosine in f32 may be off: 2^-21.
@@ -18,30 +18,30 @@ use super::tree::Leaf;
 pub(super) const F32_BAND: f32 = 1.0 / (1_u32 << 21) as f32;
 
 /// Who says on which side of an edge a pair is.
-pub(super) trait Judge {
+pub(super) trait ExactBinTest {
     /// A pair that f32 cannot tell is beyond the edge above this bin or not, of these places among the points; whether it has been counted as beyond.
-    fn doubt(&mut self, edge: usize, a: usize, b: usize, said: bool);
+    fn recheck(&mut self, edge: usize, a: usize, b: usize, said: bool);
 }
 
 /// What has been counted.
 #[derive(Clone, Debug)]
-pub(super) struct Tally {
+pub(super) struct PairCounter {
     /// Pairs by the first bin that their leaves can reach.
     pub from: Vec<u64>,
     /// Pairs beyond the edge above each bin.
     pub beyond: Vec<i64>,
     /// The same by lanes, not yet added up.
-    pub lanes: Vec<Line<u32>>,
+    pub lanes: Vec<AlignedLanes<u32>>,
     /// The most that a lane can hold.
     held: u32,
 }
 
-impl Tally {
+impl PairCounter {
     pub(super) fn new(bins: usize) -> Self {
         Self {
             from: vec![0; bins],
             beyond: vec![0; bins],
-            lanes: vec![Line([0; LANES]); bins],
+            lanes: vec![AlignedLanes([0; LANES]); bins],
             held: 0,
         }
     }
@@ -89,8 +89,8 @@ pub(super) type Rows = [[f32; 3]; LANES];
 
 /// A full leaf's points as rows.
 #[inline(always)]
-pub(super) fn rows<L: Noting>(leaf: &Leaf) -> Rows {
-    let [Line(x), Line(y), Line(z)] = leaf;
+pub(super) fn rows<L: SignMask>(leaf: &Leaf) -> Rows {
+    let [AlignedLanes(x), AlignedLanes(y), AlignedLanes(z)] = leaf;
     let mut rows = [[0.0; 3]; LANES];
     for (((row, x), y), z) in rows.iter_mut().zip(x).zip(y).zip(z) {
         *row = [x * L::SCALE, y * L::SCALE, z * L::SCALE];
@@ -99,7 +99,7 @@ pub(super) fn rows<L: Noting>(leaf: &Leaf) -> Rows {
 }
 
 /// What the rows' dot products are compared with: the cosine of every inner edge, moved and scaled as the notes want it.
-pub(super) fn thresholds<L: Noting>(edges: &Edges) -> Vec<f32> {
+pub(super) fn thresholds<L: SignMask>(edges: &Edges) -> Vec<f32> {
     let inner = 0..edges.bins().saturating_sub(1);
     let moved = inner.map(|edge| edges.cosine(edge) - f64::from(L::MOVED));
     moved
@@ -109,23 +109,25 @@ pub(super) fn thresholds<L: Noting>(edges: &Edges) -> Vec<f32> {
 
 /// Counts the pairs of two full leaves beyond each of the edges from `first` to before `last`.
 #[inline(always)]
-pub(super) fn leaf_pair<L: Noting>(
+pub(super) fn leaf_pair<L: SignMask>(
     on: L,
     (a, b): (&Rows, &Leaf),
     (place_a, place_b): (usize, usize),
     (first, last): (usize, usize),
     thresholds: &[f32],
-    tally: &mut Tally,
-    judge: &mut impl Judge,
+    counter: &mut PairCounter,
+    exact_test: &mut impl ExactBinTest,
 ) {
     let mut edge = first;
     while edge < last {
         let places = (place_a, place_b, edge);
         edge += match thresholds.get(edge..last) {
-            Some(&[a0]) => edges(on, a, b, places, [a0], tally, judge),
-            Some(&[a0, a1]) => edges(on, a, b, places, [a0, a1], tally, judge),
-            Some(&[a0, a1, a2]) => edges(on, a, b, places, [a0, a1, a2], tally, judge),
-            Some(&[a0, a1, a2, a3, ..]) => edges(on, a, b, places, [a0, a1, a2, a3], tally, judge),
+            Some(&[a0]) => edges(on, a, b, places, [a0], counter, exact_test),
+            Some(&[a0, a1]) => edges(on, a, b, places, [a0, a1], counter, exact_test),
+            Some(&[a0, a1, a2]) => edges(on, a, b, places, [a0, a1, a2], counter, exact_test),
+            Some(&[a0, a1, a2, a3, ..]) => {
+                edges(on, a, b, places, [a0, a1, a2, a3], counter, exact_test)
+            }
             _ => return,
         };
     }
@@ -133,46 +135,46 @@ pub(super) fn leaf_pair<L: Noting>(
 
 /// The same for a few edges from one; says how many.
 #[inline(always)]
-pub(super) fn edges<L: Noting, const E: usize>(
+pub(super) fn edges<L: SignMask, const E: usize>(
     on: L,
     a: &Rows,
     b: &Leaf,
     (place_a, place_b, edge): (usize, usize, usize),
     thresholds: [f32; E],
-    tally: &mut Tally,
-    judge: &mut impl Judge,
+    counter: &mut PairCounter,
+    exact_test: &mut impl ExactBinTest,
 ) -> usize {
     let lanes = loaded(on.simd(), b);
     // One an edge, so that none waits for another.
-    let mut notes = [on.no_notes(); E];
+    let mut notes = [on.empty_mask(); E];
     for [row, next] in a.as_chunks().0 {
         let above = row_above(on, *row, lanes, thresholds);
         let next_above = row_above(on, *next, lanes, thresholds);
         for ((notes, above), next) in notes.iter_mut().zip(above).zip(next_above) {
-            on.note(notes, above, next);
+            on.record(notes, above, next);
         }
     }
-    let tallied = tally.lanes.get_mut(edge..edge + E).unwrap_or_default();
-    if !on.add_up(&notes, tallied) {
+    let counted_lanes = counter.lanes.get_mut(edge..edge + E).unwrap_or_default();
+    if !on.add_up(&notes, counted_lanes) {
         return E;
     }
-    if L::NOTES_WHICH {
+    if L::MASK_NAMES_PAIRS {
         for (edge, notes) in (edge..).zip(notes) {
-            noted(on, notes, (place_a, place_b, edge), judge);
+            recheck_masked(on, notes, (place_a, place_b, edge), exact_test);
         }
     } else {
-        near(on, (a, b), (place_a, place_b, edge), thresholds, judge);
+        near(on, (a, b), (place_a, place_b, edge), thresholds, exact_test);
     }
     E
 }
 
 /// Doubts those pairs that were noted as too near to an edge for f32; their numbers were not below nought.
 #[inline(always)]
-fn noted<L: Noting>(
+fn recheck_masked<L: SignMask>(
     on: L,
-    notes: L::Notes,
+    notes: L::Mask,
     (place_a, place_b, edge): (usize, usize, usize),
-    judge: &mut impl Judge,
+    exact_test: &mut impl ExactBinTest,
 ) {
     let (mut words, which) = on.which(notes);
     while words != 0 {
@@ -184,14 +186,14 @@ fn noted<L: Noting>(
             let row = rows.leading_zeros() as usize + word / 4 % 2;
             let lane = word / 8 * 4 + word % 4;
             rows &= !(0x8000_u16 >> rows.leading_zeros());
-            judge.doubt(edge, place_a + row, place_b + lane, false);
+            exact_test.recheck(edge, place_a + row, place_b + lane, false);
         }
     }
 }
 
 /// Dot products of one point with sixteen, less each threshold.
 #[inline(always)]
-fn row_above<L: Lanes, const E: usize>(
+fn row_above<L: SimdLanes, const E: usize>(
     on: L,
     [x, y, z]: [f32; 3],
     [bx, by, bz]: [f32x16<L::S>; 3],
@@ -225,12 +227,12 @@ pub(super) fn loaded<S: Simd>(simd: S, [x, y, z]: &Leaf) -> [f32x16<S>; 3] {
 
 /// Doubts those pairs that are too near to an edge for f32.
 #[inline(always)]
-fn near<L: Noting, const E: usize>(
+fn near<L: SignMask, const E: usize>(
     on: L,
     (a, b): (&Rows, &Leaf),
     (place_a, place_b, edge): (usize, usize, usize),
     thresholds: [f32; E],
-    judge: &mut impl Judge,
+    exact_test: &mut impl ExactBinTest,
 ) {
     let lanes = loaded(on.simd(), b);
     for (row, at) in a.iter().enumerate() {
@@ -245,7 +247,7 @@ fn near<L: Noting, const E: usize>(
                 let lane = undecided.trailing_zeros() as usize;
                 undecided &= undecided - 1;
                 let said = negative >> lane & 1 == 1;
-                judge.doubt(edge, place_a + row, place_b + lane, said);
+                exact_test.recheck(edge, place_a + row, place_b + lane, said);
             }
         }
     }

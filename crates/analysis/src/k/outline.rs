@@ -9,7 +9,7 @@ use fearless_simd::{Simd, f32x16, prelude::*};
 use glam::DVec3;
 
 use super::lanes::LANES;
-use super::reach::{Reach, arc_cosine, bins_between};
+use super::reach::{BinRange, arc_cosine, bins_between};
 
 /// Numbers of an outline.
 const NUMBERS: usize = 15;
@@ -119,7 +119,7 @@ impl Outlines {
         one: &Outline,
         from: usize,
         bins: usize,
-    ) -> Option<Reach> {
+    ) -> Option<BinRange> {
         let mut columns = [f32x16::splat(simd, 0.0); NUMBERS];
         for (to, column) in columns.iter_mut().zip(&self.columns) {
             *to = f32x16::load_array_ref(simd, column.get(from..)?.first_chunk()?);
@@ -146,7 +146,7 @@ impl Outlines {
         point: [f32; 3],
         from: usize,
         bins: usize,
-    ) -> Option<Reach> {
+    ) -> Option<BinRange> {
         let mut columns = [f32x16::splat(simd, 0.0); NUMBERS];
         for (to, column) in columns.iter_mut().zip(&self.columns) {
             *to = f32x16::load_array_ref(simd, column.get(from..)?.first_chunk()?);
@@ -171,7 +171,7 @@ fn between<S: Simd>(
     reach: f32x16<S>,
     shorter: f32x16<S>,
     bins: usize,
-) -> Reach {
+) -> BinRange {
     let zero = f32x16::splat(simd, 0.0);
     let least = cosine - reach - shorter * cosine.max(zero);
     let greatest = cosine + reach - shorter * cosine.min(zero);

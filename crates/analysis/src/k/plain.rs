@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::{Counts, Edges, KError, UNIT_WITHIN};
+use super::{Edges, KError, PairCounts, UNIT_WITHIN};
 
 /// Counts every pair by itself.
 ///
 /// # Errors
 /// [`KError::NotUnit`] and [`KError::TooMany`] for what are not directions, [`KError::Undecided`].
-pub fn plain(points: &[DVec3], edges: &Edges) -> Result<Counts, KError> {
+pub fn plain(points: &[DVec3], edges: &Edges) -> Result<PairCounts, KError> {
     check(points)?;
     let mut counts = vec![0_u64; edges.bins()];
     let mut on_edges = 0;
@@ -23,7 +23,7 @@ pub fn plain(points: &[DVec3], edges: &Edges) -> Result<Counts, KError> {
             on_edges += u64::from(is_on(bin) || below.is_some_and(is_on));
         }
     }
-    Ok(Counts {
+    Ok(PairCounts {
         edges: edges.clone(),
         counts,
         points: points.len(),

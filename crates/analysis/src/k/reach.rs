@@ -9,7 +9,7 @@ use super::lanes::LANES;
 
 /// The first and the last bin that the pairs of each of sixteen leaves with another can be in.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Reach {
+pub(super) struct BinRange {
     pub first: [i32; LANES],
     pub last: [i32; LANES],
 }
@@ -19,7 +19,7 @@ const COARSE: f32 = 9e-5;
 
 /// A circle in f32.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Around {
+pub(super) struct CircleF32 {
     pub middle: [f32; 3],
     pub radius: f32,
 }
@@ -28,11 +28,11 @@ pub(super) struct Around {
 #[inline(always)]
 pub(super) fn reach<S: Simd>(
     simd: S,
-    from: Around,
+    from: CircleF32,
     [x, y, z]: [&[f32; LANES]; 3],
     radii: &[f32; LANES],
     bins: usize,
-) -> Reach {
+) -> BinRange {
     let x = f32x16::load_array_ref(simd, x);
     let y = f32x16::load_array_ref(simd, y);
     let z = f32x16::load_array_ref(simd, z);
@@ -71,16 +71,20 @@ pub(super) fn arc_cosine<S: Simd>(simd: S, cosine: f32x16<S>) -> f32x16<S> {
 
 /// The bins of angles from these to those, which are moved apart by what the arc cosine may be off.
 #[inline(always)]
-pub(super) fn bins_between<S: Simd>(least: f32x16<S>, greatest: f32x16<S>, bins: usize) -> Reach {
+pub(super) fn bins_between<S: Simd>(
+    least: f32x16<S>,
+    greatest: f32x16<S>,
+    bins: usize,
+) -> BinRange {
     bins_of(least - COARSE, greatest + COARSE, bins)
 }
 
 #[inline(always)]
-fn bins_of<S: Simd>(least: f32x16<S>, greatest: f32x16<S>, bins: usize) -> Reach {
+fn bins_of<S: Simd>(least: f32x16<S>, greatest: f32x16<S>, bins: usize) -> BinRange {
     let per_bin = bins as f32 / std::f32::consts::PI;
     let last_bin = bins.saturating_sub(1) as f32;
     let bin = |angle: f32x16<S>| i32x16::truncate_from((angle * per_bin).max(0.0).min(last_bin));
-    let mut reach = Reach {
+    let mut reach = BinRange {
         first: [0; LANES],
         last: [0; LANES],
     };

@@ -8,13 +8,13 @@
 use fearless_simd::{dispatch, f32x16, prelude::*};
 use glam::DVec3;
 
-use super::cells::{Cell, Cells, Chance, ROW, scaled};
+use super::cells::{DrawSource, PointCell, PointCells, ROW, scaled};
 use super::counts::pairs;
-use super::lanes::{LANES, Lanes, Portable};
+use super::lanes::{LANES, Portable, SimdLanes};
 use super::leaf_pair::F32_BAND;
 use super::plain::check;
 use super::reach::reach;
-use super::{Bound, Edges, Estimate, KError, Registers};
+use super::{Edges, ErrorBound, Estimate, KError, Registers};
 
 /// What is wished of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ pub fn sampled(points: &[DVec3], edges: &Edges, wish: &Sampling) -> Result<Estim
             return Err(KError::Wish { name, got });
         }
     }
-    let mut chance = Chance::new(wish.seed);
+    let mut chance = DrawSource::new(wish.seed);
     if points.len() < 2 {
         return Ok(Estimate::without_pairs("sampled", edges, points.len()));
     }
@@ -66,7 +66,7 @@ pub fn sampled(points: &[DVec3], edges: &Edges, wish: &Sampling) -> Result<Estim
     let side = (SIDE * (1e-4 / wish.tolerance).cbrt())
         .round()
         .clamp(4.0, 64.0);
-    let cells = Cells::laid_out(points, side as usize);
+    let cells = PointCells::new(points, side as usize);
     let mut draws = DRAWS;
     let mut round = 1;
     loop {
@@ -77,7 +77,7 @@ pub fn sampled(points: &[DVec3], edges: &Edges, wish: &Sampling) -> Result<Estim
         if bound <= wish.tolerance || round == MOST_ROUNDS {
             return Ok(Estimate {
                 bound: match estimate.bound {
-                    Bound::Confidence { shares, .. } => Bound::Confidence {
+                    ErrorBound::Confidence { shares, .. } => ErrorBound::Confidence {
                         shares,
                         risk: wish.risk,
                     },
@@ -96,14 +96,14 @@ pub fn sampled(points: &[DVec3], edges: &Edges, wish: &Sampling) -> Result<Estim
 /// One round: about so many draws for each pair of cells of mean weight.
 fn drawn(
     points: &[DVec3],
-    cells: &Cells,
+    cells: &PointCells,
     edges: &Edges,
     draws: f64,
     risk: f64,
-    chance: &mut Chance,
+    chance: &mut DrawSource,
 ) -> Result<Estimate, KError> {
     let of_cells = cells.cells.len() as f64;
-    let mut one = One {
+    let mut one = SamplingWorker {
         points,
         cells,
         edges,
@@ -132,7 +132,7 @@ fn drawn(
 }
 
 /// Where a row starts in both cells: in the columns; the cell; which layout of it; and how far along.
-type Row<'a> = [(usize, &'a Cell, usize, usize); 2];
+type Row<'a> = [(usize, &'a PointCell, usize, usize); 2];
 
 /// Registers of a row.
 const REGISTERS: usize = ROW / LANES;
@@ -140,11 +140,11 @@ const REGISTERS: usize = ROW / LANES;
 /// Cells of a tile: two of them are within half of the second-level cache, a million points in 600 cells.
 const TILE: usize = 16;
 
-struct One<'a> {
+struct SamplingWorker<'a> {
     points: &'a [DVec3],
-    cells: &'a Cells,
+    cells: &'a PointCells,
     edges: &'a Edges,
-    chance: &'a mut Chance,
+    chance: &'a mut DrawSource,
     /// Draws if every pair of cells had its share of them.
     draws: f64,
     /// All pairs of points.
@@ -161,10 +161,10 @@ struct One<'a> {
     wrong: Option<KError>,
 }
 
-impl<'a> One<'a> {
+impl<'a> SamplingWorker<'a> {
     /// All pairs of cells, tile by tile: the points of two tiles stay at hand.
     #[inline(always)]
-    fn all_cells<L: Lanes>(&mut self, on: L) {
+    fn all_cells<L: SimdLanes>(&mut self, on: L) {
         let len = self.cells.cells.len();
         for tile in (0..len).step_by(TILE) {
             for other in (tile..len).step_by(TILE) {
@@ -177,7 +177,7 @@ impl<'a> One<'a> {
 
     /// A cell with some.
     #[inline(always)]
-    fn some_cells<L: Lanes>(&mut self, on: L, at: usize, (first, end): (usize, usize)) {
+    fn some_cells<L: SimdLanes>(&mut self, on: L, at: usize, (first, end): (usize, usize)) {
         let cells = self.cells;
         let (Some(a), Some(around)) = (cells.cells.get(at), cells.around.one(at)) else {
             return;
@@ -195,11 +195,11 @@ impl<'a> One<'a> {
     }
 
     #[inline(always)]
-    fn two_cells<L: Lanes>(
+    fn two_cells<L: SimdLanes>(
         &mut self,
         on: L,
-        a: &'a Cell,
-        b: &'a Cell,
+        a: &'a PointCell,
+        b: &'a PointCell,
         (first, last): (usize, usize),
     ) {
         let is_same = a.first == b.first;
@@ -226,7 +226,7 @@ impl<'a> One<'a> {
 
     /// Where a row starts, in the columns and in the order, of both cells.
     #[inline(always)]
-    fn row<'c>(&mut self, a: &'c Cell, b: &'c Cell, is_same: bool) -> Row<'c> {
+    fn row<'c>(&mut self, a: &'c PointCell, b: &'c PointCell, is_same: bool) -> Row<'c> {
         let bits = self.chance.draw();
         let from_a = scaled(bits, a.len);
         let (layout, from_b) = if is_same {
@@ -246,7 +246,7 @@ impl<'a> One<'a> {
 
     /// Two rows at all edges that may be between.
     #[inline(always)]
-    fn draw<L: Lanes>(
+    fn draw<L: SimdLanes>(
         &mut self,
         on: L,
         rows: &[Row<'_>; 2],
@@ -376,7 +376,7 @@ impl<'a> One<'a> {
 
     /// Dot products of the pairs of a row.
     #[inline(always)]
-    fn dots<L: Lanes>(&self, on: L, row: &Row<'_>) -> Option<[f32x16<L::S>; REGISTERS]> {
+    fn dots<L: SimdLanes>(&self, on: L, row: &Row<'_>) -> Option<[f32x16<L::S>; REGISTERS]> {
         let [x, y, z] = &self.cells.columns;
         let [(a, ..), (b, ..)] = *row;
         let simd = on.simd();
@@ -419,7 +419,7 @@ impl<'a> One<'a> {
             method: "sampled",
             edges: self.edges.clone(),
             shares,
-            bound: Bound::Confidence {
+            bound: ErrorBound::Confidence {
                 shares: bounds,
                 risk,
             },

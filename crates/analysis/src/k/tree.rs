@@ -5,9 +5,9 @@
 
 use glam::{DVec3, Vec3};
 
-use super::lanes::{LANES, Line};
+use super::lanes::{AlignedLanes, LANES};
 use super::outline::{self, Outline, Outlines};
-use super::reach::Around;
+use super::reach::CircleF32;
 
 /// The most leaves of a block.
 pub(super) const BLOCK_LEAVES: usize = 32;
@@ -68,9 +68,9 @@ impl Circles {
     }
 
     #[inline(always)]
-    pub(super) fn one(&self, at: usize) -> Option<Around> {
+    pub(super) fn one(&self, at: usize) -> Option<CircleF32> {
         let [x, y, z] = &self.middles;
-        Some(Around {
+        Some(CircleF32 {
             middle: [*x.get(at)?, *y.get(at)?, *z.get(at)?],
             radius: *self.radii.get(at)?,
         })
@@ -89,7 +89,7 @@ impl Circles {
 
 /// Leaves that follow one another, [`BLOCK_LEAVES`] at most.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Block {
+pub(super) struct LeafBlock {
     pub first: usize,
     /// Behind the last.
     pub end: usize,
@@ -98,7 +98,7 @@ pub(super) struct Block {
 
 /// Blocks that follow one another: a node above the blocks.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(super) struct TreeNode {
     pub first_block: usize,
     pub end_block: usize,
     pub circle: Circle,
@@ -107,7 +107,7 @@ pub(super) struct Node {
 }
 
 /// Coordinates of sixteen points; those that are missing are nought.
-pub(super) type Leaf = [Line<f32>; 3];
+pub(super) type Leaf = [AlignedLanes<f32>; 3];
 
 /// Directions in leaves.
 #[derive(Clone, Debug, Default)]
@@ -118,15 +118,15 @@ pub(super) struct Tree {
     pub order: Vec<u32>,
     pub leaves: Vec<Leaf>,
     pub around_leaves: Outlines,
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<LeafBlock>,
     pub around_blocks: Outlines,
     /// The last is the root; none without points.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<TreeNode>,
 }
 
 /// A point while it is sorted.
 #[derive(Clone, Copy)]
-struct Sorted {
+struct TreePoint {
     at: [f32; 3],
     index: u32,
     /// Where it is along what points are halved by.
@@ -136,8 +136,8 @@ struct Sorted {
 impl Tree {
     pub(super) fn new(points: &[DVec3]) -> Self {
         let sorted = points.iter().zip(0_u32..);
-        let mut sorted: Vec<Sorted> = sorted
-            .map(|(p, index)| Sorted {
+        let mut sorted: Vec<TreePoint> = sorted
+            .map(|(p, index)| TreePoint {
                 at: p.as_vec3().to_array(),
                 index,
                 key: 0.0,
@@ -161,12 +161,12 @@ impl Tree {
         };
         let around_blocks = blocks.iter().map(|block| outline::around(of_block(block)));
         let around_blocks: Vec<Outline> = around_blocks.collect();
-        let block = |of: &(usize, usize)| Block {
+        let block = |of: &(usize, usize)| LeafBlock {
             first: of.0,
             end: of.1,
             circle: Circle::around(of_block(of).iter()),
         };
-        let blocks: Vec<Block> = blocks.iter().map(block).collect();
+        let blocks: Vec<LeafBlock> = blocks.iter().map(block).collect();
         let mut tree = Self {
             around_leaves: Outlines::new(&around_leaves),
             blocks,
@@ -214,7 +214,7 @@ impl Tree {
             middle: DVec3::X,
             radius: std::f64::consts::PI,
         };
-        self.nodes.push(Node {
+        self.nodes.push(TreeNode {
             first_block,
             end_block,
             circle: circle.unwrap_or(everything),
@@ -225,7 +225,7 @@ impl Tree {
 }
 
 /// Sorts points into leaves, and notes the leaves of every block.
-fn halve(points: &mut [Sorted], first_leaf: usize, blocks: &mut Vec<(usize, usize)>) {
+fn halve(points: &mut [TreePoint], first_leaf: usize, blocks: &mut Vec<(usize, usize)>) {
     let leaves = points.len().div_ceil(LANES);
     if leaves == 0 {
         return;
@@ -251,7 +251,7 @@ fn halve(points: &mut [Sorted], first_leaf: usize, blocks: &mut Vec<(usize, usiz
 }
 
 /// The one of two directions along the sphere in which points reach farther. They change little from place to place, so that leaves are nearly square.
-fn widest(points: &[Sorted]) -> Vec3 {
+fn widest(points: &[TreePoint]) -> Vec3 {
     let sum: Vec3 = points.iter().map(|s| Vec3::from(s.at)).sum();
     let (e, f) = sum
         .try_normalize()
@@ -268,8 +268,8 @@ fn widest(points: &[Sorted]) -> Vec3 {
 }
 
 fn leaf(points: &[DVec3]) -> Leaf {
-    let mut leaf = [Line([0.0; LANES]); 3];
-    let [Line(x), Line(y), Line(z)] = &mut leaf;
+    let mut leaf = [AlignedLanes([0.0; LANES]); 3];
+    let [AlignedLanes(x), AlignedLanes(y), AlignedLanes(z)] = &mut leaf;
     for (((p, x), y), z) in points.iter().zip(x).zip(y).zip(z) {
         (*x, *y, *z) = (p.x as f32, p.y as f32, p.z as f32);
     }

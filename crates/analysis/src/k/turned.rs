@@ -13,14 +13,14 @@ use fearless_simd::{dispatch, f32x16, prelude::*, u32x16};
 use glam::{DQuat, DVec3};
 
 use super::exact::on_threads;
-use super::lanes::{LANES, Lanes, Line, Portable};
-use super::leaf_pair::{F32_BAND, Tally, loaded};
-use super::others::{Bits, Others};
+use super::lanes::{AlignedLanes, LANES, Portable, SimdLanes};
+use super::leaf_pair::{F32_BAND, PairCounter, loaded};
+use super::leaves_by_edge_count::{Bits, LeavesByEdgeCount};
 use super::plain::check;
-use super::reach::Reach;
+use super::reach::BinRange;
 
 use super::tree::{BLOCK_LEAVES, Tree};
-use super::{Counts, Edges, KError, Registers};
+use super::{Edges, KError, PairCounts, Registers};
 
 /// The most frames: all rows that are counted together can be added to a lane of 32 bits with a block's leaves then.
 pub const MOST_FRAMES: usize = 1 << 17;
@@ -33,7 +33,7 @@ const TURNING_ERROR: f64 = 4e-15;
 
 /// How the frames of a scan follow from the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turning {
+pub struct FrameRotation {
     /// The axis, of length 1.
     pub axis: DVec3,
     /// From one frame to the next, radians, by the right hand.
@@ -42,7 +42,7 @@ pub struct Turning {
     pub frames: usize,
 }
 
-impl Turning {
+impl FrameRotation {
     /// The farthest that any point is from where it should be, with the error of that.
     fn farthest(&self, points: &[DVec3]) -> Result<f64, KError> {
         let wrong = || KError::Frames {
@@ -86,11 +86,11 @@ impl Turning {
 /// [`KError::NotTurned`] and [`KError::Frames`] where the points are not such a scan; as [`super::exact()`].
 pub fn turned(
     points: &[DVec3],
-    turning: &Turning,
+    rotation: &FrameRotation,
     edges: &Edges,
     threads: NonZeroUsize,
-) -> Result<Counts, KError> {
-    turned_by(Registers::Best, points, turning, edges, threads)
+) -> Result<PairCounts, KError> {
+    turned_by(Registers::Best, points, rotation, edges, threads)
 }
 
 /// The same with some registers.
@@ -100,18 +100,18 @@ pub fn turned(
 pub fn turned_by(
     registers: Registers,
     points: &[DVec3],
-    turning: &Turning,
+    rotation: &FrameRotation,
     edges: &Edges,
     threads: NonZeroUsize,
-) -> Result<Counts, KError> {
+) -> Result<PairCounts, KError> {
     check(points)?;
     let level = registers.level();
-    let scan = Scan::new(points, turning, edges)?;
+    let scan = TurnedScan::new(points, rotation, edges)?;
     let next = AtomicUsize::new(0);
     let work = || {
-        let mut one = One {
+        let mut one = TurnedWorker {
             scan: &scan,
-            tally: Tally::new(edges.bins()),
+            counter: PairCounter::new(edges.bins()),
             on_edges: 0,
             wrong: None,
         };
@@ -146,7 +146,7 @@ pub fn turned_by(
         let is_on = |bin| edges.is_on(bin, p, p);
         on_edges -= u64::from(is_on(bin) || below.is_some_and(is_on));
     }
-    Ok(Counts {
+    Ok(PairCounts {
         edges: edges.clone(),
         counts: twice
             .iter()
@@ -161,7 +161,7 @@ pub fn turned_by(
 const ROWS: usize = 64;
 
 /// What all threads read.
-struct Scan<'a> {
+struct TurnedScan<'a> {
     points: &'a [DVec3],
     edges: &'a Edges,
     frames: usize,
@@ -172,32 +172,36 @@ struct Scan<'a> {
     /// Of all points.
     tree: Tree,
     /// For how many pairs a point of each leaf stands, with one of the first frame, from either end.
-    weights: Vec<Line<u32>>,
+    weights: Vec<AlignedLanes<u32>>,
     /// Their sums, of leaves and of blocks.
     leaf_weights: Vec<u64>,
     block_weights: Vec<u64>,
 }
 
-impl<'a> Scan<'a> {
-    fn new(points: &'a [DVec3], turning: &Turning, edges: &'a Edges) -> Result<Self, KError> {
-        let farthest = turning.farthest(points)?;
-        let size = points.len() / turning.frames.max(1);
+impl<'a> TurnedScan<'a> {
+    fn new(
+        points: &'a [DVec3],
+        rotation: &FrameRotation,
+        edges: &'a Edges,
+    ) -> Result<Self, KError> {
+        let farthest = rotation.farthest(points)?;
+        let size = points.len() / rotation.frames.max(1);
         let tree = Tree::new(points);
-        let frames = turning.frames;
+        let frames = rotation.frames;
         // From frame 0 to itself both ends are counted as they are.
         let weight = |index: u32| match index as usize / size.max(1) {
             0 => frames as u32,
             apart => 2 * (frames.saturating_sub(apart)) as u32,
         };
         let of_leaf = |leaf: &[u32]| {
-            let mut weights = Line([0; LANES]);
+            let mut weights = AlignedLanes([0; LANES]);
             for (to, index) in weights.0.iter_mut().zip(leaf) {
                 *to = weight(*index);
             }
             weights
         };
-        let weights: Vec<Line<u32>> = tree.order.chunks(LANES).map(of_leaf).collect();
-        let sum = |of: &Line<u32>| of.0.iter().map(|&w| u64::from(w)).sum();
+        let weights: Vec<AlignedLanes<u32>> = tree.order.chunks(LANES).map(of_leaf).collect();
+        let sum = |of: &AlignedLanes<u32>| of.0.iter().map(|&w| u64::from(w)).sum();
         let leaf_weights: Vec<u64> = weights.iter().map(sum).collect();
         let of_block = |first: usize, end: usize| {
             let of: &[u64] = leaf_weights.get(first..end).unwrap_or_default();
@@ -222,23 +226,23 @@ impl<'a> Scan<'a> {
     }
 }
 
-impl Scan<'_> {
+impl TurnedScan<'_> {
     /// A row with a leaf that edges go through: adds the weights beyond each; the dot products if any is too near to an edge.
     #[inline(always)]
-    fn leaf<L: Lanes>(
+    fn leaf<L: SimdLanes>(
         &self,
         on: L,
         [x, y, z]: [f32; 3],
         leaf: usize,
         cosines: &[f32],
-        tallied: &mut [Line<u32>],
+        counted_lanes: &mut [AlignedLanes<u32>],
     ) -> Option<[f32; LANES]> {
         let simd = on.simd();
         let weights = u32x16::load_array_ref(simd, &self.weights.get(leaf)?.0);
         let [bx, by, bz] = loaded(simd, self.tree.leaves.get(leaf)?);
         let dot = bz.mul_add(z, by.mul_add(y, bx * x));
         let mut nearest = f32x16::splat(simd, 4.0);
-        for (cosine, lanes) in cosines.iter().zip(tallied) {
+        for (cosine, lanes) in cosines.iter().zip(counted_lanes) {
             let above = dot - *cosine;
             let beyond = above.simd_lt(0.0).select(weights, u32x16::splat(simd, 0));
             (u32x16::load_array_ref(simd, &lanes.0) + beyond).store_array(&mut lanes.0);
@@ -253,24 +257,24 @@ impl Scan<'_> {
 }
 
 /// What one thread counts.
-struct One<'a> {
-    scan: &'a Scan<'a>,
-    tally: Tally,
+struct TurnedWorker<'a> {
+    scan: &'a TurnedScan<'a>,
+    counter: PairCounter,
     on_edges: u64,
     wrong: Option<KError>,
 }
 
-impl One<'_> {
+impl TurnedWorker<'_> {
     fn done(self) -> Result<(Vec<i64>, u64), KError> {
         match self.wrong {
             Some(wrong) => Err(wrong),
-            None => Ok((self.tally.counts(&[]), self.on_edges)),
+            None => Ok((self.counter.counts(&[]), self.on_edges)),
         }
     }
 
     /// Takes rows until none is left, each with all points.
     #[inline(always)]
-    fn all<L: Lanes>(&mut self, on: L, next: &AtomicUsize) {
+    fn all<L: SimdLanes>(&mut self, on: L, next: &AtomicUsize) {
         let scan = self.scan;
         loop {
             let start = next.fetch_add(ROWS, Ordering::Relaxed);
@@ -286,10 +290,10 @@ impl One<'_> {
 
     /// Rows with sixteen blocks: a block with all rows before the next, so that it stays near.
     #[inline(always)]
-    fn rows<L: Lanes>(&mut self, on: L, rows: Range<usize>, first_block: usize) {
+    fn rows<L: SimdLanes>(&mut self, on: L, rows: Range<usize>, first_block: usize) {
         let scan = self.scan;
         let (blocks, bins) = (&scan.tree.around_blocks, scan.edges.bins());
-        let mut found = [([0.0; 3], Reach::default()); ROWS];
+        let mut found = [([0.0; 3], BinRange::default()); ROWS];
         for (point, found) in scan.points.iter().skip(rows.start).zip(&mut found) {
             let at = point.as_vec3().to_array();
             if let Some(reach) = blocks.span_of_point(on.simd(), at, first_block, bins) {
@@ -298,12 +302,12 @@ impl One<'_> {
         }
         for lane in 0..LANES.min(scan.tree.blocks.len() - first_block) {
             let block = first_block + lane;
-            self.tally.settle(ROWS * BLOCK_LEAVES * 2 * scan.frames);
+            self.counter.settle(ROWS * BLOCK_LEAVES * 2 * scan.frames);
             for (row, (at, reach)) in rows.clone().zip(&found) {
                 let first = reach.first[lane];
                 if first == reach.last[lane] {
                     let weight = scan.block_weights.get(block);
-                    self.tally.add(first as usize, weight.copied());
+                    self.counter.add(first as usize, weight.copied());
                 } else {
                     self.block(on, (row, *at), block);
                 }
@@ -313,13 +317,13 @@ impl One<'_> {
 
     /// A row with the leaves of a block.
     #[inline(always)]
-    fn block<L: Lanes>(&mut self, on: L, (row, at): (usize, [f32; 3]), block: usize) {
+    fn block<L: SimdLanes>(&mut self, on: L, (row, at): (usize, [f32; 3]), block: usize) {
         let scan = self.scan;
         let Some(block) = scan.tree.blocks.get(block) else {
             return;
         };
         let (bins, leaves) = (scan.edges.bins(), &scan.tree.around_leaves);
-        let mut others = Others::default();
+        let mut others = LeavesByEdgeCount::default();
         let starts = (block.first..block.end).step_by(LANES);
         for (of, start) in others.reach.iter_mut().zip(starts) {
             if let Some(reach) = leaves.span_of_point(on.simd(), at, start, bins) {
@@ -329,7 +333,7 @@ impl One<'_> {
         others.sort(on.simd(), block.end - block.first);
         for (leaf, index) in (block.first..block.end).zip(0..) {
             let weight = scan.leaf_weights.get(leaf);
-            self.tally.add(others.bins(index).0, weight.copied());
+            self.counter.add(others.bins(index).0, weight.copied());
         }
         let row = (row, at, block.first);
         self.few::<L, 1>(on, row, &others);
@@ -337,7 +341,7 @@ impl One<'_> {
         self.few::<L, 3>(on, row, &others);
         for index in others.of::<4>().chain(Bits(others.many)) {
             let (first, last) = others.bins(index);
-            let (cosines, lanes) = (scan.edges.cosines_f32(), &mut self.tally.lanes);
+            let (cosines, lanes) = (scan.edges.cosines_f32(), &mut self.counter.lanes);
             let (Some(cosines), Some(lanes)) =
                 (cosines.get(first..last), lanes.get_mut(first..last))
             else {
@@ -352,16 +356,16 @@ impl One<'_> {
 
     /// A row with leaves that so many edges go through.
     #[inline(always)]
-    fn few<L: Lanes, const E: usize>(
+    fn few<L: SimdLanes, const E: usize>(
         &mut self,
         on: L,
         (row, at, start): (usize, [f32; 3], usize),
-        others: &Others,
+        others: &LeavesByEdgeCount,
     ) {
         let scan = self.scan;
         for index in others.of::<E>() {
             let (first, _) = others.bins(index);
-            let (cosines, lanes) = (scan.edges.cosines_f32(), &mut self.tally.lanes);
+            let (cosines, lanes) = (scan.edges.cosines_f32(), &mut self.counter.lanes);
             let (Some(cosines), Some(lanes)) = (cosines.get(first..), lanes.get_mut(first..))
             else {
                 continue;
@@ -399,7 +403,7 @@ impl One<'_> {
                     .map_or(0, |&w| i64::from(w));
                 let said = if above < 0.0 { weight } else { 0 };
                 let beyond = self.beyond(edge, row, *index as usize, weight);
-                if let Some(of) = self.tally.beyond.get_mut(edge) {
+                if let Some(of) = self.counter.beyond.get_mut(edge) {
                     *of += beyond - said;
                 }
             }

@@ -1,43 +1,16 @@
 //! Findings as one page that needs nothing beside it: figures inside, light and dark, readable on a phone.
 
-use super::svg::escaped;
-use super::{Findings, Report, number, svg};
-
-pub(crate) const STYLE: &str = "\
-:root{color-scheme:light dark;--ink:#1f2328;--soft:#57606a;--page:#f3f4f6;--card:#fff;--line:#d8dee4;--mark:#0b62b8;--tint:#eef5fc}\
-@media (prefers-color-scheme:dark){:root{--ink:#e6e8eb;--soft:#a0a8b2;--page:#101216;--card:#181b20;--line:#333941;--mark:#6cb4ff;--tint:#1b2733}}\
-*{box-sizing:border-box}\
-body{margin:0;background:var(--page);color:var(--ink);font:16px/1.55 system-ui,-apple-system,'Segoe UI',sans-serif}\
-main,header,footer{max-width:56rem;margin:0 auto;padding:1rem}\
-h1{font-size:1.7rem;line-height:1.2;margin:1rem 0 .4rem}\
-h2{font-size:1.25rem;line-height:1.3;margin:0 0 .6rem}\
-p{margin:.5rem 0}\
-.soft,footer{color:var(--soft);font-size:.92rem}\
-.caution{border-left:4px solid #d9822b;padding:.3rem .8rem;margin:.8rem 0}\
-nav{display:flex;flex-wrap:wrap;gap:.5rem;margin:1rem 0 0}\
-nav a{background:var(--card);border:1px solid var(--line);border-radius:99px;padding:.25rem .8rem;color:var(--mark);text-decoration:none;font-size:.92rem}\
-section{background:var(--card);border:1px solid var(--line);border-radius:12px;padding:1.1rem;margin:0 0 1.2rem}\
-figure{margin:1rem 0}\
-figure svg{display:block;width:100%;max-width:40rem;height:auto;margin:0 auto}\
-.scroll{overflow-x:auto;-webkit-overflow-scrolling:touch}\
-table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums;font-size:.9rem}\
-th,td{padding:.35rem .6rem;border-bottom:1px solid var(--line);text-align:right;vertical-align:bottom}\
-th:first-child,td:first-child{text-align:left}\
-th{font-weight:600}\
-td small{color:var(--soft);white-space:nowrap}\
-tr.on td{background:var(--tint)}\
-tr.on td:last-child{color:var(--mark);font-weight:700}\
-@media (max-width:34rem){header,footer{padding:.8rem}main{padding:.4rem}section{padding:.7rem;border-radius:8px}figure{margin:1rem -.7rem}\
-th,td{padding:.3rem .35rem}td small{display:block;font-size:.78rem}}";
+use super::{StudyFindings, StudyReport, svg};
+use crate::draw::{PAGE_STYLE, escaped};
 
 /// The page.
 #[must_use]
-pub fn page(report: &Report) -> String {
+pub fn page(report: &StudyReport) -> String {
     let machine = escaped(&report.machine.line());
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>velomotion: what accuracy costs in time</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
+         <title>velomotion: what accuracy costs in time</title>\n<style>{PAGE_STYLE}</style>\n</head>\n<body>\n\
          <header>\n<h1>What accuracy costs in time</h1>\n<p class=\"soft\">{machine}</p>\n"
     );
     for caution in report.cautions() {
@@ -64,7 +37,7 @@ pub fn page(report: &Report) -> String {
     page
 }
 
-fn section(findings: &Findings) -> String {
+fn section(findings: &StudyFindings) -> String {
     let mut html = format!(
         "<section id=\"{}\">\n<h2>{}</h2>\n",
         findings.name,
@@ -81,7 +54,7 @@ fn section(findings: &Findings) -> String {
     html + "</section>\n"
 }
 
-fn table(findings: &Findings) -> String {
+fn table(findings: &StudyFindings) -> String {
     let mut html = format!(
         "<div class=\"scroll\"><table>\n<thead><tr><th>{}</th>",
         escaped(findings.choice)
@@ -94,7 +67,7 @@ fn table(findings: &Findings) -> String {
         let class = if mark.is_empty() { "" } else { " class=\"on\"" };
         html += &format!("<tr{class}><td>{}</td>", escaped(&row.name));
         for value in &row.values {
-            let text = number::value(value);
+            let text = value.text();
             let (middle, ends) = text.split_once(' ').unwrap_or((&text, ""));
             html += &format!("<td>{middle}");
             if !ends.is_empty() {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{Effort, Findings, Machine, Report, Trade, Value};
+use super::{Effort, Machine, Measurement, StudyFindings, StudyReport, Trade};
 
 /// Version of the shape.
 pub const SCHEMA: u32 = 1;
@@ -42,7 +42,7 @@ struct ColumnJson {
 struct RowJson<'a> {
     name: &'a str,
     group: &'a str,
-    values: BTreeMap<&'static str, &'a Value>,
+    values: BTreeMap<&'static str, &'a Measurement>,
 }
 
 #[derive(Debug, Serialize)]
@@ -54,7 +54,7 @@ struct TradeJson<'a> {
 
 /// A report, to be serialised.
 #[must_use]
-pub fn report(report: &Report) -> Json<'_> {
+pub fn report(report: &StudyReport) -> Json<'_> {
     Json {
         schema: SCHEMA,
         program: &report.program,
@@ -64,7 +64,7 @@ pub fn report(report: &Report) -> Json<'_> {
     }
 }
 
-fn study(findings: &Findings) -> StudyJson<'_> {
+fn study(findings: &StudyFindings) -> StudyJson<'_> {
     let columns = findings.columns.iter().map(|column| ColumnJson {
         key: column.key,
         heading: column.heading,
@@ -89,7 +89,7 @@ fn study(findings: &Findings) -> StudyJson<'_> {
     }
 }
 
-fn trade<'a>(findings: &'a Findings, trade: &Trade) -> TradeJson<'a> {
+fn trade<'a>(findings: &'a StudyFindings, trade: &Trade) -> TradeJson<'a> {
     let key = |column: usize| findings.columns.get(column).map_or("", |c| c.key);
     let on = findings.front(trade);
     let rows = findings.rows.iter().zip(on).filter(|(_, on)| *on);

@@ -9,10 +9,10 @@ use std::num::NonZeroUsize;
 use glam::DVec3;
 
 use super::{
-    Bench, Column, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+    Bench, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work, in_rounds,
 };
 use crate::k::{
-    Edges, Estimate, KError, Registers, Sampling, Turning, exact_by, gridded, harmonics, sampled,
+    Edges, Estimate, FrameRotation, KError, Registers, Sampling, exact_by, harmonics, sampled,
     turned,
 };
 
@@ -24,9 +24,9 @@ const BINS: usize = 151;
 const ONE: NonZeroUsize = NonZeroUsize::MIN;
 
 /// A scan of turned frames.
-struct Scan {
+struct StudyScan {
     points: Vec<DVec3>,
-    turning: Turning,
+    rotation: FrameRotation,
     edges: Edges,
 }
 
@@ -34,11 +34,11 @@ type Way = (
     &'static str,
     &'static str,
     &'static str,
-    fn(&Scan) -> Result<Estimate, KError>,
+    fn(&StudyScan) -> Result<Estimate, KError>,
 );
 
 /// Name, label, group and how.
-const WAYS: [Way; 12] = [
+const WAYS: [Way; 9] = [
     ("every pair", "every pair", "exact", |s| {
         every(s, Registers::Best)
     }),
@@ -49,20 +49,11 @@ const WAYS: [Way; 12] = [
         every(s, Registers::Sse4)
     }),
     ("by the turning of frames", "turned", "exact", |s| {
-        turned(&s.points, &s.turning, &s.edges, ONE).map(Estimate::from)
+        turned(&s.points, &s.rotation, &s.edges, ONE).map(Estimate::from)
     }),
     ("sampled, 1e-2", "1e-2", "sampled", |s| sample(s, 1e-2)),
     ("sampled, 1e-3", "1e-3", "sampled", |s| sample(s, 1e-3)),
     ("sampled, 1e-4", "1e-4", "sampled", |s| sample(s, 1e-4)),
-    ("gridded, 6 cells a side", "6", "gridded", |s| {
-        gridded(&s.points, &s.edges, 6)
-    }),
-    ("gridded, 16 cells a side", "16", "gridded", |s| {
-        gridded(&s.points, &s.edges, 16)
-    }),
-    ("gridded, 40 cells a side", "40", "gridded", |s| {
-        gridded(&s.points, &s.edges, 40)
-    }),
     ("harmonics to degree 16", "16", "harmonics", |s| {
         harmonics(&s.points, &s.edges, 16)
     }),
@@ -71,11 +62,11 @@ const WAYS: [Way; 12] = [
     }),
 ];
 
-fn every(scan: &Scan, registers: Registers) -> Result<Estimate, KError> {
+fn every(scan: &StudyScan, registers: Registers) -> Result<Estimate, KError> {
     exact_by(registers, &scan.points, &scan.edges, ONE).map(Estimate::from)
 }
 
-fn sample(scan: &Scan, tolerance: f64) -> Result<Estimate, KError> {
+fn sample(scan: &StudyScan, tolerance: f64) -> Result<Estimate, KError> {
     let wish = Sampling {
         tolerance,
         ..Sampling::default()
@@ -92,7 +83,7 @@ impl Study for KFunction {
         "Ways to the K function"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
         let wrong = |error: KError| StudyError::Workload(Box::new(error));
         let scan = scan(bench.size(2, 8)).map_err(wrong)?;
         let truth = every(&scan, Registers::Best).map_err(wrong)?;
@@ -116,40 +107,30 @@ impl Study for KFunction {
         }
         let times = in_rounds(bench.clock, plan, &mut work).map_err(wrong)?;
         let rows = WAYS.into_iter().zip(times).zip(errors);
-        let rows = rows.map(|(((name, label, group, _), time), (error, bound))| Row {
-            name: name.to_owned(),
-            label: label.to_owned(),
-            group,
-            values: vec![
-                Value::Timed(time.times(1e3)),
-                Value::Computed(error),
-                Value::Computed(bound),
-            ],
+        let rows = rows.map(|(((name, label, group, _), time), (error, bound))| {
+            Row::new(
+                name,
+                label,
+                group,
+                vec![
+                    Measurement::Timed(time.times(1e3)),
+                    Measurement::Computed(error),
+                    Measurement::Computed(bound),
+                ],
+            )
         });
-        let column = |key, heading| Column {
-            key,
-            heading,
-            scale: Scale::Log,
-        };
-        let trade = |loss| Trade {
-            cost: 0,
-            loss,
-            joined: true,
-            apart: false,
-        };
-        Ok(Findings {
+        let trade = |loss| Trade::new(0, loss).joined();
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: vec![
                 format!("An RMBL of {points} points: a VLP-16 at 901 azimuths, turned on step by step from 0 to 180 degrees; 151 bins of equal angle; one thread."),
-                "The error is the largest of D, the share of all pairs, against every pair; the bound is what the method says of itself: proven for grids, a confidence interval with a risk of 1 in 1000 for samples. Harmonics have none: what is measured here is all that is known of their error.".to_owned(),
+                "The error is the largest of D, the share of all pairs, against every pair; the bound is what the method reports: for samples a confidence interval with a risk of 1 in 1000. Harmonics have no bound: their error is only known where it is measured.".to_owned(),
             ],
             choice: "way",
-            columns: vec![
-                column("time_ms", "ms"),
-                column("error", "error of D"),
-                column("bound", "its bound"),
-            ],
+            columns: [("time_ms", "ms"), ("error", "error of D"), ("bound", "its bound")]
+                .map(StudyColumn::log)
+                .into(),
             rows: rows.collect(),
             trades: vec![trade(1), trade(2)],
         })
@@ -157,7 +138,7 @@ impl Study for KFunction {
 }
 
 /// An RMBL of so many frames (Eq. 1-6 of the paper with d = 0), still within a frame.
-fn scan(frames: usize) -> Result<Scan, KError> {
+fn scan(frames: usize) -> Result<StudyScan, KError> {
     let step_rad = PI / frames as f64;
     let mut points = Vec::with_capacity(frames * 901 * 16);
     for frame in 0..frames {
@@ -171,9 +152,9 @@ fn scan(frames: usize) -> Result<Scan, KError> {
             points.push(DVec3::new(x, cos_w * cos_a, z));
         }
     }
-    Ok(Scan {
+    Ok(StudyScan {
         points,
-        turning: Turning {
+        rotation: FrameRotation {
             axis: DVec3::Y,
             step_rad,
             frames,
@@ -214,6 +195,5 @@ mod tests {
         };
         assert!(bound("sampled, 1e-4") <= 1e-4);
         assert_eq!(bound("harmonics to degree 64"), f64::INFINITY);
-        assert!(bound("gridded, 40 cells a side") < bound("gridded, 6 cells a side"));
     }
 }

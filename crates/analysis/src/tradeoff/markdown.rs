@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Findings, Report, number, svg};
+use super::{Measurement, StudyFindings, StudyReport, svg};
 
 /// A page of the book that a command writes, with its figures in a folder of the page's name.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +18,7 @@ pub struct Book<'a> {
 impl Book<'_> {
     /// The page and its figures: paths within the book, and contents.
     #[must_use]
-    pub fn files(&self, report: &Report) -> Vec<(PathBuf, String)> {
+    pub fn files(&self, report: &StudyReport) -> Vec<(PathBuf, String)> {
         let page = (
             PathBuf::from(format!("{}.md", self.name)),
             self.page(report),
@@ -30,7 +30,7 @@ impl Book<'_> {
         [page].into_iter().chain(figures).collect()
     }
 
-    fn page(&self, report: &Report) -> String {
+    fn page(&self, report: &StudyReport) -> String {
         let mut page = vec![
             format!("# {}", escaped(self.title)),
             format!(
@@ -56,7 +56,7 @@ impl Book<'_> {
     }
 }
 
-fn section(findings: &Findings, folder: &str) -> String {
+fn section(findings: &StudyFindings, folder: &str) -> String {
     let mut section = vec![format!("## {}", escaped(findings.title))];
     section.extend(findings.about.iter().map(|paragraph| escaped(paragraph)));
     section.push(format!(
@@ -69,7 +69,7 @@ fn section(findings: &Findings, folder: &str) -> String {
     section.join("\n\n")
 }
 
-fn table(findings: &Findings) -> String {
+fn table(findings: &StudyFindings) -> String {
     let headings = findings.columns.iter().map(|column| column.heading);
     let headings: Vec<&str> = [findings.choice].into_iter().chain(headings).collect();
     let mut lines = vec![
@@ -77,7 +77,7 @@ fn table(findings: &Findings) -> String {
         format!("|---{}|:-:|", "|--:".repeat(findings.columns.len())),
     ];
     for (row, mark) in findings.rows.iter().zip(findings.marks()) {
-        let values: Vec<String> = row.values.iter().map(number::value).collect();
+        let values: Vec<String> = row.values.iter().map(Measurement::text).collect();
         let mark = mark.replace('*', "\\*");
         lines.push(format!(
             "| {} | {} | {mark} |",

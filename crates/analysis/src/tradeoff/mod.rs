@@ -1,9 +1,9 @@
 //! Studies of choices that trade accuracy for time.
 //!
-//! A [`Study`] measures every choice and returns [`Findings`]: a table, the pairs of columns that
+//! A [`Study`] measures every choice and returns [`StudyFindings`]: a table, the pairs of columns that
 //! are traded, and the choices on the Pareto front ([`front`]). [`text`], [`svg`], [`Book`],
 //! [`html`] and [`json`] show the findings. [`KFunction`] and [`ScanSpeed`] are studies; others
-//! are in `velomotion` and in `studies`. The clock is an argument ([`Clock`]).
+//! are in `velomotion` and in `studies`. The clock is an argument ([`StudyClock`]).
 
 pub mod front;
 pub mod html;
@@ -11,7 +11,7 @@ pub mod json;
 mod k_function;
 mod markdown;
 mod noise;
-pub mod number;
+mod panel;
 pub mod pattern;
 mod scan_speed;
 mod study;
@@ -19,12 +19,13 @@ pub mod svg;
 pub mod text;
 mod timing;
 
+pub use crate::draw::Scale;
 pub use k_function::KFunction;
 pub use markdown::Book;
 pub use noise::SeededNoise;
 pub use scan_speed::ScanSpeed;
 pub use study::{
-    Bench, Column, Effort, Findings, Machine, Report, Row, Scale, Study, StudyError, Trade,
-    UnknownStudy, Value, select,
+    Bench, Effort, Machine, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings,
+    StudyReport, Trade, UnknownStudy, select,
 };
-pub use timing::{Clock, Plan, Spread, Work, in_rounds};
+pub use timing::{StudyClock, TimingPlan, TimingSpread, Work, in_rounds};

@@ -11,7 +11,7 @@ use crate::device::vertical_resolution_deg;
 
 /// A tilt from 0 to `-way_deg`: a ramp, a cruise, the same ramp down; a way too short for both is a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sweep {
+pub struct TiltSweep {
     /// How far, degrees; above 0.
     pub way_deg: f64,
     /// Speed of the cruise, degrees per second; above 0.
@@ -20,7 +20,7 @@ pub struct Sweep {
     pub accel_deg_s2: f64,
 }
 
-impl Sweep {
+impl TiltSweep {
     /// Highest speed reached, degrees per second.
     #[must_use]
     pub fn peak_deg_s(&self) -> f64 {
@@ -59,14 +59,14 @@ impl Sweep {
 
 /// The lidar on the platform.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lidar {
+pub struct PatternLidar {
     /// Elevations of its lasers, degrees, in any order; at least one.
     pub elevations_deg: Vec<f64>,
     /// Its turns a second.
     pub turns_per_s: f64,
 }
 
-impl Lidar {
+impl PatternLidar {
     /// The VLP-16: -15 to 15 degrees by 2, at 10 turns a second.
     #[must_use]
     pub fn vlp_16() -> Self {
@@ -86,13 +86,13 @@ impl Lidar {
 
     /// Turns that the lidar makes during a sweep.
     #[must_use]
-    pub fn turns(&self, sweep: &Sweep) -> f64 {
+    pub fn turns(&self, sweep: &TiltSweep) -> f64 {
         sweep.duration_s() * self.turns_per_s
     }
 
     /// Vertical field of view of a sweep straight across the tilt axis, degrees: the lidar's own and the way.
     #[must_use]
-    pub fn field_deg(&self, sweep: &Sweep) -> f64 {
+    pub fn field_deg(&self, sweep: &TiltSweep) -> f64 {
         let (low, high) = self.ends_deg();
         high - low + sweep.way_deg
     }
@@ -100,7 +100,7 @@ impl Lidar {
     /// Mean vertical resolution, degrees, as the paper has it and [`vertical_resolution_deg`]: the field of view shared by lasers times the turns that the way takes at cruise speed.
     /// Ramps, in which the lines lie closer, do not count. For 45 degrees at 56.25 deg/s 75 / (16 x 8) = 0.586.
     #[must_use]
-    pub fn mean_resolution_deg(&self, sweep: &Sweep) -> f64 {
+    pub fn mean_resolution_deg(&self, sweep: &TiltSweep) -> f64 {
         let turns = sweep.way_deg / sweep.speed_deg_s * self.turns_per_s;
         let lasers = u32::try_from(self.elevations_deg.len()).unwrap_or(u32::MAX);
         vertical_resolution_deg(self.field_deg(sweep), lasers, turns)
@@ -111,21 +111,21 @@ impl Lidar {
     ///
     /// In that plane a laser stands at elevation w - gamma whenever the lidar looks along it, once a turn.
     #[must_use]
-    pub fn gaps(&self, sweep: &Sweep, phases: u32) -> Gaps {
-        let none = Gaps {
+    pub fn gaps(&self, sweep: &TiltSweep, phases: u32) -> LineGaps {
+        let none = LineGaps {
             field_deg: 0.0,
             middle_deg: 0.0,
         };
         (0..phases).fold(none, |worst, i| {
             let gaps = self.gaps_at(sweep, f64::from(i) / f64::from(phases));
-            Gaps {
+            LineGaps {
                 field_deg: worst.field_deg.max(gaps.field_deg),
                 middle_deg: worst.middle_deg.max(gaps.middle_deg),
             }
         })
     }
 
-    fn gaps_at(&self, sweep: &Sweep, phase: f64) -> Gaps {
+    fn gaps_at(&self, sweep: &TiltSweep, phase: f64) -> LineGaps {
         let (low, high) = self.ends_deg();
         let turns = self.turns(sweep);
         let passes: Vec<f64> = (0..)
@@ -140,7 +140,7 @@ impl Lidar {
             .collect();
         // Every laser's lines are in order already, which a stable sort makes use of.
         lines.sort_by(f64::total_cmp);
-        let mut gaps = Gaps {
+        let mut gaps = LineGaps {
             field_deg: 0.0,
             middle_deg: 0.0,
         };
@@ -159,9 +159,9 @@ impl Lidar {
     ///
     /// The distance of a direction from a line is taken when the lidar looks towards it: its elevation then, less the laser's.
     #[must_use]
-    pub fn widest_circle_deg(&self, sweep: &Sweep, step_deg: f64) -> f64 {
+    pub fn widest_circle_deg(&self, sweep: &TiltSweep, step_deg: f64) -> f64 {
         let turns = self.turns(sweep).floor().clamp(0.0, 1e9) as u64 + 1;
-        let order = Order::new(turns);
+        let order = StrideOrder::new(turns);
         let mut worst: f64 = 0.0;
         for direction in grid(step_deg) {
             if !self.may_see(sweep, direction) {
@@ -185,7 +185,7 @@ impl Lidar {
     }
 
     /// Whether a direction comes between the lowest and the highest laser at some tilt of a sweep.
-    fn may_see(&self, sweep: &Sweep, [x, _, z]: [f64; 3]) -> bool {
+    fn may_see(&self, sweep: &TiltSweep, [x, _, z]: [f64; 3]) -> bool {
         let up = |gamma_deg: f64| {
             let (sin, cos) = gamma_deg.to_radians().sin_cos();
             x * sin + z * cos
@@ -206,7 +206,7 @@ impl Lidar {
 
     /// How far a direction is from the nearest line of turn `turn`, degrees; `None` where the sweep is over before the lidar looks
     /// there.
-    fn off_line_deg(&self, sweep: &Sweep, [x, y, z]: [f64; 3], turn: u64) -> Option<f64> {
+    fn off_line_deg(&self, sweep: &TiltSweep, [x, y, z]: [f64; 3], turn: u64) -> Option<f64> {
         let whole = sweep.duration_s();
         let mut t = turn as f64 / self.turns_per_s;
         let mut up = z;
@@ -243,7 +243,7 @@ fn grid(step_deg: f64) -> impl Iterator<Item = [f64; 3]> {
 
 /// Greatest angles between neighbouring scan lines straight across the tilt axis, degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gaps {
+pub struct LineGaps {
     /// In the whole field of view, whose ends count as lines.
     pub field_deg: f64,
     /// In its middle, which every laser passes: from the highest laser at the start to the lowest at the end. 0 where the way is so
@@ -252,12 +252,12 @@ pub struct Gaps {
 }
 
 /// All numbers below `n`, far ones after each other: lines near a direction are found soon.
-struct Order {
+struct StrideOrder {
     n: u64,
     stride: u64,
 }
 
-impl Order {
+impl StrideOrder {
     fn new(n: u64) -> Self {
         let golden = (n as f64 * 0.618_033_988_75) as u64;
         let coprime = |stride: &u64| gcd(*stride, n) == 1;
@@ -288,8 +288,8 @@ mod tests {
 
     use super::*;
 
-    const fn sweep(speed_deg_s: f64, accel_deg_s2: f64) -> Sweep {
-        Sweep {
+    const fn sweep(speed_deg_s: f64, accel_deg_s2: f64) -> TiltSweep {
+        TiltSweep {
             way_deg: 45.0,
             speed_deg_s,
             accel_deg_s2,
@@ -303,7 +303,7 @@ mod tests {
     /// The paper's figures, which count 0.80 s for 45 degrees: no ramps.
     #[test]
     fn the_papers_resolutions_come_out() {
-        let vlp = Lidar::vlp_16();
+        let vlp = PatternLidar::vlp_16();
         let fast = sweep(56.25, f64::INFINITY);
         assert!(close(fast.duration_s(), 0.8, 1e-12));
         assert!(close(vlp.turns(&fast), 8.0, 1e-12));
@@ -329,7 +329,7 @@ mod tests {
         assert!(close(fast.angle_deg(0.1125), -0.5 * 56.25 * 0.1125, 1e-12));
         assert!(close(fast.angle_deg(0.45625), -22.5, 1e-12));
         assert_eq!((fast.angle_deg(-1.0), fast.angle_deg(2.0)), (0.0, -45.0));
-        let short = Sweep {
+        let short = TiltSweep {
             way_deg: 1.0,
             ..fast
         };
@@ -343,7 +343,7 @@ mod tests {
     /// fill each other's gaps, unless their 2 degrees are a multiple of a turn's tilt: then their lines coincide.
     #[test]
     fn gaps_are_a_turns_tilt_unless_the_lasers_fill_them() {
-        let vlp = Lidar::vlp_16();
+        let vlp = PatternLidar::vlp_16();
         for (speed, field, middle) in [
             (1.0, 0.1, 0.1),
             (10.0, 1.0, 1.0),
@@ -357,7 +357,7 @@ mod tests {
             assert!(close(gaps.field_deg, field, 1e-9), "{speed}: {gaps:?}");
             assert!(close(gaps.middle_deg, middle, 1e-9), "{speed}: {gaps:?}");
         }
-        let short = Sweep {
+        let short = TiltSweep {
             way_deg: 20.0,
             ..sweep(1.0, 500.0)
         };
@@ -370,7 +370,7 @@ mod tests {
         /// A line is looked for from every place of a fine ladder of elevations.
         #[test]
         fn gaps_are_what_a_fine_ladder_finds(speed_deg_s in 3.0..60.0_f64, phase in 0.0..1.0_f64) {
-            let (vlp, sweep) = (Lidar::vlp_16(), sweep(speed_deg_s, 500.0));
+            let (vlp, sweep) = (PatternLidar::vlp_16(), sweep(speed_deg_s, 500.0));
             let gaps = vlp.gaps_at(&sweep, phase);
             let passes = (0..).map(|k| (f64::from(k) + phase) / 10.0);
             let tilts = passes.take_while(|t| *t <= sweep.duration_s()).map(|t| sweep.angle_deg(t));
@@ -394,12 +394,12 @@ mod tests {
     /// Whatever the speed, what lies between the lasers at -1 and +1 degrees about the tilt axis is never seen.
     #[test]
     fn the_poles_stay_blind_at_any_speed() {
-        let vlp = Lidar::vlp_16();
+        let vlp = PatternLidar::vlp_16();
         for speed in [0.5, 5.0] {
             let circle = vlp.widest_circle_deg(&sweep(speed, 500.0), 2.0);
             assert!(close(circle, 2.0, 1e-9), "{speed}: {circle}");
         }
-        let one = Lidar {
+        let one = PatternLidar {
             elevations_deg: vec![0.0],
             turns_per_s: 10.0,
         };
@@ -409,7 +409,7 @@ mod tests {
     }
 
     /// Every direction against every turn, frames turned as matrices, nothing left out early.
-    fn slow_circle_deg(lidar: &Lidar, sweep: &Sweep, step_deg: f64) -> f64 {
+    fn slow_circle_deg(lidar: &PatternLidar, sweep: &TiltSweep, step_deg: f64) -> f64 {
         let turns = lidar.turns(sweep).floor() as u32 + 1;
         let mut worst: f64 = 0.0;
         for direction in grid(step_deg) {
@@ -451,7 +451,7 @@ mod tests {
     #[test]
     fn the_widest_circle_is_what_trying_everything_finds() {
         for speed in [56.25, 7.0] {
-            let (vlp, sweep) = (Lidar::vlp_16(), sweep(speed, 500.0));
+            let (vlp, sweep) = (PatternLidar::vlp_16(), sweep(speed, 500.0));
             let fast = vlp.widest_circle_deg(&sweep, 10.0);
             let slow = slow_circle_deg(&vlp, &sweep, 10.0);
             assert!(close(fast, slow, 1e-2), "{speed}: {fast} {slow}");
@@ -465,7 +465,7 @@ mod tests {
         fn the_way_is_the_area_under_the_speed(
             way_deg in 0.1..90.0_f64, speed_deg_s in 0.05..90.0_f64, accel_deg_s2 in 1.0..5_000.0_f64,
         ) {
-            let sweep = Sweep { way_deg, speed_deg_s, accel_deg_s2 };
+            let sweep = TiltSweep { way_deg, speed_deg_s, accel_deg_s2 };
             let whole = sweep.duration_s();
             let angle = |part: f64| sweep.angle_deg(part * whole);
             prop_assert!(close(angle(1.0), -way_deg, 1e-9 * way_deg));
@@ -480,7 +480,7 @@ mod tests {
 
         #[test]
         fn the_order_goes_through_all(n in 1..2_000_u64) {
-            let order = Order::new(n);
+            let order = StrideOrder::new(n);
             let mut seen = vec![false; n as usize];
             for i in 0..n {
                 seen[order.get(i) as usize] = true;

@@ -1,7 +1,9 @@
 //! Tilt speed against scan time, resolution and what stays unseen. Computed, not timed.
 
-use super::pattern::{Lidar, Sweep};
-use super::{Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value};
+use super::pattern::{PatternLidar, TiltSweep};
+use super::{
+    Bench, Effort, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade,
+};
 
 /// The study.
 pub struct ScanSpeed;
@@ -24,15 +26,15 @@ impl Study for ScanSpeed {
         "Tilt speed and scan time"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
-        let lidar = Lidar::vlp_16();
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
+        let lidar = PatternLidar::vlp_16();
         let (phases, step_deg) = match bench.effort {
             Effort::Quick => (8, 3.0),
             Effort::Full => (64, 0.5),
         };
         (bench.say)(&format!("{} speeds, computed", SPEEDS_DEG_S.len()));
         let rows = SPEEDS_DEG_S.map(|speed_deg_s| {
-            let sweep = Sweep {
+            let sweep = TiltSweep {
                 way_deg: WAY_DEG,
                 speed_deg_s,
                 accel_deg_s2: ACCEL_DEG_S2,
@@ -49,25 +51,18 @@ impl Study for ScanSpeed {
                     gaps.middle_deg,
                     lidar.widest_circle_deg(&sweep, step_deg),
                 ]
-                .map(|x| Value::Computed(without_rounding(x)))
+                .map(|x| Measurement::Computed(without_rounding(x)))
                 .to_vec(),
             }
         });
-        Ok(Findings {
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: about(phases, step_deg),
             choice: "cruise",
             columns: columns(),
             rows: rows.into(),
-            trades: [1, 2, 3]
-                .map(|loss| Trade {
-                    cost: 0,
-                    loss,
-                    joined: true,
-                    apart: false,
-                })
-                .into(),
+            trades: [1, 2, 3].map(|loss| Trade::new(0, loss).joined()).into(),
         })
     }
 }
@@ -77,7 +72,7 @@ fn without_rounding(x: f64) -> f64 {
     (x * 1e9).round() / 1e9
 }
 
-fn columns() -> Vec<Column> {
+fn columns() -> Vec<StudyColumn> {
     [
         ("scan_time_s", "scan time, s"),
         ("mean_resolution_deg", "mean vertical resolution, deg"),
@@ -85,11 +80,7 @@ fn columns() -> Vec<Column> {
         ("gap_in_the_middle_deg", "widest gap in the middle, deg"),
         ("widest_circle_deg", "widest unseen circle, deg"),
     ]
-    .map(|(key, heading)| Column {
-        key,
-        heading,
-        scale: Scale::Log,
-    })
+    .map(StudyColumn::log)
     .into()
 }
 

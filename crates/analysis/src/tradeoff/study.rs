@@ -7,7 +7,8 @@ use serde::Serialize;
 use units::Span;
 
 use super::front::{front, front_within_spread};
-use super::{Clock, Plan, Spread, number};
+use super::{Scale, StudyClock, TimingPlan, TimingSpread};
+use crate::draw::number::short;
 
 /// Ways to do one thing, measured against each other. One file each; whoever lists them decides which there are.
 pub trait Study {
@@ -21,7 +22,7 @@ pub trait Study {
     ///
     /// # Errors
     /// [`StudyError`] where what is measured fails.
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError>;
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError>;
 }
 
 /// The studies of `all` with the names `only`, in their own order; all of them if `only` is empty.
@@ -90,7 +91,7 @@ pub enum Effort {
 /// What a study measures with.
 pub struct Bench<'a> {
     /// The clock.
-    pub clock: &'a mut dyn Clock,
+    pub clock: &'a mut dyn StudyClock,
     /// How thoroughly.
     pub effort: Effort,
     /// Takes sentences on what goes on.
@@ -109,26 +110,17 @@ impl Bench<'_> {
 
     /// Rounds of measurements of at least 2 ms each.
     #[must_use]
-    pub const fn plan(&self, quick: usize, full: usize) -> Plan {
-        Plan {
+    pub const fn plan(&self, quick: usize, full: usize) -> TimingPlan {
+        TimingPlan {
             rounds: self.size(quick, full),
             least: Span::from_micros(2_000),
         }
     }
 }
 
-/// How an axis shows a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
-    /// Even steps.
-    Linear,
-    /// Powers of ten; nought has a place of its own below them.
-    Log,
-}
-
 /// What was measured of every choice.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub struct StudyColumn {
     /// Its name in JSON, the unit last.
     pub key: &'static str,
     /// Its heading, the unit in it.
@@ -137,23 +129,46 @@ pub struct Column {
     pub scale: Scale,
 }
 
-/// A measured value. Less is better wherever values are traded.
+impl StudyColumn {
+    /// A column on a logarithmic axis.
+    #[must_use]
+    pub const fn log((key, heading): (&'static str, &'static str)) -> Self {
+        Self {
+            key,
+            heading,
+            scale: Scale::Log,
+        }
+    }
+}
+
+/// A measured value. Smaller is better wherever values are traded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Value {
+pub enum Measurement {
     /// Computed: it comes out the same every time.
     Computed(f64),
     /// Timed, several times.
-    Timed(Spread),
+    Timed(TimingSpread),
 }
 
-impl Value {
+impl Measurement {
     /// The value that counts: of several the median.
     #[must_use]
     pub const fn middle(&self) -> f64 {
         match self {
             Self::Computed(x) => *x,
             Self::Timed(spread) => spread.median,
+        }
+    }
+
+    /// The value in a table, with the minimum and the maximum of a timed one.
+    #[must_use]
+    pub fn text(&self) -> String {
+        match self {
+            Self::Computed(x) => short(*x),
+            Self::Timed(TimingSpread {
+                median, min, max, ..
+            }) => format!("{} ({}..{})", short(*median), short(*min), short(*max)),
         }
     }
 
@@ -167,7 +182,7 @@ impl Value {
     }
 }
 
-/// A choice and what was measured of it.
+/// A choice and its measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Its name, like no other's.
@@ -177,7 +192,24 @@ pub struct Row {
     /// The kind of choice that it is: a colour in the figure.
     pub group: &'static str,
     /// One value a column.
-    pub values: Vec<Value>,
+    pub values: Vec<Measurement>,
+}
+
+impl Row {
+    /// A row of the table; the name occurs once per study.
+    pub fn new(
+        name: impl Into<String>,
+        label: impl Into<String>,
+        group: &'static str,
+        values: Vec<Measurement>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            label: label.into(),
+            group,
+            values,
+        }
+    }
 }
 
 /// One column that is paid for another: a plot with a Pareto front.
@@ -190,12 +222,43 @@ pub struct Trade {
     /// Whether a line joins the choices of one group.
     pub joined: bool,
     /// Whether groups are circumstances, which nobody chooses: each has a front of its own.
-    pub apart: bool,
+    pub by_group: bool,
+}
+
+impl Trade {
+    /// A trade of the column `loss` for the column `cost`, with one front over all rows.
+    #[must_use]
+    pub const fn new(cost: usize, loss: usize) -> Self {
+        Self {
+            cost,
+            loss,
+            joined: false,
+            by_group: false,
+        }
+    }
+
+    /// The same with a line that joins the choices of each group.
+    #[must_use]
+    pub const fn joined(self) -> Self {
+        Self {
+            joined: true,
+            ..self
+        }
+    }
+
+    /// The same with one front per group.
+    #[must_use]
+    pub const fn by_group(self) -> Self {
+        Self {
+            by_group: true,
+            ..self
+        }
+    }
 }
 
 /// What a study found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Findings {
+pub struct StudyFindings {
     /// The study's name.
     pub name: &'static str,
     /// The study's title.
@@ -205,17 +268,17 @@ pub struct Findings {
     /// Heading over the choices' names.
     pub choice: &'static str,
     /// What was measured.
-    pub columns: Vec<Column>,
+    pub columns: Vec<StudyColumn>,
     /// The choices.
     pub rows: Vec<Row>,
     /// What is traded for what.
     pub trades: Vec<Trade>,
 }
 
-impl Findings {
+impl StudyFindings {
     /// A value.
     #[must_use]
-    pub fn value(&self, row: usize, column: usize) -> Option<&Value> {
+    pub fn value(&self, row: usize, column: usize) -> Option<&Measurement> {
         self.rows.get(row)?.values.get(column)
     }
 
@@ -226,13 +289,13 @@ impl Findings {
     }
 
     /// Which rows are on a trade's front: no other's median is as good as their best in one and better in the other. Where
-    /// groups are apart, no other's of their group.
+    /// groups are by_group, no other's of their group.
     #[must_use]
     pub fn front(&self, trade: &Trade) -> Vec<bool> {
         self.by_group(trade, |rows| {
             front_within_spread(
-                &costs(rows, trade, Value::middle),
-                &costs(rows, trade, Value::best),
+                &costs(rows, trade, Measurement::middle),
+                &costs(rows, trade, Measurement::best),
             )
         })
     }
@@ -240,13 +303,15 @@ impl Findings {
     /// The same by medians alone: the steps of a figure.
     #[must_use]
     pub fn steps(&self, trade: &Trade) -> Vec<bool> {
-        self.by_group(trade, |rows| front(&costs(rows, trade, Value::middle)))
+        self.by_group(trade, |rows| {
+            front(&costs(rows, trade, Measurement::middle))
+        })
     }
 
     /// The groups in their order, or a single one of all where groups are not apart.
     #[must_use]
     pub fn circumstances(&self, trade: &Trade) -> Vec<Option<&'static str>> {
-        if !trade.apart {
+        if !trade.by_group {
             return vec![None];
         }
         let mut groups = Vec::new();
@@ -309,7 +374,7 @@ impl Findings {
 
     fn verdict(&self, trade: &Trade, group: Option<&str>) -> String {
         let middle =
-            |row: &Row, column: usize| row.values.get(column).map_or(f64::NAN, Value::middle);
+            |row: &Row, column: usize| row.values.get(column).map_or(f64::NAN, Measurement::middle);
         let rows = self.rows.iter().zip(self.front(trade));
         let all = rows.filter(|(row, _)| group.is_none_or(|group| row.group == group));
         let mut on: Vec<&Row> = all
@@ -318,8 +383,8 @@ impl Findings {
             .collect();
         on.sort_by(|a, b| middle(a, trade.cost).total_cmp(&middle(b, trade.cost)));
         let named = on.iter().map(|row| {
-            let cost = number::short(middle(row, trade.cost));
-            let loss = number::short(middle(row, trade.loss));
+            let cost = short(middle(row, trade.cost));
+            let loss = short(middle(row, trade.loss));
             format!("{} ({cost}; {loss})", row.name)
         });
         let named: Vec<String> = named.collect();
@@ -339,7 +404,7 @@ impl Findings {
     }
 }
 
-fn costs(rows: &[&Row], trade: &Trade, of: impl Fn(&Value) -> f64) -> Vec<Vec<f64>> {
+fn costs(rows: &[&Row], trade: &Trade, of: impl Fn(&Measurement) -> f64) -> Vec<Vec<f64>> {
     let value = |row: &Row, column: usize| row.values.get(column).map_or(f64::NAN, &of);
     let pair = |row: &&Row| vec![value(row, trade.cost), value(row, trade.loss)];
     rows.iter().map(pair).collect()
@@ -412,7 +477,7 @@ fn os_name(os_release: &str, kernel: &str) -> String {
 
 /// All findings of one run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct StudyReport {
     /// Name and version of the program.
     pub program: String,
     /// How thoroughly it was measured.
@@ -420,10 +485,10 @@ pub struct Report {
     /// What on.
     pub machine: Machine,
     /// What was found.
-    pub studies: Vec<Findings>,
+    pub studies: Vec<StudyFindings>,
 }
 
-impl Report {
+impl StudyReport {
     /// What must be known before a figure is believed, a sentence each.
     #[must_use]
     pub fn cautions(&self) -> Vec<&'static str> {
@@ -444,9 +509,9 @@ const MOST_NAMED: usize = 6;
 
 /// Findings of every kind, for tests of what shows them.
 #[cfg(test)]
-pub(crate) fn example() -> Report {
+pub(crate) fn example() -> StudyReport {
     let timed = |median: f64| {
-        Value::Timed(Spread {
+        Measurement::Timed(TimingSpread {
             median,
             min: median * 0.9,
             max: median * 1.7,
@@ -457,14 +522,18 @@ pub(crate) fn example() -> Report {
         name: format!("{name} <&> way"),
         label: name.to_owned(),
         group,
-        values: vec![timed(cost), Value::Computed(loss), Value::Computed(size)],
+        values: vec![
+            timed(cost),
+            Measurement::Computed(loss),
+            Measurement::Computed(size),
+        ],
     };
-    let column = |key, heading, scale| Column {
+    let column = |key, heading, scale| StudyColumn {
         key,
         heading,
         scale,
     };
-    Report {
+    StudyReport {
         program: "velomotion 0.0.0".to_owned(),
         effort: Effort::Quick,
         machine: Machine {
@@ -473,7 +542,7 @@ pub(crate) fn example() -> Report {
             os: "Linux".to_owned(),
             build: "release",
         },
-        studies: vec![Findings {
+        studies: vec![StudyFindings {
             name: "example",
             title: "Ways & means",
             about: vec!["What is <measured> here, in a sentence that is long enough to need a second line of text.".to_owned()],
@@ -490,8 +559,8 @@ pub(crate) fn example() -> Report {
                 row("bad", "clever", 21.0, 1.0, 9.0),
             ],
             trades: vec![
-                Trade { cost: 0, loss: 1, joined: true, apart: false },
-                Trade { cost: 2, loss: 1, joined: false, apart: false },
+                Trade { cost: 0, loss: 1, joined: true, by_group: false },
+                Trade { cost: 2, loss: 1, joined: false, by_group: false },
             ],
         }],
     }
@@ -518,10 +587,10 @@ mod tests {
         let mut report = example();
         let findings = &mut report.studies[0];
         findings.trades.truncate(1);
-        findings.trades[0].apart = true;
-        findings.rows[2].values[0] = Value::Computed(10.0);
+        findings.trades[0].by_group = true;
+        findings.rows[2].values[0] = Measurement::Computed(10.0);
         assert_eq!(findings.marks(), ["*", "*", "*", ""]);
-        findings.rows[2].values[0] = Value::Computed(50.0);
+        findings.rows[2].values[0] = Measurement::Computed(50.0);
         assert_eq!(findings.marks(), ["*", "*", "*", "*"]);
         let verdicts = findings.verdicts();
         assert_eq!(verdicts.len(), 2);

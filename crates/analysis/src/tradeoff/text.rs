@@ -1,6 +1,6 @@
 //! Findings as text of 80 columns.
 
-use super::{Findings, Report, number};
+use super::{Measurement, StudyFindings, StudyReport};
 
 /// The widest line.
 const WIDTH: usize = 80;
@@ -8,7 +8,7 @@ const GAP: usize = 2;
 
 /// Everything: the machine, cautions, and each study with its table and fronts.
 #[must_use]
-pub fn report(report: &Report) -> String {
+pub fn report(report: &StudyReport) -> String {
     let mut text = Vec::new();
     text.extend(wrap(
         &format!("{} on {}", report.program, report.machine.line()),
@@ -26,7 +26,7 @@ pub fn report(report: &Report) -> String {
 
 /// One study.
 #[must_use]
-pub fn findings(findings: &Findings) -> String {
+pub fn findings(findings: &StudyFindings) -> String {
     let mut text = vec![
         format!("{} ({})", findings.title, findings.name),
         String::new(),
@@ -44,7 +44,7 @@ pub fn findings(findings: &Findings) -> String {
 }
 
 /// The table: names left, values right, marks of the fronts last.
-fn table(findings: &Findings) -> Vec<String> {
+fn table(findings: &StudyFindings) -> Vec<String> {
     let marks = findings.marks();
     let headings = findings.columns.iter().map(|c| c.heading).chain(["front"]);
     let headings: Vec<&str> = headings.collect();
@@ -52,7 +52,13 @@ fn table(findings: &Findings) -> Vec<String> {
         .rows
         .iter()
         .zip(marks)
-        .map(|(row, mark)| row.values.iter().map(number::value).chain([mark]).collect())
+        .map(|(row, mark)| {
+            row.values
+                .iter()
+                .map(Measurement::text)
+                .chain([mark])
+                .collect()
+        })
         .collect();
     let widths: Vec<usize> = headings
         .iter()

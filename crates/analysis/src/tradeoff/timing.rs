@@ -7,12 +7,12 @@ use serde::Serialize;
 use units::{Host, Span, Stamp};
 
 /// A clock that does not step.
-pub trait Clock {
+pub trait StudyClock {
     /// What it shows.
     fn now(&mut self) -> Stamp<Host>;
 }
 
-impl<F: FnMut() -> Stamp<Host>> Clock for F {
+impl<F: FnMut() -> Stamp<Host>> StudyClock for F {
     fn now(&mut self) -> Stamp<Host> {
         self()
     }
@@ -20,7 +20,7 @@ impl<F: FnMut() -> Stamp<Host>> Clock for F {
 
 /// Middle and ends of repeated measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
+pub struct TimingSpread {
     /// The middle one; of an even number the mean of the two in the middle.
     pub median: f64,
     /// The least.
@@ -31,7 +31,7 @@ pub struct Spread {
     pub runs: usize,
 }
 
-impl Spread {
+impl TimingSpread {
     /// Of measurements in any order; not numbers where there are none.
     #[must_use]
     pub fn of(mut measured: Vec<f64>) -> Self {
@@ -63,7 +63,7 @@ pub type Work<'a, E> = Box<dyn FnMut() -> Result<(), E> + 'a>;
 
 /// How work is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Plan {
+pub struct TimingPlan {
     /// Measurements of each competitor.
     pub rounds: usize,
     /// How long a measurement lasts at least: short work is repeated within it.
@@ -78,10 +78,10 @@ const MOST_REPEATS: i64 = 100_000;
 /// # Errors
 /// The first that any work gives.
 pub fn in_rounds<E>(
-    clock: &mut dyn Clock,
-    plan: Plan,
+    clock: &mut dyn StudyClock,
+    plan: TimingPlan,
     work: &mut [Work<'_, E>],
-) -> Result<Vec<Spread>, E> {
+) -> Result<Vec<TimingSpread>, E> {
     let mut repeats = Vec::with_capacity(work.len());
     for work in work.iter_mut() {
         let took = time(clock, 1, work)?.as_nanos().max(1);
@@ -99,10 +99,10 @@ pub fn in_rounds<E>(
             }
         }
     }
-    Ok(measured.into_iter().map(Spread::of).collect())
+    Ok(measured.into_iter().map(TimingSpread::of).collect())
 }
 
-fn time<E>(clock: &mut dyn Clock, repeats: i64, work: &mut Work<'_, E>) -> Result<Span, E> {
+fn time<E>(clock: &mut dyn StudyClock, repeats: i64, work: &mut Work<'_, E>) -> Result<Span, E> {
     let start = clock.now();
     for _ in 0..repeats {
         work()?;
@@ -119,11 +119,11 @@ mod tests {
 
     #[test]
     fn middle_and_ends_of_measurements() {
-        let odd = Spread::of(vec![3.0, 1.0, 2.0]);
+        let odd = TimingSpread::of(vec![3.0, 1.0, 2.0]);
         assert_eq!((odd.median, odd.min, odd.max, odd.runs), (2.0, 1.0, 3.0, 3));
-        let even = Spread::of(vec![4.0, 1.0, 2.0, 9.0]).times(10.0);
+        let even = TimingSpread::of(vec![4.0, 1.0, 2.0, 9.0]).times(10.0);
         assert_eq!((even.median, even.min, even.max), (30.0, 10.0, 90.0));
-        assert!(Spread::of(Vec::new()).median.is_nan());
+        assert!(TimingSpread::of(Vec::new()).median.is_nan());
     }
 
     /// Two works that move the clock themselves: 3 us and 1 ms a time.
@@ -139,7 +139,7 @@ mod tests {
                 Ok(())
             })
         };
-        let plan = Plan {
+        let plan = TimingPlan {
             rounds: 4,
             least: Span::from_micros(12),
         };
@@ -160,7 +160,7 @@ mod tests {
             calls += 1;
             Err("broken")
         })];
-        let plan = Plan {
+        let plan = TimingPlan {
             rounds: 3,
             least: Span::ZERO,
         };

@@ -5,14 +5,15 @@ mod reference;
 use std::hint::black_box;
 
 use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, Study, StudyError, Trade, Value, Work, in_rounds,
+    Bench, Effort, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work,
+    in_rounds,
 };
 use sim::effect_models::{Divergence, DivergenceSettings};
 use sim::effects::BeamEffect;
 use sim::firing::{Echo, Echoes, Firing};
 
 use crate::shots::Shots;
-use reference::Footprint;
+use reference::ReferenceFootprint;
 
 /// The study.
 pub(super) struct BeamSampling;
@@ -26,7 +27,7 @@ const SCENES: [&str; 2] = ["hall", "parking"];
 const ANOTHER_M: f64 = 0.5;
 
 /// A way to sample beams.
-enum Way {
+enum SamplingMethod {
     /// Not at all: the middle alone.
     Middle,
     /// Where an edge can be.
@@ -36,14 +37,14 @@ enum Way {
 }
 
 /// A way with its name and label.
-struct Choice {
+struct SamplingChoice {
     name: String,
     label: String,
-    way: Way,
+    way: SamplingMethod,
 }
 
 /// A shot across an edge: which firing and laser, and the ranges that the reference has, infinite for none.
-struct Edge {
+struct SilhouetteEdge {
     firing: usize,
     laser: usize,
     truth_m: [f64; 2],
@@ -51,7 +52,7 @@ struct Edge {
 
 /// How far off a way is at edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Off {
+struct SamplingError {
     rms_m: f64,
     worst_m: f64,
     /// Share of the shots with two returns for which either is another one, or not there.
@@ -67,7 +68,7 @@ impl Study for BeamSampling {
         "Sub-rays of a beam"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
         let (firings, grids) = match bench.effort {
             Effort::Quick => (48, &GRIDS[1..3]),
             Effort::Full => (1_500, &GRIDS[..]),
@@ -97,56 +98,47 @@ impl Study for BeamSampling {
         let times = in_rounds(bench.clock, plan, &mut work)?;
         drop(work);
         let rows = named.into_iter().zip(times);
-        let rows = rows.map(|((scene, choice, per_shot, off), time)| Row {
-            name: format!("{scene}, {}", choice.name),
-            label: choice.label.clone(),
-            group: scene,
-            values: vec![
-                Value::Timed(time.times(per_shot)),
-                Value::Computed(off.rms_m),
-                Value::Computed(off.worst_m),
-                Value::Computed(100.0 * off.wrong),
-            ],
+        let rows = rows.map(|((scene, choice, per_shot, off), time)| {
+            Row::new(
+                format!("{scene}, {}", choice.name),
+                choice.label.clone(),
+                scene,
+                vec![
+                    Measurement::Timed(time.times(per_shot)),
+                    Measurement::Computed(off.rms_m),
+                    Measurement::Computed(off.worst_m),
+                    Measurement::Computed(100.0 * off.wrong),
+                ],
+            )
         });
         let rows = rows.collect();
         let counts = scenes
             .iter()
             .map(|(scene, shots, edges, _)| counted(scene, shots, edges));
-        Ok(Findings {
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: about(&counts.collect::<Vec<_>>()),
             choice: "scene, sub-rays",
             columns: columns(),
             rows,
-            trades: [1, 3]
-                .map(|loss| Trade {
-                    cost: 0,
-                    loss,
-                    joined: false,
-                    apart: true,
-                })
-                .into(),
+            trades: [1, 3].map(|loss| Trade::new(0, loss).by_group()).into(),
         })
     }
 }
 
-fn columns() -> Vec<Column> {
+fn columns() -> Vec<StudyColumn> {
     [
         ("time_ns_per_shot", "ns a shot"),
         ("rms_error_m", "RMS at edges, m"),
         ("worst_error_m", "worst at edges, m"),
         ("dual_wrong_percent", "two returns wrong, %"),
     ]
-    .map(|(key, heading)| Column {
-        key,
-        heading,
-        scale: Scale::Log,
-    })
+    .map(StudyColumn::log)
     .into()
 }
 
-fn counted(scene: &str, shots: &Shots, edges: &[Edge]) -> String {
+fn counted(scene: &str, shots: &Shots, edges: &[SilhouetteEdge]) -> String {
     let two = edges
         .iter()
         .filter(|edge| edge.truth_m[1].is_finite())
@@ -178,7 +170,7 @@ fn about(counts: &[String]) -> Vec<String> {
     ]
 }
 
-fn choices(grids: &[[usize; 2]]) -> Result<Vec<Choice>, StudyError> {
+fn choices(grids: &[[usize; 2]]) -> Result<Vec<SamplingChoice>, StudyError> {
     let divergence = |columns, rows| {
         let settings = DivergenceSettings {
             columns,
@@ -187,29 +179,29 @@ fn choices(grids: &[[usize; 2]]) -> Result<Vec<Choice>, StudyError> {
         };
         Divergence::new(&settings).map_err(StudyError::workload)
     };
-    let mut choices = vec![Choice {
+    let mut choices = vec![SamplingChoice {
         name: "the middle alone".to_owned(),
         label: "1".to_owned(),
-        way: Way::Middle,
+        way: SamplingMethod::Middle,
     }];
     for &[columns, rows] in grids {
-        choices.push(Choice {
+        choices.push(SamplingChoice {
             name: format!("{columns} x {rows} at edges"),
             label: format!("{columns}x{rows}"),
-            way: Way::AtEdges(divergence(columns, rows)?),
+            way: SamplingMethod::AtEdges(divergence(columns, rows)?),
         });
     }
     for &[columns, rows] in grids {
-        choices.push(Choice {
+        choices.push(SamplingChoice {
             name: format!("{columns} x {rows} everywhere"),
             label: format!("{columns}x{rows} all"),
-            way: Way::Everywhere(divergence(columns, rows)?),
+            way: SamplingMethod::Everywhere(divergence(columns, rows)?),
         });
     }
     Ok(choices)
 }
 
-impl Way {
+impl SamplingMethod {
     /// What comes back of every firing, one after the other.
     fn act(&self, shots: &Shots, mut take: impl FnMut(usize, &Echoes)) {
         let Some((_, first)) = shots.firings.first() else {
@@ -244,16 +236,16 @@ fn middles(firing: &Firing, shots: &Shots, echoes: &mut Echoes) {
 }
 
 /// The shots across edges, and what the reference says of them.
-fn edges(shots: &Shots) -> Result<Vec<Edge>, StudyError> {
+fn edges(shots: &Shots) -> Result<Vec<SilhouetteEdge>, StudyError> {
     let mut edges = Vec::new();
     for (number, (firing, _)) in shots.firings.iter().enumerate() {
         for laser in firing.alive() {
-            let footprint = Footprint::of(firing, laser);
+            let footprint = ReferenceFootprint::of(firing, laser);
             let footprint =
                 footprint.ok_or_else(|| StudyError::workload("a shot without a footprint"))?;
             let samples = footprint.samples(FINE, &shots.surroundings);
             if !samples.are_plane() {
-                edges.push(Edge {
+                edges.push(SilhouetteEdge {
                     firing: number,
                     laser,
                     truth_m: samples.returns_m(),
@@ -264,7 +256,7 @@ fn edges(shots: &Shots) -> Result<Vec<Edge>, StudyError> {
     Ok(edges)
 }
 
-fn off(way: &Way, shots: &Shots, edges: &[Edge]) -> Off {
+fn off(way: &SamplingMethod, shots: &Shots, edges: &[SilhouetteEdge]) -> SamplingError {
     let mut left = edges.iter().peekable();
     let (mut squares, mut worst_m, mut both) = (0.0, 0.0_f64, 0_u32);
     let (mut two, mut wrong) = (0_u32, 0_u32);
@@ -287,7 +279,7 @@ fn off(way: &Way, shots: &Shots, edges: &[Edge]) -> Off {
             }
         }
     });
-    Off {
+    SamplingError {
         rms_m: (squares / f64::from(both.max(1))).sqrt(),
         worst_m,
         wrong: f64::from(wrong) / f64::from(two.max(1)),
@@ -309,7 +301,7 @@ mod tests {
             way.unwrap().way.act(&shots, |number, echoes| {
                 let (firing, _) = &shots.firings[number];
                 for laser in firing.alive() {
-                    let footprint = Footprint::of(firing, laser).unwrap();
+                    let footprint = ReferenceFootprint::of(firing, laser).unwrap();
                     let expected = footprint.samples([5, 3], &shots.surroundings).returns_m();
                     let got = [&echoes.strongest, &echoes.other].map(|set| set[laser].range_m);
                     for (got, expected) in got.into_iter().zip(expected) {

@@ -15,7 +15,7 @@ const LEAST_SHARE: f64 = 0.05;
 const FLAT_M: f64 = 0.002;
 
 /// The patch that one laser lights.
-pub struct Footprint {
+pub struct ReferenceFootprint {
     from_m: DVec3,
     way: DVec3,
     along: DVec3,
@@ -23,7 +23,7 @@ pub struct Footprint {
 }
 
 /// A sub-ray: where it is in the patch, -1..=1 either way, and what it met.
-struct Sample {
+struct ReferenceSample {
     x: f64,
     y: f64,
     met: Option<Met>,
@@ -31,11 +31,11 @@ struct Sample {
 
 /// All sub-rays of a pulse.
 pub struct Samples {
-    footprint: Footprint,
-    samples: Vec<Sample>,
+    footprint: ReferenceFootprint,
+    samples: Vec<ReferenceSample>,
 }
 
-impl Footprint {
+impl ReferenceFootprint {
     /// Of a laser of a VLP-16's firing: the scan goes across the fan between its lowest laser (0) and its highest (15).
     pub fn of(firing: &Firing, laser: usize) -> Option<Self> {
         let (lowest, highest) = (firing.directions.first()?, firing.directions.get(15)?);
@@ -61,7 +61,7 @@ impl Footprint {
         let samples = grid.map(|(column, row)| {
             let (x, y) = (place(column, columns), place(row, rows));
             let met = around.meet(self.from_m, self.towards(x, y).normalize());
-            Sample { x, y, met }
+            ReferenceSample { x, y, met }
         });
         Samples {
             samples: samples.collect(),

@@ -2,7 +2,7 @@
 //!
 //! Written alike, in the registers there are, so that what differs is the numbers. Left out: which triangles to test.
 
-use crate::placing::Number;
+use crate::placing::Real;
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch, f32x8, f64x8, prelude::*};
 use sim::cast::Sheared8;
 
@@ -104,7 +104,7 @@ kernels! {
 
 /// Every packet of every patch.
 #[inline(always)]
-fn all<T: Number>(
+fn all<T: Real>(
     patches: &[Patch<T>],
     ranges: &mut [[T; LANES]],
     nearest: impl Fn(&[[[T; 3]; 3]], &Eight<T>) -> [T; LANES],
@@ -121,7 +121,7 @@ fn all<T: Number>(
 type Three<V> = [V; 3];
 
 #[inline(always)]
-fn loaded<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+fn loaded<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
     [x, y, z]: &[[T; LANES]; 3],
 ) -> Three<V> {
@@ -133,7 +133,7 @@ fn loaded<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
 }
 
 #[inline(always)]
-fn everywhere<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+fn everywhere<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
     [x, y, z]: [T; 3],
 ) -> Three<V> {
@@ -141,7 +141,7 @@ fn everywhere<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
 }
 
 #[inline(always)]
-fn between<T: Number>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+fn between<T: Real>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
 }
 
@@ -166,7 +166,7 @@ fn dot<S: Simd, V: SimdFloat<S>>(a: Three<V>, b: Three<V>) -> V {
 
 /// Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection (1997), both sides of a triangle.
 #[inline(always)]
-fn moeller<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+fn moeller<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
     triangles: &[[[T; 3]; 3]],
     rays: &Eight<T>,
@@ -199,7 +199,7 @@ fn moeller<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
 
 /// The caster's test (`sim::cast::Sheared8`) in numbers of any kind.
 #[inline(always)]
-fn watertight<S: Simd, T: Number, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+fn watertight<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
     triangles: &[[[T; 3]; 3]],
     rays: &Eight<T>,

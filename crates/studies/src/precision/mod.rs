@@ -5,14 +5,14 @@ mod reference;
 
 use std::hint::black_box;
 
-use crate::placing::Number;
+use crate::placing::Real;
 use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, SeededNoise, Study, StudyError, Trade, Value,
-    Work, in_rounds,
+    Bench, Effort, Measurement, Row, SeededNoise, Study, StudyColumn, StudyError, StudyFindings,
+    Trade, Work, in_rounds,
 };
 use glam::DVec3;
 
-use crate::ball::Ball;
+use crate::ball::BallMesh;
 
 use kernels::{Cast, Eight, Kernel, LANES, Patch};
 
@@ -20,7 +20,7 @@ use kernels::{Cast, Eight, Kernel, LANES, Patch};
 pub(super) struct Precision;
 
 /// The surface: a lumpy ball about the scanner, its triangles 0.8 m wide.
-const SURFACE: Ball = Ball {
+const SURFACE: BallMesh = BallMesh {
     rings: 160,
     sectors: 320,
 };
@@ -38,29 +38,29 @@ const PACKETS: usize = 8;
 
 /// Where the surface is, and where coordinates begin.
 #[derive(Clone, Copy)]
-struct Circumstance {
+struct CastingCase {
     name: &'static str,
     group: &'static str,
     middle_m: DVec3,
     origin_m: DVec3,
 }
 
-fn circumstances() -> [Circumstance; 3] {
-    let on_map = Circumstance {
+fn circumstances() -> [CastingCase; 3] {
+    let on_map = CastingCase {
         name: "at 5e5 m as they are",
         group: "at 5e5 m",
         middle_m: MAP_M,
         origin_m: DVec3::ZERO,
     };
     [
-        Circumstance {
+        CastingCase {
             name: "about the origin",
             group: "about the origin",
             middle_m: DVec3::ZERO,
             origin_m: DVec3::ZERO,
         },
         on_map,
-        Circumstance {
+        CastingCase {
             name: "at 5e5 m, local origin",
             // As meshes have it: in coordinates of 24 bits.
             origin_m: MAP_M.as_vec3().as_dvec3(),
@@ -78,7 +78,7 @@ impl Study for Precision {
         "Numbers in which rays are cast"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
         let patches = match bench.effort {
             Effort::Quick => 12,
             Effort::Full => 4_096,
@@ -86,7 +86,7 @@ impl Study for Precision {
         let rays = patches * PACKETS * LANES;
         let plan = bench.plan(3, 15);
         (bench.say)(&format!("{rays} rays of each, {} rounds", plan.rounds));
-        let sets: Vec<(Circumstance, Set)> = circumstances()
+        let sets: Vec<(CastingCase, Set)> = circumstances()
             .into_iter()
             .map(|circumstance| (circumstance, Set::new(circumstance, patches)))
             .collect();
@@ -100,48 +100,39 @@ impl Study for Precision {
         }
         let times = in_rounds(bench.clock, plan, &mut work)?;
         let rows = named.into_iter().zip(times);
-        let rows = rows.map(|((circumstance, kernel, off), time)| Row {
-            name: format!("{}, {}", circumstance.name, kernel.name()),
-            label: kernel.label().to_owned(),
-            group: circumstance.group,
-            values: vec![
-                Value::Timed(time.times(1e9 / (rays * TRIANGLES) as f64)),
-                Value::Computed(off.rms_m * 1e3),
-                Value::Computed(off.worst_m * 1e3),
-                Value::Computed(off.missed * 1e6),
-            ],
+        let rows = rows.map(|((circumstance, kernel, off), time)| {
+            Row::new(
+                format!("{}, {}", circumstance.name, kernel.name()),
+                kernel.label(),
+                circumstance.group,
+                vec![
+                    Measurement::Timed(time.times(1e9 / (rays * TRIANGLES) as f64)),
+                    Measurement::Computed(off.rms_m * 1e3),
+                    Measurement::Computed(off.worst_m * 1e3),
+                    Measurement::Computed(off.missed * 1e6),
+                ],
+            )
         });
-        Ok(Findings {
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: about(rays),
             choice: "coordinates, test",
             columns: columns(),
             rows: rows.collect(),
-            trades: [2, 3]
-                .map(|loss| Trade {
-                    cost: 0,
-                    loss,
-                    joined: false,
-                    apart: true,
-                })
-                .into(),
+            trades: [2, 3].map(|loss| Trade::new(0, loss).by_group()).into(),
         })
     }
 }
 
-fn columns() -> Vec<Column> {
+fn columns() -> Vec<StudyColumn> {
     [
         ("time_ns_per_test", "ns a test"),
         ("rms_error_mm", "RMS error, mm"),
         ("worst_error_mm", "worst error, mm"),
         ("missed_per_million", "slipped through, of a million"),
     ]
-    .map(|(key, heading)| Column {
-        key,
-        heading,
-        scale: Scale::Log,
-    })
+    .map(StudyColumn::log)
     .into()
 }
 
@@ -163,7 +154,7 @@ fn about(rays: usize) -> Vec<String> {
 
 /// How far off a kernel is.
 #[derive(Clone, Copy, Debug)]
-struct Off {
+struct CastError {
     rms_m: f64,
     worst_m: f64,
     /// Share of the rays that met nothing.
@@ -178,7 +169,7 @@ struct Set {
 }
 
 impl Set {
-    fn new(circumstance: Circumstance, patches: usize) -> Self {
+    fn new(circumstance: CastingCase, patches: usize) -> Self {
         let exact = patches_of(circumstance.middle_m, patches);
         let origin_m = circumstance.origin_m;
         Self {
@@ -188,7 +179,7 @@ impl Set {
         }
     }
 
-    fn off(&self, kernel: Kernel) -> Result<Off, StudyError> {
+    fn off(&self, kernel: Kernel) -> Result<CastError, StudyError> {
         let ranges_m: Vec<[f64; LANES]> = match kernel.wide() {
             Some(cast) => ranges(&self.wide, cast),
             None => ranges(&self.narrow, kernel.narrow()),
@@ -209,7 +200,7 @@ impl Set {
                 missed += 1;
             }
         }
-        Ok(Off {
+        Ok(CastError {
             rms_m: (squares / f64::from(met)).sqrt(),
             worst_m,
             missed: f64::from(missed) / f64::from(met + missed),
@@ -224,18 +215,18 @@ impl Set {
     }
 }
 
-fn room<T: Number>(patches: &[Patch<T>]) -> Vec<[T; LANES]> {
+fn room<T: Real>(patches: &[Patch<T>]) -> Vec<[T; LANES]> {
     let packets: usize = patches.iter().map(|patch| patch.packets.len()).sum();
     vec![[T::of(f64::INFINITY); LANES]; packets]
 }
 
-fn ranges<T: Number>(patches: &[Patch<T>], cast: Cast<T>) -> Vec<[f64; LANES]> {
+fn ranges<T: Real>(patches: &[Patch<T>], cast: Cast<T>) -> Vec<[f64; LANES]> {
     let mut ranges = room(patches);
     cast(patches, &mut ranges);
     ranges.iter().map(|eight| eight.map(T::f64)).collect()
 }
 
-fn work<T: Number>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_, StudyError> {
+fn work<T: Real>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_, StudyError> {
     let mut ranges = room(patches);
     Box::new(move || {
         cast(black_box(patches), &mut ranges);
@@ -246,7 +237,7 @@ fn work<T: Number>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_, StudyError> 
 
 impl Patch<f64> {
     /// In other numbers, from another origin.
-    fn rounded<T: Number>(&self, origin_m: DVec3) -> Patch<T> {
+    fn rounded<T: Real>(&self, origin_m: DVec3) -> Patch<T> {
         let from = origin_m.to_array();
         let moved = |at: [f64; 3]| [0, 1, 2].map(|axis| T::of(at[axis] - from[axis]));
         let packets = self.packets.iter().map(|eight| Eight {
@@ -345,14 +336,14 @@ fn steepest(along: DVec3) -> usize {
 mod tests {
     use super::*;
 
-    fn off(circumstance: usize, kernel: Kernel, patches: usize) -> Off {
+    fn off(circumstance: usize, kernel: Kernel, patches: usize) -> CastError {
         let set = Set::new(circumstances()[circumstance], patches);
         set.off(kernel).unwrap()
     }
 
     #[test]
     fn errors_are_as_large_as_their_numbers_steps() {
-        let near = |off: Off, least_m: f64, most_m: f64| {
+        let near = |off: CastError, least_m: f64, most_m: f64| {
             assert!((least_m..most_m).contains(&off.worst_m), "{off:?}");
             assert!(off.rms_m <= off.worst_m && off.rms_m > 0.0, "{off:?}");
         };

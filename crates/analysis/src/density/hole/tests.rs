@@ -38,7 +38,7 @@ fn at(z: f64, turn: f64) -> DVec3 {
     DVec3::new(r * turn.cos(), r * turn.sin(), z).normalize()
 }
 
-fn largest(points: &[DVec3]) -> Largest {
+fn largest(points: &[DVec3]) -> LargestHole {
     let largest = largest_hole(points, TOLERANCE_RAD).unwrap().unwrap();
     // What it says of its hole is true.
     let hole = largest.hole;

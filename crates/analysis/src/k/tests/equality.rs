@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use super::hard_cases::ONE;
 use super::patterns::{rmbl, scattered, vlp16};
 use crate::k::{
-    Edges, KError, MOST_FRAMES, Registers, Turning, exact, exact_by, plain, turned, turned_by,
+    Edges, FrameRotation, KError, MOST_FRAMES, Registers, exact, exact_by, plain, turned, turned_by,
 };
 
 /// What this processor has, and less.
@@ -20,8 +20,8 @@ pub(super) const REGISTERS: [Registers; 4] = [
     Registers::Least,
 ];
 
-fn turning(frames: usize, step_rad: f64) -> Turning {
-    Turning {
+fn rotation(frames: usize, step_rad: f64) -> FrameRotation {
+    FrameRotation {
         axis: DVec3::Y,
         step_rad,
         frames,
@@ -55,7 +55,7 @@ fn turned_frames_count_as_their_points_do() {
         .chunks(14_416)
         .flat_map(|frame| frame[..203].to_vec())
         .collect();
-    let turning = turning(9, PI / 9.0);
+    let rotation = rotation(9, PI / 9.0);
     // 180 and 36 bins have edges at every frame's step: pairs on them go to either side by roundings.
     for bins in [1, 36, 151, 180] {
         let edges = Edges::equal(bins).unwrap();
@@ -66,12 +66,12 @@ fn turned_frames_count_as_their_points_do() {
             "{bins} bins"
         );
         for registers in REGISTERS {
-            let counts = turned_by(registers, &points, &turning, &edges, ONE);
+            let counts = turned_by(registers, &points, &rotation, &edges, ONE);
             assert_eq!(counts.unwrap(), one_by_one, "{registers:?}, {bins} bins");
         }
         let three = NonZeroUsize::new(3).unwrap();
         assert_eq!(
-            turned(&points, &turning, &edges, three).unwrap(),
+            turned(&points, &rotation, &edges, three).unwrap(),
             one_by_one
         );
     }
@@ -81,21 +81,21 @@ fn turned_frames_count_as_their_points_do() {
 fn frames_that_were_not_turned_so_are_refused() {
     let edges = Edges::equal(151).unwrap();
     let mut points: Vec<DVec3> = rmbl(3);
-    let count = |points: &[DVec3], of: Turning| turned(points, &of, &edges, ONE);
-    let wrong = count(&points, turning(3, 1.0));
+    let count = |points: &[DVec3], of: FrameRotation| turned(points, &of, &edges, ONE);
+    let wrong = count(&points, rotation(3, 1.0));
     assert!(
         matches!(wrong, Err(KError::NotTurned { frame: 1, .. })),
         "{wrong:?}"
     );
-    let wrong = count(&points, turning(5, PI / 3.0));
+    let wrong = count(&points, rotation(5, PI / 3.0));
     assert!(
         matches!(wrong, Err(KError::Frames { frames: 5, .. })),
         "{wrong:?}"
     );
-    assert!(count(&points, turning(0, PI / 3.0)).is_err());
-    assert!(count(&points, turning(MOST_FRAMES + 1, PI / 3.0)).is_err());
+    assert!(count(&points, rotation(0, PI / 3.0)).is_err());
+    assert!(count(&points, rotation(MOST_FRAMES + 1, PI / 3.0)).is_err());
     points[30_000] = (points[30_000] + DVec3::X * 1e-8).normalize();
-    let wrong = count(&points, turning(3, PI / 3.0));
+    let wrong = count(&points, rotation(3, PI / 3.0));
     assert!(
         matches!(
             wrong,
@@ -107,7 +107,7 @@ fn frames_that_were_not_turned_so_are_refused() {
         ),
         "{wrong:?}"
     );
-    assert_eq!(count(&[], turning(1, 0.0)).unwrap().pairs(), 0);
+    assert_eq!(count(&[], rotation(1, 0.0)).unwrap().pairs(), 0);
 }
 
 proptest! {
@@ -132,7 +132,7 @@ proptest! {
         let edges = Edges::equal(bins).unwrap();
         let one_by_one = plain(&points, &edges).unwrap();
         prop_assert_eq!(&exact(&points, &edges, ONE).unwrap(), &one_by_one);
-        let still = turning(1, 0.0);
+        let still = rotation(1, 0.0);
         prop_assert_eq!(&turned(&points, &still, &edges, ONE).unwrap(), &one_by_one);
     }
 }

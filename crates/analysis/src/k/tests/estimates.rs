@@ -7,8 +7,8 @@ use glam::DVec3;
 use super::hard_cases::{ONE, counted};
 use super::patterns::{rmbl, scattered, vlp16};
 use crate::k::{
-    Bound, Edges, Estimate, KCurve, KError, Method, Sampling, Turning, choose, estimate, exact,
-    gridded, harmonics, sampled,
+    Edges, ErrorBound, Estimate, FrameRotation, KCurve, KError, KMethod, Sampling, choose,
+    estimate, exact, harmonics, sampled,
 };
 
 /// How often a share is farther off than its bound, and by how much it is off at most.
@@ -51,23 +51,6 @@ fn patterns() -> [Vec<DVec3>; 4] {
 }
 
 #[test]
-fn grids_hold_their_proven_bounds() {
-    for points in patterns() {
-        for bins in [7, 151, 180] {
-            let truth: Estimate = counted(&points, bins).into();
-            let mut last = 1.0;
-            for side in [3, 10, 40] {
-                let of = gridded(&points, &truth.edges, side).unwrap();
-                assert!(matches!(of.bound, Bound::Proven { .. }));
-                assert_eq!(against(&of, &truth).0, 0, "side {side}, {bins} bins");
-                assert!(of.bound.largest() <= last, "finer cells say as much");
-                last = of.bound.largest();
-            }
-        }
-    }
-}
-
-#[test]
 fn samples_hold_their_confidence_intervals() {
     // 4 patterns, 2 kinds of bins, 12 seeds at a risk of 1 in 20: 96 intervals, of which 4.8 may fail. Bernstein is careful: none does.
     for points in patterns() {
@@ -82,7 +65,10 @@ fn samples_hold_their_confidence_intervals() {
                     seed,
                 };
                 let of = sampled(&points, &truth.edges, &wish).unwrap();
-                assert!(matches!(of.bound, Bound::Confidence { risk: 0.05, .. }));
+                assert!(matches!(
+                    of.bound,
+                    ErrorBound::Confidence { risk: 0.05, .. }
+                ));
                 assert!(of.bound.largest() <= 0.01, "{}", of.bound.largest());
                 let (beyond, off) = against(&of, &truth);
                 assert_eq!(beyond, 0, "seed {seed}, {bins} bins: {off}");
@@ -102,20 +88,20 @@ fn samples_hold_their_confidence_intervals() {
 /// Eight frames of an RMBL, and what is so of them.
 fn counted_rmbl() -> (Vec<DVec3>, Edges, Estimate) {
     let points = rmbl(8);
-    let turning = Turning {
+    let rotation = FrameRotation {
         axis: DVec3::Y,
         step_rad: PI / 8.0,
         frames: 8,
     };
     let edges = Edges::equal(151).unwrap();
-    let truth = estimate(&points, Some(&turning), &edges, &wish(0.0, 1e-3), ONE).unwrap();
+    let truth = estimate(&points, Some(&rotation), &edges, &wish(0.0, 1e-3), ONE).unwrap();
     (points, edges, truth)
 }
 
 #[test]
 fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
     let (points, edges, truth) = counted_rmbl();
-    assert_eq!((truth.method, &truth.bound), ("turned", &Bound::Exact));
+    assert_eq!((truth.method, &truth.bound), ("turned", &ErrorBound::Exact));
     let of = sampled(&points, &edges, &Sampling::default()).unwrap();
     assert!(of.bound.largest() <= 1e-4);
     assert_eq!(against(&of, &truth).0, 0);
@@ -134,7 +120,7 @@ fn harmonics_are_near_where_points_lie_smoothly() {
     let mut last = 1.0;
     for (degree, within) in [(4, 2e-3), (16, 2e-4), (64, 1e-4)] {
         let of = harmonics(&points, &edges, degree).unwrap();
-        assert_eq!((of.method, &of.bound), ("harmonics", &Bound::Unknown));
+        assert_eq!((of.method, &of.bound), ("harmonics", &ErrorBound::Unknown));
         assert_eq!(
             (of.bound.largest(), of.bound.of(3)),
             (f64::INFINITY, f64::INFINITY)
@@ -198,25 +184,25 @@ fn harmonics_of_hard_cases() {
 
 #[test]
 fn the_cheapest_that_is_good_enough_is_taken() {
-    let turning = Turning {
+    let rotation = FrameRotation {
         axis: DVec3::Y,
         step_rad: PI / 72.0,
         frames: 72,
     };
-    let of = |points, turning, tolerance, risk| choose(points, turning, &wish(tolerance, risk));
-    assert_eq!(of(14_416, None, 1e-2, 0.1), Method::Exact);
-    assert_eq!(of(1_037_952, None, 0.0, 0.1), Method::Exact);
-    assert_eq!(of(1_037_952, Some(&turning), 0.0, 0.1), Method::Turned);
-    assert_eq!(of(1_037_952, None, 1e-4, 1e-3), Method::Sampled);
-    assert_eq!(of(1_037_952, Some(&turning), 1e-4, 1e-3), Method::Sampled);
-    // Without any risk: a proof, or every pair.
-    assert_eq!(of(1_037_952, None, 0.1, 0.0), Method::Gridded);
-    assert_eq!(of(1_037_952, None, 1e-4, 0.0), Method::Exact);
-    assert_eq!(of(1_037_952, None, f64::NAN, 0.1), Method::Exact);
+    let of = |points, rotation, tolerance, risk| choose(points, rotation, &wish(tolerance, risk));
+    assert_eq!(of(14_416, None, 1e-2, 0.1), KMethod::Exact);
+    assert_eq!(of(1_037_952, None, 0.0, 0.1), KMethod::Exact);
+    assert_eq!(of(1_037_952, Some(&rotation), 0.0, 0.1), KMethod::Turned);
+    assert_eq!(of(1_037_952, None, 1e-4, 1e-3), KMethod::Sampled);
+    assert_eq!(of(1_037_952, Some(&rotation), 1e-4, 1e-3), KMethod::Sampled);
+    // Without any risk every pair is counted.
+    assert_eq!(of(1_037_952, None, 0.1, 0.0), KMethod::Exact);
+    assert_eq!(of(1_037_952, None, 1e-4, 0.0), KMethod::Exact);
+    assert_eq!(of(1_037_952, None, f64::NAN, 0.1), KMethod::Exact);
     let points = scattered(70_000, 6);
     let edges = Edges::equal(151).unwrap();
     let truth: Estimate = exact(&points, &edges, ONE).unwrap().into();
-    for (tolerance, risk, method) in [(0.1, 0.0, "gridded"), (1e-3, 1e-3, "sampled")] {
+    for (tolerance, risk, method) in [(0.1, 0.0, "exact"), (1e-3, 1e-3, "sampled")] {
         let of = estimate(&points, None, &edges, &wish(tolerance, risk), ONE).unwrap();
         assert!(of.bound.largest() <= tolerance, "{}", of.bound.largest());
         assert_eq!(of.method, method);
@@ -230,7 +216,6 @@ fn estimates_of_no_and_one_and_two_points() {
     for points in [&[][..], &[DVec3::X], &[DVec3::X, DVec3::Y]] {
         for of in [
             sampled(points, &edges, &Sampling::default()),
-            gridded(points, &edges, 9),
             harmonics(points, &edges, 9),
         ] {
             assert_eq!(of.unwrap().shares.len(), 151);

@@ -8,11 +8,11 @@ use num_rational::BigRational;
 
 use super::cosines::cosine;
 use super::patterns::{rmbl, scattered, tilted, vlp16};
-use crate::k::{Counts, Edges, KCurve, KError, exact, plain};
+use crate::k::{Edges, KCurve, KError, PairCounts, exact, plain};
 
 pub(super) const ONE: NonZeroUsize = NonZeroUsize::MIN;
 
-pub(super) fn counted(points: &[DVec3], bins: usize) -> Counts {
+pub(super) fn counted(points: &[DVec3], bins: usize) -> PairCounts {
     exact(points, &Edges::equal(bins).unwrap(), ONE).unwrap()
 }
 

@@ -9,7 +9,7 @@ use super::equality::REGISTERS;
 use super::hard_cases::ONE;
 use super::patterns::{rmbl, scattered};
 use crate::k::outline::{self, Outline, Outlines};
-use crate::k::{Edges, Turning, exact_by, plain, turned_by};
+use crate::k::{Edges, FrameRotation, exact_by, plain, turned_by};
 
 /// So many points as wide about a middle; as wide as 4 and more: all around.
 fn cluster(count: usize, width: f64, seed: u64) -> Vec<DVec3> {
@@ -108,7 +108,7 @@ fn leaves_of_any_sizes_count_as_one_by_one() {
     for bins in [3, 151, 1000] {
         let edges = Edges::equal(bins).unwrap();
         let one_by_one = plain(&points, &edges).unwrap();
-        let still = Turning {
+        let still = FrameRotation {
             axis: DVec3::Y,
             step_rad: 0.0,
             frames: 1,

@@ -6,19 +6,19 @@ use glam::DVec3;
 
 use super::hard_cases::{ONE, counted};
 use super::patterns::{rmbl, vlp16};
-use crate::k::{Counts, Edges, KCurve, Turning, plain, turned};
+use crate::k::{Edges, FrameRotation, KCurve, PairCounts, plain, turned};
 
-fn by_turning(frames: u32) -> Counts {
-    let turning = Turning {
+fn by_turning(frames: u32) -> PairCounts {
+    let rotation = FrameRotation {
         axis: DVec3::Y,
         step_rad: PI / f64::from(frames),
         frames: frames as usize,
     };
     let edges = Edges::equal(151).unwrap();
-    turned(&rmbl(frames), &turning, &edges, ONE).unwrap()
+    turned(&rmbl(frames), &rotation, &edges, ONE).unwrap()
 }
 
-fn first_two_and_last(counts: &Counts) -> [u64; 3] {
+fn first_two_and_last(counts: &PairCounts) -> [u64; 3] {
     assert_eq!(counts.counts.iter().sum::<u64>(), counts.pairs());
     assert!(counts.is_well_posed());
     [counts.counts[0], counts.counts[1], counts.counts[150]]

@@ -5,10 +5,10 @@
 use std::path::{Path, PathBuf};
 
 use analysis::density::Icosahedron;
-use analysis::figures::{self, InView, Planes, Scan, Scans, csv};
+use analysis::figures::{self, AnalyzedScan, AnalyzedScans, InView, Planes, csv};
 
 use super::input::Input;
-use super::report::{PatternReport, Report};
+use super::report::{AnalyzeReport, PatternReport};
 use crate::cli;
 use crate::commands::json;
 use crate::terminal::Progress;
@@ -19,7 +19,7 @@ use engine::output::{make_folder, write_text};
 pub struct Folder {
     path: PathBuf,
     force: bool,
-    scans: Scans,
+    scans: AnalyzedScans,
 }
 
 impl Folder {
@@ -42,7 +42,7 @@ impl Folder {
         Ok(Some(Self {
             path,
             force: arguments.force,
-            scans: Scans {
+            scans: AnalyzedScans {
                 program: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
                 command: command(arguments),
                 bins,
@@ -53,7 +53,7 @@ impl Folder {
 
     /// What is drawn of a scan: no more than is needed of it, whatever its size.
     pub fn add(&mut self, input: &Input, pattern: &PatternReport) {
-        self.scans.scans.push(Scan {
+        self.scans.scans.push(AnalyzedScan {
             name: pattern.name.clone(),
             points: pattern.points,
             scan_s: pattern.scan_s,
@@ -74,7 +74,7 @@ impl Folder {
     ///
     /// # Errors
     /// [`Kind::BadInput`] where the system refuses.
-    pub fn write(&self, report: &Report, progress: &Progress) -> Result<(), Failure> {
+    pub fn write(&self, report: &AnalyzeReport, progress: &Progress) -> Result<(), Failure> {
         let scans = &self.scans;
         let json = json(report);
         let files = [

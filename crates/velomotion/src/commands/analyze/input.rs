@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use analysis::device::{Device, vertical_resolution_deg};
+use analysis::device::{TiltedSensor, vertical_resolution_deg};
 use cloud::formats::Format;
 use cloud::read::positions;
 use cloud::{Fields, Points, Sink, SinkError, TiltTrack};
@@ -140,7 +140,7 @@ pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
     if tilt.speed_deg_s == 0.0 {
         return None;
     }
-    let device = Device {
+    let device = TiltedSensor {
         reach_m: [range.min_m, range.max_m],
         elevations_deg: pattern.elevations_deg(),
         d_m: settings.d_m,

@@ -17,16 +17,17 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 use analysis::density::{
-    Counts, DensityError, Icosahedron, Largest, Locator, TOLERANCE_RAD, bands, gaps, holes,
+    BinCounts, DensityError, Icosahedron, LargestHole, Locator, TOLERANCE_RAD, bands, gaps, holes,
     largest_hole, largest_hole_within, quantile, rows,
 };
 use analysis::figures::SPHERE_M;
-use analysis::k::{self, Edges, Estimate, KCurve, Sampling, Turning};
+use analysis::k::{self, Edges, Estimate, FrameRotation, KCurve, Sampling};
 use glam::DVec3;
 use sim::patterns::{AXIS, FieldOfView, Pattern};
 
 pub use report::{
-    BinReport, Blind, Density, DeviceReport, Gaps, HoleReport, KReport, PatternReport, Report,
+    AnalyzeReport, BinReport, Blind, Density, DeviceReport, GapReport, HoleReport, KReport,
+    PatternReport,
 };
 pub use sweep::Sweep;
 pub use view::Seen;
@@ -87,7 +88,7 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<CommandOutput, F
 }
 
 /// What is said, and the folder that is still to be written.
-type Measured = (CommandOutput, Option<(Folder, Report, Progress)>);
+type Measured = (CommandOutput, Option<(Folder, AnalyzeReport, Progress)>);
 
 /// Measures all that was asked for.
 fn measured(
@@ -129,7 +130,7 @@ fn measured(
         }
         patterns.push(pattern);
     }
-    let report = Report { patterns };
+    let report = AnalyzeReport { patterns };
     let said = CommandOutput::result(&report, report.text());
     Ok((said, folder.map(|folder| (folder, report, progress))))
 }
@@ -183,7 +184,7 @@ impl Measure {
         let directions = &input.directions;
         let view = input.view.as_ref().map(|seen| seen.view);
         say("density");
-        let counts = Counts::new(&self.locator, directions).map_err(wrong)?;
+        let counts = BinCounts::new(&self.locator, directions).map_err(wrong)?;
         say("largest holes");
         let largest = largest_hole(directions, TOLERANCE_RAD).map_err(wrong)?;
         let largest = largest.ok_or_else(|| {
@@ -247,12 +248,14 @@ impl Measure {
     }
 
     fn k(&self, input: &Input) -> Result<(KReport, Vec<String>), Failure> {
-        let turns = input.pattern.as_ref().and_then(Pattern::frame_rotation);
-        let turning = turns.filter(|turns| turns.frames > 1).map(|turns| Turning {
-            axis: turns.axis,
-            step_rad: turns.step_rad,
-            frames: turns.frames as usize,
-        });
+        let rotation = input.pattern.as_ref().and_then(Pattern::frame_rotation);
+        let rotation = rotation
+            .filter(|rotation| rotation.frames > 1)
+            .map(|rotation| FrameRotation {
+                axis: rotation.axis,
+                step_rad: rotation.step_rad,
+                frames: rotation.frames as usize,
+            });
         let wish = Sampling {
             tolerance: self.tolerance,
             ..Sampling::default()
@@ -262,7 +265,7 @@ impl Measure {
             Some(degree) => k::harmonics(&input.directions, &self.edges, degree),
             None => k::estimate(
                 &input.directions,
-                turning.as_ref(),
+                rotation.as_ref(),
                 &self.edges,
                 &wish,
                 threads,
@@ -302,14 +305,14 @@ impl Measure {
         Ok((report, warnings))
     }
 
-    fn gaps(&self, input: &Input) -> Result<Gaps, DensityError> {
+    fn gaps(&self, input: &Input) -> Result<GapReport, DensityError> {
         let mut places = self.places.clone();
         if let Some(seen) = &input.view {
             places.retain(|place| seen.view.depth_rad(*place) >= 0.0);
         }
         let gaps = gaps(&input.directions, &places)?;
         let of = |share: f64| quantile(&gaps, share).unwrap_or(0.0).to_degrees();
-        Ok(Gaps {
+        Ok(GapReport {
             of: if input.view.is_some() { "view" } else { "all" },
             median_deg: of(0.5),
             of_99_percent_deg: of(0.99),
@@ -359,7 +362,7 @@ fn on_edges(estimate: &Estimate) -> Option<String> {
     ))
 }
 
-fn hole_report(largest: &Largest) -> HoleReport {
+fn hole_report(largest: &LargestHole) -> HoleReport {
     let hole = largest.hole;
     HoleReport {
         radius_deg: hole.radius_rad.to_degrees(),

@@ -2,8 +2,8 @@
 //!
 //! Left out: the same for people (`text`).
 
-use analysis::density::{Band, Class, Counts, Row, Statistics};
-use analysis::device::View;
+use analysis::density::{BinCounts, EmptyBand, HistogramClass, HoleRow, Statistics};
+use analysis::device::VisibleRange;
 use analysis::k::KCurve;
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ use super::view::Seen;
 
 /// All that was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub struct AnalyzeReport {
     /// One entry a pattern, cloud or log, in the order asked for.
     pub patterns: Vec<PatternReport>,
 }
@@ -42,7 +42,7 @@ pub struct PatternReport {
     /// The largest with its middle where the scan can see at all; null where the view is not known.
     pub hole_in_view: Option<HoleReport>,
     /// How far it is to the nearest point, from directions in view; where that is not known from all directions.
-    pub gaps: Gaps,
+    pub gaps: GapReport,
     /// Blind spots.
     pub blind: Blind,
     /// How evenly points lie, by the angles between them.
@@ -63,10 +63,10 @@ pub struct Density {
     /// How often the icosahedron is cut.
     pub level: u32,
     /// Bins by their points.
-    pub histogram: Vec<Class>,
+    pub histogram: Vec<HistogramClass>,
     /// Points in each, for figures.
     #[serde(skip)]
-    pub counts: Counts,
+    pub counts: BinCounts,
 }
 
 /// What the numbers of points in some bins are like.
@@ -141,7 +141,7 @@ pub struct KReport {
 
 /// How far it is to the nearest point, from the middles of bins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Gaps {
+pub struct GapReport {
     /// Of which bins: those in `view`, or `all`.
     pub of: &'static str,
     /// From half of them it is at most this, degrees.
@@ -161,9 +161,9 @@ pub struct Blind {
     /// Whether there are more than were counted.
     pub and_more: Option<bool>,
     /// The rows that they stand in about the tilt axis, by angle.
-    pub rows: Option<Vec<Row>>,
+    pub rows: Option<Vec<HoleRow>>,
     /// Bands of at least `BAND_DEG` about the tilt axis without a point.
-    pub bands: Vec<Band>,
+    pub bands: Vec<EmptyBand>,
     /// Whether they hold no point at any speed of the axis: so with patterns of a sensor on it.
     pub bands_at_any_speed: bool,
 }
@@ -173,7 +173,7 @@ pub struct Blind {
 pub struct DeviceReport {
     /// Ranges and fields of view.
     #[serde(flatten)]
-    pub view: View,
+    pub view: VisibleRange,
     /// The paper's mean vertical resolution: the field of view, of tilt and lasers, shared by lasers times turns.
     pub mean_vertical_resolution_deg: f64,
     /// What the axis tilts in a turn of the lidar.

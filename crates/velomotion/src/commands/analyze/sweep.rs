@@ -7,7 +7,9 @@ use std::fmt::Write;
 use std::str::FromStr;
 use std::sync::atomic::AtomicBool;
 
-use analysis::density::{Counts, DensityError, TOLERANCE_RAD, gaps, largest_hole_within, quantile};
+use analysis::density::{
+    BinCounts, DensityError, TOLERANCE_RAD, gaps, largest_hole_within, quantile,
+};
 use analysis::tradeoff::front::front;
 use glam::DVec3;
 use serde::Serialize;
@@ -22,12 +24,12 @@ use engine::failure::{Failure, Kind};
 /// Numbers of a pattern that are tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    ranges: Vec<Range>,
+    ranges: Vec<SettingRange>,
 }
 
 /// One of them.
 #[derive(Clone, Debug, PartialEq)]
-struct Range {
+struct SettingRange {
     key: String,
     from: f64,
     to: f64,
@@ -47,12 +49,12 @@ pub struct SweepReport {
     /// What was varied, in the order of the settings' values.
     pub keys: Vec<String>,
     /// The settings, by the time that a scan takes.
-    pub settings: Vec<Setting>,
+    pub settings: Vec<SweepSetting>,
 }
 
 /// Of one setting.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Setting {
+pub struct SweepSetting {
     /// Its values.
     pub values: Vec<f64>,
     /// How long a scan takes, seconds.
@@ -78,9 +80,9 @@ impl FromStr for Sweep {
 
     /// `KEY=FROM..TO[/N]`, several with commas.
     fn from_str(text: &str) -> Result<Self, String> {
-        let ranges: Vec<Range> = text
+        let ranges: Vec<SettingRange> = text
             .split(',')
-            .map(Range::from_str)
+            .map(SettingRange::from_str)
             .collect::<Result<_, _>>()?;
         for (place, range) in ranges.iter().enumerate() {
             if ranges
@@ -101,7 +103,7 @@ impl FromStr for Sweep {
     }
 }
 
-impl FromStr for Range {
+impl FromStr for SettingRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -144,7 +146,7 @@ impl FromStr for Range {
     }
 }
 
-impl Range {
+impl SettingRange {
     /// The value of a step: by equal factors where both ends are above 0, else by equal differences. The ends are met exactly.
     fn value(&self, step: usize) -> f64 {
         if step == 0 {
@@ -229,13 +231,13 @@ fn measured(
     values: Vec<f64>,
     pattern: &Pattern,
     measure: &Measure,
-) -> Result<Setting, DensityError> {
+) -> Result<SweepSetting, DensityError> {
     let directions = pattern.directions();
     let view = pattern.view();
     let depth = |direction: DVec3| view.depth_rad(direction);
     let in_view = measure.in_view(&view);
     let is_in_view = |bin: usize| in_view.get(bin).copied().unwrap_or(false);
-    let counts = Counts::new(&measure.locator, &directions)?;
+    let counts = BinCounts::new(&measure.locator, &directions)?;
     let statistics = counts.statistics_of(is_in_view);
     let hole = largest_hole_within(&directions, 100.0 * TOLERANCE_RAD, &depth)?;
     let places = measure
@@ -245,7 +247,7 @@ fn measured(
         .filter(|(bin, _)| is_in_view(*bin));
     let places: Vec<DVec3> = places.map(|(_, place)| *place).collect();
     let gap = quantile(&gaps(&directions, &places)?, 0.99);
-    Ok(Setting {
+    Ok(SweepSetting {
         values,
         scan_s: pattern.scan_s(),
         points: directions.len() as u64,
@@ -260,8 +262,8 @@ fn measured(
 }
 
 /// Marks the fronts.
-fn mark(settings: &mut [Setting]) {
-    let costs = |of: fn(&Setting) -> f64| -> Vec<bool> {
+fn mark(settings: &mut [SweepSetting]) {
+    let costs = |of: fn(&SweepSetting) -> f64| -> Vec<bool> {
         let costs = settings
             .iter()
             .map(|setting| vec![setting.scan_s, of(setting)]);
@@ -282,7 +284,7 @@ impl SweepReport {
     /// For people: the settings of the fronts.
     #[must_use]
     pub fn text(&self) -> String {
-        let best = |s: &&Setting| s.best_hole || s.best_gap || s.best_evenness;
+        let best = |s: &&SweepSetting| s.best_hole || s.best_gap || s.best_evenness;
         let shown = self.settings.iter().filter(best);
         let mut text = format!(
             "{}: {} settings; those that no other beats for their scan time\n\n",
@@ -380,7 +382,7 @@ mod tests {
     #[test]
     fn fronts_hold_what_nothing_beats() {
         let setting =
-            |scan_s: f64, hole_deg: f64, gap_deg: f64, sd_over_mean_in_view: f64| Setting {
+            |scan_s: f64, hole_deg: f64, gap_deg: f64, sd_over_mean_in_view: f64| SweepSetting {
                 values: vec![scan_s],
                 scan_s,
                 points: 1,

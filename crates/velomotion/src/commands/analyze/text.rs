@@ -4,16 +4,16 @@
 
 use std::fmt::Write;
 
-use analysis::density::{Band, Class};
-use analysis::device::View;
+use analysis::density::{EmptyBand, HistogramClass};
+use analysis::device::VisibleRange;
 
 use super::report::{
-    BAND_DEG, BinReport, DeviceReport, HoleReport, KReport, PatternReport, Report,
+    AnalyzeReport, BAND_DEG, BinReport, DeviceReport, HoleReport, KReport, PatternReport,
 };
 
 const WIDTH: usize = 80;
 
-impl Report {
+impl AnalyzeReport {
     /// For people.
     #[must_use]
     pub fn text(&self) -> String {
@@ -158,7 +158,7 @@ impl PatternReport {
         let widest = bands
             .iter()
             .max_by(|a, b| a.width_deg().total_cmp(&b.width_deg()))?;
-        let sum: f64 = bands.iter().map(Band::width_deg).sum();
+        let sum: f64 = bands.iter().map(EmptyBand::width_deg).sum();
         let why = if self.blind.bands_at_any_speed {
             " at any speed"
         } else {
@@ -222,7 +222,7 @@ impl HoleReport {
 
 impl DeviceReport {
     fn lines(&self) -> [String; 3] {
-        let View {
+        let VisibleRange {
             range_m: [near, far],
             forwards_deg,
             backwards_deg,
@@ -243,7 +243,7 @@ impl DeviceReport {
 }
 
 /// A bar a class, the longest as long as there is room.
-fn histogram(classes: &[Class]) -> String {
+fn histogram(classes: &[HistogramClass]) -> String {
     const BAR: usize = 50;
     let most = classes
         .iter()
@@ -321,7 +321,7 @@ mod tests {
 
     #[test]
     fn bars_are_as_long_as_there_is_room() {
-        let class = |from, bins| Class {
+        let class = |from, bins| HistogramClass {
             from,
             to: from + 99,
             bins,

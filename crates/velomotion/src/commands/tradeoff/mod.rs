@@ -8,8 +8,8 @@ mod trajectory;
 use std::path::{Path, PathBuf};
 
 use analysis::tradeoff::{
-    self, Bench, Book, Effort, Findings, KFunction, Machine, Report, ScanSpeed, Study, html, json,
-    svg, text,
+    self, Bench, Book, Effort, KFunction, Machine, ScanSpeed, Study, StudyFindings, StudyReport,
+    html, json, svg, text,
 };
 
 use super::CommandOutput;
@@ -52,7 +52,7 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, 
         progress.say(&format!("{number} of {count}: {}", study.title()));
         findings.push(measure(*study, effort, &progress)?);
     }
-    let report = Report {
+    let report = StudyReport {
         program: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
         effort,
         machine: Machine::current(|path| std::fs::read_to_string(path).ok()),
@@ -68,7 +68,11 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, 
     ))
 }
 
-fn measure(study: &dyn Study, effort: Effort, progress: &Progress) -> Result<Findings, Failure> {
+fn measure(
+    study: &dyn Study,
+    effort: Effort,
+    progress: &Progress,
+) -> Result<StudyFindings, Failure> {
     let mut bench = Bench {
         clock: &mut io::clock::steady,
         effort,
@@ -105,7 +109,7 @@ fn prepare(arguments: &cli::Tradeoff, studies: &[&str]) -> Result<(), Failure> {
 }
 
 /// Paths and contents of the files to write.
-fn files(arguments: &cli::Tradeoff, report: &Report) -> Vec<(PathBuf, String)> {
+fn files(arguments: &cli::Tradeoff, report: &StudyReport) -> Vec<(PathBuf, String)> {
     let mut files = Vec::new();
     if let Some(folder) = &arguments.report {
         files.push((folder.join("index.html"), html::page(report)));

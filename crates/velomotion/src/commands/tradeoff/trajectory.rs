@@ -4,8 +4,8 @@ use std::hint::black_box;
 
 use analysis::tradeoff::pattern;
 use analysis::tradeoff::{
-    Bench, Column, Effort, Findings, Row, Scale, SeededNoise, Study, StudyError, Trade, Value,
-    Work, in_rounds,
+    Bench, Effort, Measurement, Row, SeededNoise, Study, StudyColumn, StudyError, StudyFindings,
+    Trade, Work, in_rounds,
 };
 use scanner::AngleSample;
 use scanner::clock::Moment;
@@ -22,7 +22,7 @@ const RATES_HZ: [(f64, &str); 3] = [
     (1000.0, "1000 polls a second"),
 ];
 /// The paper's fast scan with the drive's factory ramps.
-const SWEEP: pattern::Sweep = pattern::Sweep {
+const SWEEP: pattern::TiltSweep = pattern::TiltSweep {
     way_deg: 45.0,
     speed_deg_s: 56.25,
     accel_deg_s2: 500.0,
@@ -49,7 +49,7 @@ const NEAREST: f64 = 0.1;
 
 /// What drive and polls are like.
 #[derive(Clone, Copy)]
-struct Circumstance {
+struct PollingCase {
     key: &'static str,
     heading: &'static str,
     /// Standard deviation of a poll's instant, seconds.
@@ -60,29 +60,29 @@ struct Circumstance {
     servo: bool,
 }
 
-const CIRCUMSTANCES: [Circumstance; 4] = [
-    Circumstance {
+const CIRCUMSTANCES: [PollingCase; 4] = [
+    PollingCase {
         key: "worst_ideal_deg",
         heading: "worst, ideal polls, deg",
         jitter_s: 0.0,
         quantum_deg: 0.0,
         servo: false,
     },
-    Circumstance {
+    PollingCase {
         key: "worst_jitter_0_1_ms_deg",
         heading: "worst, 0.1 ms jitter, deg",
         jitter_s: 0.1e-3,
         quantum_deg: QUANTUM_DEG,
         servo: false,
     },
-    Circumstance {
+    PollingCase {
         key: "worst_jitter_0_5_ms_deg",
         heading: "worst, 0.5 ms jitter, deg",
         jitter_s: 0.5e-3,
         quantum_deg: QUANTUM_DEG,
         servo: false,
     },
-    Circumstance {
+    PollingCase {
         key: "worst_servo_deg",
         heading: "worst, 0.1 ms and servo, deg",
         jitter_s: 0.1e-3,
@@ -91,7 +91,7 @@ const CIRCUMSTANCES: [Circumstance; 4] = [
     },
 ];
 /// The one that is timed.
-const USUAL: Circumstance = CIRCUMSTANCES[1];
+const USUAL: PollingCase = CIRCUMSTANCES[1];
 
 impl Study for Trajectories {
     fn name(&self) -> &'static str {
@@ -102,7 +102,7 @@ impl Study for Trajectories {
         "The angle between polls"
     }
 
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<Findings, StudyError> {
+    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
         let seeds = match bench.effort {
             Effort::Quick => 1,
             Effort::Full => 8,
@@ -121,7 +121,7 @@ impl Study for Trajectories {
             for circumstance in CIRCUMSTANCES {
                 let [stiff, soft] = &shafts;
                 let shaft = if circumstance.servo { soft } else { stiff };
-                worst.push(Value::Computed(worst_deg(
+                worst.push(Measurement::Computed(worst_deg(
                     shaft,
                     hz,
                     circumstance,
@@ -142,16 +142,13 @@ impl Study for Trajectories {
         }
         let times = in_rounds(bench.clock, plan, &mut work)?;
         let rows = choices.into_iter().zip(times).zip(errors);
-        let rows = rows.map(|(((hz, group, method), time), worst)| Row {
-            name: format!("{hz} Hz, {}", method.name()),
-            label: method.name().to_owned(),
-            group,
-            values: [Value::Timed(time.times(1e3))]
-                .into_iter()
-                .chain(worst)
-                .collect(),
+        let rows = rows.map(|(((hz, group, method), time), worst)| {
+            let time_ms = Measurement::Timed(time.times(1e3));
+            let values = [time_ms].into_iter().chain(worst).collect();
+            let name = format!("{hz} Hz, {}", method.name());
+            Row::new(name, method.name(), group, values)
         });
-        Ok(Findings {
+        Ok(StudyFindings {
             name: self.name(),
             title: self.title(),
             about: about(seeds),
@@ -159,28 +156,19 @@ impl Study for Trajectories {
             columns: columns(),
             rows: rows.collect(),
             trades: (1..=CIRCUMSTANCES.len())
-                .map(|loss| Trade {
-                    cost: 0,
-                    loss,
-                    joined: false,
-                    apart: false,
-                })
+                .map(|loss| Trade::new(0, loss))
                 .collect(),
         })
     }
 }
 
-fn columns() -> Vec<Column> {
+fn columns() -> Vec<StudyColumn> {
     let time = ("time_ms_per_sweep", "ms a sweep");
     let worst = CIRCUMSTANCES.map(|c| (c.key, c.heading));
     [time]
         .into_iter()
         .chain(worst)
-        .map(|(key, heading)| Column {
-            key,
-            heading,
-            scale: Scale::Log,
-        })
+        .map(StudyColumn::log)
         .collect()
 }
 
@@ -228,8 +216,8 @@ fn truth_deg(shaft: &[f64], t_s: f64) -> f64 {
     at(before) + (at(before + 1) - at(before)) * (place - before as f64)
 }
 
-fn polls(shaft: &[f64], hz: f64, circumstance: Circumstance, seed: u64) -> Vec<AngleSample> {
-    let Circumstance {
+fn polls(shaft: &[f64], hz: f64, circumstance: PollingCase, seed: u64) -> Vec<AngleSample> {
+    let PollingCase {
         jitter_s,
         quantum_deg,
         ..
@@ -266,7 +254,7 @@ fn after(t_s: f64) -> Stamp<Host> {
 
 fn through(
     samples: Vec<AngleSample>,
-    circumstance: Circumstance,
+    circumstance: PollingCase,
     method: Method,
 ) -> Result<Trajectory, StudyError> {
     let sweep = Sweep {
@@ -303,7 +291,7 @@ fn block_times_s() -> impl Iterator<Item = f64> {
 fn worst_deg(
     shaft: &[f64],
     hz: f64,
-    circumstance: Circumstance,
+    circumstance: PollingCase,
     method: Method,
     seeds: u64,
 ) -> Result<f64, StudyError> {

@@ -1,7 +1,5 @@
 //! Numbers as people read them: three digits that count.
 
-use super::{Spread, Value};
-
 /// Three significant digits: plain between 0.001 and 100,000, else as a power of ten.
 #[must_use]
 pub fn short(x: f64) -> String {
@@ -28,17 +26,6 @@ pub fn short(x: f64) -> String {
             };
             format!("{digits}e{power}")
         }
-    }
-}
-
-/// A value of a table: with its ends where it was measured several times.
-#[must_use]
-pub fn value(value: &Value) -> String {
-    match value {
-        Value::Computed(x) => short(*x),
-        Value::Timed(Spread {
-            median, min, max, ..
-        }) => format!("{} ({}..{})", short(*median), short(*min), short(*max)),
     }
 }
 

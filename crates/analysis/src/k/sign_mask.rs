@@ -7,16 +7,16 @@
 
 use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
 
-use super::lanes::{LANES, Lanes, Line, Portable};
+use super::lanes::{AlignedLanes, LANES, Portable, SimdLanes};
 use super::leaf_pair::F32_BAND;
 
 /// How notes are made in some registers.
-pub(super) trait Noting: Lanes {
+pub(super) trait SignMask: SimdLanes {
     /// Of up to sixteen rows.
-    type Notes: Copy;
+    type Mask: Copy;
 
     /// Whether the notes tell which are too near.
-    const NOTES_WHICH: bool;
+    const MASK_NAMES_PAIRS: bool;
 
     /// What rows and thresholds are multiplied by.
     const SCALE: f32;
@@ -24,36 +24,40 @@ pub(super) trait Noting: Lanes {
     /// What thresholds are moved down by, before that.
     const MOVED: f32;
 
-    fn no_notes(self) -> Self::Notes;
+    fn empty_mask(self) -> Self::Mask;
 
     /// Notes two rows.
-    fn note(self, notes: &mut Self::Notes, row: f32x16<Self::S>, next: f32x16<Self::S>);
+    fn record(self, notes: &mut Self::Mask, row: f32x16<Self::S>, next: f32x16<Self::S>);
 
     /// Adds to each edge's lanes how many were below nought; says whether any was too near.
-    fn add_up<const E: usize>(self, notes: &[Self::Notes; E], lanes: &mut [Line<u32>]) -> bool;
+    fn add_up<const E: usize>(
+        self,
+        notes: &[Self::Mask; E],
+        lanes: &mut [AlignedLanes<u32>],
+    ) -> bool;
 
     /// Which lanes of a row are too near to nought.
     fn undecided(self, row: f32x16<Self::S>) -> u64;
 
     /// The notes' words of sixteen bits, ones for what is too near: bits 15, 13 and so on for rows 0 and 1, 2 and 3 and so on; words by eights, four lanes
     /// of the first row and the same four of the next. Before them, which words have any.
-    fn which(self, notes: Self::Notes) -> (u32, [u16; 2 * LANES]);
+    fn which(self, notes: Self::Mask) -> (u32, [u16; 2 * LANES]);
 }
 
-impl<S: Simd> Noting for Portable<S> {
-    type Notes = (u32x16<S>, f32x16<S>);
+impl<S: Simd> SignMask for Portable<S> {
+    type Mask = (u32x16<S>, f32x16<S>);
 
-    const NOTES_WHICH: bool = false;
+    const MASK_NAMES_PAIRS: bool = false;
     const SCALE: f32 = 1.0;
     const MOVED: f32 = 0.0;
 
     #[inline(always)]
-    fn no_notes(self) -> Self::Notes {
+    fn empty_mask(self) -> Self::Mask {
         (u32x16::splat(self.0, 0), f32x16::splat(self.0, 4.0))
     }
 
     #[inline(always)]
-    fn note(self, (negative, nearest): &mut Self::Notes, row: f32x16<S>, next: f32x16<S>) {
+    fn record(self, (negative, nearest): &mut Self::Mask, row: f32x16<S>, next: f32x16<S>) {
         for row in [row, next] {
             *negative += row.bitcast::<u32x16<S>>() >> 31;
             *nearest = self.nearer_nought(*nearest, row);
@@ -61,7 +65,11 @@ impl<S: Simd> Noting for Portable<S> {
     }
 
     #[inline(always)]
-    fn add_up<const E: usize>(self, notes: &[Self::Notes; E], lanes: &mut [Line<u32>]) -> bool {
+    fn add_up<const E: usize>(
+        self,
+        notes: &[Self::Mask; E],
+        lanes: &mut [AlignedLanes<u32>],
+    ) -> bool {
         let mut least = f32x16::splat(self.0, 4.0);
         for ((negative, nearest), lanes) in notes.iter().zip(lanes) {
             let sum = u32x16::load_array_ref(self.0, &lanes.0) + *negative;
@@ -77,7 +85,7 @@ impl<S: Simd> Noting for Portable<S> {
     }
 
     #[inline(always)]
-    fn which(self, _: Self::Notes) -> (u32, [u16; 2 * LANES]) {
+    fn which(self, _: Self::Mask) -> (u32, [u16; 2 * LANES]) {
         (0, [0; 2 * LANES])
     }
 }
@@ -92,35 +100,39 @@ mod x86 {
     use fearless_simd::x86::{Avx2, Avx512};
     use fearless_simd::{f32x8, f32x16, prelude::*, u16x16, u16x32, u32x16};
 
-    use super::super::lanes::{Half, LANES, Line, Wide};
+    use super::super::lanes::{AlignedLanes, Half, LANES, Wide};
     use super::super::leaf_pair::F32_BAND;
-    use super::Noting;
+    use super::SignMask;
 
     /// 2^-115: 2^14 of the least float's steps, 2^-149 each, are 2^-20, which is twice the band.
     const DOWN: f32 = f32::from_bits((127 - 115) << 23);
     /// Floats from 0 to below this are in the band.
     const BAND_END: f32 = f32::from_bits(1 << 14);
 
-    impl Noting for Wide {
+    impl SignMask for Wide {
         /// Two bits a row in words of 16 bits.
-        type Notes = u32x16<Avx512>;
+        type Mask = u32x16<Avx512>;
 
-        const NOTES_WHICH: bool = true;
+        const MASK_NAMES_PAIRS: bool = true;
         const SCALE: f32 = DOWN;
         const MOVED: f32 = F32_BAND;
 
         #[inline(always)]
-        fn no_notes(self) -> Self::Notes {
+        fn empty_mask(self) -> Self::Mask {
             u32x16::splat(self.0, 0)
         }
 
         #[inline(always)]
-        fn note(self, notes: &mut Self::Notes, row: f32x16<Avx512>, next: f32x16<Avx512>) {
+        fn record(self, notes: &mut Self::Mask, row: f32x16<Avx512>, next: f32x16<Avx512>) {
             *notes = shifted_in(self.0, *notes, row, next);
         }
 
         #[inline(always)]
-        fn add_up<const E: usize>(self, notes: &[Self::Notes; E], lanes: &mut [Line<u32>]) -> bool {
+        fn add_up<const E: usize>(
+            self,
+            notes: &[Self::Mask; E],
+            lanes: &mut [AlignedLanes<u32>],
+        ) -> bool {
             let mut decided = u32x16::splat(self.0, u32::MAX);
             for (notes, lanes) in notes.iter().zip(lanes) {
                 let sum = u32x16::load_array_ref(self.0, &lanes.0) + ones(self.0, *notes);
@@ -137,7 +149,7 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn which(self, notes: Self::Notes) -> (u32, [u16; 2 * LANES]) {
+        fn which(self, notes: Self::Mask) -> (u32, [u16; 2 * LANES]) {
             let near = !first_bits_differ(self.0, notes) & 0xaaaa_aaaa;
             let words = near.bitcast::<u16x32<Avx512>>();
             let mut which = [0; 2 * LANES];
@@ -146,21 +158,21 @@ mod x86 {
         }
     }
 
-    impl Noting for Half {
+    impl SignMask for Half {
         /// How many rows were below nought, in two halves of 16 lanes, and the least of all as packed.
-        type Notes = (u16x16<Avx2>, u16x16<Avx2>);
+        type Mask = (u16x16<Avx2>, u16x16<Avx2>);
 
-        const NOTES_WHICH: bool = false;
+        const MASK_NAMES_PAIRS: bool = false;
         const SCALE: f32 = DOWN;
         const MOVED: f32 = F32_BAND;
 
         #[inline(always)]
-        fn no_notes(self) -> Self::Notes {
+        fn empty_mask(self) -> Self::Mask {
             (u16x16::splat(self.0, 0), u16x16::splat(self.0, u16::MAX))
         }
 
         #[inline(always)]
-        fn note(self, (negative, least): &mut Self::Notes, row: f32x16<Avx2>, next: f32x16<Avx2>) {
+        fn record(self, (negative, least): &mut Self::Mask, row: f32x16<Avx2>, next: f32x16<Avx2>) {
             let (row, row_end) = row.split();
             let (next, next_end) = next.split();
             for (row, next) in [(row, next), (row_end, next_end)] {
@@ -171,7 +183,11 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn add_up<const E: usize>(self, notes: &[Self::Notes; E], lanes: &mut [Line<u32>]) -> bool {
+        fn add_up<const E: usize>(
+            self,
+            notes: &[Self::Mask; E],
+            lanes: &mut [AlignedLanes<u32>],
+        ) -> bool {
             let mut least = u16x16::splat(self.0, u16::MAX);
             for ((negative, nearest), lanes) in notes.iter().zip(lanes) {
                 let bits = negative.bitcast::<fearless_simd::u32x8<Avx2>>();
@@ -192,7 +208,7 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn which(self, _: Self::Notes) -> (u32, [u16; 2 * LANES]) {
+        fn which(self, _: Self::Mask) -> (u32, [u16; 2 * LANES]) {
             (0, [0; 2 * LANES])
         }
     }

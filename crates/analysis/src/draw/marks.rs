@@ -4,7 +4,7 @@ const SHAPES: usize = 5;
 const COLOURS: usize = 6;
 
 /// Half of a mark's size.
-pub(super) const HALF: f64 = 4.5;
+pub(crate) const HALF: f64 = 4.5;
 
 /// The class of a group's colour.
 pub(crate) fn colour(group: usize) -> String {
@@ -12,7 +12,7 @@ pub(crate) fn colour(group: usize) -> String {
 }
 
 /// A group's mark about a place; filled where the choice is on the front.
-pub(super) fn mark(group: usize, x: f64, y: f64, filled: bool) -> String {
+pub(crate) fn mark(group: usize, x: f64, y: f64, filled: bool) -> String {
     let open = if filled { "" } else { " tv-open" };
     let class = format!("tv-mark {}{open}", colour(group));
     let r = HALF;

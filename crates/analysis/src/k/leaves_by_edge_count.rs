@@ -5,20 +5,20 @@
 use fearless_simd::{Simd, i32x16, prelude::*};
 
 use super::lanes::LANES;
-use super::reach::Reach;
+use super::reach::BinRange;
 use super::tree::BLOCK_LEAVES;
 
 /// Leaves of a block, and the bins that pairs with them can be in.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Others {
-    pub reach: [Reach; BLOCK_LEAVES / LANES],
+pub(super) struct LeavesByEdgeCount {
+    pub reach: [BinRange; BLOCK_LEAVES / LANES],
     /// Those to which there are so many edges, a bit each.
     pub by_edges: [u32; 5],
     /// Those to which there are more.
     pub many: u32,
 }
 
-impl Others {
+impl LeavesByEdgeCount {
     /// Those to which there are so many edges.
     #[inline(always)]
     pub(super) fn of<const E: usize>(&self) -> Bits {

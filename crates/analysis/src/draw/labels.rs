@@ -2,14 +2,14 @@
 
 /// A rectangle in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Box2 {
+pub(crate) struct LabelBox {
     pub left: f64,
     pub top: f64,
     pub right: f64,
     pub bottom: f64,
 }
 
-impl Box2 {
+impl LabelBox {
     fn meets(&self, other: &Self) -> bool {
         self.left < other.right
             && other.left < self.right
@@ -25,7 +25,7 @@ impl Box2 {
     }
 
     /// A level or upright line, whichever way it goes, a pixel to each side.
-    pub(super) fn along(a: (f64, f64), b: (f64, f64)) -> Self {
+    pub(crate) fn along(a: (f64, f64), b: (f64, f64)) -> Self {
         Self {
             left: a.0.min(b.0) - 1.0,
             top: a.1.min(b.1) - 1.0,
@@ -35,7 +35,7 @@ impl Box2 {
     }
 
     /// The square about a mark.
-    pub(super) fn about(x: f64, y: f64, half: f64) -> Self {
+    pub(crate) fn about(x: f64, y: f64, half: f64) -> Self {
         Self {
             left: x - half,
             top: y - half,
@@ -54,12 +54,12 @@ const HEIGHT: f64 = 12.0;
 const AWAY: f64 = 8.0;
 
 /// A name's left end and base line beside the mark at (`x`, `y`): the first place inside `room` that is free of `taken`.
-pub(super) fn place(
+pub(crate) fn place(
     text: &str,
     (x, y): (f64, f64),
-    room: &Box2,
-    taken: &[Box2],
-) -> Option<(Box2, (f64, f64))> {
+    room: &LabelBox,
+    taken: &[LabelBox],
+) -> Option<(LabelBox, (f64, f64))> {
     let wide = width(text);
     let places = [
         (x + AWAY, y),
@@ -76,7 +76,7 @@ pub(super) fn place(
         (x - 5.0 - wide, y - 15.0),
     ];
     places.into_iter().find_map(|(left, middle)| {
-        let area = Box2 {
+        let area = LabelBox {
             left,
             top: middle - HEIGHT / 2.0,
             right: left + wide,
@@ -91,7 +91,7 @@ pub(super) fn place(
 mod tests {
     use super::*;
 
-    const ROOM: Box2 = Box2 {
+    const ROOM: LabelBox = LabelBox {
         left: 0.0,
         top: 0.0,
         right: 100.0,

@@ -1,9 +1,10 @@
 //! One plot: axes, grid, the front's steps, a mark a choice with its spread and its name.
 
-use super::super::{Findings, Row, Scale, Trade, Value};
-use super::labels::{self, Box2};
-use super::scale::Axis;
-use super::{Groups, WIDTH, escaped, marks};
+use super::svg::{Groups, WIDTH};
+use super::{Measurement, Row, Scale, StudyFindings, Trade};
+use crate::draw::axis::PlotAxis;
+use crate::draw::labels::{self, LabelBox};
+use crate::draw::{escaped, marks};
 
 /// Height of a plot with everything about it.
 pub(super) const HEIGHT: f64 = 322.0;
@@ -13,7 +14,7 @@ const TOP: f64 = 26.0;
 const BOTTOM: f64 = 276.0;
 
 /// A choice's place.
-struct Spot<'a> {
+struct PlotPoint<'a> {
     row: &'a Row,
     x: f64,
     y: f64,
@@ -28,7 +29,7 @@ type Line = ((f64, f64), (f64, f64));
 
 /// The plot of a trade, `top` pixels down.
 pub(super) fn draw(
-    findings: &Findings,
+    findings: &StudyFindings,
     trade: &Trade,
     number: Option<usize>,
     groups: &Groups<'_>,
@@ -50,13 +51,13 @@ pub(super) fn draw(
         cost = escaped(findings.heading(trade.cost)),
     );
     let spots = spots(findings, trade, &x, &y);
-    let mut lines: Vec<Box2> = Vec::new();
+    let mut lines: Vec<LabelBox> = Vec::new();
     for group in findings.circumstances(trade) {
         let corners = corners(&spots, group);
         let colour = group.map(|group| marks::colour(groups.number(group)));
         svg += &steps(&corners, colour.as_deref());
         let sides = corners.windows(2);
-        lines.extend(sides.filter_map(|pair| Some(Box2::along(*pair.first()?, *pair.last()?))));
+        lines.extend(sides.filter_map(|pair| Some(LabelBox::along(*pair.first()?, *pair.last()?))));
     }
     if trade.joined {
         svg += &joined(&spots, groups);
@@ -70,12 +71,12 @@ pub(super) fn draw(
         svg += &format!("<g><title>{name}</title>{mark}</g>\n");
     }
     let bars = spots.iter().flat_map(|spot| spread(spot, trade, &x, &y));
-    lines.extend(bars.flatten().map(|(a, b)| Box2::along(a, b)));
+    lines.extend(bars.flatten().map(|(a, b)| LabelBox::along(a, b)));
     svg += &names(&spots, &lines);
     svg + "</g>\n"
 }
 
-fn axis(findings: &Findings, column: usize, from: f64, to: f64) -> Axis {
+fn axis(findings: &StudyFindings, column: usize, from: f64, to: f64) -> PlotAxis {
     let scale = findings
         .columns
         .get(column)
@@ -88,17 +89,17 @@ fn axis(findings: &Findings, column: usize, from: f64, to: f64) -> Axis {
         let (low, high) = ends(value);
         [low, high]
     });
-    Axis::new(scale, ends, from, to)
+    PlotAxis::new(scale, ends, from, to)
 }
 
-const fn ends(value: &Value) -> (f64, f64) {
+const fn ends(value: &Measurement) -> (f64, f64) {
     match value {
-        Value::Computed(x) => (*x, *x),
-        Value::Timed(spread) => (spread.min, spread.max),
+        Measurement::Computed(x) => (*x, *x),
+        Measurement::Timed(spread) => (spread.min, spread.max),
     }
 }
 
-fn grid(x: &Axis, y: &Axis) -> String {
+fn grid(x: &PlotAxis, y: &PlotAxis) -> String {
     let mut svg = String::new();
     for tick in x.ticks() {
         svg += &format!(
@@ -123,11 +124,16 @@ fn grid(x: &Axis, y: &Axis) -> String {
     svg
 }
 
-fn spots<'a>(findings: &'a Findings, trade: &Trade, x: &Axis, y: &Axis) -> Vec<Spot<'a>> {
+fn spots<'a>(
+    findings: &'a StudyFindings,
+    trade: &Trade,
+    x: &PlotAxis,
+    y: &PlotAxis,
+) -> Vec<PlotPoint<'a>> {
     let on = findings.front(trade).into_iter().zip(findings.steps(trade));
     let rows = findings.rows.iter().zip(on);
     rows.filter_map(|(row, (on, step))| {
-        Some(Spot {
+        Some(PlotPoint {
             row,
             x: x.place(row.values.get(trade.cost)?.middle())?,
             y: y.place(row.values.get(trade.loss)?.middle())?,
@@ -139,10 +145,10 @@ fn spots<'a>(findings: &'a Findings, trade: &Trade, x: &Axis, y: &Axis) -> Vec<S
 }
 
 /// The corners of the front of a group, or of all: what can be had for at most so much.
-fn corners(spots: &[Spot<'_>], group: Option<&str>) -> Vec<(f64, f64)> {
-    let of_group = |spot: &&Spot<'_>| group.is_none_or(|group| spot.row.group == group);
+fn corners(spots: &[PlotPoint<'_>], group: Option<&str>) -> Vec<(f64, f64)> {
+    let of_group = |spot: &&PlotPoint<'_>| group.is_none_or(|group| spot.row.group == group);
     let steps = spots.iter().filter(|spot| spot.step).filter(of_group);
-    let mut front: Vec<&Spot<'_>> = steps.collect();
+    let mut front: Vec<&PlotPoint<'_>> = steps.collect();
     front.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let mut corners = Vec::new();
     let mut y = TOP;
@@ -168,7 +174,7 @@ fn steps(corners: &[(f64, f64)], colour: Option<&str>) -> String {
     format!("<path class=\"{class}\" d=\"M{}\"/>\n", places.join("L"))
 }
 
-fn joined(spots: &[Spot<'_>], groups: &Groups<'_>) -> String {
+fn joined(spots: &[PlotPoint<'_>], groups: &Groups<'_>) -> String {
     let mut svg = String::new();
     for (group, number) in &groups.0 {
         let own = spots.iter().filter(|spot| spot.row.group == *group);
@@ -185,8 +191,8 @@ fn joined(spots: &[Spot<'_>], groups: &Groups<'_>) -> String {
 }
 
 /// Least to greatest where that is wider than the mark: the ends of a level line and of an upright one.
-fn spread(spot: &Spot<'_>, trade: &Trade, x: &Axis, y: &Axis) -> [Option<Line>; 2] {
-    let places = |axis: &Axis, column: usize| {
+fn spread(spot: &PlotPoint<'_>, trade: &Trade, x: &PlotAxis, y: &PlotAxis) -> [Option<Line>; 2] {
+    let places = |axis: &PlotAxis, column: usize| {
         let (low, high) = ends(spot.row.values.get(column)?);
         let (low, high) = (axis.place(low)?, axis.place(high)?);
         ((high - low).abs() > marks::HALF).then_some((low, high))
@@ -197,7 +203,13 @@ fn spread(spot: &Spot<'_>, trade: &Trade, x: &Axis, y: &Axis) -> [Option<Line>; 
     ]
 }
 
-fn bars(spot: &Spot<'_>, trade: &Trade, x: &Axis, y: &Axis, groups: &Groups<'_>) -> String {
+fn bars(
+    spot: &PlotPoint<'_>,
+    trade: &Trade,
+    x: &PlotAxis,
+    y: &PlotAxis,
+    groups: &Groups<'_>,
+) -> String {
     let class = marks::colour(groups.number(spot.row.group));
     let [level, upright] = spread(spot, trade, x, y);
     let level = level.map(|((a, y), (b, _))| {
@@ -216,18 +228,18 @@ fn bars(spot: &Spot<'_>, trade: &Trade, x: &Axis, y: &Axis, groups: &Groups<'_>)
 
 /// The names, those on the front first, clear of marks, of each other and, while there is room, of `lines`. One without a free place
 /// is left to the table.
-fn names(spots: &[Spot<'_>], lines: &[Box2]) -> String {
-    let room = Box2 {
+fn names(spots: &[PlotPoint<'_>], lines: &[LabelBox]) -> String {
+    let room = LabelBox {
         left: LEFT + 2.0,
         top: TOP + 2.0,
         right: RIGHT - 2.0,
         bottom: BOTTOM - 2.0,
     };
-    let mut taken: Vec<Box2> = spots
+    let mut taken: Vec<LabelBox> = spots
         .iter()
-        .map(|spot| Box2::about(spot.x, spot.y, marks::HALF + 1.0))
+        .map(|spot| LabelBox::about(spot.x, spot.y, marks::HALF + 1.0))
         .collect();
-    let mut order: Vec<&Spot<'_>> = spots.iter().collect();
+    let mut order: Vec<&PlotPoint<'_>> = spots.iter().collect();
     order.sort_by_key(|spot| !spot.on);
     let mut svg = String::new();
     for spot in order {

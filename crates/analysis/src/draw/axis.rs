@@ -1,10 +1,19 @@
 //! Values to places on an axis, and where an axis has its ticks.
 
-use super::super::{Scale, number};
+use super::number;
+
+/// How an axis maps values to positions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Even steps.
+    Linear,
+    /// Powers of ten; zero has a place of its own below them.
+    Log,
+}
 
 /// An axis: values from `low` to `high` on pixels from `from` to `to`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Axis {
+pub(crate) struct PlotAxis {
     scale: Scale,
     low: f64,
     high: f64,
@@ -16,7 +25,7 @@ pub(crate) struct Axis {
 
 /// A line of the grid.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Tick {
+pub(crate) struct AxisTick {
     pub at: f64,
     /// Empty for a line without a number.
     pub label: String,
@@ -27,7 +36,7 @@ const NOUGHT: f64 = 0.08;
 /// The most numbers an axis has room for.
 const MOST_LABELS: i32 = 7;
 
-impl Axis {
+impl PlotAxis {
     /// An axis that shows `values` from pixel `from` to pixel `to`, with some air at its ends.
     pub(crate) fn new(scale: Scale, values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
         let mut low = f64::INFINITY;
@@ -83,13 +92,13 @@ impl Axis {
     }
 
     /// The grid's lines and numbers.
-    pub(crate) fn ticks(&self) -> Vec<Tick> {
+    pub(crate) fn ticks(&self) -> Vec<AxisTick> {
         let mut ticks = match self.scale {
             Scale::Log => self.powers(),
             Scale::Linear => self.steps(),
         };
         if let Some(at) = self.nought {
-            ticks.push(Tick {
+            ticks.push(AxisTick {
                 at,
                 label: "0".to_owned(),
             });
@@ -97,7 +106,7 @@ impl Axis {
         ticks
     }
 
-    fn powers(&self) -> Vec<Tick> {
+    fn powers(&self) -> Vec<AxisTick> {
         let (first, last) = (self.low.log10().floor(), self.high.log10().ceil());
         let (first, last) = (first as i32, last as i32);
         let decades = (self.high / self.low).log10();
@@ -120,14 +129,14 @@ impl Axis {
                     _ => number::short(value),
                 };
                 if let Some(at) = self.place(value) {
-                    ticks.push(Tick { at, label });
+                    ticks.push(AxisTick { at, label });
                 }
             }
         }
         ticks
     }
 
-    fn steps(&self) -> Vec<Tick> {
+    fn steps(&self) -> Vec<AxisTick> {
         let rough = (self.high - self.low) / 5.0;
         let power = 10_f64.powf(rough.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0]
@@ -140,7 +149,7 @@ impl Axis {
         (first..=last.min(first.saturating_add(20)))
             .filter_map(|i| {
                 let value = i as f64 * step;
-                Some(Tick {
+                Some(AxisTick {
                     at: self.place(value)?,
                     label: number::short(value),
                 })
@@ -155,28 +164,28 @@ mod tests {
 
     use super::*;
 
-    fn labels(axis: &Axis) -> Vec<String> {
+    fn labels(axis: &PlotAxis) -> Vec<String> {
         axis.ticks().into_iter().map(|tick| tick.label).collect()
     }
 
     #[test]
     fn decades_have_their_numbers_and_nought_its_place() {
-        let axis = Axis::new(Scale::Log, [0.0, 2e-6, 150.0].into_iter(), 100.0, 0.0);
+        let axis = PlotAxis::new(Scale::Log, [0.0, 2e-6, 150.0].into_iter(), 100.0, 0.0);
         assert_eq!(axis.place(0.0), Some(96.0));
         assert!(axis.place(2e-6).unwrap() < 92.0);
         let labels = labels(&axis);
         assert!(labels.contains(&"100".to_owned()), "{labels:?}");
         assert_eq!(labels.last().unwrap(), "0");
         assert_eq!(axis.place(f64::NAN), None);
-        let positive = Axis::new(Scale::Log, [1.0, 2.0].into_iter(), 0.0, 100.0);
+        let positive = PlotAxis::new(Scale::Log, [1.0, 2.0].into_iter(), 0.0, 100.0);
         assert_eq!(positive.place(0.0), None);
     }
 
     #[test]
     fn short_axes_have_numbers_within_a_decade() {
-        let axis = Axis::new(Scale::Log, [9.0, 30.0].into_iter(), 0.0, 100.0);
+        let axis = PlotAxis::new(Scale::Log, [9.0, 30.0].into_iter(), 0.0, 100.0);
         assert_eq!(labels(&axis), ["8", "10", "15", "20", "30"]);
-        let axis = Axis::new(Scale::Linear, [9.0, 43.0].into_iter(), 0.0, 100.0);
+        let axis = PlotAxis::new(Scale::Linear, [9.0, 43.0].into_iter(), 0.0, 100.0);
         assert_eq!(labels(&axis), ["10", "20", "30", "40"]);
     }
 
@@ -188,7 +197,7 @@ mod tests {
             let scale = if log { Scale::Log } else { Scale::Linear };
             let mut values: Vec<f64> = values.iter().map(|(x, p)| x * 10_f64.powi(*p)).collect();
             values.sort_by(f64::total_cmp);
-            let axis = Axis::new(scale, values.iter().copied(), 40.0, 400.0);
+            let axis = PlotAxis::new(scale, values.iter().copied(), 40.0, 400.0);
             let places: Vec<f64> = values.iter().map(|v| axis.place(*v).unwrap()).collect();
             prop_assert!(places.iter().all(|p| (40.0..=400.0).contains(p)), "{:?}", places);
             prop_assert!(places.is_sorted());

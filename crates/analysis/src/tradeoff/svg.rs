@@ -4,40 +4,20 @@
 //! Plain SVG with a style sheet that the reader's colour scheme chooses from; no script, no font, nothing from outside. Left out:
 //! any kind of plot that no study needs.
 
-pub(crate) mod labels;
-pub(crate) mod marks;
-mod panel;
-pub(crate) mod scale;
-
 use std::collections::BTreeMap;
 
-use super::{Findings, Value};
+use super::{Measurement, StudyFindings, panel};
+use crate::draw::{STYLE, escaped, labels, marks};
 
 /// Width of a figure; everything is drawn at the size of text for reading at this width.
-const WIDTH: f64 = 480.0;
+pub(super) const WIDTH: f64 = 480.0;
 const TITLE: f64 = 30.0;
 const LEGEND_LINE: f64 = 18.0;
 const MARGIN: f64 = 14.0;
 
-pub(crate) const STYLE: &str = "\
-.tv{font:12px system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif}\
-.tv-page{fill:#ffffff}.tv-ink{fill:#1f2328}.tv-soft{fill:#57606a}.tv-small{font-size:11px}.tv-title{font-size:14px;font-weight:600}\
-.tv-grid{stroke:#e1e5ea;stroke-width:1}.tv-frame{stroke:#8b949e;stroke-width:1;fill:none}\
-.tv-front{stroke:#57606a;stroke-width:1.5;stroke-dasharray:5 4;fill:none}\
-.tv-line{stroke-width:1;stroke-opacity:.45;fill:none}.tv-bar{stroke-width:1.2;stroke-opacity:.7}.tv-mark{stroke-width:1.8}\
-.tv-s0{stroke:#0b62b8;fill:#0b62b8}.tv-s1{stroke:#c2410c;fill:#c2410c}.tv-s2{stroke:#0f7b5a;fill:#0f7b5a}\
-.tv-s3{stroke:#9b3e8f;fill:#9b3e8f}.tv-s4{stroke:#8a6a00;fill:#8a6a00}.tv-s5{stroke:#475569;fill:#475569}\
-.tv-open{fill:#ffffff}.tv-none{fill:none}\
-@media (prefers-color-scheme:dark){\
-.tv-page{fill:#181b20}.tv-ink{fill:#e6e8eb}.tv-soft{fill:#a9b1bb}\
-.tv-grid{stroke:#2b3038}.tv-frame{stroke:#6b7480}.tv-front{stroke:#c3c9d1}\
-.tv-s0{stroke:#6cb4ff;fill:#6cb4ff}.tv-s1{stroke:#ff9a62;fill:#ff9a62}.tv-s2{stroke:#4fd1a1;fill:#4fd1a1}\
-.tv-s3{stroke:#e79bdc;fill:#e79bdc}.tv-s4{stroke:#e3c04d;fill:#e3c04d}.tv-s5{stroke:#b6c2d1;fill:#b6c2d1}\
-.tv-open{fill:#181b20}.tv-none{fill:none}}";
-
 /// The figure as a document.
 #[must_use]
-pub fn figure(findings: &Findings) -> String {
+pub fn figure(findings: &StudyFindings) -> String {
     let groups = Groups::of(findings);
     let legend = groups.legend(findings);
     let panels_end = TITLE + panel::HEIGHT * findings.trades.len() as f64;
@@ -63,28 +43,11 @@ pub fn figure(findings: &Findings) -> String {
     svg + "</svg>\n"
 }
 
-/// What XML would take for its own; what it forbids is left out.
-#[must_use]
-pub fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '&' => out.push_str("&amp;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 /// The groups in their order: each a colour and a shape.
-struct Groups<'a>(BTreeMap<&'a str, usize>);
+pub(super) struct Groups<'a>(pub(super) BTreeMap<&'a str, usize>);
 
 impl<'a> Groups<'a> {
-    fn of(findings: &'a Findings) -> Self {
+    fn of(findings: &'a StudyFindings) -> Self {
         let mut groups = BTreeMap::new();
         for row in &findings.rows {
             let next = groups.len();
@@ -93,27 +56,32 @@ impl<'a> Groups<'a> {
         Self(groups)
     }
 
-    fn number(&self, group: &str) -> usize {
+    pub(super) fn number(&self, group: &str) -> usize {
         self.0.get(group).copied().unwrap_or(0)
     }
 
     /// What is under the plots, in lines that fit.
-    fn legend(&self, findings: &Findings) -> Vec<Vec<Entry>> {
+    fn legend(&self, findings: &StudyFindings) -> Vec<Vec<LegendEntry>> {
         let mut names: Vec<(&str, usize)> = self.0.iter().map(|(name, n)| (*name, *n)).collect();
         names.sort_by_key(|(_, number)| *number);
         let timed = findings.rows.iter().flat_map(|row| &row.values);
         let runs = timed
             .filter_map(|value| match value {
-                Value::Timed(spread) => Some(spread.runs),
-                Value::Computed(_) => None,
+                Measurement::Timed(spread) => Some(spread.runs),
+                Measurement::Computed(_) => None,
             })
             .max();
         let groups = names
             .into_iter()
-            .map(|(name, n)| (Sign::Group(n), name.to_owned()));
-        let front = (Sign::Front, "Pareto front: filled".to_owned());
-        let bars = runs.map(|n| (Sign::Bar, format!("median, least and greatest of {n} runs")));
-        let mut lines: Vec<Vec<Entry>> = vec![Vec::new()];
+            .map(|(name, n)| (LegendSymbol::Group(n), name.to_owned()));
+        let front = (LegendSymbol::Front, "Pareto front: filled".to_owned());
+        let bars = runs.map(|n| {
+            (
+                LegendSymbol::Bar,
+                format!("median, least and greatest of {n} runs"),
+            )
+        });
+        let mut lines: Vec<Vec<LegendEntry>> = vec![Vec::new()];
         let mut x = MARGIN;
         for (sign, text) in groups.chain([front]).chain(bars) {
             let width = 24.0 + labels::width(&text) + 14.0;
@@ -122,7 +90,7 @@ impl<'a> Groups<'a> {
                 x = MARGIN;
             }
             if let Some(line) = lines.last_mut() {
-                line.push(Entry { sign, text, x });
+                line.push(LegendEntry { sign, text, x });
             }
             x += width;
         }
@@ -131,25 +99,25 @@ impl<'a> Groups<'a> {
 }
 
 /// An entry of the legend.
-struct Entry {
-    sign: Sign,
+struct LegendEntry {
+    sign: LegendSymbol,
     text: String,
     x: f64,
 }
 
-enum Sign {
+enum LegendSymbol {
     Group(usize),
     Front,
     Bar,
 }
 
-impl Entry {
+impl LegendEntry {
     fn draw(&self, y: f64) -> String {
         let x = self.x;
         let sign = match self.sign {
-            Sign::Group(n) => marks::mark(n, x + 8.0, y, true),
-            Sign::Front => format!("<path class=\"tv-front\" d=\"M{x:.1} {y:.1}h18\"/>\n"),
-            Sign::Bar => {
+            LegendSymbol::Group(n) => marks::mark(n, x + 8.0, y, true),
+            LegendSymbol::Front => format!("<path class=\"tv-front\" d=\"M{x:.1} {y:.1}h18\"/>\n"),
+            LegendSymbol::Bar => {
                 format!("<path class=\"tv-frame\" d=\"M{x:.1} {y:.1}h18m0 -3v6m-18 -6v6\"/>\n")
             }
         };
@@ -163,4 +131,5 @@ impl Entry {
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+#[path = "svg_tests.rs"]
+mod tests;

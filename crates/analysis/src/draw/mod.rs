@@ -1,0 +1,71 @@
+//! Parts that all figures and pages share: style sheets, axes, marks, labels and numbers.
+
+pub(crate) mod axis;
+pub(crate) mod labels;
+pub(crate) mod marks;
+pub mod number;
+#[cfg(test)]
+pub(crate) mod xml;
+
+pub use axis::Scale;
+
+/// Style of an SVG figure, for light and dark colour schemes.
+pub(crate) const STYLE: &str = "\
+.tv{font:12px system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif}\
+.tv-page{fill:#ffffff}.tv-ink{fill:#1f2328}.tv-soft{fill:#57606a}.tv-small{font-size:11px}.tv-title{font-size:14px;font-weight:600}\
+.tv-grid{stroke:#e1e5ea;stroke-width:1}.tv-frame{stroke:#8b949e;stroke-width:1;fill:none}\
+.tv-front{stroke:#57606a;stroke-width:1.5;stroke-dasharray:5 4;fill:none}\
+.tv-line{stroke-width:1;stroke-opacity:.45;fill:none}.tv-bar{stroke-width:1.2;stroke-opacity:.7}.tv-mark{stroke-width:1.8}\
+.tv-s0{stroke:#0b62b8;fill:#0b62b8}.tv-s1{stroke:#c2410c;fill:#c2410c}.tv-s2{stroke:#0f7b5a;fill:#0f7b5a}\
+.tv-s3{stroke:#9b3e8f;fill:#9b3e8f}.tv-s4{stroke:#8a6a00;fill:#8a6a00}.tv-s5{stroke:#475569;fill:#475569}\
+.tv-open{fill:#ffffff}.tv-none{fill:none}\
+@media (prefers-color-scheme:dark){\
+.tv-page{fill:#181b20}.tv-ink{fill:#e6e8eb}.tv-soft{fill:#a9b1bb}\
+.tv-grid{stroke:#2b3038}.tv-frame{stroke:#6b7480}.tv-front{stroke:#c3c9d1}\
+.tv-s0{stroke:#6cb4ff;fill:#6cb4ff}.tv-s1{stroke:#ff9a62;fill:#ff9a62}.tv-s2{stroke:#4fd1a1;fill:#4fd1a1}\
+.tv-s3{stroke:#e79bdc;fill:#e79bdc}.tv-s4{stroke:#e3c04d;fill:#e3c04d}.tv-s5{stroke:#b6c2d1;fill:#b6c2d1}\
+.tv-open{fill:#181b20}.tv-none{fill:none}}";
+
+/// Style of an HTML page, for light and dark colour schemes.
+pub(crate) const PAGE_STYLE: &str = "\
+:root{color-scheme:light dark;--ink:#1f2328;--soft:#57606a;--page:#f3f4f6;--card:#fff;--line:#d8dee4;--mark:#0b62b8;--tint:#eef5fc}\
+@media (prefers-color-scheme:dark){:root{--ink:#e6e8eb;--soft:#a0a8b2;--page:#101216;--card:#181b20;--line:#333941;--mark:#6cb4ff;--tint:#1b2733}}\
+*{box-sizing:border-box}\
+body{margin:0;background:var(--page);color:var(--ink);font:16px/1.55 system-ui,-apple-system,'Segoe UI',sans-serif}\
+main,header,footer{max-width:56rem;margin:0 auto;padding:1rem}\
+h1{font-size:1.7rem;line-height:1.2;margin:1rem 0 .4rem}\
+h2{font-size:1.25rem;line-height:1.3;margin:0 0 .6rem}\
+p{margin:.5rem 0}\
+.soft,footer{color:var(--soft);font-size:.92rem}\
+.caution{border-left:4px solid #d9822b;padding:.3rem .8rem;margin:.8rem 0}\
+nav{display:flex;flex-wrap:wrap;gap:.5rem;margin:1rem 0 0}\
+nav a{background:var(--card);border:1px solid var(--line);border-radius:99px;padding:.25rem .8rem;color:var(--mark);text-decoration:none;font-size:.92rem}\
+section{background:var(--card);border:1px solid var(--line);border-radius:12px;padding:1.1rem;margin:0 0 1.2rem}\
+figure{margin:1rem 0}\
+figure svg{display:block;width:100%;max-width:40rem;height:auto;margin:0 auto}\
+.scroll{overflow-x:auto;-webkit-overflow-scrolling:touch}\
+table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums;font-size:.9rem}\
+th,td{padding:.35rem .6rem;border-bottom:1px solid var(--line);text-align:right;vertical-align:bottom}\
+th:first-child,td:first-child{text-align:left}\
+th{font-weight:600}\
+td small{color:var(--soft);white-space:nowrap}\
+tr.on td{background:var(--tint)}\
+tr.on td:last-child{color:var(--mark);font-weight:700}\
+@media (max-width:34rem){header,footer{padding:.8rem}main{padding:.4rem}section{padding:.7rem;border-radius:8px}figure{margin:1rem -.7rem}\
+th,td{padding:.3rem .35rem}td small{display:block;font-size:.78rem}}";
+
+/// Text with the special characters of XML escaped and control characters replaced by spaces.
+pub(crate) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '&' => out.push_str("&amp;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
