@@ -1,18 +1,19 @@
-//! Lumpy balls of triangles: meshes of any size that every machine makes alike.
+//! Closed meshes of any size, equal on every machine.
 
 use glam::DVec3;
 
 /// A closed ball in rings from the bottom to the top, each cut into sectors.
 #[derive(Clone, Copy)]
 pub(crate) struct BallMesh {
-    /// Rings, the two of triangles at the ends included.
+    /// Number of rings, including the two of triangles at the ends.
     pub rings: usize,
-    /// Sectors of a ring.
+    /// Sectors per ring.
     pub sectors: usize,
 }
 
 impl BallMesh {
-    /// Its vertices: each direction from the middle as `place` moves it. The ends come first, then ring after ring from below.
+    /// Its vertices: each direction from the centre, moved by `place`. The ends come first, then
+    /// ring after ring from below.
     pub fn vertices(self, place: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
         let mut vertices = vec![place(DVec3::NEG_Z), place(DVec3::Z)];
         for ring in 1..self.rings {
@@ -30,7 +31,7 @@ impl BallMesh {
         vertices
     }
 
-    /// The place of a vertex among them; sectors go round.
+    /// Index of a vertex; sectors wrap around.
     pub fn vertex(self, ring: usize, sector: usize) -> u32 {
         let at = match ring {
             0 => 0,
@@ -40,14 +41,15 @@ impl BallMesh {
         u32::try_from(at).unwrap_or(u32::MAX)
     }
 
-    /// The two triangles of a cell, counterclockwise from outside; at either end one of them has no area.
+    /// The two triangles of a cell, counterclockwise from outside. At the ends one of them has no
+    /// area.
     pub fn cell(self, ring: usize, sector: usize) -> [[u32; 3]; 2] {
         let [a, b] = [sector, sector + 1].map(|sector| self.vertex(ring, sector));
         let [d, c] = [sector, sector + 1].map(|sector| self.vertex(ring + 1, sector));
         [[a, b, c], [a, c, d]]
     }
 
-    /// All that have an area.
+    /// All triangles with an area.
     pub fn triangles(self) -> Vec<[u32; 3]> {
         let cells = (0..self.rings)
             .flat_map(|ring| (0..self.sectors).map(move |sector| self.cell(ring, sector)));
@@ -82,7 +84,7 @@ mod tests {
                 *edges.entry((corners[from], corners[to])).or_insert(0) += 1;
             }
         }
-        // Every edge once one way and once the other.
+        // Every edge occurs once in each direction.
         for ((from, to), times) in &edges {
             assert_eq!((*times, edges[&(*to, *from)]), (1, 1));
         }

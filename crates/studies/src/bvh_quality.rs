@@ -1,4 +1,4 @@
-//! How good a tree of boxes is made: time to build it against time of every ray through it.
+//! Study of the quality of the bounding volume hierarchy: time to build it against time per ray.
 
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -18,12 +18,12 @@ use crate::shots::Shots;
 /// The study.
 pub(crate) struct BvhQuality;
 
-/// Lasers of a firing.
+/// Lasers per firing.
 const BEAMS: usize = 16;
-/// Rays of ten seconds of a VLP-16, nearly.
+/// About the rays of ten seconds of a VLP-16.
 const SCAN_RAYS: f64 = 3_000_000.0;
 
-/// With its boulders 100,000 triangles.
+/// 100,000 triangles with its boulders.
 const CAVE: BallMesh = BallMesh {
     rings: 201,
     sectors: 220,
@@ -33,7 +33,7 @@ const CAVE_AT_A_LOOK: BallMesh = BallMesh {
     sectors: 40,
 };
 
-/// Name, label and quality; 16 bins and a box for every triangle are what meshes have.
+/// Name, label and quality. Meshes have 16 bins and a box per triangle.
 const QUALITIES: [(&str, &str, Quality); 10] = [
     ("middle cuts", "middle", of(0, 1)),
     ("middle cuts, 4 a box", "middle, 4", of(0, 4)),
@@ -130,7 +130,7 @@ fn columns() -> Vec<StudyColumn> {
     .into()
 }
 
-/// Of a row, by the seconds of a build and of a ray.
+/// The values of a row from the seconds of a build and of a ray.
 fn values(build: TimingSpread, ray: TimingSpread, differ: usize) -> Vec<Measurement> {
     let scan = TimingSpread {
         median: build.median + SCAN_RAYS * ray.median,
@@ -168,7 +168,7 @@ fn about(scenes: &[BvhScene], rays: usize) -> Vec<String> {
     ]
 }
 
-/// What rays are cast at.
+/// A scene to cast rays at.
 struct BvhScene {
     name: &'static str,
     objects: Vec<Object>,
@@ -194,7 +194,7 @@ impl BvhScene {
             })
     }
 
-    /// All meshes with trees of this quality.
+    /// All meshes with hierarchies of this quality.
     fn caster(&self, quality: Quality) -> Result<Caster, StudyError> {
         let objects = self.objects.iter().map(|object| match object.surface() {
             Surface::Mesh(mesh) => Object::new(mesh.rebuilt(quality)).placed(*object.placement()),
@@ -204,7 +204,7 @@ impl BvhScene {
     }
 }
 
-/// Rays that met something else, or elsewhere.
+/// Number of rays with another hit, or at another place.
 fn differing(hits: &[Option<Hit>], others: &[Option<Hit>]) -> usize {
     let both = hits.iter().zip(others);
     both.filter(|(a, b)| a != b).count()
@@ -233,7 +233,7 @@ fn rays(shots: &Shots) -> Result<Vec<Ray>, StudyError> {
     Ok(rays)
 }
 
-/// What the quarry's scene file places.
+/// The objects of the quarry's scene file.
 fn quarry(seed: u64) -> Result<Vec<Object>, StudyError> {
     let scenery =
         Scenery::parse(shipped("quarry").unwrap_or_default()).map_err(StudyError::workload)?;
@@ -243,14 +243,14 @@ fn quarry(seed: u64) -> Result<Vec<Object>, StudyError> {
     Ok(placed.objects)
 }
 
-/// Boulders in the cave, and how they are cut.
+/// Boulders in the cave, and their resolution.
 const BOULDERS: u32 = 50;
 const BOULDER: BallMesh = BallMesh {
     rings: 11,
     sectors: 12,
 };
 
-/// A lumpy cave about the origin with boulders in it.
+/// A cave around the origin with boulders in it.
 fn cave(walls: BallMesh) -> Result<Vec<Object>, StudyError> {
     let mut vertices = walls.vertices(|along| {
         let lumps = (7.0 * along.x).sin() * (9.0 * along.y).cos()
@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn rays_meet_the_same_in_every_tree() {
         let mut now = Stamp::from_nanos(0);
-        // Every look at the clock is 3 ms later: everything takes as long.
+        // The clock advances by 3 ms per reading, so everything takes as long.
         let mut clock = || {
             now = now.saturating_add(Span::from_micros(3_000));
             now

@@ -1,4 +1,4 @@
-//! How the lidar's clock is found from when its packets arrive, over three kinds of link.
+//! Study of estimators of the lidar's clock from packet arrival times, over three kinds of link.
 
 use std::hint::black_box;
 
@@ -13,15 +13,15 @@ use units::{Host, Lidar, Span, Stamp};
 /// The study.
 pub(crate) struct Clocks;
 
-/// Host and lidar at the start, a minute apart in their seconds' count.
+/// Host and lidar times at the start, a minute apart.
 const BEGIN: Stamp<Host> = Stamp::from_nanos(1_700_002_800_000_000_000);
 const DEVICE: Stamp<Lidar> = Stamp::from_nanos(1_700_002_860_000_000_000);
-/// How much faster the host's clock is.
+/// Relative speed of the host's clock.
 const DRIFTS_PPM: [f64; 3] = [-50.0, 0.0, 50.0];
-/// Errors count from here on: an online clock needs some packets.
+/// Errors count from here on, since an online clock needs some packets.
 const SETTLED_S: f64 = 1.0;
 
-/// A way to find the clock: from packets, the host times of all of them.
+/// An estimator: the host times of all packets.
 type Method = fn(&[TimedPacket]) -> Option<Vec<Stamp<Host>>>;
 
 const METHODS: [(&str, &str, Method); 4] = [
@@ -113,7 +113,7 @@ fn about(seconds: i64, runs: usize) -> Vec<String> {
     ]
 }
 
-/// Recordings of a link: every drift, so many seeds each.
+/// Recordings of a link with every drift, `seeds` of each.
 fn recordings(link: ArrivalLink, seconds: i64, seeds: u64) -> Vec<Vec<TimedPacket>> {
     let count = usize::try_from(seconds * 1_000_000_000 / PACKET_NS).unwrap_or(0);
     let mut recordings = Vec::new();
@@ -130,13 +130,13 @@ fn recordings(link: ArrivalLink, seconds: i64, seeds: u64) -> Vec<Vec<TimedPacke
     recordings
 }
 
-/// How far a clock is off, microseconds.
+/// Errors of a clock, microseconds.
 struct ClockError {
     bias_us: f64,
     worst_us: f64,
 }
 
-/// Averaged over recordings.
+/// Errors averaged over recordings.
 fn off(recordings: &[Vec<TimedPacket>], method: Method) -> Result<ClockError, StudyError> {
     let (mut bias_us, mut worst_us) = (0.0, 0.0);
     for packets in recordings {
@@ -191,7 +191,7 @@ fn straight(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
     (spread > 0.0).then(|| packets.iter().map(host).collect())
 }
 
-/// Each packet's host time as it is known when the packet comes.
+/// The host time of each packet as known at its arrival.
 fn online(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
     let mut clock = OnlineClock::new();
     arrivals(packets)
@@ -212,7 +212,8 @@ fn whole(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
 mod tests {
     use super::*;
 
-    /// The table of docs/src/accuracy.md, made by another program: of the same links, averaged over other seeds.
+    /// The table of docs/src/accuracy.md, made by another program for the same links, averaged over
+    /// other seeds.
     #[test]
     fn errors_are_those_of_the_accuracy_page() {
         for (link, table) in ArrivalLink::ALL.into_iter().zip([
@@ -224,7 +225,8 @@ mod tests {
             for ((name, _, method), (bias_us, worst_us)) in METHODS.into_iter().zip(table) {
                 let off = off(&recordings, method).unwrap();
                 let said = format!("{}, {name}: {} {}", link.name(), off.bias_us, off.worst_us);
-                // Few recordings: rare spikes move the bias of arrivals by a quarter of it, the others scatter by 1 us.
+                // With few recordings rare spikes move the bias of arrivals by a quarter, and the
+                // others scatter by 1 us.
                 assert!(
                     (off.bias_us - bias_us).abs() < 0.3 * bias_us + 1.5,
                     "{said}"

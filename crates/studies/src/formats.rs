@@ -1,4 +1,4 @@
-//! Point formats: bytes, seconds, and what rounding costs.
+//! Study of the point formats: size, time and rounding.
 
 use std::io::{self, Cursor, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -28,7 +28,7 @@ const SWEEP: TiltSweep = TiltSweep {
     speed_deg_s: 13.0,
     accel_deg_s2: 500.0,
 };
-/// As the scanner hands points on.
+/// Size of the scanner's batches.
 const BATCH_POINTS: usize = 1 << 12;
 /// Standard deviation of a range, metres: a third of the VLP-16's +-3 cm (Table 2 of the paper).
 const NOISE_M: f64 = 0.01;
@@ -159,7 +159,7 @@ fn write(format: Format, memory: &Memory, batches: &[Points]) -> Result<(), Stud
     Ok(())
 }
 
-/// The greatest distance of a point from where it was.
+/// The largest distance of a point from its original place.
 fn error_m(format: Format, bytes: &[u8], cloud: &Points) -> Result<f64, StudyError> {
     let positions = read::positions(format, bytes.to_vec())
         .map_err(StudyError::workload)?
@@ -178,7 +178,7 @@ fn error_m(format: Format, bytes: &[u8], cloud: &Points) -> Result<f64, StudyErr
     ))
 }
 
-/// A file in memory that outlives the sink which writes it, and keeps its room from one writing to the next.
+/// A file in memory that outlives the sink and keeps its allocation between rounds.
 #[derive(Clone, Default)]
 struct Memory(Arc<Mutex<Cursor<Vec<u8>>>>);
 
@@ -225,7 +225,8 @@ impl Seek for Memory {
 mod tests {
     use super::*;
 
-    /// What `cloud::formats` says of each: 4 um at 100 m for f32, half of 0.1 mm a coordinate for LAS, nothing for CSV.
+    /// The figures of `cloud::formats`: 4 um at 100 m for f32, half of 0.1 mm per coordinate for
+    /// LAS, exact for CSV.
     #[test]
     fn what_is_read_back_errs_as_the_formats_say() {
         let cloud = hall(0.02).unwrap();
@@ -235,13 +236,13 @@ mod tests {
         let error_um = |format| {
             let memory = Memory::default();
             write(format, &memory, &batches).unwrap();
-            // Twice, as the rounds do.
+            // Twice, as in the rounds.
             write(format, &memory, &batches).unwrap();
             error_m(format, &memory.content(), &cloud).unwrap() * 1e6
         };
         assert_eq!(error_um(Format::Csv), 0.0);
         let ply = error_um(Format::Ply);
-        // Half a step of f32 between 16 and 32 m is 0.95 um a coordinate.
+        // Half a step of f32 between 16 and 32 m is 0.95 um per coordinate.
         assert!((0.1..1.7).contains(&ply), "{ply}");
         for like in [Format::Pcd, Format::E57, Format::Mcap] {
             assert_eq!(error_um(like), ply, "{like}");

@@ -1,4 +1,4 @@
-//! How often the angles are worked out: a packet, a block, a firing or a return, and what velomotion does.
+//! Study of how often the angles are computed: per packet, block, firing or return.
 
 use std::hint::black_box;
 
@@ -147,7 +147,7 @@ fn kernels<'a>(
         .collect()
 }
 
-/// Takes what comes.
+/// A sink that drops its points.
 struct Ignore;
 
 impl Sink for Ignore {
@@ -157,7 +157,7 @@ impl Sink for Ignore {
     }
 }
 
-/// velomotion's second pass.
+/// The second pass of velomotion.
 pub(crate) fn place_packets(
     packets: &Workload,
     alignment: &Alignment,
@@ -171,7 +171,7 @@ pub(crate) fn place_packets(
     Ok(())
 }
 
-/// Every return by itself, as `scanner` defines its place.
+/// Every return on its own, as `scanner` defines its place.
 fn definition(packets: &Workload, alignment: &Alignment) -> PlacedPoints<f64> {
     let mut places = PlacedPoints::new(0);
     let mut each = |firing: &lidar::Firing<'_>| {
@@ -192,7 +192,7 @@ fn definition(packets: &Workload, alignment: &Alignment) -> PlacedPoints<f64> {
     places
 }
 
-/// How far velomotion's own points are from those of the definition.
+/// Distance of velomotion's points from those of the definition.
 fn own_error_m(
     packets: &Workload,
     alignment: &Alignment,

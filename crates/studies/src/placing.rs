@@ -1,39 +1,38 @@
-//! The ways to put a firing's returns in place (Eq. 1-6 of the paper): how often the angles are worked out, in which numbers and by which
-//! sine. Plain loops, so that they can be compared with each other.
+//! Plain loops that place the returns of firings (Eq. 1-6 of the paper), by how often the angles
+//! are computed, by number type and by sine.
 //!
-//! What velomotion itself does is `scanner`'s; studies put it beside these. Left out: time, which comes with the shots as an angle
-//! and how fast it grows.
+//! The loop of velomotion itself is in `scanner`. Time enters as an angle and its rate.
 
 use std::ops::{Add, Mul, Sub};
 
-/// Lasers of a firing.
+/// Lasers per firing.
 pub const LASERS: usize = 16;
-/// Firings of a block.
+/// Firings per block.
 pub const BLOCK_FIRINGS: usize = 2;
-/// Firings of a packet.
+/// Firings per packet.
 pub const PACKET_FIRINGS: usize = 24;
-/// The sine table has a place for every hundredth of a degree.
+/// The sine table has an entry per hundredth of a degree.
 pub const TABLE_STEPS: usize = 36_000;
 
-/// Angles once a packet, those of its first firing.
+/// Angles once per packet, those of its first firing.
 pub const PACKET: u8 = 0;
-/// Angles once a block.
+/// Angles once per block.
 pub const BLOCK: u8 = 1;
-/// Angles once a firing.
+/// Angles once per firing.
 pub const FIRING: u8 = 2;
-/// Angles once a return.
+/// Angles once per return.
 pub const RETURN: u8 = 3;
 
-/// One firing: its angles when its first laser fires, how fast they grow, and what came back.
+/// A firing: its angles when its first laser fires, their rates, and its returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shot {
     /// Azimuth, degrees.
     pub azimuth_deg: f64,
-    /// Its growth, degrees per nanosecond.
+    /// Rate of the azimuth, degrees per nanosecond.
     pub azimuth_deg_ns: f64,
     /// Tilt (gamma), degrees.
     pub tilt_deg: f64,
-    /// Its growth, degrees per nanosecond.
+    /// Rate of the tilt, degrees per nanosecond.
     pub tilt_deg_ns: f64,
     /// Distances in counts; 0 for none.
     pub counts: [u16; LASERS],
@@ -44,18 +43,18 @@ pub struct Shot {
 pub struct LaserGeometry {
     /// Elevation, degrees.
     pub elevation_deg: f64,
-    /// How far above the lidar's origin it starts, metres.
+    /// Height above the lidar's origin, metres.
     pub rise_m: f64,
-    /// When it fires, nanoseconds after the firing's start.
+    /// Delay after the start of the firing, nanoseconds.
     pub delay_ns: f64,
 }
 
-/// The lidar and how it sits on the axis.
+/// The lidar and its mount.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorGeometry {
-    /// Its lasers in firing order.
+    /// Lasers in firing order.
     pub beams: [LaserGeometry; LASERS],
-    /// A count of distance, metres.
+    /// Unit of distance, metres.
     pub unit_m: f64,
     /// Height above the tilt axis, metres (d of Eq. 4-6).
     pub d_m: f64,
@@ -65,13 +64,13 @@ pub struct SensorGeometry {
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + 'static
 {
-    /// The nearest of these numbers.
+    /// Conversion from f64 with rounding.
     fn of(x: f64) -> Self;
-    /// The same number.
+    /// Conversion to f64.
     fn f64(self) -> f64;
     /// Sine and cosine of radians.
     fn sin_cos(self) -> (Self, Self);
-    /// Degrees in radians.
+    /// Degrees to radians.
     fn radians(self) -> Self;
 }
 
@@ -100,7 +99,7 @@ macro_rules! number {
 number!(f32);
 number!(f64);
 
-/// Sine and cosine of an angle that grows.
+/// Sine and cosine of an angle that changes.
 pub trait Sine<T: Real> {
     /// Of an angle in degrees.
     fn at(&self, degrees: T) -> (T, T);
@@ -113,7 +112,7 @@ pub trait Sine<T: Real> {
     }
 }
 
-/// The library's sine and cosine.
+/// The sine and cosine of the standard library.
 #[derive(Clone, Copy, Debug)]
 pub struct Exact;
 
@@ -124,7 +123,7 @@ impl<T: Real> Sine<T> for Exact {
     }
 }
 
-/// Those of the nearest hundredth of a degree.
+/// A table with an entry per hundredth of a degree.
 #[derive(Clone, Debug)]
 pub struct SineTable<T>(Vec<(T, T)>);
 
@@ -156,8 +155,8 @@ impl<T: Real> Sine<T> for SineTable<T> {
     }
 }
 
-/// The library's once a firing, and from there on by the sum's sine and cosine: cos and sin of the little angle ahead by their series to
-/// the third power. At a thousandth of a radian they are exact to 1e-13.
+/// The standard library's values once per firing, and addition theorems from there on, with series
+/// to the third power for the small angle. For a thousandth of a radian they are exact to 1e-13.
 #[derive(Clone, Copy, Debug)]
 pub struct Addition;
 
@@ -179,7 +178,7 @@ impl<T: Real> Sine<T> for Addition {
     }
 }
 
-/// Columns of places, metres.
+/// Columns of coordinates, metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedPoints<T> {
     /// x (right).
@@ -191,7 +190,7 @@ pub struct PlacedPoints<T> {
 }
 
 impl<T: Real> PlacedPoints<T> {
-    /// Room for so many.
+    /// Columns for so many points.
     #[must_use]
     pub fn new(len: usize) -> Self {
         let column = || vec![T::of(0.0); len];
@@ -202,13 +201,13 @@ impl<T: Real> PlacedPoints<T> {
         }
     }
 
-    /// How many.
+    /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         self.x_m.len()
     }
 
-    /// The greatest distance of any place from its own of `truth`, metres; infinite where one has more than the other.
+    /// The largest distance of any point from `truth`, metres; infinite if their numbers differ.
     #[must_use]
     pub fn worst_m(&self, truth: &PlacedPoints<f64>) -> f64 {
         worst_m(
@@ -218,8 +217,8 @@ impl<T: Real> PlacedPoints<T> {
     }
 }
 
-/// The greatest distance of any place of columns x, y, z from its own of `truth`, metres. Infinite where the columns are not of one
-/// length or a distance is not a number.
+/// The largest distance of any point of columns x, y, z from `truth`, metres. Infinite if lengths
+/// differ or a distance is not a number.
 #[must_use]
 pub fn worst_m<T: Real>(places_m: [&[T]; 3], truth_m: [&[f64]; 3]) -> f64 {
     let [x, y, z] = places_m;
@@ -241,8 +240,9 @@ pub fn worst_m<T: Real>(places_m: [&[T]; 3], truth_m: [&[f64]; 3]) -> f64 {
     worst.sqrt()
 }
 
-/// Places every return, its azimuth and tilt taken once a `AZIMUTH` and once a `TILT` ([`PACKET`], [`BLOCK`], [`FIRING`] or
-/// [`RETURN`]), each with its own sine. Room beyond the returns is left as it is; returns beyond the room are dropped.
+/// Places every return with azimuth and tilt once per `AZIMUTH` and `TILT` ([`PACKET`], [`BLOCK`],
+/// [`FIRING`] or [`RETURN`]), each with its own sine. Returns beyond the length of `out` are
+/// dropped.
 pub fn place<T: Real, A: Sine<T>, G: Sine<T>, const AZIMUTH: u8, const TILT: u8>(
     shots: &[Shot],
     head: &SensorGeometry,
@@ -296,7 +296,7 @@ pub fn place<T: Real, A: Sine<T>, G: Sine<T>, const AZIMUTH: u8, const TILT: u8>
     }
 }
 
-/// Whether firing `i` begins one of these.
+/// Whether firing `i` starts a group.
 #[inline(always)]
 const fn begins(per: u8, i: usize) -> bool {
     match per {
@@ -318,7 +318,7 @@ mod tests {
     }
 
     const RANGE_M: f64 = 100.0;
-    /// 10 turns and 56.25 degrees a second.
+    /// 10 revolutions and 56.25 degrees per second.
     const AZIMUTH_DEG_NS: f64 = 3_600e-9;
     const TILT_DEG_NS: f64 = -56.25e-9;
     const FIRING_NS: f64 = 55_296.0;
@@ -387,7 +387,8 @@ mod tests {
         within(worst_mm::<f64, _, RETURN, RETURN>(&Addition), 0.0, 2e-6);
     }
 
-    /// An angle that is late by t is wrong by speed x t x range: a packet lasts 23 firings and 15 lasers, 1.3064 ms.
+    /// An angle that is late by t causes an error of speed x t x range. A packet lasts 23 firings
+    /// and 15 lasers, 1.3064 ms.
     #[test]
     fn coarser_angles_are_wrong_by_speed_times_delay_times_range() {
         let expected = |firings: f64, deg_ns: f64| {
@@ -407,14 +408,16 @@ mod tests {
             worst_mm::<f64, _, RETURN, FIRING>(&Exact),
             expected(0.0, TILT_DEG_NS),
         );
-        // The azimuth is 64 times as fast; its error is horizontal, the tilt's beside it.
+        // The azimuth is 64 times as fast. Its error is horizontal, perpendicular to that of the
+        // tilt.
         near(
             worst_mm::<f64, _, BLOCK, RETURN>(&Exact),
             expected(1.0, AZIMUTH_DEG_NS),
         );
     }
 
-    /// f32: tens of micrometres at 100 m. The table: half a hundredth of a degree of each angle, 8.7 mm, together up to root 2 of it.
+    /// f32: tens of micrometres at 100 m. The table: half a hundredth of a degree of each angle,
+    /// 8.7 mm, and up to root 2 of that together.
     #[test]
     fn numbers_and_tables_err_as_their_steps_say() {
         within(worst_mm::<f32, _, RETURN, RETURN>(&Exact), 0.005, 0.1);

@@ -1,6 +1,7 @@
-//! Shots of a VLP-16 in scenes that come with the simulator: where each ray starts and goes, and what is around.
+//! Shots of a VLP-16 in scenes of the simulator: origins and directions of rays, and the
+//! surroundings.
 //!
-//! Taken from the simulation itself, by an effect that changes nothing. Left out: what comes back.
+//! An effect without influence collects them from the simulation.
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -15,21 +16,22 @@ use sim::scenery::shipped;
 use sim::sensor::ReturnMode;
 use sim::simulate::{SimulationEvent, SimulationSink};
 
-/// Firings that stay together: as many as are cast together.
+/// Consecutive firings per group; they are cast together.
 const TOGETHER: u64 = 8;
 
-/// What a sensor sees of a scene.
+/// The view of a sensor in a scene.
 pub(crate) struct Shots {
-    /// The scene's.
+    /// Seed of the scene.
     pub seed: u64,
-    /// What is around it.
+    /// The surroundings.
     pub surroundings: Surroundings,
-    /// Its firings, and what comes back to the middles of their beams.
+    /// Firings, and the echoes of the centres of their beams.
     pub firings: Vec<(Firing, Echoes)>,
 }
 
 impl Shots {
-    /// About `firings` of the sweep in a scene that comes with the simulator, in groups that are evenly spread over it.
+    /// About `firings` of the sweep in a scene of the simulator, in groups that are spread evenly
+    /// over it.
     pub fn of(name: &str, firings: usize) -> Result<Self, StudyError> {
         let text = shipped(name)
             .ok_or_else(|| StudyError::workload(format!("there is no scene {name}")))?;
@@ -68,7 +70,7 @@ impl Shots {
         })
     }
 
-    /// Lasers that fire in them.
+    /// Number of lasers that fire in them.
     pub fn count(&self) -> usize {
         let alive = self
             .firings
@@ -78,14 +80,14 @@ impl Shots {
     }
 }
 
-/// What was taken so far.
+/// The firings collected so far.
 #[derive(Debug, Default)]
 struct CollectedFirings {
     surroundings: Option<Surroundings>,
     firings: Vec<(Firing, Echoes)>,
 }
 
-/// The effect that takes firings, one group of `every`.
+/// An effect that collects one group of firings out of `every`.
 #[derive(Clone, Debug)]
 struct FiringCollector {
     every: u64,
@@ -112,7 +114,7 @@ impl BeamEffect for FiringCollector {
     }
 }
 
-/// Takes no notice of packets.
+/// An output that ignores packets.
 struct Nobody;
 
 impl SimulationSink for Nobody {

@@ -1,4 +1,4 @@
-//! In which numbers points are placed, and by which sine (Eq. 4-6).
+//! Study of the number type and the sine with which points are placed (Eq. 4-6).
 
 use std::hint::black_box;
 
@@ -17,7 +17,7 @@ pub(crate) struct Trigonometry;
 
 const RANGE_M: f64 = 100.0;
 
-/// A way with its name, its label, its group and how far it is off.
+/// A method with its name, label, group and error.
 struct PlacingMethod<'a> {
     name: String,
     label: &'static str,
@@ -26,7 +26,7 @@ struct PlacingMethod<'a> {
     work: Work<'a, StudyError>,
 }
 
-/// What every way works on.
+/// The workload of all methods.
 struct TrigonometrySetup {
     shots: Vec<Shot>,
     head: SensorGeometry,

@@ -1,7 +1,7 @@
-//! What studies work on: the packets of a VLP-16 during a sweep, made here, so that every machine measures the same.
+//! Workload of studies: the packets of a VLP-16 during a sweep, equal on every machine.
 //!
-//! 10 turns a second, one return a firing and laser, distances as the study asks for. Packets arrive as they are full, at no
-//! delay. Left out: everything that makes clocks hard; other studies are about that.
+//! 10 revolutions per second, one return per firing and laser, distances by the study. Packets
+//! arrive as soon as they are full; [`crate::clocks`] studies delays.
 
 use crate::placing::{LASERS, LaserGeometry, SensorGeometry, Shot};
 use analysis::tradeoff::{Bench, Effort, StudyError};
@@ -12,14 +12,14 @@ use protocol::vlp16::models::VLP_16;
 use scanner::{Accuracy, Alignment, AngleTable, ScanConfig, Survey, TiltSource};
 use units::{Host, Span, Stamp};
 
-/// 10 turns a second, degrees per nanosecond.
+/// 10 revolutions per second, in degrees per nanosecond.
 const AZIMUTH_DEG_NS: f64 = 3_600e-9;
-/// A full hour of a day of 2023: lidar and host agree about it.
+/// A full hour of a day of 2023, on which lidar and host agree.
 const START: Stamp<Host> = Stamp::from_nanos(1_700_002_800_000_000_000);
-/// Firings of a packet.
+/// Firings per packet.
 const FIRINGS: u64 = 24;
 
-/// The tilt angle in degrees, seconds after the first firing, and before it.
+/// The tilt angle in degrees, by seconds after the first firing, also negative.
 pub(crate) type Tilt = fn(f64) -> f64;
 
 /// A laser's shot, to be answered with a distance in counts (0 for none) and a reflectivity.
@@ -37,7 +37,7 @@ pub(crate) struct Workload {
 }
 
 impl Workload {
-    /// `seconds` of a tilt, the last packet filled.
+    /// Packets of `seconds` of a tilt; the last one is full.
     pub fn new(
         tilt_deg: Tilt,
         seconds: f64,
@@ -75,7 +75,7 @@ impl Workload {
         }
     }
 
-    /// The packets as a log has them.
+    /// The packets as records of a log.
     pub fn records(&self) -> impl Iterator<Item = Record<'_>> {
         self.packets.iter().map(|(host, payload)| Record {
             host: *host,
@@ -87,7 +87,7 @@ impl Workload {
         })
     }
 
-    /// Clock and angle as a scan finds them, the angle known every millisecond.
+    /// Clock and angles as in a scan, with an angle every millisecond.
     pub fn alignment(&self) -> Result<Alignment, StudyError> {
         let config = ScanConfig::default();
         let mut survey = Survey::new(&config, Options::default()).map_err(StudyError::workload)?;
@@ -104,7 +104,7 @@ impl Workload {
             .map_err(StudyError::workload)
     }
 
-    /// The firings with their angles, as the decoder and the alignment have them.
+    /// The firings with their angles from decoder and alignment.
     pub fn shots(&self, alignment: &Alignment) -> Vec<Shot> {
         let length = Span::from_nanos(i64::from(VLP_16.firing_period_ns));
         let mut shots = Vec::new();
@@ -157,12 +157,13 @@ pub(crate) fn head() -> SensorGeometry {
     }
 }
 
-/// The cruise of the paper's fast scan, 56.25 deg/s. No ramp: a line is then what the angle is, between samples too.
+/// The cruise of the paper's fast scan, 56.25 deg/s. Without ramps, a line is exact between samples
+/// too.
 pub(crate) fn cruise_deg(t_s: f64) -> f64 {
     -56.25 * t_s
 }
 
-/// How long 45 degrees of it take; of a quick look less.
+/// The duration of 45 degrees, or less with quick effort.
 pub(crate) const fn cruise_s(bench: &Bench<'_>) -> f64 {
     match bench.effort {
         Effort::Quick => 0.2,
@@ -170,7 +171,7 @@ pub(crate) const fn cruise_s(bench: &Bench<'_>) -> f64 {
     }
 }
 
-/// Something `range_m` away in every direction.
+/// A surface at `range_m` in every direction.
 pub(crate) fn all_at(range_m: f64) -> impl FnMut(&SimulatedShot) -> (u16, u8) {
     let count = (range_m / VLP_16.distance_unit_m) as u16;
     move |_| (count, 40)
@@ -185,12 +186,12 @@ mod tests {
         let workload = Workload::new(cruise_deg, 0.3, all_at(100.0));
         let alignment = workload.alignment().unwrap();
         let shots = workload.shots(&alignment);
-        // 0.3 s in packets of 24 x 55.296 us, the last one filled.
+        // 0.3 s in packets of 24 x 55.296 us, the last one full.
         assert_eq!(shots.len(), 227 * 24);
         for (i, shot) in shots.iter().enumerate() {
             let t = i as f64 * 55.296e-6;
             assert_eq!(shot.counts, [50_000; LASERS]);
-            // Packets say their times in whole microseconds.
+            // Packets have times in whole microseconds.
             let tilt = cruise_deg(t);
             assert!((shot.tilt_deg - tilt).abs() < 1e-4, "{i}: {shot:?} {tilt}");
             assert!(

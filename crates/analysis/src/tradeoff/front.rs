@@ -1,14 +1,12 @@
-//! The Pareto front: choices to which no other is at least as good in everything and better in something.
-//!
-//! Less is better throughout. Left out: weights, which are the reader's.
+//! The Pareto front: choices that no other choice dominates. Smaller is better in every cost.
 
 use std::cmp::Ordering;
 
-/// For each choice, given by its costs, whether it is on the front. Equal choices are on it together; a choice with a
-/// cost that is not a number is not, and keeps none off it.
+/// Whether each choice, given by its costs, is on the front. Equal choices are on it together. A
+/// choice with a NaN is not on it and dominates no other.
 ///
-/// In the order of costs a choice can only be beaten by one before it, and then by one of the front too: each is compared
-/// with the front so far.
+/// In the order of costs, only an earlier choice on the front can dominate a choice, so each is
+/// compared with the front so far.
 #[must_use]
 pub fn front(choices: &[Vec<f64>]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..choices.len())
@@ -32,12 +30,13 @@ pub fn front(choices: &[Vec<f64>]) -> Vec<bool> {
     on
 }
 
-/// The same for choices whose costs were measured several times, given by the middle and the best of each: a choice is off the front
-/// only where another's middle beats its best. What measuring cannot tell apart from the front is on it.
+/// The same for costs that were measured several times, given by their median and their minimum. A
+/// choice is off the front only if the medians of another dominate its minima, so choices that the
+/// measurement cannot separate from the front are on it.
 #[must_use]
 pub fn front_within_spread(middles: &[Vec<f64>], bests: &[Vec<f64>]) -> Vec<bool> {
     let on = front(middles);
-    // Who is beaten by anybody's middle is beaten by one that is on the front of the middles.
+    // A choice that any median dominates is dominated by one on the front of the medians.
     let ahead: Vec<&Vec<f64>> = middles
         .iter()
         .zip(on)
@@ -53,7 +52,7 @@ pub fn front_within_spread(middles: &[Vec<f64>], bests: &[Vec<f64>]) -> Vec<bool
         .collect()
 }
 
-/// Whether `a` is at least as good as `b` in everything and better in something.
+/// Whether `a` is at least as good as `b` in every cost and better in one.
 #[must_use]
 pub fn beats(a: &[f64], b: &[f64]) -> bool {
     let mut pairs = a.iter().zip(b);
@@ -75,7 +74,7 @@ mod tests {
 
     use super::*;
 
-    /// By the definition, each against every other.
+    /// The definition: each against every other.
     fn slow(choices: &[Vec<f64>]) -> Vec<bool> {
         let is_number = |choice: &[f64]| choice.iter().all(|cost| !cost.is_nan());
         choices
@@ -91,7 +90,7 @@ mod tests {
             .collect()
     }
 
-    /// Few values, so that ties are common; zeros of both signs, infinity and what is no number among them.
+    /// Few values, so that ties are common, with zeros of both signs, infinity and NaN.
     fn cost() -> impl Strategy<Value = f64> {
         prop_oneof![
             8 => (0..6_i32).prop_map(f64::from),

@@ -1,4 +1,4 @@
-//! Findings as one page that needs nothing beside it: figures inside, light and dark, readable on a phone.
+//! Findings as one self-contained HTML page for light and dark colour schemes and phones.
 
 use super::{StudyFindings, StudyReport, svg};
 use crate::draw::{PAGE_STYLE, escaped};

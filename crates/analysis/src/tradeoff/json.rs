@@ -1,4 +1,4 @@
-//! Findings for programs. The shape is a contract: [`SCHEMA`] grows when it changes.
+//! Findings as JSON. The format is a contract: [`SCHEMA`] increases when it changes.
 
 use std::collections::BTreeMap;
 
@@ -6,13 +6,14 @@ use serde::Serialize;
 
 use super::{Effort, Machine, Measurement, StudyFindings, StudyReport, Trade};
 
-/// Version of the shape.
+/// Version of the format.
 pub const SCHEMA: u32 = 1;
 
-/// A report as one JSON object: `schema`, `program`, `effort`, `machine` {`cpu`, `cores`, `os`, `build`} and `studies`, each
-/// {`name`, `title`, `choice`, `columns` [{`key`, `heading`}], `rows` [{`name`, `group`, `values`}], `trades` [{`cost`, `loss`,
-/// `front`}]}. `values` goes by the columns' keys; a timed one is {`median`, `min`, `max`, `runs`}, another a number. `front` has the
-/// names of its rows.
+/// A report as one JSON object: `schema`, `program`, `effort`, `machine` {`cpu`, `cores`, `os`,
+/// `build`} and `studies`, each {`name`, `title`, `choice`, `columns` [{`key`, `heading`}], `rows`
+/// [{`name`, `group`, `values`}], `trades` [{`cost`, `loss`, `front`}]}. `values` goes by the
+/// columns' keys; a timed one is {`median`, `min`, `max`, `runs`}, another a number. `front` has
+/// the names of its rows.
 #[derive(Debug, Serialize)]
 pub struct Json<'a> {
     schema: u32,
@@ -52,7 +53,7 @@ struct TradeJson<'a> {
     front: Vec<&'a str>,
 }
 
-/// A report, to be serialised.
+/// A report, ready to be serialised.
 #[must_use]
 pub fn report(report: &StudyReport) -> Json<'_> {
     Json {
@@ -105,7 +106,8 @@ mod tests {
     use super::super::study::example;
     use super::*;
 
-    /// The whole shape at once: a key that is renamed, added or lost fails here, and [`SCHEMA`] must grow.
+    /// The whole format: a key that is renamed, added or removed fails here, and [`SCHEMA`] must
+    /// increase.
     #[test]
     fn the_shape_is_as_programs_know_it() {
         let mut report = example();

@@ -1,6 +1,5 @@
-//! The ways to the K function: what each costs in time, how far its bound says it may be off, and how far it is.
-//!
-//! Left out: scans of any size; what a million points cost is the benchmark `k`'s.
+//! Study of the methods of the K function: time, error and bound on the error. The benchmark `k`
+//! measures larger scans.
 
 use std::f64::consts::PI;
 use std::hint::black_box;
@@ -19,11 +18,11 @@ use crate::k::{
 /// The study.
 pub struct KFunction;
 
-/// Bins, as in the paper.
+/// Number of bins, as in the paper.
 const BINS: usize = 151;
 const ONE: NonZeroUsize = NonZeroUsize::MIN;
 
-/// A scan of turned frames.
+/// A scan of rotated frames.
 struct StudyScan {
     points: Vec<DVec3>,
     rotation: FrameRotation,
@@ -37,7 +36,7 @@ type Way = (
     fn(&StudyScan) -> Result<Estimate, KError>,
 );
 
-/// Name, label, group and how.
+/// Name, label, group and function.
 const WAYS: [Way; 9] = [
     ("every pair", "every pair", "exact", |s| {
         every(s, Registers::Best)
@@ -137,7 +136,7 @@ impl Study for KFunction {
     }
 }
 
-/// An RMBL of so many frames (Eq. 1-6 of the paper with d = 0), still within a frame.
+/// An RMBL of `frames` frames (Eq. 1-6 of the paper with d = 0) that stands still within a frame.
 fn scan(frames: usize) -> Result<StudyScan, KError> {
     let step_rad = PI / frames as f64;
     let mut points = Vec::with_capacity(frames * 901 * 16);

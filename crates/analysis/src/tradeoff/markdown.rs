@@ -88,7 +88,7 @@ fn table(findings: &StudyFindings) -> String {
     lines.join("\n")
 }
 
-/// What Markdown would take for its own.
+/// Text with the special characters of Markdown escaped.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,4 +1,4 @@
-//! One plot: axes, grid, the front's steps, a mark a choice with its spread and its name.
+//! A plot: axes, grid, steps of the front, and a mark per choice with its spread and label.
 
 use super::svg::{Groups, WIDTH};
 use super::{Measurement, Row, Scale, StudyFindings, Trade};
@@ -6,25 +6,25 @@ use crate::draw::axis::PlotAxis;
 use crate::draw::labels::{self, LabelBox};
 use crate::draw::{escaped, marks};
 
-/// Height of a plot with everything about it.
+/// Height of a plot with its margins.
 pub(super) const HEIGHT: f64 = 322.0;
 const LEFT: f64 = 56.0;
 const RIGHT: f64 = WIDTH - 18.0;
 const TOP: f64 = 26.0;
 const BOTTOM: f64 = 276.0;
 
-/// A choice's place.
+/// A choice in the plot.
 struct PlotPoint<'a> {
     row: &'a Row,
     x: f64,
     y: f64,
-    /// On the front.
+    /// Whether it is on the front.
     on: bool,
-    /// A step of it.
+    /// Whether it is a step of the front.
     step: bool,
 }
 
-/// A line's ends.
+/// The ends of a line.
 type Line = ((f64, f64), (f64, f64));
 
 /// The plot of a trade, `top` pixels down.
@@ -144,7 +144,7 @@ fn spots<'a>(
     .collect()
 }
 
-/// The corners of the front of a group, or of all: what can be had for at most so much.
+/// Corners of the front of a group, or of all rows.
 fn corners(spots: &[PlotPoint<'_>], group: Option<&str>) -> Vec<(f64, f64)> {
     let of_group = |spot: &&PlotPoint<'_>| group.is_none_or(|group| spot.row.group == group);
     let steps = spots.iter().filter(|spot| spot.step).filter(of_group);
@@ -190,7 +190,7 @@ fn joined(spots: &[PlotPoint<'_>], groups: &Groups<'_>) -> String {
     svg
 }
 
-/// Least to greatest where that is wider than the mark: the ends of a level line and of an upright one.
+/// Horizontal and vertical lines from minimum to maximum, where they are longer than the mark.
 fn spread(spot: &PlotPoint<'_>, trade: &Trade, x: &PlotAxis, y: &PlotAxis) -> [Option<Line>; 2] {
     let places = |axis: &PlotAxis, column: usize| {
         let (low, high) = ends(spot.row.values.get(column)?);
@@ -226,8 +226,8 @@ fn bars(
         .collect()
 }
 
-/// The names, those on the front first, clear of marks, of each other and, while there is room, of `lines`. One without a free place
-/// is left to the table.
+/// The labels, those on the front first. They avoid marks, each other and, if there is room,
+/// `lines`. A label without a free place is left out; the table has it.
 fn names(spots: &[PlotPoint<'_>], lines: &[LabelBox]) -> String {
     let room = LabelBox {
         left: LEFT + 2.0,

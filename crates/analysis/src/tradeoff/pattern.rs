@@ -1,20 +1,21 @@
-//! Where the scan lines of a tilting multi-beam lidar go, and what lies between them. Computed, not measured.
+//! Scan lines of a tilting multi-beam lidar, and the gaps between them. Computed, not measured.
 //!
-//! The lidar turns at a constant rate about its own axis while the platform tilts about Y (Eq. 4-6 of "Analysis of 3D Scan
-//! Measurement Distribution with Application to a Multi-Beam Lidar on a Rotating Platform", 2018) along a trapezoid of speed. A
-//! scan line is what one laser sweeps in one turn. Left out: the steps of the azimuth along a line, and density, which is another
-//! measure.
+//! The lidar rotates at a constant rate around its own axis, while the platform tilts around Y (Eq.
+//! 4-6 of "Analysis of 3D Scan Measurement Distribution with Application to a Multi-Beam Lidar on a
+//! Rotating Platform", 2018) with a trapezoidal speed profile. A scan line is the path of one laser
+//! in one revolution. The azimuth steps along a line are ignored.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::device::vertical_resolution_deg;
 
-/// A tilt from 0 to `-way_deg`: a ramp, a cruise, the same ramp down; a way too short for both is a triangle.
+/// A tilt from 0 to `-way_deg` with equal ramps at both ends. A short way gives a triangular
+/// profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TiltSweep {
-    /// How far, degrees; above 0.
+    /// Angle of travel, degrees; above 0.
     pub way_deg: f64,
-    /// Speed of the cruise, degrees per second; above 0.
+    /// Cruise speed, degrees per second; above 0.
     pub speed_deg_s: f64,
     /// Acceleration of the ramps, degrees per second squared; infinite for none.
     pub accel_deg_s2: f64,
@@ -28,7 +29,7 @@ impl TiltSweep {
             .min((self.way_deg * self.accel_deg_s2).sqrt())
     }
 
-    /// From rest to rest, seconds.
+    /// Duration from rest to rest, seconds.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         let peak = self.peak_deg_s();
@@ -62,12 +63,12 @@ impl TiltSweep {
 pub struct PatternLidar {
     /// Elevations of its lasers, degrees, in any order; at least one.
     pub elevations_deg: Vec<f64>,
-    /// Its turns a second.
+    /// Revolutions per second.
     pub turns_per_s: f64,
 }
 
 impl PatternLidar {
-    /// The VLP-16: -15 to 15 degrees by 2, at 10 turns a second.
+    /// The VLP-16: -15 to 15 degrees in steps of 2, at 10 revolutions per second.
     #[must_use]
     pub fn vlp_16() -> Self {
         Self {
@@ -84,21 +85,24 @@ impl PatternLidar {
             .fold(ends, |(low, high), w| (low.min(*w), high.max(*w)))
     }
 
-    /// Turns that the lidar makes during a sweep.
+    /// Revolutions of the lidar during a sweep.
     #[must_use]
     pub fn turns(&self, sweep: &TiltSweep) -> f64 {
         sweep.duration_s() * self.turns_per_s
     }
 
-    /// Vertical field of view of a sweep straight across the tilt axis, degrees: the lidar's own and the way.
+    /// Vertical field of view of a sweep across the tilt axis, degrees: that of the lidar plus the
+    /// way.
     #[must_use]
     pub fn field_deg(&self, sweep: &TiltSweep) -> f64 {
         let (low, high) = self.ends_deg();
         high - low + sweep.way_deg
     }
 
-    /// Mean vertical resolution, degrees, as the paper has it and [`vertical_resolution_deg`]: the field of view shared by lasers times the turns that the way takes at cruise speed.
-    /// Ramps, in which the lines lie closer, do not count. For 45 degrees at 56.25 deg/s 75 / (16 x 8) = 0.586.
+    /// Mean vertical resolution in degrees, as in the paper and [`vertical_resolution_deg`]: the
+    /// field of view divided by lasers and by the revolutions that the way takes at cruise speed.
+    /// Ramps, in which lines are closer, are ignored. For 45 degrees at 56.25 deg/s it is 75 / (16
+    /// x 8) = 0.586.
     #[must_use]
     pub fn mean_resolution_deg(&self, sweep: &TiltSweep) -> f64 {
         let turns = sweep.way_deg / sweep.speed_deg_s * self.turns_per_s;
@@ -106,10 +110,11 @@ impl PatternLidar {
         vertical_resolution_deg(self.field_deg(sweep), lasers, turns)
     }
 
-    /// The widest gaps between neighbouring scan lines straight across the tilt axis, in the plane that is perpendicular to it, at
-    /// the worst of `phases` evenly spaced azimuths that the lidar may have at the start.
+    /// The widest gaps between neighbouring scan lines in the plane across the tilt axis, at the
+    /// worst of `phases` evenly spaced initial azimuths.
     ///
-    /// In that plane a laser stands at elevation w - gamma whenever the lidar looks along it, once a turn.
+    /// In that plane a laser is at elevation w - gamma whenever the lidar points along it, once per
+    /// revolution.
     #[must_use]
     pub fn gaps(&self, sweep: &TiltSweep, phases: u32) -> LineGaps {
         let none = LineGaps {
@@ -138,7 +143,7 @@ impl PatternLidar {
             .flat_map(|w| passes.iter().map(move |tilted| w + tilted))
             .chain([low, high + sweep.way_deg])
             .collect();
-        // Every laser's lines are in order already, which a stable sort makes use of.
+        // The lines of each laser are in order, which a stable sort exploits.
         lines.sort_by(f64::total_cmp);
         let mut gaps = LineGaps {
             field_deg: 0.0,
@@ -153,11 +158,13 @@ impl PatternLidar {
         gaps
     }
 
-    /// The widest unseen circle, degrees across: twice the greatest distance that any direction of the field of view has from the
-    /// scan line nearest to it, on a grid of `step_deg` about the tilt axis, the poles among its places. The field of view is all
-    /// that comes between the lidar's lowest and highest laser at some tilt of the sweep.
+    /// Diameter in degrees of the widest unseen circle: twice the largest distance of any direction
+    /// in the field of view from the nearest scan line. Directions are on a grid of `step_deg`
+    /// around the tilt axis that includes the poles. The field of view is everything between the
+    /// lowest and the highest laser at some tilt of the sweep.
     ///
-    /// The distance of a direction from a line is taken when the lidar looks towards it: its elevation then, less the laser's.
+    /// The distance of a direction from a line is its elevation when the lidar points towards it,
+    /// less that of the laser.
     #[must_use]
     pub fn widest_circle_deg(&self, sweep: &TiltSweep, step_deg: f64) -> f64 {
         let turns = self.turns(sweep).floor().clamp(0.0, 1e9) as u64 + 1;
@@ -184,13 +191,13 @@ impl PatternLidar {
         2.0 * worst
     }
 
-    /// Whether a direction comes between the lowest and the highest laser at some tilt of a sweep.
+    /// Whether a direction is between the lowest and the highest laser at some tilt of a sweep.
     fn may_see(&self, sweep: &TiltSweep, [x, _, z]: [f64; 3]) -> bool {
         let up = |gamma_deg: f64| {
             let (sin, cos) = gamma_deg.to_radians().sin_cos();
             x * sin + z * cos
         };
-        // Highest and lowest where the derivative is nought: gamma = atan(x / z), and half a turn on.
+        // Extremes are where the derivative is zero: gamma = atan(x / z), and 180 degrees on.
         let turning = x.atan2(z).to_degrees();
         let turning = [turning - 180.0, turning, turning + 180.0];
         let inside = turning
@@ -204,13 +211,14 @@ impl PatternLidar {
         least <= high.to_radians().sin() && most >= low.to_radians().sin()
     }
 
-    /// How far a direction is from the nearest line of turn `turn`, degrees; `None` where the sweep is over before the lidar looks
-    /// there.
+    /// Distance of a direction from the nearest line of a revolution, degrees; `None` if the sweep
+    /// ends before the lidar points there.
     fn off_line_deg(&self, sweep: &TiltSweep, [x, y, z]: [f64; 3], turn: u64) -> Option<f64> {
         let whole = sweep.duration_s();
         let mut t = turn as f64 / self.turns_per_s;
         let mut up = z;
-        // When the lidar looks there depends a little on the tilt, and the tilt on when.
+        // The time at which the lidar points there depends slightly on the tilt, and the tilt on
+        // the time.
         for _ in 0..3 {
             let (sin, cos) = sweep.angle_deg(t).to_radians().sin_cos();
             let across = x * cos - z * sin;
@@ -227,7 +235,7 @@ impl PatternLidar {
     }
 }
 
-/// Unit vectors about the Y axis, both poles among them.
+/// Unit vectors around the Y axis, including both poles.
 fn grid(step_deg: f64) -> impl Iterator<Item = [f64; 3]> {
     let rows = (180.0 / step_deg).ceil().max(1.0) as u32;
     (0..=rows).flat_map(move |row| {
@@ -241,17 +249,17 @@ fn grid(step_deg: f64) -> impl Iterator<Item = [f64; 3]> {
     })
 }
 
-/// Greatest angles between neighbouring scan lines straight across the tilt axis, degrees.
+/// Largest angles between neighbouring scan lines across the tilt axis, degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineGaps {
     /// In the whole field of view, whose ends count as lines.
     pub field_deg: f64,
-    /// In its middle, which every laser passes: from the highest laser at the start to the lowest at the end. 0 where the way is so
-    /// short that there is none.
+    /// In its middle, which every laser passes: from the highest laser at the start to the lowest
+    /// at the end. 0 if the way is too short.
     pub middle_deg: f64,
 }
 
-/// All numbers below `n`, far ones after each other: lines near a direction are found soon.
+/// All numbers below `n` in large strides, so that a line near a direction is found early.
 struct StrideOrder {
     n: u64,
     stride: u64,
@@ -300,7 +308,7 @@ mod tests {
         (a - b).abs() <= within
     }
 
-    /// The paper's figures, which count 0.80 s for 45 degrees: no ramps.
+    /// The paper's figures, with 0.80 s for 45 degrees and no ramps.
     #[test]
     fn the_papers_resolutions_come_out() {
         let vlp = PatternLidar::vlp_16();
@@ -309,19 +317,21 @@ mod tests {
         assert!(close(vlp.turns(&fast), 8.0, 1e-12));
         assert!(close(vlp.field_deg(&fast), 75.0, 1e-12));
         assert!(close(vlp.mean_resolution_deg(&fast), 0.5859, 5e-5));
-        // Whatever the ramps.
+        // Independent of the ramps.
         assert_eq!(
             vlp.mean_resolution_deg(&fast),
             vlp.mean_resolution_deg(&sweep(56.25, 500.0))
         );
-        // The paper's 5.2e-3 for its slowest scan is that of 0.5 deg/s; 0.05 deg/s gives a tenth of it.
+        // The paper's 5.2e-3 for its slowest scan is that of 0.5 deg/s; 0.05 deg/s gives a tenth of
+        // it.
         let slow = vlp.mean_resolution_deg(&sweep(0.5, f64::INFINITY));
         assert!(close(slow, 5.208e-3, 5e-7), "{slow}");
         let slowest = vlp.mean_resolution_deg(&sweep(0.05, f64::INFINITY));
         assert!(close(slowest, 5.208e-4, 5e-8), "{slowest}");
     }
 
-    /// With the drive's factory ramps of 500 deg/s2 the same sweep takes 0.8 s of way and 112.5 ms more.
+    /// With the drive's factory ramps of 500 deg/s2 the same sweep takes 0.8 s of way and 112.5 ms
+    /// more.
     #[test]
     fn ramps_make_it_longer_and_a_short_way_is_a_triangle() {
         let fast = sweep(56.25, 500.0);
@@ -339,8 +349,9 @@ mod tests {
         assert!(close(sweep(0.05, 500.0).duration_s(), 900.0001, 1e-9));
     }
 
-    /// Near its ends the field is seen by the outermost laser alone, where lines are a turn's tilt apart. In the middle sixteen lasers
-    /// fill each other's gaps, unless their 2 degrees are a multiple of a turn's tilt: then their lines coincide.
+    /// Near its ends only the outermost laser sees the field, and lines are the tilt of one
+    /// revolution apart. In the middle sixteen lasers fill each other's gaps, unless their 2
+    /// degrees are a multiple of the tilt per revolution: then their lines coincide.
     #[test]
     fn gaps_are_a_turns_tilt_unless_the_lasers_fill_them() {
         let vlp = PatternLidar::vlp_16();
@@ -348,9 +359,11 @@ mod tests {
             (1.0, 0.1, 0.1),
             (10.0, 1.0, 1.0),
             (20.0, 2.0, 2.0),
-            // 0.7 degrees a turn: 2 is twice 0.7 and 0.6, so that lines of neighbouring lasers are 0.1 apart.
+            // 0.7 degrees per revolution: 2 is twice 0.7 plus 0.6, so lines of neighbouring lasers
+            // are 0.1 apart.
             (7.0, 0.7, 0.1),
-            // 5.625: eight turns make 45, and 2 goes into it with 1.625, 1.25, 0.875, 0.5 and 0.125 left over.
+            // 5.625: eight revolutions make 45 degrees, and 2 has remainders of 1.625, 1.25, 0.875,
+            // 0.5 and 0.125.
             (56.25, 2.0, 0.5),
         ] {
             let gaps = vlp.gaps(&sweep(speed, f64::INFINITY), 1);
@@ -367,7 +380,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
-        /// A line is looked for from every place of a fine ladder of elevations.
+        /// Searches for a line from every place of a fine ladder of elevations.
         #[test]
         fn gaps_are_what_a_fine_ladder_finds(speed_deg_s in 3.0..60.0_f64, phase in 0.0..1.0_f64) {
             let (vlp, sweep) = (PatternLidar::vlp_16(), sweep(speed_deg_s, 500.0));
@@ -391,7 +404,8 @@ mod tests {
         }
     }
 
-    /// Whatever the speed, what lies between the lasers at -1 and +1 degrees about the tilt axis is never seen.
+    /// At any speed, the area between the lasers at -1 and +1 degrees around the tilt axis stays
+    /// unseen.
     #[test]
     fn the_poles_stay_blind_at_any_speed() {
         let vlp = PatternLidar::vlp_16();
@@ -403,12 +417,13 @@ mod tests {
             elevations_deg: vec![0.0],
             turns_per_s: 10.0,
         };
-        // A single laser at elevation 0 sees the pole, and slowly enough all it passes: 0.1 degrees a turn, at an end up to as far again.
+        // A single laser at elevation 0 sees the pole and, if slow enough, all that it passes: 0.1
+        // degrees per revolution, at an end up to twice that.
         let circle = one.widest_circle_deg(&sweep(1.0, 500.0), 2.0);
         assert!(circle < 0.21, "{circle}");
     }
 
-    /// Every direction against every turn, frames turned as matrices, nothing left out early.
+    /// Every direction against every revolution, with rotation matrices and no early exit.
     fn slow_circle_deg(lidar: &PatternLidar, sweep: &TiltSweep, step_deg: f64) -> f64 {
         let turns = lidar.turns(sweep).floor() as u32 + 1;
         let mut worst: f64 = 0.0;

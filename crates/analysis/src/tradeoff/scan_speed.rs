@@ -1,4 +1,4 @@
-//! Tilt speed against scan time, resolution and what stays unseen. Computed, not timed.
+//! Study of the tilt speed: scan time, resolution and unseen areas. Computed, not timed.
 
 use super::pattern::{PatternLidar, TiltSweep};
 use super::{
@@ -11,7 +11,7 @@ pub struct ScanSpeed;
 /// 45 degrees, with the drive's factory ramps.
 const WAY_DEG: f64 = 45.0;
 const ACCEL_DEG_S2: f64 = 500.0;
-/// What the drive can be told: 1 rpm of the motor is 0.05 deg/s.
+/// Speeds of the drive: 1 rpm of the motor is 0.05 deg/s.
 const SPEEDS_DEG_S: [f64; 18] = [
     0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 12.5, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0,
     56.25,
@@ -67,7 +67,7 @@ impl Study for ScanSpeed {
     }
 }
 
-/// To a billionth: equal gaps of two speeds are to be equal, whatever the last bits of their sums.
+/// Rounds to 1e-9, so that equal gaps of two speeds compare as equal.
 fn without_rounding(x: f64) -> f64 {
     (x * 1e9).round() / 1e9
 }
@@ -126,16 +126,17 @@ mod tests {
         assert!((value("56.25 deg/s", 0) - 0.9125).abs() < 1e-12);
         assert!((value("56.25 deg/s", 1) - 75.0 / (16.0 * 8.0)).abs() < 1e-9);
         assert!((value("0.05 deg/s", 0) - 900.0).abs() < 1e-3);
-        // 0.05 deg/s: 0.005 degrees a turn, and the ends of the field are seen by one laser alone.
+        // 0.05 deg/s: 0.005 degrees per revolution, and only one laser sees the ends of the field.
         assert!((0.005..0.006).contains(&value("0.05 deg/s", 2)));
         for row in &findings.rows {
             let [mean, gap, middle] = [1, 2, 3].map(|column| row.values[column].middle());
-            // Between lasers, or at an end what the platform tilts in the first turn: at most 0.5 x 500 x 0.1^2.
+            // Between lasers, or at an end the tilt during the first revolution: at most 0.5 x 500
+            // x 0.1^2.
             assert!(mean <= gap && middle <= gap && gap <= 2.5, "{row:?}");
             assert!(middle <= 2.0 + 1e-9, "{row:?}");
             assert!(row.values[4].middle() >= 2.0 - 1e-9, "{row:?}");
         }
-        // Slower is finer on average, so that every speed is on the first front.
+        // Slower is finer on average, so every speed is on the first front.
         assert_eq!(findings.front(&findings.trades[0]), [true; 18]);
     }
 }

@@ -1,4 +1,4 @@
-//! What a study is, and what it finds.
+//! Studies and their findings.
 
 use std::fmt;
 
@@ -10,18 +10,18 @@ use super::front::{front, front_within_spread};
 use super::{Scale, StudyClock, TimingPlan, TimingSpread};
 use crate::draw::number::short;
 
-/// Ways to do one thing, measured against each other. One file each; whoever lists them decides which there are.
+/// A comparison of several ways to do one thing.
 pub trait Study {
-    /// Its name on the command line and of its files: lower-case letters and hyphens.
+    /// Name on the command line and of its files: lower-case letters and hyphens.
     fn name(&self) -> &'static str;
 
-    /// One line on what is compared.
+    /// The compared choice in one line.
     fn title(&self) -> &'static str;
 
-    /// Measures.
+    /// Measures the choices.
     ///
     /// # Errors
-    /// [`StudyError`] where what is measured fails.
+    /// [`StudyError`] if a choice fails.
     fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError>;
 }
 
@@ -60,13 +60,13 @@ pub struct UnknownStudy {
     pub known: Vec<&'static str>,
 }
 
-/// Why a study came to nothing.
+/// Why a study failed.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// A sink refused points.
     #[error(transparent)]
     Sink(#[from] SinkError),
-    /// What was to be measured could not be set up.
+    /// The workload could not be set up.
     #[error("workload: {0}")]
     Workload(Box<dyn std::error::Error + Send + Sync>),
 }
@@ -78,28 +78,28 @@ impl StudyError {
     }
 }
 
-/// How thoroughly a study measures.
+/// Size of the workloads and number of rounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Effort {
-    /// A look: smaller workloads, fewer rounds.
+    /// Smaller workloads and fewer rounds.
     Quick,
-    /// What figures are published from.
+    /// For published figures.
     Full,
 }
 
-/// What a study measures with.
+/// The environment of a measurement.
 pub struct Bench<'a> {
     /// The clock.
     pub clock: &'a mut dyn StudyClock,
-    /// How thoroughly.
+    /// Size of the workloads.
     pub effort: Effort,
-    /// Takes sentences on what goes on.
+    /// Receives progress messages.
     pub say: &'a mut dyn FnMut(&str),
 }
 
 impl Bench<'_> {
-    /// `full`, or of a quick look `quick`.
+    /// `quick` or `full`, by the effort.
     #[must_use]
     pub const fn size(&self, quick: usize, full: usize) -> usize {
         match self.effort {
@@ -108,7 +108,7 @@ impl Bench<'_> {
         }
     }
 
-    /// Rounds of measurements of at least 2 ms each.
+    /// A timing plan with measurements of at least 2 ms.
     #[must_use]
     pub const fn plan(&self, quick: usize, full: usize) -> TimingPlan {
         TimingPlan {
@@ -118,14 +118,14 @@ impl Bench<'_> {
     }
 }
 
-/// What was measured of every choice.
+/// A measured quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyColumn {
-    /// Its name in JSON, the unit last.
+    /// Name in JSON; ends with the unit.
     pub key: &'static str,
-    /// Its heading, the unit in it.
+    /// Heading with the unit.
     pub heading: &'static str,
-    /// How an axis shows it.
+    /// Scale of its axis.
     pub scale: Scale,
 }
 
@@ -145,14 +145,14 @@ impl StudyColumn {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Measurement {
-    /// Computed: it comes out the same every time.
+    /// Computed, and equal in every run.
     Computed(f64),
-    /// Timed, several times.
+    /// Timed in several runs.
     Timed(TimingSpread),
 }
 
 impl Measurement {
-    /// The value that counts: of several the median.
+    /// The value, or the median of several.
     #[must_use]
     pub const fn middle(&self) -> f64 {
         match self {
@@ -172,7 +172,7 @@ impl Measurement {
         }
     }
 
-    /// The best that was measured: of several the least.
+    /// The value, or the minimum of several.
     #[must_use]
     pub const fn best(&self) -> f64 {
         match self {
@@ -185,13 +185,13 @@ impl Measurement {
 /// A choice and its measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Its name, like no other's.
+    /// Unique name.
     pub name: String,
-    /// A word or two for the figure.
+    /// Short label in the figure.
     pub label: String,
-    /// The kind of choice that it is: a colour in the figure.
+    /// Kind of choice; its colour in the figure.
     pub group: &'static str,
-    /// One value a column.
+    /// One value per column.
     pub values: Vec<Measurement>,
 }
 
@@ -212,16 +212,16 @@ impl Row {
     }
 }
 
-/// One column that is paid for another: a plot with a Pareto front.
+/// Two columns that are traded: a plot with a Pareto front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trade {
-    /// What is paid: place of a column; the x axis.
+    /// Index of the column on the x axis.
     pub cost: usize,
-    /// What is to be small for it: place of a column; the y axis.
+    /// Index of the column on the y axis.
     pub loss: usize,
     /// Whether a line joins the choices of one group.
     pub joined: bool,
-    /// Whether groups are circumstances, which nobody chooses: each has a front of its own.
+    /// Whether groups are circumstances that cannot be chosen, each with a front of its own.
     pub by_group: bool,
 }
 
@@ -256,40 +256,40 @@ impl Trade {
     }
 }
 
-/// What a study found.
+/// Findings of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyFindings {
-    /// The study's name.
+    /// Name of the study.
     pub name: &'static str,
-    /// The study's title.
+    /// Title of the study.
     pub title: &'static str,
-    /// Paragraphs: what was measured, on what, and what the columns mean.
+    /// Paragraphs on the workload and the columns.
     pub about: Vec<String>,
-    /// Heading over the choices' names.
+    /// Heading of the choices' names.
     pub choice: &'static str,
-    /// What was measured.
+    /// The measured quantities.
     pub columns: Vec<StudyColumn>,
     /// The choices.
     pub rows: Vec<Row>,
-    /// What is traded for what.
+    /// The traded columns.
     pub trades: Vec<Trade>,
 }
 
 impl StudyFindings {
-    /// A value.
+    /// The value of a row in a column.
     #[must_use]
     pub fn value(&self, row: usize, column: usize) -> Option<&Measurement> {
         self.rows.get(row)?.values.get(column)
     }
 
-    /// A column's heading.
+    /// Heading of a column.
     #[must_use]
     pub fn heading(&self, column: usize) -> &'static str {
         self.columns.get(column).map_or("", |c| c.heading)
     }
 
-    /// Which rows are on a trade's front: no other's median is as good as their best in one and better in the other. Where
-    /// groups are by_group, no other's of their group.
+    /// Whether each row is on the front of a trade: the medians of no other row dominate its
+    /// minima. With fronts by group, only rows of the same group compete.
     #[must_use]
     pub fn front(&self, trade: &Trade) -> Vec<bool> {
         self.by_group(trade, |rows| {
@@ -300,7 +300,7 @@ impl StudyFindings {
         })
     }
 
-    /// The same by medians alone: the steps of a figure.
+    /// The same with medians alone: the steps of a figure.
     #[must_use]
     pub fn steps(&self, trade: &Trade) -> Vec<bool> {
         self.by_group(trade, |rows| {
@@ -308,7 +308,7 @@ impl StudyFindings {
         })
     }
 
-    /// The groups in their order, or a single one of all where groups are not apart.
+    /// The groups in their order, or `[None]` for one front over all rows.
     #[must_use]
     pub fn circumstances(&self, trade: &Trade) -> Vec<Option<&'static str>> {
         if !trade.by_group {
@@ -340,7 +340,8 @@ impl StudyFindings {
         on
     }
 
-    /// Each row's marks: a star where the only front has it, else the numbers of the figures whose fronts have it.
+    /// Marks of each row: a star for the only front, otherwise the numbers of the figures whose
+    /// fronts contain it.
     #[must_use]
     pub fn marks(&self) -> Vec<String> {
         let mut marks = vec![String::new(); self.rows.len()];
@@ -360,7 +361,7 @@ impl StudyFindings {
         marks
     }
 
-    /// A sentence on each front: its choices in order of their cost.
+    /// A sentence on each front, with its choices in order of cost.
     #[must_use]
     pub fn verdicts(&self) -> Vec<String> {
         let trades = self.trades.iter();
@@ -410,21 +411,21 @@ fn costs(rows: &[&Row], trade: &Trade, of: impl Fn(&Measurement) -> f64) -> Vec<
     rows.iter().map(pair).collect()
 }
 
-/// What it was measured on.
+/// The machine of a measurement.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Machine {
-    /// Its processor.
+    /// Processor.
     pub cpu: String,
-    /// Processors that the program may use.
+    /// Number of usable cores.
     pub cores: usize,
-    /// Its operating system.
+    /// Operating system.
     pub os: String,
-    /// How the program was built: `release` or `debug`.
+    /// Build profile: `release` or `debug`.
     pub build: &'static str,
 }
 
 impl Machine {
-    /// This machine; `read` gives the text of a file of the system, if it is there.
+    /// This machine; `read` returns the text of a system file if it exists.
     #[must_use]
     pub fn current(read: impl Fn(&str) -> Option<String>) -> Self {
         let read = |path| read(path).unwrap_or_default();
@@ -444,7 +445,7 @@ impl Machine {
         }
     }
 
-    /// One line.
+    /// The machine in one line.
     #[must_use]
     pub fn line(&self) -> String {
         let cores = match self.cores {
@@ -455,7 +456,7 @@ impl Machine {
     }
 }
 
-/// The processor's name; ARM kernels give the whole board's instead.
+/// Name of the processor. ARM kernels report the board instead.
 fn cpu_name(cpuinfo: &str) -> Option<String> {
     let of = |key: &str| {
         let mut lines = cpuinfo.lines().filter_map(|line| line.split_once(':'));
@@ -480,16 +481,16 @@ fn os_name(os_release: &str, kernel: &str) -> String {
 pub struct StudyReport {
     /// Name and version of the program.
     pub program: String,
-    /// How thoroughly it was measured.
+    /// Size of the workloads.
     pub effort: Effort,
-    /// What on.
+    /// The machine.
     pub machine: Machine,
-    /// What was found.
+    /// Findings of the studies.
     pub studies: Vec<StudyFindings>,
 }
 
 impl StudyReport {
-    /// What must be known before a figure is believed, a sentence each.
+    /// Reasons to distrust the figures, one sentence each.
     #[must_use]
     pub fn cautions(&self) -> Vec<&'static str> {
         let mut cautions = Vec::new();
@@ -504,10 +505,10 @@ impl StudyReport {
     }
 }
 
-/// The most choices that a sentence names.
+/// Largest number of choices in a sentence.
 const MOST_NAMED: usize = 6;
 
-/// Findings of every kind, for tests of what shows them.
+/// Findings of every kind, for tests.
 #[cfg(test)]
 pub(crate) fn example() -> StudyReport {
     let timed = |median: f64| {

@@ -1,15 +1,18 @@
-//! A study's figure: a plot a trade, one under the other, the Pareto front in it, legible on light and on dark, on a phone and as a
-//! file of its own.
+//! The figure of a study: one plot per trade with its Pareto front.
 //!
-//! Plain SVG with a style sheet that the reader's colour scheme chooses from; no script, no font, nothing from outside. Left out:
-//! any kind of plot that no study needs.
+//! Plain SVG with a style sheet for light and dark colour schemes, without scripts, fonts or
+//! external resources. `plotters` 0.3 draws the plot of `panel.rs` in 30 lines instead of 170, but
+//! not as well: its SVG backend writes fixed colours and no CSS classes, so a figure cannot follow
+//! the colour scheme of the page. It has no tooltips (`title`), no place for zero on a logarithmic
+//! axis and no labels that avoid each other, and its file is 1.6 times as large (10,771 bytes for a
+//! plot of 6 rows, ours 6,696 for 8).
 
 use std::collections::BTreeMap;
 
 use super::{Measurement, StudyFindings, panel};
 use crate::draw::{STYLE, escaped, labels, marks};
 
-/// Width of a figure; everything is drawn at the size of text for reading at this width.
+/// Width of a figure. Text has its reading size at this width.
 pub(super) const WIDTH: f64 = 480.0;
 const TITLE: f64 = 30.0;
 const LEGEND_LINE: f64 = 18.0;
@@ -43,7 +46,7 @@ pub fn figure(findings: &StudyFindings) -> String {
     svg + "</svg>\n"
 }
 
-/// The groups in their order: each a colour and a shape.
+/// The groups in their order, each with a colour and a shape.
 pub(super) struct Groups<'a>(pub(super) BTreeMap<&'a str, usize>);
 
 impl<'a> Groups<'a> {
@@ -60,7 +63,7 @@ impl<'a> Groups<'a> {
         self.0.get(group).copied().unwrap_or(0)
     }
 
-    /// What is under the plots, in lines that fit.
+    /// The legend below the plots, in lines that fit.
     fn legend(&self, findings: &StudyFindings) -> Vec<Vec<LegendEntry>> {
         let mut names: Vec<(&str, usize)> = self.0.iter().map(|(name, n)| (*name, *n)).collect();
         names.sort_by_key(|(_, number)| *number);

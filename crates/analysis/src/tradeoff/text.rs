@@ -2,11 +2,11 @@
 
 use super::{Measurement, StudyFindings, StudyReport};
 
-/// The widest line.
+/// Width of a line.
 const WIDTH: usize = 80;
 const GAP: usize = 2;
 
-/// Everything: the machine, cautions, and each study with its table and fronts.
+/// The machine, cautions, and each study with its table and fronts.
 #[must_use]
 pub fn report(report: &StudyReport) -> String {
     let mut text = Vec::new();
@@ -43,7 +43,7 @@ pub fn findings(findings: &StudyFindings) -> String {
     text.join("\n")
 }
 
-/// The table: names left, values right, marks of the fronts last.
+/// The table: names on the left, values on the right, marks of the fronts last.
 fn table(findings: &StudyFindings) -> Vec<String> {
     let marks = findings.marks();
     let headings = findings.columns.iter().map(|c| c.heading).chain(["front"]);
@@ -84,7 +84,7 @@ fn table(findings: &StudyFindings) -> Vec<String> {
     let deep = heads.iter().map(Vec::len).max().unwrap_or(1);
     let mut lines = Vec::new();
     for line in 0..deep {
-        // Headings stand on their last line.
+        // Headings are aligned at the bottom.
         let words: Vec<String> = heads
             .iter()
             .map(|head| {
@@ -124,7 +124,7 @@ fn length(text: &str) -> usize {
     text.chars().count()
 }
 
-/// Lines of at most so many characters; a longer word has a line of its own.
+/// Lines of at most `width` characters; a longer word has a line of its own.
 fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {

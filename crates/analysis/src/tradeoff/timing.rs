@@ -1,14 +1,12 @@
-//! How long work takes, in rounds: the competitors run one after the other, each round another one first, so that what else the
-//! machine does falls on all of them.
-//!
-//! Left out: the clock itself, and any judgement of what the times are good for.
+//! Timing of alternatives in rounds: they run in turns, and each round starts with another one, so
+//! that other load on the machine affects all of them.
 
 use serde::Serialize;
 use units::{Host, Span, Stamp};
 
-/// A clock that does not step.
+/// A monotonic clock.
 pub trait StudyClock {
-    /// What it shows.
+    /// The current time.
     fn now(&mut self) -> Stamp<Host>;
 }
 
@@ -18,21 +16,21 @@ impl<F: FnMut() -> Stamp<Host>> StudyClock for F {
     }
 }
 
-/// Middle and ends of repeated measurements.
+/// Median and extremes of repeated measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TimingSpread {
-    /// The middle one; of an even number the mean of the two in the middle.
+    /// Median; of an even number the mean of the two in the middle.
     pub median: f64,
-    /// The least.
+    /// Minimum.
     pub min: f64,
-    /// The greatest.
+    /// Maximum.
     pub max: f64,
-    /// How many there were.
+    /// Number of measurements.
     pub runs: usize,
 }
 
 impl TimingSpread {
-    /// Of measurements in any order; not numbers where there are none.
+    /// The spread of measurements in any order; NaN without any.
     #[must_use]
     pub fn of(mut measured: Vec<f64>) -> Self {
         measured.sort_by(f64::total_cmp);
@@ -46,7 +44,7 @@ impl TimingSpread {
         }
     }
 
-    /// The same in a unit of which one of these is `factor`.
+    /// All values multiplied by `factor`.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self {
@@ -58,25 +56,26 @@ impl TimingSpread {
     }
 }
 
-/// One of the competitors.
+/// The work of one alternative.
 pub type Work<'a, E> = Box<dyn FnMut() -> Result<(), E> + 'a>;
 
-/// How work is timed.
+/// Rounds and length of measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimingPlan {
-    /// Measurements of each competitor.
+    /// Measurements of each alternative.
     pub rounds: usize,
-    /// How long a measurement lasts at least: short work is repeated within it.
+    /// Smallest duration of a measurement; shorter work is repeated.
     pub least: Span,
 }
 
-/// More repetitions than this are not needed by any work that can be measured.
+/// The largest number of repetitions.
 const MOST_REPEATS: i64 = 100_000;
 
-/// Seconds that each work takes. Each is run once beforehand for nothing, to warm up and to learn how often it must be repeated.
+/// Seconds of each work. Each runs once beforehand, to warm up and to determine the number of
+/// repetitions.
 ///
 /// # Errors
-/// The first that any work gives.
+/// The first error of any work.
 pub fn in_rounds<E>(
     clock: &mut dyn StudyClock,
     plan: TimingPlan,
@@ -126,7 +125,7 @@ mod tests {
         assert!(TimingSpread::of(Vec::new()).median.is_nan());
     }
 
-    /// Two works that move the clock themselves: 3 us and 1 ms a time.
+    /// Two works that advance the clock themselves by 3 us and 1 ms.
     #[test]
     fn short_work_is_repeated_and_each_round_begins_with_another() {
         let now = Cell::new(0_i64);

@@ -1,4 +1,4 @@
-//! By how many sub-rays a beam's footprint is sampled, and where.
+//! Study of the number and place of the sub-rays that sample a beam's footprint.
 
 mod reference;
 
@@ -18,44 +18,44 @@ use reference::ReferenceFootprint;
 /// The study.
 pub(super) struct BeamSampling;
 
-/// Sub-rays along the scan and across it. 5 x 3 is what a scene gets that does not say.
+/// Sub-rays along the scan and across it. 5 x 3 is the default of a scene.
 const GRIDS: [[usize; 2]; 6] = [[3, 1], [3, 3], [5, 3], [7, 5], [9, 7], [15, 9]];
-/// Those of the reference.
+/// Sub-rays of the reference.
 const FINE: [usize; 2] = [33, 17];
 const SCENES: [&str; 2] = ["hall", "parking"];
-/// A return farther off than this is another one, metres: half of what the sensor tells apart.
+/// A return farther off than this is a different one, metres: half of the sensor's resolution.
 const ANOTHER_M: f64 = 0.5;
 
-/// A way to sample beams.
+/// How beams are sampled.
 enum SamplingMethod {
-    /// Not at all: the middle alone.
+    /// The centre of the beam alone.
     Middle,
-    /// Where an edge can be.
+    /// Sub-rays where an edge is possible.
     AtEdges(Divergence),
-    /// Everywhere.
+    /// Sub-rays everywhere.
     Everywhere(Divergence),
 }
 
-/// A way with its name and label.
+/// A method with its name and label.
 struct SamplingChoice {
     name: String,
     label: String,
     way: SamplingMethod,
 }
 
-/// A shot across an edge: which firing and laser, and the ranges that the reference has, infinite for none.
+/// A shot across an edge: firing, laser, and the ranges of the reference, infinite for none.
 struct SilhouetteEdge {
     firing: usize,
     laser: usize,
     truth_m: [f64; 2],
 }
 
-/// How far off a way is at edges.
+/// Errors of a method at edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SamplingError {
     rms_m: f64,
     worst_m: f64,
-    /// Share of the shots with two returns for which either is another one, or not there.
+    /// Share of the shots with two returns in which either is a different one or missing.
     wrong: f64,
 }
 
@@ -202,7 +202,7 @@ fn choices(grids: &[[usize; 2]]) -> Result<Vec<SamplingChoice>, StudyError> {
 }
 
 impl SamplingMethod {
-    /// What comes back of every firing, one after the other.
+    /// The echoes of every firing, one after the other.
     fn act(&self, shots: &Shots, mut take: impl FnMut(usize, &Echoes)) {
         let Some((_, first)) = shots.firings.first() else {
             return;
@@ -224,7 +224,7 @@ impl SamplingMethod {
     }
 }
 
-/// Casts the middles of beams.
+/// Casts the centres of beams.
 fn middles(firing: &Firing, shots: &Shots, echoes: &mut Echoes) {
     let rays = firing.origins_m.iter().zip(&firing.directions);
     let places = echoes.strongest.iter_mut().zip(&mut echoes.other);
@@ -235,7 +235,7 @@ fn middles(firing: &Firing, shots: &Shots, echoes: &mut Echoes) {
     }
 }
 
-/// The shots across edges, and what the reference says of them.
+/// The shots across edges, with the ranges of the reference.
 fn edges(shots: &Shots) -> Result<Vec<SilhouetteEdge>, StudyError> {
     let mut edges = Vec::new();
     for (number, (firing, _)) in shots.firings.iter().enumerate() {
@@ -274,7 +274,7 @@ fn off(way: &SamplingMethod, shots: &Shots, edges: &[SilhouetteEdge]) -> Samplin
             if got_m[1].is_finite() || other_m.is_finite() {
                 let is_same = |(got, truth): (&f64, &f64)| (got - truth).abs() <= ANOTHER_M;
                 two += 1;
-                // None against some is infinitely far, and no number.
+                // A missing return is infinitely far, and no number.
                 wrong += u32::from(!got_m.iter().zip(&edge.truth_m).all(is_same));
             }
         }
@@ -290,7 +290,7 @@ fn off(way: &SamplingMethod, shots: &Shots, edges: &[SilhouetteEdge]) -> Samplin
 mod tests {
     use super::*;
 
-    /// The reference, written on its own, against the effect with the same sub-rays.
+    /// The independent reference against the effect with the same sub-rays.
     #[test]
     fn the_reference_with_few_sub_rays_is_what_the_effect_does() {
         let mut two = 0;
@@ -333,7 +333,7 @@ mod tests {
         );
         assert!(few.rms_m < middle.rms_m && many.rms_m < few.rms_m);
         assert!(many.worst_m.is_finite() && many.worst_m >= many.rms_m);
-        // Where it looks for edges it finds most of them.
+        // It finds most edges where it looks for them.
         let found = of("5x3");
         assert!(found.wrong < many.wrong + 0.15, "{found:?} {many:?}");
     }

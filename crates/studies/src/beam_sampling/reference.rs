@@ -1,20 +1,19 @@
-//! A beam's footprint by any number of sub-rays, one after the other: what `sim::effect_models::Divergence` does, said again.
-//!
-//! Left out: reflectivities of returns, normals, and looking for edges.
+//! A beam's footprint by any number of sub-rays, one after the other: an independent version of
+//! `sim::effect_models::Divergence`, without reflectivities, normals and the search for edges.
 
 use glam::DVec3;
 use sim::firing::{Firing, Met, Surroundings};
 
-/// Half of what the beam widens along the scan and across it (63-9243, appendix F).
+/// Half the divergence of the beam along the scan and across it (63-9243, appendix F).
 const HALF: [f64; 2] = [1.5e-3, 0.75e-3];
 /// Surfaces nearer to each other make one return, metres.
 const SEPARATION_M: f64 = 1.0;
-/// A return with less of the light goes unnoticed.
+/// A return with less of the light is not detected.
 const LEAST_SHARE: f64 = 0.05;
-/// What is off its plane by less is on it, metres.
+/// Tolerance of a plane, metres.
 const FLAT_M: f64 = 0.002;
 
-/// The patch that one laser lights.
+/// The patch that one laser illuminates.
 pub struct ReferenceFootprint {
     from_m: DVec3,
     way: DVec3,
@@ -22,7 +21,7 @@ pub struct ReferenceFootprint {
     across: DVec3,
 }
 
-/// A sub-ray: where it is in the patch, -1..=1 either way, and what it met.
+/// A sub-ray: its place in the patch, -1..=1 in both directions, and its hit.
 struct ReferenceSample {
     x: f64,
     y: f64,
@@ -36,7 +35,8 @@ pub struct Samples {
 }
 
 impl ReferenceFootprint {
-    /// Of a laser of a VLP-16's firing: the scan goes across the fan between its lowest laser (0) and its highest (15).
+    /// The footprint of a laser in a firing of a VLP-16. The scan runs across the fan between its
+    /// lowest laser (0) and its highest (15).
     pub fn of(firing: &Firing, laser: usize) -> Option<Self> {
         let (lowest, highest) = (firing.directions.first()?, firing.directions.get(15)?);
         let way = *firing.directions.get(laser)?;
@@ -54,7 +54,7 @@ impl ReferenceFootprint {
         self.way + x * self.along + y * self.across
     }
 
-    /// Casts `columns` x `rows` sub-rays, each in the middle of its part of the patch.
+    /// Casts `columns` x `rows` sub-rays, each at the centre of its part of the patch.
     pub fn samples(self, [columns, rows]: [usize; 2], around: &Surroundings) -> Samples {
         let place = |at: usize, of: usize| (2 * at + 1) as f64 / of as f64 - 1.0;
         let grid = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
@@ -71,7 +71,8 @@ impl ReferenceFootprint {
 }
 
 impl Samples {
-    /// Whether all are on one plane, or nothing was met at all. One over the depth changes evenly over a plane.
+    /// Whether all hits are on one plane, or there are none. The inverse of the depth is linear
+    /// over a plane.
     pub fn are_plane(&self) -> bool {
         if self.samples.iter().all(|sample| sample.met.is_none()) {
             return true;
@@ -82,7 +83,7 @@ impl Samples {
                 Some([sample.x, sample.y, length / sample.met?.range_m])
             })
             .collect();
-        // The grid lies evenly about the middle: means are those of the plane that fits best.
+        // The grid is symmetric, so means are those of the best plane.
         let sum = |of: &dyn Fn(&[f64; 3]) -> f64| seen.iter().map(of).sum::<f64>();
         let mean = sum(&|[_, _, inverse]| *inverse) / seen.len() as f64;
         let slope = |axis: usize| {
@@ -100,7 +101,8 @@ impl Samples {
         seen.len() == self.samples.len() && seen.iter().all(is_on)
     }
 
-    /// The strongest return's range, and that of the last or, where the strongest is the last, of the second strongest; infinite for none.
+    /// The range of the strongest return, and that of the last or, if the strongest is the last, of
+    /// the second strongest; infinite for none.
     pub fn returns_m(&self) -> [f64; 2] {
         let mut mets: Vec<&Met> = self.samples.iter().filter_map(|s| s.met.as_ref()).collect();
         mets.sort_by(|a, b| a.range_m.total_cmp(&b.range_m));
@@ -135,7 +137,8 @@ impl Samples {
     }
 }
 
-/// Light that a surface sends back of what a white wall does: in percent up to 100, by the logarithm up to 300 times that at 255.
+/// Reflected light relative to a white wall: percent up to 100, then logarithmic up to 300 times
+/// that at 255.
 fn light(reflectivity: f64) -> f64 {
     let light = match reflectivity <= 100.0 {
         true => reflectivity / 100.0,

@@ -1,28 +1,28 @@
-//! Eight rays against triangles, in f32 and f64, by two tests.
+//! Two intersection tests of eight rays with triangles, in f32 and f64.
 //!
-//! Written alike, in the registers there are, so that what differs is the numbers. Left out: which triangles to test.
+//! All are written alike for the same registers, so that only the numbers differ.
 
 use crate::placing::Real;
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch, f32x8, f64x8, prelude::*};
 use sim::cast::Sheared8;
 
-/// Rays that are tested together.
+/// Rays per packet.
 pub const LANES: usize = 8;
 
-/// Eight rays by coordinate: they go farthest along one axis.
+/// Eight rays by coordinate, whose largest direction component is on one axis.
 pub struct Eight<T> {
     pub axis: usize,
     pub origin: [[T; LANES]; 3],
     pub direction: [[T; LANES]; 3],
 }
 
-/// Triangles, and rays that are tested against all of them.
+/// Triangles, and rays to test against all of them.
 pub struct Patch<T> {
     pub triangles: Vec<[[T; 3]; 3]>,
     pub packets: Vec<Eight<T>>,
 }
 
-/// What a test does of patches: the range of every ray, packet after packet, infinite for none.
+/// The test of all patches: the range of every ray, packet after packet, infinite for none.
 pub type Cast<T> = fn(&[Patch<T>], &mut [[T; LANES]]);
 
 /// The tests.
@@ -60,7 +60,7 @@ impl Kernel {
         }
     }
 
-    /// In f64, where it is.
+    /// In f64, if it exists.
     pub fn wide(self) -> Option<Cast<f64>> {
         match self {
             Self::MoellerF64 => Some(moeller_f64),
@@ -96,7 +96,7 @@ kernels! {
     casters: f64, f64x8, sheared;
 }
 
-// To be held against the caster's own.
+// For comparison with the caster's own.
 #[cfg(test)]
 kernels! {
     watertight_f64: f64, f64x8, watertight;
@@ -117,7 +117,8 @@ fn all<T: Real>(
     }
 }
 
-/// A vector by coordinate, one a lane. No closures below: what is not inlined is not compiled for the registers there are.
+/// A vector by coordinate, one per lane. There are no closures below, since code that is not
+/// inlined is not compiled for the registers.
 type Three<V> = [V; 3];
 
 #[inline(always)]
@@ -164,7 +165,8 @@ fn dot<S: Simd, V: SimdFloat<S>>(a: Three<V>, b: Three<V>) -> V {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection (1997), both sides of a triangle.
+/// Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection (1997), for both sides of
+/// a triangle.
 #[inline(always)]
 fn moeller<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
@@ -185,7 +187,7 @@ fn moeller<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
         let u = dot(off, across) * inverse;
         let around = cross(off, ab);
         let v = dot(along, around) * inverse;
-        // Of a NaN none is true.
+        // Comparisons with NaN are false.
         let inside = u.simd_ge(zero) & v.simd_ge(zero) & (u + v).simd_le(one);
         if !inside.any_true() {
             continue;
@@ -197,7 +199,7 @@ fn moeller<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     nearest
 }
 
-/// The caster's test (`sim::cast::Sheared8`) in numbers of any kind.
+/// The caster's test (`sim::cast::Sheared8`) in any number type.
 #[inline(always)]
 fn watertight<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
@@ -232,7 +234,7 @@ fn watertight<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     nearest
 }
 
-/// A vertex where the ray is the z axis.
+/// A vertex in coordinates with the ray as the z axis.
 #[inline(always)]
 fn moved<S: Simd, V: SimdFloat<S>>(shear: [V; 2], [x, y, z]: Three<V>) -> Three<V> {
     [
@@ -242,7 +244,7 @@ fn moved<S: Simd, V: SimdFloat<S>>(shear: [V; 2], [x, y, z]: Three<V>) -> Three<
     ]
 }
 
-/// px qy - py qx, its sign right whatever is rounded.
+/// px qy - py qx, with the correct sign despite rounding.
 #[inline(always)]
 fn edge<S: Simd, V: SimdFloat<S>>(zero: V, p: Three<V>, q: Three<V>) -> V {
     let product = p[1] * q[0];
@@ -250,7 +252,7 @@ fn edge<S: Simd, V: SimdFloat<S>>(zero: V, p: Three<V>, q: Three<V>) -> V {
     p[0].mul_add_precise(q[1], zero - product) + rounding
 }
 
-/// Cyclic, the given axis last.
+/// Cyclic order, with the given axis last.
 #[inline(always)]
 fn turned<T>(axis: usize, [x, y, z]: [T; 3]) -> [T; 3] {
     match axis {

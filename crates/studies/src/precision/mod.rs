@@ -1,4 +1,4 @@
-//! In which numbers rays meet triangles: how far off, how many slip through edges, in what time.
+//! Study of the number types of ray casting: error, rays that slip through edges, and time.
 
 mod kernels;
 mod reference;
@@ -19,24 +19,24 @@ use kernels::{Cast, Eight, Kernel, LANES, Patch};
 /// The study.
 pub(super) struct Precision;
 
-/// The surface: a lumpy ball about the scanner, its triangles 0.8 m wide.
+/// The surface: a bumpy ball around the scanner with triangles 0.8 m wide.
 const SURFACE: BallMesh = BallMesh {
     rings: 160,
     sectors: 320,
 };
-/// Its radius and how much that varies.
+/// Its mean radius and the relative size of the bumps.
 const RADIUS_M: f64 = 40.0;
 const LUMPS: f64 = 0.25;
-/// Map coordinates of its middle, metres.
+/// Map coordinates of its centre, metres.
 const MAP_M: DVec3 = DVec3::new(500_012.345_6, 500_345.678_9, 312.5);
 /// Cells along a side of a patch; rays go to those in the middle.
 const SIDE: usize = 4;
-/// Triangles of a patch.
+/// Triangles per patch.
 const TRIANGLES: usize = 2 * SIDE * SIDE;
-/// Packets of eight rays to a patch.
+/// Packets of eight rays per patch.
 const PACKETS: usize = 8;
 
-/// Where the surface is, and where coordinates begin.
+/// Positions of the surface and of the origin.
 #[derive(Clone, Copy)]
 struct CastingCase {
     name: &'static str,
@@ -62,7 +62,7 @@ fn circumstances() -> [CastingCase; 3] {
         on_map,
         CastingCase {
             name: "at 5e5 m, local origin",
-            // As meshes have it: in coordinates of 24 bits.
+            // As in meshes: coordinates of 24 bits.
             origin_m: MAP_M.as_vec3().as_dvec3(),
             ..on_map
         },
@@ -152,16 +152,16 @@ fn about(rays: usize) -> Vec<String> {
     ]
 }
 
-/// How far off a kernel is.
+/// Errors of a kernel.
 #[derive(Clone, Copy, Debug)]
 struct CastError {
     rms_m: f64,
     worst_m: f64,
-    /// Share of the rays that met nothing.
+    /// Share of the rays without a hit.
     missed: f64,
 }
 
-/// The same rays and triangles in both kinds of numbers, and where they meet.
+/// The same rays and triangles in both number types, with the true hits.
 struct Set {
     wide: Vec<Patch<f64>>,
     narrow: Vec<Patch<f32>>,
@@ -236,7 +236,7 @@ fn work<T: Real>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_, StudyError> {
 }
 
 impl Patch<f64> {
-    /// In other numbers, from another origin.
+    /// The patches in other numbers, from another origin.
     fn rounded<T: Real>(&self, origin_m: DVec3) -> Patch<T> {
         let from = origin_m.to_array();
         let moved = |at: [f64; 3]| [0, 1, 2].map(|axis| T::of(at[axis] - from[axis]));
@@ -252,7 +252,7 @@ impl Patch<f64> {
     }
 }
 
-/// Patches of the ball about `middle_m` and rays towards them, as they truly are.
+/// Patches of the ball around `middle_m` and rays towards them, without rounding.
 fn patches_of(middle_m: DVec3, count: usize) -> Vec<Patch<f64>> {
     let vertices = SURFACE.vertices(|along| {
         let lumps = (5.0 * along.x + 2.0).sin() * (7.0 * along.y).sin() * (6.0 * along.z).cos();
@@ -262,7 +262,7 @@ fn patches_of(middle_m: DVec3, count: usize) -> Vec<Patch<f64>> {
     let mut below = move |end: usize| ((chance.uniform() * end as f64) as usize).min(end - 1);
     let mut patches = Vec::with_capacity(count);
     while patches.len() < count {
-        // Away from the ends, where cells are no squares.
+        // Away from the ends, where cells are not square.
         let (ring, sector) = (
             30 + below(SURFACE.rings - 60 - SIDE),
             below(SURFACE.sectors),
@@ -289,7 +289,8 @@ fn vertex(vertices: &[DVec3], at: u32) -> DVec3 {
     vertices.get(at as usize).copied().unwrap_or_default()
 }
 
-/// Eight rays towards the cells in the middle of a patch; `None` where they do not go farthest along one axis.
+/// Eight rays towards the cells in the middle of a patch; `None` if their largest component is not
+/// on one axis.
 fn eight(
     triangles: &[[DVec3; 3]],
     middle_m: DVec3,
@@ -327,7 +328,7 @@ fn eight(
     axes.iter().all(|axis| *axis == first).then_some(eight)
 }
 
-/// The axis along which a direction goes farthest.
+/// The axis of a direction's largest component.
 fn steepest(along: DVec3) -> usize {
     along.abs().max_position()
 }
@@ -371,7 +372,8 @@ mod tests {
         assert!(off(0, Kernel::MoellerF32, 100).missed > 0.0);
     }
 
-    /// In f64 this study's watertight test is the caster's own, bit for bit: so in f32 it is the same in f32.
+    /// In f64 the study's watertight test equals the caster's bit for bit, so in f32 it is the same
+    /// test.
     #[test]
     fn the_watertight_test_is_the_casters() {
         for circumstance in circumstances() {

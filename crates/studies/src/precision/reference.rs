@@ -1,29 +1,30 @@
-//! Where rays truly meet triangles, in doubled f64: sums of two f64 that hold 106 bits (Dekker 1971; Hida, Li and Bailey 2001).
+//! True intersections of rays and triangles in double-double arithmetic: sums of two f64 with 106
+//! bits (Dekker 1971; Hida, Li and Bailey 2001).
 //!
-//! Cramer's rule on `origin + t direction = a + u (b - a) + v (c - a)`. Left out: speed.
+//! Cramer's rule on `origin + t direction = a + u (b - a) + v (c - a)`.
 
 use std::ops::{Add, Mul, Sub};
 
 use super::kernels::{LANES, Patch};
 
-/// The sum of two numbers, the second below half a step of the first.
+/// The sum of two numbers, the second below half a unit in the last place of the first.
 #[derive(Clone, Copy, Debug)]
 struct Double(f64, f64);
 
 impl Double {
-    /// Of two numbers of any size, exactly.
+    /// The exact sum of two numbers.
     fn sum(a: f64, b: f64) -> Self {
         let sum = a + b;
         let of_b = sum - a;
         Self(sum, (a - (sum - of_b)) + (b - of_b))
     }
 
-    /// Their difference, exactly.
+    /// Their exact difference.
     fn difference(a: f64, b: f64) -> Self {
         Self::sum(a, -b)
     }
 
-    /// The nearest f64 to a quotient.
+    /// The quotient, rounded to f64.
     fn over(self, by: Self) -> f64 {
         let first = self.0 / by.0;
         let rest = self - by * Self(first, 0.0);
@@ -81,7 +82,8 @@ fn dot(a: &Three, b: &Three) -> Double {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// How far along a direction a ray meets a triangle, edges and corners included; `None` for a miss and for a ray in its plane.
+/// Distance along a ray to a triangle, including edges and corners; `None` for a miss and for a ray
+/// in its plane.
 fn triangle(from: [f64; 3], along: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> Option<f64> {
     let (ab, ac, off) = (difference(b, a), difference(c, a), difference(from, a));
     let along = along.map(|along| Double(along, 0.0));
@@ -122,7 +124,7 @@ mod tests {
 
     use super::*;
 
-    /// In whole numbers nothing is rounded: the determinants fit i128.
+    /// Integers are not rounded: the determinants fit i128.
     fn exact(from: [i128; 3], along: [i128; 3], [a, b, c]: [[i128; 3]; 3]) -> Option<(i128, i128)> {
         let minus = |p: [i128; 3], q: [i128; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
         let cross = |p: [i128; 3], q: [i128; 3]| {
@@ -141,7 +143,8 @@ mod tests {
     #[test]
     fn it_is_what_whole_numbers_give() {
         let mut chance = SeededNoise(3);
-        // Numbers up to 2^26: products of three have 80 bits, more than an f64 holds. Small ones too, which make rays through edges and corners common.
+        // Numbers up to 2^26: products of three have 80 bits, more than an f64 holds. Small ones
+        // make rays through edges and corners common.
         let mut whole = |bits: u32| {
             let size = (1_i64 << bits) as f64;
             i128::from(((chance.uniform() - 0.5) * size) as i64)
@@ -153,7 +156,7 @@ mod tests {
             let (from, corners): ([i128; 3], [[i128; 3]; 3]) =
                 (point(), [point(), point(), point()]);
             let [a, b, c] = corners;
-            // Towards a corner, the middle of the triangle, or anywhere.
+            // Towards a corner, the centre of the triangle, or anywhere.
             let along: [i128; 3] = match at % 3 {
                 0 => std::array::from_fn(|i| a[i] - from[i]),
                 1 => std::array::from_fn(|i| a[i] + b[i] + c[i] - 3 * from[i]),

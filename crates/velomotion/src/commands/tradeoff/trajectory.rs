@@ -1,4 +1,5 @@
-//! How the angle between polls is known: method, poll rate, and how well the polls' times are known.
+//! Study of the angle between polls: interpolation method, poll rate, and accuracy of the polls'
+//! times.
 
 use std::hint::black_box;
 
@@ -30,33 +31,33 @@ const SWEEP: pattern::TiltSweep = pattern::TiltSweep {
 /// An encoder of 500 lines behind 120:1.
 const QUANTUM_DEG: f64 = 0.0015;
 const EPOCH: Stamp<Host> = Stamp::from_nanos(1_700_002_800_000_000_000);
-/// Rest before the sweep and after it, seconds.
+/// Rest before and after the sweep, seconds.
 const BEFORE_S: f64 = 0.2;
 const AFTER_S: f64 = 0.4;
-/// How long after the commanded end a servo may take.
+/// Settling time of a servo after the commanded end.
 const SETTLING_S: f64 = 0.1;
-/// A block of a VLP-16.
+/// Duration of a VLP-16 block.
 const BLOCK_S: f64 = 110.592e-6;
-/// Steps in which the servo is worked out.
+/// Step of the servo simulation.
 const STEP_S: f64 = 10e-6;
 /// Natural frequency (Hz) and damping of the servo.
 const SERVO: (f64, f64) = (15.0, 0.8);
-/// No stamp is farther off than so many standard deviations.
+/// Largest error of a stamp in standard deviations.
 const MOST_SD: f64 = 4.0;
 
-/// How near stamps of two polls come, in parts of the time between polls.
+/// Smallest distance of the stamps of two polls, as a share of the poll period.
 const NEAREST: f64 = 0.1;
 
-/// What drive and polls are like.
+/// Properties of drive and polls.
 #[derive(Clone, Copy)]
 struct PollingCase {
     key: &'static str,
     heading: &'static str,
-    /// Standard deviation of a poll's instant, seconds.
+    /// Standard deviation of a poll's time, seconds.
     jitter_s: f64,
     /// Step of the encoder, degrees; 0 for none.
     quantum_deg: f64,
-    /// Whether a servo follows the commanded motion, or the axis does.
+    /// Whether a servo follows the commanded motion, or the axis follows it exactly.
     servo: bool,
 }
 
@@ -90,7 +91,7 @@ const CIRCUMSTANCES: [PollingCase; 4] = [
         servo: true,
     },
 ];
-/// The one that is timed.
+/// The case that is timed.
 const USUAL: PollingCase = CIRCUMSTANCES[1];
 
 impl Study for Trajectories {
@@ -208,7 +209,7 @@ fn shaft(servo: bool) -> Vec<f64> {
         .collect()
 }
 
-/// The true angle at an instant: on a line between steps.
+/// The true angle at an instant, interpolated linearly.
 fn truth_deg(shaft: &[f64], t_s: f64) -> f64 {
     let place = (t_s / STEP_S).max(0.0);
     let before = place as usize;
@@ -237,7 +238,7 @@ fn polls(shaft: &[f64], hz: f64, circumstance: PollingCase, seed: u64) -> Vec<An
                 quantum => (truth / quantum).floor() * quantum,
             };
             let off_s = jitter_s * noise.normal().clamp(-MOST_SD, MOST_SD);
-            // A poll ends before the next begins, however late it is seen.
+            // A poll ends before the next begins, even if its stamp is late.
             last_s = (t_s + off_s).max(last_s + NEAREST / hz);
             AngleSample {
                 host: after(last_s),
@@ -274,7 +275,7 @@ fn through(
         .ok_or_else(|| StudyError::workload("polls that make no trajectory"))
 }
 
-/// The blocks' instants from the sweep's begin until it has settled.
+/// The times of the blocks from the start of the sweep until it has settled.
 fn blocks() -> impl Iterator<Item = Moment> {
     block_times_s().map(|t_s| Moment {
         host: after(t_s),
@@ -312,8 +313,8 @@ fn worst_deg(
 mod tests {
     use super::*;
 
-    /// Worst errors of such a sweep as computed by another program (numpy), degrees; its polls had other phases, which
-    /// ramps show, and another seed.
+    /// Worst errors of such a sweep in degrees, computed by another program (numpy) with other
+    /// phases of the polls, which affect the ramps, and another seed.
     #[test]
     fn errors_are_those_of_an_independent_computation() {
         let stiff = shaft(false);
@@ -346,7 +347,7 @@ mod tests {
     fn a_servo_lags_and_arrives() {
         let (stiff, soft) = (shaft(false), shaft(true));
         let (hz, damping) = SERVO;
-        // 2 damping / w behind in the cruise: 56.25 x 2 x 0.8 / 94.2 = 0.955 degrees.
+        // The lag in the cruise is 2 damping / w: 56.25 x 2 x 0.8 / 94.2 = 0.955 degrees.
         let lag = truth_deg(&soft, 0.7) - truth_deg(&stiff, 0.7);
         let expected = 56.25 * 2.0 * damping / (hz * std::f64::consts::TAU);
         assert!((lag - expected).abs() < 0.01, "{lag} {expected}");
