@@ -1,40 +1,44 @@
-//! What the mount makes of a sensor's data sheet: ranges, fields of view and resolution of the whole device.
+//! Ranges, fields of view and resolution of a tilted sensor, from the data sheet of the sensor and
+//! the mount.
 //!
-//! The device is seen from the origin of its base, on the tilt axis (Eq. 4-6 and 9 of the 2018 paper). Left out: what stands in the way of rays.
+//! All is seen from the origin of the base, on the tilt axis (Eq. 4-6 and 9 of the 2018 paper).
+//! Obstacles are ignored.
 
 use serde::Serialize;
 
 /// A sensor on a tilt axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TiltedSensor {
-    /// Nearest and farthest that the sensor itself measures, metres.
+    /// Smallest and largest range of the sensor, metres.
     pub reach_m: [f64; 2],
-    /// Lowest and highest laser, degrees above the sensor's own horizontal.
+    /// Lowest and highest laser, degrees above the sensor's horizontal plane.
     pub elevations_deg: [f64; 2],
     /// Height of the sensor's origin above the tilt axis, metres (d).
     pub d_m: f64,
-    /// Least and greatest tilt, degrees (gamma).
+    /// Smallest and largest tilt, degrees (gamma).
     pub tilt_deg: [f64; 2],
 }
 
-/// From where to where a device sees.
+/// Ranges and elevations that a tilted sensor covers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VisibleRange {
-    /// Nearest and farthest point that it can have, metres from the origin of the base.
+    /// Smallest and largest distance of a point from the origin of the base, metres.
     pub range_m: [f64; 2],
-    /// Lowest and highest ray towards -x, degrees above the horizontal: the paper's forwards.
+    /// Lowest and highest ray towards -x in degrees above the horizontal; the paper's forward
+    /// direction.
     pub forwards_deg: [f64; 2],
-    /// The same towards +x: backwards.
+    /// The same towards +x, backward.
     pub backwards_deg: [f64; 2],
 }
 
 impl TiltedSensor {
-    /// From where to where it sees.
+    /// The ranges and elevations that it covers.
     #[must_use]
     pub fn view(&self) -> VisibleRange {
         let [low, high] = self.elevations_deg;
         let [least, most] = self.tilt_deg;
-        // The rays to the left and to the right of the sensor, by their angle above -x: over the zenith, 90, and on to +x, 180.
+        // Rays to the left and to the right of the sensor, by their angle above -x: 90 at the
+        // zenith, 180 at +x.
         let fans = [
             [low + least, high + most],
             [180.0 - high + least, 180.0 - low + most],
@@ -47,9 +51,9 @@ impl TiltedSensor {
         }
     }
 
-    /// Eq. 9: a point at range R of a laser at elevation w is P from the base's origin, P2 = R2 + d2 + 2 R d sin w, whatever azimuth and tilt
-    /// are: both turn about axes through the base's origin or the sensor's. In sin w it is a straight line, so the outermost lasers decide; in R it falls
-    /// before -d sin w and rises after.
+    /// Eq. 9: a point at range R of a laser at elevation w is at distance P from the base's origin
+    /// with P2 = R2 + d2 + 2 R d sin w, independent of azimuth and tilt. P2 is linear in sin w, so
+    /// the outermost lasers decide. In R it falls before -d sin w and rises after.
     fn range_m(&self) -> [f64; 2] {
         let [near, far] = self.reach_m;
         let mut range = [f64::INFINITY, 0.0_f64];
@@ -57,7 +61,7 @@ impl TiltedSensor {
             let sin = elevation_deg.to_radians().sin();
             let lowest = (-self.d_m * sin).clamp(near.min(far), far.max(near));
             for r in [near, far, lowest] {
-                // Squares, so that it cannot come out below 0.
+                // A sum of squares, which cannot be negative.
                 let (along, across) = (r + self.d_m * sin, self.d_m * self.d_m * (1.0 - sin * sin));
                 let p = (along * along + across).sqrt();
                 range = [range[0].min(p), range[1].max(p)];
@@ -67,7 +71,7 @@ impl TiltedSensor {
     }
 }
 
-/// The outermost angles of fans within a quarter turn of `middle_deg`, whatever turn they are in.
+/// The outermost angles of fans within 90 degrees of `middle_deg`, modulo 360 degrees.
 fn side(fans: &[[f64; 2]; 2], middle_deg: f64) -> [f64; 2] {
     let (first, last) = (middle_deg - 90.0, middle_deg + 90.0);
     let mut found = [f64::INFINITY, f64::NEG_INFINITY];
@@ -82,7 +86,8 @@ fn side(fans: &[[f64; 2]; 2], middle_deg: f64) -> [f64; 2] {
     found
 }
 
-/// The mean angle between neighbouring rays one above the other, degrees: a field of view of `fov_deg` shared by as many lasers in so many frames.
+/// The mean vertical angle between neighbouring rays in degrees: a field of view of `fov_deg`
+/// divided by lasers and frames.
 #[must_use]
 pub fn vertical_resolution_deg(fov_deg: f64, lasers: u32, frames: f64) -> f64 {
     fov_deg / (f64::from(lasers) * frames)
@@ -145,7 +150,7 @@ mod tests {
                         let [x, y, z] = mount.place([r * cw * sa, r * cw * ca, r * sw], tilt);
                         wider(&mut range, (x * x + y * y + z * z).sqrt());
                     }
-                    // Which way rays go, in the plane across the axis.
+                    // Direction of the rays in the plane across the axis.
                     let [x, _, z] = Mount::new(Metres(0.0)).place([cw * sa, cw * ca, sw], tilt);
                     if a == 18 || a == 54 {
                         let (side, x) = match x < 0.0 {
@@ -173,7 +178,7 @@ mod tests {
                 tilt_deg: [-20.0, 35.0],
                 ..VELOMOTION
             },
-            // Over the zenith to the other side.
+            // Beyond the zenith.
             TiltedSensor {
                 tilt_deg: [0.0, 180.0],
                 ..VELOMOTION
@@ -182,7 +187,7 @@ mod tests {
                 tilt_deg: [40.0, 100.0],
                 ..VELOMOTION
             },
-            // So far above the axis that the nearest point is not at the nearest range.
+            // So high above the axis that the nearest point is not at the smallest range.
             TiltedSensor {
                 d_m: 3.0,
                 reach_m: [0.0, 10.0],
@@ -198,12 +203,12 @@ mod tests {
                 (view.backwards_deg, backwards),
             ] {
                 for (a, b) in exact.iter().zip(sampled) {
-                    // Steps of tilt, where a side ends at the zenith.
+                    // The step of tilt, if a side ends at the zenith.
                     let steps = if a.abs() == 90.0 { 1.3 } else { 1e-9 };
                     assert!((a - b).abs() < steps, "{device:?}: {exact:?} {sampled:?}");
                 }
             }
-            // Steps of range, where the nearest is within the reach: second order.
+            // The step of range has an error of second order.
             assert!(view.range_m[0] <= range[0] + 1e-12 && range[0] - view.range_m[0] < 0.02);
             assert!((view.range_m[1] - range[1]).abs() < 1e-9);
         }

@@ -1,6 +1,22 @@
-//! What clouds are worth: how densely and how evenly scans cover what is about them, a cloud against the simulated truth, and what accuracy costs in time.
+//! Scan patterns and their quality: density, gaps, the K function, accuracy against the simulated
+//! truth, and trade-offs of accuracy and time.
 //!
-//! Left out: making clouds (`scanner`), and anything that reads files or clocks.
+//! All functions are pure; files and clocks belong to the callers.
+//!
+//! ```
+//! use analysis::k::{Edges, KCurve, exact};
+//! use glam::DVec3;
+//!
+//! // The six directions along the axes: each is 90 degrees from four others.
+//! let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+//! let edges = Edges::equal(3)?;
+//! let counts = exact(&axes, &edges, std::num::NonZeroUsize::MIN)?;
+//! assert_eq!(counts.counts, [0, 12, 3]);
+//!
+//! let curve = KCurve::of_counts(&counts, 10.0);
+//! assert!(curve.d[0] < 0.0); // fewer close pairs than random directions have
+//! # Ok::<(), analysis::k::KError>(())
+//! ```
 
 pub mod density;
 pub mod device;

@@ -1,10 +1,10 @@
-//! A cloud against the truth of the simulator that it came from: the distance of each point from where its laser
-//! really hit.
+//! Comparison of a cloud with the simulated truth: the distance of each point from the place that
+//! its laser hit.
 //!
-//! A point is looked up by what only the sensor knows, the device time and laser of its firing, so that an error
-//! of the clock fit or of the tilt angle shows as a distance and cannot hide in the matching. Points without a
-//! truth and points that are not numbers are counted apart and never averaged in. Left out: aligning the cloud
-//! first, which would hide what is asked here.
+//! Points are matched by device time and laser of their firing, which only the sensor determines.
+//! So an error of the clock fit or of the tilt angle shows as a distance and cannot hide in the
+//! matching. Points without a truth and non-finite points are counted separately and never
+//! averaged. The cloud is not aligned first, since that would hide errors.
 
 use cloud::{Fields, MissingColumns, Points, Sink, SinkError};
 use glam::DVec3;
@@ -13,28 +13,28 @@ use units::{Lidar, Stamp};
 /// The columns that a comparison needs.
 pub const FIELDS: Fields = Fields::DEVICE_TIME.union(Fields::LASER);
 
-/// How far a cloud is from the truth.
+/// Distance of a cloud from the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthReport {
     /// Points that were compared.
     pub points: u64,
-    /// Points for whose firing the truth knows no hit.
+    /// Points without a hit in the truth.
     pub unmatched: u64,
-    /// Points whose distance from the truth is no finite number: a NaN or infinity on either side.
+    /// Points whose distance from the truth is not finite.
     pub not_finite: u64,
-    /// Root of the mean squared distance in metres; NaN where nothing was compared, which no limit accepts.
+    /// Root mean square distance in metres; NaN without compared points, which no limit accepts.
     pub rms_m: f64,
-    /// Greatest distance in metres; NaN where nothing was compared.
+    /// Largest distance in metres; NaN without compared points.
     pub worst_m: f64,
-    /// Index of the point with the greatest distance among all that were given; the first of equals.
+    /// Index of the point with the largest distance; the first of equal ones.
     pub worst_index: Option<u64>,
 }
 
-/// Compares every point with `truth`, which says where laser number `u8` hit when it fired at a time of the
-/// lidar's clock (metres).
+/// Compares every point with `truth`, which returns the place (metres) that a laser hit when it
+/// fired at a time of the lidar's clock.
 ///
 /// # Errors
-/// [`MissingColumns`] where the points lack device time or laser.
+/// [`MissingColumns`] if the points lack device time or laser.
 pub fn compare(
     points: &Points,
     truth: impl FnMut(Stamp<Lidar>, u8) -> Option<[f64; 3]>,
@@ -44,7 +44,7 @@ pub fn compare(
     Ok(comparison.report())
 }
 
-/// A comparison that goes along while the cloud is made: a [`Sink`] that keeps no points.
+/// An incremental comparison: a [`Sink`] that keeps no points.
 #[derive(Clone, Debug)]
 pub struct Comparison<F> {
     truth: F,
@@ -57,7 +57,7 @@ pub struct Comparison<F> {
 }
 
 impl<F: FnMut(Stamp<Lidar>, u8) -> Option<[f64; 3]>> Comparison<F> {
-    /// A comparison with `truth` that has seen no points yet.
+    /// A comparison with `truth`, without points.
     pub const fn new(truth: F) -> Self {
         Self {
             truth,
@@ -73,7 +73,7 @@ impl<F: FnMut(Stamp<Lidar>, u8) -> Option<[f64; 3]>> Comparison<F> {
     /// Adds a batch.
     ///
     /// # Errors
-    /// [`MissingColumns`] where it lacks device time or laser; nothing is added then.
+    /// [`MissingColumns`] if it lacks device time or laser; nothing is added then.
     pub fn add(&mut self, batch: &Points) -> Result<(), MissingColumns> {
         batch.fields().require(FIELDS)?;
         let firings = batch.device_time().iter().zip(batch.laser());
@@ -104,7 +104,7 @@ impl<F: FnMut(Stamp<Lidar>, u8) -> Option<[f64; 3]>> Comparison<F> {
         }
     }
 
-    /// What came of it so far.
+    /// The results so far.
     #[must_use]
     pub fn report(&self) -> TruthReport {
         TruthReport {

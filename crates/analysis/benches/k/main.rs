@@ -1,8 +1,9 @@
 //! CPU seconds of the ways to the K function: `cargo bench -p velomotion-analysis --bench k [-- WHAT...]`.
 //!
-//! What is `exact:FRAMES`, `avx2:FRAMES`, `least:FRAMES`, `two:FRAMES` (two threads), `turned:FRAMES`, `sampled:FRAMES`, `gridded:FRAMES` or
-//! `harmonics:FRAMES` (to degree 64): an RMBL of so many frames of 14,416 points.
-//! Times are those for which the process had a core; where another has the other half of that core, they are up to twice as long.
+//! What is `exact:FRAMES`, `avx2:FRAMES`, `least:FRAMES`, `two:FRAMES` (two threads),
+//! `turned:FRAMES`, `sampled:FRAMES`, `gridded:FRAMES` or `harmonics:FRAMES` (to degree 64): an
+//! RMBL of so many frames of 14,416 points. Times are those for which the process had a core; where
+//! another has the other half of that core, they are up to twice as long.
 
 #![expect(
     clippy::disallowed_methods,

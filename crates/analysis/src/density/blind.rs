@@ -1,8 +1,10 @@
-//! Blind spots: all holes that cannot grow, down to a size, the rows that they stand in about an axis, and the bands that no point ever comes into.
+//! Blind spots: locally largest holes down to a size, their rows around an axis, and bands without
+//! points.
 //!
-//! How far a point is from the tilt axis depends on its laser's elevation and its azimuth alone, not on the tilt. So where a head's rays leave a band
-//! of such angles out, no speed fills it: blind spots stand in rows about the axis. [`bands`] tells it from the points alone, [`holes`] and [`rows`] from
-//! the holes. Left out: how the largest is found ([`super::hole`]).
+//! The angle of a point from the tilt axis depends on the elevation of its laser and on its
+//! azimuth, not on the tilt. If the rays of a sensor leave out a band of such angles, no tilt speed
+//! fills it: blind spots form rows around the axis. [`bands`] finds the bands from the points
+//! alone; [`holes`] and [`rows`] find the spots. [`super::hole`] has the search.
 
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
@@ -14,45 +16,46 @@ use super::hole::{CellOutcome, Hole, HoleSearch, RegionDepth};
 use super::nearby::Nearby;
 use super::{DensityError, check};
 
-/// Holes about one angle from an axis.
+/// Holes at one angle from an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HoleRow {
-    /// Angle from the axis, the mean of theirs, degrees.
+    /// Mean angle of the holes from the axis, degrees.
     pub from_axis_deg: f64,
-    /// How many there are.
+    /// Number of holes.
     pub holes: usize,
-    /// The radius of the largest, degrees.
+    /// Radius of the largest hole, degrees.
     pub radius_deg: f64,
 }
 
-/// Angles from an axis that no point has.
+/// A range of angles from an axis without points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EmptyBand {
-    /// Where it begins: the angle of the last point before, or 0; degrees.
+    /// Start: the angle of the last point before, or 0; degrees.
     pub from_deg: f64,
-    /// Where it ends: the angle of the next point, or 180.
+    /// End: the angle of the next point, or 180.
     pub to_deg: f64,
 }
 
 impl EmptyBand {
-    /// How wide it is, degrees.
+    /// Width in degrees.
     #[must_use]
     pub fn width_deg(&self) -> f64 {
         self.to_deg - self.from_deg
     }
 }
 
-/// How exact holes need be, over their radius.
+/// Relative accuracy of the radius of holes.
 const EXACT: f64 = 0.01;
-/// How far outside its cell a hole may be found, radians, with room for roundings.
+/// Distance outside its cell at which a hole may be found, radians, with room for rounding.
 const BESIDE_RAD: f64 = 2e-6;
 
-/// Holes of at least `least_rad`, the largest first, at most `most`: each as large as there is room for in its place, none with its middle in a larger
-/// one that is listed, and only in the region that `depth_rad` tells of ([`super::largest_hole_within`]). What is larger by less than a hundredth counts as
-/// no larger, and where more than ten points touch a hole, its radius is right to so much; else to rounding.
+/// Holes of at least `least_rad`, the largest first, at most `most`. Each is locally as large as
+/// possible, none has its centre in a larger listed one, and all are in the region of `depth_rad`
+/// ([`super::largest_hole_within`]). Differences below one hundredth are ignored. The radius is
+/// exact to rounding, or to one hundredth if more than ten points touch the hole.
 ///
 /// # Errors
-/// [`DensityError`] for what is no direction, or a least radius that is not above 0.
+/// [`DensityError`] for an invalid direction or a least radius that is not above 0.
 pub fn holes(
     directions: &[DVec3],
     least_rad: f64,
@@ -69,12 +72,13 @@ pub fn holes(
     Ok(list.listed)
 }
 
-/// Fills a list; says how many cells were looked into. Those that lie in a hole already listed are not: all their holes would be left out.
+/// Fills the list; returns the number of cells that were searched. Cells inside a listed hole are
+/// skipped.
 fn looked_for(nearby: &Nearby, list: &mut HoleList, depth_rad: RegionDepth<'_>) -> usize {
     let mut search = HoleSearch::new(nearby, EXACT * list.least_rad, depth_rad);
     let mut looked = 0;
     while let Some(next) = search.next() {
-        // Nothing to come is larger than the bound.
+        // No later hole is larger than the bound.
         list.settle(next.bound_rad * (1.0 - EXACT));
         if next.bound_rad < list.least_rad || list.is_full() {
             break;
@@ -107,16 +111,16 @@ fn looked_for(nearby: &Nearby, list: &mut HoleList, depth_rad: RegionDepth<'_>) 
     looked
 }
 
-/// Holes whose middles lie in no larger one, the largest first.
+/// Holes whose centres lie in no larger one, the largest first.
 struct HoleList {
     least_rad: f64,
     most: usize,
     listed: Vec<Hole>,
-    /// Found, but larger ones may yet come.
+    /// Found holes that a larger one may still displace.
     waiting: BinaryHeap<BySize>,
-    /// Listed ones by the cells of a lattice in which they reach the cells about theirs.
+    /// Listed holes by the cell of a lattice; each reaches at most into the neighbouring cells.
     lattice: HashMap<[i64; 3], Vec<Hole>>,
-    /// The few that are much larger.
+    /// The few holes that are much larger.
     wide: Vec<Hole>,
 }
 
@@ -142,7 +146,7 @@ impl HoleList {
         }
     }
 
-    /// Lists those of at least this radius.
+    /// Lists the waiting holes of at least this radius.
     fn settle(&mut self, radius_rad: f64) {
         while !self.is_full()
             && let Some(BySize(hole)) = self.waiting.peek().copied()
@@ -162,10 +166,10 @@ impl HoleList {
         }
     }
 
-    /// Whether all that is within an angle of a direction lies in one of the listed.
+    /// Whether all directions within `reach_rad` of `middle` lie in a listed hole.
     fn covers(&self, middle: DVec3, reach_rad: f64) -> bool {
         let covers = |hole: &Hole| {
-            // Of a negative angle the chord is negative: nothing is nearer.
+            // The chord of a negative angle is negative, and nothing is nearer.
             let chord = 2.0 * (0.5 * (hole.radius_rad - reach_rad)).sin();
             chord > 0.0 && hole.centre.distance_squared(middle) < chord * chord
         };
@@ -190,7 +194,7 @@ impl HoleList {
     }
 }
 
-/// The larger one is greater; of equal ones that with the greater coordinates.
+/// Order by radius, then by coordinates.
 #[derive(Clone, Copy, Debug)]
 struct BySize(Hole);
 
@@ -220,7 +224,7 @@ impl PartialEq for BySize {
 
 impl Eq for BySize {}
 
-/// Holes by their angle from an axis: where two that follow each other are more than `apart_rad` apart, another row begins.
+/// Holes by their angle from an axis; a gap of more than `apart_rad` starts another row.
 #[must_use]
 pub fn rows(holes: &[Hole], axis: DVec3, apart_rad: f64) -> Vec<HoleRow> {
     let mut angles: Vec<(f64, f64)> = holes
@@ -242,10 +246,10 @@ pub fn rows(holes: &[Hole], axis: DVec3, apart_rad: f64) -> Vec<HoleRow> {
         .collect()
 }
 
-/// The bands about an axis, at least `least_rad` wide, that no direction comes into.
+/// The bands around an axis without directions, at least `least_rad` wide.
 ///
 /// # Errors
-/// [`DensityError::Direction`] for what is none.
+/// [`DensityError::Direction`] for an invalid direction.
 pub fn bands(
     directions: &[DVec3],
     axis: DVec3,
@@ -266,7 +270,7 @@ pub fn bands(
         .collect())
 }
 
-/// The angle between a direction and an axis, radians: to the last digits everywhere.
+/// The angle between a direction and an axis in radians, accurate for all angles.
 fn from_axis(direction: DVec3, axis: DVec3) -> f64 {
     direction.cross(axis).length().atan2(direction.dot(axis))
 }
@@ -278,7 +282,7 @@ mod tests {
     use super::super::hole::EVERYWHERE;
     use super::*;
 
-    /// Rings about y at these angles from it, degrees, `n` points each.
+    /// Rings around y at these angles from it in degrees, `n` points each.
     fn rings(angles_deg: &[f64], n: u32) -> Vec<DVec3> {
         let ring = |angle_deg: &f64| {
             let (sin, cos) = angle_deg.to_radians().sin_cos();
@@ -311,7 +315,8 @@ mod tests {
 
     #[test]
     fn holes_between_rings_stand_in_rows() {
-        // Every degree but for 50 and 51: a gap of 3 degrees is left there and on the other side, and holes of 1.5 along it.
+        // Without 50 and 51 degrees, a gap of 3 degrees remains on both sides, with holes of 1.5
+        // degrees along it.
         let angles: Vec<f64> = (0..=180)
             .filter(|a| !matches!(a, 50 | 51 | 129 | 130))
             .map(f64::from)
@@ -323,7 +328,7 @@ mod tests {
         for (row, at) in rows.iter().zip([50.5, 129.5]) {
             assert!((row.from_axis_deg - at).abs() < 0.2, "{row:?}");
             assert!((row.radius_deg - 1.5).abs() < 0.1, "{row:?}");
-            // As many as fit beside each other with middles outside each other: between 1 and 2 radii apart along the row.
+            // Centres that lie outside the other holes: between 1 and 2 radii apart along the row.
             let around = 360.0 * 50.5_f64.to_radians().sin() / 1.5;
             assert!(
                 (0.5 * around..=around).contains(&(row.holes as f64)),
@@ -343,7 +348,7 @@ mod tests {
             })
             .collect();
         let spacing = (4.0 * std::f64::consts::PI / 4_000.0).sqrt();
-        // Without these there are five holes of about the spacing.
+        // Without these, five holes of about the spacing remain.
         let out: Vec<DVec3> = [3_000, 2_000, 1_500, 800, 555]
             .map(|i| points.swap_remove(i))
             .to_vec();
@@ -366,8 +371,9 @@ mod tests {
 
     #[test]
     fn equal_holes_cost_no_more_than_so_many_looks_each() {
-        // Two rings with a belt between, of pairs of points so near to each other that more than ten touch a hole: as many equal holes as pairs, each of which would be
-        // looked for on its own. They cost what the holes do that are listed, however many points there are.
+        // Two rings with a belt between, of pairs of points so close that more than ten touch a
+        // hole. There are as many equal holes as pairs. The cost follows the listed holes, not the
+        // number of points.
         let looks = |n: u32| {
             let mut points = rings(&[80.0, 80.000_1, 84.0, 84.000_1], n);
             points.extend(rings(

@@ -1,19 +1,20 @@
-//! Cells of the sphere, cut finer and finer: the faces of a cube, each cut into four as often as need be, seen from its middle.
+//! Cells on the sphere: the faces of a cube seen from its centre, each cut into four repeatedly.
 //!
-//! A cell is bounded by great circles, so the ball about its middle that holds its corners holds all of it. Left out: what is in them.
+//! Great circles bound a cell, so a ball around its centre that contains the corners contains the
+//! cell.
 
 use glam::DVec3;
 
-/// A cell: face of the cube, how often it was cut, and where it is among the 4^level of the face.
+/// A cell: face of the cube, number of cuts, and position among the 4^level cells of the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct CubeCell {
     face: u8,
     pub level: u8,
-    /// Bits of column and row in turn.
+    /// Bits of column and row, interleaved.
     code: u64,
 }
 
-/// Cells are cut no finer: then they are 1e-9 rad wide.
+/// The largest number of cuts; cells are 1e-9 rad wide then.
 pub(super) const MOST_CUTS: u8 = 31;
 
 impl CubeCell {
@@ -26,7 +27,7 @@ impl CubeCell {
         })
     }
 
-    /// All that are cut so often, by their numbers.
+    /// All cells of a level, by number.
     pub fn all(level: u8) -> Vec<Self> {
         let mut cells = Self::faces().to_vec();
         for _ in 0..level {
@@ -35,7 +36,7 @@ impl CubeCell {
         cells
     }
 
-    /// The four that it is cut into.
+    /// The four parts of the cell.
     pub fn cut(self) -> [Self; 4] {
         [0, 1, 2, 3].map(|quarter| Self {
             face: self.face,
@@ -44,12 +45,12 @@ impl CubeCell {
         })
     }
 
-    /// Its number among the cells of its level, such that the four of one cell follow each other.
+    /// Index among the cells of its level; the four parts of a cell are consecutive.
     pub fn number(self) -> usize {
         ((u64::from(self.face) << (2 * self.level)) + self.code) as usize
     }
 
-    /// Its middle, and the radius of a ball about it that holds it.
+    /// Centre, and radius of a ball around it that contains the cell.
     pub fn ball(self) -> (DVec3, f64) {
         let width = 2.0 / (1_u64 << self.level) as f64;
         let (column, row) = (every_other(self.code), every_other(self.code >> 1));
@@ -74,7 +75,7 @@ impl CubeCell {
         (middle, off.into_iter().fold(0.0, f64::max).sqrt() + 1e-15)
     }
 
-    /// The number of the cell of a level that a direction is in.
+    /// Index of the cell of a level that contains a direction.
     #[inline]
     pub fn of(direction: DVec3, level: u8) -> usize {
         let [x, y, z] = direction.to_array();
@@ -96,7 +97,7 @@ impl CubeCell {
     }
 }
 
-/// A zero between every two of 32 bits.
+/// Inserts a zero between every two of 32 bits.
 #[inline]
 fn spread(bits: u64) -> u64 {
     let mut x = bits & 0xffff_ffff;
@@ -112,7 +113,7 @@ fn spread(bits: u64) -> u64 {
     x
 }
 
-/// The opposite: bits 0, 2, 4...
+/// Gathers bits 0, 2, 4 and so on.
 fn every_other(bits: u64) -> u64 {
     let mut x = bits & 0x5555_5555_5555_5555;
     for (shift, mask) in [

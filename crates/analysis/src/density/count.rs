@@ -1,6 +1,4 @@
-//! Points a bin, and what can be said of their numbers.
-//!
-//! Left out: drawing them.
+//! Points per bin and their statistics.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -8,39 +6,39 @@ use serde::Serialize;
 
 use super::{DensityError, Locator, SPHERE_DEG2, check};
 
-/// Points in each bin.
+/// Points per bin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BinCounts(Vec<u64>);
 
-/// What the numbers of points in bins are like.
+/// Statistics of the points per bin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Statistics {
-    /// Bins.
+    /// Number of bins.
     pub bins: usize,
     /// Mean.
     pub mean: f64,
-    /// Standard deviation of all bins (divided by their number: they are all that there are, no sample).
+    /// Standard deviation over all bins (population, not sample).
     pub sd: f64,
     /// Fewest.
     pub min: u64,
     /// Most.
     pub max: u64,
-    /// Mean by the mean area of a bin, points a square degree.
+    /// Mean divided by the mean area of a bin, points per square degree.
     pub mean_per_deg2: f64,
-    /// Standard deviation likewise.
+    /// Standard deviation per square degree.
     pub sd_per_deg2: f64,
     /// Bins without a point.
     pub empty: usize,
 }
 
 impl Statistics {
-    /// Standard deviation over mean, of the same bins: how uneven they are, whatever their size; `None` without a point.
+    /// Standard deviation divided by the mean; `None` without points.
     #[must_use]
     pub fn sd_over_mean(&self) -> Option<f64> {
         (self.mean > 0.0).then(|| self.sd / self.mean)
     }
 
-    /// The share of the bins that hold a point, 0 to 1; `None` without a bin.
+    /// Share of the bins with a point, 0 to 1; `None` without bins.
     #[must_use]
     pub fn coverage(&self) -> Option<f64> {
         let with = self.bins.saturating_sub(self.empty);
@@ -51,25 +49,25 @@ impl Statistics {
 /// A class of a histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct HistogramClass {
-    /// The fewest points of a bin in it.
+    /// Smallest number of points.
     pub from: u64,
-    /// The most.
+    /// Largest number of points.
     pub to: u64,
-    /// Bins in it.
+    /// Number of bins.
     pub bins: usize,
 }
 
-/// Directions that a thread counts at a time.
+/// Smallest number of directions per thread.
 const CHUNK: usize = 1 << 16;
 
 impl BinCounts {
-    /// Counts directions, in time linear in their number.
+    /// Counts directions in linear time.
     ///
     /// # Errors
-    /// [`DensityError::Direction`] for one that is none: the first of them.
+    /// [`DensityError::Direction`] for the first invalid direction.
     pub fn new(locator: &Locator, directions: &[DVec3]) -> Result<Self, DensityError> {
         let bins = locator.bins();
-        // As many parts as threads take at once: each needs a row of bins of its own.
+        // One part per thread, since each needs its own row of bins.
         let part = directions
             .len()
             .div_ceil(rayon::current_num_threads().max(1))
@@ -103,13 +101,13 @@ impl BinCounts {
         &self.0
     }
 
-    /// What they are like.
+    /// Statistics of all bins.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         self.statistics_of(|_| true)
     }
 
-    /// What those of some bins are like, by the numbers of the bins.
+    /// Statistics of the bins that `which` selects by number.
     #[must_use]
     pub fn statistics_of(&self, which: impl Fn(usize) -> bool) -> Statistics {
         let counts = self.0.iter().enumerate().filter(|(bin, _)| which(*bin));
@@ -133,7 +131,8 @@ impl BinCounts {
         }
     }
 
-    /// A histogram of at most `classes` equally wide classes (at least one) from 0 to the fullest bin.
+    /// A histogram of at most `classes` equally wide classes (at least one) from 0 to the fullest
+    /// bin.
     #[must_use]
     pub fn histogram(&self, classes: usize) -> Vec<HistogramClass> {
         let most = self.0.iter().copied().max().unwrap_or(0);
@@ -163,7 +162,7 @@ impl BinCounts {
 }
 
 impl DensityError {
-    /// The same where so many directions stand before.
+    /// The same error with `before` more directions in front.
     fn behind(self, before: usize) -> Self {
         match self {
             Self::Direction { index, got } => Self::Direction {
@@ -184,7 +183,7 @@ mod tests {
         Locator::new(&Icosahedron::new(level).unwrap())
     }
 
-    /// Evenly spread (Fibonacci's lattice).
+    /// Fibonacci's lattice, which is evenly spread.
     fn lattice(n: usize) -> Vec<DVec3> {
         let turn = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
         (0..n)

@@ -1,6 +1,4 @@
-//! How far it is from anywhere to the nearest point: what is left unseen on the whole, where the largest hole is only its worst place.
-//!
-//! Left out: choosing the places.
+//! Angles from given directions to the nearest point of a scan.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,10 +7,10 @@ use super::hole::angle;
 use super::nearby::Nearby;
 use super::{DensityError, check};
 
-/// The angle from each place to the nearest of some directions, radians; infinite where there is none.
+/// The angle from each place to the nearest direction in radians; infinite without directions.
 ///
 /// # Errors
-/// [`DensityError::Direction`] for what is none, of the directions first.
+/// [`DensityError::Direction`] for an invalid direction or place, of the directions first.
 pub fn gaps(directions: &[DVec3], places: &[DVec3]) -> Result<Vec<f64>, DensityError> {
     check(directions)?;
     check(places)?;
@@ -24,7 +22,8 @@ pub fn gaps(directions: &[DVec3], places: &[DVec3]) -> Result<Vec<f64>, DensityE
     Ok(places.par_iter().map(gap).collect())
 }
 
-/// The least of some numbers that `share` (0..=1) of them do not exceed; `None` of no numbers.
+/// The smallest number that a `share` (0..=1) of the numbers does not exceed; `None` without
+/// numbers.
 #[must_use]
 pub fn quantile(numbers: &[f64], share: f64) -> Option<f64> {
     let mut sorted = numbers.to_vec();

@@ -1,9 +1,11 @@
-//! The largest hole: the biggest circle on the sphere with no point in it.
+//! The largest hole: the largest circle on the sphere without points.
 //!
-//! How far the nearest point is changes by no more than one moves, so in a cell it is at most what it is in the middle and the cell's radius more. Cells
-//! are cut, the most promising first, until none promises more than what was found and the tolerance. Where only a few points can matter to a
-//! cell, it is done with exactly: a hole that cannot grow touches three points, or two or one where it is more than a hemisphere, and each of those choices is tried.
-//! What comes out is a hole for sure, and its radius is within the tolerance of the largest. Left out: smaller holes ([`super::holes`]).
+//! The distance to the nearest point changes by at most the distance moved. So in a cell it is at
+//! most its value at the centre plus the radius of the cell. Cells are cut, the most promising
+//! first, until none promises more than the best hole and the tolerance. If only a few points
+//! matter to a cell, it is solved exactly: a locally largest hole touches three points (two or one
+//! if it exceeds a hemisphere), and all such choices are tried. The result is a hole, and its
+//! radius is within the tolerance of the largest. [`super::holes`] finds smaller ones.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -15,32 +17,32 @@ use super::cells::{CubeCell, MOST_CUTS};
 use super::nearby::{Nearby, SAME};
 use super::{DensityError, check};
 
-/// A circle with no point in it.
+/// A circle without points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hole {
-    /// Its middle, length 1.
+    /// Unit vector to the centre.
     pub centre: DVec3,
-    /// Its radius, radians: so far is the nearest point.
+    /// Radius in radians: the angle to the nearest point.
     pub radius_rad: f64,
 }
 
 /// The largest hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LargestHole {
-    /// A hole.
+    /// The hole.
     pub hole: Hole,
-    /// No hole is larger, radians.
+    /// Upper bound of the radius of any hole, radians.
     pub bound_rad: f64,
 }
 
-/// The tolerance that is always met, radians: a five-thousandth of what the finest encoder step tells apart.
+/// The smallest tolerance, radians: a five-thousandth of the finest encoder step.
 pub const TOLERANCE_RAD: f64 = 1e-6;
 
-/// The largest hole that some directions leave, to within `tolerance_rad` ([`TOLERANCE_RAD`] and up; less is taken for that). `None` without a direction: then
-/// there is nothing but hole.
+/// The largest hole between directions, to within `tolerance_rad` (at least [`TOLERANCE_RAD`]).
+/// `None` without directions.
 ///
 /// # Errors
-/// [`DensityError::Direction`] for what is none.
+/// [`DensityError::Direction`] for an invalid direction.
 pub fn largest_hole(
     directions: &[DVec3],
     tolerance_rad: f64,
@@ -48,11 +50,13 @@ pub fn largest_hole(
     largest_hole_within(directions, tolerance_rad, &EVERYWHERE)
 }
 
-/// The largest hole with its middle in a region, or within a quarter of the tolerance of it. `depth_rad` tells how deep in the region a direction is, radians,
-/// negative outside; from one direction to another it changes by no more than the angle between them. `None` where there is no direction, or no region.
+/// The largest hole with its centre in a region, or within a quarter of the tolerance of it.
+/// `depth_rad` gives the depth of a direction inside the region in radians, negative outside.
+/// Between two directions it changes by at most the angle between them. `None` without directions
+/// or without a region.
 ///
 /// # Errors
-/// [`DensityError::Direction`] for what is none.
+/// [`DensityError::Direction`] for an invalid direction.
 pub fn largest_hole_within(
     directions: &[DVec3],
     tolerance_rad: f64,
@@ -63,56 +67,57 @@ pub fn largest_hole_within(
     Ok(HoleSearch::new(&nearby, tolerance_rad.max(TOLERANCE_RAD), depth_rad).largest())
 }
 
-/// How deep in a region a direction is, radians.
+/// Depth of a direction inside a region, radians.
 pub type RegionDepth<'a> = &'a dyn Fn(DVec3) -> f64;
 
 /// The whole sphere.
 pub(super) const EVERYWHERE: fn(DVec3) -> f64 = |_| f64::INFINITY;
 
-/// More points than this that can matter to a cell, and the cell is cut.
+/// A cell is cut if more points than this matter to it.
 const FEW: usize = 10;
-/// More than this, and they are not looked at one by one.
+/// More points than this are not examined one by one.
 const MANY: usize = 1_000;
 
 /// A search for holes.
 pub(super) struct HoleSearch<'a> {
     nearby: &'a Nearby,
-    /// Cells of a quarter of it are small enough.
+    /// Cells smaller than a quarter of it are not cut.
     pub tolerance_rad: f64,
     depth_rad: RegionDepth<'a>,
     open: BinaryHeap<OpenCell>,
     pub best: Option<Hole>,
 }
 
-/// A cell that is to be looked into.
+/// A cell to be searched.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OpenCell {
-    /// No hole about any of its points is larger, radians.
+    /// Upper bound of the radius of holes centred in the cell, radians.
     pub bound_rad: f64,
     cell: CubeCell,
     pub middle: DVec3,
-    /// Its ball, through the sphere.
+    /// Radius of its ball, measured as a chord.
     ball: f64,
-    /// How far the nearest point is from the middle, radians.
+    /// Angle from the centre to the nearest point, radians.
     pub free_rad: f64,
-    /// Whether it is in the region, and a little more.
+    /// Whether it lies inside the region with a margin.
     inside: bool,
 }
 
 impl OpenCell {
-    /// How far its points are from its middle at most, radians.
+    /// Largest angle of its directions from its centre, radians.
     pub fn reach_rad(&self) -> f64 {
         angle(self.ball)
     }
 }
 
-/// What became of a cell.
+/// Result of searching a cell.
 pub(super) enum CellOutcome {
-    /// It was cut.
+    /// The cell was cut.
     Cut,
-    /// All holes that cannot grow about its points; some of others, too ([`HoleSearch::at`] tells how large they are).
+    /// Centres of all locally largest holes in the cell, and of some others; [`HoleSearch::at`]
+    /// gives their radius.
     Holes(Vec<DVec3>),
-    /// Too small to be cut: the hole about its middle stands for all about its points.
+    /// Too small to be cut: the hole around its centre represents all others.
     Tiny,
 }
 
@@ -157,7 +162,7 @@ impl<'a> HoleSearch<'a> {
         })
     }
 
-    /// The cell that promises most.
+    /// The cell with the largest bound.
     pub fn next(&mut self) -> Option<OpenCell> {
         self.open.pop()
     }
@@ -183,7 +188,7 @@ impl<'a> HoleSearch<'a> {
         }
     }
 
-    /// The hole about a direction; `None` without points.
+    /// The hole around a direction; `None` without points.
     fn about(&self, centre: DVec3) -> Option<Hole> {
         let nearest = self.nearby.nearest(centre);
         nearest.is_finite().then(|| Hole {
@@ -201,14 +206,14 @@ impl<'a> HoleSearch<'a> {
         }
     }
 
-    /// The hole about a direction, remembered if it is the largest so far.
+    /// The hole around a direction; keeps it if it is the largest so far.
     pub fn at(&mut self, centre: DVec3) -> Option<Hole> {
         let hole = self.about(centre)?;
         self.keep(hole);
         Some(hole)
     }
 
-    /// Does with a cell what is to be done: of its holes, those of at least `least_rad`.
+    /// Searches a cell for holes of at least `least_rad`.
     pub fn look_into(&mut self, next: &OpenCell, least_rad: f64) -> CellOutcome {
         let reach = next.free_rad + 2.0 * angle(next.ball);
         let points = self.nearby.within(next.middle, chord(reach) + SAME, MANY);
@@ -226,8 +231,9 @@ impl<'a> HoleSearch<'a> {
         self.cut(next)
     }
 
-    /// [`grow`] where there are too many points to look at: away from the nearest. So it is about a pole of a circle full of points, where cells would have
-    /// to be cut very fine before few of its points matter.
+    /// [`grow`] for more points than can be examined, in the direction away from the nearest. This
+    /// occurs around the pole of a circle full of points, where cells would have to be cut very
+    /// finely.
     fn all_grow(&self, within: &OpenCell, distance: f64) -> bool {
         let nearest = self.nearby.nearest_point(within.middle);
         let way = nearest.map(|p| -p.reject_from_normalized(within.middle));
@@ -237,7 +243,7 @@ impl<'a> HoleSearch<'a> {
         })
     }
 
-    /// The same where holes at the edge of the region count as they are, though they could grow out of it.
+    /// The same, but holes at the edge of the region count although they could grow out of it.
     pub fn look_to_the_edge(&mut self, next: &OpenCell) -> CellOutcome {
         if next.inside {
             self.look_into(next, next.free_rad)
@@ -257,9 +263,10 @@ impl<'a> HoleSearch<'a> {
     }
 }
 
-/// Whether all holes about points of a cell grow if they are moved one way, and so none of them is as large as it can be: all points that matter lie behind
-/// the plane across that way, by more than the cell's ball. Moved along u from x in the cell, the distance to p grows where u p < (u x)(x p); u is
-/// at right angles to the middle, so that the right side is no more than the ball's radius.
+/// Whether all holes centred in a cell grow if moved in one direction, so that none of them is
+/// locally largest. This holds if all relevant points lie behind the plane across that direction by
+/// more than the cell's ball. Moved along u from x in the cell, the distance to p grows where u p <
+/// (u x)(x p). u is orthogonal to the centre, so the right side is at most the ball's radius.
 fn grow(points: &[DVec3], within: &OpenCell) -> bool {
     let sum: DVec3 = points
         .iter()
@@ -275,7 +282,7 @@ fn grow(points: &[DVec3], within: &OpenCell) -> bool {
     nearest < -within.ball - 1e-12
 }
 
-/// The points without those that are as good as equal to another; `None` where more than a few are left.
+/// The points without near duplicates; `None` if more than a few remain.
 fn distinct(points: &[DVec3]) -> Option<Vec<DVec3>> {
     let mut found: Vec<DVec3> = Vec::new();
     for point in points {
@@ -290,7 +297,7 @@ fn distinct(points: &[DVec3]) -> Option<Vec<DVec3>> {
     Some(found)
 }
 
-/// Whether a hole of some points touches them all around, and so cannot grow.
+/// Whether the points that a hole touches surround it, so that it cannot grow.
 fn is_held(centre: DVec3, points: &[DVec3]) -> bool {
     let off = || points.iter().map(|p| p.distance(centre));
     let nearest = off().fold(f64::INFINITY, f64::min);
@@ -310,11 +317,12 @@ fn is_held(centre: DVec3, points: &[DVec3]) -> bool {
     let around = TAU - (last - first);
     let between = ways.iter().zip(ways.iter().skip(1)).map(|(a, b)| b - a);
     let widest = between.fold(around, f64::max);
-    // The far side of one point has nowhere to grow to, either.
+    // The far side of a single point cannot grow either.
     widest <= PI + 1e-6 || nearest > 2.0 - 1e-9
 }
 
-/// The middles of holes about points of a cell that touch three of these points; where they may be larger than a hemisphere, two or one.
+/// Centres in a cell of holes that touch three of the points; or two or one, if the hole may exceed
+/// a hemisphere.
 fn centres(points: &[DVec3], within: &OpenCell, least_rad: f64, large: bool) -> Vec<DVec3> {
     let mut centres = Vec::new();
     let reach = (within.ball + 1e-6) * (within.ball + 1e-6);
@@ -341,7 +349,7 @@ fn centres(points: &[DVec3], within: &OpenCell, least_rad: f64, large: bool) -> 
             }
         }
     }
-    // No hole is larger than to the nearest of these points: sorted out cheaply before the search asks all.
+    // A cheap filter by these points alone, before the search among all.
     centres.retain(|centre| {
         let nearest = points.iter().map(|p| p.distance_squared(*centre));
         angle(nearest.fold(4.0, f64::min).sqrt()) > least_rad - 1e-7 && is_held(*centre, points)
@@ -349,12 +357,12 @@ fn centres(points: &[DVec3], within: &OpenCell, least_rad: f64, large: bool) -> 
     centres
 }
 
-/// The angle between two directions so far apart, radians: to the last digits near 0, to 3e-8 near a half turn.
+/// The angle of a chord in radians, accurate near 0, and to 3e-8 near pi.
 pub(super) fn angle(chord: f64) -> f64 {
     2.0 * (0.5 * chord).min(1.0).asin()
 }
 
-/// How far apart two directions at an angle are.
+/// The chord of an angle.
 fn chord(angle_rad: f64) -> f64 {
     2.0 * (0.5 * angle_rad.min(std::f64::consts::PI)).sin()
 }

@@ -1,23 +1,26 @@
-//! Bins on the sphere: the faces of an icosahedron, each cut into four as often as asked, corners pushed out onto the sphere every time.
+//! Bins on the sphere: the faces of an icosahedron, each cut into four repeatedly, with the corners
+//! moved onto the sphere each time.
 //!
-//! The icosahedron has its corners at (0, +-1, +-phi) and what follows by turning the axes round; each cut halves the edges of a face. Faces
-//! 4f..4f+3 of a level are cut from face f of the level above. Left out: which bin a direction falls into ([`super::Locator`]).
+//! The icosahedron has its corners at (0, +-1, +-phi) and the cyclic permutations. A cut halves the
+//! edges of a face. Faces 4f..4f+3 of a level are parts of face f of the level above.
+//! [`super::Locator`] finds the bin of a direction.
 
 use glam::DVec3;
 
 use super::DensityError;
 
-/// The most cuts: 20 x 4^8 = 1,310,720 bins.
+/// The largest number of cuts: 20 x 4^8 = 1,310,720 bins.
 pub const MOST_LEVEL: u32 = 8;
 
-/// A face: a triangle of great circles, and what encloses it.
+/// A triangle of great circles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IcosahedronFace {
-    /// Corners, length 1, anticlockwise seen from outside.
+    /// Corners as unit vectors, anticlockwise seen from outside.
     pub corners: [DVec3; 3],
-    /// The middle of the corners, on the sphere.
+    /// Mean of the corners, on the sphere.
     pub centre: DVec3,
-    /// How far off the centre its farthest point is, straight through the sphere: a corner, as a cap below a hemisphere is convex.
+    /// Distance of its farthest point from the centre as a chord; a corner, since a cap below a
+    /// hemisphere is convex.
     pub chord: f64,
 }
 
@@ -39,7 +42,7 @@ impl IcosahedronFace {
         }
     }
 
-    /// The four that it is cut into: at its three corners, and in the middle.
+    /// The four parts of the face: at its three corners, and in the middle.
     #[must_use]
     pub fn cut(&self) -> [Self; 4] {
         let [a, b, c] = self.corners;
@@ -77,7 +80,7 @@ impl Icosahedron {
         Ok(Self { levels })
     }
 
-    /// How often it is cut.
+    /// Number of cuts.
     #[must_use]
     pub fn level(&self) -> u32 {
         self.levels.len().saturating_sub(1) as u32
@@ -89,7 +92,7 @@ impl Icosahedron {
         self.levels.last().map_or(&[], Vec::as_slice)
     }
 
-    /// The faces of all levels, the 20 first.
+    /// The faces of all levels, beginning with the 20.
     #[must_use]
     pub fn levels(&self) -> &[Vec<IcosahedronFace>] {
         &self.levels

@@ -1,8 +1,9 @@
-//! Which bin a direction falls into: the one with the nearest centre.
+//! Location of directions in bins: the bin with the nearest centre.
 //!
-//! The directions are divided into cells ([`super::cells`]). For each the bins that can be nearest to any direction in it are listed
-//! beforehand: a cell lies in a ball of radius r about its middle, so the nearest centre lies at most 2 r farther from the middle than the one nearest
-//! to that. A direction is then compared with the few of its cell. Left out: counting.
+//! Directions are divided into cells ([`super::cells`]). For each cell, the bins that can be
+//! nearest to any direction in it are listed beforehand. A cell lies in a ball of radius r around
+//! its centre. So the nearest bin centre is at most 2 r farther from that than the one nearest to
+//! it. A direction is then compared with the few candidates of its cell.
 
 use glam::DVec3;
 
@@ -10,26 +11,26 @@ use super::DensityError;
 use super::cells::CubeCell;
 use super::icosahedron::{Icosahedron, IcosahedronFace};
 
-/// Finds bins.
+/// Finds the bin of a direction.
 #[derive(Clone, Debug)]
 pub struct Locator {
-    /// How often the cells are cut.
+    /// Number of cuts of the cells.
     cuts: u8,
-    /// Where the candidates of each cell begin, and the end.
+    /// Start of each cell's candidates, and the end.
     starts: Vec<u32>,
     /// Bins, ascending within a cell.
     candidates: Vec<u32>,
     centres: Vec<DVec3>,
 }
 
-/// More than rounding moves a cell's corner or a distance.
+/// More than the rounding of a cell's corner or of a distance.
 const MARGIN: f64 = 1e-12;
-/// Cells are finer than bins by so many cuts, and cut no more often than `MOST_CUTS`.
+/// Additional cuts of the cells compared with the bins, up to `MOST_CUTS`.
 const FINER: u8 = 2;
 const MOST_CUTS: u8 = 9;
 
 impl Locator {
-    /// For the bins of an icosahedron.
+    /// A locator for the bins of an icosahedron.
     #[must_use]
     pub fn new(icosahedron: &Icosahedron) -> Self {
         let cuts = (icosahedron.level() as u8)
@@ -51,7 +52,7 @@ impl Locator {
         locator
     }
 
-    /// The bin whose centre is nearest to a direction: the one with the largest dot product in f64, of equal ones the first.
+    /// The bin with the nearest centre: the largest dot product in f64, the first of equal ones.
     #[inline]
     #[must_use]
     pub fn bin(&self, direction: DVec3) -> u32 {
@@ -69,7 +70,7 @@ impl Locator {
         nearest.1
     }
 
-    /// Bins there are.
+    /// Number of bins.
     #[must_use]
     pub fn bins(&self) -> usize {
         self.centres.len()
@@ -78,17 +79,18 @@ impl Locator {
     /// The bin of each direction.
     ///
     /// # Errors
-    /// [`DensityError::Direction`] for the first that is no direction.
+    /// [`DensityError::Direction`] for the first invalid direction.
     pub fn bins_of(&self, directions: &[DVec3]) -> Result<Vec<u32>, DensityError> {
         super::check(directions)?;
         Ok(directions.iter().map(|d| self.bin(*d)).collect())
     }
 }
 
-/// The bins whose centres can be nearest to something at most `radius` from `middle`, ascending.
+/// The bins whose centres can be nearest to a point within `radius` of `middle`, in ascending
+/// order.
 fn candidates(icosahedron: &Icosahedron, middle: DVec3, radius: f64, found: &mut Vec<u32>) {
     let centre = |face: &IcosahedronFace| face.centre.distance(middle);
-    // Down to some bin nearby: no farther than this need be looked.
+    // Descend to a nearby bin, which limits the search.
     let mut best = usize::MAX;
     for faces in icosahedron.levels() {
         let below = if best == usize::MAX {
@@ -102,7 +104,7 @@ fn candidates(icosahedron: &Icosahedron, middle: DVec3, radius: f64, found: &mut
             .map_or(0, |(_, i)| i);
     }
     let first = icosahedron.bins().get(best).map_or(2.0, centre);
-    // Faces that may hold a centre so near, level by level.
+    // Faces that may contain a centre that near, level by level.
     let within = first + 2.0 * radius + MARGIN;
     let mut open: Vec<usize> = (0..20).collect();
     for (level, faces) in icosahedron.levels().iter().enumerate() {
@@ -111,7 +113,7 @@ fn candidates(icosahedron: &Icosahedron, middle: DVec3, radius: f64, found: &mut
         }
         open.retain(|&i| faces.get(i).is_some_and(|f| centre(f) - f.chord <= within));
     }
-    // Some bin is no farther than the one that was found; the nearest may be nearer.
+    // The nearest bin is no farther than the one found.
     let bins = icosahedron.bins();
     let distances = || open.iter().filter_map(|&i| Some((i, centre(bins.get(i)?))));
     let nearest = distances().map(|(_, d)| d).fold(first, f64::min);
@@ -138,7 +140,7 @@ mod tests {
     }
 
     fn direction() -> impl Strategy<Value = DVec3> {
-        // Uniform on the sphere; and near the axes, where the cube's cells meet.
+        // Uniform on the sphere, and near the axes, where the cells of the cube meet.
         let uniform = (-1.0..1.0_f64, 0.0..std::f64::consts::TAU).prop_map(|(z, a)| {
             let r = (1.0 - z * z).sqrt();
             DVec3::new(r * a.cos(), r * a.sin(), z)
@@ -184,7 +186,8 @@ mod tests {
 
     #[test]
     fn of_equally_near_bins_it_is_the_first() {
-        // A corner of the icosahedron is equally far from five bins, the middle of an edge from two.
+        // A corner of the icosahedron is equally far from five bins, the middle of an edge from
+        // two.
         let icosahedron = Icosahedron::new(0).unwrap();
         let locator = Locator::new(&icosahedron);
         let z = DVec3::Z;

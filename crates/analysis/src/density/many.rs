@@ -1,6 +1,8 @@
-//! Many points in few places, and on one circle: what they leave is what fewer points leave, and does not take the square of the time.
+//! Many points in few places, and on one circle: what they leave is what fewer points leave, and
+//! does not take the square of the time.
 //!
-//! Were every point asked of every cell about a hole, each of these would take minutes. Left out: times, which a busy machine decides.
+//! Were every point asked of every cell about a hole, each of these would take minutes. Left out:
+//! times, which a busy machine decides.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,9 +1,10 @@
-//! How densely a scan covers the directions about it: points a bin, the largest hole, and blind spots.
+//! Density of a scan over the sphere: points per bin, the largest hole, and blind spots.
 //!
-//! All of it is of directions, length 1, in the frame of the base: x right, y along the tilt axis, z up. The 2018 paper counts points in the 5120 faces of
-//! an icosahedron cut four times. A direction belongs here to the bin with the nearest centre, not to the face that contains it: so the paper's figures come out
-//! closest (sd 56.23 for its 56.24, where containment gives 56.36), and what is nearest is defined wherever faces meet. Where two centres are equally near, it is
-//! the bin with the lower number. Left out: where directions come from, and how pairs of points are spread ([`crate`]'s K function).
+//! All functions take unit vectors in the frame of the base: x right, y along the tilt axis, z up.
+//! The 2018 paper counts points in the 5120 faces of an icosahedron cut four times. Here a
+//! direction belongs to the bin with the nearest centre, not to the face that contains it. That
+//! reproduces the paper's figures best (sd 56.23 for its 56.24, where containment gives 56.36), and
+//! is defined where faces meet. Of two equally near centres, the bin with the lower number counts.
 
 mod blind;
 mod cells;
@@ -29,39 +30,39 @@ pub use locator::Locator;
 /// Square degrees of the whole sphere.
 pub const SPHERE_DEG2: f64 = 129_600.0 / std::f64::consts::PI;
 
-/// What cannot be analysed.
+/// Errors of the density analysis.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum DensityError {
-    /// More cuts than memory is for.
+    /// Too many cuts.
     #[error("density: expected a level of at most {MOST_LEVEL}, got {got}")]
     Level {
-        /// What was asked for.
+        /// Requested number of cuts.
         got: u32,
     },
     /// No direction: not finite, or not of length 1.
     #[error("density: point {index}: expected a direction of length 1, got ({}, {}, {})", got.x, got.y, got.z)]
     Direction {
-        /// Which, from 0.
+        /// Its index.
         index: usize,
-        /// What is there.
+        /// The value.
         got: DVec3,
     },
-    /// Holes that are to be of no size.
+    /// A least radius of holes that is not above 0.
     #[error("density: expected a least radius above 0 rad, got {got}")]
     Least {
-        /// What was asked for.
+        /// Requested radius.
         got: f64,
     },
 }
 
-/// How far off 1 a length may be.
+/// Tolerance of the length of a direction.
 const LENGTH: f64 = 1e-6;
 
 fn is_direction(direction: DVec3) -> bool {
     (direction.length_squared() - 1.0).abs() <= 2.0 * LENGTH
 }
 
-/// That all are directions.
+/// Checks that all are directions.
 fn check(directions: &[DVec3]) -> Result<(), DensityError> {
     match directions.iter().position(|d| !is_direction(*d)) {
         None => Ok(()),

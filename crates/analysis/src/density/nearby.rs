@@ -1,19 +1,19 @@
-//! Points in cells, so that those near a direction are found without asking all.
+//! Nearest-neighbour search among directions, by cells.
 //!
-//! Distances are straight through the sphere, which needs no trigonometry and keeps the triangle inequality. Left out: everything that is not about
-//! being near.
+//! Distances are chords, which need no trigonometry and satisfy the triangle inequality.
 
 use glam::DVec3;
 
 use super::cells::CubeCell;
 
-/// Points, sorted into cells.
+/// Points sorted into cells.
 #[derive(Clone, Debug)]
 pub(super) struct Nearby {
     points: Vec<DVec3>,
-    /// Where the points of each cell of the last level begin, and the end.
+    /// Start of the points of each cell of the last level, and the end.
     starts: Vec<u32>,
-    /// Per level and cell: its middle, and how far off it its points are; negative where it has none.
+    /// Per level and cell: its centre, and the largest distance of its points; negative without
+    /// points.
     levels: Vec<Vec<CellBall>>,
 }
 
@@ -23,12 +23,13 @@ struct CellBall {
     radius: f64,
 }
 
-/// Points a cell, about.
+/// Approximate number of points per cell.
 const IN_A_CELL: usize = 6;
-/// Points closer than this, through the sphere, are one.
+/// Points closer than this chord are treated as one.
 pub(super) const SAME: f64 = 1e-9;
 
-/// The cube that a point is in, of a lattice with a point in the middle of each: two in the same are closer than [`SAME`].
+/// The cube of a lattice that contains a point. Two points in the same cube are closer than
+/// [`SAME`].
 fn place(point: DVec3) -> [i64; 3] {
     (point * (2.0 / SAME)).round().to_array().map(|c| c as i64)
 }
@@ -75,8 +76,8 @@ impl Nearby {
         nearby
     }
 
-    /// Of points that are as good as equal, one is kept: how far off the nearest is does not change by more than [`SAME`]. Only cells with many are looked
-    /// through, as those with few cost nothing.
+    /// Keeps one of nearly equal points, which changes the distance to the nearest by at most
+    /// [`SAME`]. Only cells with many points are examined.
     fn leave_out_the_same(&mut self) {
         let mut kept = Vec::with_capacity(self.points.len());
         let mut starts = Vec::with_capacity(self.starts.len());
@@ -98,7 +99,8 @@ impl Nearby {
         self.starts = starts;
     }
 
-    /// Whether all points within a distance of a direction lie behind the plane `way . p = at`. Cells that do, or are farther off, are not looked into.
+    /// Whether all points within a distance of a direction lie behind the plane `way . p = at`.
+    /// Cells behind it or farther off are skipped.
     pub fn all_behind(&self, of: DVec3, distance: f64, way: DVec3, at: f64) -> bool {
         let mut open: Vec<(usize, usize)> = (0..6).map(|cell| (0, cell)).collect();
         while let Some((level, cell)) = open.pop() {
@@ -158,7 +160,7 @@ impl Nearby {
             .unwrap_or_default()
     }
 
-    /// How far off the nearest point is, through the sphere; infinite where there is none.
+    /// The chord to the nearest point; infinite without points.
     pub fn nearest(&self, to: DVec3) -> f64 {
         let mut nearest = f64::INFINITY;
         self.visit(to, &mut |distance, _| {
@@ -182,7 +184,7 @@ impl Nearby {
         nearest.1
     }
 
-    /// The points within a distance; `None` where they are more than `most`.
+    /// The points within a distance; `None` if there are more than `most`.
     pub fn within(&self, of: DVec3, distance: f64, most: usize) -> Option<Vec<DVec3>> {
         let mut found: Vec<DVec3> = Vec::new();
         self.visit(of, &mut |_, points| {
@@ -194,7 +196,8 @@ impl Nearby {
         (found.len() <= most).then_some(found)
     }
 
-    /// Visits cells, near ones first, with the distance of their nearest point, as long as they may hold points within what was last returned.
+    /// Visits cells, near ones first, with the distance of their nearest point, while they may
+    /// contain points within the distance that `take` returned last.
     fn visit(&self, to: DVec3, take: &mut dyn FnMut(f64, &[DVec3]) -> f64) {
         let mut limit = f64::INFINITY;
         self.descend(to, 0, 0..6, &mut limit, take);

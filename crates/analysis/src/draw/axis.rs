@@ -1,4 +1,4 @@
-//! Values to places on an axis, and where an axis has its ticks.
+//! Plot axes: positions of values, and ticks.
 
 use super::number;
 
@@ -11,7 +11,7 @@ pub enum Scale {
     Log,
 }
 
-/// An axis: values from `low` to `high` on pixels from `from` to `to`.
+/// An axis that maps values from `low` to `high` to pixels from `from` to `to`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlotAxis {
     scale: Scale,
@@ -19,11 +19,11 @@ pub(crate) struct PlotAxis {
     high: f64,
     from: f64,
     to: f64,
-    /// Where nought stands on a logarithmic axis that has it.
-    nought: Option<f64>,
+    /// Position of zero on a logarithmic axis that shows it.
+    zero: Option<f64>,
 }
 
-/// A line of the grid.
+/// A grid line.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AxisTick {
     pub at: f64,
@@ -31,20 +31,20 @@ pub(crate) struct AxisTick {
     pub label: String,
 }
 
-/// Share of the axis that nought takes.
-const NOUGHT: f64 = 0.08;
-/// The most numbers an axis has room for.
+/// Share of a logarithmic axis that zero takes.
+const ZERO_SHARE: f64 = 0.08;
+/// The largest number of labels on an axis.
 const MOST_LABELS: i32 = 7;
 
 impl PlotAxis {
-    /// An axis that shows `values` from pixel `from` to pixel `to`, with some air at its ends.
+    /// An axis that shows `values` from pixel `from` to pixel `to`, with margins.
     pub(crate) fn new(scale: Scale, values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
         let mut low = f64::INFINITY;
         let mut high = f64::NEG_INFINITY;
-        let mut has_nought = false;
+        let mut has_zero = false;
         for value in values.filter(|v| v.is_finite()) {
             if scale == Scale::Log && value <= 0.0 {
-                has_nought = true;
+                has_zero = true;
             } else {
                 low = low.min(value);
                 high = high.max(value);
@@ -53,9 +53,9 @@ impl PlotAxis {
         if low > high {
             (low, high) = (1.0, 1.0);
         }
-        let nought = has_nought.then_some(from + (to - from) * NOUGHT / 2.0);
-        let from = if has_nought {
-            from + (to - from) * NOUGHT
+        let zero = has_zero.then_some(from + (to - from) * ZERO_SHARE / 2.0);
+        let from = if has_zero {
+            from + (to - from) * ZERO_SHARE
         } else {
             from
         };
@@ -76,28 +76,28 @@ impl PlotAxis {
             high,
             from,
             to,
-            nought,
+            zero,
         }
     }
 
-    /// Where a value stands; `None` where it has no place.
+    /// Position of a value; `None` if it has none.
     pub(crate) fn place(&self, value: f64) -> Option<f64> {
         let part = match self.scale {
             _ if !value.is_finite() => return None,
-            Scale::Log if value <= 0.0 => return self.nought,
+            Scale::Log if value <= 0.0 => return self.zero,
             Scale::Log => (value / self.low).ln() / (self.high / self.low).ln(),
             Scale::Linear => (value - self.low) / (self.high - self.low),
         };
         Some(self.from + (self.to - self.from) * part)
     }
 
-    /// The grid's lines and numbers.
+    /// Grid lines and labels.
     pub(crate) fn ticks(&self) -> Vec<AxisTick> {
         let mut ticks = match self.scale {
             Scale::Log => self.powers(),
             Scale::Linear => self.steps(),
         };
-        if let Some(at) = self.nought {
+        if let Some(at) = self.zero {
             ticks.push(AxisTick {
                 at,
                 label: "0".to_owned(),

@@ -1,4 +1,4 @@
-//! Names beside marks, where they cover neither marks nor each other.
+//! Placement of labels next to marks, without overlaps.
 
 /// A rectangle in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,7 @@ impl LabelBox {
             && self.bottom <= other.bottom
     }
 
-    /// A level or upright line, whichever way it goes, a pixel to each side.
+    /// The rectangle around a horizontal or vertical line, one pixel to each side.
     pub(crate) fn along(a: (f64, f64), b: (f64, f64)) -> Self {
         Self {
             left: a.0.min(b.0) - 1.0,
@@ -34,7 +34,7 @@ impl LabelBox {
         }
     }
 
-    /// The square about a mark.
+    /// The square around a mark.
     pub(crate) fn about(x: f64, y: f64, half: f64) -> Self {
         Self {
             left: x - half,
@@ -45,7 +45,7 @@ impl LabelBox {
     }
 }
 
-/// Width of a text of 11 pixels, about.
+/// Approximate width of a text of 11 pixels.
 pub(crate) fn width(text: &str) -> f64 {
     6.1 * text.chars().count() as f64
 }
@@ -53,7 +53,8 @@ pub(crate) fn width(text: &str) -> f64 {
 const HEIGHT: f64 = 12.0;
 const AWAY: f64 = 8.0;
 
-/// A name's left end and base line beside the mark at (`x`, `y`): the first place inside `room` that is free of `taken`.
+/// Position of the label for the mark at (`x`, `y`): the first place inside `room` that is free of
+/// `taken`.
 pub(crate) fn place(
     text: &str,
     (x, y): (f64, f64),

@@ -1,17 +1,17 @@
-//! The shapes that choices are drawn with: a group has its own, so that colour is not all that tells them apart.
+//! Marks of choices. Each group has its own shape, so that colour is not the only difference.
 
 const SHAPES: usize = 5;
 const COLOURS: usize = 6;
 
-/// Half of a mark's size.
+/// Half the size of a mark.
 pub(crate) const HALF: f64 = 4.5;
 
-/// The class of a group's colour.
+/// CSS class of a group's colour.
 pub(crate) fn colour(group: usize) -> String {
     format!("tv-s{}", group % COLOURS)
 }
 
-/// A group's mark about a place; filled where the choice is on the front.
+/// The mark of a group at a position; filled for choices on the front.
 pub(crate) fn mark(group: usize, x: f64, y: f64, filled: bool) -> String {
     let open = if filled { "" } else { " tv-open" };
     let class = format!("tv-mark {}{open}", colour(group));

@@ -1,6 +1,6 @@
-//! Numbers as people read them: three digits that count.
+//! Numbers with three significant digits.
 
-/// Three significant digits: plain between 0.001 and 100,000, else as a power of ten.
+/// Three significant digits: plain between 0.001 and 100,000, otherwise as a power of ten.
 #[must_use]
 pub fn short(x: f64) -> String {
     if !x.is_finite() {
@@ -29,7 +29,7 @@ pub fn short(x: f64) -> String {
     }
 }
 
-/// A power of ten as an axis names it.
+/// A power of ten as an axis label.
 #[must_use]
 pub fn decade(power: i32) -> String {
     match power {

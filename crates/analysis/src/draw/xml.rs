@@ -1,6 +1,7 @@
 //! A check that XML is well-formed, for tests.
 
-/// Names of elements in their order, after a check that tags match, attributes are quoted and nothing is unescaped.
+/// Names of the elements in their order. Checks that tags match, attributes are quoted and text is
+/// escaped.
 pub(crate) fn elements(xml: &str) -> Vec<String> {
     let (mut open, mut names) = (Vec::new(), Vec::new());
     let mut rest = xml;

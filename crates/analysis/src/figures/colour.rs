@@ -1,8 +1,7 @@
-//! Viridis, dark for much: it grows evenly lighter, for people who see no red or green and in print without colour, too.
-//!
-//! Left out: other maps of colour.
+//! Viridis with dark for many points. Its lightness is monotonic, so it works for colour-blind
+//! readers and in grey print.
 
-/// Viridis at eighths (Smith and van der Walt 2015, CC0); straight lines between them are within 18 of 255 of it.
+/// Viridis at eighths (Smith and van der Walt 2015, CC0). Linear interpolation is within 18 of 255.
 const VIRIDIS: [[u8; 3]; 9] = [
     [68, 1, 84],
     [71, 45, 123],
@@ -15,7 +14,7 @@ const VIRIDIS: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-/// The colour of a share from 0 (little: light) to 1 (much: dark), as SVG has it.
+/// The SVG colour of a share from 0 (light) to 1 (dark).
 pub(super) fn colour(share: f64) -> String {
     let place = (1.0 - share.clamp(0.0, 1.0)) * 8.0;
     let below = (place.floor() as usize).min(7);
@@ -29,7 +28,7 @@ pub(super) fn colour(share: f64) -> String {
     text
 }
 
-/// Whole numbers from the least above nought to the greatest, in steps of colour that are equal factors.
+/// A logarithmic colour scale of whole numbers from the smallest above zero to the largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shades {
     pub low: u64,
@@ -37,10 +36,10 @@ pub(super) struct Shades {
 }
 
 impl Shades {
-    /// Steps of colour.
+    /// Number of colours.
     pub(super) const STEPS: usize = 40;
 
-    /// For these numbers; 1 to 1 where none is above nought.
+    /// The scale of these numbers; 1 to 1 if none is above zero.
     pub(super) fn new(numbers: impl Iterator<Item = u64>) -> Self {
         let (low, high) = numbers
             .filter(|n| *n > 0)
@@ -51,7 +50,7 @@ impl Shades {
         }
     }
 
-    /// Where a number is from `low` to `high`, 0 to 1.
+    /// Position of a number between `low` and `high`, 0 to 1.
     pub(super) fn share(&self, number: f64) -> f64 {
         if self.high == self.low {
             return 0.5;
@@ -60,17 +59,18 @@ impl Shades {
         ((number.max(low) / low).ln() / (self.high as f64 / low).ln()).clamp(0.0, 1.0)
     }
 
-    /// The step of colour of a number above nought.
+    /// Index of the colour of a number above zero.
     pub(super) fn step(&self, number: u64) -> usize {
         ((self.share(number as f64) * Self::STEPS as f64) as usize).min(Self::STEPS - 1)
     }
 
-    /// The colour of a step: that of its middle.
+    /// The colour at the middle of a step.
     pub(super) fn of_step(step: usize) -> String {
         colour((step as f64 + 0.5) / Self::STEPS as f64)
     }
 
-    /// Numbers to stand at the scale: its ends, and round ones that are not close to them or each other.
+    /// Labels of the scale: its ends, and round numbers that are not close to them or to each
+    /// other.
     pub(super) fn ticks(&self) -> Vec<u64> {
         let mut ticks = vec![self.low];
         if self.high > self.low {

@@ -1,18 +1,17 @@
-//! What comes of a comparison, in a few sentences at the top of the page.
-//!
-//! Left out: which scan is best: that depends on what it is for.
+//! A summary of the comparison in a few sentences. Which scan is best depends on its purpose, and
+//! is left to the reader.
 
 use super::{AnalyzedScan, AnalyzedScans};
 use crate::draw::escaped;
 use crate::draw::number::short;
 
-/// How far K is from that of points at random at its farthest, a share of the sphere; none without pairs.
+/// The largest deviation of K from randomness, as a share of the sphere; `None` without pairs.
 pub(super) fn farthest(scan: &AnalyzedScan) -> Option<f64> {
     let k = &scan.k;
     k.has_pairs().then(|| k.d_max.max(-k.d_min))
 }
 
-/// A sentence a scan, and which is the most even; empty without scans.
+/// A sentence per scan, and one on the most even scan; empty without scans.
 pub(super) fn conclusions(scans: &AnalyzedScans) -> String {
     let mut items = String::new();
     for scan in &scans.scans {
@@ -53,7 +52,7 @@ fn of_one(scan: &AnalyzedScan) -> String {
     }
 }
 
-/// Which of several is best at what.
+/// Which of several scans is best in each measure.
 fn of_all(scans: &[AnalyzedScan]) -> Option<String> {
     if scans.len() < 2 {
         return None;
@@ -83,7 +82,7 @@ fn of_all(scans: &[AnalyzedScan]) -> Option<String> {
     Some(sentence + ".")
 }
 
-/// The scan with the least of something that some have.
+/// The scan with the smallest known value of a measure.
 fn least(
     scans: &[AnalyzedScan],
     of: impl Fn(&AnalyzedScan) -> Option<f64>,

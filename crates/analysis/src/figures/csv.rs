@@ -1,6 +1,5 @@
-//! Every curve as a table that any program reads (RFC 4180): a line a value, its scan in the first column.
-//!
-//! Numbers have all their digits. Left out: other separators, and decimal commas.
+//! The curves as CSV (RFC 4180): one line per value, with the scan in the first column and numbers
+//! in full precision.
 
 use std::fmt::Write;
 
@@ -8,7 +7,8 @@ use super::AnalyzedScans;
 use super::curves::middles_deg;
 use super::histogram::class_width;
 
-/// K on a sphere of 10 m at the upper edges of bins, its difference from points at random, the same over the sphere's area, and the derivative at the bins' middles.
+/// K on a sphere of 10 m at the upper edges of bins, its difference from randomness, that
+/// difference divided by the area of the sphere, and the derivative at the centres of the bins.
 #[must_use]
 pub fn k(scans: &AnalyzedScans) -> String {
     let mut csv =
@@ -30,7 +30,7 @@ pub fn k(scans: &AnalyzedScans) -> String {
     csv
 }
 
-/// Points in each bin, and where its middle is.
+/// Points per bin, and the centre of the bin.
 #[must_use]
 pub fn density(scans: &AnalyzedScans) -> String {
     let mut csv = "pattern,bin,x,y,z,count\n".to_owned();
@@ -50,7 +50,7 @@ pub fn density(scans: &AnalyzedScans) -> String {
     csv
 }
 
-/// Bins by their points, in the classes of the figure.
+/// Bins by their number of points, in the classes of the figure.
 #[must_use]
 pub fn histogram(scans: &AnalyzedScans) -> String {
     let mut csv = "pattern,from,to,bins\n".to_owned();
@@ -63,7 +63,7 @@ pub fn histogram(scans: &AnalyzedScans) -> String {
     csv
 }
 
-/// A text as a field: in quotes where it must be.
+/// A CSV field, quoted if necessary.
 fn field(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

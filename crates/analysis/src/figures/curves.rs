@@ -1,6 +1,4 @@
-//! The K function beside that of points at random, and its first derivative: a curve a scan.
-//!
-//! Left out: K itself, in which no difference shows.
+//! The K function relative to randomness, and its first derivative: one curve per scan.
 
 use std::f64::consts::PI;
 
@@ -18,7 +16,7 @@ const PLOT: f64 = 330.0;
 /// A curve: angles in degrees and values.
 type Curve = Vec<(f64, f64)>;
 
-/// The figure: two plots over the angle, one under the other.
+/// The figure: two plots over the angle, one below the other.
 #[must_use]
 pub fn curves(scans: &AnalyzedScans) -> String {
     let area = 4.0 * PI * SPHERE_M * SPHERE_M;
@@ -51,7 +49,7 @@ pub fn curves(scans: &AnalyzedScans) -> String {
     )
 }
 
-/// The middles of bins by their upper edges, degrees.
+/// Centres of bins in degrees from their upper edges.
 pub(super) fn middles_deg(upper_rad: &[f64]) -> impl Iterator<Item = f64> {
     let before = std::iter::once(&0.0).chain(upper_rad);
     let both = upper_rad.iter().zip(before);

@@ -1,6 +1,4 @@
-//! Points a bin, on the sphere seen from three sides.
-//!
-//! Spheres are drawn as from far away: the hemisphere towards the reader, each bin in the colour of its number of points. Left out: turning them.
+//! Points per bin on the sphere, seen from three sides in orthographic projection.
 
 use glam::DVec3;
 
@@ -9,17 +7,18 @@ use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, document, heading, scale_na
 use super::{AnalyzedScan, AnalyzedScans};
 use crate::density::IcosahedronFace;
 
-/// The finest level whose bins are drawn: finer ones are drawn together, as there are more of them than dots.
+/// The finest level of bins that is drawn; finer bins are merged, since there are more of them than
+/// pixels.
 const FINEST: usize = 5;
 const RADIUS: f64 = 104.0;
-/// Units of a path in a pixel.
+/// Path units per pixel.
 const FINE: f64 = 10.0;
 const ROW: f64 = 2.0 * RADIUS + 62.0;
 
-/// A side that a sphere is seen from.
+/// A viewing direction.
 struct Side {
     caption: &'static str,
-    /// Towards the reader.
+    /// Direction towards the viewer.
     to: DVec3,
     right: DVec3,
     right_name: &'static str,
@@ -54,7 +53,7 @@ const SIDES: [Side; 3] = [
     },
 ];
 
-/// The figure: a row a scan, a column a side.
+/// The figure: a row per scan, a column per side.
 #[must_use]
 pub fn density(scans: &AnalyzedScans) -> String {
     let levels = scans.bins.levels();
@@ -132,7 +131,8 @@ fn row(
     svg
 }
 
-/// One hemisphere: a path a colour. Triangles have an edge of their own colour, so that no seam shows.
+/// A hemisphere with one path per colour. Triangles have an outline of their own colour, which
+/// hides the gaps between them.
 fn sphere(
     side: &Side,
     faces: &[IcosahedronFace],
@@ -182,7 +182,7 @@ fn triangle(path: &mut String, side: &Side, face: &IcosahedronFace) {
         ((size * right).round() as i32, (-size * up).round() as i32)
     };
     let [(ax, ay), (bx, by), (cx, cy)] = face.corners.map(place);
-    // A sign parts numbers as a space does.
+    // A minus sign separates numbers as a space does.
     *path += &format!(
         "M{ax} {ay}l{} {} {} {}z",
         bx - ax,

@@ -1,6 +1,4 @@
-//! What all figures are framed by: the document, a heading for each scan, the curves' colours and dashes.
-//!
-//! Left out: what is drawn.
+//! The parts of all figures of scans: document, headings, colours and dashes of curves.
 
 use crate::draw::axis::PlotAxis;
 use crate::draw::labels::width;
@@ -8,19 +6,20 @@ use crate::draw::{STYLE, escaped};
 
 /// Width of a figure, pixels.
 pub(super) const WIDTH: f64 = 720.0;
-/// Free at the left and right.
+/// Left and right margin.
 pub(super) const MARGIN: f64 = 14.0;
 /// Height of the figure's title.
 pub(super) const TITLE: f64 = 32.0;
 
-/// Beside the style of all figures: paper is white in the dark, too, as colours on it are dark for much.
+/// Additions to the style of all figures. The background of spheres and planes stays white in dark
+/// colour schemes, since dark means many points.
 const MORE_STYLE: &str = "\
 .tv-paper{fill:#ffffff;stroke:#8b949e;stroke-width:1}.tv-empty{fill:#ffffff;stroke:#9aa1a9;stroke-width:4}\
 .tv-curve{stroke-width:1.9;stroke-linejoin:round;fill:none}.tv-zero{stroke:#57606a;stroke-width:1.2;fill:none}\
 .tv-fill{stroke:none;fill-opacity:.75}.tv-mean{stroke:#1f2328;stroke-width:2;fill:none}.tv-sd{stroke:#1f2328;stroke-width:1.5;stroke-dasharray:5 4;fill:none}\
 @media (prefers-color-scheme:dark){.tv-zero{stroke:#a9b1bb}.tv-mean,.tv-sd{stroke:#e6e8eb}}";
 
-/// A figure as a document: what it shows is told in words, too, for those who do not see it.
+/// A figure as a document, with a description for screen readers.
 pub(super) fn document(title: &str, about: &str, height: f64, body: &str) -> String {
     let (title, about) = (escaped(title), escaped(about));
     format!(
@@ -32,7 +31,7 @@ pub(super) fn document(title: &str, about: &str, height: f64, body: &str) -> Str
     )
 }
 
-/// Where a text stands.
+/// Alignment of a text.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum TextAnchor {
     Start,
@@ -53,10 +52,10 @@ pub(super) fn text(x: f64, y: f64, at: TextAnchor, class: &str, text: &str) -> S
     )
 }
 
-/// The most of a name that stands in a figure, characters: the rest is in the tables.
+/// Longest name in a figure, characters; the tables have the rest.
 const NAME: usize = 48;
 
-/// A name that may be a path: its end where it is long.
+/// The end of a long name, which may be a path.
 pub(super) fn short_name(name: &str) -> String {
     let long = name.chars().count().saturating_sub(NAME - 1);
     match long {
@@ -65,7 +64,7 @@ pub(super) fn short_name(name: &str) -> String {
     }
 }
 
-/// The line above a scan's drawings: its name, and what else is to be said of it.
+/// The line above the drawings of a scan: its name and details.
 pub(super) fn heading(name: &str, more: &str, y: f64) -> String {
     let name = short_name(name);
     let beside = MARGIN + width(&name) * 1.12 + 16.0;
@@ -73,7 +72,7 @@ pub(super) fn heading(name: &str, more: &str, y: f64) -> String {
         + &text(beside, y, TextAnchor::Start, "tv-soft tv-small", more)
 }
 
-/// Colours of curves, on light and on dark: no two of the first ten are alike.
+/// Colours of curves in light and dark colour schemes; the first ten differ.
 const COLOURS: [[&str; 2]; 10] = [
     ["#0b62b8", "#6cb4ff"],
     ["#c2410c", "#ff9a62"],
@@ -87,10 +86,10 @@ const COLOURS: [[&str; 2]; 10] = [
     ["#5b3fd0", "#b3a3ff"],
 ];
 
-/// A dash is this long and so is the whole of its pattern times the curves: so curves that coincide show in turns, each where the others have their gaps.
+/// Length of a dash in pixels. Coinciding curves show in turns, each in the gaps of the others.
 const DASH: f64 = 9.0;
 
-/// The style of curves' colours.
+/// CSS of the colours of curves.
 pub(super) fn colours() -> String {
     let class =
         |number: usize, colour: &str| format!(".tv-c{number}{{stroke:{colour};fill:{colour}}}");
@@ -107,17 +106,19 @@ pub(super) fn colours() -> String {
     )
 }
 
-/// The class of a scan's colour.
+/// CSS class of a scan's colour.
 pub(super) fn colour(number: usize) -> String {
     format!("tv-c tv-c{}", number % COLOURS.len())
 }
 
-/// The classes and the dashes of a scan's curve: the first is a line that the later ones, dashed the finer the later, lie on.
+/// Class and dashes of a scan's curve. The first curve is solid, and later ones have shorter
+/// dashes.
 pub(super) fn stroke(number: usize) -> String {
     let class = colour(number);
     let dash = match number {
         0 => "none".to_owned(),
-        // Gaps are as long as dashes, so that what lies below shows; lengths differ, so that of several no two stay on each other.
+        // Gaps are as long as dashes, so that the curve below shows. Lengths differ, so that no two
+        // curves stay aligned.
         _ => {
             let on = DASH * (1.0 - 0.62 * (number % COLOURS.len()) as f64 / COLOURS.len() as f64);
             let long = number / COLOURS.len();
@@ -127,7 +128,7 @@ pub(super) fn stroke(number: usize) -> String {
     format!("class=\"{class} tv-curve tv-none\" stroke-dasharray=\"{dash}\"")
 }
 
-/// The names of curves, in lines that fit, from `y` down; and where they end.
+/// The names of curves from `y` down in lines that fit, and the end of the last line.
 pub(super) fn legend(names: &[&str], mut y: f64) -> (String, f64) {
     let mut svg = String::new();
     let mut x = MARGIN;
@@ -151,7 +152,7 @@ pub(super) fn legend(names: &[&str], mut y: f64) -> (String, f64) {
     (svg, y + 14.0)
 }
 
-/// Lines across for the ticks of an upright axis, with their labels on the left.
+/// Horizontal lines at the ticks of a vertical axis, with labels on the left.
 pub(super) fn levels(axis: &PlotAxis, left: f64, right: f64) -> String {
     let mut svg = String::new();
     for tick in axis.ticks() {
@@ -170,7 +171,7 @@ pub(super) fn levels(axis: &PlotAxis, left: f64, right: f64) -> String {
     svg
 }
 
-/// What a scale of colours is of, before it.
+/// The quantity of a colour scale.
 pub(super) fn scale_name(y: f64, name: &str) -> String {
     text(MARGIN, y + 10.0, TextAnchor::Start, "tv-ink tv-small", name)
 }

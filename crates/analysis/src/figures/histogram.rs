@@ -1,13 +1,11 @@
-//! How many bins have how many points, with the mean and what is a standard deviation off it.
-//!
-//! Left out: the text's histogram, whose classes are each scan's own.
+//! Numbers of bins by their number of points, with mean and standard deviation.
 
 use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, colour, document, heading, levels, text};
 use super::{AnalyzedScan, AnalyzedScans};
 use crate::draw::Scale;
 use crate::draw::axis::PlotAxis;
 
-/// Classes, about.
+/// Approximate number of classes.
 const CLASSES: u64 = 60;
 const LEFT: f64 = 56.0;
 const RIGHT: f64 = WIDTH - MARGIN;
@@ -15,18 +13,20 @@ const TOP: f64 = 24.0;
 const BOTTOM: f64 = 150.0;
 const ROW: f64 = 182.0;
 
-/// The width of the classes of a scan, in points a bin: so that its fullest bin is in about the sixtieth.
+/// Width of the classes of a scan in points per bin, so that its fullest bin is in about the
+/// sixtieth class.
 #[must_use]
 pub fn class_width(scan: &AnalyzedScan) -> u64 {
     (fullest(scan) + 1).div_ceil(CLASSES)
 }
 
-/// The most points of a bin.
+/// Points of the fullest bin.
 fn fullest(scan: &AnalyzedScan) -> u64 {
     scan.counts.by_bin().iter().copied().max().unwrap_or(0)
 }
 
-/// The figure: a plot a scan, one under the other; upwards all have one scale, across each its own, as scans of a turn and of minutes have nothing in common there.
+/// The figure: a plot per scan. All share the vertical scale. Each has its own horizontal scale,
+/// since short and long scans have nothing in common there.
 #[must_use]
 pub fn histogram(scans: &AnalyzedScans) -> String {
     let classes = |scan: &AnalyzedScan| scan.counts.histogram_by(class_width(scan));

@@ -1,8 +1,10 @@
-//! Scan patterns as figures, tables and one page, in the manner of the 2018 paper's Figures 2-7 and 11, for any list of patterns side by side.
+//! Figures, tables and a page on scan patterns side by side, after Figures 2-7 and 11 of the 2018
+//! paper.
 //!
-//! Data in, text out: [`density()`] on the sphere from three sides, [`planes()`] about the scanner, [`histogram()`] and [`curves()`] as SVG; [`mod@csv`] of every curve;
-//! [`page()`] with all of it. All patterns of a figure have one scale of colours, on which darker is more, so that it reads in print without colour, too.
-//! Left out: where the numbers come from ([`crate::density`], [`crate::k`]), and files.
+//! All functions turn data into text: [`density()`] on the sphere from three sides, [`planes()`]
+//! around the scanner, [`histogram()`] and [`curves()`] as SVG; [`mod@csv`] of every curve;
+//! [`page()`] with all of it. All patterns of a figure share one colour scale. Darker means more,
+//! so that it works in print without colour.
 
 mod colour;
 mod conclusion;
@@ -25,52 +27,52 @@ pub use planes::{CELL_M, Planes, planes};
 use crate::density::{BinCounts, Icosahedron, Statistics};
 use crate::k::KCurve;
 
-/// Radius of the paper's hollow sphere, metres: what square metres of a K function are of.
+/// Radius of the paper's hollow sphere, metres; K functions in square metres refer to it.
 pub const SPHERE_M: f64 = 10.0;
 
-/// What is known of one scan.
+/// Results of one scan.
 #[derive(Clone, Debug)]
 pub struct AnalyzedScan {
     /// What it is called.
     pub name: String,
-    /// Points with a direction.
+    /// Number of points with a direction.
     pub points: u64,
-    /// How long it takes, seconds, where that is known.
+    /// Duration in seconds, if known.
     pub scan_s: Option<f64>,
     /// Radius of the largest hole anywhere, degrees.
     pub hole_deg: f64,
-    /// What is in view; `None` where nothing tells what the scan could see.
+    /// Results within the field of view; `None` if it is unknown.
     pub in_view: Option<InView>,
-    /// What may mislead.
+    /// Warnings.
     pub warnings: Vec<String>,
-    /// Points a bin of [`AnalyzedScans::bins`].
+    /// Points per bin of [`AnalyzedScans::bins`].
     pub counts: BinCounts,
     /// K on a sphere of [`SPHERE_M`].
     pub k: KCurve,
-    /// How its pairs were counted.
+    /// How the pairs were counted.
     pub method: &'static str,
-    /// Where its rays meet the planes.
+    /// Intersections of its rays with planes.
     pub planes: Planes,
 }
 
-/// What is known of the directions that a scan could see.
+/// Results for the directions that a scan could see.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InView {
-    /// Points a bin, of the bins with their middle in view.
+    /// Statistics of the bins with their centre in view.
     pub statistics: Statistics,
-    /// Radius of the largest hole with its middle in view, degrees; `None` where nothing is in view.
+    /// Radius of the largest hole with its centre in view, degrees; `None` if nothing is in view.
     pub hole_deg: Option<f64>,
 }
 
-/// Scans side by side.
+/// Scans to compare.
 #[derive(Clone, Debug)]
 pub struct AnalyzedScans {
     /// Program and version.
     pub program: String,
-    /// What was asked for, as on the command line.
+    /// The command line.
     pub command: String,
     /// The bins.
     pub bins: Icosahedron,
-    /// The scans, in the order asked for.
+    /// The scans in the order of the command line.
     pub scans: Vec<AnalyzedScan>,
 }

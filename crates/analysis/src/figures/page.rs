@@ -1,6 +1,5 @@
-//! All figures as one page that needs nothing beside it: figures inside, with tables beside them, light and dark, on a phone and on paper.
-//!
-//! Left out: how it is written to a disk.
+//! All figures and tables as one self-contained HTML page, for light and dark colour schemes,
+//! phones and print.
 
 use super::conclusion::{conclusions, farthest};
 use super::frame::short_name;
@@ -9,7 +8,7 @@ use crate::draw::PAGE_STYLE;
 use crate::draw::escaped;
 use crate::draw::number::short;
 
-/// What stands beside the page in its folder, and is linked from it: names, and what they are.
+/// Files next to the page that it links to, and their descriptions.
 pub const FILES: [(&str, &str); 8] = [
     ("density.svg", "density on the sphere"),
     ("histogram.svg", "histogram of the density"),
@@ -21,7 +20,8 @@ pub const FILES: [(&str, &str); 8] = [
     ("analyze.json", "everything that --json says"),
 ];
 
-/// For narrow screens, where figures and tables keep a size that is read and scroll in a frame of their own; and for print.
+/// On narrow screens figures and tables keep a readable size and scroll in a frame of their own.
+/// Also for print.
 const MORE_STYLE: &str = "\
 h1,h2{overflow-wrap:anywhere}section{min-width:0}figcaption{color:var(--soft);font-size:.92rem;margin-top:.5rem}\
 figure svg{max-width:45rem}\
@@ -37,7 +37,7 @@ td:first-child,th:first-child{position:sticky;left:0;background:var(--card)}td:f
 @media print{body{background:#fff}section{border:0;padding:0;break-inside:auto}figure,tr{break-inside:avoid}nav,.hint{display:none}\
 .scroll{border:0;overflow:visible}.picture svg{width:100%;max-width:45rem}}";
 
-/// Angles between those of the page's table of K, degrees.
+/// Step of the angle in the table of K, degrees.
 const EVERY_DEG: f64 = 15.0;
 
 /// The page.
@@ -121,7 +121,7 @@ fn sections(scans: &AnalyzedScans) -> Vec<Section> {
     ]
 }
 
-/// What stands above what is wider than a phone, on phones.
+/// Hint above wide content, on phones only.
 const HINT: &str = "<p class=\"hint\">wider than the screen: swipe sideways \u{2194}</p>\n";
 
 fn figure(svg: &str, caption: &str) -> String {
@@ -131,7 +131,7 @@ fn figure(svg: &str, caption: &str) -> String {
     )
 }
 
-/// A table: a heading a column, the first of each row its name. What it is of stands above it, where it breaks into lines whatever the table's width.
+/// A table with a caption above it, which wraps independent of the table's width.
 fn table(caption: &str, headings: &[String], rows: &[Vec<String>]) -> String {
     let mut html = format!(
         "<p class=\"caption\">{0}</p>\n{HINT}<div class=\"scroll\" tabindex=\"0\"><table aria-label=\"{0}\">\n<thead><tr>",
@@ -210,7 +210,7 @@ fn summary(scans: &AnalyzedScans) -> String {
     )
 }
 
-/// Where a number is not known.
+/// Shown for an unknown number.
 const NONE: &str = "-";
 
 fn densities(scans: &AnalyzedScans) -> String {
@@ -305,7 +305,7 @@ fn extremes(scans: &AnalyzedScans) -> String {
     )
 }
 
-/// The curves at angles some degrees apart.
+/// The curves at some angles.
 fn k_table(scans: &AnalyzedScans) -> String {
     let mut words = vec!["angle up to, deg".to_owned()];
     words.extend(scans.scans.iter().map(|scan| scan.name.clone()));
@@ -316,7 +316,7 @@ fn k_table(scans: &AnalyzedScans) -> String {
     let mut rows = Vec::new();
     let mut next_deg = EVERY_DEG;
     for (bin, theta_deg) in thetas.iter().map(|theta| theta.to_degrees()).enumerate() {
-        // Edges need not be at whole degrees: the first at or behind each angle, and the last.
+        // Edges may not be at whole degrees: the first at or after each angle, and the last.
         if theta_deg < next_deg - 1e-9 && bin + 1 < thetas.len() {
             continue;
         }

@@ -1,7 +1,8 @@
-//! Where the rays of a scan meet planes about the scanner: the ground 1.5 m below and walls at 10 m, parallel to YZ and XZ.
+//! Intersections of the rays of a scan with planes around the scanner: the ground 1.5 m below and
+//! walls at 10 m, parallel to YZ and XZ.
 //!
-//! The planes are cut into squares and the points in each are counted as they come: time linear in the points, memory that of the squares, the same picture every time.
-//! Left out: what is beyond the pictures' edges, and the height of the sensor above the axis.
+//! The planes are divided into squares, in which points are counted: linear time, and memory for
+//! the squares only. The height of the sensor above the axis is ignored.
 
 use glam::DVec3;
 
@@ -9,17 +10,17 @@ use super::AnalyzedScans;
 use super::colour::colour;
 use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, document, heading, scale_name, text};
 
-/// How far below the ground is, metres.
+/// Depth of the ground below the scanner, metres.
 const GROUND_M: f64 = 1.5;
-/// How far the walls are.
+/// Distance of the walls, metres.
 const WALL_M: f64 = 10.0;
-/// A picture's side.
+/// Side of a picture, metres.
 const SIDE_M: f64 = 20.0;
-/// Side of the squares that points are counted in, metres.
+/// Side of the squares, metres.
 pub const CELL_M: f64 = 0.1;
-/// Squares along a picture's side.
+/// Squares along a side of a picture.
 const CELLS: usize = 200;
-/// Classes of 1, 2 and 3, 4 to 7 points and so on; the last has no end.
+/// Number of classes of 1, 2 and 3, 4 to 7 points and so on; the last is open.
 const CLASSES: u32 = 7;
 const GAP: f64 = 18.0;
 const PANEL: f64 = (WIDTH - 2.0 * MARGIN - 2.0 * GAP) / 3.0;
@@ -28,18 +29,18 @@ const ROW: f64 = PANEL + 64.0;
 /// Points in the squares of the three planes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Planes {
-    /// Ground, wall at x = 10 m, wall at y = 10 m: rows from above.
+    /// Ground, wall at x = 10 m, wall at y = 10 m; rows from the top.
     cells: [Vec<u32>; 3],
-    /// Points in the pictures.
+    /// Points inside the pictures.
     shown: u64,
-    /// Points that meet one of the planes, in the pictures or beyond them.
+    /// Points that meet a plane, inside the pictures or outside.
     met: u64,
     /// All points.
     all: u64,
 }
 
 impl Planes {
-    /// Of directions from the origin.
+    /// Counts directions from the origin.
     #[must_use]
     pub fn new(directions: &[DVec3]) -> Self {
         let mut planes = Self {
@@ -63,7 +64,7 @@ impl Planes {
         planes
     }
 
-    /// Points in the pictures.
+    /// Points inside the pictures.
     #[must_use]
     pub const fn shown(&self) -> u64 {
         self.shown
@@ -75,7 +76,7 @@ impl Planes {
         self.met
     }
 
-    /// Squares with a point.
+    /// Number of squares with a point.
     #[must_use]
     pub fn drawn(&self) -> usize {
         let all = self.cells.iter().flatten();
@@ -93,7 +94,8 @@ impl Planes {
     }
 }
 
-/// The plane that a ray meets first, and where: metres to the right and up from the lower left corner of its picture.
+/// The plane that a ray meets first, and the place in metres right of and above the lower left
+/// corner of its picture.
 fn meet(direction: DVec3) -> Option<(usize, f64, f64)> {
     let to = |distance: f64, along: f64| (along > 0.0).then(|| distance / along);
     let hits = [
@@ -114,7 +116,7 @@ fn meet(direction: DVec3) -> Option<(usize, f64, f64)> {
 }
 
 fn cell(right_m: f64, up_m: f64) -> Option<usize> {
-    // A point on a wall's edge belongs to its last square.
+    // A point on the edge of a wall belongs to its last square.
     let of = |metres: f64| {
         (0.0..=SIDE_M)
             .contains(&metres)
@@ -129,7 +131,7 @@ const NAMES: [(&str, &str, &str); 3] = [
     ("at y = 10 m", "x", "z"),
 ];
 
-/// The figure: a row a scan, a column a plane.
+/// The figure: a row per scan, a column per plane.
 #[must_use]
 pub fn planes(scans: &AnalyzedScans) -> String {
     let mut body = String::new();
@@ -186,7 +188,7 @@ fn panel(cells: &[u32], (name, right, up): (&str, &str, &str), left: f64, top: f
     svg
 }
 
-/// A path a class, of the runs of squares in it.
+/// A path per class from the runs of its squares.
 fn runs(cells: &[u32]) -> Vec<String> {
     let mut paths = vec![String::new(); CLASSES as usize];
     for (y, row) in cells.chunks(CELLS).enumerate() {
@@ -206,7 +208,7 @@ fn class(count: u32) -> Option<u32> {
     Some(count.checked_ilog2()?.min(CLASSES - 1))
 }
 
-/// The colours begin where they are dark enough for a single point on white.
+/// The colour of a class; the lightest is still visible as a single point on white.
 fn shade(class: u32) -> String {
     colour(0.3 + 0.7 * f64::from(class) / f64::from(CLASSES - 1))
 }

@@ -1,4 +1,5 @@
-//! Figures are well-formed and whole, and every number that is written is the one that was computed.
+//! Figures are well-formed and whole, and every number that is written is the one that was
+//! computed.
 
 use std::num::NonZeroUsize;
 
@@ -266,7 +267,8 @@ fn page_is_whole(page: &str, scans: &AnalyzedScans) {
     assert_eq!((frames, page.matches("class=\"hint\"").count()), (9, 9));
 }
 
-/// What is known of a view is told, and what is not is not made up; what may mislead stands beside it.
+/// What is known of a view is told, and what is not is not made up; what may mislead stands beside
+/// it.
 #[test]
 fn the_page_says_what_comes_of_it() {
     let mut scans = scans(3);

@@ -1,45 +1,48 @@
-//! Directions in cells of about the same size, sorted in one pass.
+//! Directions sorted into cells of similar size in one pass.
 //!
-//! A cell is a square on a face of the cube around the sphere, with sides that are about even in angle. Which cell a point is in need not be exact: what a cell reaches is
-//! measured from the points in it. For draws, cells are cut into sixteen parts, and their points laid out so that any 32 that follow one another are spread over the
-//! cell. Left out: what is done with them.
+//! A cell is a square on a face of the cube around the sphere, with sides of similar angle. The
+//! assignment of a point to a cell may be inexact, since the extent of a cell is measured from its
+//! points. For sampling, each cell is cut into sixteen parts. Its points are laid out so that any
+//! 32 consecutive ones are spread over the cell.
 
 use glam::DVec3;
 
 use super::lanes::LANES;
 use super::tree::{Circle, Circles};
 
-/// Pairs that are drawn together.
+/// Pairs per draw.
 pub(super) const ROW: usize = 32;
 
-/// Parts along each side of a cell that is laid out for draws.
+/// Parts along each side of a cell.
 const PARTS: usize = 4;
 const PART_SIDE: u32 = PARTS as u32;
 
-/// Points by cell; empty cells are left out.
+/// Points by cell, without empty cells.
 #[derive(Debug, Default)]
 pub(super) struct PointCells {
     /// Points by cell, and by part within a cell.
     items: Vec<CellPoint>,
-    /// Coordinates, in two layouts of every cell, each with [`ROW`] more than it has points: it starts again.
+    /// Coordinates in two layouts per cell. Each layout has [`ROW`] entries more than the cell has
+    /// points and repeats its beginning.
     pub columns: [Vec<f32>; 3],
     pub cells: Vec<PointCell>,
     pub around: Circles,
 }
 
-/// One cell.
+/// A cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PointCell {
-    /// Its first place in the order.
+    /// Index of its first point.
     pub first: usize,
-    /// Its points.
+    /// Number of points.
     pub len: usize,
-    /// Its two layouts: the first place in the columns, and by how many places in the order one goes on from each point to the next, around.
+    /// Two layouts: the first index in the columns, and the step from each point to the next,
+    /// modulo the number of points.
     pub layouts: [(usize, usize); 2],
 }
 
 impl PointCell {
-    /// The place in the order of what is so far along a layout.
+    /// Index of the point at a position along a layout.
     pub(super) fn place(&self, layout: usize, along: usize) -> usize {
         let step = self.layouts.get(layout).map_or(1, |(_, step)| *step) as u64;
         let len = self.len.max(1) as u64;
@@ -48,7 +51,7 @@ impl PointCell {
     }
 }
 
-/// Numbers that look like chance (splitmix64).
+/// Pseudo-random numbers (SplitMix64).
 #[derive(Clone, Debug)]
 pub(super) struct DrawSource(u64);
 
@@ -66,24 +69,26 @@ impl DrawSource {
     }
 }
 
-/// A number from 0 to below `below` from 32 random bits: each within `below / 2^32` of as likely as the others, together.
+/// A number in `0..below` from 32 random bits; its probability is off by at most `below / 2^32` in
+/// total.
 #[inline]
 pub(super) const fn scaled(bits: u64, below: usize) -> usize {
     (((bits & 0xFFFF_FFFF) * below as u64) >> 32) as usize
 }
 
-/// A point while it is sorted.
+/// A point to be sorted.
 #[derive(Clone, Copy, Debug, Default)]
 struct CellPoint {
     at: [f32; 3],
     index: u32,
 }
 
-/// Steps of the two layouts, over the number of points: 32 pairs of both are a lattice of rank 1 over all pairs, one in every 32nd of either cell.
+/// Steps of the two layouts, as shares of the number of points. 32 pairs of both layouts form a
+/// lattice of rank 1 over all pairs: one pair in every 32nd of each cell.
 const STEPS: [f64; 2] = [1.0 / 32.0, 7.0 / 32.0];
 
 impl PointCells {
-    /// Where the point stood that is now at this place.
+    /// Index in the input of the point at this place.
     pub(super) fn index(&self, place: usize) -> Option<usize> {
         self.items.get(place).map(|item| item.index as usize)
     }
@@ -141,13 +146,13 @@ impl PointCells {
         sorted
     }
 
-    /// Adds one layout of a cell; where it begins, and its step.
+    /// Adds a layout of a cell; returns its start and step.
     fn lay_out(&mut self, of: &[CellPoint], share: f64) -> (usize, usize) {
         let step = coprime((of.len() as f64 * share) as usize, of.len());
         let [x, y, z] = &mut self.columns;
         let start = x.len();
         let mut at = 0;
-        // From the start again, as often as it takes.
+        // The layout wraps around.
         for _ in 0..of.len() + ROW {
             let [px, py, pz] = of.get(at).map_or([0.0; 3], |item| item.at);
             x.push(px);
@@ -162,7 +167,7 @@ impl PointCells {
     }
 }
 
-/// A number at or above this that has no divisor with `len` in common, below it; 0 for a cell of one point.
+/// The smallest number from `from` on that is coprime to `len`; 0 for a cell of one point.
 fn coprime(from: usize, len: usize) -> usize {
     let divisor = |mut a: usize, mut b: usize| {
         while b != 0 {
@@ -171,11 +176,12 @@ fn coprime(from: usize, len: usize) -> usize {
         a
     };
     let found = (from.max(1)..len).find(|&step| divisor(step, len) == 1);
-    // The last is always one: neighbours have no divisor in common.
+    // `len - 1` is always coprime to `len`.
     found.unwrap_or(len.saturating_sub(1))
 }
 
-/// The circle around some, in sixteen lanes. Its middle is what it is, however sums are rounded, as the radius is measured from it.
+/// The bounding circle of some points, in sixteen lanes. Rounding of the centre does not matter,
+/// since the radius is measured from it.
 fn around(of: &[CellPoint]) -> Circle {
     let mut sums = [[0.0_f32; LANES]; 3];
     for items in of.chunks(LANES) {
@@ -214,8 +220,8 @@ fn around(of: &[CellPoint]) -> Circle {
         .map(f64::from)
         .fold(0.0, f64::max)
         .sqrt();
-    // Coordinates of the points and of the middle are rounded to f32, 6e-8 each, and lengths are 1 within 1e-6: less than 1e-5 together near pi, where a
-    // chord says least of an angle: there the circle is the whole sphere.
+    // Coordinates are rounded to f32, 6e-8 each, and lengths are 1 within 1e-6: less than 1e-5 in
+    // all. Near pi, where a chord resolves angles poorly, the circle is the whole sphere.
     let chord = chord * (1.0 + 1e-6) + 1e-6;
     let radius = if chord > 1.99 {
         std::f64::consts::PI
@@ -225,13 +231,13 @@ fn around(of: &[CellPoint]) -> Circle {
     Circle { middle, radius }
 }
 
-/// The order of the parts of a cell, so that those that follow one another are neighbours (Hilbert 1891).
+/// Order of the parts of a cell along a space-filling curve (Hilbert 1891).
 const ALONG: [u8; PARTS * PARTS] = [0, 1, 14, 15, 3, 2, 13, 12, 4, 7, 8, 11, 5, 6, 9, 10];
 
 /// Squares on the faces of a cube.
 struct CubeGrid {
     side: usize,
-    /// Squares along an edge, half of them.
+    /// Half the number of squares along an edge.
     half: f32,
 }
 
@@ -241,7 +247,7 @@ impl CubeGrid {
         Self { side, half }
     }
 
-    /// The face by the greatest coordinate, then the square: the cell, and the part of it.
+    /// Index of the face (by the largest coordinate), cell and part of a direction.
     #[inline]
     fn square(&self, p: DVec3) -> u32 {
         let p = p.as_vec3();
@@ -256,7 +262,7 @@ impl CubeGrid {
         );
         let face = if is_x { 0 } else { if is_y { 2 } else { 4 } };
         let over = 1.0 / w.abs().max(f32::MIN_POSITIVE);
-        // About the arc tangent over pi/4, so that squares are about even.
+        // An approximation of the arc tangent over pi/4, which makes the squares similar in angle.
         let even = |t: f32| t * (1.273 - 0.273 * t.abs());
         let most = (self.side * PARTS - 1) as u32;
         let place = |t: f32| (((even(t * over) + 1.0) * self.half) as u32).min(most);

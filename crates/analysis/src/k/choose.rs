@@ -1,7 +1,7 @@
-//! The cheapest method whose bound is good enough.
+//! Choice of the cheapest method whose bound meets a tolerance.
 //!
-//! What a method costs is a model, measured by the benchmark `k` and written down in `docs/src/k.md`; it decides how long the answer takes, never what it is.
-//! Left out: measuring the machine at hand.
+//! The cost of a method is a model, measured by the benchmark `k` and recorded in `docs/src/k.md`.
+//! It affects the duration, never the result.
 
 use std::num::NonZeroUsize;
 
@@ -10,43 +10,46 @@ use serde::Serialize;
 
 use super::{Edges, Estimate, FrameRotation, KError, Sampling, exact, sampled, turned};
 
-/// Below so many points every pair is counted: it takes less than a few tenths of a second.
+/// Every pair is counted below this number of points: it takes less than a few tenths of a second.
 pub const EXACT_BELOW: usize = 65_000;
 
-/// A way to the K function.
+/// A method of computing the K function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum KMethod {
     /// [`exact()`].
     Exact,
-    /// [`turned()`]: exact, too.
+    /// [`turned()`], which is exact too.
     Turned,
     /// [`sampled()`].
     Sampled,
 }
 
-/// CPU seconds that a method is expected to take with AVX-512, for bounds of this tolerance; none where it cannot meet it.
-fn cost_s(method: KMethod, points: f64, frames: Option<usize>, wish: &Sampling) -> Option<f64> {
-    let tolerance = wish.tolerance;
+/// Expected CPU seconds with AVX-512 for bounds of this tolerance; `None` if the method cannot meet
+/// it.
+fn cost_s(method: KMethod, points: f64, frames: Option<usize>, sampling: &Sampling) -> Option<f64> {
+    let tolerance = sampling.tolerance;
     let pairs = points * points / 2.0;
     match method {
-        // 5e9 pairs a second where leaves are as wide as a few bins.
+        // 5e9 pairs per second if leaves are as wide as a few bins.
         KMethod::Exact => Some(0.002 + pairs / 5e9),
-        // A frame with all points, 2e9 a second and more.
+        // One frame against all points, at least 2e9 pairs per second.
         KMethod::Turned => frames.map(|frames| 0.01 + points * points / frames as f64 / 2e9),
-        // Sorting, and pairs of cells: their number goes with the fourth power of the side, which goes with the third root of the tolerance.
+        // Sorting and pairs of cells. The number of pairs grows with the fourth power of the side,
+        // and the side with the cube root of the tolerance.
         KMethod::Sampled => {
             let cells = 0.05 * (1e-4 / tolerance).powf(4.0 / 3.0);
-            (tolerance >= 1e-6 && wish.risk > 0.0).then_some(points * 9e-8 + cells)
+            (tolerance >= 1e-6 && sampling.risk > 0.0).then_some(points * 9e-8 + cells)
         }
     }
 }
 
-/// Which method is expected to be the cheapest with a bound of at most this tolerance: 0 for exact counts. A risk of 0 asks for a proof. Scans of turned
-/// frames can be told so.
+/// The method with the lowest expected cost and a bound of at most `tolerance`. A tolerance or a
+/// risk of 0 demands exact counts. `rotation` tells that the frames are rotated copies of one
+/// frame.
 #[must_use]
-pub fn choose(points: usize, rotation: Option<&FrameRotation>, wish: &Sampling) -> KMethod {
-    let tolerance = wish.tolerance;
+pub fn choose(points: usize, rotation: Option<&FrameRotation>, sampling: &Sampling) -> KMethod {
+    let tolerance = sampling.tolerance;
     let frames = rotation.map(|rotation| rotation.frames);
     let mut best = (KMethod::Exact, f64::INFINITY);
     let exact_only = tolerance.is_nan() || tolerance <= 0.0 || points < EXACT_BELOW;
@@ -56,7 +59,7 @@ pub fn choose(points: usize, rotation: Option<&FrameRotation>, wish: &Sampling) 
         &[KMethod::Exact, KMethod::Turned, KMethod::Sampled]
     };
     for &method in methods {
-        let cost = cost_s(method, points as f64, frames, wish);
+        let cost = cost_s(method, points as f64, frames, sampling);
         if let Some(cost) = cost.filter(|cost| *cost < best.1) {
             best = (method, cost);
         }
@@ -64,7 +67,8 @@ pub fn choose(points: usize, rotation: Option<&FrameRotation>, wish: &Sampling) 
     best.0
 }
 
-/// Estimates by the method that [`choose()`] takes. Where a sample's or a grid's bound turns out above the tolerance, every pair is counted after all.
+/// Estimates with the method of [`choose()`], and counts every pair if the bound of a sample
+/// exceeds the tolerance.
 ///
 /// # Errors
 /// Those of the methods.
@@ -72,12 +76,12 @@ pub fn estimate(
     points: &[DVec3],
     rotation: Option<&FrameRotation>,
     edges: &Edges,
-    wish: &Sampling,
+    sampling: &Sampling,
     threads: NonZeroUsize,
 ) -> Result<Estimate, KError> {
-    let tolerance = wish.tolerance;
-    let found = match choose(points.len(), rotation, wish) {
-        KMethod::Sampled => sampled(points, edges, wish)?,
+    let tolerance = sampling.tolerance;
+    let found = match choose(points.len(), rotation, sampling) {
+        KMethod::Sampled => sampled(points, edges, sampling)?,
         KMethod::Exact => return by_all(points, None, edges, threads),
         KMethod::Turned => return by_all(points, rotation, edges, threads),
     };
@@ -87,7 +91,7 @@ pub fn estimate(
     by_all(points, rotation, edges, threads)
 }
 
-/// Every pair, by turning where that is known.
+/// Counts every pair, by frame rotation where it is known.
 fn by_all(
     points: &[DVec3],
     rotation: Option<&FrameRotation>,

@@ -1,31 +1,31 @@
-//! Pairs of directions by their angle, as whole numbers.
-//!
-//! Left out: how they are counted, and the K function made of them.
+//! Whole numbers of pairs of directions per bin of angle.
 
 use super::Edges;
 
-/// Pairs in bins of angle: exact.
+/// Exact numbers of pairs per bin of angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairCounts {
     /// The bins.
     pub edges: Edges,
-    /// Pairs in each bin; together `n (n - 1) / 2`.
+    /// Pairs per bin; `n (n - 1) / 2` in all.
     pub counts: Vec<u64>,
-    /// Directions, `n`.
+    /// Number of directions, `n`.
     pub points: usize,
-    /// Pairs that lie on an inner edge within rounding ([`super::ON_EDGE`]). On which side such a pair counts is defined, but it hangs on the
-    /// last bit of its coordinates: where there are many, other bins say more.
+    /// Pairs on an inner edge within rounding ([`super::ON_EDGE`]). The bin of such a pair is
+    /// defined, but depends on the last bit of its coordinates. If there are many, another number
+    /// of bins is more meaningful.
     pub on_edges: u64,
 }
 
 impl PairCounts {
-    /// All pairs: `n (n - 1) / 2`.
+    /// Number of pairs, `n (n - 1) / 2`.
     #[must_use]
     pub const fn pairs(&self) -> u64 {
         pairs(self.points)
     }
 
-    /// Whether no pair lies on an inner edge, so that counts do not hang on roundings of the points.
+    /// Whether no pair lies on an inner edge, so that counts do not depend on the rounding of the
+    /// points.
     #[must_use]
     pub const fn is_well_posed(&self) -> bool {
         self.on_edges == 0
@@ -42,7 +42,7 @@ impl PairCounts {
     }
 }
 
-/// `n (n - 1) / 2`, for any number of points that is counted (below 2^32).
+/// `n (n - 1) / 2` for fewer than 2^32 points.
 pub(super) const fn pairs(points: usize) -> u64 {
     let n = points as u64;
     if n.is_multiple_of(2) {

@@ -1,30 +1,34 @@
-//! Ripley's K function on a sphere, from pairs by angle.
+//! Ripley's K function on a sphere, from numbers of pairs by angle.
 //!
-//! `K(t) = 8 pi R2 / (n (n - 1)) x #{i < j : angle <= t}`, of complete spatial randomness `K_csr(t) = 2 pi R2 (1 - cos t)`. Their difference over the area of
-//! the sphere is `D`, which does not know of R. Left out: pictures of it.
+//! `K(t) = 8 pi R2 / (n (n - 1)) x #{i < j : angle <= t}`; under complete spatial randomness
+//! `K_csr(t) = 2 pi R2 (1 - cos t)`. `D` is their difference divided by the area of the sphere, and
+//! independent of R.
 
 use super::{Edges, Estimate, PairCounts};
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// The K function at the upper edges of bins. Fewer than two points have no pairs, and so no K: all lists but the angles are empty then, and the extremes 0.
+/// The K function at the upper edges of bins. Fewer than two points have no pairs: all lists but
+/// the angles are empty then, and the extremes are 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KCurve {
-    /// `t_j`, radians; the last pi.
+    /// `t_j`, radians; the last is pi.
     pub theta_rad: Vec<f64>,
     /// `K(t_j)`, square metres.
     pub k_m2: Vec<f64>,
-    /// `K(t_j) - K_csr(t_j)`, square metres; above nought is clustering.
+    /// `K(t_j) - K_csr(t_j)`, square metres; positive values mean clustering.
     pub k_minus_csr_m2: Vec<f64>,
-    /// `D(t_j) = (K - K_csr) / (4 pi R2)`: how much larger a share of all pairs is within `t_j` than under randomness.
+    /// `D(t_j) = (K - K_csr) / (4 pi R2)`: the excess share of all pairs within `t_j` over
+    /// randomness.
     pub d: Vec<f64>,
-    /// The first derivative of `K - K_csr` by the angle, square metres a radian, at the middle of each bin: the difference of its ends over its width.
+    /// The first derivative of `K - K_csr` by the angle at the middle of each bin, square metres
+    /// per radian: the difference of its ends divided by its width.
     pub derivative_m2_rad: Vec<f64>,
     /// The largest of `|K - K_csr|`, square metres.
     pub max_abs_m2: f64,
-    /// The largest `D`; 0 at least, as `D(0)` is.
+    /// The largest `D`; at least 0, as `D(0)` is.
     pub d_max: f64,
-    /// The smallest `D`; 0 at most.
+    /// The smallest `D`; at most 0.
     pub d_min: f64,
     /// How far any `D` may be off by the method: 0 for exact counts.
     pub d_error_bound: f64,

@@ -1,7 +1,7 @@
 //! Numbers of two doubles, about 106 bits: enough to say what the cosine of an edge is.
 //!
-//! Error-free sums and products after Dekker and Knuth; the product takes the fused multiply-add. Left out: everything that cosines
-//! of edges and the sign of a sum do not need.
+//! Error-free sums and products after Dekker and Knuth; the product takes the fused multiply-add.
+//! Left out: everything that cosines of edges and the sign of a sum do not need.
 
 /// A sum of two doubles of which the second is at most half a unit in the last place of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,8 @@ impl Dd {
         Self::joined((high, (left.hi + left.lo) / divisor))
     }
 
-    /// `1 - x2/((n+1)(n+2)) (1 - x2/((n+3)(n+4)) (...))`: the series of the cosine for `n = 0`, of the sine over its argument for `n = 1`.
+    /// `1 - x2/((n+1)(n+2)) (1 - x2/((n+3)(n+4)) (...))`: the series of the cosine for `n = 0`, of
+    /// the sine over its argument for `n = 1`.
     fn series(square: Self, first: u32) -> Self {
         let mut sum = Self::ONE;
         // x2 is at most 0.617: the term left out is below 1e-35.
@@ -83,8 +84,8 @@ impl Dd {
         sum
     }
 
-    /// The cosine of `part / whole` of half a turn, within [`COSINE_ERROR`]; mirrored parts have exactly opposite cosines. `part` is at
-    /// most `whole`, both below 2^31.
+    /// The cosine of `part / whole` of half a turn, within [`COSINE_ERROR`]; mirrored parts have
+    /// exactly opposite cosines. `part` is at most `whole`, both below 2^31.
     pub(super) fn cosine(part: u32, whole: u32) -> Self {
         if 2 * part > whole {
             return Self::cosine(whole.saturating_sub(part), whole).minus();
@@ -104,10 +105,12 @@ impl Dd {
     }
 }
 
-/// What [`Dd::cosine`] may be off: 2^-98. Thirty operations of 2^-104 each come before the result; a test holds it against fractions.
+/// What [`Dd::cosine`] may be off: 2^-98. Thirty operations of 2^-104 each come before the result;
+/// a test holds it against fractions.
 pub(super) const COSINE_ERROR: f64 = 1.0 / ((1_u128 << 98) as f64);
 
-/// A sum of doubles without any rounding, as components that do not overlap, least first (Shewchuk 1997, grow-expansion).
+/// A sum of doubles without any rounding, as components that do not overlap, least first (Shewchuk
+/// 1997, grow-expansion).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expansion<const N: usize> {
     parts: [f64; N],

@@ -1,32 +1,35 @@
-//! Edges between bins of angle, and on which side of one a pair of directions lies: exactly.
+//! Edges between bins of angle, and an exact test of the side of an edge on which a pair lies.
 //!
-//! Left out: angles of pairs. A bin is found by comparing cosines, and no arc cosine is taken of any.
+//! Bins are found by comparing cosines; no arc cosine is taken.
 
 use glam::DVec3;
 
 use super::KError;
 use super::dd::{COSINE_ERROR, Dd, Expansion, two_product};
 
-/// The most bins.
+/// The largest number of bins.
 pub const MOST_BINS: usize = 32_768;
 
-/// How near to an edge's cosine the dot product of two directions in f64 must be for the pair to count as lying on it. Coordinates
-/// rounded to f64 move a dot product by 4e-16, its own arithmetic by another 4e-16.
+/// Distance of a dot product in f64 from the cosine of an edge below which a pair counts as on the
+/// edge. Coordinates rounded to f64 move a dot product by 4e-16, and its own arithmetic by another
+/// 4e-16.
 pub const ON_EDGE: f64 = 2e-15;
 
-/// Coordinates below this count as nought where sides are decided exactly: a product of two has all its bits then.
+/// Coordinates below this count as zero in the exact test, so that products of two keep all their
+/// bits.
 pub const LEAST_COORDINATE: f64 = 1e-120;
 
-/// What a dot product in f64 and an edge in f64 may be off together: 3 x 2^-53 for products and sums, 2^-53 for the edge, and room for
-/// lengths that are off by [`super::UNIT_WITHIN`].
+/// Error of a dot product and an edge in f64: 3 x 2^-53 for products and sums, 2^-53 for the edge,
+/// and room for lengths that are off by [`super::UNIT_WITHIN`].
 pub(super) const F64_BAND: f64 = 1e-15;
 
 /// Bins of equal angle from 0 to 180 degrees.
 ///
-/// With `t_j = j pi / bins`, a pair of directions `a`, `b` belongs to the least bin `j >= 1` for which `a.b >= cos t_j`; the last bin takes the
-/// rest. So a pair exactly on an edge belongs to the bin of smaller angles. `a.b` is the dot product in real numbers of the coordinates as given,
-/// `cos t_j` the real cosine: nothing is rounded in the definition, and a comparison that rounding could turn is decided
-/// without it. Bins are counted from 0 in slices.
+/// With `t_j = j pi / bins`, a pair of directions `a`, `b` belongs to the least bin `j >= 1` for
+/// which `a.b >= cos t_j`; the last bin takes the rest. So a pair exactly on an edge belongs to the
+/// bin of smaller angles. `a.b` is the dot product in real numbers of the coordinates as given,
+/// `cos t_j` the real cosine: nothing is rounded in the definition, and a comparison that rounding
+/// could turn is decided without it. Bins are counted from 0 in slices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edges {
     bins: usize,
@@ -35,19 +38,19 @@ pub struct Edges {
     cosines_f32: Vec<f32>,
 }
 
-/// One inner edge.
+/// An inner edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct BinEdge {
     cosine: Dd,
-    /// How far from it the real cosine may be.
+    /// Bound on the error of the cosine.
     slack: f64,
 }
 
 impl Edges {
-    /// So many bins of equal angle.
+    /// Bins of equal angle.
     ///
     /// # Errors
-    /// [`KError::Bins`] for none and for more than [`MOST_BINS`].
+    /// [`KError::Bins`] for no bins and for more than [`MOST_BINS`].
     pub fn equal(bins: usize) -> Result<Self, KError> {
         let whole = u32::try_from(bins).ok();
         let whole = whole.filter(|_| (1..=MOST_BINS).contains(&bins));
@@ -60,26 +63,26 @@ impl Edges {
         })
     }
 
-    /// How many bins.
+    /// Number of bins.
     #[must_use]
     pub const fn bins(&self) -> usize {
         self.bins
     }
 
-    /// The upper edges `t_j` of all bins in radians, the last pi.
+    /// The upper edges `t_j` of all bins in radians; the last is pi.
     #[must_use]
     pub fn upper_rad(&self) -> Vec<f64> {
         let of = |j: usize| j as f64 * std::f64::consts::PI / self.bins as f64;
         (1..=self.bins).map(of).collect()
     }
 
-    /// The cosine of the edge above a bin, to the nearest f64; of the last -1.
+    /// Cosine of the upper edge of a bin, rounded to f64; -1 for the last bin.
     #[must_use]
     pub fn cosine(&self, bin: usize) -> f64 {
         self.inner.get(bin).map_or(-1.0, |edge| edge.cosine.hi)
     }
 
-    /// The cosines of the inner edges in f32: one fewer than bins.
+    /// Cosines of the inner edges in f32, one fewer than bins.
     pub(super) fn cosines_f32(&self) -> &[f32] {
         &self.cosines_f32
     }
@@ -87,10 +90,10 @@ impl Edges {
     /// The bin of a pair of directions.
     ///
     /// # Errors
-    /// [`KError::Undecided`] where 98 bits of an irrational cosine do not decide.
+    /// [`KError::Undecided`] if 98 bits of an irrational cosine do not decide.
     pub fn bin(&self, a: DVec3, b: DVec3) -> Result<usize, KError> {
         let dot = dot(a, b);
-        // Edges whose cosine is surely above the dot product are behind it.
+        // The pair is beyond edges whose cosine is above the dot product by more than the error.
         let mut bin = self
             .inner
             .partition_point(|edge| edge.cosine.hi > dot + F64_BAND);
@@ -100,7 +103,8 @@ impl Edges {
         Ok(bin)
     }
 
-    /// Whether `a.b >= cos t` for the edge above a bin, counted from 0. Nothing is behind the last.
+    /// Whether `a.b >= cos t` for the upper edge of a bin, counted from 0. No pair is beyond the
+    /// last.
     ///
     /// # Errors
     /// [`KError::Undecided`].
@@ -120,7 +124,7 @@ impl Edges {
         })
     }
 
-    /// Whether a pair lies on the inner edge above a bin, within rounding ([`ON_EDGE`]).
+    /// Whether a pair lies on the upper edge of a bin within rounding ([`ON_EDGE`]).
     #[inline]
     pub(super) fn is_on(&self, bin: usize, a: DVec3, b: DVec3) -> bool {
         let edge = self.inner.get(bin);
@@ -129,7 +133,8 @@ impl Edges {
 }
 
 impl BinEdge {
-    /// `cos(part / whole pi)`. It is rational only for 0, 1/3, 1/2, 2/3 and 1 (Niven 1956); those are kept exactly.
+    /// `cos(part / whole pi)`. It is rational only for 0, 1/3, 1/2, 2/3 and 1 (Niven 1956); those
+    /// are exact.
     fn new(part: u32, whole: u32) -> Self {
         let exact = |cosine: f64| Self {
             cosine: Dd::of(cosine),
@@ -149,7 +154,8 @@ impl BinEdge {
         }
     }
 
-    /// The comparison without rounding: three products of two parts each and the cosine's two parts are added up exactly.
+    /// The comparison without rounding: an exact sum of three products and the cosine, two parts
+    /// each.
     #[cold]
     fn reached_exactly(&self, a: DVec3, b: DVec3) -> Option<bool> {
         let kept = |c: f64| if c.abs() < LEAST_COORDINATE { 0.0 } else { c };
@@ -162,13 +168,13 @@ impl BinEdge {
         sum.add(-self.cosine.lo);
         sum.add(-self.cosine.hi);
         let above = sum.rounded();
-        // Twice the slack, as the rounded sum itself is off by less than half of it.
+        // Twice the error bound, since the rounded sum is off by less than half of it.
         let is_decided = self.slack == 0.0 || above.abs() > 2.0 * self.slack;
         is_decided.then_some(above >= 0.0)
     }
 }
 
-/// The dot product in f64, in the one order that all of this module uses.
+/// The dot product in f64, in the one order of operations that this module uses.
 #[inline]
 pub(super) fn dot(a: DVec3, b: DVec3) -> f64 {
     a.x * b.x + a.y * b.y + a.z * b.z

@@ -1,8 +1,8 @@
-//! What can be wrong with directions and bins.
+//! Errors of the K function.
 
 use thiserror::Error;
 
-/// How far the length of a direction may be from 1.
+/// Tolerance of the length of a direction.
 pub const UNIT_WITHIN: f64 = 1e-6;
 
 /// Why pairs cannot be counted.
@@ -11,7 +11,7 @@ pub enum KError {
     /// No bins, or too many.
     #[error("analysis: k: expected 1 to {} bins, got {got}", super::MOST_BINS)]
     Bins {
-        /// Bins asked for.
+        /// Requested number of bins.
         got: usize,
     },
     /// Not a direction: not finite, or not of length 1 within [`UNIT_WITHIN`].
@@ -19,46 +19,46 @@ pub enum KError {
         "analysis: k: point {index}: expected a length within {UNIT_WITHIN} of 1, got {length}"
     )]
     NotUnit {
-        /// Its place among the points.
+        /// Index of the point.
         index: usize,
         /// Its length.
         length: f64,
     },
-    /// More points than are numbered in 32 bits.
+    /// More points than 32 bits can number.
     #[error("analysis: k: expected fewer than 4294967296 points, got {got}")]
     TooMany {
-        /// Points given.
+        /// Number of points.
         got: usize,
     },
-    /// Points that do not make up whole frames, or more frames than are counted.
+    /// An incomplete last frame, or too many frames.
     #[error(
         "analysis: k: expected whole frames, {} at most, got {points} points in {frames} frames",
         super::MOST_FRAMES
     )]
     Frames {
-        /// Points given.
+        /// Number of points.
         points: usize,
-        /// Frames asked for.
+        /// Requested number of frames.
         frames: usize,
     },
-    /// A tolerance or a risk that means nothing.
+    /// A tolerance or a risk out of range.
     #[error("analysis: k: expected a {name} above 0 and below 1, got {got}")]
-    Wish {
-        /// Which of the two.
+    Setting {
+        /// Name of the setting.
         name: &'static str,
-        /// What was asked for.
+        /// Its value.
         got: f64,
     },
-    /// Harmonics of no degree, or of more than are summed.
+    /// A degree of harmonics out of range.
     #[error(
         "analysis: k: expected harmonics of degree 1 to {}, got {got}",
         super::MOST_DEGREE
     )]
     Degree {
-        /// Degree asked for.
+        /// Requested degree.
         got: usize,
     },
-    /// A point is not where the first frame's, turned, would be.
+    /// A point off its place in the rotated first frame.
     #[error(
         "analysis: k: point {index} of frame {frame}: expected that of frame 0, turned, within {}, got {off} from it",
         super::TURNED_WITHIN
@@ -66,12 +66,13 @@ pub enum KError {
     NotTurned {
         /// Its frame, from 0.
         frame: usize,
-        /// Its place in the frame.
+        /// Its index in the frame.
         index: usize,
-        /// How far off it is.
+        /// Its distance from the expected place.
         off: f64,
     },
-    /// A pair is nearer than 2^-97 to an edge whose cosine is irrational. No pair of rounded points has been seen to be.
+    /// A pair nearer than 2^-97 to an edge with an irrational cosine. No pair of rounded points is
+    /// known to be.
     #[error(
         "analysis: k: directions {first:?} and {second:?}: expected a side of the edge above bin {bin}, got nearer than 2^-97 to it"
     )]
@@ -80,7 +81,7 @@ pub enum KError {
         bin: usize,
         /// One direction.
         first: [f64; 3],
-        /// The other.
+        /// The other direction.
         second: [f64; 3],
     },
 }

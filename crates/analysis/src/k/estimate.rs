@@ -1,29 +1,28 @@
-//! What a faster method says of the pairs, and how far it may be off.
-//!
-//! Left out: the methods.
+//! Shares of pairs by angle, with a bound on their error.
 
 use super::{Edges, PairCounts};
 use serde::Serialize;
 
-/// How far a share of pairs may be off: a share is a count over `n (n - 1) / 2`, as `D` is.
+/// Bound on the error of a share of pairs, that is, of a count divided by `n (n - 1) / 2`. `D` has
+/// the same error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum ErrorBound {
-    /// Nothing is off.
+    /// The shares are exact.
     Exact,
-    /// None: how far it is off has been measured for some scans, and is not known of others.
+    /// The error is unknown; it has been measured for some scans.
     Unknown,
-    /// Holds for all bins at once with a probability over the method's own draws, whatever the points: one number a bin.
+    /// Bounds that hold for all bins at once with a probability over the draws, for any points.
     Confidence {
-        /// Of the share up to the bin's upper edge.
+        /// Bound on the share up to the upper edge of each bin.
         shares: Vec<f64>,
-        /// The probability that one of them does not hold is at most this.
+        /// Upper bound of the probability that any of them fails.
         risk: f64,
     },
 }
 
 impl ErrorBound {
-    /// The largest over all bins; infinite where none is known.
+    /// The largest over all bins; infinite if unknown.
     #[must_use]
     pub fn largest(&self) -> f64 {
         match self {
@@ -33,7 +32,7 @@ impl ErrorBound {
         }
     }
 
-    /// Of the share up to a bin's upper edge.
+    /// Bound on the share up to the upper edge of a bin.
     #[must_use]
     pub fn of(&self, bin: usize) -> f64 {
         match self {
@@ -47,23 +46,24 @@ impl ErrorBound {
 /// Pairs by angle, with a bound on the error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// The method, lower-case.
+    /// Name of the method in lower case.
     pub method: &'static str,
     /// The bins.
     pub edges: Edges,
-    /// The share of all pairs up to the upper edge of each bin, 0 to 1; the last is 1.
+    /// Share of all pairs up to the upper edge of each bin, 0 to 1; the last is 1.
     pub shares: Vec<f64>,
-    /// How far each may be off.
+    /// Bound on the error of each share.
     pub bound: ErrorBound,
-    /// Directions.
+    /// Number of directions.
     pub points: usize,
-    /// Pairs that lie on an inner edge within rounding ([`super::ON_EDGE`]): counted, or of samples estimated; none where the method cannot tell. Where they are a share of
-    /// all that matters, other bins say more.
+    /// Pairs on an inner edge within rounding ([`super::ON_EDGE`]), counted or estimated; `None` if
+    /// the method cannot tell. If they are a relevant share of all, another number of bins is more
+    /// meaningful.
     pub on_edges: Option<u64>,
 }
 
 impl Estimate {
-    /// Of fewer than two points, which have no pairs: the shares of randomness, exactly.
+    /// The shares under randomness, for fewer than two points.
     pub(super) fn without_pairs(method: &'static str, edges: &Edges, points: usize) -> Self {
         let csr = |t: &f64| (t / 2.0).sin().powi(2);
         Self {

@@ -1,7 +1,8 @@
-//! Every pair, leaf by leaf.
+//! Exact counts of every pair, leaf by leaf.
 //!
-//! Blocks of leaves that lie within one bin of each other are counted by multiplication, leaves likewise; what is left is
-//! `leaf_pair`'s. Threads take blocks from a common list; sums of whole numbers do not know who made them. Left out: trees.
+//! Blocks of leaves that lie within one bin of each other are counted by multiplication, and so are
+//! leaves. `leaf_pair` counts the rest. Threads take blocks from a shared counter; integer sums do
+//! not depend on the order.
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,15 +20,15 @@ use super::sign_mask::SignMask;
 use super::tree::{BLOCK_LEAVES, LeafBlock, Tree};
 use super::{Edges, KError, PairCounts, Registers};
 
-/// Counts every pair of directions, on so many threads; the counts do not hang on how many.
+/// Counts every pair of directions; the result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`KError::NotUnit`] and [`KError::TooMany`] for what are not directions, [`KError::Undecided`].
+/// [`KError::NotUnit`] and [`KError::TooMany`] for invalid directions; [`KError::Undecided`].
 pub fn exact(points: &[DVec3], edges: &Edges, threads: NonZeroUsize) -> Result<PairCounts, KError> {
     exact_by(Registers::Best, points, edges, threads)
 }
 
-/// The same with some registers.
+/// The same with given registers.
 ///
 /// # Errors
 /// As [`exact()`].
@@ -88,7 +89,7 @@ pub fn exact_by(
     })
 }
 
-/// Does the same on the caller's thread and on others, as many as the system starts.
+/// Runs `work` on this thread and on as many others as the system starts, up to `threads` in all.
 pub(super) fn on_threads<T: Send>(threads: NonZeroUsize, work: &(impl Fn() -> T + Sync)) -> Vec<T> {
     std::thread::scope(|scope| {
         let start = |_| std::thread::Builder::new().spawn_scoped(scope, work).ok();
@@ -104,23 +105,23 @@ pub(super) fn on_threads<T: Send>(threads: NonZeroUsize, work: &(impl Fn() -> T 
     })
 }
 
-/// Sides by the real numbers.
+/// A queue of pairs for the exact test.
 struct QueuedExactTest<'a> {
     points: &'a [DVec3],
     edges: &'a Edges,
-    /// To be judged together, as their points have to be fetched from far.
+    /// Pairs are tested together, since their points are far apart in memory.
     waiting: Vec<QueuedPair>,
-    /// What judged pairs are beyond each edge, less what had been said of them.
+    /// Tested pairs beyond each edge, less those already counted as beyond it.
     beyond: Vec<i64>,
     on_edges: u64,
     wrong: Option<KError>,
 }
 
-/// A pair, an edge, and whether it is counted as beyond that.
+/// A pair, an edge, and whether the pair is counted as beyond it.
 struct QueuedPair {
     edge: usize,
     pair: (usize, usize),
-    said: bool,
+    counted: bool,
 }
 
 impl<'a> QueuedExactTest<'a> {
@@ -149,23 +150,28 @@ impl<'a> QueuedExactTest<'a> {
         }
     }
 
-    /// Judges those that wait.
+    /// Tests the queued pairs.
     #[inline(never)]
     fn settle(&mut self) {
         let mut waiting = std::mem::take(&mut self.waiting);
-        for QueuedPair { edge, pair, said } in waiting.drain(..) {
+        for QueuedPair {
+            edge,
+            pair,
+            counted,
+        } in waiting.drain(..)
+        {
             let (Some(&a), Some(&b)) = (self.points.get(pair.0), self.points.get(pair.1)) else {
                 continue;
             };
             let above = dot(a, b) - self.edges.cosine(edge);
-            // Without a branch that has to be guessed: the next points are fetched before these have come.
+            // Without a branch to predict, the next points are fetched before these have arrived.
             let is_beyond = if above.abs() > ON_EDGE {
                 above < 0.0
             } else {
                 self.is_beyond(edge, pair.0, pair.1)
             };
             if let Some(beyond) = self.beyond.get_mut(edge) {
-                *beyond += i64::from(is_beyond) - i64::from(said);
+                *beyond += i64::from(is_beyond) - i64::from(counted);
             }
         }
         self.waiting = waiting;
@@ -174,13 +180,17 @@ impl<'a> QueuedExactTest<'a> {
 
 impl ExactBinTest for QueuedExactTest<'_> {
     #[inline(always)]
-    fn recheck(&mut self, edge: usize, a: usize, b: usize, said: bool) {
+    fn recheck(&mut self, edge: usize, a: usize, b: usize, counted: bool) {
         let pair = (a, b);
-        self.waiting.push(QueuedPair { edge, pair, said });
+        self.waiting.push(QueuedPair {
+            edge,
+            pair,
+            counted,
+        });
     }
 }
 
-/// What one thread counts.
+/// The counts of one thread.
 struct ExactWorker<'a> {
     tree: &'a Tree,
     edges: &'a Edges,
@@ -199,7 +209,7 @@ impl ExactWorker<'_> {
         }
     }
 
-    /// Takes blocks until none is left, each with all that are not before it.
+    /// Takes blocks until none is left, and pairs each with those that are not before it.
     #[inline(always)]
     fn all<L: SignMask>(&mut self, on: L, next: &AtomicUsize) {
         let tree = self.tree;
@@ -231,7 +241,7 @@ impl ExactWorker<'_> {
         }
     }
 
-    /// Whether all pairs of a block and a node behind it are in one bin; they are counted then.
+    /// Whether all pairs of a block and a later node are in one bin; counts them if so.
     fn is_in_one_bin(&mut self, block: &LeafBlock, at: usize) -> bool {
         let tree = self.tree;
         let Some(node) = tree.nodes.get(at) else {
@@ -243,7 +253,7 @@ impl ExactWorker<'_> {
             let bin = angle * bins as f64 / std::f64::consts::PI;
             (bin as usize).min(bins - 1)
         };
-        // The angles are rounded outward by more than this arithmetic is off.
+        // The angles are rounded outward by more than the error of this arithmetic.
         if bin(least) != bin(greatest) {
             return false;
         }
@@ -261,7 +271,7 @@ impl ExactWorker<'_> {
         true
     }
 
-    /// All pairs of leaves of two blocks, or of one with itself.
+    /// Counts all pairs of leaves of two blocks, or of one block with itself.
     #[inline(always)]
     fn blocks<L: SignMask>(
         &mut self,
@@ -270,9 +280,9 @@ impl ExactWorker<'_> {
         thresholds: &[f32],
     ) {
         let tree = self.tree;
-        // So many rows at most are added to a lane.
+        // The largest number of rows added to a lane.
         self.counter.settle(BLOCK_LEAVES * BLOCK_LEAVES * LANES * 2);
-        // All reaches first: none waits for another then.
+        // All ranges are computed first, so that none waits for another.
         let mut found = [(0, LeavesByEdgeCount::default()); BLOCK_LEAVES];
         for (leaf, found) in (block.first..block.end).zip(&mut found) {
             *found = self.reached(on, leaf, other);
@@ -293,7 +303,8 @@ impl ExactWorker<'_> {
         self.exact_test.settle();
     }
 
-    /// What full leaves of a block behind this one are how far off, and from which; pairs with those that are not full are counted.
+    /// Bin ranges of a leaf and the later full leaves of a block, and the first of those leaves.
+    /// Pairs with incomplete leaves are counted.
     #[inline(always)]
     fn reached<L: SignMask>(
         &mut self,
@@ -316,7 +327,7 @@ impl ExactWorker<'_> {
         } else {
             other.first
         };
-        // Only the very last leaf may lack points.
+        // Only the very last leaf may be incomplete.
         let end = other.end.min(tree.points.len() / LANES);
         self.not_full(on, leaf, &around, end.max(start)..other.end);
         for (of, start) in others.reach.iter_mut().zip((start..end).step_by(LANES)) {
@@ -329,7 +340,7 @@ impl ExactWorker<'_> {
         (start, others)
     }
 
-    /// A leaf with others that it has so many edges to.
+    /// Counts a leaf with others to which it has `E` edges.
     #[inline(always)]
     fn few<L: SignMask, const E: usize>(
         &mut self,
@@ -348,14 +359,15 @@ impl ExactWorker<'_> {
             if let (Some(b), Some(of)) = (self.tree.leaves.get(start + at), of) {
                 let places = (leaf * LANES, (start + at) * LANES, first);
                 let (counter, exact_test) = (&mut self.counter, &mut self.exact_test);
-                // From memory each time: a compiler that keeps 48 numbers in registers of sixteen lanes has to put them all away again.
+                // Rows are read from memory each time. A compiler that keeps 48 numbers in
+                // registers of sixteen lanes has to spill them all.
                 let rows = std::hint::black_box(rows);
                 edges::<L, E>(on, rows, b, places, *of, counter, exact_test);
             }
         }
     }
 
-    /// The same with more edges.
+    /// Counts a leaf with others to which it has more edges.
     #[inline(always)]
     fn many<L: SignMask>(
         &mut self,
@@ -375,7 +387,7 @@ impl ExactWorker<'_> {
         }
     }
 
-    /// A leaf with others of which one is not full, or with itself.
+    /// Counts a leaf with itself or with incomplete leaves.
     #[inline(always)]
     fn not_full<L: SignMask>(
         &mut self,
@@ -394,7 +406,7 @@ impl ExactWorker<'_> {
         }
     }
 
-    /// The pairs of a leaf with itself, or of leaves of which one is not full.
+    /// Counts the pairs of a leaf with itself or with an incomplete leaf, one by one.
     fn one_by_one(&mut self, leaf: usize, other: usize, (first, last): (usize, usize)) {
         let end = |leaf: usize| ((leaf + 1) * LANES).min(self.tree.points.len());
         for a in leaf * LANES..end(leaf) {

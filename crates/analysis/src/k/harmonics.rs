@@ -1,8 +1,10 @@
-//! The K function by spherical harmonics: what is smooth in how points lie, and no pair looked at.
+//! The K function by spherical harmonics, without looking at pairs.
 //!
-//! The sum of `P_l(a.b)` over all pairs is the power of the points' harmonics of degree `l` (addition theorem), and whether `a.b` is at least `c` is a series of
-//! `P_l(a.b)`. So the share of pairs up to an edge is a sum over degrees. It is cut off at one, which leaves out what is sharper than 180 degrees over it, and points are put
-//! on a grid of rings first, 8 rings a degree of the harmonics. Left out: a bound. How far it is off is measured for some scans (`docs/src/k.md`), and not known of others.
+//! The sum of `P_l(a.b)` over all pairs is the power of the points' harmonics of degree `l`
+//! (addition theorem), and the condition `a.b >= c` is a series of `P_l(a.b)`. So the share of
+//! pairs up to an edge is a sum over degrees. The sum is truncated, which loses structure finer
+//! than 180 degrees divided by the degree. Points are first put on a grid of rings, 8 rings per
+//! degree of the harmonics. The error is not bounded; `docs/src/k.md` has measurements.
 
 use std::f64::consts::PI;
 
@@ -11,20 +13,22 @@ use glam::DVec3;
 use super::plain::check;
 use super::{Edges, ErrorBound, Estimate, KError};
 
-/// The highest degree: `sin^m` near the poles does not underflow before where it no longer counts.
+/// The highest degree up to which `sin^m` near the poles underflows only where it is negligible.
 pub const MOST_DEGREE: usize = 512;
 
-/// Rings a degree, from pole to pole.
+/// Rings per degree, from pole to pole.
 const RINGS: usize = 8;
-/// Places along a ring a degree: folded four times, they are vectors.
+/// Positions along a ring per degree.
 const PLACES: usize = 16;
 /// Rings that are summed at once.
 const AT_ONCE: usize = 8;
 
-/// Estimates by harmonics up to a degree; 64 is usual. How far it is off is not known: [`ErrorBound::Unknown`].
+/// Estimates by harmonics up to a degree; 64 is usual. The error is unknown:
+/// [`ErrorBound::Unknown`].
 ///
 /// # Errors
-/// [`KError::NotUnit`] and [`KError::TooMany`] for what are not directions, [`KError::Degree`] for 0 and for degrees above [`MOST_DEGREE`].
+/// [`KError::NotUnit`] and [`KError::TooMany`] for invalid directions, [`KError::Degree`] for 0 and
+/// for degrees above [`MOST_DEGREE`].
 pub fn harmonics(points: &[DVec3], edges: &Edges, degree: usize) -> Result<Estimate, KError> {
     check(points)?;
     if !(1..=MOST_DEGREE).contains(&degree) {
@@ -67,7 +71,7 @@ fn spectrum(points: &[DVec3], degree: usize) -> Vec<f64> {
             twice * (re * re + im * im)
         });
         let power = squares.sum::<f64>() * 4.0 * PI / (2 * l + 1) as f64;
-        // Less every point with itself: P_l(1) = 1.
+        // Without the pairs of each point with itself: P_l(1) = 1.
         (power - n) / (n * (n - 1.0))
     };
     let mut spectrum: Vec<f64> = sums.chunks(degree + 1).enumerate().map(of).collect();
@@ -77,13 +81,13 @@ fn spectrum(points: &[DVec3], degree: usize) -> Vec<f64> {
     spectrum
 }
 
-/// A ring: the mean of its points' z, and their Fourier sums `exp(-i m phi)`, from m = 0.
+/// A ring: the mean z of its points, and their Fourier sums `exp(-i m phi)` from m = 0.
 struct Ring {
     z: f64,
     sums: Vec<[f64; 2]>,
 }
 
-/// Points by polar angle and azimuth about z, and the Fourier sums of all rings that have any.
+/// Fourier sums of all rings with points, by polar angle and azimuth about z.
 fn rings(points: &[DVec3], degree: usize) -> Vec<Ring> {
     let (rings, places) = (RINGS * degree, PLACES * degree);
     let mut grid = vec![0_u32; rings * places];
@@ -112,7 +116,8 @@ fn rings(points: &[DVec3], degree: usize) -> Vec<Ring> {
     rings.collect()
 }
 
-/// The angle from z, radians, to 7e-5 (Abramowitz and Stegun 4.4.45): it only says which ring, whose height is that of its points.
+/// The angle from z in radians, to 7e-5 (Abramowitz and Stegun 4.4.45). It only selects the ring,
+/// whose height is that of its points.
 fn polar(z: f32) -> f32 {
     let near = z.abs().min(1.0);
     let series = (-0.018_729_3 * near + 0.074_261) * near - 0.212_114_4;
@@ -124,7 +129,8 @@ fn polar(z: f32) -> f32 {
     }
 }
 
-/// The azimuth from x towards y, in eighths of a circle, 0 to 8, to some 3e-6 (Abramowitz and Stegun 4.4.49).
+/// The azimuth from x towards y in eighths of a circle, 0 to 8, to 3e-6 (Abramowitz and Stegun
+/// 4.4.49).
 fn eighths(x: f32, y: f32) -> f32 {
     let (u, v) = (x.abs(), y.abs());
     let (least, most) = (u.min(v), u.max(v));
@@ -138,7 +144,7 @@ fn eighths(x: f32, y: f32) -> f32 {
     if y < 0.0 { 8.0 - angle } else { angle }
 }
 
-/// Cosines and sines of the middles of a quarter of the places, for every m.
+/// Cosines and sines at the middles of a quarter of the positions, for every m.
 struct RingWaves {
     quarter: usize,
     waves: Vec<[Vec<f64>; 2]>,
@@ -162,11 +168,12 @@ impl RingWaves {
         }
     }
 
-    /// Fourier sums of a ring. Where half a turn on a wave is the same or the opposite, and so where it is mirrored: only a quarter is multiplied.
+    /// Fourier sums of a ring. A wave half a revolution on is the same or the opposite, and so is
+    /// its mirror image: only a quarter is multiplied.
     fn sums(&self, counts: &[u32]) -> Vec<[f64; 2]> {
         let at = |place: usize| counts.get(place).copied().map_or(0.0, f64::from);
         let half = 2 * self.quarter;
-        // Of even and odd m, each a sum and a difference of mirrored places.
+        // Sums and differences of mirrored positions, for even and odd m.
         let folded = [1.0, -1.0].map(|sign| {
             let half_turn = |place: usize| at(place) + sign * at(place + half);
             let places = 0..self.quarter;
@@ -178,7 +185,8 @@ impl RingWaves {
         let [[even_sum, even_difference], [odd_sum, odd_difference]] = &folded;
         let waves = self.waves.iter().enumerate();
         let sums = waves.map(|(m, [cosines, sines])| {
-            // Mirrored at a quarter turn, the cosine of an even m stays and its sine turns round; with odd m it is the other way.
+            // Mirrored at a quarter revolution, the cosine of an even m keeps its sign and its sine
+            // changes it; for odd m it is the other way round.
             let (of_cosine, of_sine) = if m % 2 == 0 {
                 (even_sum, even_difference)
             } else {
@@ -190,7 +198,7 @@ impl RingWaves {
     }
 }
 
-/// In lanes.
+/// The scalar product, in lanes.
 fn product(a: &[f64], b: &[f64]) -> f64 {
     let (whole_a, rest_a) = a.as_chunks::<8>();
     let (whole_b, rest_b) = b.as_chunks::<8>();
@@ -204,10 +212,11 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest.sum::<f64>()
 }
 
-/// Adds some rings to the sums of all harmonics, `l` by `m`.
+/// Adds rings to the sums of all harmonics, `l` by `m`.
 ///
-/// Harmonics are those of unit norm. From `m` to `m + 1` their sine is a factor, from `l` to `l + 1` there is the recurrence of three terms whose numbers stay near 1
-/// (Holmes and Featherstone 2002, Eq. 11 with the norm of 1 instead of 4 pi).
+/// The harmonics have unit norm. From `m` to `m + 1` they follow by a factor of the sine, from `l`
+/// to `l + 1` by the three-term recurrence whose numbers stay near 1 (Holmes and Featherstone 2002,
+/// Eq. 11 with a norm of 1 instead of 4 pi).
 fn add(rings: &[Ring], degree: usize, sums: &mut [[f64; 2]]) {
     let mut z = [0.0; AT_ONCE];
     for (z, ring) in z.iter_mut().zip(rings) {
@@ -248,7 +257,7 @@ fn add(rings: &[Ring], degree: usize, sums: &mut [[f64; 2]]) {
     }
 }
 
-/// `P(l) = a z P(l - 1) - b P(l - 2)`, for an order m.
+/// The coefficients of `P(l) = a z P(l - 1) - b P(l - 2)` for an order m.
 fn onward(l: usize, m: usize) -> (f64, f64) {
     let (l, m) = (l as f64, m as f64);
     let below = (l - m) * (l + m);
@@ -257,7 +266,8 @@ fn onward(l: usize, m: usize) -> (f64, f64) {
     (a, b.max(0.0).sqrt())
 }
 
-/// The share of pairs up to an edge: `1[x >= c]` is the sum over degrees of `(P_(l-1)(c) - P_(l+1)(c)) / 2 P_l(x)`, of degree 0 `(1 - c) / 2`.
+/// The share of pairs up to an edge: `1[x >= c]` is the sum over degrees of `(P_(l-1)(c) -
+/// P_(l+1)(c)) / 2 P_l(x)`, and `(1 - c) / 2` for degree 0.
 fn share(cosine: f64, spectrum: &[f64]) -> f64 {
     let mut share = 0.0;
     // P_(l-1), which is 1 for l = 0, and P_l.
@@ -292,7 +302,8 @@ mod tests {
 
     #[test]
     fn harmonics_of_high_degree_stay_whole_at_the_poles() {
-        // The squares of all harmonics of a degree are (2 l + 1) / (4 pi) together, wherever the point is (addition theorem).
+        // The squares of all harmonics of a degree are (2 l + 1) / (4 pi) together, wherever the
+        // point is (addition theorem).
         for z in [
             1.0,
             -1.0,
@@ -400,7 +411,8 @@ mod tests {
             }
         }
         for (l, (got, plain)) in spectrum(&points, degree).iter().zip(&plain).enumerate() {
-            // Places on the grid are off by up to 1/512 of pi: of degree l by some l2 / 512 of a radian's square, and by chance with so few points.
+            // Places on the grid are off by up to 1/512 of pi: of degree l by some l2 / 512 of a
+            // radian's square, and by chance with so few points.
             let off = 2e-3 * (1.0 + l as f64 / 8.0);
             assert!((got - plain).abs() < off, "{l}: {got} {plain}");
         }

@@ -1,32 +1,32 @@
-//! What sixteen lanes of registers must be able to do to count pairs, with the instructions of AVX-512 where there are such.
+//! Registers of sixteen lanes for counting pairs, with AVX-512 where the processor has it.
 //!
-//! Everything goes through `fearless_simd`: its tokens prove what the processor has. Left out: what is counted, and how signs are noted.
+//! All access goes through `fearless_simd`, whose tokens prove what the processor has.
 
 use fearless_simd::{Simd, f32x16, prelude::*};
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use fearless_simd::x86::{Avx2, Avx512};
 
-/// Points of a leaf, and lanes of a register.
+/// Points per leaf and lanes per register.
 pub(super) const LANES: usize = 16;
 
-/// Numbers of sixteen lanes on a line of the cache of their own.
+/// Sixteen numbers on a cache line of their own.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub(super) struct AlignedLanes<T>(pub [T; LANES]);
 
-/// Sixteen lanes.
+/// Registers of sixteen lanes.
 pub(super) trait SimdLanes: Copy {
-    /// Whose registers.
+    /// The registers' type.
     type S: Simd;
 
     fn simd(self) -> Self::S;
 
-    /// Lane by lane, the one nearer to nought of these two, its sign lost or not.
-    fn nearer_nought(self, a: f32x16<Self::S>, b: f32x16<Self::S>) -> f32x16<Self::S>;
+    /// Per lane, the number nearer to zero; its sign may be lost.
+    fn nearer_zero(self, a: f32x16<Self::S>, b: f32x16<Self::S>) -> f32x16<Self::S>;
 }
 
-/// Any registers that there are: AVX2, SSE, NEON, or none.
+/// The registers of any processor: AVX2, SSE, NEON or none.
 #[derive(Clone, Copy)]
 pub(super) struct Portable<S>(pub S);
 
@@ -39,12 +39,12 @@ impl<S: Simd> SimdLanes for Portable<S> {
     }
 
     #[inline(always)]
-    fn nearer_nought(self, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
+    fn nearer_zero(self, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
         a.min(b.abs())
     }
 }
 
-/// AVX-512: the nearer of two is one instruction.
+/// AVX-512, in which selecting the nearer number is one instruction.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 #[derive(Clone, Copy)]
 pub(super) struct Wide(pub Avx512);
@@ -59,7 +59,7 @@ impl SimdLanes for Wide {
     }
 
     #[inline(always)]
-    fn nearer_nought(self, a: f32x16<Avx512>, b: f32x16<Avx512>) -> f32x16<Avx512> {
+    fn nearer_zero(self, a: f32x16<Avx512>, b: f32x16<Avx512>) -> f32x16<Avx512> {
         x86::nearer(self.0, a, b)
     }
 }
@@ -79,8 +79,8 @@ impl SimdLanes for Half {
     }
 
     #[inline(always)]
-    fn nearer_nought(self, a: f32x16<Avx2>, b: f32x16<Avx2>) -> f32x16<Avx2> {
-        Portable(self.0).nearer_nought(a, b)
+    fn nearer_zero(self, a: f32x16<Avx2>, b: f32x16<Avx2>) -> f32x16<Avx2> {
+        Portable(self.0).nearer_zero(a, b)
     }
 }
 
@@ -101,7 +101,7 @@ mod x86 {
             a: f32x16<Avx512>,
             b: f32x16<Avx512>,
         ) -> f32x16<Avx512> {
-            // 0b0010: the least by magnitude, with a sign cleared.
+            // 0b0010: the smaller magnitude, with the sign cleared.
             _mm512_range_ps::<0b1010>(a.into(), b.into()).simd_into(token)
         }
     );

@@ -1,7 +1,9 @@
 //! Two leaves of sixteen points: how many of their 256 pairs are beyond each of a few edges.
 //!
-//! A row is one point of the first leaf against all of the second: dot products in f32, less the cosine of an edge. The sign says on which side of the edge a pair is,
-//! unless it is nearer to it than [`F32_BAND`]: those few pairs are judged one by one, in f64 and without rounding. Left out: which leaves.
+//! A row is one point of the first leaf against all of the second: dot products in f32, less the
+//! cosine of an edge. The sign says on which side of the edge a pair is, unless it is nearer to it
+//! than [`F32_BAND`]: those few pairs are judged one by one, in f64 and without rounding. Left out:
+//! which leaves.
 
 use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
 
@@ -12,18 +14,20 @@ use super::tree::Leaf;
 
 /// How far a dot product less a cosine in f32 may be off: 2^-21.
 ///
-/// With u = 2^-24, lengths within 1e-6 of 1 and the cosine c: rounding of coordinates 2 u, of c 1 u, of products (none where they are fused) 1 u, of
-/// the first sum 1 u, of the second 1 u, of the third 1 u where the cosine comes last; the last operation's own error is relative to its result and turns no sign. Together
-/// below 7.1 u; 8 u is 2^-21. Sums are bounded by Cauchy's inequality.
+/// With u = 2^-24, lengths within 1e-6 of 1 and the cosine c: rounding of coordinates 2 u, of c 1
+/// u, of products (none where they are fused) 1 u, of the first sum 1 u, of the second 1 u, of the
+/// third 1 u where the cosine comes last; the last operation's own error is relative to its result
+/// and turns no sign. Together below 7.1 u; 8 u is 2^-21. Sums are bounded by Cauchy's inequality.
 pub(super) const F32_BAND: f32 = 1.0 / (1_u32 << 21) as f32;
 
-/// Who says on which side of an edge a pair is.
+/// The exact test of the side of an edge on which a pair lies.
 pub(super) trait ExactBinTest {
-    /// A pair that f32 cannot tell is beyond the edge above this bin or not, of these places among the points; whether it has been counted as beyond.
-    fn recheck(&mut self, edge: usize, a: usize, b: usize, said: bool);
+    /// Tests the pair of points `a` and `b`, which f32 cannot assign to a side of the upper edge of
+    /// a bin. `counted` tells whether it is counted as beyond the edge.
+    fn recheck(&mut self, edge: usize, a: usize, b: usize, counted: bool);
 }
 
-/// What has been counted.
+/// Counts of pairs.
 #[derive(Clone, Debug)]
 pub(super) struct PairCounter {
     /// Pairs by the first bin that their leaves can reach.
@@ -32,7 +36,7 @@ pub(super) struct PairCounter {
     pub beyond: Vec<i64>,
     /// The same by lanes, not yet added up.
     pub lanes: Vec<AlignedLanes<u32>>,
-    /// The most that a lane can hold.
+    /// Bound on the count in a lane.
     held: u32,
 }
 
@@ -46,7 +50,7 @@ impl PairCounter {
         }
     }
 
-    /// Adds up lanes before they can overflow by what is coming for each.
+    /// Adds up the lanes if `coming` more pairs per lane could overflow them.
     pub(super) fn settle(&mut self, coming: usize) {
         let coming = u32::try_from(coming).unwrap_or(u32::MAX);
         if self.held.checked_add(coming).is_none() {
@@ -55,7 +59,7 @@ impl PairCounter {
         self.held = self.held.saturating_add(coming);
     }
 
-    /// Adds pairs whose first bin this is.
+    /// Adds pairs whose first bin is `bin`.
     #[inline(always)]
     pub(super) fn add(&mut self, bin: usize, pairs: Option<u64>) {
         if let (Some(from), Some(pairs)) = (self.from.get_mut(bin), pairs) {
@@ -71,7 +75,7 @@ impl PairCounter {
         self.held = 0;
     }
 
-    /// Pairs by bin, with so many more beyond each edge.
+    /// Pairs per bin, with `more` pairs beyond each edge.
     pub(super) fn counts(mut self, more: &[i64]) -> Vec<i64> {
         self.add_up();
         for (beyond, more) in self.beyond.iter_mut().zip(more) {
@@ -84,10 +88,10 @@ impl PairCounter {
     }
 }
 
-/// The points of a leaf that are rows, scaled as the notes want them.
+/// The points of a leaf as rows, in the scale of the sign masks.
 pub(super) type Rows = [[f32; 3]; LANES];
 
-/// A full leaf's points as rows.
+/// The points of a full leaf as rows.
 #[inline(always)]
 pub(super) fn rows<L: SignMask>(leaf: &Leaf) -> Rows {
     let [AlignedLanes(x), AlignedLanes(y), AlignedLanes(z)] = leaf;
@@ -98,7 +102,8 @@ pub(super) fn rows<L: SignMask>(leaf: &Leaf) -> Rows {
     rows
 }
 
-/// What the rows' dot products are compared with: the cosine of every inner edge, moved and scaled as the notes want it.
+/// What dot products are compared with: the cosine of every inner edge, shifted and scaled for the
+/// sign masks.
 pub(super) fn thresholds<L: SignMask>(edges: &Edges) -> Vec<f32> {
     let inner = 0..edges.bins().saturating_sub(1);
     let moved = inner.map(|edge| edges.cosine(edge) - f64::from(L::MOVED));
@@ -107,7 +112,7 @@ pub(super) fn thresholds<L: SignMask>(edges: &Edges) -> Vec<f32> {
         .collect()
 }
 
-/// Counts the pairs of two full leaves beyond each of the edges from `first` to before `last`.
+/// Counts the pairs of two full leaves beyond each of the edges `first..last`.
 #[inline(always)]
 pub(super) fn leaf_pair<L: SignMask>(
     on: L,
@@ -133,7 +138,7 @@ pub(super) fn leaf_pair<L: SignMask>(
     }
 }
 
-/// The same for a few edges from one; says how many.
+/// The same for `E` edges from one on; returns `E`.
 #[inline(always)]
 pub(super) fn edges<L: SignMask, const E: usize>(
     on: L,
@@ -145,22 +150,22 @@ pub(super) fn edges<L: SignMask, const E: usize>(
     exact_test: &mut impl ExactBinTest,
 ) -> usize {
     let lanes = loaded(on.simd(), b);
-    // One an edge, so that none waits for another.
-    let mut notes = [on.empty_mask(); E];
+    // One per edge, so that none waits for another.
+    let mut masks = [on.empty_mask(); E];
     for [row, next] in a.as_chunks().0 {
         let above = row_above(on, *row, lanes, thresholds);
         let next_above = row_above(on, *next, lanes, thresholds);
-        for ((notes, above), next) in notes.iter_mut().zip(above).zip(next_above) {
-            on.record(notes, above, next);
+        for ((masks, above), next) in masks.iter_mut().zip(above).zip(next_above) {
+            on.record(masks, above, next);
         }
     }
     let counted_lanes = counter.lanes.get_mut(edge..edge + E).unwrap_or_default();
-    if !on.add_up(&notes, counted_lanes) {
+    if !on.add_up(&masks, counted_lanes) {
         return E;
     }
     if L::MASK_NAMES_PAIRS {
-        for (edge, notes) in (edge..).zip(notes) {
-            recheck_masked(on, notes, (place_a, place_b, edge), exact_test);
+        for (edge, masks) in (edge..).zip(masks) {
+            recheck_masked(on, masks, (place_a, place_b, edge), exact_test);
         }
     } else {
         near(on, (a, b), (place_a, place_b, edge), thresholds, exact_test);
@@ -168,21 +173,22 @@ pub(super) fn edges<L: SignMask, const E: usize>(
     E
 }
 
-/// Doubts those pairs that were noted as too near to an edge for f32; their numbers were not below nought.
+/// Tests the pairs that the mask marks as too near to an edge for f32; none of them is counted as
+/// beyond it.
 #[inline(always)]
 fn recheck_masked<L: SignMask>(
     on: L,
-    notes: L::Mask,
+    masks: L::Mask,
     (place_a, place_b, edge): (usize, usize, usize),
     exact_test: &mut impl ExactBinTest,
 ) {
-    let (mut words, which) = on.which(notes);
+    let (mut words, which) = on.which(masks);
     while words != 0 {
         let word = words.trailing_zeros() as usize;
         words &= words - 1;
         let mut rows = which.get(word).copied().unwrap_or_default();
         while rows != 0 {
-            // Two bits a row from the top, of two rows in turn, four lanes each.
+            // Two bits per row from the top, of two rows in turn, four lanes each.
             let row = rows.leading_zeros() as usize + word / 4 % 2;
             let lane = word / 8 * 4 + word % 4;
             rows &= !(0x8000_u16 >> rows.leading_zeros());
@@ -209,7 +215,7 @@ fn row_above<L: SimdLanes, const E: usize>(
         return [above; E];
     }
     let mut above = [bz.mul_add(z, by.mul_add(y, bx * x)); E];
-    // Not by `map`, which leaves the function that has the registers.
+    // `map` would leave the function that has the registers.
     for (above, threshold) in above.iter_mut().zip(&thresholds) {
         *above -= f32x16::splat(simd, *threshold);
     }
@@ -225,7 +231,7 @@ pub(super) fn loaded<S: Simd>(simd: S, [x, y, z]: &Leaf) -> [f32x16<S>; 3] {
     ]
 }
 
-/// Doubts those pairs that are too near to an edge for f32.
+/// Tests the pairs that are too near to an edge for f32.
 #[inline(always)]
 fn near<L: SignMask, const E: usize>(
     on: L,
@@ -246,8 +252,8 @@ fn near<L: SignMask, const E: usize>(
             while undecided != 0 {
                 let lane = undecided.trailing_zeros() as usize;
                 undecided &= undecided - 1;
-                let said = negative >> lane & 1 == 1;
-                exact_test.recheck(edge, place_a + row, place_b + lane, said);
+                let counted = negative >> lane & 1 == 1;
+                exact_test.recheck(edge, place_a + row, place_b + lane, counted);
             }
         }
     }

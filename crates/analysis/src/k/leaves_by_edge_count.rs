@@ -1,6 +1,5 @@
-//! The leaves of a block by the number of edges to them, so that each number has a loop of its own, which no branch has to guess.
-//!
-//! Left out: what is done with them.
+//! The leaves of a block by the number of edges to them, so that each number has a loop without
+//! branches.
 
 use fearless_simd::{Simd, i32x16, prelude::*};
 
@@ -8,24 +7,24 @@ use super::lanes::LANES;
 use super::reach::BinRange;
 use super::tree::BLOCK_LEAVES;
 
-/// Leaves of a block, and the bins that pairs with them can be in.
+/// Leaves of a block, and the bins of pairs with them.
 #[derive(Clone, Copy, Default)]
 pub(super) struct LeavesByEdgeCount {
     pub reach: [BinRange; BLOCK_LEAVES / LANES],
-    /// Those to which there are so many edges, a bit each.
+    /// Leaves with 0 to 4 edges, one bit per leaf.
     pub by_edges: [u32; 5],
-    /// Those to which there are more.
+    /// Leaves with more edges.
     pub many: u32,
 }
 
 impl LeavesByEdgeCount {
-    /// Those to which there are so many edges.
+    /// Leaves with `E` edges.
     #[inline(always)]
     pub(super) fn of<const E: usize>(&self) -> Bits {
         Bits(self.by_edges.get(E).copied().unwrap_or_default())
     }
 
-    /// Sorts so many by the number of edges.
+    /// Sorts `count` leaves by their number of edges.
     #[inline(always)]
     pub(super) fn sort<S: Simd>(&mut self, simd: S, count: usize) {
         let mut left = 1_u32
@@ -53,7 +52,7 @@ impl LeavesByEdgeCount {
     }
 }
 
-/// Places of ones, the last first.
+/// Positions of set bits, the last first.
 pub(super) struct Bits(pub u32);
 
 impl Iterator for Bits {

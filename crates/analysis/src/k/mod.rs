@@ -1,9 +1,10 @@
-//! Ripley's K function of directions: how many pairs are how far apart.
+//! Ripley's K function of directions: the number of pairs by angle.
 //!
-//! [`exact()`] counts every pair, in whole numbers, and says on which side of an edge a pair lies by real numbers, not rounded ones ([`Edges`]).
-//! [`turned()`] does the same for scans of turned frames, from one of them. [`sampled()`] and [`gridded()`] are faster and say how far they may be off:
-//! by a confidence interval, and by a proof. [`choose()`] takes the cheapest that is good enough. [`harmonics()`] is faster still, and does not know how far it is off.
-//! Left out: where the directions come from, pictures, files.
+//! [`exact()`] counts every pair in whole numbers; the side of an edge on which a pair lies is
+//! decided without rounding ([`Edges`]). [`turned()`] does the same for scans whose frames are
+//! rotated copies of one frame. [`sampled()`] is faster and has a confidence interval. [`choose()`]
+//! takes the cheapest that is good enough. [`harmonics()`] is faster still, and its error is
+//! unknown.
 
 mod cells;
 mod choose;

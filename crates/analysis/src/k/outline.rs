@@ -1,9 +1,12 @@
-//! Outlines of leaves and blocks: how far their points reach in eight directions, and which bins the pairs of two of them can be in.
+//! Outlines of leaves and blocks: how far their points reach in eight directions, and which bins
+//! the pairs of two of them can be in.
 //!
-//! With `m` a unit vector, `e` and `f` at right angles to it and to each other, every point is `c m + u e + v f`. An outline has bounds of
-//! `|u|`, `|v|`, `|u + v| / sqrt 2` and `|u - v| / sqrt 2`, of `sqrt(u2 + v2)` and of `1 - c`. The dot product of two points is then the middles' plus what the first adds
-//! along the other's middle, what the other adds along the first's, the product of both tangents, and `1 - c` of either: each within its bound, whatever the outline's size.
-//! Left out: counting.
+//! With `m` a unit vector, `e` and `f` at right angles to it and to each other, every point is `c m
+//! + u e + v f`. An outline has bounds of `|u|`, `|v|`, `|u + v| / sqrt 2` and `|u - v| / sqrt 2`,
+//! of `sqrt(u2 + v2)` and of `1 - c`. The dot product of two points is then the middles' plus what
+//! the first adds along the other's middle, what the other adds along the first's, the product of
+//! both tangents, and `1 - c` of either: each within its bound, whatever the outline's size. Left
+//! out: counting.
 
 use fearless_simd::{Simd, f32x16, prelude::*};
 use glam::DVec3;
@@ -11,19 +14,20 @@ use glam::DVec3;
 use super::lanes::LANES;
 use super::reach::{BinRange, arc_cosine, bins_between};
 
-/// Numbers of an outline.
+/// Numbers per outline.
 const NUMBERS: usize = 15;
 
-/// How many ways to turn `e` and `f` are tried.
+/// Orientations of `e` and `f` that are tried.
 const TURNS: u32 = 6;
 
-/// Lengths that are off by 1e-6, and roundings of everything here in f32, in a dot product.
+/// Error of a dot product from lengths that are off by 1e-6 and from rounding in f32.
 const ROUNDED: f32 = 6e-6;
 
-/// `m`, `e`, `f`; the bounds of `|u|`, `|v|`, of the sum and of the difference; of the tangent's length and of `1 - c`. The bounds are rounded up.
+/// `m`, `e`, `f`; the bounds of `|u|`, `|v|`, of the sum and of the difference; of the tangent's
+/// length and of `1 - c`. The bounds are rounded up.
 pub(super) type Outline = [f32; NUMBERS];
 
-/// Of all of these: the narrowest of a few, as its tangents are turned.
+/// The outline of points: the narrowest of several orientations of its tangents.
 pub(super) fn around(points: &[DVec3]) -> Outline {
     let sum: DVec3 = points.iter().sum();
     let middle = sum.try_normalize().unwrap_or(DVec3::X);
@@ -56,7 +60,7 @@ pub(super) fn around(points: &[DVec3]) -> Outline {
     measured(points, [middle, e, middle.cross(e)])
 }
 
-/// How far points reach from this middle along these tangents.
+/// The outline of points with this middle and these tangents.
 fn measured(points: &[DVec3], [middle, e, f]: [DVec3; 3]) -> Outline {
     let mut bounds = [0.0_f64; 6];
     for p in points {
@@ -84,7 +88,7 @@ fn measured(points: &[DVec3], [middle, e, f]: [DVec3; 3]) -> Outline {
     outline
 }
 
-/// Outlines in columns, with [`LANES`] more than there are so that sixteen can be read anywhere.
+/// Outlines in columns, with [`LANES`] extra entries so that sixteen can be read anywhere.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outlines {
     columns: [Vec<f32>; NUMBERS],
@@ -111,7 +115,7 @@ impl Outlines {
         Some(outline)
     }
 
-    /// The first and the last bin that pairs of an outline and each of sixteen can be in.
+    /// The first and the last bin of pairs of an outline with each of sixteen.
     #[inline(always)]
     pub(super) fn span<S: Simd>(
         &self,
@@ -138,7 +142,7 @@ impl Outlines {
         Some(between(simd, cosine, reach, shorter, bins))
     }
 
-    /// The same of a point.
+    /// The same for a point.
     #[inline(always)]
     pub(super) fn span_of_point<S: Simd>(
         &self,
@@ -163,7 +167,7 @@ impl Outlines {
     }
 }
 
-/// The bins of dot products about these, so far to either side, and so much shorter.
+/// The bins of dot products around `cosine`, within `reach`, and scaled down by up to `shorter`.
 #[inline(always)]
 fn between<S: Simd>(
     simd: S,
@@ -194,7 +198,8 @@ fn dot<S: Simd>(a: [f32x16<S>; 3], b: [f32x16<S>; 3]) -> f32x16<S> {
 
 /// How far an outline reaches along a vector with these parts along `e` and `f`.
 ///
-/// With `|p| >= |q|`, the vector is `|p| - |q|` of `e` and `|q| sqrt 2` of the sum's direction, or of the difference's where the signs differ.
+/// With `|p| >= |q|`, the vector is `|p| - |q|` of `e` and `|q| sqrt 2` of the sum's direction, or
+/// of the difference's where the signs differ.
 #[inline(always)]
 fn along<S: Simd>(p: f32x16<S>, q: f32x16<S>, of: &[f32x16<S>; NUMBERS]) -> f32x16<S> {
     let [e, f, sum, difference] = [of[9], of[10], of[11], of[12]];

@@ -1,4 +1,4 @@
-//! Every pair, one after the other: what the faster ways are held against.
+//! Counts of every pair one by one: the reference for the fast methods.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use super::{Edges, KError, PairCounts, UNIT_WITHIN};
 /// Counts every pair by itself.
 ///
 /// # Errors
-/// [`KError::NotUnit`] and [`KError::TooMany`] for what are not directions, [`KError::Undecided`].
+/// [`KError::NotUnit`] and [`KError::TooMany`] for invalid directions; [`KError::Undecided`].
 pub fn plain(points: &[DVec3], edges: &Edges) -> Result<PairCounts, KError> {
     check(points)?;
     let mut counts = vec![0_u64; edges.bins()];
@@ -31,7 +31,7 @@ pub fn plain(points: &[DVec3], edges: &Edges) -> Result<PairCounts, KError> {
     })
 }
 
-/// Whether all are directions, and not too many.
+/// Checks the lengths and the number of directions.
 pub(super) fn check(points: &[DVec3]) -> Result<(), KError> {
     if u32::try_from(points.len()).is_err() {
         return Err(KError::TooMany { got: points.len() });

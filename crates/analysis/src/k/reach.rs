@@ -1,20 +1,21 @@
-//! Which bins the pairs of two leaves can be in: from a circle to sixteen circles at once.
+//! The bins of the pairs of two leaves, from one circle to sixteen at once.
 //!
-//! The arc cosine here only says where to look. It is 7e-5 radians coarse, and every bound is moved outward by more than that.
-//! Left out: counting.
+//! The arc cosine only selects bins. It is accurate to 7e-5 radians, and every bound is moved
+//! outward by more than that.
 
 use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
 
 use super::lanes::LANES;
 
-/// The first and the last bin that the pairs of each of sixteen leaves with another can be in.
+/// The first and the last bin of pairs of one leaf with each of sixteen.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct BinRange {
     pub first: [i32; LANES],
     pub last: [i32; LANES],
 }
 
-/// What is beyond the error of the arc cosine's polynomial (6.7e-5, Abramowitz and Stegun 4.4.45) and of f32 in it.
+/// More than the error of the arc cosine's polynomial (6.7e-5, Abramowitz and Stegun 4.4.45) in
+/// f32.
 const COARSE: f32 = 9e-5;
 
 /// A circle in f32.
@@ -24,7 +25,7 @@ pub(super) struct CircleF32 {
     pub radius: f32,
 }
 
-/// From one circle to the sixteen at these columns.
+/// Bins from one circle to the sixteen in these columns.
 #[inline(always)]
 pub(super) fn reach<S: Simd>(
     simd: S,
@@ -43,12 +44,13 @@ pub(super) fn reach<S: Simd>(
         y.mul_add(f32x16::splat(simd, my), x * mx),
     );
     let (apart, root) = angle(simd, cosine);
-    // An error of 4e-7 in the cosine moves the angle by up to that over its sine, and by 1e-3 at 0 and pi.
+    // An error of 4e-7 in the cosine moves the angle by that divided by its sine, and by up to 1e-3
+    // at 0 and pi.
     let beyond = radius + COARSE + 2e-6 / (root + 1e-3);
     bins_of(apart - beyond, apart + beyond, bins)
 }
 
-/// An arc cosine within [`COARSE`], and the square root of what the cosine's magnitude is below 1.
+/// An arc cosine within [`COARSE`], and the square root of 1 less the magnitude of the cosine.
 #[inline(always)]
 fn angle<S: Simd>(simd: S, cosine: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let near = cosine.abs();
@@ -63,13 +65,13 @@ fn angle<S: Simd>(simd: S, cosine: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     (apart, root)
 }
 
-/// An arc cosine within [`COARSE`]; of what is beyond 1 or -1 that of those.
+/// An arc cosine within [`COARSE`], with the cosine limited to -1..1.
 #[inline(always)]
 pub(super) fn arc_cosine<S: Simd>(simd: S, cosine: f32x16<S>) -> f32x16<S> {
     angle(simd, cosine.max(-1.0).min(1.0)).0
 }
 
-/// The bins of angles from these to those, which are moved apart by what the arc cosine may be off.
+/// The bins of angles from `least` to `greatest`, widened by the error of the arc cosine.
 #[inline(always)]
 pub(super) fn bins_between<S: Simd>(
     least: f32x16<S>,

@@ -1,25 +1,23 @@
-//! Which registers pairs are counted in.
-//!
-//! Left out: what is done with them. Counts are the same in all.
+//! Choice of the registers in which pairs are counted. The counts are the same in all.
 
 use fearless_simd::Level;
 
-/// The widest registers that may be used.
+/// The widest registers to use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Registers {
-    /// The widest that the processor has.
+    /// The widest of the processor.
     #[default]
     Best,
-    /// AVX2 with fused multiply-add, where the processor has it.
+    /// AVX2 with fused multiply-add, if the processor has it.
     Avx2,
-    /// SSE 4.2, where the processor has it.
+    /// SSE 4.2, if the processor has it.
     Sse4,
-    /// What every processor of its kind has.
+    /// The baseline of the target.
     Least,
 }
 
 impl Registers {
-    /// Those, or less where the processor lacks them.
+    /// The level of these registers, or a lower one that the processor has.
     pub(super) fn level(self) -> Level {
         let best = Level::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

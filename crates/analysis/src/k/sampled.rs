@@ -1,9 +1,11 @@
-//! Pairs drawn by chance from every pair of cells, with a confidence interval that holds for any points.
+//! Random pairs from every pair of cells, with a confidence interval that holds for any points.
 //!
-//! The pairs of two cells are between two angles; where an edge lies between those, pairs are drawn. A draw is two rows of 32: 32 points of one cell from a
-//! place of chance on, against 32 of the other, in layouts that spread any 32 over their cell. Every pair of the two cells is as likely at every place of a row, so a row's share beyond an edge is right in the mean, and rows are
-//! independent of each other. Bernstein's inequality bounds the sum. The variance in it is bounded by squares of the differences between the two rows of a draw.
-//! Nothing is assumed of the points. Left out: the pseudo-randomness of the draws, which is taken for chance.
+//! The pairs of two cells lie between two angles; pairs are drawn if an edge lies between those. A
+//! draw is two rows of 32 pairs. A row pairs 32 points of one cell, from a random place on, with 32
+//! of the other, in layouts that spread any 32 points over their cell. Every pair of the two cells
+//! is equally likely at every place of a row. So the share of a row beyond an edge is unbiased, and
+//! rows are independent. Bernstein's inequality bounds the sum. Its variance is bounded by the
+//! squared differences between the two rows of each draw. The draws are pseudo-random.
 
 use fearless_simd::{dispatch, f32x16, prelude::*};
 use glam::DVec3;
@@ -16,14 +18,15 @@ use super::plain::check;
 use super::reach::reach;
 use super::{Edges, ErrorBound, Estimate, KError, Registers};
 
-/// What is wished of a sample.
+/// Settings of [`sampled()`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
-    /// How far a share may be off at most. The estimate's own bound says how far it may be: it is below this but for points of which cells know nothing.
+    /// Largest error of a share. The bound of the estimate is smaller, except for points that lie
+    /// unevenly within cells.
     pub tolerance: f64,
     /// The probability that the bound does not hold for all bins at once.
     pub risk: f64,
-    /// Of the draws.
+    /// Seed of the draws.
     pub seed: u64,
 }
 
@@ -41,59 +44,60 @@ impl Default for Sampling {
 /// Cells along an edge for a tolerance of 1e-4.
 const SIDE: f64 = 10.0;
 
-/// Draws of a pair of cells of mean weight.
+/// Draws per pair of cells of mean weight.
 const DRAWS: f64 = 3.0;
 
-/// Rounds before a tolerance is given up.
+/// Rounds after which a tolerance is given up.
 const MOST_ROUNDS: i32 = 6;
 
-/// Estimates by draws, more of them until the tolerance is met, or six rounds are over.
+/// Estimates by draws, with up to six rounds of more draws until the tolerance is met.
 ///
 /// # Errors
-/// [`KError::NotUnit`] and [`KError::TooMany`] for what are not directions, [`KError::Wish`] for a tolerance or a risk not between 0 and 1, [`KError::Undecided`].
-pub fn sampled(points: &[DVec3], edges: &Edges, wish: &Sampling) -> Result<Estimate, KError> {
+/// [`KError::NotUnit`] and [`KError::TooMany`] for invalid directions, [`KError::Setting`] for a
+/// tolerance or a risk not between 0 and 1, [`KError::Undecided`].
+pub fn sampled(points: &[DVec3], edges: &Edges, sampling: &Sampling) -> Result<Estimate, KError> {
     check(points)?;
-    for (name, got) in [("tolerance", wish.tolerance), ("risk", wish.risk)] {
+    for (name, got) in [("tolerance", sampling.tolerance), ("risk", sampling.risk)] {
         if !(got > 0.0 && got < 1.0) {
-            return Err(KError::Wish { name, got });
+            return Err(KError::Setting { name, got });
         }
     }
-    let mut chance = DrawSource::new(wish.seed);
+    let mut chance = DrawSource::new(sampling.seed);
     if points.len() < 2 {
         return Ok(Estimate::without_pairs("sampled", edges, points.len()));
     }
-    // SIDE cells along an edge reach 1e-4 at once; the deviation falls with its third power.
-    let side = (SIDE * (1e-4 / wish.tolerance).cbrt())
+    // `SIDE` cells along an edge reach 1e-4 in one round; the deviation falls with the third power.
+    let side = (SIDE * (1e-4 / sampling.tolerance).cbrt())
         .round()
         .clamp(4.0, 64.0);
     let cells = PointCells::new(points, side as usize);
     let mut draws = DRAWS;
     let mut round = 1;
     loop {
-        // Rounds share the risk, so that looking at a bound before going on costs nothing that is not counted.
-        let risk = wish.risk * 0.9 * 0.1_f64.powi(round - 1);
+        // Rounds share the risk, so that stopping at a bound that suffices is valid.
+        let risk = sampling.risk * 0.9 * 0.1_f64.powi(round - 1);
         let estimate = drawn(points, &cells, edges, draws, risk, &mut chance)?;
         let bound = estimate.bound.largest();
-        if bound <= wish.tolerance || round == MOST_ROUNDS {
+        if bound <= sampling.tolerance || round == MOST_ROUNDS {
             return Ok(Estimate {
                 bound: match estimate.bound {
                     ErrorBound::Confidence { shares, .. } => ErrorBound::Confidence {
                         shares,
-                        risk: wish.risk,
+                        risk: sampling.risk,
                     },
                     other => other,
                 },
                 ..estimate
             });
         }
-        // The next has a tenth of the risk, which makes its bound wider.
-        let more = (bound / wish.tolerance).powi(2) * 1.3;
+        // The next round has a tenth of the risk, which widens its bound.
+        let more = (bound / sampling.tolerance).powi(2) * 1.3;
         draws = (draws * more).min(1e4);
         round += 1;
     }
 }
 
-/// One round: about so many draws for each pair of cells of mean weight.
+/// One round with about `draws` draws per pair of cells of mean weight.
 fn drawn(
     points: &[DVec3],
     cells: &PointCells,
@@ -131,13 +135,14 @@ fn drawn(
     one.done(risk)
 }
 
-/// Where a row starts in both cells: in the columns; the cell; which layout of it; and how far along.
+/// The start of a row in both cells: index in the columns, cell, layout, position in the layout.
 type Row<'a> = [(usize, &'a PointCell, usize, usize); 2];
 
-/// Registers of a row.
+/// Registers per row.
 const REGISTERS: usize = ROW / LANES;
 
-/// Cells of a tile: two of them are within half of the second-level cache, a million points in 600 cells.
+/// Cells per tile: two tiles are within half of the second-level cache, for a million points in 600
+/// cells.
 const TILE: usize = 16;
 
 struct SamplingWorker<'a> {
@@ -145,24 +150,25 @@ struct SamplingWorker<'a> {
     cells: &'a PointCells,
     edges: &'a Edges,
     chance: &'a mut DrawSource,
-    /// Draws if every pair of cells had its share of them.
+    /// Number of draws in all, shared by weight.
     draws: f64,
-    /// All pairs of points.
+    /// Number of pairs.
     all: f64,
-    /// Shares by the first bin that cells can reach.
+    /// Shares of pairs by the first bin that their cells can reach.
     from: Vec<f64>,
-    /// Estimated shares beyond the edge above each bin, and the estimated variances of those; with room for sixteen more, which stay 0.
+    /// Estimated shares beyond the upper edge of each bin, and their estimated variances, with
+    /// sixteen extra entries that stay 0.
     beyond: Vec<f64>,
     variance: Vec<f64>,
-    /// The greatest weight of a row.
+    /// The largest weight of a row.
     heaviest: f64,
-    /// The estimated share of pairs that lie on an inner edge.
+    /// The estimated share of pairs on an inner edge.
     on_edges: f64,
     wrong: Option<KError>,
 }
 
 impl<'a> SamplingWorker<'a> {
-    /// All pairs of cells, tile by tile: the points of two tiles stay at hand.
+    /// All pairs of cells, tile by tile, so that the points of two tiles stay in the cache.
     #[inline(always)]
     fn all_cells<L: SimdLanes>(&mut self, on: L) {
         let len = self.cells.cells.len();
@@ -175,7 +181,7 @@ impl<'a> SamplingWorker<'a> {
         }
     }
 
-    /// A cell with some.
+    /// Draws pairs of a cell with a range of cells.
     #[inline(always)]
     fn some_cells<L: SimdLanes>(&mut self, on: L, at: usize, (first, end): (usize, usize)) {
         let cells = self.cells;
@@ -224,13 +230,13 @@ impl<'a> SamplingWorker<'a> {
         }
     }
 
-    /// Where a row starts, in the columns and in the order, of both cells.
+    /// Draws the start of a row.
     #[inline(always)]
     fn row<'c>(&mut self, a: &'c PointCell, b: &'c PointCell, is_same: bool) -> Row<'c> {
         let bits = self.chance.draw();
         let from_a = scaled(bits, a.len);
         let (layout, from_b) = if is_same {
-            // Any other point of the cell in the same layout, so that no point is paired with itself.
+            // Another point of the cell in the same layout, so that no point is paired with itself.
             let other = from_a + 1 + scaled(bits >> 32, a.len.saturating_sub(1));
             (0, other % a.len.max(1))
         } else {
@@ -244,7 +250,7 @@ impl<'a> SamplingWorker<'a> {
         ]
     }
 
-    /// Two rows at all edges that may be between.
+    /// Counts two rows at all edges between `first` and `last`.
     #[inline(always)]
     fn draw<L: SimdLanes>(
         &mut self,
@@ -273,15 +279,15 @@ impl<'a> SamplingWorker<'a> {
                 let (mut one, mut two) = (0, 0);
                 for (dots, others) in dots.iter().zip(&others) {
                     let (above, above_other) = (*dots - *cosine, *others - *cosine);
-                    near = on.nearer_nought(near, above);
-                    near_other = on.nearer_nought(near_other, above_other);
+                    near = on.nearer_zero(near, above);
+                    near_other = on.nearer_zero(near_other, above_other);
                     one += above.simd_lt(0.0).to_bitmask().count_ones();
                     two += above_other.simd_lt(0.0).to_bitmask().count_ones();
                 }
                 let (one, two) = (one.cast_signed(), two.cast_signed());
                 (*count, *difference) = (one + two, one - two);
             }
-            // Sixteen edges at once; those behind the last have no counts.
+            // Sixteen edges at once; entries behind the last edge count nothing.
             if let Some(beyond) = sixteen(&mut self.beyond, at) {
                 for (beyond, count) in beyond.iter_mut().zip(counts) {
                     *beyond += share * f64::from(count);
@@ -295,7 +301,7 @@ impl<'a> SamplingWorker<'a> {
             at += LANES;
         }
         if on
-            .nearer_nought(near, near_other)
+            .nearer_zero(near, near_other)
             .simd_le(F32_BAND)
             .any_true()
         {
@@ -309,7 +315,7 @@ impl<'a> SamplingWorker<'a> {
         }
     }
 
-    /// Puts right what f32 said of pairs too near to an edge for it.
+    /// Corrects the counts of pairs that are too near to an edge for f32.
     #[inline(never)]
     fn near(
         &mut self,
@@ -326,8 +332,8 @@ impl<'a> SamplingWorker<'a> {
             if !dots.iter().flatten().flatten().any(is_near) {
                 continue;
             }
-            // What f32 said of both rows, and what is so.
-            let (mut said, mut so) = ([0.0; 2], [0.0; 2]);
+            // The counts of both rows in f32 and by the exact test.
+            let (mut in_f32, mut exact) = ([0.0; 2], [0.0; 2]);
             for (number, (row, dots)) in rows.iter().zip(dots).enumerate() {
                 for (lane, dot) in dots.iter().flatten().enumerate() {
                     let is_beyond = dot - cosine < 0.0;
@@ -335,17 +341,17 @@ impl<'a> SamplingWorker<'a> {
                         true => self.is_beyond(row, lane, edge, share),
                         false => is_beyond,
                     };
-                    for (sums, is) in [(&mut said, is_beyond), (&mut so, is_so)] {
+                    for (sums, is) in [(&mut in_f32, is_beyond), (&mut exact, is_so)] {
                         if let Some(sum) = sums.get_mut(number) {
                             *sum += f64::from(u8::from(is));
                         }
                     }
                 }
             }
-            let ([said, said_other], [so, so_other]) = (said, so);
-            let squares = (so - so_other).powi(2) - (said - said_other).powi(2);
+            let ([in_f32, in_f32_other], [exact, exact_other]) = (in_f32, exact);
+            let squares = (exact - exact_other).powi(2) - (in_f32 - in_f32_other).powi(2);
             if let Some(beyond) = self.beyond.get_mut(edge) {
-                *beyond += share * (so + so_other - said - said_other);
+                *beyond += share * (exact + exact_other - in_f32 - in_f32_other);
             }
             if let Some(variance) = self.variance.get_mut(edge) {
                 *variance += share * share * squares;
@@ -353,7 +359,7 @@ impl<'a> SamplingWorker<'a> {
         }
     }
 
-    /// Whether a pair of a row, which stands for a share of all, is beyond an edge, by the real numbers.
+    /// Whether a pair of a row is beyond an edge, by the exact test.
     fn is_beyond(&mut self, row: &Row<'_>, lane: usize, edge: usize, share: f64) -> bool {
         let [a, b] = row.map(|(_, cell, layout, along)| {
             let index = self.cells.index(cell.place(layout, along + lane));
@@ -399,10 +405,10 @@ impl<'a> SamplingWorker<'a> {
             return Err(wrong);
         }
         let largest_cell = self.cells.cells.iter().map(|cell| cell.len).max();
-        // Places are not quite evenly drawn, by 32 bits; and sums of so many shares are rounded.
+        // Errors of the distribution of 32-bit draws and of rounding in the sums.
         let uneven = largest_cell.unwrap_or(0) as f64 / f64::from(1_u32 << 31) + 1e-9;
         let bins = self.edges.bins();
-        // Three inequalities an edge: two sides of the sum, and one of the variance.
+        // Three inequalities per edge: two sides of the sum, and one of the variance.
         let log = (3.0 * bins as f64 / risk).ln();
         let (mut shares, mut bounds) = (Vec::with_capacity(bins), Vec::with_capacity(bins));
         let mut sum = 0.0;
@@ -429,16 +435,19 @@ impl<'a> SamplingWorker<'a> {
     }
 }
 
-/// Sixteen from one.
+/// Sixteen entries from one on.
 #[inline(always)]
 fn sixteen(of: &mut [f64], from: usize) -> Option<&mut [f64; LANES]> {
     of.get_mut(from..)?.first_chunk_mut()
 }
 
-/// How far a sum of independent numbers, each between 0 and `most`, is off its mean at most, but for `3 exp(-log)`.
+/// Bound on the deviation of a sum of independent numbers in `0..=most` from its mean, except with
+/// probability `3 exp(-log)`.
 ///
-/// The squares `Y` of differences within draws are independent, between 0 and `most2`, and their sum's mean is the variance `V`. So `V <= sum + sqrt(2 most2 V log)` but for
-/// `exp(-log)` (Maurer 2003), which is solved for `V`. With it `e2 = 2 log (V + most e / 3)` (Bernstein) is solved for `e`.
+/// The squares `Y` of differences within draws are independent, between 0 and `most2`, and the mean
+/// of their sum is the variance `V`. So `V <= sum + sqrt(2 most2 V log)` except with probability
+/// `exp(-log)` (Maurer 2003), solved for `V`. Then `e2 = 2 log (V + most e / 3)` (Bernstein) is
+/// solved for `e`.
 fn bernstein(squares: f64, most: f64, log: f64) -> f64 {
     let root = most * (log / 2.0).sqrt();
     let deviation = root + (root * root + squares).sqrt();

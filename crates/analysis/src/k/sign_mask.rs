@@ -1,47 +1,52 @@
-//! Notes of which numbers are below nought, and whether any is too near to it to tell: sixteen rows of sixteen lanes.
+//! Masks of the signs of sixteen rows of sixteen lanes, which also mark numbers too near to zero to
+//! tell.
 //!
-//! Where there are instructions that pack two registers into one and keep what does not fit at the end of the range, one packing tells both. Everything is scaled so far down that
-//! the band where f32 cannot tell is the integers from 0 to 16,383 of a float's bits (it is moved by half its width, so that nothing in it is negative). All other floats, as integers, are packed to -32,768 or to
-//! 16,384 and more: the first two bits are 10 below nought, 01 above, 00 in the band. The scale is a power of two; numbers that become so small that they lose digits lose less
-//! than 2^-33 of the unit. Left out: who judges.
+//! With instructions that pack two registers into one with saturation, one packing yields both. All
+//! numbers are scaled so that the band where f32 cannot tell maps to the integers 0 to 16,383 of a
+//! float's bits, shifted by half its width so that nothing in it is negative. All other floats, as
+//! integers, saturate to -32,768 or to 16,384 and more. The first two bits are 10 below zero, 01
+//! above and 00 in the band. The scale is a power of two; numbers that become denormal lose less
+//! than 2^-33 of the unit.
 
 use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
 
 use super::lanes::{AlignedLanes, LANES, Portable, SimdLanes};
 use super::leaf_pair::F32_BAND;
 
-/// How notes are made in some registers.
+/// Sign masks in some kind of registers.
 pub(super) trait SignMask: SimdLanes {
-    /// Of up to sixteen rows.
+    /// The mask of up to sixteen rows.
     type Mask: Copy;
 
-    /// Whether the notes tell which are too near.
+    /// Whether the mask tells which numbers are too near to zero.
     const MASK_NAMES_PAIRS: bool;
 
-    /// What rows and thresholds are multiplied by.
+    /// Scale of rows and thresholds.
     const SCALE: f32;
 
-    /// What thresholds are moved down by, before that.
+    /// Shift of thresholds downwards, before the scale.
     const MOVED: f32;
 
     fn empty_mask(self) -> Self::Mask;
 
-    /// Notes two rows.
-    fn record(self, notes: &mut Self::Mask, row: f32x16<Self::S>, next: f32x16<Self::S>);
+    /// Records two rows.
+    fn record(self, mask: &mut Self::Mask, row: f32x16<Self::S>, next: f32x16<Self::S>);
 
-    /// Adds to each edge's lanes how many were below nought; says whether any was too near.
+    /// Adds the number of negative numbers to the lanes of each edge; returns whether any number
+    /// was too near to zero.
     fn add_up<const E: usize>(
         self,
-        notes: &[Self::Mask; E],
+        mask: &[Self::Mask; E],
         lanes: &mut [AlignedLanes<u32>],
     ) -> bool;
 
-    /// Which lanes of a row are too near to nought.
+    /// The lanes of a row that are too near to zero.
     fn undecided(self, row: f32x16<Self::S>) -> u64;
 
-    /// The notes' words of sixteen bits, ones for what is too near: bits 15, 13 and so on for rows 0 and 1, 2 and 3 and so on; words by eights, four lanes
-    /// of the first row and the same four of the next. Before them, which words have any.
-    fn which(self, notes: Self::Mask) -> (u32, [u16; 2 * LANES]);
+    /// The words of the mask with any marks, and all words. A word has 16 bits with ones for
+    /// numbers too near to zero: bits 15, 13 and so on for rows 0 and 1, 2 and 3 and so on. Words
+    /// come by eights, four lanes of the first row and the same four of the next.
+    fn which(self, mask: Self::Mask) -> (u32, [u16; 2 * LANES]);
 }
 
 impl<S: Simd> SignMask for Portable<S> {
@@ -60,21 +65,21 @@ impl<S: Simd> SignMask for Portable<S> {
     fn record(self, (negative, nearest): &mut Self::Mask, row: f32x16<S>, next: f32x16<S>) {
         for row in [row, next] {
             *negative += row.bitcast::<u32x16<S>>() >> 31;
-            *nearest = self.nearer_nought(*nearest, row);
+            *nearest = self.nearer_zero(*nearest, row);
         }
     }
 
     #[inline(always)]
     fn add_up<const E: usize>(
         self,
-        notes: &[Self::Mask; E],
+        mask: &[Self::Mask; E],
         lanes: &mut [AlignedLanes<u32>],
     ) -> bool {
         let mut least = f32x16::splat(self.0, 4.0);
-        for ((negative, nearest), lanes) in notes.iter().zip(lanes) {
+        for ((negative, nearest), lanes) in mask.iter().zip(lanes) {
             let sum = u32x16::load_array_ref(self.0, &lanes.0) + *negative;
             sum.store_array(&mut lanes.0);
-            least = self.nearer_nought(least, *nearest);
+            least = self.nearer_zero(least, *nearest);
         }
         least.simd_le(F32_BAND).any_true()
     }
@@ -104,13 +109,13 @@ mod x86 {
     use super::super::leaf_pair::F32_BAND;
     use super::SignMask;
 
-    /// 2^-115: 2^14 of the least float's steps, 2^-149 each, are 2^-20, which is twice the band.
+    /// 2^-115: 2^14 steps of the smallest float, 2^-149 each, are 2^-20, twice the band.
     const DOWN: f32 = f32::from_bits((127 - 115) << 23);
     /// Floats from 0 to below this are in the band.
     const BAND_END: f32 = f32::from_bits(1 << 14);
 
     impl SignMask for Wide {
-        /// Two bits a row in words of 16 bits.
+        /// Two bits per row in words of 16 bits.
         type Mask = u32x16<Avx512>;
 
         const MASK_NAMES_PAIRS: bool = true;
@@ -123,21 +128,21 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn record(self, notes: &mut Self::Mask, row: f32x16<Avx512>, next: f32x16<Avx512>) {
-            *notes = shifted_in(self.0, *notes, row, next);
+        fn record(self, mask: &mut Self::Mask, row: f32x16<Avx512>, next: f32x16<Avx512>) {
+            *mask = shifted_in(self.0, *mask, row, next);
         }
 
         #[inline(always)]
         fn add_up<const E: usize>(
             self,
-            notes: &[Self::Mask; E],
+            mask: &[Self::Mask; E],
             lanes: &mut [AlignedLanes<u32>],
         ) -> bool {
             let mut decided = u32x16::splat(self.0, u32::MAX);
-            for (notes, lanes) in notes.iter().zip(lanes) {
-                let sum = u32x16::load_array_ref(self.0, &lanes.0) + ones(self.0, *notes);
+            for (mask, lanes) in mask.iter().zip(lanes) {
+                let sum = u32x16::load_array_ref(self.0, &lanes.0) + ones(self.0, *mask);
                 sum.store_array(&mut lanes.0);
-                decided &= first_bits_differ(self.0, *notes);
+                decided &= first_bits_differ(self.0, *mask);
             }
             !(decided | 0x5555_5555).simd_eq(u32::MAX).all_true()
         }
@@ -149,8 +154,8 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn which(self, notes: Self::Mask) -> (u32, [u16; 2 * LANES]) {
-            let near = !first_bits_differ(self.0, notes) & 0xaaaa_aaaa;
+        fn which(self, mask: Self::Mask) -> (u32, [u16; 2 * LANES]) {
+            let near = !first_bits_differ(self.0, mask) & 0xaaaa_aaaa;
             let words = near.bitcast::<u16x32<Avx512>>();
             let mut which = [0; 2 * LANES];
             words.store_array(&mut which);
@@ -159,7 +164,8 @@ mod x86 {
     }
 
     impl SignMask for Half {
-        /// How many rows were below nought, in two halves of 16 lanes, and the least of all as packed.
+        /// The number of negative rows in two halves of 16 lanes, and the smallest of all packed
+        /// words.
         type Mask = (u16x16<Avx2>, u16x16<Avx2>);
 
         const MASK_NAMES_PAIRS: bool = false;
@@ -185,11 +191,11 @@ mod x86 {
         #[inline(always)]
         fn add_up<const E: usize>(
             self,
-            notes: &[Self::Mask; E],
+            mask: &[Self::Mask; E],
             lanes: &mut [AlignedLanes<u32>],
         ) -> bool {
             let mut least = u16x16::splat(self.0, u16::MAX);
-            for ((negative, nearest), lanes) in notes.iter().zip(lanes) {
+            for ((negative, nearest), lanes) in mask.iter().zip(lanes) {
                 let bits = negative.bitcast::<fearless_simd::u32x8<Avx2>>();
                 let sum = (bits & 0xffff) + (bits >> 16);
                 if let Some(lanes) = lanes.0.first_chunk_mut() {
@@ -217,7 +223,7 @@ mod x86 {
         #[inline(always)]
         fn shifted_in(
             token: Avx512,
-            notes: u32x16<Avx512>,
+            mask: u32x16<Avx512>,
             row: f32x16<Avx512>,
             next: f32x16<Avx512>,
         ) -> u32x16<Avx512> {
@@ -225,25 +231,25 @@ mod x86 {
                 _mm512_castps_si512(row.into()),
                 _mm512_castps_si512(next.into()),
             );
-            _mm512_shldi_epi16::<2>(notes.into(), packed).simd_into(token)
+            _mm512_shldi_epi16::<2>(mask.into(), packed).simd_into(token)
         }
     );
 
     fearless_simd::kernel!(
-        /// How many pairs of bits begin with a one.
+        /// Counts the pairs of bits that begin with a one.
         #[inline(always)]
-        fn ones(token: Avx512, notes: u32x16<Avx512>) -> u32x16<Avx512> {
-            let first = _mm512_and_si512(notes.into(), _mm512_set1_epi32(0xaaaa_aaaa_u32 as i32));
+        fn ones(token: Avx512, mask: u32x16<Avx512>) -> u32x16<Avx512> {
+            let first = _mm512_and_si512(mask.into(), _mm512_set1_epi32(0xaaaa_aaaa_u32 as i32));
             _mm512_popcnt_epi32(first).simd_into(token)
         }
     );
 
     fearless_simd::kernel!(
-        /// At each pair's first bit, whether its bits differ.
+        /// At the first bit of each pair, whether its bits differ.
         #[inline(always)]
-        fn first_bits_differ(token: Avx512, notes: u32x16<Avx512>) -> u32x16<Avx512> {
-            let notes: __m512i = notes.into();
-            _mm512_xor_si512(notes, _mm512_add_epi16(notes, notes)).simd_into(token)
+        fn first_bits_differ(token: Avx512, mask: u32x16<Avx512>) -> u32x16<Avx512> {
+            let mask: __m512i = mask.into();
+            _mm512_xor_si512(mask, _mm512_add_epi16(mask, mask)).simd_into(token)
         }
     );
 

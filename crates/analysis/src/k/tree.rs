@@ -1,7 +1,6 @@
-//! Directions in leaves of sixteen neighbours, and how far a leaf or a block of leaves reaches.
+//! Directions in leaves of sixteen neighbours, with the extent of leaves and of blocks of leaves.
 //!
-//! The points are halved along the sphere until a leaf is left. What a leaf or block reaches is a circle about its middle,
-//! rounded outward. Left out: what is counted with it.
+//! The points are halved along the sphere down to leaves. The extent is a circle, rounded outward.
 
 use glam::{DVec3, Vec3};
 
@@ -9,19 +8,19 @@ use super::lanes::{AlignedLanes, LANES};
 use super::outline::{self, Outline, Outlines};
 use super::reach::CircleF32;
 
-/// The most leaves of a block.
+/// The largest number of leaves in a block.
 pub(super) const BLOCK_LEAVES: usize = 32;
 
 /// A circle on the sphere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Circle {
     pub middle: DVec3,
-    /// Radians; up to pi.
+    /// Radians, up to pi.
     pub radius: f64,
 }
 
 impl Circle {
-    /// Around all of these; around everything where they have no middle.
+    /// The bounding circle of points; the whole sphere if their sum is zero.
     pub(super) fn around<'a>(points: impl Iterator<Item = &'a DVec3> + Clone) -> Self {
         let sum: DVec3 = points.clone().sum();
         let Some(middle) = sum.try_normalize() else {
@@ -37,7 +36,8 @@ impl Circle {
         Self { middle, radius }
     }
 
-    /// The least and the greatest angle from a point of this to one of the other, radians, rounded outward.
+    /// The smallest and the largest angle between points of the two circles in radians, rounded
+    /// outward.
     pub(super) fn angles(&self, other: &Self) -> (f64, f64) {
         let apart = self.middle.dot(other.middle).clamp(-1.0, 1.0).acos();
         let reach = self.radius + other.radius + 1e-6;
@@ -45,7 +45,7 @@ impl Circle {
     }
 }
 
-/// Circles in f32 in columns, with [`LANES`] more than there are so that sixteen can be read anywhere.
+/// Circles in f32 in columns, with [`LANES`] extra entries so that sixteen can be read anywhere.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Circles {
     middles: [Vec<f32>; 3],
@@ -76,7 +76,7 @@ impl Circles {
         })
     }
 
-    /// Sixteen from one, in columns.
+    /// Sixteen circles from one on, in columns.
     #[inline(always)]
     pub(super) fn sixteen(&self, from: usize) -> Option<([&[f32; LANES]; 3], &[f32; LANES])> {
         let [x, y, z] = &self.middles;
@@ -87,49 +87,49 @@ impl Circles {
     }
 }
 
-/// Leaves that follow one another, [`BLOCK_LEAVES`] at most.
+/// Consecutive leaves, at most [`BLOCK_LEAVES`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LeafBlock {
     pub first: usize,
-    /// Behind the last.
+    /// End (exclusive).
     pub end: usize,
     pub circle: Circle,
 }
 
-/// Blocks that follow one another: a node above the blocks.
+/// Consecutive blocks: a node above the blocks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TreeNode {
     pub first_block: usize,
     pub end_block: usize,
     pub circle: Circle,
-    /// Where its halves stand among the nodes; none of a single block.
+    /// Indices of its halves among the nodes; `None` for a single block.
     pub halves: Option<(usize, usize)>,
 }
 
-/// Coordinates of sixteen points; those that are missing are nought.
+/// Coordinates of sixteen points; missing ones are zero.
 pub(super) type Leaf = [AlignedLanes<f32>; 3];
 
 /// Directions in leaves.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
-    /// As given, in the order of the leaves.
+    /// The points in the order of the leaves.
     pub points: Vec<DVec3>,
-    /// Where each of them stood.
+    /// Index in the input of each point.
     pub order: Vec<u32>,
     pub leaves: Vec<Leaf>,
     pub around_leaves: Outlines,
     pub blocks: Vec<LeafBlock>,
     pub around_blocks: Outlines,
-    /// The last is the root; none without points.
+    /// The last is the root; empty without points.
     pub nodes: Vec<TreeNode>,
 }
 
-/// A point while it is sorted.
+/// A point to be sorted.
 #[derive(Clone, Copy)]
 struct TreePoint {
     at: [f32; 3],
     index: u32,
-    /// Where it is along what points are halved by.
+    /// Its coordinate along the direction of the current cut.
     key: f32,
 }
 
@@ -149,7 +149,7 @@ impl Tree {
         Self::ordered(points, order, blocks)
     }
 
-    /// Leaves of points in an order that is known, with the blocks that belong to it.
+    /// Builds leaves and blocks from a known order.
     fn ordered(points: &[DVec3], order: Vec<u32>, blocks: Vec<(usize, usize)>) -> Self {
         let of = |index: &u32| points.get(*index as usize).copied();
         let points: Vec<DVec3> = order.iter().filter_map(of).collect();
@@ -182,13 +182,13 @@ impl Tree {
         tree
     }
 
-    /// Whether a leaf has all its points.
+    /// Whether a leaf has sixteen points.
     #[inline]
     pub(super) fn is_full(&self, leaf: usize) -> bool {
         (leaf + 1) * LANES <= self.points.len()
     }
 
-    /// How many points these leaves have.
+    /// Number of points of these leaves.
     pub(super) fn points_of(&self, first: usize, end: usize) -> usize {
         (end * LANES)
             .min(self.points.len())
@@ -224,7 +224,7 @@ impl Tree {
     }
 }
 
-/// Sorts points into leaves, and notes the leaves of every block.
+/// Sorts points into leaves, and records the leaves of every block.
 fn halve(points: &mut [TreePoint], first_leaf: usize, blocks: &mut Vec<(usize, usize)>) {
     let leaves = points.len().div_ceil(LANES);
     if leaves == 0 {
@@ -250,7 +250,8 @@ fn halve(points: &mut [TreePoint], first_leaf: usize, blocks: &mut Vec<(usize, u
     halve(behind, first_leaf + left, blocks);
 }
 
-/// The one of two directions along the sphere in which points reach farther. They change little from place to place, so that leaves are nearly square.
+/// The one of two tangents along which the points extend farther. The tangents change little from
+/// place to place, so that leaves are nearly square.
 fn widest(points: &[TreePoint]) -> Vec3 {
     let sum: Vec3 = points.iter().map(|s| Vec3::from(s.at)).sum();
     let (e, f) = sum

@@ -1,9 +1,10 @@
-//! Every pair of a scan whose frames are one frame, turned on step by step: by the pairs of its first frame alone.
+//! Exact counts for scans whose frames are rotated copies of the first, from the pairs of the first
+//! frame alone.
 //!
-//! Points `i` of frame `k` and `j` of frame `k + d` are as far apart as `i` of frame 0 and `j` of frame `d`, but for roundings. So
-//! each pair of frame 0 and any frame stands for as many pairs as there are frames so far apart. Where it is so near to an edge that
-//! roundings could tell them apart, all of them are counted by themselves: the counts are those of the very points, the same as [`super::exact()`]'s.
-//! Left out: finding out how a scan was turned.
+//! Points `i` of frame `k` and `j` of frame `k + d` are as far apart as `i` of frame 0 and `j` of
+//! frame `d`, except for rounding. So each pair of frame 0 and any frame represents as many pairs
+//! as there are frames that far apart. If it is so near to an edge that rounding could separate
+//! them, each of those pairs is tested on its own. The counts equal those of [`super::exact()`].
 
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -22,28 +23,30 @@ use super::reach::BinRange;
 use super::tree::{BLOCK_LEAVES, Tree};
 use super::{Edges, KError, PairCounts, Registers};
 
-/// The most frames: all rows that are counted together can be added to a lane of 32 bits with a block's leaves then.
+/// The largest number of frames, so that all rows counted together fit in a lane of 32 bits.
 pub const MOST_FRAMES: usize = 1 << 17;
 
-/// How far a point may be from where the first frame's, turned, would be: less than what single precision leaves room for.
+/// Tolerance of a point's distance from its place in the rotated first frame; well within single
+/// precision.
 pub const TURNED_WITHIN: f64 = 3e-9;
 
-/// What the turning of a point in f64 may itself be off.
+/// Error of rotating a point in f64.
 const TURNING_ERROR: f64 = 4e-15;
 
-/// How the frames of a scan follow from the first.
+/// Rotation from each frame of a scan to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameRotation {
     /// The axis, of length 1.
     pub axis: DVec3,
-    /// From one frame to the next, radians, by the right hand.
+    /// Angle from one frame to the next in radians, right-handed.
     pub step_rad: f64,
-    /// Frames; the points are those of the first, then those of the second in the same order, and so on.
+    /// Number of frames. The points of the first frame come first, then those of the second in the
+    /// same order, and so on.
     pub frames: usize,
 }
 
 impl FrameRotation {
-    /// The farthest that any point is from where it should be, with the error of that.
+    /// The largest distance of any point from its expected place, plus the error of that.
     fn farthest(&self, points: &[DVec3]) -> Result<f64, KError> {
         let wrong = || KError::Frames {
             points: points.len(),
@@ -80,10 +83,11 @@ impl FrameRotation {
     }
 }
 
-/// Counts every pair of a scan of turned frames, bit for bit as [`super::exact()`] does.
+/// Counts every pair of a scan of rotated frames, bit for bit as [`super::exact()`] does.
 ///
 /// # Errors
-/// [`KError::NotTurned`] and [`KError::Frames`] where the points are not such a scan; as [`super::exact()`].
+/// [`KError::NotTurned`] and [`KError::Frames`] if the points are not such a scan; otherwise as
+/// [`super::exact()`].
 pub fn turned(
     points: &[DVec3],
     rotation: &FrameRotation,
@@ -93,7 +97,7 @@ pub fn turned(
     turned_by(Registers::Best, points, rotation, edges, threads)
 }
 
-/// The same with some registers.
+/// The same with given registers.
 ///
 /// # Errors
 /// As [`turned()`].
@@ -136,7 +140,7 @@ pub fn turned_by(
             *twice += of;
         }
     }
-    // Every pair has been counted from both ends, and every point with itself.
+    // Every pair is counted from both ends, and every point with itself.
     for &p in points {
         let bin = edges.bin(p, p)?;
         if let Some(twice) = twice.get_mut(bin) {
@@ -157,23 +161,24 @@ pub fn turned_by(
     })
 }
 
-/// Rows that are counted together: all leaves have to be fetched from far once for so many.
+/// Rows that are counted together, so that leaves are fetched from memory once for all of them.
 const ROWS: usize = 64;
 
-/// What all threads read.
+/// The data that all threads read.
 struct TurnedScan<'a> {
     points: &'a [DVec3],
     edges: &'a Edges,
     frames: usize,
-    /// Points of a frame.
+    /// Points per frame.
     size: usize,
-    /// Nearer to an edge than this, pairs that stand for each other may be on either side of it.
+    /// Distance from an edge within which represented pairs may be on either side of it.
     band: f64,
-    /// Of all points.
+    /// Tree of all points.
     tree: Tree,
-    /// For how many pairs a point of each leaf stands, with one of the first frame, from either end.
+    /// Number of pairs that a point of each leaf represents together with one of the first frame,
+    /// counted from either end.
     weights: Vec<AlignedLanes<u32>>,
-    /// Their sums, of leaves and of blocks.
+    /// Sums of the weights, per leaf and per block.
     leaf_weights: Vec<u64>,
     block_weights: Vec<u64>,
 }
@@ -188,10 +193,10 @@ impl<'a> TurnedScan<'a> {
         let size = points.len() / rotation.frames.max(1);
         let tree = Tree::new(points);
         let frames = rotation.frames;
-        // From frame 0 to itself both ends are counted as they are.
+        // Within frame 0, both ends are counted directly.
         let weight = |index: u32| match index as usize / size.max(1) {
             0 => frames as u32,
-            apart => 2 * (frames.saturating_sub(apart)) as u32,
+            frame_distance => 2 * (frames.saturating_sub(frame_distance)) as u32,
         };
         let of_leaf = |leaf: &[u32]| {
             let mut weights = AlignedLanes([0; LANES]);
@@ -208,7 +213,7 @@ impl<'a> TurnedScan<'a> {
             of.iter().sum()
         };
         Ok(Self {
-            // Both pairs are off by two points each; f64 and what counts as on an edge come on top.
+            // Both pairs are off by two points each; f64 and the width of an edge are added.
             band: 4.0 * farthest + 2e-14,
             block_weights: tree
                 .blocks
@@ -227,7 +232,8 @@ impl<'a> TurnedScan<'a> {
 }
 
 impl TurnedScan<'_> {
-    /// A row with a leaf that edges go through: adds the weights beyond each; the dot products if any is too near to an edge.
+    /// Counts a row with a leaf that edges cross; returns the dot products if any is too near to an
+    /// edge.
     #[inline(always)]
     fn leaf<L: SimdLanes>(
         &self,
@@ -246,7 +252,7 @@ impl TurnedScan<'_> {
             let above = dot - *cosine;
             let beyond = above.simd_lt(0.0).select(weights, u32x16::splat(simd, 0));
             (u32x16::load_array_ref(simd, &lanes.0) + beyond).store_array(&mut lanes.0);
-            nearest = on.nearer_nought(nearest, above);
+            nearest = on.nearer_zero(nearest, above);
         }
         nearest.simd_le(F32_BAND).any_true().then(|| {
             let mut dots = [0.0; LANES];
@@ -256,7 +262,7 @@ impl TurnedScan<'_> {
     }
 }
 
-/// What one thread counts.
+/// The counts of one thread.
 struct TurnedWorker<'a> {
     scan: &'a TurnedScan<'a>,
     counter: PairCounter,
@@ -272,7 +278,7 @@ impl TurnedWorker<'_> {
         }
     }
 
-    /// Takes rows until none is left, each with all points.
+    /// Takes rows until none is left, and pairs each with all points.
     #[inline(always)]
     fn all<L: SimdLanes>(&mut self, on: L, next: &AtomicUsize) {
         let scan = self.scan;
@@ -288,7 +294,8 @@ impl TurnedWorker<'_> {
         }
     }
 
-    /// Rows with sixteen blocks: a block with all rows before the next, so that it stays near.
+    /// Counts rows with sixteen blocks: one block with all rows before the next, so that it stays
+    /// in the cache.
     #[inline(always)]
     fn rows<L: SimdLanes>(&mut self, on: L, rows: Range<usize>, first_block: usize) {
         let scan = self.scan;
@@ -315,7 +322,7 @@ impl TurnedWorker<'_> {
         }
     }
 
-    /// A row with the leaves of a block.
+    /// Counts a row with the leaves of a block.
     #[inline(always)]
     fn block<L: SimdLanes>(&mut self, on: L, (row, at): (usize, [f32; 3]), block: usize) {
         let scan = self.scan;
@@ -354,7 +361,7 @@ impl TurnedWorker<'_> {
         }
     }
 
-    /// A row with leaves that so many edges go through.
+    /// Counts a row with leaves that `E` edges cross.
     #[inline(always)]
     fn few<L: SimdLanes, const E: usize>(
         &mut self,
@@ -381,7 +388,7 @@ impl TurnedWorker<'_> {
         }
     }
 
-    /// Judges those pairs that are too near to an edge for f32, and puts right what their signs had said.
+    /// Tests the pairs that are too near to an edge for f32, and corrects their counts.
     #[inline(never)]
     fn near(&mut self, row: usize, leaf: usize, first: usize, last: usize, dots: [f32; LANES]) {
         let scan = self.scan;
@@ -401,16 +408,16 @@ impl TurnedWorker<'_> {
                 let weight = weights
                     .and_then(|of| of.0.get(lane))
                     .map_or(0, |&w| i64::from(w));
-                let said = if above < 0.0 { weight } else { 0 };
+                let counted = if above < 0.0 { weight } else { 0 };
                 let beyond = self.beyond(edge, row, *index as usize, weight);
                 if let Some(of) = self.counter.beyond.get_mut(edge) {
-                    *of += beyond - said;
+                    *of += beyond - counted;
                 }
             }
         }
     }
 
-    /// How many of the pairs that a pair stands for are beyond an edge.
+    /// Number of represented pairs that are beyond an edge.
     fn beyond(&mut self, edge: usize, row: usize, index: usize, weight: i64) -> i64 {
         let scan = self.scan;
         let at = |index: usize| scan.points.get(index).copied().unwrap_or_default();
@@ -418,10 +425,10 @@ impl TurnedWorker<'_> {
         if above.abs() > scan.band {
             return if above < 0.0 { weight } else { 0 };
         }
-        let apart = index / scan.size.max(1);
-        let ends = if apart == 0 { 1 } else { 2 };
+        let frame_distance = index / scan.size.max(1);
+        let ends = if frame_distance == 0 { 1 } else { 2 };
         let mut beyond = 0;
-        for frame in 0..scan.frames.saturating_sub(apart) {
+        for frame in 0..scan.frames.saturating_sub(frame_distance) {
             let (a, b) = (at(frame * scan.size + row), at(frame * scan.size + index));
             self.on_edges += u64::from(scan.edges.is_on(edge, a, b)) * ends;
             match scan.edges.reaches(edge, a, b) {

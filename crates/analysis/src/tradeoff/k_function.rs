@@ -66,11 +66,11 @@ fn every(scan: &StudyScan, registers: Registers) -> Result<Estimate, KError> {
 }
 
 fn sample(scan: &StudyScan, tolerance: f64) -> Result<Estimate, KError> {
-    let wish = Sampling {
+    let sampling = Sampling {
         tolerance,
         ..Sampling::default()
     };
-    sampled(&scan.points, &scan.edges, &wish)
+    sampled(&scan.points, &scan.edges, &sampling)
 }
 
 impl Study for KFunction {

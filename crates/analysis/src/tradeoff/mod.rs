@@ -1,9 +1,9 @@
 //! Studies of choices that trade accuracy for time.
 //!
-//! A [`Study`] measures every choice and returns [`StudyFindings`]: a table, the pairs of columns that
-//! are traded, and the choices on the Pareto front ([`front`]). [`text`], [`svg`], [`Book`],
-//! [`html`] and [`json`] show the findings. [`KFunction`] and [`ScanSpeed`] are studies; others
-//! are in `velomotion` and in `studies`. The clock is an argument ([`StudyClock`]).
+//! A [`Study`] measures every choice and returns [`StudyFindings`]: a table, the pairs of columns
+//! that are traded, and the choices on the Pareto front ([`front`]). [`text`], [`svg`], [`Book`],
+//! [`html`] and [`json`] show the findings. [`KFunction`] and [`ScanSpeed`] are studies; others are
+//! in `velomotion` and in `studies`. The clock is an argument ([`StudyClock`]).
 
 pub mod front;
 pub mod html;

@@ -14,8 +14,8 @@ impl SeededNoise {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// The next number of nearly normal distribution with standard deviation 1 (Irwin-Hall: the
-    /// sum of twelve uniform numbers, less 6).
+    /// The next number of nearly normal distribution with standard deviation 1 (Irwin-Hall: the sum
+    /// of twelve uniform numbers, less 6).
     pub fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }

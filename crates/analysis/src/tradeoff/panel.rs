@@ -50,29 +50,29 @@ pub(super) fn draw(
         loss = escaped(findings.heading(trade.loss)),
         cost = escaped(findings.heading(trade.cost)),
     );
-    let spots = spots(findings, trade, &x, &y);
+    let points = points(findings, trade, &x, &y);
     let mut lines: Vec<LabelBox> = Vec::new();
     for group in findings.circumstances(trade) {
-        let corners = corners(&spots, group);
+        let corners = corners(&points, group);
         let colour = group.map(|group| marks::colour(groups.number(group)));
         svg += &steps(&corners, colour.as_deref());
         let sides = corners.windows(2);
         lines.extend(sides.filter_map(|pair| Some(LabelBox::along(*pair.first()?, *pair.last()?))));
     }
     if trade.joined {
-        svg += &joined(&spots, groups);
+        svg += &joined(&points, groups);
     }
-    for spot in &spots {
-        svg += &bars(spot, trade, &x, &y, groups);
+    for point in &points {
+        svg += &bars(point, trade, &x, &y, groups);
     }
-    for spot in &spots {
-        let mark = marks::mark(groups.number(spot.row.group), spot.x, spot.y, spot.on);
-        let name = escaped(&spot.row.name);
+    for point in &points {
+        let mark = marks::mark(groups.number(point.row.group), point.x, point.y, point.on);
+        let name = escaped(&point.row.name);
         svg += &format!("<g><title>{name}</title>{mark}</g>\n");
     }
-    let bars = spots.iter().flat_map(|spot| spread(spot, trade, &x, &y));
+    let bars = points.iter().flat_map(|point| spread(point, trade, &x, &y));
     lines.extend(bars.flatten().map(|(a, b)| LabelBox::along(a, b)));
-    svg += &names(&spots, &lines);
+    svg += &names(&points, &lines);
     svg + "</g>\n"
 }
 
@@ -124,7 +124,7 @@ fn grid(x: &PlotAxis, y: &PlotAxis) -> String {
     svg
 }
 
-fn spots<'a>(
+fn points<'a>(
     findings: &'a StudyFindings,
     trade: &Trade,
     x: &PlotAxis,
@@ -145,16 +145,16 @@ fn spots<'a>(
 }
 
 /// Corners of the front of a group, or of all rows.
-fn corners(spots: &[PlotPoint<'_>], group: Option<&str>) -> Vec<(f64, f64)> {
-    let of_group = |spot: &&PlotPoint<'_>| group.is_none_or(|group| spot.row.group == group);
-    let steps = spots.iter().filter(|spot| spot.step).filter(of_group);
+fn corners(points: &[PlotPoint<'_>], group: Option<&str>) -> Vec<(f64, f64)> {
+    let of_group = |point: &&PlotPoint<'_>| group.is_none_or(|group| point.row.group == group);
+    let steps = points.iter().filter(|point| point.step).filter(of_group);
     let mut front: Vec<&PlotPoint<'_>> = steps.collect();
     front.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let mut corners = Vec::new();
     let mut y = TOP;
-    for spot in front {
-        corners.extend([(spot.x, y), (spot.x, spot.y)]);
-        y = spot.y;
+    for point in front {
+        corners.extend([(point.x, y), (point.x, point.y)]);
+        y = point.y;
     }
     if !corners.is_empty() {
         corners.push((RIGHT, y));
@@ -174,10 +174,10 @@ fn steps(corners: &[(f64, f64)], colour: Option<&str>) -> String {
     format!("<path class=\"{class}\" d=\"M{}\"/>\n", places.join("L"))
 }
 
-fn joined(spots: &[PlotPoint<'_>], groups: &Groups<'_>) -> String {
+fn joined(points: &[PlotPoint<'_>], groups: &Groups<'_>) -> String {
     let mut svg = String::new();
     for (group, number) in &groups.0 {
-        let own = spots.iter().filter(|spot| spot.row.group == *group);
+        let own = points.iter().filter(|point| point.row.group == *group);
         let places: Vec<String> = own.map(|s| format!("{:.1} {:.1}", s.x, s.y)).collect();
         if places.len() > 1 {
             let class = marks::colour(*number);
@@ -191,27 +191,27 @@ fn joined(spots: &[PlotPoint<'_>], groups: &Groups<'_>) -> String {
 }
 
 /// Horizontal and vertical lines from minimum to maximum, where they are longer than the mark.
-fn spread(spot: &PlotPoint<'_>, trade: &Trade, x: &PlotAxis, y: &PlotAxis) -> [Option<Line>; 2] {
+fn spread(point: &PlotPoint<'_>, trade: &Trade, x: &PlotAxis, y: &PlotAxis) -> [Option<Line>; 2] {
     let places = |axis: &PlotAxis, column: usize| {
-        let (low, high) = ends(spot.row.values.get(column)?);
+        let (low, high) = ends(point.row.values.get(column)?);
         let (low, high) = (axis.place(low)?, axis.place(high)?);
         ((high - low).abs() > marks::HALF).then_some((low, high))
     };
     [
-        places(x, trade.cost).map(|(a, b)| ((a, spot.y), (b, spot.y))),
-        places(y, trade.loss).map(|(a, b)| ((spot.x, a), (spot.x, b))),
+        places(x, trade.cost).map(|(a, b)| ((a, point.y), (b, point.y))),
+        places(y, trade.loss).map(|(a, b)| ((point.x, a), (point.x, b))),
     ]
 }
 
 fn bars(
-    spot: &PlotPoint<'_>,
+    point: &PlotPoint<'_>,
     trade: &Trade,
     x: &PlotAxis,
     y: &PlotAxis,
     groups: &Groups<'_>,
 ) -> String {
-    let class = marks::colour(groups.number(spot.row.group));
-    let [level, upright] = spread(spot, trade, x, y);
+    let class = marks::colour(groups.number(point.row.group));
+    let [level, upright] = spread(point, trade, x, y);
     let level = level.map(|((a, y), (b, _))| {
         let top = y - 3.0;
         format!("M{a:.1} {y:.1}H{b:.1}M{a:.1} {top:.1}v6M{b:.1} {top:.1}v6")
@@ -228,22 +228,22 @@ fn bars(
 
 /// The labels, those on the front first. They avoid marks, each other and, if there is room,
 /// `lines`. A label without a free place is left out; the table has it.
-fn names(spots: &[PlotPoint<'_>], lines: &[LabelBox]) -> String {
+fn names(points: &[PlotPoint<'_>], lines: &[LabelBox]) -> String {
     let room = LabelBox {
         left: LEFT + 2.0,
         top: TOP + 2.0,
         right: RIGHT - 2.0,
         bottom: BOTTOM - 2.0,
     };
-    let mut taken: Vec<LabelBox> = spots
+    let mut taken: Vec<LabelBox> = points
         .iter()
-        .map(|spot| LabelBox::about(spot.x, spot.y, marks::HALF + 1.0))
+        .map(|point| LabelBox::about(point.x, point.y, marks::HALF + 1.0))
         .collect();
-    let mut order: Vec<&PlotPoint<'_>> = spots.iter().collect();
-    order.sort_by_key(|spot| !spot.on);
+    let mut order: Vec<&PlotPoint<'_>> = points.iter().collect();
+    order.sort_by_key(|point| !point.on);
     let mut svg = String::new();
-    for spot in order {
-        let (name, at) = (&spot.row.label, (spot.x, spot.y));
+    for point in order {
+        let (name, at) = (&point.row.label, (point.x, point.y));
         let clear = [taken.as_slice(), lines].concat();
         let placed = labels::place(name, at, &room, &clear)
             .or_else(|| labels::place(name, at, &room, &taken));

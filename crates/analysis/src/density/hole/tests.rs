@@ -12,7 +12,8 @@ fn free(points: &[DVec3], centre: DVec3) -> f64 {
     angles.fold(f64::INFINITY, f64::min)
 }
 
-/// By trying the circle through every three points, every two as its diameter's ends, and the far side of every one.
+/// By trying the circle through every three points, every two as its diameter's ends, and the far
+/// side of every one.
 fn slow(points: &[DVec3]) -> f64 {
     let mut largest = 0.0_f64;
     let mut attempt = |direction: DVec3| {
@@ -154,9 +155,11 @@ fn belt(half_rad: f64) -> impl Fn(DVec3) -> f64 {
 
 #[test]
 fn in_a_region_only_its_own_holes_count() {
-    // At the edge there may be as much room all along: a coarser tolerance, or it takes millions of cells.
+    // At the edge there may be as much room all along: a coarser tolerance, or it takes millions of
+    // cells.
     const TOLERANCE: f64 = 1e-4;
-    // Rings at 40 and -40 deg and a few points between: the poles are the largest holes, but not of the belt.
+    // Rings at 40 and -40 deg and a few points between: the poles are the largest holes, but not of
+    // the belt.
     let ring = |z: f64| (0..400).map(move |k| at(z, TAU * f64::from(k) / 400.0));
     let (sin, degrees) = (40_f64.to_radians().sin(), 1_f64.to_radians());
     let few = (0..6).map(|k| at(0.0, f64::from(k)));
@@ -184,7 +187,8 @@ fn in_a_region_only_its_own_holes_count() {
         assert!(found.hole.radius_rad - most < degrees, "{most} {found:?}");
         found.hole.radius_rad
     };
-    // The widest gap between two of the few is 73.5 deg, around +-143 deg; and to where it is the poles' turn.
+    // The widest gap between two of the few is 73.5 deg, around +-143 deg; and to where it is the
+    // poles' turn.
     assert!(within(2.0 * degrees) < within(20.0 * degrees) + TOLERANCE);
     assert!((within(85.0 * degrees) - 45.0 * degrees).abs() < 0.1 * degrees);
     let nowhere = largest_hole_within(&points, TOLERANCE_RAD, &|_| -2.0).unwrap();

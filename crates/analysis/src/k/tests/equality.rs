@@ -1,4 +1,5 @@
-//! The same counts by any registers, on any number of threads, by whole scans and by the turning of their frames.
+//! The same counts by any registers, on any number of threads, by whole scans and by the turning of
+//! their frames.
 
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
@@ -56,7 +57,8 @@ fn turned_frames_count_as_their_points_do() {
         .flat_map(|frame| frame[..203].to_vec())
         .collect();
     let rotation = rotation(9, PI / 9.0);
-    // 180 and 36 bins have edges at every frame's step: pairs on them go to either side by roundings.
+    // 180 and 36 bins have edges at every frame's step: pairs on them go to either side by
+    // roundings.
     for bins in [1, 36, 151, 180] {
         let edges = Edges::equal(bins).unwrap();
         let one_by_one = plain(&points, &edges).unwrap();
@@ -113,7 +115,8 @@ fn frames_that_were_not_turned_so_are_refused() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Clusters of any size, here and at the antipodes, some in the same place, in any number of bins.
+    /// Clusters of any size, here and at the antipodes, some in the same place, in any number of
+    /// bins.
     #[test]
     fn clusters_count_as_one_by_one(
         sizes in prop::collection::vec((1..60_usize, 1e-9..2.0_f64, 0..1000_u64), 1..6),

@@ -52,7 +52,8 @@ fn patterns() -> [Vec<DVec3>; 4] {
 
 #[test]
 fn samples_hold_their_confidence_intervals() {
-    // 4 patterns, 2 kinds of bins, 12 seeds at a risk of 1 in 20: 96 intervals, of which 4.8 may fail. Bernstein is careful: none does.
+    // 4 patterns, 2 kinds of bins, 12 seeds at a risk of 1 in 20: 96 intervals, of which 4.8 may
+    // fail. Bernstein is careful: none does.
     for points in patterns() {
         for bins in [12, 151] {
             let truth: Estimate = counted(&points, bins).into();
@@ -113,7 +114,8 @@ fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
     assert!((of.d_min - truth.d_min).abs() <= of.d_error_bound);
 }
 
-/// No bound is claimed of harmonics: how far off they are of scans is what was measured, and their own `Estimate` says that it is not known.
+/// No bound is claimed of harmonics: how far off they are of scans is what was measured, and their
+/// own `Estimate` says that it is not known.
 #[test]
 fn harmonics_are_near_where_points_lie_smoothly() {
     let (points, edges, truth) = counted_rmbl();
@@ -131,7 +133,8 @@ fn harmonics_are_near_where_points_lie_smoothly() {
     }
 }
 
-/// A level VLP-16 of 0.4 degrees: pairs lie on the edges of 150 and of 180 bins, none on those of 151.
+/// A level VLP-16 of 0.4 degrees: pairs lie on the edges of 150 and of 180 bins, none on those of
+/// 151.
 #[test]
 fn samples_see_that_bins_are_ill_posed() {
     let points = vlp16(901);
@@ -151,7 +154,8 @@ fn samples_see_that_bins_are_ill_posed() {
 #[test]
 fn harmonics_of_hard_cases() {
     let edges = Edges::equal(12).unwrap();
-    // Two points at the poles of the harmonics, alike, opposite, and anywhere: a series of a step, which is near 1/2 at the step and right away from it.
+    // Two points at the poles of the harmonics, alike, opposite, and anywhere: a series of a step,
+    // which is near 1/2 at the step and right away from it.
     for (a, b, at) in [
         (DVec3::Z, DVec3::Z, 0),
         (DVec3::Z, DVec3::NEG_Z, 11),
@@ -230,7 +234,7 @@ fn estimates_of_no_and_one_and_two_points() {
     let refused = sampled(&[DVec3::X, DVec3::Y], &edges, &wish);
     assert_eq!(
         refused,
-        Err(KError::Wish {
+        Err(KError::Setting {
             name: "risk",
             got: 0.0
         })

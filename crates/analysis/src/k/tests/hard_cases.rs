@@ -16,7 +16,8 @@ pub(super) fn counted(points: &[DVec3], bins: usize) -> PairCounts {
     exact(points, &Edges::equal(bins).unwrap(), ONE).unwrap()
 }
 
-/// The definition in fractions: the least bin whose upper edge's cosine is not above the dot product; the last takes the rest.
+/// The definition in fractions: the least bin whose upper edge's cosine is not above the dot
+/// product; the last takes the rest.
 fn bin_by_fractions(a: DVec3, b: DVec3, edges: &[BigRational]) -> usize {
     let exact = |x: f64| BigRational::from_float(x).unwrap();
     let dot = exact(a.x) * exact(b.x) + exact(a.y) * exact(b.y) + exact(a.z) * exact(b.z);
@@ -75,7 +76,8 @@ fn coincident_points_are_in_the_first_bin_and_antipodal_ones_in_the_last() {
 
 #[test]
 fn all_on_one_circle() {
-    // 755 points on the equator: steps of 0.2 bins; five steps are one edge, and the pairs on it go to either side by their last bit.
+    // 755 points on the equator: steps of 0.2 bins; five steps are one edge, and the pairs on it go
+    // to either side by their last bit.
     let on = |i: u32| {
         let (sin, cos) = (f64::from(i) * PI / 377.5).sin_cos();
         DVec3::new(cos, sin, 0.0)
@@ -106,7 +108,8 @@ fn points_at_the_poles() {
 
 #[test]
 fn pairs_exactly_on_edges_belong_to_the_smaller_angle() {
-    // Dot products 0, 1/2, -1/2 and -1 without any rounding, scaled by nothing: 60, 90, 120 and 180 degrees.
+    // Dot products 0, 1/2, -1/2 and -1 without any rounding, scaled by nothing: 60, 90, 120 and 180
+    // degrees.
     let half = 0.5;
     let points = [
         DVec3::X,
@@ -145,7 +148,8 @@ fn pairs_on_edges_are_counted_as_such() {
 
 #[test]
 fn f32_and_f64_and_fractions_agree_on_a_grid() {
-    // A VLP-16 of 24 degrees a step and a second one, tilted: many pairs on edges of 180 and 150 bins, and of those of 15 and 30.
+    // A VLP-16 of 24 degrees a step and a second one, tilted: many pairs on edges of 180 and 150
+    // bins, and of those of 15 and 30.
     let frame = vlp16(901);
     let mut grid: Vec<DVec3> = frame.chunks(16).step_by(60).flatten().copied().collect();
     let second: Vec<DVec3> = tilted(&grid, 30.0).collect();
@@ -171,7 +175,8 @@ fn f32_and_f64_and_fractions_agree_on_a_grid() {
 
 #[test]
 fn angles_near_nought_and_pi_keep_their_digits() {
-    // Bins of 5.5e-3 degrees: the first edge's cosine is 4.6e-9 below 1, of which f32 knows nothing.
+    // Bins of 5.5e-3 degrees: the first edge's cosine is 4.6e-9 below 1, of which f32 knows
+    // nothing.
     let edges = Edges::equal(32_768).unwrap();
     let fraction_of_bin = |share: f64| {
         let (sin, cos) = (share * PI / 32_768.0).sin_cos();
@@ -224,8 +229,8 @@ fn some_of_an_rmbl_is_as_counted_one_by_one() {
 
 #[test]
 fn counters_hold_as_many_pairs_as_32_bits_and_more() {
-    // 92,682 points have 4,294,930,221 pairs and 92,683 have 4,295,022,903: 2^32 is between them. All in one place, and
-    // in two places a quarter turn apart.
+    // 92,682 points have 4,294,930,221 pairs and 92,683 have 4,295,022,903: 2^32 is between them.
+    // All in one place, and in two places a quarter turn apart.
     for (points, pairs) in [(92_682, 4_294_930_221), (92_683, 4_295_022_903)] {
         let same = counted(&vec![DVec3::Y; points], 151);
         assert_eq!((same.counts[0], same.pairs()), (pairs, pairs));

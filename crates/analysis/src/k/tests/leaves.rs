@@ -1,4 +1,5 @@
-//! The shortcuts of leaves: outlines, loops by numbers of edges, packed notes; against every pair by itself.
+//! The shortcuts of leaves: outlines, loops by numbers of edges, packed notes; against every pair
+//! by itself.
 
 use std::f64::consts::PI;
 
@@ -78,7 +79,8 @@ fn outlines_reach_every_pair() {
 
 #[test]
 fn outlines_are_narrow() {
-    // Sixteen points 0.02 radians wide, 1 apart: between them 0.04 at most, a bin more for roundings and what a slanting square is wider.
+    // Sixteen points 0.02 radians wide, 1 apart: between them 0.04 at most, a bin more for
+    // roundings and what a slanting square is wider.
     let square = |middle: DVec3| -> Vec<DVec3> {
         let (e, f) = middle.any_orthonormal_pair();
         let at = |i: usize, j: usize| {
@@ -124,8 +126,9 @@ fn leaves_of_any_sizes_count_as_one_by_one() {
 
 #[test]
 fn pairs_within_single_precision_of_edges_are_on_their_sides() {
-    // Leaves of sixteen in one place but for 1e-8, others at an edge from there and up to 1e-6 nearer or farther: of most pairs f32 knows
-    // nothing, of some it does, and each is on its own side. With so many edges between leaves that every loop takes part.
+    // Leaves of sixteen in one place but for 1e-8, others at an edge from there and up to 1e-6
+    // nearer or farther: of most pairs f32 knows nothing, of some it does, and each is on its own
+    // side. With so many edges between leaves that every loop takes part.
     for (bins, edge) in [
         (151, 1),
         (151, 75),

@@ -1,4 +1,5 @@
-//! What the 2018 paper says of how evenly patterns lie, as numbers: the patterns are the simulator's, `docs/src/paper.md` puts them beside the paper's words.
+//! What the 2018 paper says of how evenly patterns lie, as numbers: the patterns are the
+//! simulator's, `docs/src/paper.md` puts them beside the paper's words.
 
 use std::sync::LazyLock;
 
@@ -30,7 +31,8 @@ static HDL32: LazyLock<KCurve> = LazyLock::new(|| curve("hdl32e", TOLERANCE));
 static VELOMOTION16: LazyLock<KCurve> = LazyLock::new(|| curve("velomotion16:50", TOLERANCE));
 static RMBL_120: LazyLock<KCurve> = LazyLock::new(|| curve("rmbl:120", 0.5 * TOLERANCE));
 static RMBL_50: LazyLock<KCurve> = LazyLock::new(|| curve("rmbl:50", 0.5 * TOLERANCE));
-/// With the azimuth where frames begin and end on the tilt axis, and the tilt in steps, as when its figures were found: every frame then fires twice at the pole.
+/// With the azimuth where frames begin and end on the tilt axis, and the tilt in steps, as when its
+/// figures were found: every frame then fires twice at the pole.
 static RSBL_50: LazyLock<KCurve> =
     LazyLock::new(|| curve("rsbl:50,start=0,tilt=stepped", TOLERANCE));
 
@@ -105,7 +107,8 @@ fn a_vlp16_and_an_hdl32_cluster_alike_and_the_vlp16_disperses_more() {
     assert!((0.95..1.0).contains(&alike), "{alike}");
     let more = vlp.d_min / hdl.d_min;
     assert!((more - 1.77).abs() < 0.01, "{more}");
-    // The HDL-32 looks 10.67 deg up and 30.67 deg down: what clusters and what keeps apart do not mirror each other.
+    // The HDL-32 looks 10.67 deg up and 30.67 deg down: what clusters and what keeps apart do not
+    // mirror each other.
     let asymmetry = -hdl.d_max / hdl.d_min;
     assert!((asymmetry - 1.69).abs() < 0.01, "{asymmetry}");
 }
@@ -116,7 +119,8 @@ fn velomotion_is_between_a_vlp16_and_an_rmbl() {
     assert!(vlp > 1.1 * ours && ours > 3.0 * rmbl, "{vlp} {ours} {rmbl}");
 }
 
-/// Of patterns with an opposite to every point, as many pairs are farther apart than 180 deg less an angle as are within it: largest and smallest are the same but for the sign.
+/// Of patterns with an opposite to every point, as many pairs are farther apart than 180 deg less
+/// an angle as are within it: largest and smallest are the same but for the sign.
 #[test]
 fn clustering_is_no_larger_than_dispersion_unless_the_reference_is_half_a_bin_off() {
     for (name, curve, off_by_half) in [("rmbl", &*RMBL_120, 1.38), ("rsbl", &*RSBL_50, 1.32)] {

@@ -23,7 +23,8 @@ pub fn tilted(frame: &[DVec3], tilt_deg: f64) -> impl Iterator<Item = DVec3> {
     frame.iter().map(turn)
 }
 
-/// So many frames of 901 azimuths at tilts evenly from 0 to below 180 degrees, still within a frame.
+/// So many frames of 901 azimuths at tilts evenly from 0 to below 180 degrees, still within a
+/// frame.
 pub fn rmbl(frames: u32) -> Vec<DVec3> {
     let frame = vlp16(901);
     let step = 180.0 / f64::from(frames);

@@ -31,8 +31,8 @@ const BOOK: Book<'_> = Book {
 /// Runs the command.
 ///
 /// # Errors
-/// [`Kind::Usage`] for an unknown study or a file that exists; [`Kind::Incomplete`] if a study or
-/// a file fails.
+/// [`Kind::Usage`] for an unknown study or a file that exists; [`Kind::Incomplete`] if a study or a
+/// file fails.
 pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, Failure> {
     let selected = tradeoff::select(&STUDIES, &arguments.only).map_err(|error| {
         Failure::new(Kind::Usage, error.to_string())
