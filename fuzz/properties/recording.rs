@@ -56,7 +56,7 @@ fn read(file: impl Read, size: usize, strangers: bool) -> Result<Said, String> {
     if strangers {
         recording = recording.keep_foreign();
     }
-    let head = format!("{:?} {:?}", recording.format(), recording.metadata());
+    let head = format!("{:?}", recording.metadata());
     let mut records = Vec::new();
     while let Some(record) = recording.next_record().expect("memory can be read") {
         let (Wire::Lidar { payload: bytes, .. } | Wire::Drive { frame: bytes, .. }) = record.wire;

@@ -44,20 +44,6 @@ pub(crate) use link::{RS232_NAME, USB_NAME};
 use reassembly::Reassembler;
 use window::Window;
 
-/// The file format of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Classic pcap.
-    Pcap {
-        /// Time stamps in nanoseconds instead of microseconds.
-        nanoseconds: bool,
-        /// Headers are big-endian.
-        big_endian: bool,
-    },
-    /// pcapng.
-    PcapNg,
-}
-
 /// A recording, read from front to back. Open it again for another pass.
 #[derive(Debug)]
 pub struct Recording<R = File> {
@@ -202,15 +188,6 @@ impl<R: Read> Recording<R> {
     pub fn keep_foreign(mut self) -> Self {
         self.keep_foreign = true;
         self
-    }
-
-    /// The file format.
-    #[must_use]
-    pub fn format(&self) -> Format {
-        match &self.format_state {
-            FormatState::Pcap(header) => header.format(),
-            FormatState::PcapNg(_) => Format::PcapNg,
-        }
     }
 
     /// The comment of the first section, which holds the configuration of our logs as TOML.

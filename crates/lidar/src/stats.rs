@@ -60,6 +60,7 @@ pub struct Stats {
 
 /// Contradiction between the packet spacing and the factory byte or the user's model.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ModelConflict {
     /// Product by the factory byte.
     pub product: Product,

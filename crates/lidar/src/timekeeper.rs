@@ -13,6 +13,7 @@ use crate::stats::ModelConflict;
 
 /// Device time of a data packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PacketTiming {
     /// Time of the first firing.
     pub first_firing: Stamp<Lidar>,

@@ -111,7 +111,6 @@ pub struct UtcClock {
     locks: VecDeque<UtcLock>,
     data: Option<Stamp<Lidar>>,
     position: Option<Stamp<Lidar>>,
-    late: u64,
 }
 
 impl Default for UtcClock {
@@ -129,7 +128,6 @@ impl UtcClock {
             locks: VecDeque::new(),
             data: None,
             position: None,
-            late: 0,
         }
     }
 
@@ -163,7 +161,7 @@ impl UtcClock {
 
     /// Takes a position packet that arrived at `host`. Returns the change it causes.
     ///
-    /// Packets that arrive after a later one are counted in [`UtcClock::late`] and ignored.
+    /// Packets that arrive after a later one are ignored.
     pub fn position(
         &mut self,
         host: Stamp<Host>,
@@ -173,7 +171,6 @@ impl UtcClock {
         if let Some(last) = self.position {
             let back = last.saturating_since(at);
             if back > Span::ZERO && back <= REORDER {
-                self.late += 1;
                 return None;
             }
         }
@@ -208,12 +205,6 @@ impl UtcClock {
     #[must_use]
     pub const fn state(&self) -> UtcState {
         self.state
-    }
-
-    /// Position packets that arrived after a later one.
-    #[must_use]
-    pub const fn late(&self) -> u64 {
-        self.late
     }
 
     /// Device time of a position packet, in the hour nearest to the data, or to the host's clock
@@ -420,7 +411,6 @@ mod tests {
         assert!(send(&mut clock, t + 30_000_000, 0, 'A', TEN_59).is_some());
         // Sent before the loss of the pulse, arrived after it.
         assert_eq!(send(&mut clock, t + 20_000_000, 2, 'A', TEN_59), None);
-        assert_eq!(clock.late(), 1);
         assert_eq!(clock.state(), UtcState::Unlocked(NoUtc::Pulse(Pps::Absent)));
         assert!(clock.utc(stamp(t + 29_999_999)).is_some());
         assert_eq!(clock.utc(stamp(t + 30_000_000)), None);

@@ -5,6 +5,7 @@
 //! or in `shared/recordings` beside the checkout.
 #![expect(
     clippy::disallowed_methods,
+    clippy::panic,
     clippy::unwrap_used,
     reason = "a test of recordings"
 )]

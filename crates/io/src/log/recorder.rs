@@ -36,6 +36,7 @@ enum RecorderMessage {
 
 /// Numbers of records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RecorderCounts {
     /// Content of the file.
     pub log: LogCounts,

@@ -89,6 +89,7 @@ pub enum LogError {
 
 /// Numbers of written records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct LogCounts {
     /// Datagrams of the lidar.
     pub lidar: u64,

@@ -12,6 +12,7 @@ const MAX_KINDS: usize = 1024;
 
 /// The first unusable packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Malformed {
     /// Offset of its record in the file, in bytes.
     pub offset: u64,
@@ -22,6 +23,7 @@ pub struct Malformed {
 /// Numbers of packets by kind. `records` is the sum of `datagrams`, `more_datagrams`, `to_drive`,
 /// `from_drive`, `other`, `fragments`, `joined` and `malformed`; the other fields detail these.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RecordingCounts {
     /// Packets in the file; a damaged stretch counts as one.
     pub records: u64,

@@ -10,7 +10,7 @@ use units::Stamp;
 use super::error::{End, PacketFault, RecordingError};
 use super::link::LinkType;
 use super::window::Window;
-use super::{CapturedPacket, FileItem, Format};
+use super::{CapturedPacket, FileItem};
 
 /// Bytes of the file header.
 pub(super) const HEADER_LEN: usize = 24;
@@ -59,13 +59,6 @@ impl PcapFile {
             nanoseconds: header.is_nanosecond_precision(),
             big_endian: header.is_bigendian(),
         })
-    }
-
-    pub(super) fn format(&self) -> Format {
-        Format::Pcap {
-            nanoseconds: self.nanoseconds,
-            big_endian: self.big_endian,
-        }
     }
 
     /// Reads the next record into the window.

@@ -15,6 +15,7 @@ const MAX_SENSORS: usize = 256;
 
 /// One sensor.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Sensor {
     /// Source address of its records; a hash for an IPv6 address.
     pub source: [u8; 4],

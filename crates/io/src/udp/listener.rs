@@ -35,8 +35,6 @@ pub struct ListenConfig {
     pub data_port: u16,
     /// Port of position packets, if wanted; 0 for any free port.
     pub position_port: Option<u16>,
-    /// Further data ports, for sensors with a port of their own.
-    pub more_ports: Vec<u16>,
     /// Bytes of receive buffer to request for each socket.
     pub receive_buffer: usize,
     /// Multicast group to join on all ports.
@@ -52,7 +50,6 @@ impl Default for ListenConfig {
             address: Ipv4Addr::UNSPECIFIED,
             data_port: 2368,
             position_port: Some(8308),
-            more_ports: Vec::new(),
             receive_buffer: 8 << 20,
             group: None,
             sources: Vec::new(),
@@ -80,7 +77,7 @@ pub struct ListenCounts {
 /// Bound sockets with a runtime of their own, owned by one thread.
 #[derive(Debug)]
 pub struct LidarListener {
-    /// Data first, then position, then further data.
+    /// Data first, then position.
     sockets: Vec<LidarSocket>,
     /// Undelivered datagrams of each socket.
     batches: Vec<Batch>,
@@ -139,11 +136,6 @@ impl LidarListener {
                 position = Some(sockets.len());
                 sockets.push(bind(port)?);
             }
-            for &port in &config.more_ports {
-                if port == 0 || sockets.iter().all(|s| s.address().port() != port) {
-                    sockets.push(bind(port)?);
-                }
-            }
             sockets
         };
         Ok(Self {
@@ -181,7 +173,7 @@ impl LidarListener {
         self.sensors.list()
     }
 
-    /// The sockets: data first, then position if it has its own, then further data.
+    /// The sockets: data first, then position if it has its own.
     #[must_use]
     pub fn sockets(&self) -> &[LidarSocket] {
         &self.sockets

@@ -82,24 +82,25 @@ impl LaserTable {
             })
         };
         let (elevation_deg, elevation) = read("elevation_deg", Some(&self.elevation_deg), 0.0)?;
-        let (azimuth_offset_deg, azimuth) = read(
-            "azimuth_offset_deg",
-            self.azimuth_offset_deg.as_ref(),
-            of_model.azimuth_offset_deg,
-        )?;
-        let (range_offset_m, range) = read("range_offset_m", self.range_offset_m.as_ref(), 0.0)?;
-        let (radial_offset_m, radial) =
-            read("radial_offset_m", self.radial_offset_m.as_ref(), 0.0)?;
-        let (tangential_offset_m, tangential) = read(
-            "tangential_offset_m",
-            self.tangential_offset_m.as_ref(),
-            0.0,
-        )?;
-        let (vertical_offset_m, vertical) = read(
-            "vertical_offset_m",
-            self.vertical_offset_m.as_ref(),
-            of_model.vertical_offset_m,
-        )?;
+        let [azimuth, range, radial, tangential, vertical] = [
+            (
+                "azimuth_offset_deg",
+                &self.azimuth_offset_deg,
+                of_model.azimuth_offset_deg,
+            ),
+            ("range_offset_m", &self.range_offset_m, 0.0),
+            ("radial_offset_m", &self.radial_offset_m, 0.0),
+            ("tangential_offset_m", &self.tangential_offset_m, 0.0),
+            (
+                "vertical_offset_m",
+                &self.vertical_offset_m,
+                of_model.vertical_offset_m,
+            ),
+        ]
+        .map(|(key, given, default)| read(key, given.as_ref(), default));
+        let ((azimuth_offset_deg, azimuth), (range_offset_m, range)) = (azimuth?, range?);
+        let ((radial_offset_m, radial), (tangential_offset_m, tangential)) = (radial?, tangential?);
+        let (vertical_offset_m, vertical) = vertical?;
         Ok(LaserEntry {
             id: (*self.id.get_ref(), id_line),
             correction: LaserCorrection {
