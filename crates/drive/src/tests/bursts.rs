@@ -1,29 +1,29 @@
-//! Bursts of damaged answers in mid-sweep: a line that is hurt is no line that is dead.
+//! //! Bursts of damaged replies in mid-sweep: a damaged link is not a lost link.
 
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
-use super::fake::{ENABLED, Hurt};
+use super::fake::{Distortion, ENABLED};
 use super::rig::{Rig, to};
 use crate::{CommandOutcome, DriveCommand, DriveError};
 
-/// How answers are hurt.
+/// /// Kinds of damage to replies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Damage {
-    /// A bit, another one each time, is wrong.
+    /// /// One bit is flipped, another one each time.
     Bits,
     /// The last byte is wrong.
     Crc,
     /// The second half is missing.
     Half,
-    /// The first byte is missing: on USB all that follows is nothing.
+    /// /// The first byte is missing: on USB nothing of the frame is recognised.
     Head,
 }
 
 pub const DAMAGES: [Damage; 4] = [Damage::Bits, Damage::Crc, Damage::Half, Damage::Head];
 
-/// Hurts what comes in from one time to another. Frames of CAN keep their length on the way to the client.
-pub fn hurting(damage: Damage, from: Stamp<Host>, until: Stamp<Host>) -> Hurt {
+/// /// Damages input during an interval. CAN frames keep their length on the way to the client.
+pub fn distorting(damage: Damage, from: Stamp<Host>, until: Stamp<Host>) -> Distortion {
     let mut seed = 0x9E37_79B9_u32;
     Box::new(move |now, mut bytes| {
         if now < from || now >= until || bytes.is_empty() {
@@ -56,13 +56,14 @@ fn bursts_are_survived() {
             for (k, burst) in (0..).zip([2, 20, 50, 75, 100]) {
                 let mut rig = sweeping(link, Span::from_micros(600_000 + 7_310 * k));
                 let until = rig.now + Span::from_millis(burst);
-                rig.fake.hurt = hurting(damage, rig.now, until);
+                rig.fake.distort = distorting(damage, rig.now, until);
                 let ended = rig.finish();
                 assert!(
                     matches!(ended, Ok(CommandOutcome::Arrived(_))),
                     "{link:?} {damage:?} for {burst} ms: {ended:?}"
                 );
-                // The first sample comes soon after; a handshake of RS232 without what follows it looks like a unit that works.
+                // // The first sample follows soon after. An RS232 handshake without an answer
+                // looks like a working unit.
                 let seen = rig.samples().into_iter().find(|s| s.answer > until);
                 let hole = seen.unwrap().answer - until;
                 let cut = matches!(damage, Damage::Half | Damage::Head);
@@ -80,15 +81,16 @@ fn bursts_are_survived() {
     }
 }
 
-/// The end is told, and the axis stopped as far as it hears: at the latest 200 ms after the damage began where it is seen to be
-/// damage, and the question's own time later where it looks like silence. Whether it stops is known within another 100 ms.
+/// /// The sweep fails and the axis stops if it still receives: within 200 ms of the first
+/// recognised damage, later by one request timeout where the damage looks like silence. Another 100
+/// ms later the client knows whether the axis has stopped.
 #[test]
-fn damage_for_ever_ends_the_sweep_in_time() {
+fn continuous_damage_ends_the_sweep_in_time() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
         for damage in DAMAGES {
             let mut rig = sweeping(link, Span::from_millis(600));
             let (from, for_ever) = (rig.now, rig.now + Span::from_secs(100));
-            rig.fake.hurt = hurting(damage, from, for_ever);
+            rig.fake.distort = distorting(damage, from, for_ever);
             let error = rig.finish().unwrap_err();
             let DriveError::NotStopped { cause, .. } = &error else {
                 panic!("{link:?} {damage:?}: {error}")
@@ -108,18 +110,18 @@ fn damage_for_ever_ends_the_sweep_in_time() {
                 "{link:?} {damage:?}: {:?} {error}",
                 rig.now - stop
             );
-            assert_ne!(rig.fake.state, ENABLED, "{link:?} {damage:?}: it heard");
+            assert_ne!(rig.fake.state, ENABLED, "{link:?} {damage:?}: it observed");
         }
     }
 }
 
-/// Silence gets no more time than it had: a question's, and that of two markers.
+/// /// Silence gets no extra time: one request timeout and two probe timeouts.
 #[test]
-fn silence_ends_the_sweep_as_soon_as_ever() {
+fn silence_ends_the_sweep_without_extra_time() {
     for (link, most) in [(DriveLink::Usb, 181), (DriveLink::Rs232, 265)] {
         let mut rig = sweeping(link, Span::from_millis(600));
         let from = rig.now;
-        rig.fake.hurt = Box::new(|_, _| Vec::new());
+        rig.fake.distort = Box::new(|_, _| Vec::new());
         let error = rig.finish().unwrap_err();
         let DriveError::NotStopped { cause, .. } = &error else {
             panic!("{link:?}: {error}")
@@ -132,12 +134,12 @@ fn silence_ends_the_sweep_as_soon_as_ever() {
     }
 }
 
-/// A heartbeat of no known state was damaged on the way: SLCAN has no checksum.
+/// /// A heartbeat with an unknown state is a damaged one: SLCAN has no checksum.
 #[test]
 fn a_damaged_heartbeat_ends_nothing() {
     let mut rig = sweeping(DriveLink::Can, Span::from_millis(600));
     let mut n = 0;
-    rig.fake.hurt = Box::new(move |_, mut bytes| {
+    rig.fake.distort = Box::new(move |_, mut bytes| {
         if bytes[..2] == [0, 0] && bytes[2..4] == [0x07, 0x01] {
             n += 1;
             if n % 2 == 0 {

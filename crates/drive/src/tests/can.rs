@@ -1,4 +1,4 @@
-//! What only a CAN bus has: the stream at SYNC, network states, heartbeats both ways, boot-up.
+//! //! Features of a CAN bus: the stream at SYNC, NMT states, heartbeats both ways, boot-up.
 
 use protocol::canopen::nmt::NmtState;
 use protocol::epos2::message::Request;
@@ -53,7 +53,7 @@ fn the_stream_goes_on_while_the_state_is_asked_for() {
         assert!(apart <= Span::from_micros(1_001), "{apart:?}");
     }
     assert!((795..=805).contains(&moving.len()), "{}", moving.len());
-    // Nobody asked for the position meanwhile.
+    // // The position was not polled.
     let asked = |(_, request): &(Stamp<Host>, Request)| matches!(request, Request::ReadObject(r) if r.address.index == 0x6064);
     assert!(!rig.fake.requests.iter().any(asked));
 }
@@ -85,7 +85,7 @@ fn a_refused_inhibit_time_does_not_cost_the_stream() {
 }
 
 #[test]
-fn a_drive_that_cannot_watch_the_host_is_said_not_to() {
+fn a_drive_without_host_monitoring_is_reported() {
     let mut rig = can();
     rig.fake.refuses = vec![(0x1016, 1)];
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
@@ -97,7 +97,7 @@ fn a_drive_that_cannot_watch_the_host_is_said_not_to() {
 }
 
 #[test]
-fn a_stream_that_falls_silent_is_helped_along_by_asking() {
+fn a_stalled_stream_is_replaced_by_polls() {
     let mut rig = homed();
     rig.fake.bus.copies = Box::new(|n| usize::from(!(300..600).contains(&n)));
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
@@ -122,24 +122,24 @@ fn lost_and_repeated_frames_of_the_stream_leave_the_others_right() {
     for sample in &samples {
         assert_eq!(sample.answer - sample.request, Span::from_micros(300));
     }
-    let heard: Vec<ShaftSample> = rig
-        .heard()
+    let observed: Vec<ShaftSample> = rig
+        .observations()
         .into_iter()
         .filter_map(|seen| match seen {
             Observation::Sample(sample) => Some(sample),
             _ => None,
         })
         .collect();
-    assert!(heard.len() >= samples.len());
+    assert!(observed.len() >= samples.len());
 }
 
 #[test]
 fn the_drives_own_time_goes_with_each_sample_of_a_log() {
     let mut rig = homed();
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
-    let heard = rig.heard();
+    let observed = rig.observations();
     let mut timed = 0;
-    for pair in heard.windows(2) {
+    for pair in observed.windows(2) {
         if let [
             Observation::Read {
                 address,
@@ -166,7 +166,7 @@ fn a_log_without_the_mapping_gives_no_samples() {
     let until = rig.now + Span::from_millis(200);
     rig.run(DriveCommand::Hold { until }).unwrap();
     let sampled = rig
-        .heard()
+        .observations()
         .iter()
         .any(|seen| matches!(seen, Observation::Sample(_)));
     assert!(!rig.samples().is_empty() && !sampled);
@@ -178,7 +178,7 @@ fn the_drive_stops_when_the_host_dies() {
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
     assert_eq!(rig.fake.objects[&(0x1016, 1)], 127 << 16 | 200);
-    // Nobody turns the crank any more.
+    // // The host stops calling the client.
     let died = rig.now;
     while rig.fake.state != FAULT {
         rig.now += Span::from_millis(1);
@@ -189,7 +189,7 @@ fn the_drive_stops_when_the_host_dies() {
 }
 
 #[test]
-fn the_host_is_heard_until_a_stop_is_over() {
+fn the_host_sends_heartbeats_until_a_stop_is_complete() {
     let mut rig = homed();
     rig.client
         .start(DriveCommand::Goto(crate::MoveCommand {
@@ -206,7 +206,7 @@ fn the_host_is_heard_until_a_stop_is_over() {
 }
 
 #[test]
-fn between_commands_the_host_need_not_be_heard() {
+fn between_commands_the_host_may_be_silent() {
     let mut rig = homed();
     rig.run(DriveCommand::Goto(to(0.0))).unwrap();
     rig.now += Span::from_secs(30);
@@ -221,7 +221,7 @@ fn a_silent_heartbeat_in_mid_sweep_stops_it() {
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
     let at = rig.now;
-    rig.fake.bus.mute = true;
+    rig.fake.bus.silent = true;
     let error = rig.finish().unwrap_err();
     assert!(
         matches!(error, DriveError::NodeSilent { node: 1, .. }),
@@ -234,7 +234,7 @@ fn a_silent_heartbeat_in_mid_sweep_stops_it() {
 }
 
 #[test]
-fn a_node_that_another_master_takes_away_is_told() {
+fn a_node_stopped_by_another_master_is_reported() {
     let mut rig = homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
@@ -254,7 +254,7 @@ fn a_restart_between_commands_prevents_the_next_move() {
 }
 
 #[test]
-fn answers_about_another_object_or_of_another_node_are_passed_over() {
+fn replies_about_another_object_or_of_another_node_are_ignored() {
     use protocol::canopen::NodeId;
     use protocol::canopen::sdo::{Expedited, Initiate, SdoResponse};
     use protocol::epos2::objects::Address;
@@ -285,7 +285,7 @@ fn answers_about_another_object_or_of_another_node_are_passed_over() {
 }
 
 #[test]
-fn a_late_answer_is_not_taken_for_the_next_one_of_the_same_object() {
+fn a_late_reply_is_not_used_for_the_next_read_of_the_same_object() {
     let mut rig = can();
     rig.fake.refuses = vec![(0x1A00, 0)];
     rig.run(DriveCommand::Connect).unwrap();
@@ -298,7 +298,7 @@ fn a_late_answer_is_not_taken_for_the_next_one_of_the_same_object() {
         _ => Fate::Sent,
     });
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
-    // 37,500 qc/s: an answer of another time would be off by thousands.
+    // // At 37,500 qc/s a reply of another time would be off by thousands.
     let moving: Vec<_> = rig
         .samples()
         .into_iter()

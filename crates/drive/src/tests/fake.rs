@@ -1,5 +1,6 @@
-//! A drive made for tests: a dictionary, the states a client walks, an axis that moves at constant speed, and a hand on the
-//! wire that can lose, delay, damage or repeat any answer. It shares nothing with the client but the frame format.
+//! //! A scripted drive: an object dictionary, the states that the client uses, an axis of constant
+//! speed, and hooks that lose, delay, damage or repeat any reply. It shares only the frame format
+//! with the client.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +17,7 @@ use protocol::canopen::nmt::NmtState;
 
 use super::wire::{FakeBus, Wire};
 
-/// What happens to one answer.
+/// /// What happens to a reply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fate {
     Sent,
@@ -24,16 +25,16 @@ pub enum Fate {
     Late(Span),
     Damaged,
     Twice,
-    /// The drive saw the request damaged.
+    /// /// The drive receives the request damaged.
     Rejected,
-    /// What comes is an answer to another request, and of another kind.
+    /// /// The reply is that of another request, of another kind.
     Another,
 }
 
-/// Decides the fate of the answer to the n-th request (from 0).
+/// /// Decides the fate of the reply to the n-th request (from 0).
 pub type Hand = Box<dyn FnMut(usize, &Request) -> Fate>;
-/// What becomes on the way of bytes that arrive at this time.
-pub type Hurt = Box<dyn FnMut(Stamp<Host>, Vec<u8>) -> Vec<u8>>;
+/// /// Transforms bytes that arrive at this time.
+pub type Distortion = Box<dyn FnMut(Stamp<Host>, Vec<u8>) -> Vec<u8>>;
 
 #[derive(Clone, Copy, Debug)]
 struct Motion {
@@ -46,16 +47,16 @@ struct Motion {
 
 pub struct Fake {
     wire: Wire,
-    /// What there is on a CAN bus beside answers.
+    /// /// The CAN services other than SDO.
     pub bus: FakeBus,
     pub name: Vec<u8>,
-    /// Bytes of the name that have been read, while it is.
+    /// /// Bytes of the name read so far.
     name_at: usize,
-    /// Bytes of the name that have been written, and how many are to come, while it is.
+    /// /// Bytes of the name written so far, and the total length.
     writing: Option<(Vec<u8>, usize)>,
-    /// Transfers that the client broke off (CAN).
+    /// /// Transfers aborted by the client (CAN).
     pub aborts: Vec<CommError>,
-    /// Segments come with the wrong toggle bit.
+    /// /// Segments have the wrong toggle bit.
     pub wrong_toggle: bool,
     pub objects: BTreeMap<(u16, u8), u32>,
     /// State bits of the statusword.
@@ -69,15 +70,15 @@ pub struct Fake {
     /// The axis does not follow.
     pub blocked: bool,
     pub deaf_to_quick_stop: bool,
-    /// Fault that comes at this time.
+    /// /// A fault at this time.
     pub fault_at: Option<(Stamp<Host>, u16)>,
     pub faults_that_stay: bool,
-    /// Objects that take no value.
+    /// /// Objects that ignore writes.
     pub stubborn: Vec<(u16, u8)>,
-    /// Objects that refuse to be written.
+    /// /// Objects that refuse writes.
     pub refuses: Vec<(u16, u8)>,
     pub hand: Hand,
-    pub hurt: Hurt,
+    pub distort: Distortion,
     pub turnaround: Span,
     answers: Vec<(Stamp<Host>, Vec<u8>)>,
     pub requests: Vec<(Stamp<Host>, Request)>,
@@ -99,7 +100,7 @@ impl Fake {
         Self::on(DriveLink::Usb)
     }
 
-    /// A drive as it comes from the factory, with an 8120 from lying on the shelf without a CAN bus.
+    /// /// A drive with factory settings, and error 8120 from having been used without a CAN bus.
     pub fn on(link: DriveLink) -> Self {
         let objects = [
             (0x1000, 0, 0x0002_0192),
@@ -174,7 +175,7 @@ impl Fake {
             stubborn: Vec::new(),
             refuses: Vec::new(),
             hand: Box::new(|_, _| Fate::Sent),
-            hurt: Box::new(|_, bytes| bytes),
+            distort: Box::new(|_, bytes| bytes),
             turnaround: Span::from_micros(800),
             answers: Vec::new(),
             requests: Vec::new(),
@@ -182,7 +183,7 @@ impl Fake {
         }
     }
 
-    /// Takes bytes from the host.
+    /// /// Processes bytes from the host.
     pub fn input(&mut self, bytes: &[u8], now: Stamp<Host>) {
         self.live(now);
         let mut wire = std::mem::replace(&mut self.wire, Wire::Gone);
@@ -190,7 +191,7 @@ impl Fake {
         self.wire = wire;
     }
 
-    /// Carries a request out; its answer, and what is to become of it. A rejected one is not carried out.
+    /// /// Executes a request unless it is rejected; returns the answer and its fate.
     pub fn execute(&mut self, request: Request, now: Stamp<Host>) -> (Frame, Fate) {
         let fate = (self.hand)(self.requests.len(), &request);
         self.requests.push((now, request));
@@ -202,14 +203,14 @@ impl Fake {
         (answer, fate)
     }
 
-    /// Sends bytes after the turnaround and `by`, behind what is under way.
+    /// /// Sends bytes after the turnaround and `by`, after those already queued.
     pub fn send(&mut self, bytes: Vec<u8>, by: Span, now: Stamp<Host>) {
         let earliest = now + self.turnaround;
         let at = self.answers.last().map_or(earliest, |a| a.0.max(earliest));
         self.answers.push((at + by, bytes));
     }
 
-    /// Sends a frame of its own accord.
+    /// /// Sends a frame without a request.
     pub fn send_at(&mut self, bytes: Vec<u8>, at: Stamp<Host>) {
         self.answers.push((at, bytes));
         self.answers.sort_by_key(|a| a.0);
@@ -223,15 +224,15 @@ impl Fake {
     pub fn take_answer(&mut self, now: Stamp<Host>) -> Option<Vec<u8>> {
         self.live(now);
         let due = self.answers.first().is_some_and(|(at, _)| *at <= now);
-        due.then(|| (self.hurt)(now, self.answers.remove(0).1))
+        due.then(|| (self.distort)(now, self.answers.remove(0).1))
     }
 
-    /// Everything on its way is lost.
+    /// /// Drops everything in flight.
     pub fn unplug(&mut self) {
         self.answers.clear();
     }
 
-    /// It restarts: settings, reference and network state are gone.
+    /// /// Restarts the drive: settings, reference and NMT state are lost.
     pub fn restart(&mut self, now: Stamp<Host>) {
         let link = self.wire.link();
         let fresh = Self::on(link);
@@ -247,7 +248,7 @@ impl Fake {
         self.start_bus(now);
     }
 
-    /// Where the shaft is.
+    /// /// Position of the shaft.
     pub fn position(&self, now: Stamp<Host>) -> f64 {
         let Some(m) = self.motion else {
             return self.place;
@@ -285,7 +286,7 @@ impl Fake {
         }
     }
 
-    /// The name may be written, up to 20 bytes of it.
+    /// /// Starts writing the name, of up to 20 bytes.
     fn open_write(&mut self, open: &InitiateSegmentedWrite) -> CommError {
         self.writing = None;
         let len = open.len as usize;
@@ -306,7 +307,7 @@ impl Fake {
         } else {
             63
         };
-        // Whole segments before it, so the toggle bit follows.
+        // // Earlier segments are complete, which determines the toggle bit.
         if segment.toggle != ((bytes.len() / longest) % 2 == 1) {
             return Err(CommError::TOGGLE);
         }
@@ -400,7 +401,7 @@ impl Fake {
         if self.homing_until.is_some_and(|until| until <= now) {
             self.homing_until = None;
             self.place = f64::from(self.objects[&(0x2081, 0)] as i32);
-            // Home is where the target is, too.
+            // // The target is the home position, too.
             self.objects.insert((0x607A, 0), self.objects[&(0x2081, 0)]);
             self.flags |= ACKNOWLEDGED | REFERENCED;
         }
@@ -472,13 +473,13 @@ impl Fake {
     }
 }
 
-/// The drive's clock, which is of no zero in particular and runs 40 ppm fast.
+/// /// The drive's clock, with an arbitrary zero and 40 ppm fast.
 pub fn device_us(now: Stamp<Host>) -> u32 {
     let us = now.as_nanos() / 1_000;
     (us + us / 25_000) as u32
 }
 
-/// Bytes of the objects that are narrower than 32 bits.
+/// /// Width of an object in bytes.
 pub fn width(address: Address) -> u8 {
     match (address.index, address.sub) {
         (0x1003 | 0x1A00, 0) | (0x1800, 2) | (0x6060 | 0x6061 | 0x6098, _) => 1,

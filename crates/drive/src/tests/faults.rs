@@ -1,4 +1,4 @@
-//! What the client makes of faults: of the drive, of the axis, of the link.
+//! //! Faults of the drive, of the axis and of the link.
 
 use protocol::epos2::CommError;
 use protocol::epos2::DeviceError;
@@ -23,7 +23,7 @@ fn is_write(request: &Request, index: u16, value: u32) -> bool {
     matches!(request, Request::WriteObject(w) if w.address.index == index && w.value == value)
 }
 
-/// In mid-move with the record of the start forgotten.
+/// /// A rig in mid-move, without the record of the start.
 fn moving() -> Rig {
     let mut rig = Rig::homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
@@ -52,7 +52,7 @@ fn a_fault_in_mid_sweep_is_named_and_the_axis_made_safe() {
         .iter()
         .find(|(_, request)| is_write(request, 0x6040, 0x0B))
         .unwrap();
-    // Seen within a status period, acted upon within a few round trips.
+    // // Detected within a status period, handled within a few round trips.
     assert!(quick_stop.0 - at < Span::from_millis(30));
 }
 
@@ -94,7 +94,7 @@ fn homing_that_never_ends_is_stopped() {
 }
 
 #[test]
-fn homing_error_bit_is_told() {
+fn the_homing_error_bit_is_reported() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.run(DriveCommand::Connect).unwrap();
     rig.fake.flags |= 1 << 13;
@@ -209,7 +209,7 @@ fn stop_in_mid_sweep_stops() {
 #[test]
 fn stop_does_not_wait_for_a_link_that_lost_an_answer() {
     let mut rig = moving();
-    // Everything is lost from here on until the drive sees a quick stop.
+    // // Every reply is lost until the drive receives a quick stop.
     let mut stopped = false;
     rig.fake.hand = Box::new(move |_, request| {
         stopped |= is_write(request, 0x6040, 0x0B);
@@ -240,7 +240,7 @@ fn stop_of_an_idle_or_faulty_drive_is_harmless() {
 }
 
 #[test]
-fn an_axis_that_does_not_stop_is_said_not_to() {
+fn an_axis_that_does_not_stop_is_reported() {
     let mut config = AxisConfig::default();
     config.timing.state_limit = Span::from_millis(100);
     let mut rig = Rig::new(config);
@@ -259,7 +259,7 @@ fn an_axis_that_does_not_stop_is_said_not_to() {
 }
 
 #[test]
-fn a_dead_link_in_mid_sweep_is_told_as_not_stopped() {
+fn a_lost_link_in_mid_sweep_is_reported_as_not_stopped() {
     let mut rig = moving();
     let died = rig.now;
     rig.fake.hand = Box::new(|_, _| Fate::Lost);
@@ -270,7 +270,7 @@ fn a_dead_link_in_mid_sweep_is_told_as_not_stopped() {
     assert!(matches!(**cause, DriveError::LinkLost { .. }), "{cause:?}");
     assert!(matches!(**stop, DriveError::LinkLost { .. }), "{stop:?}");
     assert!(rig.now - died < Span::from_secs(1));
-    // The quick stop went out all the same, for a drive that hears but cannot be heard.
+    // // The drive received the quick stop although its replies are lost.
     assert!(rig.fake.state != super::fake::ENABLED);
 }
 
@@ -292,7 +292,7 @@ fn lost_answers_to_samples_cost_samples_and_nothing_else() {
 }
 
 #[test]
-fn late_answers_are_taken_for_what_they_are() {
+fn late_replies_are_used_with_their_true_times() {
     let mut rig = Rig::homed();
     rig.fake.hand = Box::new(|n, _| match n % 50 {
         20 => Fate::Late(Span::from_millis(130)),
@@ -362,7 +362,7 @@ fn a_sweep_does_not_fail_by_the_last_lost_answer() {
     assert!(rig.run(DriveCommand::Sweep(to(-15.0))).is_ok());
     let mut lost = 0;
     rig.fake.hand = Box::new(move |_, request| {
-        // Power off is power off, however often it is said.
+        // // Disabling the voltage may be repeated.
         if is_write(request, 0x6040, 0) && lost < 2 {
             lost += 1;
             return Fate::Lost;

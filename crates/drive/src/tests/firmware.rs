@@ -1,4 +1,5 @@
-//! The client against the software EPOS2 of firmware-sim, in virtual time: two machines that share nothing but the frames.
+//! //! The client with the simulated EPOS2 of firmware-sim, in virtual time. The two share only the
+//! frames.
 
 use std::collections::VecDeque;
 
@@ -10,8 +11,8 @@ use protocol::epos2::{Bounded, CommError, DeviceError};
 use protocol::record::DriveLink;
 use units::{Host, Rpm, Span, Stamp};
 
-use super::bursts::{DAMAGES, hurting};
-use super::fake::Hurt;
+use super::bursts::{DAMAGES, distorting};
+use super::fake::Distortion;
 use super::rig::to;
 use crate::{
     AngleSource, AxisConfig, CommandOutcome, CommandProgress, DriveClient, DriveCommand,
@@ -36,7 +37,7 @@ impl Server {
         }
     }
 
-    /// One way: wire, adapter and unit.
+    /// /// One-way delay through wire, adapter and unit.
     fn delay(&self, bytes: usize) -> Span {
         match self {
             Self::Usb(_) => Span::from_micros(300),
@@ -62,11 +63,11 @@ impl Server {
     }
 
     fn poll(&mut self, node: &mut Node) -> Vec<Vec<u8>> {
-        let mut said = Vec::new();
+        let mut replies = Vec::new();
         if let Self::Can(server) = self {
-            server.poll(node, &mut |f| said.push(f.to_socketcan().to_vec()));
+            server.poll(node, &mut |f| replies.push(f.to_socketcan().to_vec()));
         }
-        said
+        replies
     }
 }
 
@@ -79,13 +80,13 @@ struct World {
     to_node: VecDeque<(Stamp<Host>, Vec<u8>)>,
     to_host: VecDeque<(Stamp<Host>, Vec<u8>)>,
     events: Vec<DriveEvent>,
-    /// When the client was heard to order a quick stop.
+    /// /// When the client sent a quick stop.
     quick_stops: Vec<Stamp<Host>>,
     /// The cable is cut.
     cut: bool,
-    /// What becomes of answers on their way.
-    hurt: Hurt,
-    /// Beginning of each control cycle, and the shaft's way through it, world qc.
+    /// /// Transforms the unit's bytes on their way.
+    distort: Distortion,
+    /// /// Start of each control cycle, and the shaft's motion through it, world qc.
     truth: Vec<(Stamp<Host>, f64, f64)>,
 }
 
@@ -107,7 +108,7 @@ impl World {
             events: Vec::new(),
             quick_stops: Vec::new(),
             cut: false,
-            hurt: Box::new(|_, bytes| bytes),
+            distort: Box::new(|_, bytes| bytes),
             truth: Vec::new(),
         }
     }
@@ -158,8 +159,8 @@ impl World {
         }
     }
 
-    fn say(&mut self, said: Vec<Vec<u8>>) {
-        for bytes in said {
+    fn say(&mut self, replies: Vec<Vec<u8>>) {
+        for bytes in replies {
             let delay = self.server.delay(bytes.len());
             let free = self.to_host.back().map_or(self.now, |m| m.0);
             if !self.cut {
@@ -169,7 +170,7 @@ impl World {
         }
     }
 
-    /// On to the next thing that happens.
+    /// /// Advances to the next event.
     fn wait(&mut self) {
         let to_node = self.to_node.front().map(|m| m.0);
         let to_host = self.to_host.front().map(|m| m.0);
@@ -182,17 +183,17 @@ impl World {
             let way = self.node.segment();
             let [start, end] = [way.start, way.end].map(|q32| q32 as f64 / 2f64.powi(32));
             self.truth.push((self.now, start, end));
-            let said = self.server.poll(&mut self.node);
-            self.say(said);
+            let replies = self.server.poll(&mut self.node);
+            self.say(replies);
         }
         if let Some((_, frame)) = self.to_node.pop_front_if(|m| m.0 <= self.now) {
             let into = 1000 - (self.next_tick - self.now).as_nanos() / 1000;
             self.node.set_phase_us(into as u32);
-            let said = self.server.input(&mut self.node, &frame);
-            self.say(said);
+            let replies = self.server.input(&mut self.node, &frame);
+            self.say(replies);
         }
         if let Some((_, bytes)) = self.to_host.pop_front_if(|m| m.0 <= self.now) {
-            let bytes = (self.hurt)(self.now, bytes);
+            let bytes = (self.distort)(self.now, bytes);
             self.client.handle_input(&bytes, self.now);
         }
         if self.client.poll_timeout().is_some_and(|t| t <= self.now) {
@@ -200,7 +201,7 @@ impl World {
         }
     }
 
-    /// In mid-sweep.
+    /// /// A world in mid-sweep.
     fn moving_on(link: DriveLink) -> Self {
         let mut world = Self::homed_on(link);
         world.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
@@ -217,7 +218,7 @@ impl World {
         world
     }
 
-    /// What the client said about bringing the axis to rest.
+    /// /// The client's report of the stopped axis.
     fn made_safe(&self) -> Option<StopReport> {
         self.events.iter().find_map(|event| match event {
             DriveEvent::Progress(CommandProgress::MadeSafe(stopped)) => Some(*stopped),
@@ -247,7 +248,8 @@ impl World {
     }
 }
 
-/// Whether bytes order a quick stop: controlword (6040) 000B, as a frame of USB or CAN, or a body of RS232.
+/// /// Whether bytes contain a quick stop: controlword (6040) 000B in a frame of USB or CAN, or in
+/// a body of RS232.
 fn is_quick_stop(bytes: &[u8]) -> bool {
     let has = |wanted: &[u8]| bytes.windows(wanted.len()).any(|w| w == wanted);
     has(&[0x40, 0x60, 0, 1, 0x0B, 0]) || has(&[0x2B, 0x40, 0x60, 0, 0x0B, 0])
@@ -259,7 +261,7 @@ fn from_home(world: &World, angle_deg: f64) -> MovePlan {
     axis.plan_move(home, axis.validate(to(angle_deg)).unwrap())
 }
 
-/// The whole story of a capture, from power-on to the brake.
+/// /// A complete capture, from power-on to the brake.
 #[test]
 fn connect_home_sweep_brake() {
     let mut world = World::new(NodeConfig::default());
@@ -355,9 +357,10 @@ fn stop_in_mid_sweep_keeps_the_position() {
     };
     assert!(stopped.angle.is_some());
     assert_eq!(world.node.brake(), BrakeState::Closed);
-    // 1125 rpm at 20,000 rpm/s take 56 ms to stop; then 50 ms of standstill, the brake, and some round trips.
+    // 1125 rpm at 20,000 rpm/s take 56 ms to stop; then 50 ms of standstill, the brake, and some
+    // round trips.
     assert!(world.now - asked < Span::from_millis(200));
-    // And it goes on from there.
+    // // The axis can move on.
     assert!(world.run(DriveCommand::Goto(to(0.0))).is_ok());
 }
 
@@ -407,7 +410,7 @@ fn a_restart_in_mid_sweep_is_noticed() {
         );
         let stopped = world.made_safe().unwrap();
         assert_eq!(stopped.validity, PositionValidity::Lost { error: None });
-        // It has forgotten its limits: no move before it is connected again.
+        // // The drive has lost its limits: it must be connected before it moves.
         assert!(matches!(
             world.run(DriveCommand::Goto(to(0.0))),
             Err(DriveError::Restarted { .. })
@@ -443,7 +446,7 @@ fn the_whole_story_on_each_link() {
     }
 }
 
-/// From the fault to the quick stop that the client orders, though the drive has reacted by itself.
+/// /// Time from the fault to the client's quick stop, although the drive reacts on its own.
 #[test]
 fn faults_in_mid_sweep_are_named_and_answered_within_100_ms() {
     for link in LINKS {
@@ -485,7 +488,7 @@ fn a_blocked_motor_is_a_following_error() {
         let error = Some(DeviceError::FOLLOWING);
         assert_eq!(world.finish(), Err(DriveError::Fault { error }), "{link:?}");
         assert_eq!(world.made_safe().unwrap().validity, PositionValidity::Valid);
-        // And it goes on from there once it is free.
+        // // The axis can move on once it is free.
         world.node.unblock();
         world.run(DriveCommand::ClearFaults).unwrap();
         assert!(world.run(DriveCommand::Goto(to(0.0))).is_ok(), "{link:?}");
@@ -501,8 +504,8 @@ fn a_cut_cable_in_mid_sweep_is_told_and_on_can_stops_the_axis() {
         world.to_host.clear();
         let error = world.finish().unwrap_err();
         assert!(matches!(error, DriveError::NotStopped { .. }), "{error}");
-        let said = world.now - world.quick_stops.first().copied().unwrap_or(world.now);
-        assert!(said < Span::from_millis(100), "{link:?}: {said:?}");
+        let replies = world.now - world.quick_stops.first().copied().unwrap_or(world.now);
+        assert!(replies < Span::from_millis(100), "{link:?}: {replies:?}");
         assert!(world.now - at < Span::from_millis(400), "{link:?}");
         if link == DriveLink::Can {
             while world.now - at < Span::from_millis(300) {
@@ -516,14 +519,14 @@ fn a_cut_cable_in_mid_sweep_is_told_and_on_can_stops_the_axis() {
     }
 }
 
-/// It hears, though nothing of what it says can be read.
+/// /// The unit receives, but all its replies are damaged.
 #[test]
 fn an_axis_whose_answers_are_all_damaged_is_stopped() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
         for damage in DAMAGES {
             let mut world = World::moving_on(link);
             let from = world.now;
-            world.hurt = hurting(damage, from, from + Span::from_secs(100));
+            world.distort = distorting(damage, from, from + Span::from_secs(100));
             let error = world.finish().unwrap_err();
             assert!(matches!(error, DriveError::NotStopped { .. }), "{error}");
             let way = world.node.segment();
@@ -532,7 +535,8 @@ fn an_axis_whose_answers_are_all_damaged_is_stopped() {
     }
 }
 
-/// The software EPOS2 has no long object that takes what is written to it, but it walks the whole transfer before it says so.
+/// /// The simulated EPOS2 has no writable object of that length, but it takes the whole transfer
+/// before it aborts.
 #[test]
 fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
     for link in LINKS {
@@ -579,8 +583,8 @@ fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
     }
 }
 
-/// A servo comes to the end of homing, which is the end of the axis, some hundredths of a second after its demand: too late for who looks
-/// at once.
+/// /// A lagging servo arrives some hundredths of a second after its demand, at the end of the
+/// axis: too late for an immediate check.
 #[test]
 fn a_servo_that_lags_is_home_and_arrives() {
     for (natural_millihertz, damping_permille) in [(15_000, 700), (15_000, 1_000), (8_000, 1_000)] {
@@ -599,7 +603,7 @@ fn a_servo_that_lags_is_home_and_arrives() {
             let Ok(CommandOutcome::Homed { angle, .. }) = homed else {
                 panic!("{servo:?} {link:?}: {homed:?}")
             };
-            // Within the limits, to the tolerance of an arrival.
+            // // Within the limits and the arrival tolerance.
             assert!(angle.0 > -60.031, "{servo:?} {link:?}: {angle:?}");
             let swept = world.run(DriveCommand::Sweep(to(-15.0)));
             let Ok(CommandOutcome::Arrived(arrived)) = swept else {

@@ -1,4 +1,4 @@
-//! The link against every kind of loss, and against anything at all on the wire.
+//! //! The link with every kind of loss, and with arbitrary input.
 
 use proptest::prelude::*;
 use protocol::canopen::CanFrame;
@@ -42,12 +42,12 @@ fn answer(value: u32) -> Vec<u8> {
     usb::to_bytes(&ReadObject::answer(Ok(value))).to_vec()
 }
 
-/// The answer to a marker.
+/// /// The reply to a probe.
 fn absent(kind: usize) -> Vec<u8> {
     usb::to_bytes(&ReadObject::answer(Err(PROBES[kind].1))).to_vec()
 }
 
-fn marker(kind: usize) -> Vec<u8> {
+fn probe(kind: usize) -> Vec<u8> {
     Codec::usb(1).encode(PROBES[kind].0, ObjectAccess::Read, at(0))
 }
 
@@ -56,7 +56,7 @@ fn value(link: &mut Link) -> Option<u32> {
 }
 
 #[test]
-fn a_late_answer_does_not_answer_the_next_question() {
+fn a_late_reply_does_not_answer_the_next_request() {
     let mut link = Link::new(Codec::usb(1));
     link.submit(read(0x6064));
     let first = link.transmit(at(0)).unwrap();
@@ -64,7 +64,7 @@ fn a_late_answer_does_not_answer_the_next_question() {
     link.submit(read(0x6041));
     assert_eq!(link.transmit(at(1)), None, "the first is still awaited");
     assert_eq!(link.deadline(), Some(at(51)), "but not for long");
-    assert_eq!(link.transmit(at(51)), Some(marker(0)));
+    assert_eq!(link.transmit(at(51)), Some(probe(0)));
     link.handle_input(&answer(1), at(52));
     assert_eq!(link.take_result(), None, "the late answer is nobody's");
     link.handle_input(&absent(0), at(53));
@@ -84,7 +84,7 @@ fn reads_are_repeated_a_bounded_number_of_times() {
     let mut sent = 0;
     let lost = loop {
         if let Some(frame) = link.transmit(now) {
-            match (0..2).find(|&kind| frame == marker(kind)) {
+            match (0..2).find(|&kind| frame == probe(kind)) {
                 Some(kind) => link.handle_input(&absent(kind), now),
                 None => sent += 1,
             }
@@ -106,14 +106,14 @@ fn reads_are_repeated_a_bounded_number_of_times() {
 }
 
 #[test]
-fn a_damaged_answer_is_asked_for_again_at_once() {
+fn a_request_is_repeated_at_once_after_a_damaged_reply() {
     let mut link = Link::new(Codec::usb(1));
     link.submit(read(0x6064));
     link.transmit(at(0)).unwrap();
     let mut bad = answer(7);
     bad[10] ^= 1;
     link.handle_input(&bad, at(2));
-    assert_eq!(link.transmit(at(2)), Some(marker(0)));
+    assert_eq!(link.transmit(at(2)), Some(probe(0)));
     link.handle_input(&absent(0), at(4));
     assert!(link.transmit(at(4)).is_some());
     link.handle_input(&answer(7), at(6));
@@ -121,13 +121,13 @@ fn a_damaged_answer_is_asked_for_again_at_once() {
 }
 
 #[test]
-fn noise_before_the_answer_does_not_lose_it() {
+fn noise_before_a_reply_does_not_lose_it() {
     let mut link = Link::new(Codec::usb(1));
     link.submit(request(0x6040, ObjectAccess::Write { value: 0, width: 2 }));
     link.transmit(at(0)).unwrap();
     link.handle_input(&[0x90, 2, 0x33, 1, 1, 1, 1, 1], at(1));
-    assert_eq!(link.transmit(at(1)), Some(marker(0)));
-    // The write's own answer comes before the marker's: it was carried out after all.
+    assert_eq!(link.transmit(at(1)), Some(probe(0)));
+    // // The write's own reply precedes the probe's: it was executed.
     link.handle_input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(2));
     assert!(link.take_result().unwrap().is_ok());
 }
@@ -138,7 +138,7 @@ fn an_urgent_request_does_not_wait_for_the_marker() {
     link.submit(read(0x6064));
     link.transmit(at(0)).unwrap();
     link.expire(at(100));
-    assert_eq!(link.transmit(at(100)), Some(marker(0)));
+    assert_eq!(link.transmit(at(100)), Some(probe(0)));
     link.abandon();
     let stop = request(
         0x6040,
@@ -160,7 +160,7 @@ fn an_urgent_request_does_not_wait_for_the_marker() {
 }
 
 #[test]
-fn silence_is_told_after_two_markers() {
+fn silence_is_reported_after_two_probes() {
     let mut link = Link::new(Codec::usb(1));
     link.submit(read(0x6064));
     let mut frames = Vec::new();
@@ -173,16 +173,16 @@ fn silence_is_told_after_two_markers() {
         now = link.deadline().unwrap();
         link.expire(now);
     };
-    assert_eq!(frames[1..], [marker(0), marker(1)]);
+    assert_eq!(frames[1..], [probe(0), probe(1)]);
     assert_eq!(
         end,
         Err(RequestFailure::LinkLost {
             silent: Span::from_millis(300)
         })
     );
-    // The link comes back: what it owed is told apart, then all is well.
+    // // The link recovers: outstanding replies are identified, then requests work again.
     link.submit(read(0x6041));
-    assert_eq!(link.transmit(at(400)), Some(marker(1)));
+    assert_eq!(link.transmit(at(400)), Some(probe(1)));
     for late in [answer(1), absent(0), absent(1), absent(1)] {
         link.handle_input(&late, at(401));
     }
@@ -193,12 +193,12 @@ fn silence_is_told_after_two_markers() {
 }
 
 #[test]
-fn a_lost_marker_answer_does_not_keep_the_link_out_of_step_for_ever() {
+fn a_lost_probe_reply_does_not_keep_the_link_desynchronised() {
     let mut link = Link::new(Codec::usb(1));
     link.submit(read(0x6064));
     link.transmit(at(0)).unwrap();
-    assert_eq!(link.transmit(at(100)), Some(marker(0)));
-    assert_eq!(link.transmit(at(200)), Some(marker(1)));
+    assert_eq!(link.transmit(at(100)), Some(probe(0)));
+    assert_eq!(link.transmit(at(200)), Some(probe(1)));
     link.handle_input(&absent(1), at(201));
     assert!(link.transmit(at(201)).is_some());
     link.handle_input(&answer(9), at(202));
@@ -206,7 +206,7 @@ fn a_lost_marker_answer_does_not_keep_the_link_out_of_step_for_ever() {
 }
 
 #[test]
-fn a_request_the_drive_saw_damaged_goes_out_again_even_if_it_writes() {
+fn a_request_rejected_for_its_checksum_is_repeated_even_if_it_writes() {
     let mut link = Link::new(Codec::usb(1));
     let write = LinkRequest {
         retries: 0,
@@ -224,7 +224,7 @@ fn a_request_the_drive_saw_damaged_goes_out_again_even_if_it_writes() {
     assert!(link.take_result().unwrap().is_ok());
 }
 
-/// What becomes of an answer on its way.
+/// /// What happens to a reply.
 #[derive(Clone, Copy, Debug)]
 enum Fate {
     Arrives,
@@ -242,7 +242,7 @@ fn fate() -> impl Strategy<Value = Fate> {
     ]
 }
 
-/// A device whose value at index i is i, behind a wire that keeps the order of what it does not lose.
+/// /// A device whose object at index i has the value i.
 fn serve(frame: &[u8]) -> Vec<u8> {
     let mut decoder = UsbDecoder::new();
     let frame = frame
@@ -252,8 +252,8 @@ fn serve(frame: &[u8]) -> Vec<u8> {
         .unwrap();
     let answer = match Wire::parse(&frame).unwrap().unwrap() {
         Wire::ReadObject(read) => {
-            let marker = PROBES.iter().find(|(address, _)| *address == read.address);
-            ReadObject::answer(match marker {
+            let probe = PROBES.iter().find(|(address, _)| *address == read.address);
+            ReadObject::answer(match probe {
                 Some((_, error)) => Err(*error),
                 None => Ok(u32::from(read.address.index)),
             })
@@ -264,9 +264,9 @@ fn serve(frame: &[u8]) -> Vec<u8> {
     usb::to_bytes(&answer).to_vec()
 }
 
-/// A device that answers with the number of the request.
+/// /// A device that replies with the number of the request.
 fn count(attached: DriveLink, frame: &[u8], number: u32) -> Vec<u8> {
-    let outcome = |address| match PROBES.iter().find(|(marker, _)| *marker == address) {
+    let outcome = |address| match PROBES.iter().find(|(probe, _)| *probe == address) {
         Some((_, error)) => Err(*error),
         None => Ok(number),
     };
@@ -294,9 +294,9 @@ fn count(attached: DriveLink, frame: &[u8], number: u32) -> Vec<u8> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// Whatever is lost, damaged or late, an answer given is the answer to the question asked, and every question ends.
+    /// /// With any loss, damage or delay, a reply belongs to its request, and every request ends.
     #[test]
-    fn no_answer_is_ever_given_to_another_question(
+    fn replies_belong_to_their_requests(
         fates in proptest::collection::vec(fate(), 1..60),
         abandons in proptest::collection::vec(any::<bool>(), 12),
     ) {
@@ -348,10 +348,10 @@ proptest! {
         }
     }
 
-    /// The same object asked again and again, on both links that have no handshake: the value given was read for the very
-    /// request whose time it is given.
+    /// /// The same object read repeatedly on both links without handshake: each value was read for
+    /// the request whose time it has.
     #[test]
-    fn no_value_is_older_than_its_request(
+    fn values_are_not_older_than_their_requests(
         fates in proptest::collection::vec(fate(), 1..80),
         on_can in any::<bool>(),
         abandons in proptest::collection::vec(prop::bool::weighted(0.3), 16),
@@ -404,7 +404,8 @@ proptest! {
         }
     }
 
-    /// Any bytes at any time: no panic, no request beside the one that is out, and an end.
+    /// /// With arbitrary input there is no panic, only one request at a time, and every command
+    /// ends.
     #[test]
     fn a_client_survives_any_bytes(
         inputs in proptest::collection::vec(

@@ -1,4 +1,4 @@
-//! The same story on each link: what the client does and what becomes of faults does not depend on how the drive is attached.
+//! //! The same scenarios on each link: commands and faults do not depend on the link.
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::message::Request;
@@ -13,7 +13,8 @@ use crate::{
 };
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
-/// From seeing that something is wrong to the quick stop, or to saying that the axis cannot be stopped.
+/// /// From the detection of a fault to the quick stop, or to the report that the axis cannot be
+/// stopped.
 const REACTION: Span = Span::from_millis(100);
 
 fn moving_on(link: DriveLink) -> Rig {
@@ -33,7 +34,7 @@ fn made_safe(rig: &Rig) -> Option<StopReport> {
 }
 
 #[test]
-fn the_whole_story() {
+fn connect_home_sweep_and_brake_work_on_each_link() {
     for link in LINKS {
         let mut rig = Rig::on(link, AxisConfig::default());
         let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
@@ -67,7 +68,8 @@ fn the_whole_story() {
     }
 }
 
-/// On RS232 a log tells more narrowly when the position was trigger: by when the answer was announced.
+/// /// Whether two samples agree. On RS232 a log bounds the sample's time more tightly, by the
+/// announcement of the answer.
 pub fn same(link: DriveLink, client: &ShaftSample, log: &ShaftSample) -> bool {
     let narrowed = ShaftSample {
         answer: log.answer,
@@ -80,22 +82,22 @@ pub fn same(link: DriveLink, client: &ShaftSample, log: &ShaftSample) -> bool {
 }
 
 #[test]
-fn a_log_tells_the_same_on_each_link() {
+fn a_log_gives_the_same_observations_on_each_link() {
     for link in LINKS {
         let mut rig = Rig::on(link, AxisConfig::default());
         rig.run(DriveCommand::Connect).unwrap();
         rig.run(DriveCommand::Home).unwrap();
         rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
         rig.run(DriveCommand::Brake).unwrap();
-        let heard = rig.heard();
-        let sampled: Vec<ShaftSample> = heard
+        let observed = rig.observations();
+        let sampled: Vec<ShaftSample> = observed
             .iter()
             .filter_map(|seen| match seen {
                 Observation::Sample(sample) => Some(*sample),
                 _ => None,
             })
             .collect();
-        // The client also reads the position where it needs no sample.
+        // // The client also reads the position without a sample.
         let samples = rig.samples();
         let mut rest = sampled.iter();
         assert!(
@@ -105,7 +107,7 @@ fn a_log_tells_the_same_on_each_link() {
             "{link:?}"
         );
         assert!(sampled.len() < samples.len() + 10);
-        let wrote: Vec<_> = heard
+        let wrote: Vec<_> = observed
             .iter()
             .filter_map(|seen| match seen {
                 Observation::Wrote { address, value, .. } => {
@@ -116,7 +118,7 @@ fn a_log_tells_the_same_on_each_link() {
             .collect();
         assert_eq!(wrote, rig.writes(), "{link:?}");
         let is_noise = |seen: &&Observation| matches!(seen, Observation::Noise { .. });
-        assert_eq!(heard.iter().find(is_noise), None, "{link:?}");
+        assert_eq!(observed.iter().find(is_noise), None, "{link:?}");
     }
 }
 
@@ -131,7 +133,7 @@ fn samples_lie_between_their_stamps_on_each_link() {
             .filter(|s| !matches!(s.position.0, -40_000 | -10_000))
             .collect();
         assert!(moving.len() > if link == DriveLink::Rs232 { 200 } else { 650 });
-        // 37,500 qc/s from a start that all samples must agree on.
+        // // At 37,500 qc/s all samples must agree on the start.
         let began =
             |at: Stamp<_>, qc: i32| at.as_nanos() as f64 / 1e9 - f64::from(qc + 40_000) / 37_500.0;
         let base = moving[0].request.as_nanos() as f64 / 1e9;
@@ -170,7 +172,7 @@ fn a_fault_in_mid_sweep_stops_it() {
             assert_eq!(stopped.angle.is_some(), place == PositionValidity::Valid);
             assert_eq!(rig.fake.state, FAULT);
             let reaction = rig.quick_stop().unwrap() - at;
-            // On CAN an emergency says it at once; else a look at the statusword does.
+            // // On CAN an EMCY message reports it at once, else the next statusword.
             let limit = if link == DriveLink::Can { 3 } else { 40 };
             assert!(
                 reaction < Span::from_millis(limit),
@@ -181,7 +183,7 @@ fn a_fault_in_mid_sweep_stops_it() {
 }
 
 #[test]
-fn a_restart_in_mid_sweep_is_told_and_the_position_is_lost() {
+fn a_restart_in_mid_sweep_is_reported_and_the_position_is_lost() {
     for link in LINKS {
         let mut rig = moving_on(link);
         let at = rig.now;
@@ -196,13 +198,13 @@ fn a_restart_in_mid_sweep_is_told_and_the_position_is_lost() {
         assert_eq!(stopped.validity, PositionValidity::Lost { error: None });
         assert_eq!(stopped.angle, None);
         let reaction = rig.quick_stop().unwrap() - at;
-        // On CAN the boot-up message says it; else what was asked last is not answered, and its time has to pass first.
+        // // On CAN the boot-up message reports it; else the last request must time out first.
         let limit = if link == DriveLink::Can { 3 } else { 200 };
         assert!(
             reaction < Span::from_millis(limit),
             "{link:?}: {reaction:?}"
         );
-        // No move before it has been connected again.
+        // // The drive must be connected before it moves.
         assert!(rig.run(DriveCommand::Goto(to(0.0))).is_err());
         rig.run(DriveCommand::Connect).unwrap();
         rig.run(DriveCommand::Home).unwrap();
@@ -211,12 +213,12 @@ fn a_restart_in_mid_sweep_is_told_and_the_position_is_lost() {
 }
 
 #[test]
-fn a_lost_link_in_mid_sweep_is_told_in_time() {
+fn a_lost_link_in_mid_sweep_is_reported_in_time() {
     for link in LINKS {
         let mut rig = moving_on(link);
         let died = rig.now;
         rig.fake.hand = Box::new(|_, _| Fate::Lost);
-        rig.fake.bus.mute = true;
+        rig.fake.bus.silent = true;
         rig.fake.bus.copies = Box::new(|_| 0);
         let error = rig.finish().unwrap_err();
         let DriveError::NotStopped { cause, stop } = &error else {
@@ -230,13 +232,13 @@ fn a_lost_link_in_mid_sweep_is_told_in_time() {
             "{cause:?}"
         );
         assert!(matches!(**stop, DriveError::LinkLost { .. }), "{stop:?}");
-        // The quick stop went out all the same, for a drive that hears but cannot be heard.
+        // // The drive received the quick stop although its replies are lost.
         if link != DriveLink::Rs232 {
             assert_eq!(rig.fake.state, super::fake::QUICK_STOP, "{link:?}");
             let seen = rig.quick_stop().unwrap();
             assert!(rig.now - seen < REACTION, "{link:?}");
         }
-        // The time of one answer, and of the markers after it; then the last try.
+        // // One request timeout, the probes after it, then the last attempt.
         assert!(
             rig.now - died < Span::from_millis(500),
             "{link:?} {:?}",
@@ -246,7 +248,7 @@ fn a_lost_link_in_mid_sweep_is_told_in_time() {
 }
 
 #[test]
-fn an_axis_that_does_not_follow_is_given_up() {
+fn a_blocked_axis_fails_the_move() {
     for link in LINKS {
         let mut rig = Rig::homed_on(link);
         rig.fake.blocked = true;
@@ -259,9 +261,10 @@ fn an_axis_that_does_not_follow_is_given_up() {
     }
 }
 
-/// The host is held up for longer than the margin, shortly before, at and after the arrival, at any point of a dialogue.
+/// /// The host is delayed by more than the margin, just before, at and after the arrival, at any
+/// point of a dialogue.
 #[test]
-fn a_host_that_sleeps_through_the_arrival_finds_the_axis_there() {
+fn a_host_delayed_through_the_arrival_completes_the_move() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
         let mut usual = Rig::homed_on(link);
         let began = usual.now;
@@ -282,11 +285,11 @@ fn a_host_that_sleeps_through_the_arrival_finds_the_axis_there() {
     }
 }
 
-/// On CAN the drive does not wait for such a host, and its word stands.
+/// /// On CAN the drive stops when the host is delayed, and reports it.
 #[test]
-fn a_host_that_sleeps_on_can_is_told_that_the_drive_stopped() {
+fn a_host_delayed_on_can_reports_that_the_drive_stopped() {
     let mut rig = moving_on(DriveLink::Can);
-    // The drive's own time goes on meanwhile.
+    // // The drive's own time advances meanwhile.
     for _ in 0..1_700 {
         rig.now += Span::from_millis(1);
         rig.fake.live(rig.now);
@@ -299,9 +302,9 @@ fn a_host_that_sleeps_on_can_is_told_that_the_drive_stopped() {
     assert_eq!(made_safe(&rig).unwrap().validity, PositionValidity::Valid);
 }
 
-/// A change of state and a standstill that the host slept through are seen, too.
+/// /// A state change and a standstill during a delay of the host are detected, too.
 #[test]
-fn a_host_that_sleeps_at_any_time_finds_what_has_become_of_it() {
+fn a_host_delayed_at_any_time_detects_the_outcome() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
         for k in 0..150 {
             let mut config = AxisConfig::default();
@@ -321,7 +324,8 @@ fn a_host_that_sleeps_at_any_time_finds_what_has_become_of_it() {
                     rig.sleep(Span::from_millis(1_800));
                     ended = Some(rig.finish());
                 }
-                // A dialogue of RS232 broken off by sleep leaves open what became of a write.
+                // // After an interrupted RS232 dialogue it is unknown whether a write was
+                // executed.
                 let open = matches!(ended, Some(Err(DriveError::NoAnswer { .. })))
                     && link == DriveLink::Rs232;
                 assert!(
@@ -348,7 +352,8 @@ fn loss_damage_repetition_and_refusal_are_survived() {
             (Fate::Late(Span::from_millis(130)), 47),
         ] {
             let mut rig = Rig::on(link, AxisConfig::default());
-            // Reads and rejected writes are repeated; a write whose answer is lost is not. Segments are begun anew by the whole.
+            // // Reads and rejected writes are repeated; a write with a lost reply is not. A
+            // segmented transfer is restarted as a whole.
             rig.fake.hand = Box::new(move |n, request| {
                 let repeated = match request {
                     Request::ReadObject(_) => true,
@@ -357,7 +362,7 @@ fn loss_damage_repetition_and_refusal_are_survived() {
                             || fate == Fate::Late(Span::from_millis(3))
                     }
                 };
-                // An answer of CAN cannot be refused but by name.
+                // // CAN has no rejection of a damaged request.
                 let possible = !(link == DriveLink::Can && fate == Fate::Rejected);
                 if n % every == 0 && repeated && possible {
                     fate
@@ -380,7 +385,7 @@ fn loss_damage_repetition_and_refusal_are_survived() {
 }
 
 #[test]
-fn a_wrong_toggle_bit_is_told() {
+fn a_wrong_toggle_bit_is_reported() {
     for link in LINKS {
         let mut rig = Rig::on(link, AxisConfig::default());
         rig.fake.wrong_toggle = true;
@@ -415,9 +420,9 @@ fn a_stop_from_mid_sweep_is_immediate_and_keeps_the_position() {
     }
 }
 
-/// No value of it is taken, and what was asked is asked again.
+/// /// Its value is not used, and the request is repeated.
 #[test]
-fn an_answer_to_another_request_in_mid_sweep_is_passed_over() {
+fn a_reply_to_another_request_in_mid_sweep_is_ignored() {
     for link in LINKS {
         let mut rig = Rig::homed_on(link);
         rig.fake.hand = Box::new(|n, request| match request {

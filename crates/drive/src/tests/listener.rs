@@ -1,4 +1,4 @@
-//! The listener sees in a log what the client saw live.
+//! //! The listener's observations of a log compared with the client's.
 
 use proptest::prelude::*;
 use protocol::record::{Direction, DriveLink};
@@ -8,8 +8,8 @@ use super::fake::Fate;
 use super::rig::{Rig, to};
 use crate::{DriveCommand, DriveListener, Observation, ShaftSample};
 
-fn sampled(heard: &[Observation]) -> Vec<ShaftSample> {
-    heard
+fn sampled(observed: &[Observation]) -> Vec<ShaftSample> {
+    observed
         .iter()
         .filter_map(|seen| match seen {
             Observation::Sample(sample) => Some(*sample),
@@ -22,9 +22,9 @@ fn sampled(heard: &[Observation]) -> Vec<ShaftSample> {
 fn a_log_gives_the_clients_samples_writes_and_states() {
     let mut rig = Rig::homed();
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
-    let heard = rig.heard();
-    assert_eq!(sampled(&heard), rig.samples());
-    let wrote: Vec<_> = heard
+    let observed = rig.observations();
+    assert_eq!(sampled(&observed), rig.samples());
+    let wrote: Vec<_> = observed
         .iter()
         .filter_map(|seen| match seen {
             Observation::Wrote { address, value, .. } => Some((address.index, address.sub, *value)),
@@ -32,7 +32,7 @@ fn a_log_gives_the_clients_samples_writes_and_states() {
         })
         .collect();
     assert_eq!(wrote, rig.writes());
-    assert!(heard.iter().any(|seen| matches!(
+    assert!(observed.iter().any(|seen| matches!(
         seen,
         Observation::Statusword { value, .. } if value & 0x417F == 0x0137
     )));
@@ -50,23 +50,23 @@ fn lost_and_late_answers_leave_the_log_right() {
         _ => Fate::Sent,
     });
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
-    let heard = rig.heard();
-    assert_eq!(sampled(&heard), rig.samples());
+    let observed = rig.observations();
+    assert_eq!(sampled(&observed), rig.samples());
     assert!(
-        heard
+        observed
             .iter()
             .any(|seen| matches!(seen, Observation::Noise { .. }))
     );
 }
 
 #[test]
-fn a_log_that_begins_in_the_middle_is_understood() {
+fn a_log_that_starts_in_mid_traffic_is_decoded() {
     let mut rig = Rig::homed();
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
-    let all = sampled(&rig.heard());
+    let all = sampled(&rig.observations());
     for cut in [1, 2, 101, 102] {
         rig.log.drain(..cut);
-        let rest = sampled(&rig.heard());
+        let rest = sampled(&rig.observations());
         assert_eq!(rest, all[all.len() - rest.len()..]);
         assert!(rest.len() + cut + 1 >= all.len().saturating_sub(200));
     }
@@ -87,7 +87,7 @@ fn requests_to_other_nodes_are_not_ours() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Noise between the frames of a log, damaged frames and missing ones: fewer samples, never a wrong one.
+    /// /// Noise between frames, damaged and missing frames: fewer samples, never wrong ones.
     #[test]
     fn noise_never_makes_a_sample(
         noise in proptest::collection::vec((any::<prop::sample::Index>(), proptest::collection::vec(any::<u8>(), 0..20), any::<bool>()), 0..20),
@@ -97,9 +97,9 @@ proptest! {
         let until = rig.now + Span::from_millis(80);
         rig.run(DriveCommand::Hold { until }).unwrap();
         rig.run(DriveCommand::Goto(crate::MoveCommand { speed: units::Rpm(1500), ..to(-55.0) })).unwrap();
-        let truth = sampled(&rig.heard());
+        let truth = sampled(&rig.observations());
         for index in &missing {
-            // Only answers go missing: a recorder sees its own requests.
+            // // Only replies can be missing: a recorder has its own requests.
             let at = index.index(rig.log.len());
             if rig.log[at].0 == Direction::FromDevice {
                 rig.log.remove(at);
@@ -111,8 +111,8 @@ proptest! {
             let host = rig.log[at].2;
             rig.log.insert(at, (direction, bytes.clone(), host));
         }
-        let heard = sampled(&rig.heard());
-        for sample in &heard {
+        let observed = sampled(&rig.observations());
+        for sample in &observed {
             prop_assert!(truth.contains(sample), "{sample:?}");
         }
     }

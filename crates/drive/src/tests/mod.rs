@@ -2,6 +2,7 @@
 
 mod bursts;
 mod can;
+mod damaged_logs;
 mod fake;
 mod faults;
 mod firmware;
@@ -9,7 +10,6 @@ mod link;
 mod links;
 mod listener;
 mod objects;
-mod onlooker;
 mod procedures;
 mod rig;
 mod rs232;

@@ -1,4 +1,4 @@
-//! Any object by hand, expedited and in segments, both ways, with aborts.
+//! //! Direct access to any object, expedited and in segments, both ways, with aborts.
 
 use protocol::canopen::sdo::TransferError;
 use protocol::epos2::objects::Address;
@@ -31,13 +31,13 @@ fn read(rig: &mut Rig, address: Address) -> Result<Vec<u8>, DriveError> {
     }
 }
 
-/// Every length around those of a segment of CAN, and the toggle bit of each.
+/// /// Lengths around multiples of a CAN segment, and the toggle bit of each segment.
 #[test]
 fn long_objects_are_written_and_read_back() {
     for link in LINKS {
         let mut rig = rig(link);
         for len in [5, 6, 7, 8, 13, 14, 15, 20] {
-            // 0x90 is what USB doubles.
+            // // USB doubles 0x90.
             let bytes: Vec<u8> = (0..len).map(|n| 0x90 - n % 3).collect();
             assert_eq!(
                 rig.run(write(NAME, &bytes)),
@@ -49,9 +49,9 @@ fn long_objects_are_written_and_read_back() {
         }
         assert_eq!(rig.fake.aborts, []);
         assert_eq!(rig.client.link_stats().lost, 0);
-        // A log is understood all the same.
+        // // The log can be decoded.
         let is_noise = |seen: &&Observation| matches!(seen, Observation::Noise { .. });
-        assert_eq!(rig.heard().iter().find(is_noise), None, "{link:?}");
+        assert_eq!(rig.observations().iter().find(is_noise), None, "{link:?}");
     }
 }
 
@@ -75,7 +75,7 @@ fn short_objects_take_one_exchange_of_their_width() {
 }
 
 #[test]
-fn the_drives_aborts_are_told_at_the_beginning_and_at_the_end() {
+fn aborts_by_the_drive_are_reported_at_the_start_and_at_the_end() {
     for link in LINKS {
         let mut rig = rig(link);
         let absent = Address::new(0x5000, 1);
@@ -107,7 +107,7 @@ fn the_drives_aborts_are_told_at_the_beginning_and_at_the_end() {
             read(&mut rig, absent),
             Err(DriveError::Refused { .. })
         ));
-        // An abort ends the transfer by itself, and the next one is unharmed.
+        // // The node's abort ends the transfer, and the next one works.
         assert_eq!(rig.fake.aborts, []);
         assert_eq!(rig.fake.name, b"EPOS2");
         assert_eq!(read(&mut rig, NAME).unwrap(), b"EPOS2");
@@ -115,7 +115,7 @@ fn the_drives_aborts_are_told_at_the_beginning_and_at_the_end() {
 }
 
 #[test]
-fn a_wrong_toggle_bit_breaks_a_write_off() {
+fn a_wrong_toggle_bit_aborts_a_write() {
     for link in LINKS {
         let mut rig = rig(link);
         rig.fake.wrong_toggle = true;
@@ -130,7 +130,7 @@ fn a_wrong_toggle_bit_breaks_a_write_off() {
         } else {
             Vec::new()
         };
-        // What is still to be said is said with the next command.
+        // // The pending abort is sent with the next command.
         rig.fake.wrong_toggle = false;
         assert_eq!(read(&mut rig, NAME).unwrap().len(), rig.fake.name.len());
         assert_eq!(rig.fake.aborts, aborts, "{link:?}");
@@ -144,7 +144,7 @@ fn a_lost_segment_is_not_repeated() {
             let mut rig = rig(link);
             rig.fake.hand = Box::new(move |n, _| if n == lost { Fate::Lost } else { Fate::Sent });
             let ended = rig.run(write(NAME, b"fourteen bytes"));
-            // On a serial link one segment takes it all.
+            // // A single segment suffices on a serial link.
             if lost == 3 && link != DriveLink::Can {
                 assert!(ended.is_ok(), "{link:?}");
                 continue;
@@ -163,7 +163,7 @@ fn a_lost_segment_is_not_repeated() {
 }
 
 #[test]
-fn an_object_beyond_all_bounds_is_not_read_for_ever() {
+fn reading_an_oversized_object_fails() {
     for link in LINKS {
         let mut rig = rig(link);
         rig.fake.name = vec![b'x'; 300];
@@ -184,7 +184,7 @@ fn an_object_beyond_all_bounds_is_not_read_for_ever() {
 }
 
 #[test]
-fn nothing_is_written_by_hand_to_what_moves_the_axis_or_while_it_may() {
+fn direct_writes_are_refused_for_the_controlword_and_while_enabled() {
     for link in LINKS {
         let mut rig = Rig::homed_on(link);
         let controlword = Address::new(0x6040, 0);
@@ -200,8 +200,8 @@ fn nothing_is_written_by_hand_to_what_moves_the_axis_or_while_it_may() {
     }
 }
 
-/// What USB doubles, what begins its frames, what RS232 shakes hands with, and what begins its answers: wherever they stand, the last
-/// data byte included.
+/// /// The bytes that USB doubles, that begin its frames, and that RS232 uses as handshake and
+/// answer opcode, at every position of the data.
 #[test]
 fn every_byte_passes_at_every_position() {
     for link in LINKS {

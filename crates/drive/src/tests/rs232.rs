@@ -1,4 +1,4 @@
-//! What only RS232 has: a dialogue that bytes may be missing from, and units that stay behind in it.
+//! //! Features of RS232: a dialogue with missing bytes, and units that stay behind in it.
 
 use proptest::prelude::*;
 use protocol::epos2::message::{ReadObject, Request as Wire, WriteObject};
@@ -30,10 +30,10 @@ fn request(index: u16, access: ObjectAccess) -> LinkRequest {
     }
 }
 
-/// A unit whose value at index i is i.
+/// /// A unit whose object at index i has the value i.
 struct Unit {
     state: UnitState,
-    heard: Stamp<Host>,
+    observed: Stamp<Host>,
     executed: Vec<Wire>,
 }
 
@@ -48,16 +48,16 @@ impl Unit {
     fn new() -> Self {
         Self {
             state: UnitState::Opcode,
-            heard: at(0),
+            observed: at(0),
             executed: Vec::new(),
         }
     }
 
     fn take(&mut self, byte: u8, now: Stamp<Host>) -> Vec<u8> {
-        if now - self.heard > Span::from_millis(500) {
+        if now - self.observed > Span::from_millis(500) {
             self.state = UnitState::Opcode;
         }
-        self.heard = now;
+        self.observed = now;
         match std::mem::replace(&mut self.state, UnitState::Opcode) {
             UnitState::Opcode if matches!(byte, 0x10 | 0x11) => {
                 self.state = UnitState::Body(BodyDecoder::new(byte));
@@ -90,8 +90,8 @@ impl Unit {
         self.executed.push(request);
         match request {
             Wire::ReadObject(read) => {
-                let marker = PROBES.iter().find(|(a, _)| *a == read.address);
-                ReadObject::answer(match marker {
+                let probe = PROBES.iter().find(|(a, _)| *a == read.address);
+                ReadObject::answer(match probe {
                     Some((_, error)) => Err(*error),
                     None => Ok(u32::from(read.address.index)),
                 })
@@ -102,7 +102,7 @@ impl Unit {
 }
 
 #[test]
-fn a_unit_that_refuses_for_ever_is_told() {
+fn a_unit_that_always_refuses_is_reported() {
     let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Rs232);
     client.start(DriveCommand::Status).unwrap();
     let mut now = at(0);
@@ -137,7 +137,7 @@ fn a_unit_that_refuses_for_ever_is_told() {
     panic!("no end: {client:?}");
 }
 
-/// What becomes of a byte on the way.
+/// /// What happens to a byte on its way.
 #[derive(Clone, Copy, Debug)]
 enum Fate {
     Arrives,
@@ -153,7 +153,7 @@ fn fates() -> impl Strategy<Value = Vec<Fate>> {
             200 => Just(Fate::Arrives),
             2 => Just(Fate::IsLost),
             1 => Just(Fate::ComesTwice),
-            // A handshake that turns into its opposite is believed: nothing protects it. Others are noticed.
+            // // A handshake changed into its opposite is undetectable; other changes are detected.
             2 => any::<u8>().prop_filter("handshake", |b| ![OKAY, FAILED].contains(b)).prop_map(Fate::Becomes),
             1 => (1..250u16).prop_map(Fate::TakesMs),
         ],
@@ -204,10 +204,10 @@ impl Line {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
-    /// Whatever becomes of the bytes, an answer given is the answer to the question asked, and every question ends. A write is carried
-    /// out at most once for each that is reported done.
+    /// /// With any loss and damage a reply belongs to its request, and every request ends. A write
+    /// is executed at most once per reported success.
     #[test]
-    fn no_answer_is_ever_given_to_another_question(there in fates(), back in fates(), abandons in proptest::collection::vec(any::<bool>(), 12)) {
+    fn replies_belong_to_their_requests(there in fates(), back in fates(), abandons in proptest::collection::vec(any::<bool>(), 12)) {
         let mut link = Link::new(Codec::new(DriveLink::Rs232, 1));
         let mut unit = Unit::new();
         let (mut out, mut home) = (Line::new(there), Line::new(back));
@@ -245,8 +245,8 @@ proptest! {
                 let next = [out.next(), home.next(), link.deadline()];
                 now = next.into_iter().flatten().min().unwrap().max(now);
                 while let Some(byte) = out.take(now) {
-                    let said = unit.take(byte, now);
-                    home.send(&said, now + Span::from_micros(300));
+                    let replies = unit.take(byte, now);
+                    home.send(&replies, now + Span::from_micros(300));
                 }
                 while let Some(byte) = home.take(now) {
                     link.handle_input(&[byte], now);
@@ -257,7 +257,7 @@ proptest! {
         }
     }
 
-    /// Any bytes at any time: no panic, and an end.
+    /// /// Arbitrary bytes cause no panic, and every command ends.
     #[test]
     fn any_bytes_end(inputs in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..12), 0..60)) {
         let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Rs232);

@@ -1,4 +1,4 @@
-//! Frame by frame: what goes over the wire for the first steps, byte for byte as in the Communication Guide's format.
+//! //! The first frames of commands, byte for byte in the Communication Guide's format.
 
 use units::{Span, Stamp};
 
@@ -12,9 +12,9 @@ fn hex(text: &str) -> Vec<u8> {
         .collect()
 }
 
-/// Quick stop, then statusword and position; the answers are those of the guide's examples.
+/// /// Quick stop, then statusword and position; the replies are the guide's examples.
 #[test]
-fn stop_asks_what_the_guide_says() {
+fn stop_sends_the_frames_of_the_guide() {
     let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Usb);
     let mut now = Stamp::from_nanos(0);
     client.start(DriveCommand::Stop).unwrap();
@@ -27,7 +27,7 @@ fn stop_asks_what_the_guide_says() {
         client.poll_transmit(now).unwrap(),
         hex("90 02 10 02 64 60 00 01 52 A2")
     );
-    // The answer comes in three portions; its time is that of the last.
+    // // The reply arrives in three portions and has the time of the last.
     for part in ["90 02 00 04 00 00", "00 00 00 00 90 90", "80 14 35"] {
         now += Span::from_millis(1);
         client.handle_input(&hex(part), now);
@@ -46,7 +46,7 @@ fn stop_asks_what_the_guide_says() {
 }
 
 #[test]
-fn the_drives_own_refusal_is_told() {
+fn a_refusal_by_the_drive_is_reported() {
     for refusal in [
         "90 02 00 02 00 00 02 06 A4 01",
         "90 02 00 04 00 00 02 06 00 00 00 00 57 64",

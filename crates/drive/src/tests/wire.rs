@@ -1,5 +1,5 @@
-//! The scripted drive's side of each link: bytes to requests, answers and their fates to bytes; and what it says on a CAN bus of its
-//! own accord.
+//! //! The scripted drive's side of each link: bytes to requests, answers and their fates to bytes,
+//! and the CAN services other than SDO.
 
 use protocol::canopen::emcy::Emergency;
 use protocol::canopen::heartbeat::Heartbeat;
@@ -24,11 +24,11 @@ pub enum Wire {
     Usb(UsbDecoder),
     Rs232(UnitState),
     Can,
-    /// While it is in use.
+    /// /// Placeholder while the wire is in use.
     Gone,
 }
 
-/// Whose state it is, and for what.
+/// /// State of the RS232 dialogue in the unit.
 pub enum UnitState {
     Opcode,
     Body(BodyDecoder),
@@ -36,14 +36,14 @@ pub enum UnitState {
     Receipt,
 }
 
-/// What a drive has on a CAN bus beside its answers.
+/// /// CAN services of the drive other than SDO.
 pub struct FakeBus {
     pub state: NmtState,
     next_heartbeat: Option<Stamp<Host>>,
-    /// It no longer sends its heartbeat.
-    pub mute: bool,
-    host_heard: Option<Stamp<Host>>,
-    /// From SYNC to the latched position, and to the frame's arrival.
+    /// /// The heartbeat is off.
+    pub silent: bool,
+    host_heartbeat: Option<Stamp<Host>>,
+    /// /// Delay from SYNC to the sample, and from there to the frame's arrival.
     pub forth: Span,
     pub back: Span,
     /// Decides whether the n-th frame of the stream is sent, and how often.
@@ -57,8 +57,8 @@ impl Default for FakeBus {
         Self {
             state: NmtState::PreOperational,
             next_heartbeat: None,
-            mute: false,
-            host_heard: None,
+            silent: false,
+            host_heartbeat: None,
             forth: Span::from_micros(120),
             back: Span::from_micros(180),
             copies: Box::new(|_| 1),
@@ -118,7 +118,7 @@ impl Wire {
     }
 }
 
-/// The answer to a request of another kind: a read where it was a write, and the other way round.
+/// /// The reply to a request of another kind: a read instead of a write, and vice versa.
 fn another(answer: &Frame) -> Frame {
     if Answer::parse(answer).unwrap().data.is_empty() {
         ReadObject::answer(Ok(0x1234))
@@ -207,9 +207,9 @@ fn can(fake: &mut Fake, frame: &CanFrame, now: Stamp<Host>) {
             other => panic!("{other:?}"),
         },
         Message::Sync(_) => fake.sync(now),
-        Message::Heartbeat(beat) => {
-            assert_eq!(beat.node.get(), 127);
-            fake.bus.host_heard = Some(now);
+        Message::Heartbeat(heartbeat) => {
+            assert_eq!(heartbeat.node.get(), 127);
+            fake.bus.host_heartbeat = Some(now);
         }
         Message::SdoRequest(to, request) => {
             assert_eq!(to, node());
@@ -276,7 +276,7 @@ fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
     let (answer, fate) = fake.execute(wire, now);
     let mut answer = sdo_answer(&wire, address, &answer);
     if fate == Fate::Another {
-        // Of the same kind, even.
+        // // Even of the same kind.
         let address = Address::new(address.index + 1, address.sub);
         let transfer = Initiate::Expedited(Expedited::of(0x1234_u32));
         answer = sdo::SdoResponse::InitiateUpload { address, transfer };
@@ -288,7 +288,7 @@ fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
         _ => Span::ZERO,
     };
     match fate {
-        // A wrong frame on CAN does not arrive; one of the wrong length is the nearest to it.
+        // // A damaged CAN frame does not arrive; a wrong length comes closest.
         Fate::Damaged => bytes[4] = 7,
         Fate::Twice => fake.send(bytes.clone(), by, now),
         _ => {}
@@ -332,7 +332,7 @@ fn sdo_answer(request: &Request, address: Address, answer: &Frame) -> sdo::SdoRe
 }
 
 impl Fake {
-    /// What it says of its own accord before anything else.
+    /// /// Sends the boot-up message and starts the heartbeat.
     pub fn start_bus(&mut self, now: Stamp<Host>) {
         let state = self.bus.state;
         self.bus = FakeBus::default();
@@ -354,7 +354,7 @@ impl Fake {
 
     pub fn live_on_bus(&mut self, now: Stamp<Host>) {
         let period = i64::from(self.objects[&(0x1017, 0)]);
-        if period == 0 || self.bus.mute {
+        if period == 0 || self.bus.silent {
             self.bus.next_heartbeat = None;
         } else if self.bus.next_heartbeat.is_none_or(|at| at <= now) {
             self.bus.next_heartbeat = Some(now + Span::from_millis(period));
@@ -370,11 +370,11 @@ impl Fake {
         }
         let entry = self.objects[&(0x1016, 1)];
         let limit = Span::from_millis(i64::from(entry & 0xFFFF));
-        let heard = self.bus.host_heard;
+        let observed = self.bus.host_heartbeat;
         if entry == 0 {
-            self.bus.host_heard = None;
-        } else if heard.is_some_and(|at| now - at > limit) {
-            self.bus.host_heard = None;
+            self.bus.host_heartbeat = None;
+        } else if observed.is_some_and(|at| now - at > limit) {
+            self.bus.host_heartbeat = None;
             self.fault(0x8130, now);
         }
     }

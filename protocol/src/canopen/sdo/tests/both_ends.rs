@@ -70,11 +70,11 @@ impl Server {
         }
     }
 
-    fn serve(&mut self, client: &mut Client) -> SdoOutcome<ROOM> {
+    fn serve(&mut self, client: &mut Client) -> SdoOutcome<CAPACITY> {
         for _ in 0..20 {
             for request in sent(client, at(0)) {
                 assert_eq!(
-                    hear(client, self.answer(request)),
+                    receive(client, self.answer(request)),
                     FrameDisposition::Accepted
                 );
             }
@@ -109,7 +109,7 @@ fn noise() -> impl Strategy<Value = SdoResponse> {
 proptest! {
     #[test]
     fn every_length_is_read_and_written(
-        data in prop::collection::vec(any::<u8>(), 0..=ROOM), expedite: bool, announce: bool,
+        data in prop::collection::vec(any::<u8>(), 0..=CAPACITY), expedite: bool, announce: bool,
     ) {
         let mut client = client();
         client.read(NAME).unwrap();
@@ -152,15 +152,15 @@ proptest! {
 
     /// Whatever comes, a transfer ends: with the answers or with the time.
     #[test]
-    fn noise_ends_a_transfer_sooner_or_later(answers in prop::collection::vec(noise(), 0..40), write in 0..20_usize) {
+    fn every_transfer_ends_under_noise(answers in prop::collection::vec(noise(), 0..40), write in 0..20_usize) {
         let mut client = client();
         match write {
             0 => client.read(NAME).unwrap(),
-            n => client.write(NAME, &[0x55; ROOM][..n]).unwrap(),
+            n => client.write(NAME, &[0x55; CAPACITY][..n]).unwrap(),
         }
         for answer in answers {
             sent(&mut client, at(0));
-            hear(&mut client, answer);
+            receive(&mut client, answer);
         }
         let mut outcome = client.poll_outcome();
         if outcome.is_none() {

@@ -1,4 +1,5 @@
-//! The listener over each link: on a clean log it sees what the client saw; a hurt one shows it less, never anything else.
+//! //! The listener on each link: a clean log gives the client's samples, a damaged one fewer,
+//! never wrong ones.
 
 use std::sync::OnceLock;
 
@@ -15,13 +16,13 @@ const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can]
 
 type Record = (Direction, Vec<u8>, Stamp<Host>);
 
-/// What was on the wire, and what the client made of it.
+/// /// A log, and the client's samples.
 struct Recorded {
     log: Vec<Record>,
     samples: Vec<ShaftSample>,
 }
 
-/// A short move and some time at rest on either side of it, recorded once.
+/// /// A short move with standstill before and after, recorded once.
 fn recorded(link: DriveLink) -> &'static Recorded {
     static RECORDED: [OnceLock<Recorded>; 3] = [const { OnceLock::new() }; 3];
     let at = LINKS.iter().position(|other| *other == link).unwrap();
@@ -56,9 +57,9 @@ fn listen(link: DriveLink, log: &[Record]) -> Vec<ShaftSample> {
 fn a_clean_log_gives_the_clients_own_samples() {
     for link in LINKS {
         let Recorded { log, samples } = recorded(link);
-        let heard = listen(link, log);
-        assert_eq!(heard.len(), samples.len(), "{link:?}");
-        for (client, log) in samples.iter().zip(&heard) {
+        let observed = listen(link, log);
+        assert_eq!(observed.len(), samples.len(), "{link:?}");
+        for (client, log) in samples.iter().zip(&observed) {
             assert!(same(link, client, log), "{link:?}: {client:?} {log:?}");
         }
         let on_can = link == DriveLink::Can;
@@ -69,7 +70,7 @@ fn a_clean_log_gives_the_clients_own_samples() {
     }
 }
 
-/// The drive's own time is that of the shaft: 120 us after the SYNC here.
+/// /// The drive's time is that of the sample: 120 us after the SYNC here.
 #[test]
 fn the_drives_time_is_that_of_the_position() {
     let Recorded { samples, .. } = recorded(DriveLink::Can);
@@ -79,30 +80,31 @@ fn the_drives_time_is_that_of_the_position() {
     }
 }
 
-/// What becomes of the records. A recorder knows its own requests as they were: only what came can be other than it was sent.
+/// /// Damage to records. A recorder knows its own requests; only replies can be damaged.
 #[derive(Clone, Debug)]
-enum Hurt {
-    /// Bytes that nobody said.
+enum Distortion {
+    /// /// Extra bytes.
     Noise(Index, Vec<u8>, bool),
-    /// The rest of an answer is missing.
+    /// /// The rest of a reply is missing.
     Cut(Index, Index),
-    /// A bit of an answer is wrong.
+    /// /// A flipped bit of a reply.
     Flipped(Index, Index, u8),
-    /// A record stands there twice.
+    /// /// A repeated record.
     Doubled(Index),
-    /// An answer is missing.
+    /// /// A missing reply.
     Missing(Index),
 }
 
-fn hurts() -> impl Strategy<Value = Vec<Hurt>> {
+fn damages() -> impl Strategy<Value = Vec<Distortion>> {
     let index = || any::<Index>();
     let bytes = proptest::collection::vec(any::<u8>(), 0..24);
     let one = prop_oneof![
-        (index(), bytes, any::<bool>()).prop_map(|(at, bytes, way)| Hurt::Noise(at, bytes, way)),
-        (index(), index()).prop_map(|(at, to)| Hurt::Cut(at, to)),
-        (index(), index(), 0..8_u8).prop_map(|(at, byte, bit)| Hurt::Flipped(at, byte, bit)),
-        index().prop_map(Hurt::Doubled),
-        index().prop_map(Hurt::Missing),
+        (index(), bytes, any::<bool>())
+            .prop_map(|(at, bytes, way)| Distortion::Noise(at, bytes, way)),
+        (index(), index()).prop_map(|(at, to)| Distortion::Cut(at, to)),
+        (index(), index(), 0..8_u8).prop_map(|(at, byte, bit)| Distortion::Flipped(at, byte, bit)),
+        index().prop_map(Distortion::Doubled),
+        index().prop_map(Distortion::Missing),
     ];
     proptest::collection::vec(one, 0..40)
 }
@@ -115,34 +117,34 @@ fn way(to_device: bool) -> Direction {
     }
 }
 
-fn hurt(link: DriveLink, log: &mut Vec<Record>, hurt: &Hurt) {
+fn damage_log(link: DriveLink, log: &mut Vec<Record>, damage: &Distortion) {
     let ours = |log: &[Record], at: usize| log[at].0 == Direction::ToDevice;
-    match hurt {
-        Hurt::Noise(at, bytes, to_device) => {
+    match damage {
+        Distortion::Noise(at, bytes, to_device) => {
             let at = at.index(log.len());
             log.insert(at, (way(*to_device), bytes.clone(), log[at].2));
         }
-        Hurt::Cut(at, to) => {
+        Distortion::Cut(at, to) => {
             let at = at.index(log.len());
             if !ours(log, at) && !log[at].1.is_empty() {
                 let to = to.index(log[at].1.len());
                 log[at].1.truncate(to);
             }
         }
-        Hurt::Flipped(at, byte, bit) => {
+        Distortion::Flipped(at, byte, bit) => {
             let at = at.index(log.len());
-            // A frame of CAN that arrives is whole.
+            // // A CAN frame arrives complete or not at all.
             if link != DriveLink::Can && !ours(log, at) && !log[at].1.is_empty() {
                 let byte = byte.index(log[at].1.len());
                 log[at].1[byte] ^= 1 << bit;
             }
         }
-        Hurt::Doubled(at) => {
+        Distortion::Doubled(at) => {
             let at = at.index(log.len());
             let copy = log[at].clone();
             log.insert(at, copy);
         }
-        Hurt::Missing(at) => {
+        Distortion::Missing(at) => {
             let at = at.index(log.len());
             if !ours(log, at) {
                 log.remove(at);
@@ -151,17 +153,17 @@ fn hurt(link: DriveLink, log: &mut Vec<Record>, hurt: &Hurt) {
     }
 }
 
-/// Whether a sample of a hurt log is one of the client's. On a bus it may be given an older SYNC than its own: that is sure to
-/// have gone out before the position was taken.
-fn is_one_of(link: DriveLink, heard: &ShaftSample, samples: &[ShaftSample]) -> bool {
+/// /// Whether a sample of a damaged log is one of the client's. On CAN it may have an earlier
+/// SYNC, which certainly preceded the sample.
+fn is_one_of(link: DriveLink, observed: &ShaftSample, samples: &[ShaftSample]) -> bool {
     samples.iter().any(|client| {
         let older = ShaftSample {
-            request: heard.request,
+            request: observed.request,
             ..*client
         };
         match link {
-            DriveLink::Can => *heard == older && heard.request <= client.request,
-            DriveLink::Usb | DriveLink::Rs232 => same(link, client, heard),
+            DriveLink::Can => *observed == older && observed.request <= client.request,
+            DriveLink::Usb | DriveLink::Rs232 => same(link, client, observed),
         }
     })
 }
@@ -170,22 +172,22 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn a_hurt_log_shows_nothing_that_was_not(which in 0..3_usize, hurts in hurts()) {
+    fn a_damaged_log_gives_no_wrong_samples(which in 0..3_usize, damages in damages()) {
         let link = LINKS[which];
         let Recorded { log, samples } = recorded(link);
         let mut log = log.clone();
-        for one in &hurts {
-            hurt(link, &mut log, one);
+        for one in &damages {
+            damage_log(link, &mut log, one);
         }
-        for heard in listen(link, &log) {
-            prop_assert!(is_one_of(link, &heard, samples), "{:?}: {:?}", link, heard);
+        for observed in listen(link, &log) {
+            prop_assert!(is_one_of(link, &observed, samples), "{:?}: {:?}", link, observed);
         }
     }
 
-    /// Records that change places, even an answer with its own question: a value that was never said is never told. Whose it is cannot
-    /// be known then, as a serial answer does not say.
+    /// /// With reordered records, even a reply before its request, only values from the log are
+    /// reported. A serial reply does not say whose it is.
     #[test]
-    fn what_is_told_was_said(which in 0..3_usize, swaps in proptest::collection::vec(any::<Index>(), 1..40)) {
+    fn reordered_records_give_only_recorded_values(which in 0..3_usize, swaps in proptest::collection::vec(any::<Index>(), 1..40)) {
         let link = LINKS[which];
         let Recorded { log, samples } = recorded(link);
         let mut log = log.clone();
@@ -193,10 +195,10 @@ proptest! {
             let at = swap.index(log.len() - 1);
             log.swap(at, at + 1);
         }
-        let said = |position: i32| {
+        let replies = |position: i32| {
             let bytes = position.to_le_bytes();
             log.iter().any(|(way, record, _)| {
-                // On USB a 90 among them stands twice.
+                // // USB doubles 0x90.
                 let plain: Vec<u8> = match link {
                     DriveLink::Usb => unstuffed(record),
                     DriveLink::Rs232 | DriveLink::Can => record.clone(),
@@ -204,15 +206,15 @@ proptest! {
                 *way == Direction::FromDevice && plain.windows(4).any(|w| w == bytes)
             })
         };
-        for heard in listen(link, &log) {
-            let known = samples.iter().any(|client| client.position == heard.position);
-            prop_assert!(known || said(heard.position.0), "{:?}: {:?}", link, heard);
+        for observed in listen(link, &log) {
+            let known = samples.iter().any(|client| client.position == observed.position);
+            prop_assert!(known || replies(observed.position.0), "{:?}: {:?}", link, observed);
         }
     }
 
-    /// Anything at all: no panic.
+    /// /// Arbitrary records cause no panic.
     #[test]
-    fn any_log_is_listened_to(
+    fn arbitrary_records_are_accepted(
         which in 0..3_usize,
         records in proptest::collection::vec((any::<bool>(), proptest::collection::vec(any::<u8>(), 0..32), any::<i64>()), 0..60),
     ) {
