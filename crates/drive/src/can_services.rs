@@ -141,7 +141,8 @@ impl CanServices {
         self.next_heartbeat = None;
     }
 
-    /// Starts SYNC messages if none are sent. Returns whether a sample of the stream can be expected.
+    /// Starts SYNC messages if none are sent. Returns whether a sample of the stream can be
+    /// expected.
     pub fn request_samples(&mut self, now: Stamp<Host>) -> bool {
         if self.next_sync.is_none() {
             self.next_sync = Some(self.syncs.earliest_sync(now).max(now));

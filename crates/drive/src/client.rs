@@ -1,13 +1,13 @@
-//! The client as a state machine without I/O: commands and bytes in, bytes and events out, time as an
-//! argument.
+//! The client as a state machine without I/O: commands and bytes in, bytes and events out, time as
+//! an argument.
 //!
 //! The port's owner writes the bytes of [`DriveClient::poll_transmit`], passes what it reads to
 //! [`DriveClient::handle_input`], wakes up at [`DriveClient::poll_timeout`] for
-//! [`DriveClient::handle_timeout`], and takes events from [`DriveClient::poll_event`]. After each input
-//! and timeout it calls `poll_transmit` until that returns `None`.
+//! [`DriveClient::handle_timeout`], and takes events from [`DriveClient::poll_event`]. After each
+//! input and timeout it calls `poll_transmit` until that returns `None`.
 //!
-//! A command is a sequential `async fn` over [`crate::ops::Ops`], polled here with a waker that does
-//! nothing. Dropping it cancels the command.
+//! A command is a sequential `async fn` over [`crate::ops::Ops`], polled here with a waker that
+//! does nothing. Dropping it cancels the command.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -72,8 +72,8 @@ impl DriveClient {
         self.link
     }
 
-    /// Starts a command. [`DriveCommand::Stop`] cancels the running command, which then ends without an
-    /// event; any other command is refused while one runs.
+    /// Starts a command. [`DriveCommand::Stop`] cancels the running command, which then ends
+    /// without an event; any other command is refused while one runs.
     ///
     /// # Errors
     /// Before a byte is sent: [`DriveError::Config`], [`DriveError::Busy`],
@@ -126,7 +126,8 @@ impl DriveClient {
         self.running.as_ref().map(|(kind, _)| *kind)
     }
 
-    /// The next bytes to write to the port, on CAN one frame. `now` becomes the time of the request.
+    /// The next bytes to write to the port, on CAN one frame. `now` becomes the time of the
+    /// request.
     pub fn poll_transmit(&mut self, now: Stamp<Host>) -> Option<Vec<u8>> {
         self.advance(now);
         let mut core = lock(&self.core);
@@ -138,8 +139,8 @@ impl DriveClient {
         }
     }
 
-    /// Processes bytes from the port in portions of any size, on CAN whole frames. `now` becomes the
-    /// time of the reply they complete.
+    /// Processes bytes from the port in portions of any size, on CAN whole frames. `now` becomes
+    /// the time of the reply they complete.
     pub fn handle_input(&mut self, bytes: &[u8], now: Stamp<Host>) {
         {
             let mut core = lock(&self.core);

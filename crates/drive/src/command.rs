@@ -9,7 +9,8 @@ use units::{Degrees, Host, Rpm, RpmPerS, Stamp};
 /// A procedure to run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DriveCommand {
-    /// Identifies the drive, clears its power-on fault, configures it and verifies its safety functions.
+    /// Identifies the drive, clears its power-on fault, configures it and verifies its safety
+    /// functions.
     Connect,
     /// Runs the drive's homing.
     Home,
@@ -33,8 +34,8 @@ pub enum DriveCommand {
     Status,
     /// Reads any object of up to 256 bytes.
     Read(Address),
-    /// Writes any object except the controlword (6040) while the power stage is off. The value is not
-    /// checked; it lasts until the drive restarts or is connected again.
+    /// Writes any object except the controlword (6040) while the power stage is off. The value is
+    /// not checked; it lasts until the drive restarts or is connected again.
     Write {
         /// The object.
         address: Address,
@@ -43,8 +44,8 @@ pub enum DriveCommand {
     },
 }
 
-/// Bytes of an object. Writable objects of an EPOS2 have at most eight, except for the memory of its
-/// data recorder.
+/// Bytes of an object. Writable objects of an EPOS2 have at most eight, except for the memory of
+/// its data recorder.
 pub type ObjectBytes = Bounded<u8, 64>;
 
 /// An absolute move.

@@ -71,8 +71,8 @@ pub struct LimitSwitchConfig {
     pub negative: Option<u8>,
     /// Input of the positive limit switch.
     pub positive: Option<u8>,
-    /// Whether a switch is active when its input is low (a normally closed contact: a broken wire stops
-    /// the axis).
+    /// Whether a switch is active when its input is low (a normally closed contact: a broken wire
+    /// stops the axis).
     pub active_low: bool,
 }
 
@@ -117,8 +117,8 @@ pub struct AxisTiming {
     pub timeout_moving: Span,
     /// Repeats of a read after its reply was lost. Writes are not repeated.
     pub read_retries: u8,
-    /// Shortest period of position samples; zero polls at the rate of the replies. The position loop
-    /// runs at 1 kHz.
+    /// Shortest period of position samples; zero polls at the rate of the replies. The position
+    /// loop runs at 1 kHz.
     pub poll_period: Span,
     /// Period of statusword checks during motion.
     pub status_period: Span,
@@ -133,8 +133,8 @@ pub struct AxisTiming {
 }
 
 impl Default for AxisConfig {
-    /// The Velomotion-16's axis: 500 lines, 120:1, up to 75 deg/s and 1000 deg/s2, factory inputs for
-    /// the switches, brake on output 1.
+    /// The Velomotion-16's axis: 500 lines, 120:1, up to 75 deg/s and 1000 deg/s2, factory inputs
+    /// for the switches, brake on output 1.
     fn default() -> Self {
         Self {
             node: 1,

@@ -22,8 +22,8 @@ pub struct ShaftSample {
     pub position: Quadcounts,
     /// What made the drive sample its position.
     pub trigger: SampleTrigger,
-    /// The drive's clock at the sample (1013) in us, with an arbitrary zero, wrapping every 71 minutes;
-    /// `None` if the reply does not contain it.
+    /// The drive's clock at the sample (1013) in us, with an arbitrary zero, wrapping every 71
+    /// minutes; `None` if the reply does not contain it.
     pub device_us: Option<u32>,
 }
 
@@ -33,8 +33,8 @@ pub enum SampleTrigger {
     /// A read of object 6064: anywhere between request and reply.
     Request,
     /// A SYNC (CAN): within one control cycle of its arrival. `request` is when the SYNC was sent,
-    /// `answer` when the process data arrived. If the match is uncertain, `request` is that of an earlier
-    /// SYNC, never of a later one.
+    /// `answer` when the process data arrived. If the match is uncertain, `request` is that of an
+    /// earlier SYNC, never of a later one.
     Sync,
 }
 
@@ -240,7 +240,8 @@ pub enum PositionValidity {
     NotHomed,
     /// The axis lost its reference: home it again.
     Lost {
-        /// The device error that reports it; `None` if the drive restarted or cleared its reference.
+        /// The device error that reports it; `None` if the drive restarted or cleared its
+        /// reference.
         error: Option<DeviceError>,
     },
 }
@@ -278,7 +279,8 @@ pub struct DriveStatus {
     pub angle: Option<Degrees>,
     /// Velocity actual value (606C), rpm.
     pub velocity_rpm: i32,
-    /// Digital input functionalities (2071:1): bit 0 negative limit switch, bit 1 positive, bit 2 home.
+    /// Digital input functionalities (2071:1): bit 0 negative limit switch, bit 1 positive, bit 2
+    /// home.
     pub inputs: u16,
     /// Error history (1003), newest first.
     pub history: Vec<DeviceError>,

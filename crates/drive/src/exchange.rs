@@ -1,7 +1,7 @@
 //! One exchange with the drive on any link: access to an object, and the reply.
 //!
-//! On CAN an exchange is an SDO request with its response. The serial links have commands of their own
-//! for the same services; their replies name neither the object nor the service.
+//! On CAN an exchange is an SDO request with its response. The serial links have commands of their
+//! own for the same services; their replies name neither the object nor the service.
 
 use protocol::canopen::sdo::{
     Expedited, GenericSdoRequest, GenericSdoResponse, GenericSdoSegment, Initiate,
@@ -129,8 +129,8 @@ impl Reply {
         }
     }
 
-    /// Whether this can be the reply to an access to the object at `address`. A serial error can be the
-    /// reply to anything.
+    /// Whether this can be the reply to an access to the object at `address`. A serial error can be
+    /// the reply to anything.
     pub fn fits(&self, address: Address, access: ObjectAccess) -> bool {
         let reply = match self {
             Self::Sdo(response) => {

@@ -50,8 +50,8 @@ impl AxisConfig {
     ///
     /// # Errors
     /// [`DriveError::Limits`] for a target outside the limits. [`DriveError::Speed`] and
-    /// [`DriveError::Acceleration`] for a value that is not a number, not positive, less than half an
-    /// rpm or above the axis' maximum.
+    /// [`DriveError::Acceleration`] for a value that is not a number, not positive, less than half
+    /// an rpm or above the axis' maximum.
     pub fn plan(
         &self,
         from: Degrees,
@@ -178,8 +178,8 @@ mod tests {
         )
     }
 
-    /// The paper's sweep: 45 deg at 56.25 deg/s; with 500 deg/s2
-    /// the two ramps add v/a = 112.5 ms to the 0.8 s.
+    /// The paper's sweep: 45 deg at 56.25 deg/s; with 500 deg/s2 the two ramps add v/a = 112.5 ms
+    /// to the 0.8 s.
     #[test]
     fn the_papers_sweep_takes_912_5_ms() {
         let plan = plan(45.0, 56.25, 500.0).unwrap();

@@ -1,13 +1,14 @@
 //! Matches replies to requests.
 //!
-//! A serial reply of the EPOS2 names neither object nor request. Order and format must do: replies come
-//! in the order of the requests, some are lost, and the reply to a read has four words where that to a
-//! write has two. An SDO response names its object (segments do not), but not which of two reads of one
-//! object it belongs to. A reply that fits more than one outstanding request is matched to none.
+//! A serial reply of the EPOS2 names neither object nor request. Order and format must do: replies
+//! come in the order of the requests, some are lost, and the reply to a read has four words where
+//! that to a write has two. An SDO response names its object (segments do not), but not which of
+//! two reads of one object it belongs to. A reply that fits more than one outstanding request is
+//! matched to none.
 //!
-//! After a loss the client sends a probe request, a read of an object that does not exist. Its error
-//! arrives after everything still under way and so resynchronises both sides. Two probes with different
-//! errors alternate, so that a late reply to one is not taken for the other's.
+//! After a loss the client sends a probe request, a read of an object that does not exist. Its
+//! error arrives after everything still under way and so resynchronises both sides. Two probes with
+//! different errors alternate, so that a late reply to one is not taken for the other's.
 //!
 //! The client and the listener share this code, so a log is matched as its capture was.
 

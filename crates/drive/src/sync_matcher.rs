@@ -1,12 +1,13 @@
 //! Matches TPDOs to the SYNC messages that triggered them.
 //!
-//! A PDO does not name its SYNC. PDOs arrive in the order of the SYNCs, but both may be lost, and at
-//! 1 kHz a PDO may arrive after the next SYNC. A position must never be matched to a SYNC later than
-//! itself: the span from SYNC to arrival would not contain the time of the sample. An earlier SYNC only
-//! makes the span longer. Matching therefore starts with a single SYNC and goes on in order. After a
-//! loss it skips a SYNC only if the drive's clock shows that the next one also preceded the sample.
-//! The matches themselves relate that clock to the host's: a sample is never older than its SYNC, so
-//! the maximum of (SYNC - drive time) over all matches is a lower bound of the clock offset.
+//! A PDO does not name its SYNC. PDOs arrive in the order of the SYNCs, but both may be lost, and
+//! at 1 kHz a PDO may arrive after the next SYNC. A position must never be matched to a SYNC later
+//! than itself: the span from SYNC to arrival would not contain the time of the sample. An earlier
+//! SYNC only makes the span longer. Matching therefore starts with a single SYNC and goes on in
+//! order. After a loss it skips a SYNC only if the drive's clock shows that the next one also
+//! preceded the sample. The matches themselves relate that clock to the host's: a sample is never
+//! older than its SYNC, so the maximum of (SYNC - drive time) over all matches is a lower bound of
+//! the clock offset.
 //!
 //! The client and the listener share this code, so a log is matched as its capture was.
 
@@ -47,8 +48,8 @@ impl SyncMatch {
     }
 }
 
-/// Age at which a SYNC counts as lost. A drive answers within a few control cycles of 1 ms; adapters
-/// and busy hosts add delay.
+/// Age at which a SYNC counts as lost. A drive answers within a few control cycles of 1 ms;
+/// adapters and busy hosts add delay.
 const EXPIRY: Span = Span::from_millis(100);
 /// The same for SYNCs before the start of observation; shorter, as a log may start with a command.
 const STARTUP: Span = Span::from_millis(10);

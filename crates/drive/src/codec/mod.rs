@@ -100,8 +100,8 @@ impl Codec {
         }
     }
 
-    /// Encodes a complete request that ignores the state of the dialogue (RS232 only; the other links
-    /// accept a request at any time). Its reply is discarded.
+    /// Encodes a complete request that ignores the state of the dialogue (RS232 only; the other
+    /// links accept a request at any time). Its reply is discarded.
     pub fn encode_unsolicited(
         &mut self,
         address: Address,
@@ -214,8 +214,8 @@ fn serial_frame(node: u8, address: Address, access: ObjectAccess) -> Frame {
     }
 }
 
-/// Node, object and access of a command seen on a serial link. Segments name neither node nor object;
-/// `own_node` and the default address then stand in.
+/// Node, object and access of a command seen on a serial link. Segments name neither node nor
+/// object; `own_node` and the default address then stand in.
 pub(crate) fn parse_serial_request(
     frame: &Frame,
     own_node: u8,

@@ -1,15 +1,15 @@
-//! The master's side of an EPOS2 RS232 dialogue: opcode, `O`, body, `O`; then `00`, `O`, answer, `O`
-//! (Communication Guide, "RS232 Communication").
+//! The master's side of an EPOS2 RS232 dialogue: opcode, `O`, body, `O`; then `00`, `O`, answer,
+//! `O` (Communication Guide, "RS232 Communication").
 //!
 //! After a failure the unit may be anywhere in the dialogue. A flush of `F` bytes resets it: as a
 //! handshake `F` refuses, in a body it completes a frame with a wrong checksum, as an opcode it is
-//! unknown and refused. The line must then stay quiet for a while, so that no stale byte is taken for
-//! an answer. The guide itself only promises that the unit drops an incomplete frame after 500 ms of
-//! silence and does not describe unknown opcodes. If a unit stays silent after two flushes, the master
-//! therefore waits for the guide's silence instead.
+//! unknown and refused. The line must then stay quiet for a while, so that no stale byte is taken
+//! for an answer. The guide itself only promises that the unit drops an incomplete frame after 500
+//! ms of silence and does not describe unknown opcodes. If a unit stays silent after two flushes,
+//! the master therefore waits for the guide's silence instead.
 //!
-//! A request that must not wait, a stop on a line without answers, is sent unsolicited: flush, opcode,
-//! body and both handshakes at once. A unit whose answers are lost still executes it.
+//! A request that must not wait, a stop on a line without answers, is sent unsolicited: flush,
+//! opcode, body and both handshakes at once. A unit whose answers are lost still executes it.
 
 use std::collections::VecDeque;
 

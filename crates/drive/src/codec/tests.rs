@@ -33,7 +33,7 @@ fn shape(decoded: &[Decoded]) -> Vec<(u32, usize, Option<u32>)> {
         .collect()
 }
 
-/// /// Frames in the Communication Guide's format, CRC calculated independently.
+/// Frames in the Communication Guide's format, CRC calculated independently.
 #[test]
 fn golden_requests() {
     let mut codec = Codec::usb(1);
@@ -79,8 +79,7 @@ fn a_wrong_checksum_is_told() {
     assert_eq!(decode(&read), [Decoded::Damaged]);
 }
 
-/// /// A known defect of other clients: reception fails if the last data byte, or any other, is
-/// 0x90.
+/// A known defect of other clients: reception fails if the last data byte, or any other, is 0x90.
 #[test]
 fn stuffing_at_every_position() {
     for place in 0..4 {
@@ -90,7 +89,7 @@ fn stuffing_at_every_position() {
             assert_eq!(shape(&decode(&bytes)), [(0, 2, Some(value))]);
         }
     }
-    // // A checksum with 0x90 in either byte.
+    // A checksum with 0x90 in either byte.
     let crc_byte = |place: usize| {
         (0u32..)
             .map(|value| (value, usb::to_bytes(&ReadObject::answer(Ok(value)))))
@@ -180,7 +179,7 @@ fn rs232_comes_back_after_a_flush_and_quiet() {
         if let Some(flush) = flush {
             assert!(flush.bytes.iter().all(|&b| b == FAILED));
         }
-        // // The unit's last bytes are discarded, but awaited.
+        // The unit's last bytes are discarded, but awaited.
         assert_eq!(codec.push(&[OKAY], at(30)), Some(Decoded::Handshake));
         codec.expire(at(49));
         assert!(!codec.is_ready());
@@ -192,7 +191,7 @@ fn rs232_comes_back_after_a_flush_and_quiet() {
     }
 }
 
-/// /// SDO requests and responses (CiA 301, "SDO services").
+/// SDO requests and responses (CiA 301, "SDO services").
 #[test]
 fn golden_can() {
     let mut codec = Codec::new(DriveLink::Can, 1);
@@ -237,7 +236,7 @@ fn golden_can() {
     assert_eq!(codec.push(&answer[..9], at(0)), Some(Decoded::Noise));
 }
 
-/// /// The device name of the guide's example, in segments.
+/// The device name of the guide's example, in segments.
 #[test]
 fn golden_can_segments() {
     let mut codec = Codec::new(DriveLink::Can, 1);

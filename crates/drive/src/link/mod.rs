@@ -1,9 +1,10 @@
 //! One request at a time over a link that may lose, delay or damage replies.
 //!
 //! After a loss the link is desynchronised until a probe request is answered (see
-//! [`crate::request_matcher`]). Only then is a read repeated or the failure reported, so that a late
-//! reply is never taken for another request's. Writes are not repeated, because a lost one may have been
-//! executed. A request that the drive rejected for its checksum was not executed and is sent again.
+//! [`crate::request_matcher`]). Only then is a read repeated or the failure reported, so that a
+//! late reply is never taken for another request's. Writes are not repeated, because a lost one may
+//! have been executed. A request that the drive rejected for its checksum was not executed and is
+//! sent again.
 
 mod request;
 mod resync;

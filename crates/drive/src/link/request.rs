@@ -96,8 +96,8 @@ impl ActiveRequest {
         }
     }
 
-    /// Records a rejection for a wrong checksum: the drive did not execute the request, so the attempt
-    /// does not count. Returns whether the request may be repeated.
+    /// Records a rejection for a wrong checksum: the drive did not execute the request, so the
+    /// attempt does not count. Returns whether the request may be repeated.
     pub fn retry_rejected(&mut self, now: Stamp<Host>) -> bool {
         let elapsed = self.started.map(|started| now.saturating_since(started));
         let may_retry = self.rejections < MAX_REJECTIONS

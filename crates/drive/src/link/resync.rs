@@ -17,8 +17,9 @@ const MAX_PROBES: u8 = 2;
 const REST_TIMEOUT: Span = Span::from_millis(20);
 
 impl Link {
-    /// Sends the probe that was not sent last, so that a late reply to the last is not taken for this
-    /// one's. If that other probe is itself outstanding, repeats the last: its reply retires both.
+    /// Sends the probe that was not sent last, so that a late reply to the last is not taken for
+    /// this one's. If that other probe is itself outstanding, repeats the last: its reply retires
+    /// both.
     pub(super) fn send_probe(&mut self, now: Stamp<Host>, timeout: Span) -> Vec<u8> {
         let [(first, _), (second, _)] = PROBES;
         let next = if self.probe == first { second } else { first };
@@ -38,8 +39,8 @@ impl Link {
         self.send(&probe, now)
     }
 
-    /// If an equal probe is still outstanding, the reply may have been that one's: the other kind of
-    /// probe decides at once.
+    /// If an equal probe is still outstanding, the reply may have been that one's: the other kind
+    /// of probe decides at once.
     pub(super) fn handle_probe_reply(&mut self, probe: Address, now: Stamp<Host>) {
         match self.state {
             LinkState::Probing { probes, .. }

@@ -1,9 +1,9 @@
 //! How long resynchronisation of the link is tried.
 //!
 //! Without any input two unanswered probes end it: silence costs most while the axis moves. Damaged
-//! replies prove that the drive is alive, and bursts of damage end (a relay, a motor cable next to the
-//! drive's). Probes then go out twice as fast and do not count until the damage has lasted four probe
-//! timeouts: 160 ms while the axis moves.
+//! replies prove that the drive is alive, and bursts of damage end (a relay, a motor cable next to
+//! the drive's). Probes then go out twice as fast and do not count until the damage has lasted four
+//! probe timeouts: 160 ms while the axis moves.
 
 use units::{Host, Span, Stamp};
 

@@ -1,8 +1,9 @@
-//! Passive decoder of a CAN bus: requests and responses of the node, its process data and emergencies.
+//! Passive decoder of a CAN bus: requests and responses of the node, its process data and
+//! emergencies.
 //!
-//! The mapping of the process data is learnt from confirmed writes and reads of the mapping objects.
-//! Until all of it is known, the data is not decoded. The identifier, not the direction of the record,
-//! tells whose frame it is, as other masters may be on the bus.
+//! The mapping of the process data is learnt from confirmed writes and reads of the mapping
+//! objects. Until all of it is known, the data is not decoded. The identifier, not the direction of
+//! the record, tells whose frame it is, as other masters may be on the bus.
 
 use std::collections::BTreeMap;
 
@@ -117,7 +118,8 @@ impl CanListener {
         };
         let is_id = sent.address == Address::new(STREAM.communication(), 1);
         if is_id && !CommunicationId::from_u32(value).valid {
-            // The stream is disabled for configuration; the client also restarts with a single SYNC.
+            // The stream is disabled for configuration; the client also restarts with a single
+            // SYNC.
             self.syncs.restart();
         }
         self.known.insert(sent.address, value);

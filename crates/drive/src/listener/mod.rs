@@ -1,9 +1,9 @@
 //! A passive decoder of drive traffic, for logs: shaft samples, object accesses and statuswords.
 //!
-//! It matches replies with requests, and PDOs with SYNCs, by the client's own rules, so it observes what
-//! the client observed. Damaged frames, lost replies and unmatched replies lead to fewer observations,
-//! never to wrong ones. USB, RS232 and CAN records give the same observations. Segmented transfers are
-//! matched but not reported.
+//! It matches replies with requests, and PDOs with SYNCs, by the client's own rules, so it observes
+//! what the client observed. Damaged frames, lost replies and unmatched replies lead to fewer
+//! observations, never to wrong ones. USB, RS232 and CAN records give the same observations.
+//! Segmented transfers are matched but not reported.
 
 mod can;
 mod rs232;
@@ -26,8 +26,8 @@ use rs232::{Rs232Event, Rs232Listener};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Observation {
-    /// The position (6064) was read, or sent at a SYNC. In the second case a [`Observation::Read`] of the
-    /// drive's time (1013) with the same stamps precedes it.
+    /// The position (6064) was read, or sent at a SYNC. In the second case a [`Observation::Read`]
+    /// of the drive's time (1013) with the same stamps precedes it.
     Sample(ShaftSample),
     /// The statusword (6041) was read.
     Statusword {
@@ -107,8 +107,8 @@ pub struct DriveListener {
 }
 
 impl DriveListener {
-    /// Creates a listener for the drive with this node id. It also takes requests to node 0, which every
-    /// unit executes itself.
+    /// Creates a listener for the drive with this node id. It also takes requests to node 0, which
+    /// every unit executes itself.
     #[must_use]
     pub fn new(node: u8) -> Self {
         Self {
@@ -184,13 +184,15 @@ impl DriveListener {
             None => {}
             Some(Rs232Event::Noise) => emit(noise),
             Some(Rs232Event::Request(frame)) => {
-                if !self.handle_request(&frame, host) {
+                let is_valid = self.handle_request(&frame, host);
+                if !is_valid {
                     emit(noise);
                 }
             }
             Some(Rs232Event::Announced) => self.announced = host,
             Some(Rs232Event::Answer(frame)) => {
-                // The drive executed the request before it announced the answer; the words take longer.
+                // The drive executed the request before it announced the answer; the words take
+                // longer.
                 let host = self.announced;
                 let noise = Observation::Noise { direction, host };
                 self.handle_answer(&frame, host, noise, emit);

@@ -1,8 +1,8 @@
 //! The operations of a procedure: read, write, wait, sample, report.
 //!
-//! Each operation is a future that puts its request into a shared core and is ready once the core has
-//! the result. [`crate::DriveClient`] drives the core from outside; there is no runtime, I/O or clock
-//! here. A procedure dropped halfway leaves at most one reply outstanding.
+//! Each operation is a future that puts its request into a shared core and is ready once the core
+//! has the result. [`crate::DriveClient`] drives the core from outside; there is no runtime, I/O or
+//! clock here. A procedure dropped halfway leaves at most one reply outstanding.
 
 mod stream;
 mod transfer;
@@ -202,8 +202,8 @@ impl Ops {
         self.send(request).await.map(drop)
     }
 
-    /// Writes an object on a link that seems lost: the drive may still receive. Given up soon; repeated
-    /// if the link recovers without a reply.
+    /// Writes an object on a link that seems lost: the drive may still receive. Given up soon;
+    /// repeated if the link recovers without a reply.
     pub async fn write_last_attempt<T: Scalar>(
         &self,
         object: Object<T>,

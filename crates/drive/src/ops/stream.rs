@@ -14,7 +14,8 @@ use super::{Ops, lock};
 const STREAM_TIMEOUT: Span = Span::from_millis(20);
 
 impl Ops {
-    /// The next sample of the stream; `None` without a stream, while it is stalled, and at an alarm.
+    /// The next sample of the stream; `None` without a stream, while it is stalled, and at an
+    /// alarm.
     pub(super) async fn next_streamed(&self) -> Option<ShaftSample> {
         self.on_can(|can, now| can.request_samples(now))
             .filter(|expected| *expected)?;

@@ -32,8 +32,8 @@ impl Ops {
         }
     }
 
-    /// Writes an object of any length: one to four bytes in one exchange, more in segments. Nothing is
-    /// repeated, because a write whose reply is lost may have been executed.
+    /// Writes an object of any length: one to four bytes in one exchange, more in segments. Nothing
+    /// is repeated, because a write whose reply is lost may have been executed.
     ///
     /// # Errors
     /// [`DriveError::Transfer`] in addition to those of any write.

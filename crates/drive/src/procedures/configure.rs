@@ -1,7 +1,7 @@
 //! The drive's settings: profile, limits, limit switches, brake.
 //!
-//! Nothing is saved in the drive (1010): a restart restores its own settings, and connecting writes these
-//! again. Gains and motor data are left to the commissioning tool.
+//! Nothing is saved in the drive (1010): a restart restores its own settings, and connecting writes
+//! these again. Gains and motor data are left to the commissioning tool.
 
 use protocol::epos2::cia402::mode;
 use protocol::epos2::objects::{self, Object};
@@ -51,8 +51,8 @@ pub(super) async fn configure(ops: &Ops) -> Result<(), DriveError> {
     }
 }
 
-/// Verifies the settings that keep the axis within its range. Done before every move, as a drive that
-/// restarted has lost them.
+/// Verifies the settings that keep the axis within its range. Done before every move, as a drive
+/// that restarted has lost them.
 pub(super) async fn verify_safety(ops: &Ops) -> Result<(), DriveError> {
     let switches = ops.config.limit_switches.mask();
     for object in [objects::INPUT_MASK, objects::INPUT_EXECUTION_MASK] {
@@ -71,7 +71,8 @@ pub(super) async fn verify_safety(ops: &Ops) -> Result<(), DriveError> {
     network::verify_stream(ops).await
 }
 
-/// Whether the drive has lost the software limits written by connecting, which only a restart causes.
+/// Whether the drive has lost the software limits written by connecting, which only a restart
+/// causes.
 pub(super) async fn has_lost_settings(ops: &Ops) -> Result<bool, DriveError> {
     let limits = ops.config.limits_qc()?;
     let min = ops.read(objects::MIN_POSITION).await?;
@@ -79,8 +80,8 @@ pub(super) async fn has_lost_settings(ops: &Ops) -> Result<bool, DriveError> {
     Ok(min != limits.min.0 && max != limits.max.0)
 }
 
-/// Assigns and enables the limit switches. By default a switch does not stop the axis: only its bit in
-/// 2071:4 makes the drive run its error reaction.
+/// Assigns and enables the limit switches. By default a switch does not stop the axis: only its bit
+/// in 2071:4 makes the drive run its error reaction.
 async fn configure_limit_switches(
     ops: &Ops,
     switches: LimitSwitchConfig,
@@ -122,8 +123,8 @@ async fn configure_brake(ops: &Ops, brake: BrakeConfig) -> Result<(), DriveError
     ops.write_bits(objects::OUTPUT_MASK, bit, bit).await
 }
 
-/// Writes a terminal's function only if it differs: a drive refuses a function that another terminal
-/// has.
+/// Writes a terminal's function only if it differs: a drive refuses a function that another
+/// terminal has.
 async fn write_if_different(ops: &Ops, object: Object<u16>, value: u16) -> Result<(), DriveError> {
     if ops.read(object).await? == value {
         return Ok(());

@@ -69,8 +69,8 @@ async fn configure(ops: &Ops) -> Result<(), DriveError> {
     Ok(())
 }
 
-/// Waits for bits 10 and 12. The first check follows a period later, when the bits of an earlier homing
-/// are cleared.
+/// Waits for bits 10 and 12. The first check follows a period later, when the bits of an earlier
+/// homing are cleared.
 async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
     const DONE: u16 = status::TARGET_REACHED | status::HOMING_ATTAINED;
     let homing = ops.config.homing;
@@ -123,8 +123,8 @@ async fn check_result(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
     Ok(CommandOutcome::Homed { position, angle })
 }
 
-/// The position once it is within the limits or constant. The drive reports homing attained when its
-/// demand has arrived; the axis lags behind.
+/// The position once it is within the limits or constant. The drive reports homing attained when
+/// its demand has arrived; the axis lags behind.
 async fn settled_position(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
     let timing = ops.config.timing;
     let limit = ops.now().saturating_add(timing.state_limit);

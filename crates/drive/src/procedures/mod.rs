@@ -1,8 +1,8 @@
 //! The procedure of each command.
 //!
-//! Each is a sequential `async fn` over [`crate::ops::Ops`], independent of the link and of who runs it,
-//! and may be dropped between any two steps. If a procedure fails while the axis may move, it stops the
-//! axis before it reports the failure.
+//! Each is a sequential `async fn` over [`crate::ops::Ops`], independent of the link and of who
+//! runs it, and may be dropped between any two steps. If a procedure fails while the axis may move,
+//! it stops the axis before it reports the failure.
 
 mod configure;
 mod connect;

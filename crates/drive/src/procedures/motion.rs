@@ -1,7 +1,7 @@
 //! Goto, sweep and hold: moves in profile position mode, sampled throughout.
 //!
-//! Targets are validated before the procedure starts. The drive generates the profile; the client polls
-//! the position and periodically checks the statusword.
+//! Targets are validated before the procedure starts. The drive generates the profile; the client
+//! polls the position and periodically checks the statusword.
 
 use protocol::epos2::cia402::{control, mode, status};
 use protocol::epos2::objects;
@@ -118,7 +118,8 @@ async fn start(ops: &mut Ops, plan: MovePlan) -> Result<Stamp<Host>, DriveError>
     ops.report(CommandProgress::Moving(plan));
     let limit = started.saturating_add(ops.config.timing.state_limit);
     loop {
-        // The axis accelerates and only samples show how: each other request goes between two of them.
+        // The axis accelerates and only samples show how: each other request goes between two of
+        // them.
         ops.next_sample().await?;
         let requested = ops.now();
         let got = check_enabled(ops).await?;
@@ -151,8 +152,8 @@ async fn sample_until_arrival(
     let tolerance = ops.config.arrival_tolerance.0.unsigned_abs();
     let mut check = PeriodicCheck::new(ops);
     let mut reached = false;
-    // Set when the statusword was requested after the limit. Only a position requested after that proves
-    // a failure, as a delayed host may have missed the arrival.
+    // Set when the statusword was requested after the limit. Only a position requested after that
+    // proves a failure, as a delayed host may have missed the arrival.
     let mut is_overdue = false;
     loop {
         let sample = ops.next_sample().await?;

@@ -1,5 +1,5 @@
-//! Configuration of a CAN bus: NMT state, heartbeats both ways, the stream of positions. Does nothing on
-//! other links.
+//! Configuration of a CAN bus: NMT state, heartbeats both ways, the stream of positions. Does
+//! nothing on other links.
 //!
 //! The node monitors the host's heartbeat (1016) only while a command may move the axis. Between
 //! commands the axis holds and the host may be silent. The EPOS2 has no such monitoring on USB and
@@ -85,7 +85,8 @@ async fn map_stream(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
         let written = ops
             .write_raw(write.address, write.data.to_u32(), width)
             .await;
-        // Not every firmware has the inhibit time, and CiA 301 does not apply it to synchronous PDOs.
+        // Not every firmware has the inhibit time, and CiA 301 does not apply it to synchronous
+        // PDOs.
         if write.address == Address::new(STREAM.communication(), 3) {
             is_supported(written)?;
         } else {

@@ -1,7 +1,7 @@
 //! Direct access to any object of the drive.
 //!
-//! So that a write causes no motion, it requires a disabled axis, and the controlword is reserved for
-//! the motion commands.
+//! So that a write causes no motion, it requires a disabled axis, and the controlword is reserved
+//! for the motion commands.
 
 use protocol::epos2::objects::{self, Address};
 

@@ -1,4 +1,5 @@
-//! The device control state machine (CiA 402): wait for a state, clear a fault, enable, change the mode.
+//! The device control state machine (CiA 402): wait for a state, clear a fault, enable, change the
+//! mode.
 
 use protocol::epos2::cia402::{State, control, status};
 use protocol::epos2::objects;
@@ -131,8 +132,8 @@ pub(super) async fn enable(ops: &Ops) -> Result<(), DriveError> {
     Ok(())
 }
 
-/// Reads the statusword of an axis that must be enabled. The error history is read after the axis has
-/// been stopped.
+/// Reads the statusword of an axis that must be enabled. The error history is read after the axis
+/// has been stopped.
 ///
 /// # Errors
 /// [`DriveError::Fault`] without its cause, or [`DriveError::State`].

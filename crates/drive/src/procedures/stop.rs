@@ -1,7 +1,8 @@
 //! Stop and brake: axis at rest and observed to be, power off, brake set.
 //!
-//! The encoder decides about standstill. The velocity (606C) is too coarse, one count per control cycle
-//! being 30 rpm at 2000 qc per turn; a position that varies by a few counts for 50 ms is at rest.
+//! The encoder decides about standstill. The velocity (606C) is too coarse, one count per control
+//! cycle being 30 rpm at 2000 qc per turn; a position that varies by a few counts for 50 ms is at
+//! rest.
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::control;
@@ -33,7 +34,8 @@ pub(crate) async fn brake(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
     }
 }
 
-/// Stops the axis after a failure; returns the error to report. The quick stop precedes any diagnosis.
+/// Stops the axis after a failure; returns the error to report. The quick stop precedes any
+/// diagnosis.
 pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
     ops.set_abort_on_alarm(false);
     let stopped = match cause {

@@ -6,8 +6,8 @@ fn us(us: i64) -> Stamp<Host> {
     Stamp::from_nanos(us * 1_000)
 }
 
-/// /// A matcher that observes from 0 and has matched a single SYNC at 200 ms, whose sample was
-/// taken 300 us later.
+/// A matcher that observes from 0 and has matched a single SYNC at 200 ms, whose sample was taken
+/// 300 us later.
 fn started(device_at_zero: u32) -> SyncMatcher {
     let mut syncs = SyncMatcher::default();
     syncs.observe(us(0));
@@ -20,7 +20,7 @@ fn started(device_at_zero: u32) -> SyncMatcher {
 }
 
 #[test]
-fn a_beat_that_is_not_alone_begins_nothing() {
+fn matching_starts_only_with_a_single_sync() {
     let mut syncs = SyncMatcher::default();
     syncs.observe(us(0));
     syncs.handle_sync(us(9_000));
@@ -36,7 +36,7 @@ fn a_beat_that_is_not_alone_begins_nothing() {
 }
 
 #[test]
-fn answers_that_come_after_the_next_beat_are_paired_in_order() {
+fn pdos_after_the_next_sync_are_matched_in_order() {
     let mut syncs = started(0);
     for n in 1..1000 {
         syncs.handle_sync(us(200_000 + 1000 * n));
@@ -51,7 +51,7 @@ fn answers_that_come_after_the_next_beat_are_paired_in_order() {
 }
 
 #[test]
-fn after_a_loss_the_lost_beat_is_skipped() {
+fn after_a_loss_the_lost_sync_is_skipped() {
     let mut syncs = started(0);
     syncs.handle_sync(us(201_000));
     syncs.handle_sync(us(202_000));
@@ -75,7 +75,7 @@ fn a_restarted_drive_is_matched_again() {
 }
 
 #[test]
-fn a_pause_does_not_break_the_chain_and_a_long_one_does() {
+fn a_long_pause_restarts_matching_and_a_short_one_does_not() {
     let mut syncs = started(0);
     syncs.handle_sync(us(1_000_000));
     assert_eq!(
@@ -92,16 +92,16 @@ fn a_pause_does_not_break_the_chain_and_a_long_one_does() {
 
 #[derive(Clone, Copy, Debug)]
 struct Delivery {
-    /// /// From SYNC to sample, and from there to arrival.
-    forth_us: i64,
-    back_us: i64,
+    /// From SYNC to sample, and from there to arrival.
+    to_drive_us: i64,
+    to_host_us: i64,
     lost: bool,
     twice: bool,
-    /// /// The drive, or the way to it, is delayed by this before the SYNC.
+    /// The drive, or the delivery to it, is delayed by this before the SYNC.
     stall_us: i64,
 }
 
-fn delivery() -> impl Strategy<Value = Delivery> {
+fn any_delivery() -> impl Strategy<Value = Delivery> {
     (
         60..1_400i64,
         60..900i64,
@@ -109,22 +109,24 @@ fn delivery() -> impl Strategy<Value = Delivery> {
         prop::bool::weighted(0.03),
         prop_oneof![30 => Just(0i64), 1 => 0..8_000i64],
     )
-        .prop_map(|(forth_us, back_us, lost, twice, stall_us)| Delivery {
-            forth_us,
-            back_us,
-            lost,
-            twice,
-            stall_us,
-        })
+        .prop_map(
+            |(to_drive_us, to_host_us, lost, twice, stall_us)| Delivery {
+                to_drive_us,
+                to_host_us,
+                lost,
+                twice,
+                stall_us,
+            },
+        )
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// /// With any loss, delay and repetition, the sample lies between SYNC and arrival.
+    /// With any loss, delay and repetition, the sample lies between SYNC and arrival.
     #[test]
     fn a_position_always_lies_between_its_stamps(
-        deliveries in proptest::collection::vec(delivery(), 1..300),
+        deliveries in proptest::collection::vec(any_delivery(), 1..300),
         drift_ppm in -100..100i64,
         zero in any::<u32>(),
     ) {
@@ -132,17 +134,17 @@ proptest! {
             zero.wrapping_add((at + at * drift_ppm / 1_000_000) as u32)
         };
         let mut syncs = started_with_drift(&device);
-        // // SYNCs and arrivals in order of time.
+        // SYNCs and arrivals in order of time.
         let mut events: Vec<(i64, Option<i64>)> = Vec::new();
         let (mut free, mut arrived) = (0, 0);
-        for (n, way) in (1..).zip(&deliveries) {
+        for (n, delivery) in (1..).zip(&deliveries) {
             let sync = 200_000 + 1_000 * n;
             events.push((sync, None));
-            free = (sync + way.forth_us + way.stall_us).max(free + 40);
-            arrived = (free + way.back_us).max(arrived + 1);
-            if !way.lost {
+            free = (sync + delivery.to_drive_us + delivery.stall_us).max(free + 40);
+            arrived = (free + delivery.to_host_us).max(arrived + 1);
+            if !delivery.lost {
                 events.push((arrived, Some(free)));
-                if way.twice {
+                if delivery.twice {
                     arrived += 100;
                     events.push((arrived, Some(free)));
                 }
@@ -162,8 +164,8 @@ proptest! {
                 }
             }
         }
-        let sent = deliveries.iter().filter(|way| !way.lost).count();
-        prop_assert_eq!(given, sent, "none that arrived is thrown away");
+        let sent = deliveries.iter().filter(|delivery| !delivery.lost).count();
+        prop_assert_eq!(given, sent, "every PDO that arrived is matched");
     }
 }
 

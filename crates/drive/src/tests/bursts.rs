@@ -1,4 +1,4 @@
-//! //! Bursts of damaged replies in mid-sweep: a damaged link is not a lost link.
+//! Bursts of damaged replies in mid-sweep: a damaged link is not a lost link.
 
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
@@ -7,22 +7,22 @@ use super::fake::{Distortion, ENABLED};
 use super::rig::{Rig, to};
 use crate::{CommandOutcome, DriveCommand, DriveError};
 
-/// /// Kinds of damage to replies.
+/// Kinds of damage to replies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Damage {
-    /// /// One bit is flipped, another one each time.
+    /// One bit is flipped, another one each time.
     Bits,
     /// The last byte is wrong.
     Crc,
     /// The second half is missing.
     Half,
-    /// /// The first byte is missing: on USB nothing of the frame is recognised.
+    /// The first byte is missing: on USB nothing of the frame is recognised.
     Head,
 }
 
 pub const DAMAGES: [Damage; 4] = [Damage::Bits, Damage::Crc, Damage::Half, Damage::Head];
 
-/// /// Damages input during an interval. CAN frames keep their length on the way to the client.
+/// Damages input during an interval. CAN frames keep their length on the way to the client.
 pub fn distorting(damage: Damage, from: Stamp<Host>, until: Stamp<Host>) -> Distortion {
     let mut seed = 0x9E37_79B9_u32;
     Box::new(move |now, mut bytes| {
@@ -62,8 +62,8 @@ fn bursts_are_survived() {
                     matches!(ended, Ok(CommandOutcome::Arrived(_))),
                     "{link:?} {damage:?} for {burst} ms: {ended:?}"
                 );
-                // // The first sample follows soon after. An RS232 handshake without an answer
-                // looks like a working unit.
+                // The first sample follows soon after. An RS232 handshake without an answer looks
+                // like a working unit.
                 let seen = rig.samples().into_iter().find(|s| s.answer > until);
                 let hole = seen.unwrap().answer - until;
                 let cut = matches!(damage, Damage::Half | Damage::Head);
@@ -81,9 +81,9 @@ fn bursts_are_survived() {
     }
 }
 
-/// /// The sweep fails and the axis stops if it still receives: within 200 ms of the first
-/// recognised damage, later by one request timeout where the damage looks like silence. Another 100
-/// ms later the client knows whether the axis has stopped.
+/// The sweep fails and the axis stops if it still receives: within 200 ms of the first recognised
+/// damage, later by one request timeout where the damage looks like silence. Another 100 ms later
+/// the client knows whether the axis has stopped.
 #[test]
 fn continuous_damage_ends_the_sweep_in_time() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
@@ -115,7 +115,7 @@ fn continuous_damage_ends_the_sweep_in_time() {
     }
 }
 
-/// /// Silence gets no extra time: one request timeout and two probe timeouts.
+/// Silence gets no extra time: one request timeout and two probe timeouts.
 #[test]
 fn silence_ends_the_sweep_without_extra_time() {
     for (link, most) in [(DriveLink::Usb, 181), (DriveLink::Rs232, 265)] {
@@ -134,7 +134,7 @@ fn silence_ends_the_sweep_without_extra_time() {
     }
 }
 
-/// /// A heartbeat with an unknown state is a damaged one: SLCAN has no checksum.
+/// A heartbeat with an unknown state is a damaged one: SLCAN has no checksum.
 #[test]
 fn a_damaged_heartbeat_ends_nothing() {
     let mut rig = sweeping(DriveLink::Can, Span::from_millis(600));

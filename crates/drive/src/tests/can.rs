@@ -1,4 +1,4 @@
-//! //! Features of a CAN bus: the stream at SYNC, NMT states, heartbeats both ways, boot-up.
+//! Features of a CAN bus: the stream at SYNC, NMT states, heartbeats both ways, boot-up.
 
 use protocol::canopen::nmt::NmtState;
 use protocol::epos2::message::Request;
@@ -53,7 +53,7 @@ fn the_stream_goes_on_while_the_state_is_asked_for() {
         assert!(apart <= Span::from_micros(1_001), "{apart:?}");
     }
     assert!((795..=805).contains(&moving.len()), "{}", moving.len());
-    // // The position was not polled.
+    // The position was not polled.
     let asked = |(_, request): &(Stamp<Host>, Request)| matches!(request, Request::ReadObject(r) if r.address.index == 0x6064);
     assert!(!rig.fake.requests.iter().any(asked));
 }
@@ -178,7 +178,7 @@ fn the_drive_stops_when_the_host_dies() {
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
     assert_eq!(rig.fake.objects[&(0x1016, 1)], 127 << 16 | 200);
-    // // The host stops calling the client.
+    // The host stops calling the client.
     let died = rig.now;
     while rig.fake.state != FAULT {
         rig.now += Span::from_millis(1);
@@ -298,7 +298,7 @@ fn a_late_reply_is_not_used_for_the_next_read_of_the_same_object() {
         _ => Fate::Sent,
     });
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
-    // // At 37,500 qc/s a reply of another time would be off by thousands.
+    // At 37,500 qc/s a reply of another time would be off by thousands.
     let moving: Vec<_> = rig
         .samples()
         .into_iter()

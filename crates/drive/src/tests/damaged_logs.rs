@@ -1,5 +1,5 @@
-//! //! The listener on each link: a clean log gives the client's samples, a damaged one fewer,
-//! never wrong ones.
+//! The listener on each link: a clean log gives the client's samples, a damaged one fewer, never
+//! wrong ones.
 
 use std::sync::OnceLock;
 
@@ -16,13 +16,13 @@ const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can]
 
 type Record = (Direction, Vec<u8>, Stamp<Host>);
 
-/// /// A log, and the client's samples.
+/// A log, and the client's samples.
 struct Recorded {
     log: Vec<Record>,
     samples: Vec<ShaftSample>,
 }
 
-/// /// A short move with standstill before and after, recorded once.
+/// A short move with standstill before and after, recorded once.
 fn recorded(link: DriveLink) -> &'static Recorded {
     static RECORDED: [OnceLock<Recorded>; 3] = [const { OnceLock::new() }; 3];
     let at = LINKS.iter().position(|other| *other == link).unwrap();
@@ -70,7 +70,7 @@ fn a_clean_log_gives_the_clients_own_samples() {
     }
 }
 
-/// /// The drive's time is that of the sample: 120 us after the SYNC here.
+/// The drive's time is that of the sample: 120 us after the SYNC here.
 #[test]
 fn the_drives_time_is_that_of_the_position() {
     let Recorded { samples, .. } = recorded(DriveLink::Can);
@@ -80,18 +80,18 @@ fn the_drives_time_is_that_of_the_position() {
     }
 }
 
-/// /// Damage to records. A recorder knows its own requests; only replies can be damaged.
+/// Damage to records. A recorder knows its own requests; only replies can be damaged.
 #[derive(Clone, Debug)]
 enum Distortion {
-    /// /// Extra bytes.
+    /// Extra bytes.
     Noise(Index, Vec<u8>, bool),
-    /// /// The rest of a reply is missing.
+    /// The rest of a reply is missing.
     Cut(Index, Index),
-    /// /// A flipped bit of a reply.
+    /// A flipped bit of a reply.
     Flipped(Index, Index, u8),
-    /// /// A repeated record.
+    /// A repeated record.
     Doubled(Index),
-    /// /// A missing reply.
+    /// A missing reply.
     Missing(Index),
 }
 
@@ -133,7 +133,7 @@ fn damage_log(link: DriveLink, log: &mut Vec<Record>, damage: &Distortion) {
         }
         Distortion::Flipped(at, byte, bit) => {
             let at = at.index(log.len());
-            // // A CAN frame arrives complete or not at all.
+            // A CAN frame arrives complete or not at all.
             if link != DriveLink::Can && !ours(log, at) && !log[at].1.is_empty() {
                 let byte = byte.index(log[at].1.len());
                 log[at].1[byte] ^= 1 << bit;
@@ -153,8 +153,8 @@ fn damage_log(link: DriveLink, log: &mut Vec<Record>, damage: &Distortion) {
     }
 }
 
-/// /// Whether a sample of a damaged log is one of the client's. On CAN it may have an earlier
-/// SYNC, which certainly preceded the sample.
+/// Whether a sample of a damaged log is one of the client's. On CAN it may have an earlier SYNC,
+/// which certainly preceded the sample.
 fn is_one_of(link: DriveLink, observed: &ShaftSample, samples: &[ShaftSample]) -> bool {
     samples.iter().any(|client| {
         let older = ShaftSample {
@@ -184,7 +184,7 @@ proptest! {
         }
     }
 
-    /// /// With reordered records, even a reply before its request, only values from the log are
+    /// With reordered records, even a reply before its request, only values from the log are
     /// reported. A serial reply does not say whose it is.
     #[test]
     fn reordered_records_give_only_recorded_values(which in 0..3_usize, swaps in proptest::collection::vec(any::<Index>(), 1..40)) {
@@ -198,7 +198,7 @@ proptest! {
         let replies = |position: i32| {
             let bytes = position.to_le_bytes();
             log.iter().any(|(way, record, _)| {
-                // // USB doubles 0x90.
+                // USB doubles 0x90.
                 let plain: Vec<u8> = match link {
                     DriveLink::Usb => unstuffed(record),
                     DriveLink::Rs232 | DriveLink::Can => record.clone(),
@@ -212,7 +212,7 @@ proptest! {
         }
     }
 
-    /// /// Arbitrary records cause no panic.
+    /// Arbitrary records cause no panic.
     #[test]
     fn arbitrary_records_are_accepted(
         which in 0..3_usize,

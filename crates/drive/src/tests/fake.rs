@@ -1,4 +1,4 @@
-//! //! A scripted drive: an object dictionary, the states that the client uses, an axis of constant
+//! A scripted drive: an object dictionary, the states that the client uses, an axis of constant
 //! speed, and hooks that lose, delay, damage or repeat any reply. It shares only the frame format
 //! with the client.
 
@@ -17,7 +17,7 @@ use protocol::canopen::nmt::NmtState;
 
 use super::wire::{FakeBus, Wire};
 
-/// /// What happens to a reply.
+/// What happens to a reply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fate {
     Sent,
@@ -25,15 +25,15 @@ pub enum Fate {
     Late(Span),
     Damaged,
     Twice,
-    /// /// The drive receives the request damaged.
+    /// The drive receives the request damaged.
     Rejected,
-    /// /// The reply is that of another request, of another kind.
+    /// The reply is that of another request, of another kind.
     Another,
 }
 
-/// /// Decides the fate of the reply to the n-th request (from 0).
+/// Decides the fate of the reply to the n-th request (from 0).
 pub type Hand = Box<dyn FnMut(usize, &Request) -> Fate>;
-/// /// Transforms bytes that arrive at this time.
+/// Transforms bytes that arrive at this time.
 pub type Distortion = Box<dyn FnMut(Stamp<Host>, Vec<u8>) -> Vec<u8>>;
 
 #[derive(Clone, Copy, Debug)]
@@ -47,16 +47,16 @@ struct Motion {
 
 pub struct Fake {
     wire: Wire,
-    /// /// The CAN services other than SDO.
+    /// The CAN services other than SDO.
     pub bus: FakeBus,
     pub name: Vec<u8>,
-    /// /// Bytes of the name read so far.
+    /// Bytes of the name read so far.
     name_at: usize,
-    /// /// Bytes of the name written so far, and the total length.
+    /// Bytes of the name written so far, and the total length.
     writing: Option<(Vec<u8>, usize)>,
-    /// /// Transfers aborted by the client (CAN).
+    /// Transfers aborted by the client (CAN).
     pub aborts: Vec<CommError>,
-    /// /// Segments have the wrong toggle bit.
+    /// Segments have the wrong toggle bit.
     pub wrong_toggle: bool,
     pub objects: BTreeMap<(u16, u8), u32>,
     /// State bits of the statusword.
@@ -70,12 +70,12 @@ pub struct Fake {
     /// The axis does not follow.
     pub blocked: bool,
     pub deaf_to_quick_stop: bool,
-    /// /// A fault at this time.
+    /// A fault at this time.
     pub fault_at: Option<(Stamp<Host>, u16)>,
     pub faults_that_stay: bool,
-    /// /// Objects that ignore writes.
+    /// Objects that ignore writes.
     pub stubborn: Vec<(u16, u8)>,
-    /// /// Objects that refuse writes.
+    /// Objects that refuse writes.
     pub refuses: Vec<(u16, u8)>,
     pub hand: Hand,
     pub distort: Distortion,
@@ -100,7 +100,7 @@ impl Fake {
         Self::on(DriveLink::Usb)
     }
 
-    /// /// A drive with factory settings, and error 8120 from having been used without a CAN bus.
+    /// A drive with factory settings, and error 8120 from having been used without a CAN bus.
     pub fn on(link: DriveLink) -> Self {
         let objects = [
             (0x1000, 0, 0x0002_0192),
@@ -183,7 +183,7 @@ impl Fake {
         }
     }
 
-    /// /// Processes bytes from the host.
+    /// Processes bytes from the host.
     pub fn input(&mut self, bytes: &[u8], now: Stamp<Host>) {
         self.live(now);
         let mut wire = std::mem::replace(&mut self.wire, Wire::Gone);
@@ -191,7 +191,7 @@ impl Fake {
         self.wire = wire;
     }
 
-    /// /// Executes a request unless it is rejected; returns the answer and its fate.
+    /// Executes a request unless it is rejected; returns the answer and its fate.
     pub fn execute(&mut self, request: Request, now: Stamp<Host>) -> (Frame, Fate) {
         let fate = (self.hand)(self.requests.len(), &request);
         self.requests.push((now, request));
@@ -203,14 +203,14 @@ impl Fake {
         (answer, fate)
     }
 
-    /// /// Sends bytes after the turnaround and `by`, after those already queued.
+    /// Sends bytes after the turnaround and `by`, after those already queued.
     pub fn send(&mut self, bytes: Vec<u8>, by: Span, now: Stamp<Host>) {
         let earliest = now + self.turnaround;
         let at = self.answers.last().map_or(earliest, |a| a.0.max(earliest));
         self.answers.push((at + by, bytes));
     }
 
-    /// /// Sends a frame without a request.
+    /// Sends a frame without a request.
     pub fn send_at(&mut self, bytes: Vec<u8>, at: Stamp<Host>) {
         self.answers.push((at, bytes));
         self.answers.sort_by_key(|a| a.0);
@@ -227,12 +227,12 @@ impl Fake {
         due.then(|| (self.distort)(now, self.answers.remove(0).1))
     }
 
-    /// /// Drops everything in flight.
+    /// Drops everything in flight.
     pub fn unplug(&mut self) {
         self.answers.clear();
     }
 
-    /// /// Restarts the drive: settings, reference and NMT state are lost.
+    /// Restarts the drive: settings, reference and NMT state are lost.
     pub fn restart(&mut self, now: Stamp<Host>) {
         let link = self.wire.link();
         let fresh = Self::on(link);
@@ -248,7 +248,7 @@ impl Fake {
         self.start_bus(now);
     }
 
-    /// /// Position of the shaft.
+    /// Position of the shaft.
     pub fn position(&self, now: Stamp<Host>) -> f64 {
         let Some(m) = self.motion else {
             return self.place;
@@ -286,7 +286,7 @@ impl Fake {
         }
     }
 
-    /// /// Starts writing the name, of up to 20 bytes.
+    /// Starts writing the name, of up to 20 bytes.
     fn open_write(&mut self, open: &InitiateSegmentedWrite) -> CommError {
         self.writing = None;
         let len = open.len as usize;
@@ -307,7 +307,7 @@ impl Fake {
         } else {
             63
         };
-        // // Earlier segments are complete, which determines the toggle bit.
+        // Earlier segments are complete, which determines the toggle bit.
         if segment.toggle != ((bytes.len() / longest) % 2 == 1) {
             return Err(CommError::TOGGLE);
         }
@@ -401,7 +401,7 @@ impl Fake {
         if self.homing_until.is_some_and(|until| until <= now) {
             self.homing_until = None;
             self.place = f64::from(self.objects[&(0x2081, 0)] as i32);
-            // // The target is the home position, too.
+            // The target is the home position, too.
             self.objects.insert((0x607A, 0), self.objects[&(0x2081, 0)]);
             self.flags |= ACKNOWLEDGED | REFERENCED;
         }
@@ -473,13 +473,13 @@ impl Fake {
     }
 }
 
-/// /// The drive's clock, with an arbitrary zero and 40 ppm fast.
+/// The drive's clock, with an arbitrary zero and 40 ppm fast.
 pub fn device_us(now: Stamp<Host>) -> u32 {
     let us = now.as_nanos() / 1_000;
     (us + us / 25_000) as u32
 }
 
-/// /// Width of an object in bytes.
+/// Width of an object in bytes.
 pub fn width(address: Address) -> u8 {
     match (address.index, address.sub) {
         (0x1003 | 0x1A00, 0) | (0x1800, 2) | (0x6060 | 0x6061 | 0x6098, _) => 1,

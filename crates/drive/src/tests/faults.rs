@@ -1,4 +1,4 @@
-//! //! Faults of the drive, of the axis and of the link.
+//! Faults of the drive, of the axis and of the link.
 
 use protocol::epos2::CommError;
 use protocol::epos2::DeviceError;
@@ -23,7 +23,7 @@ fn is_write(request: &Request, index: u16, value: u32) -> bool {
     matches!(request, Request::WriteObject(w) if w.address.index == index && w.value == value)
 }
 
-/// /// A rig in mid-move, without the record of the start.
+/// A rig in mid-move, without the record of the start.
 fn moving() -> Rig {
     let mut rig = Rig::homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
@@ -52,7 +52,7 @@ fn a_fault_in_mid_sweep_is_named_and_the_axis_made_safe() {
         .iter()
         .find(|(_, request)| is_write(request, 0x6040, 0x0B))
         .unwrap();
-    // // Detected within a status period, handled within a few round trips.
+    // Detected within a status period, handled within a few round trips.
     assert!(quick_stop.0 - at < Span::from_millis(30));
 }
 
@@ -209,7 +209,7 @@ fn stop_in_mid_sweep_stops() {
 #[test]
 fn stop_does_not_wait_for_a_link_that_lost_an_answer() {
     let mut rig = moving();
-    // // Every reply is lost until the drive receives a quick stop.
+    // Every reply is lost until the drive receives a quick stop.
     let mut stopped = false;
     rig.fake.hand = Box::new(move |_, request| {
         stopped |= is_write(request, 0x6040, 0x0B);
@@ -270,7 +270,7 @@ fn a_lost_link_in_mid_sweep_is_reported_as_not_stopped() {
     assert!(matches!(**cause, DriveError::LinkLost { .. }), "{cause:?}");
     assert!(matches!(**stop, DriveError::LinkLost { .. }), "{stop:?}");
     assert!(rig.now - died < Span::from_secs(1));
-    // // The drive received the quick stop although its replies are lost.
+    // The drive received the quick stop although its replies are lost.
     assert!(rig.fake.state != super::fake::ENABLED);
 }
 
@@ -362,7 +362,7 @@ fn a_sweep_does_not_fail_by_the_last_lost_answer() {
     assert!(rig.run(DriveCommand::Sweep(to(-15.0))).is_ok());
     let mut lost = 0;
     rig.fake.hand = Box::new(move |_, request| {
-        // // Disabling the voltage may be repeated.
+        // Disabling the voltage may be repeated.
         if is_write(request, 0x6040, 0) && lost < 2 {
             lost += 1;
             return Fate::Lost;

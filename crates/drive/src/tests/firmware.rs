@@ -1,4 +1,4 @@
-//! //! The client with the simulated EPOS2 of firmware-sim, in virtual time. The two share only the
+//! The client with the simulated EPOS2 of firmware-sim, in virtual time. The two share only the
 //! frames.
 
 use std::collections::VecDeque;
@@ -37,7 +37,7 @@ impl Server {
         }
     }
 
-    /// /// One-way delay through wire, adapter and unit.
+    /// One-way delay through wire, adapter and unit.
     fn delay(&self, bytes: usize) -> Span {
         match self {
             Self::Usb(_) => Span::from_micros(300),
@@ -80,13 +80,13 @@ struct World {
     to_node: VecDeque<(Stamp<Host>, Vec<u8>)>,
     to_host: VecDeque<(Stamp<Host>, Vec<u8>)>,
     events: Vec<DriveEvent>,
-    /// /// When the client sent a quick stop.
+    /// When the client sent a quick stop.
     quick_stops: Vec<Stamp<Host>>,
     /// The cable is cut.
     cut: bool,
-    /// /// Transforms the unit's bytes on their way.
+    /// Transforms the unit's bytes on their way.
     distort: Distortion,
-    /// /// Start of each control cycle, and the shaft's motion through it, world qc.
+    /// Start of each control cycle, and the shaft's motion through it, world qc.
     truth: Vec<(Stamp<Host>, f64, f64)>,
 }
 
@@ -170,7 +170,7 @@ impl World {
         }
     }
 
-    /// /// Advances to the next event.
+    /// Advances to the next event.
     fn wait(&mut self) {
         let to_node = self.to_node.front().map(|m| m.0);
         let to_host = self.to_host.front().map(|m| m.0);
@@ -201,7 +201,7 @@ impl World {
         }
     }
 
-    /// /// A world in mid-sweep.
+    /// A world in mid-sweep.
     fn moving_on(link: DriveLink) -> Self {
         let mut world = Self::homed_on(link);
         world.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
@@ -218,7 +218,7 @@ impl World {
         world
     }
 
-    /// /// The client's report of the stopped axis.
+    /// The client's report of the stopped axis.
     fn made_safe(&self) -> Option<StopReport> {
         self.events.iter().find_map(|event| match event {
             DriveEvent::Progress(CommandProgress::MadeSafe(stopped)) => Some(*stopped),
@@ -248,8 +248,8 @@ impl World {
     }
 }
 
-/// /// Whether bytes contain a quick stop: controlword (6040) 000B in a frame of USB or CAN, or in
-/// a body of RS232.
+/// Whether bytes contain a quick stop: controlword (6040) 000B in a frame of USB or CAN, or in a
+/// body of RS232.
 fn is_quick_stop(bytes: &[u8]) -> bool {
     let has = |wanted: &[u8]| bytes.windows(wanted.len()).any(|w| w == wanted);
     has(&[0x40, 0x60, 0, 1, 0x0B, 0]) || has(&[0x2B, 0x40, 0x60, 0, 0x0B, 0])
@@ -261,7 +261,7 @@ fn from_home(world: &World, angle_deg: f64) -> MovePlan {
     axis.plan_move(home, axis.validate(to(angle_deg)).unwrap())
 }
 
-/// /// A complete capture, from power-on to the brake.
+/// A complete capture, from power-on to the brake.
 #[test]
 fn connect_home_sweep_brake() {
     let mut world = World::new(NodeConfig::default());
@@ -360,7 +360,7 @@ fn stop_in_mid_sweep_keeps_the_position() {
     // 1125 rpm at 20,000 rpm/s take 56 ms to stop; then 50 ms of standstill, the brake, and some
     // round trips.
     assert!(world.now - asked < Span::from_millis(200));
-    // // The axis can move on.
+    // The axis can move on.
     assert!(world.run(DriveCommand::Goto(to(0.0))).is_ok());
 }
 
@@ -410,7 +410,7 @@ fn a_restart_in_mid_sweep_is_noticed() {
         );
         let stopped = world.made_safe().unwrap();
         assert_eq!(stopped.validity, PositionValidity::Lost { error: None });
-        // // The drive has lost its limits: it must be connected before it moves.
+        // The drive has lost its limits: it must be connected before it moves.
         assert!(matches!(
             world.run(DriveCommand::Goto(to(0.0))),
             Err(DriveError::Restarted { .. })
@@ -446,7 +446,7 @@ fn the_whole_story_on_each_link() {
     }
 }
 
-/// /// Time from the fault to the client's quick stop, although the drive reacts on its own.
+/// Time from the fault to the client's quick stop, although the drive reacts on its own.
 #[test]
 fn faults_in_mid_sweep_are_named_and_answered_within_100_ms() {
     for link in LINKS {
@@ -488,7 +488,7 @@ fn a_blocked_motor_is_a_following_error() {
         let error = Some(DeviceError::FOLLOWING);
         assert_eq!(world.finish(), Err(DriveError::Fault { error }), "{link:?}");
         assert_eq!(world.made_safe().unwrap().validity, PositionValidity::Valid);
-        // // The axis can move on once it is free.
+        // The axis can move on once it is free.
         world.node.unblock();
         world.run(DriveCommand::ClearFaults).unwrap();
         assert!(world.run(DriveCommand::Goto(to(0.0))).is_ok(), "{link:?}");
@@ -519,7 +519,7 @@ fn a_cut_cable_in_mid_sweep_is_told_and_on_can_stops_the_axis() {
     }
 }
 
-/// /// The unit receives, but all its replies are damaged.
+/// The unit receives, but all its replies are damaged.
 #[test]
 fn an_axis_whose_answers_are_all_damaged_is_stopped() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
@@ -535,7 +535,7 @@ fn an_axis_whose_answers_are_all_damaged_is_stopped() {
     }
 }
 
-/// /// The simulated EPOS2 has no writable object of that length, but it takes the whole transfer
+/// The simulated EPOS2 has no writable object of that length, but it takes the whole transfer
 /// before it aborts.
 #[test]
 fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
@@ -583,8 +583,8 @@ fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
     }
 }
 
-/// /// A lagging servo arrives some hundredths of a second after its demand, at the end of the
-/// axis: too late for an immediate check.
+/// A lagging servo arrives some hundredths of a second after its demand, at the end of the axis:
+/// too late for an immediate check.
 #[test]
 fn a_servo_that_lags_is_home_and_arrives() {
     for (natural_millihertz, damping_permille) in [(15_000, 700), (15_000, 1_000), (8_000, 1_000)] {
@@ -603,7 +603,7 @@ fn a_servo_that_lags_is_home_and_arrives() {
             let Ok(CommandOutcome::Homed { angle, .. }) = homed else {
                 panic!("{servo:?} {link:?}: {homed:?}")
             };
-            // // Within the limits and the arrival tolerance.
+            // Within the limits and the arrival tolerance.
             assert!(angle.0 > -60.031, "{servo:?} {link:?}: {angle:?}");
             let swept = world.run(DriveCommand::Sweep(to(-15.0)));
             let Ok(CommandOutcome::Arrived(arrived)) = swept else {

@@ -1,4 +1,4 @@
-//! //! The link with every kind of loss, and with arbitrary input.
+//! The link with every kind of loss, and with arbitrary input.
 
 use proptest::prelude::*;
 use protocol::canopen::CanFrame;
@@ -42,7 +42,7 @@ fn answer(value: u32) -> Vec<u8> {
     usb::to_bytes(&ReadObject::answer(Ok(value))).to_vec()
 }
 
-/// /// The reply to a probe.
+/// The reply to a probe.
 fn absent(kind: usize) -> Vec<u8> {
     usb::to_bytes(&ReadObject::answer(Err(PROBES[kind].1))).to_vec()
 }
@@ -127,7 +127,7 @@ fn noise_before_a_reply_does_not_lose_it() {
     link.transmit(at(0)).unwrap();
     link.handle_input(&[0x90, 2, 0x33, 1, 1, 1, 1, 1], at(1));
     assert_eq!(link.transmit(at(1)), Some(probe(0)));
-    // // The write's own reply precedes the probe's: it was executed.
+    // The write's own reply precedes the probe's: it was executed.
     link.handle_input(&usb::to_bytes(&WriteObject::answer(Ok(()))), at(2));
     assert!(link.take_result().unwrap().is_ok());
 }
@@ -180,7 +180,7 @@ fn silence_is_reported_after_two_probes() {
             silent: Span::from_millis(300)
         })
     );
-    // // The link recovers: outstanding replies are identified, then requests work again.
+    // The link recovers: outstanding replies are identified, then requests work again.
     link.submit(read(0x6041));
     assert_eq!(link.transmit(at(400)), Some(probe(1)));
     for late in [answer(1), absent(0), absent(1), absent(1)] {
@@ -224,7 +224,7 @@ fn a_request_rejected_for_its_checksum_is_repeated_even_if_it_writes() {
     assert!(link.take_result().unwrap().is_ok());
 }
 
-/// /// What happens to a reply.
+/// What happens to a reply.
 #[derive(Clone, Copy, Debug)]
 enum Fate {
     Arrives,
@@ -242,7 +242,7 @@ fn fate() -> impl Strategy<Value = Fate> {
     ]
 }
 
-/// /// A device whose object at index i has the value i.
+/// A device whose object at index i has the value i.
 fn serve(frame: &[u8]) -> Vec<u8> {
     let mut decoder = UsbDecoder::new();
     let frame = frame
@@ -264,7 +264,7 @@ fn serve(frame: &[u8]) -> Vec<u8> {
     usb::to_bytes(&answer).to_vec()
 }
 
-/// /// A device that replies with the number of the request.
+/// A device that replies with the number of the request.
 fn count(attached: DriveLink, frame: &[u8], number: u32) -> Vec<u8> {
     let outcome = |address| match PROBES.iter().find(|(probe, _)| *probe == address) {
         Some((_, error)) => Err(*error),
@@ -294,7 +294,7 @@ fn count(attached: DriveLink, frame: &[u8], number: u32) -> Vec<u8> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// /// With any loss, damage or delay, a reply belongs to its request, and every request ends.
+    /// With any loss, damage or delay, a reply belongs to its request, and every request ends.
     #[test]
     fn replies_belong_to_their_requests(
         fates in proptest::collection::vec(fate(), 1..60),
@@ -348,8 +348,8 @@ proptest! {
         }
     }
 
-    /// /// The same object read repeatedly on both links without handshake: each value was read for
-    /// the request whose time it has.
+    /// The same object read repeatedly on both links without handshake: each value was read for the
+    /// request whose time it has.
     #[test]
     fn values_are_not_older_than_their_requests(
         fates in proptest::collection::vec(fate(), 1..80),
@@ -404,8 +404,7 @@ proptest! {
         }
     }
 
-    /// /// With arbitrary input there is no panic, only one request at a time, and every command
-    /// ends.
+    /// With arbitrary input there is no panic, only one request at a time, and every command ends.
     #[test]
     fn a_client_survives_any_bytes(
         inputs in proptest::collection::vec(

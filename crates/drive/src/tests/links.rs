@@ -1,4 +1,4 @@
-//! //! The same scenarios on each link: commands and faults do not depend on the link.
+//! The same scenarios on each link: commands and faults do not depend on the link.
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::message::Request;
@@ -13,7 +13,7 @@ use crate::{
 };
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
-/// /// From the detection of a fault to the quick stop, or to the report that the axis cannot be
+/// From the detection of a fault to the quick stop, or to the report that the axis cannot be
 /// stopped.
 const REACTION: Span = Span::from_millis(100);
 
@@ -68,7 +68,7 @@ fn connect_home_sweep_and_brake_work_on_each_link() {
     }
 }
 
-/// /// Whether two samples agree. On RS232 a log bounds the sample's time more tightly, by the
+/// Whether two samples agree. On RS232 a log bounds the sample's time more tightly, by the
 /// announcement of the answer.
 pub fn same(link: DriveLink, client: &ShaftSample, log: &ShaftSample) -> bool {
     let narrowed = ShaftSample {
@@ -97,7 +97,7 @@ fn a_log_gives_the_same_observations_on_each_link() {
                 _ => None,
             })
             .collect();
-        // // The client also reads the position without a sample.
+        // The client also reads the position without a sample.
         let samples = rig.samples();
         let mut rest = sampled.iter();
         assert!(
@@ -133,7 +133,7 @@ fn samples_lie_between_their_stamps_on_each_link() {
             .filter(|s| !matches!(s.position.0, -40_000 | -10_000))
             .collect();
         assert!(moving.len() > if link == DriveLink::Rs232 { 200 } else { 650 });
-        // // At 37,500 qc/s all samples must agree on the start.
+        // At 37,500 qc/s all samples must agree on the start.
         let began =
             |at: Stamp<_>, qc: i32| at.as_nanos() as f64 / 1e9 - f64::from(qc + 40_000) / 37_500.0;
         let base = moving[0].request.as_nanos() as f64 / 1e9;
@@ -172,7 +172,7 @@ fn a_fault_in_mid_sweep_stops_it() {
             assert_eq!(stopped.angle.is_some(), place == PositionValidity::Valid);
             assert_eq!(rig.fake.state, FAULT);
             let reaction = rig.quick_stop().unwrap() - at;
-            // // On CAN an EMCY message reports it at once, else the next statusword.
+            // On CAN an EMCY message reports it at once, else the next statusword.
             let limit = if link == DriveLink::Can { 3 } else { 40 };
             assert!(
                 reaction < Span::from_millis(limit),
@@ -198,13 +198,13 @@ fn a_restart_in_mid_sweep_is_reported_and_the_position_is_lost() {
         assert_eq!(stopped.validity, PositionValidity::Lost { error: None });
         assert_eq!(stopped.angle, None);
         let reaction = rig.quick_stop().unwrap() - at;
-        // // On CAN the boot-up message reports it; else the last request must time out first.
+        // On CAN the boot-up message reports it; else the last request must time out first.
         let limit = if link == DriveLink::Can { 3 } else { 200 };
         assert!(
             reaction < Span::from_millis(limit),
             "{link:?}: {reaction:?}"
         );
-        // // The drive must be connected before it moves.
+        // The drive must be connected before it moves.
         assert!(rig.run(DriveCommand::Goto(to(0.0))).is_err());
         rig.run(DriveCommand::Connect).unwrap();
         rig.run(DriveCommand::Home).unwrap();
@@ -232,13 +232,13 @@ fn a_lost_link_in_mid_sweep_is_reported_in_time() {
             "{cause:?}"
         );
         assert!(matches!(**stop, DriveError::LinkLost { .. }), "{stop:?}");
-        // // The drive received the quick stop although its replies are lost.
+        // The drive received the quick stop although its replies are lost.
         if link != DriveLink::Rs232 {
             assert_eq!(rig.fake.state, super::fake::QUICK_STOP, "{link:?}");
             let seen = rig.quick_stop().unwrap();
             assert!(rig.now - seen < REACTION, "{link:?}");
         }
-        // // One request timeout, the probes after it, then the last attempt.
+        // One request timeout, the probes after it, then the last attempt.
         assert!(
             rig.now - died < Span::from_millis(500),
             "{link:?} {:?}",
@@ -261,8 +261,8 @@ fn a_blocked_axis_fails_the_move() {
     }
 }
 
-/// /// The host is delayed by more than the margin, just before, at and after the arrival, at any
-/// point of a dialogue.
+/// The host is delayed by more than the margin, just before, at and after the arrival, at any point
+/// of a dialogue.
 #[test]
 fn a_host_delayed_through_the_arrival_completes_the_move() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
@@ -285,11 +285,11 @@ fn a_host_delayed_through_the_arrival_completes_the_move() {
     }
 }
 
-/// /// On CAN the drive stops when the host is delayed, and reports it.
+/// On CAN the drive stops when the host is delayed, and reports it.
 #[test]
 fn a_host_delayed_on_can_reports_that_the_drive_stopped() {
     let mut rig = moving_on(DriveLink::Can);
-    // // The drive's own time advances meanwhile.
+    // The drive's own time advances meanwhile.
     for _ in 0..1_700 {
         rig.now += Span::from_millis(1);
         rig.fake.live(rig.now);
@@ -302,7 +302,7 @@ fn a_host_delayed_on_can_reports_that_the_drive_stopped() {
     assert_eq!(made_safe(&rig).unwrap().validity, PositionValidity::Valid);
 }
 
-/// /// A state change and a standstill during a delay of the host are detected, too.
+/// A state change and a standstill during a delay of the host are detected, too.
 #[test]
 fn a_host_delayed_at_any_time_detects_the_outcome() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
@@ -324,8 +324,7 @@ fn a_host_delayed_at_any_time_detects_the_outcome() {
                     rig.sleep(Span::from_millis(1_800));
                     ended = Some(rig.finish());
                 }
-                // // After an interrupted RS232 dialogue it is unknown whether a write was
-                // executed.
+                // After an interrupted RS232 dialogue it is unknown whether a write was executed.
                 let open = matches!(ended, Some(Err(DriveError::NoAnswer { .. })))
                     && link == DriveLink::Rs232;
                 assert!(
@@ -352,8 +351,8 @@ fn loss_damage_repetition_and_refusal_are_survived() {
             (Fate::Late(Span::from_millis(130)), 47),
         ] {
             let mut rig = Rig::on(link, AxisConfig::default());
-            // // Reads and rejected writes are repeated; a write with a lost reply is not. A
-            // segmented transfer is restarted as a whole.
+            // Reads and rejected writes are repeated; a write with a lost reply is not. A segmented
+            // transfer is restarted as a whole.
             rig.fake.hand = Box::new(move |n, request| {
                 let repeated = match request {
                     Request::ReadObject(_) => true,
@@ -362,7 +361,7 @@ fn loss_damage_repetition_and_refusal_are_survived() {
                             || fate == Fate::Late(Span::from_millis(3))
                     }
                 };
-                // // CAN has no rejection of a damaged request.
+                // CAN has no rejection of a damaged request.
                 let possible = !(link == DriveLink::Can && fate == Fate::Rejected);
                 if n % every == 0 && repeated && possible {
                     fate
@@ -420,7 +419,7 @@ fn a_stop_from_mid_sweep_is_immediate_and_keeps_the_position() {
     }
 }
 
-/// /// Its value is not used, and the request is repeated.
+/// Its value is not used, and the request is repeated.
 #[test]
 fn a_reply_to_another_request_in_mid_sweep_is_ignored() {
     for link in LINKS {

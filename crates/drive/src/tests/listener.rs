@@ -1,4 +1,4 @@
-//! //! The listener's observations of a log compared with the client's.
+//! The listener's observations of a log compared with the client's.
 
 use proptest::prelude::*;
 use protocol::record::{Direction, DriveLink};
@@ -87,7 +87,7 @@ fn requests_to_other_nodes_are_not_ours() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// /// Noise between frames, damaged and missing frames: fewer samples, never wrong ones.
+    /// Noise between frames, damaged and missing frames: fewer samples, never wrong ones.
     #[test]
     fn noise_never_makes_a_sample(
         noise in proptest::collection::vec((any::<prop::sample::Index>(), proptest::collection::vec(any::<u8>(), 0..20), any::<bool>()), 0..20),
@@ -99,7 +99,7 @@ proptest! {
         rig.run(DriveCommand::Goto(crate::MoveCommand { speed: units::Rpm(1500), ..to(-55.0) })).unwrap();
         let truth = sampled(&rig.observations());
         for index in &missing {
-            // // Only replies can be missing: a recorder has its own requests.
+            // Only replies can be missing: a recorder has its own requests.
             let at = index.index(rig.log.len());
             if rig.log[at].0 == Direction::FromDevice {
                 rig.log.remove(at);

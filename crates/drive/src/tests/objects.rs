@@ -1,4 +1,4 @@
-//! //! Direct access to any object, expedited and in segments, both ways, with aborts.
+//! Direct access to any object, expedited and in segments, both ways, with aborts.
 
 use protocol::canopen::sdo::TransferError;
 use protocol::epos2::objects::Address;
@@ -31,13 +31,13 @@ fn read(rig: &mut Rig, address: Address) -> Result<Vec<u8>, DriveError> {
     }
 }
 
-/// /// Lengths around multiples of a CAN segment, and the toggle bit of each segment.
+/// Lengths around multiples of a CAN segment, and the toggle bit of each segment.
 #[test]
 fn long_objects_are_written_and_read_back() {
     for link in LINKS {
         let mut rig = rig(link);
         for len in [5, 6, 7, 8, 13, 14, 15, 20] {
-            // // USB doubles 0x90.
+            // USB doubles 0x90.
             let bytes: Vec<u8> = (0..len).map(|n| 0x90 - n % 3).collect();
             assert_eq!(
                 rig.run(write(NAME, &bytes)),
@@ -49,7 +49,7 @@ fn long_objects_are_written_and_read_back() {
         }
         assert_eq!(rig.fake.aborts, []);
         assert_eq!(rig.client.link_stats().lost, 0);
-        // // The log can be decoded.
+        // The log can be decoded.
         let is_noise = |seen: &&Observation| matches!(seen, Observation::Noise { .. });
         assert_eq!(rig.observations().iter().find(is_noise), None, "{link:?}");
     }
@@ -107,7 +107,7 @@ fn aborts_by_the_drive_are_reported_at_the_start_and_at_the_end() {
             read(&mut rig, absent),
             Err(DriveError::Refused { .. })
         ));
-        // // The node's abort ends the transfer, and the next one works.
+        // The node's abort ends the transfer, and the next one works.
         assert_eq!(rig.fake.aborts, []);
         assert_eq!(rig.fake.name, b"EPOS2");
         assert_eq!(read(&mut rig, NAME).unwrap(), b"EPOS2");
@@ -130,7 +130,7 @@ fn a_wrong_toggle_bit_aborts_a_write() {
         } else {
             Vec::new()
         };
-        // // The pending abort is sent with the next command.
+        // The pending abort is sent with the next command.
         rig.fake.wrong_toggle = false;
         assert_eq!(read(&mut rig, NAME).unwrap().len(), rig.fake.name.len());
         assert_eq!(rig.fake.aborts, aborts, "{link:?}");
@@ -144,7 +144,7 @@ fn a_lost_segment_is_not_repeated() {
             let mut rig = rig(link);
             rig.fake.hand = Box::new(move |n, _| if n == lost { Fate::Lost } else { Fate::Sent });
             let ended = rig.run(write(NAME, b"fourteen bytes"));
-            // // A single segment suffices on a serial link.
+            // A single segment suffices on a serial link.
             if lost == 3 && link != DriveLink::Can {
                 assert!(ended.is_ok(), "{link:?}");
                 continue;
@@ -200,8 +200,8 @@ fn direct_writes_are_refused_for_the_controlword_and_while_enabled() {
     }
 }
 
-/// /// The bytes that USB doubles, that begin its frames, and that RS232 uses as handshake and
-/// answer opcode, at every position of the data.
+/// The bytes that USB doubles, that begin its frames, and that RS232 uses as handshake and answer
+/// opcode, at every position of the data.
 #[test]
 fn every_byte_passes_at_every_position() {
     for link in LINKS {

@@ -1,4 +1,4 @@
-//! //! Each command from its first frame to its outcome.
+//! Each command from its first frame to its outcome.
 
 use protocol::epos2::DeviceError;
 use units::{Degrees, Quadcounts, Rpm, Span};
@@ -120,7 +120,7 @@ fn a_sweep_is_sampled_from_standstill_to_standstill() {
     };
     assert!(still(-40_000) >= 30, "{} before", still(-40_000));
     assert!(still(-10_000) >= 30, "{} after", still(-10_000));
-    // // 30,000 qc at 37,500 qc/s: 0.8 s of motion at 1 kHz; a statusword replaces a poll now and
+    // 30,000 qc at 37,500 qc/s: 0.8 s of motion at 1 kHz; a statusword replaces a poll now and
     // then.
     let moving = samples.len() - still(-40_000) - still(-10_000);
     assert!((700..=800).contains(&moving), "{moving}");
@@ -144,7 +144,7 @@ fn samples_lie_between_their_stamps() {
         .unwrap();
     let t0 = samples[began + 1].request;
     for s in samples.iter().skip(began + 1).take(600) {
-        // // The scripted drive samples when the request arrives.
+        // The scripted drive samples when the request arrives.
         let way = 37_500.0 * (s.request - t0).as_secs_f64();
         let got = f64::from(s.position.0 - samples[began + 1].position.0);
         assert!((got - way).abs() <= 1.0, "{got} {way}");

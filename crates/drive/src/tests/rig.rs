@@ -1,4 +1,4 @@
-//! //! The client with the scripted drive in virtual time; records everything on the wire.
+//! The client with the scripted drive in virtual time; records everything on the wire.
 
 use protocol::epos2::message::Request;
 use protocol::record::{Direction, DriveLink};
@@ -33,7 +33,7 @@ impl Rig {
         }
     }
 
-    /// /// A connected and homed rig, without the record of that.
+    /// A connected and homed rig, without the record of that.
     pub fn homed() -> Self {
         Self::homed_on(DriveLink::Usb)
     }
@@ -52,7 +52,7 @@ impl Rig {
         self.log.clear();
     }
 
-    /// /// Runs a command until it ends.
+    /// Runs a command until it ends.
     pub fn run(&mut self, command: DriveCommand) -> Result<CommandOutcome, DriveError> {
         self.client.start(command)?;
         self.finish()
@@ -68,7 +68,7 @@ impl Rig {
         panic!("no end after 120 s: {:?}", self.client);
     }
 
-    /// /// Runs for a span; `None` if the command has not ended.
+    /// Runs for a span; `None` if the command has not ended.
     pub fn run_for(&mut self, span: Span) -> Option<Result<CommandOutcome, DriveError>> {
         let until = self.now + span;
         while self.now < until {
@@ -86,13 +86,13 @@ impl Rig {
         }
     }
 
-    /// /// Delays the host after it has sent everything pending.
+    /// Delays the host after it has sent everything pending.
     pub fn sleep(&mut self, span: Span) {
         self.transmit();
         self.now += span;
     }
 
-    /// /// One iteration of the port owner's loop.
+    /// One iteration of the port owner's loop.
     pub fn step(&mut self) -> Option<Result<CommandOutcome, DriveError>> {
         self.transmit();
         while let Some(event) = self.client.poll_event() {
@@ -109,7 +109,7 @@ impl Rig {
             .flatten()
             .min()
             .expect("nothing to wait for");
-        // // Virtual time always advances.
+        // Virtual time always advances.
         self.now = next.max(self.now + Span::from_nanos(1));
         while let Some(bytes) = self.fake.take_answer(self.now) {
             self.client.handle_input(&bytes, self.now);
@@ -121,7 +121,7 @@ impl Rig {
         None
     }
 
-    /// /// When the drive received the first quick stop.
+    /// When the drive received the first quick stop.
     pub fn quick_stop(&self) -> Option<Stamp<Host>> {
         let is_stop = |request: &Request| matches!(request, Request::WriteObject(w) if w.address.index == 0x6040 && w.value == 0x0B);
         let stop = self.fake.requests.iter().find(|(_, r)| is_stop(r));
@@ -160,7 +160,7 @@ impl Rig {
             .collect()
     }
 
-    /// /// The listener's observations of the log.
+    /// The listener's observations of the log.
     pub fn observations(&self) -> Vec<Observation> {
         let mut listener = DriveListener::new(1);
         let mut observed = Vec::new();

@@ -1,4 +1,4 @@
-//! //! Features of RS232: a dialogue with missing bytes, and units that stay behind in it.
+//! Features of RS232: a dialogue with missing bytes, and units that stay behind in it.
 
 use proptest::prelude::*;
 use protocol::epos2::message::{ReadObject, Request as Wire, WriteObject};
@@ -30,7 +30,7 @@ fn request(index: u16, access: ObjectAccess) -> LinkRequest {
     }
 }
 
-/// /// A unit whose object at index i has the value i.
+/// A unit whose object at index i has the value i.
 struct Unit {
     state: UnitState,
     observed: Stamp<Host>,
@@ -137,7 +137,7 @@ fn a_unit_that_always_refuses_is_reported() {
     panic!("no end: {client:?}");
 }
 
-/// /// What happens to a byte on its way.
+/// What happens to a byte on its way.
 #[derive(Clone, Copy, Debug)]
 enum Fate {
     Arrives,
@@ -153,7 +153,7 @@ fn fates() -> impl Strategy<Value = Vec<Fate>> {
             200 => Just(Fate::Arrives),
             2 => Just(Fate::IsLost),
             1 => Just(Fate::ComesTwice),
-            // // A handshake changed into its opposite is undetectable; other changes are detected.
+            // A handshake changed into its opposite is undetectable; other changes are detected.
             2 => any::<u8>().prop_filter("handshake", |b| ![OKAY, FAILED].contains(b)).prop_map(Fate::Becomes),
             1 => (1..250u16).prop_map(Fate::TakesMs),
         ],
@@ -204,8 +204,8 @@ impl Line {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
-    /// /// With any loss and damage a reply belongs to its request, and every request ends. A write
-    /// is executed at most once per reported success.
+    /// With any loss and damage a reply belongs to its request, and every request ends. A write is
+    /// executed at most once per reported success.
     #[test]
     fn replies_belong_to_their_requests(there in fates(), back in fates(), abandons in proptest::collection::vec(any::<bool>(), 12)) {
         let mut link = Link::new(Codec::new(DriveLink::Rs232, 1));
@@ -257,7 +257,7 @@ proptest! {
         }
     }
 
-    /// /// Arbitrary bytes cause no panic, and every command ends.
+    /// Arbitrary bytes cause no panic, and every command ends.
     #[test]
     fn any_bytes_end(inputs in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..12), 0..60)) {
         let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Rs232);

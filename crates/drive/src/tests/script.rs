@@ -1,4 +1,4 @@
-//! //! The first frames of commands, byte for byte in the Communication Guide's format.
+//! The first frames of commands, byte for byte in the Communication Guide's format.
 
 use units::{Span, Stamp};
 
@@ -12,7 +12,7 @@ fn hex(text: &str) -> Vec<u8> {
         .collect()
 }
 
-/// /// Quick stop, then statusword and position; the replies are the guide's examples.
+/// Quick stop, then statusword and position; the replies are the guide's examples.
 #[test]
 fn stop_sends_the_frames_of_the_guide() {
     let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Usb);
@@ -27,7 +27,7 @@ fn stop_sends_the_frames_of_the_guide() {
         client.poll_transmit(now).unwrap(),
         hex("90 02 10 02 64 60 00 01 52 A2")
     );
-    // // The reply arrives in three portions and has the time of the last.
+    // The reply arrives in three portions and has the time of the last.
     for part in ["90 02 00 04 00 00", "00 00 00 00 90 90", "80 14 35"] {
         now += Span::from_millis(1);
         client.handle_input(&hex(part), now);

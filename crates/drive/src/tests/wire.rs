@@ -1,5 +1,5 @@
-//! //! The scripted drive's side of each link: bytes to requests, answers and their fates to bytes,
-//! and the CAN services other than SDO.
+//! The scripted drive's side of each link: bytes to requests, answers and their fates to bytes, and
+//! the CAN services other than SDO.
 
 use protocol::canopen::emcy::Emergency;
 use protocol::canopen::heartbeat::Heartbeat;
@@ -24,11 +24,11 @@ pub enum Wire {
     Usb(UsbDecoder),
     Rs232(UnitState),
     Can,
-    /// /// Placeholder while the wire is in use.
+    /// Placeholder while the wire is in use.
     Gone,
 }
 
-/// /// State of the RS232 dialogue in the unit.
+/// State of the RS232 dialogue in the unit.
 pub enum UnitState {
     Opcode,
     Body(BodyDecoder),
@@ -36,14 +36,14 @@ pub enum UnitState {
     Receipt,
 }
 
-/// /// CAN services of the drive other than SDO.
+/// CAN services of the drive other than SDO.
 pub struct FakeBus {
     pub state: NmtState,
     next_heartbeat: Option<Stamp<Host>>,
-    /// /// The heartbeat is off.
+    /// The heartbeat is off.
     pub silent: bool,
     host_heartbeat: Option<Stamp<Host>>,
-    /// /// Delay from SYNC to the sample, and from there to the frame's arrival.
+    /// Delay from SYNC to the sample, and from there to the frame's arrival.
     pub forth: Span,
     pub back: Span,
     /// Decides whether the n-th frame of the stream is sent, and how often.
@@ -118,7 +118,7 @@ impl Wire {
     }
 }
 
-/// /// The reply to a request of another kind: a read instead of a write, and vice versa.
+/// The reply to a request of another kind: a read instead of a write, and vice versa.
 fn another(answer: &Frame) -> Frame {
     if Answer::parse(answer).unwrap().data.is_empty() {
         ReadObject::answer(Ok(0x1234))
@@ -276,7 +276,7 @@ fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
     let (answer, fate) = fake.execute(wire, now);
     let mut answer = sdo_answer(&wire, address, &answer);
     if fate == Fate::Another {
-        // // Even of the same kind.
+        // Even of the same kind.
         let address = Address::new(address.index + 1, address.sub);
         let transfer = Initiate::Expedited(Expedited::of(0x1234_u32));
         answer = sdo::SdoResponse::InitiateUpload { address, transfer };
@@ -288,7 +288,7 @@ fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
         _ => Span::ZERO,
     };
     match fate {
-        // // A damaged CAN frame does not arrive; a wrong length comes closest.
+        // A damaged CAN frame does not arrive; a wrong length comes closest.
         Fate::Damaged => bytes[4] = 7,
         Fate::Twice => fake.send(bytes.clone(), by, now),
         _ => {}
@@ -332,7 +332,7 @@ fn sdo_answer(request: &Request, address: Address, answer: &Frame) -> sdo::SdoRe
 }
 
 impl Fake {
-    /// /// Sends the boot-up message and starts the heartbeat.
+    /// Sends the boot-up message and starts the heartbeat.
     pub fn start_bus(&mut self, now: Stamp<Host>) {
         let state = self.bus.state;
         self.bus = FakeBus::default();

@@ -1,7 +1,7 @@
 //! An SDO client as a state machine without I/O: one transfer at a time.
 //!
-//! The caller carries the frames, passes the time and decides about retries. A response names at most
-//! its object, so a stale one looks like the response to a repeated request: see
+//! The caller carries the frames, passes the time and decides about retries. A response names at
+//! most its object, so a stale one looks like the response to a repeated request: see
 //! [`SdoClient::pending_stale_response`].
 
 use units::{Host, Span, Stamp};
@@ -104,9 +104,9 @@ impl<const N: usize> SdoClient<N> {
 
     /// The object of a transfer given up without a response, while that response may still arrive.
     ///
-    /// If the same request is repeated, the client takes the stale response for the new one. To be sure
-    /// of a value, read another object first: a node responds in the order of requests, so once that
-    /// response is there, the stale one has been dropped or is lost.
+    /// If the same request is repeated, the client takes the stale response for the new one. To be
+    /// sure of a value, read another object first: a node responds in the order of requests, so
+    /// once that response is there, the stale one has been dropped or is lost.
     #[must_use]
     pub const fn pending_stale_response(&self) -> Option<Address> {
         self.stale

@@ -133,7 +133,8 @@ impl<const L: usize> GenericSdoResponse<L> {
         }
     }
 
-    /// Whether this can be the response to `request`: same service, same object where both name one.
+    /// Whether this can be the response to `request`: same service, same object where both name
+    /// one.
     #[must_use]
     pub fn answers(&self, request: &GenericSdoRequest<L>) -> bool {
         let same_object = match (self.address(), request.address()) {

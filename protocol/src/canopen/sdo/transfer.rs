@@ -1,4 +1,5 @@
-//! The rules of one SDO transfer (CiA 301): which request follows which response, without time or I/O.
+//! The rules of one SDO transfer (CiA 301): which request follows which response, without time or
+//! I/O.
 
 use super::{
     Expedited, GenericSdoRequest, GenericSdoResponse, GenericSdoSegment, Initiate, SEGMENT_LEN,

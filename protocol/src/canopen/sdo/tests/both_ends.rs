@@ -1,4 +1,4 @@
-//! A client and a server that is written another way: every length, every value, and noise.
+//! The client with an independent server: every length, every value, and noise.
 
 use std::vec::Vec;
 
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A server as CiA 301 describes it, for one object; it answers what it is asked and no more.
+/// An SDO server for one object, as CiA 301 describes it.
 struct Server {
     data: Vec<u8>,
     expedite: bool,
@@ -150,7 +150,7 @@ proptest! {
         prop_assert_eq!(answer.to_bytes()[0] >> 5, bytes[0] >> 5);
     }
 
-    /// Whatever comes, a transfer ends: with the answers or with the time.
+    /// With any responses, a transfer ends by them or by its time limit.
     #[test]
     fn every_transfer_ends_under_noise(answers in prop::collection::vec(noise(), 0..40), write in 0..20_usize) {
         let mut client = client();
