@@ -1,4 +1,4 @@
-//! The client against scripted answers, against a slow but complete server, and against noise.
+//! The client with scripted responses, with a complete server, and with noise.
 
 extern crate std;
 mod both_ends;
@@ -14,8 +14,8 @@ use crate::canopen::tests as objects;
 use crate::canopen::{Address, Scalar};
 use crate::canopen::{CanFrame, MessageError, NodeId};
 
-const ROOM: usize = 40;
-type Client = SdoClient<ROOM>;
+const CAPACITY: usize = 40;
+type Client = SdoClient<CAPACITY>;
 
 const NAME: Address = Address::new(0x1008, 0);
 const STATUS: Address = objects::STATUSWORD.address;
@@ -51,24 +51,24 @@ fn part(toggle: bool, last: bool, bytes: &[u8]) -> SdoResponse {
     })
 }
 
-/// What the client wants sent.
+/// The client's next requests.
 fn sent(client: &mut Client, now: Stamp<Host>) -> Vec<SdoRequest> {
     core::iter::from_fn(|| client.poll_transmit(now))
         .map(|frame| SdoRequest::parse(&frame).unwrap().1)
         .collect()
 }
 
-fn hear(client: &mut Client, answer: SdoResponse) -> FrameDisposition {
+fn receive(client: &mut Client, answer: SdoResponse) -> FrameDisposition {
     client.handle_frame(&answer.to_frame(node()))
 }
 
-/// Plays a read: answers in turn, each after the request for it was sent; the outcome and what the client sent last.
-fn play(address: Address, answers: &[SdoResponse]) -> (SdoOutcome<ROOM>, Vec<SdoRequest>) {
+/// Plays a read with one response per request; returns the outcome and the client's last requests.
+fn play(address: Address, answers: &[SdoResponse]) -> (SdoOutcome<CAPACITY>, Vec<SdoRequest>) {
     let mut client = client();
     client.read(address).unwrap();
     for answer in answers {
         assert_eq!(sent(&mut client, at(0)).len(), 1);
-        assert_eq!(hear(&mut client, *answer), FrameDisposition::Accepted);
+        assert_eq!(receive(&mut client, *answer), FrameDisposition::Accepted);
     }
     let outcome = client.poll_outcome().expect("the transfer has ended");
     assert_eq!((client.is_busy(), client.poll_timeout()), (false, None));
@@ -77,7 +77,7 @@ fn play(address: Address, answers: &[SdoResponse]) -> (SdoOutcome<ROOM>, Vec<Sdo
 
 fn failure(address: Address, answers: &[SdoResponse]) -> (TransferError, Option<AbortCode>) {
     let (outcome, last) = play(address, answers);
-    let told = match last.as_slice() {
+    let abort = match last.as_slice() {
         [] => None,
         [
             SdoRequest::Abort {
@@ -90,7 +90,7 @@ fn failure(address: Address, answers: &[SdoResponse]) -> (TransferError, Option<
         }
         other => panic!("{other:?}"),
     };
-    (outcome.result.unwrap_err(), told)
+    (outcome.result.unwrap_err(), abort)
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn an_expedited_read() {
     );
     assert_eq!(value.scalar::<u16>(), Ok(0x0140));
     assert!(value.sized && last.is_empty());
-    // The object is longer or shorter than its reader thinks.
+    // The object's length differs from its type.
     let (expected, got) = (4, 2);
     assert_eq!(
         value.scalar::<i32>(),
@@ -149,13 +149,13 @@ fn a_segmented_read() {
     ];
     let (outcome, _) = play(NAME, &answers);
     assert_eq!(outcome.result.unwrap().bytes.as_slice(), b"012345678");
-    // Nothing at all.
+    // No data.
     let (outcome, _) = play(NAME, &[sized(NAME, 0), part(false, true, b"")]);
     assert!(outcome.result.unwrap().bytes.is_empty());
 }
 
 #[test]
-fn what_the_node_refuses_is_typed_and_not_aborted_again() {
+fn an_abort_by_the_node_is_reported_and_not_answered() {
     let error = AbortCode::NO_OBJECT;
     let address = NAME;
     let refused = SdoResponse::Abort { address, error };
@@ -165,7 +165,7 @@ fn what_the_node_refuses_is_typed_and_not_aborted_again() {
 }
 
 #[test]
-fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
+fn unexpected_responses_end_and_abort_the_transfer() {
     use TransferError::{EmptySegment, OtherObject, Size, Toggle, TooLong, Unexpected};
     let other = expedited(POSITION, &[1, 2, 3, 4]);
     let (expected, got) = (NAME, POSITION);
@@ -223,7 +223,7 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
         failure(NAME, &[sized(NAME, 5), part(false, false, b"0123456")]).0,
         Size { expected, got }
     );
-    let (max, got) = (ROOM, ROOM + 1);
+    let (max, got) = (CAPACITY, CAPACITY + 1);
     assert_eq!(
         failure(NAME, &[sized(NAME, 41)]),
         (TooLong { max, got }, Some(AbortCode::MEMORY))
@@ -242,23 +242,23 @@ fn answers_that_do_not_fit_end_the_transfer_and_tell_the_node() {
 }
 
 #[test]
-fn an_endless_read_without_a_size_ends_at_the_room() {
+fn an_endless_upload_ends_at_the_capacity() {
     let mut client = client();
     client.read(NAME).unwrap();
     sent(&mut client, at(0));
     let transfer = Initiate::Segmented { size: None };
     let address = NAME;
-    hear(
+    receive(
         &mut client,
         SdoResponse::InitiateUpload { address, transfer },
     );
     let mut toggle = false;
     for _ in 0..6 {
         sent(&mut client, at(0));
-        hear(&mut client, part(toggle, false, b"0123456"));
+        receive(&mut client, part(toggle, false, b"0123456"));
         toggle = !toggle;
     }
-    let (max, got) = (ROOM, 42);
+    let (max, got) = (CAPACITY, 42);
     assert_eq!(
         client.poll_outcome().unwrap().result,
         Err(TransferError::TooLong { max, got })
@@ -284,14 +284,14 @@ fn a_damaged_answer_is_typed() {
 }
 
 #[test]
-fn writes_of_every_length_leave_as_they_should() {
+fn golden_downloads() {
     let mut client = client();
     client.write_scalar(STATUS, 0x000F_u16).unwrap();
     assert_eq!(
         client.poll_transmit(at(0)).unwrap().data(),
         [0x2B, 0x41, 0x60, 0, 0x0F, 0, 0, 0]
     );
-    hear(
+    receive(
         &mut client,
         SdoResponse::InitiateDownload { address: STATUS },
     );
@@ -307,7 +307,7 @@ fn writes_of_every_length_leave_as_they_should() {
         SdoResponse::DownloadSegment { toggle: true },
     ] {
         data.push(client.poll_transmit(at(0)).unwrap().data().to_vec());
-        hear(&mut client, answer);
+        receive(&mut client, answer);
     }
     assert_eq!(
         data,
@@ -318,9 +318,9 @@ fn writes_of_every_length_leave_as_they_should() {
         ]
     );
     assert!(client.poll_outcome().unwrap().result.is_ok());
-    let (max, got) = (ROOM, ROOM + 1);
+    let (max, got) = (CAPACITY, CAPACITY + 1);
     assert_eq!(
-        client.write(NAME, &[0; ROOM + 1]),
+        client.write(NAME, &[0; CAPACITY + 1]),
         Err(StartError::TooLong { max, got })
     );
 }
@@ -330,9 +330,9 @@ fn a_wrong_toggle_in_a_write_is_typed() {
     let mut client = client();
     client.write(NAME, b"123456789").unwrap();
     sent(&mut client, at(0));
-    hear(&mut client, SdoResponse::InitiateDownload { address: NAME });
+    receive(&mut client, SdoResponse::InitiateDownload { address: NAME });
     sent(&mut client, at(0));
-    hear(&mut client, SdoResponse::DownloadSegment { toggle: true });
+    receive(&mut client, SdoResponse::DownloadSegment { toggle: true });
     let (expected, got) = (false, true);
     assert_eq!(
         client.poll_outcome().unwrap().result,
@@ -351,8 +351,8 @@ fn time_runs_from_when_a_request_was_sent() {
     assert_eq!(client.poll_timeout(), Some(at(150)));
     client.handle_timeout(at(149));
     assert!(client.is_busy());
-    // Each answer has its own time.
-    hear(&mut client, sized(NAME, 5));
+    // Each response has its own time limit.
+    receive(&mut client, sized(NAME, 5));
     assert_eq!(client.poll_timeout(), None);
     assert!(client.poll_transmit(at(200)).is_some());
     assert_eq!(client.poll_timeout(), Some(at(250)));
@@ -376,7 +376,7 @@ fn one_at_a_time() {
     let busy = Err(StartError::Busy { address: NAME });
     assert_eq!(client.read(STATUS), busy);
     assert_eq!(client.write(STATUS, &[1]), busy);
-    // Nothing was sent yet, so nothing needs to be aborted and no answer is owed.
+    // Nothing was sent, so there is nothing to abort and no stale response.
     client.cancel();
     assert_eq!(client.read(STATUS), busy, "the outcome is not fetched");
     assert_eq!(
@@ -395,7 +395,7 @@ fn one_at_a_time() {
     assert_eq!(client.pending_stale_response(), Some(STATUS));
 }
 
-/// Lets a read of `address` run out of time.
+/// Lets a read of `address` time out.
 fn time_out(client: &mut Client, address: Address) {
     client.read(address).unwrap();
     sent(client, at(0));
@@ -406,33 +406,33 @@ fn time_out(client: &mut Client, address: Address) {
 }
 
 #[test]
-fn a_late_answer_is_not_taken_for_another() {
+fn a_stale_response_is_not_used_for_another_request() {
     let mut client = client();
     time_out(&mut client, POSITION);
     client.read(STATUS).unwrap();
     sent(&mut client, at(60));
     let late = expedited(POSITION, &[1, 2, 3, 4]);
-    assert_eq!(hear(&mut client, late), FrameDisposition::Stale);
+    assert_eq!(receive(&mut client, late), FrameDisposition::Stale);
     assert_eq!(client.pending_stale_response(), None);
     let answer = expedited(STATUS, &[0x40, 1]);
-    assert_eq!(hear(&mut client, answer), FrameDisposition::Accepted);
+    assert_eq!(receive(&mut client, answer), FrameDisposition::Accepted);
     assert!(client.poll_outcome().unwrap().result.is_ok());
-    // While nothing is asked it is dropped as well; once, as only one was owed.
+    // Without a request it is dropped as well, but only once.
     time_out(&mut client, POSITION);
-    assert_eq!(hear(&mut client, late), FrameDisposition::Stale);
-    assert_eq!(hear(&mut client, late), FrameDisposition::Unsolicited);
-    // Asked for another way, the object's name alone does not make it the answer.
+    assert_eq!(receive(&mut client, late), FrameDisposition::Stale);
+    assert_eq!(receive(&mut client, late), FrameDisposition::Unsolicited);
+    // For another service the object's name alone is no match.
     time_out(&mut client, POSITION);
     client.write(POSITION, &[1, 2, 3, 4]).unwrap();
     sent(&mut client, at(60));
-    assert_eq!(hear(&mut client, late), FrameDisposition::Stale);
+    assert_eq!(receive(&mut client, late), FrameDisposition::Stale);
     let wrote = SdoResponse::InitiateDownload { address: POSITION };
-    assert_eq!(hear(&mut client, wrote), FrameDisposition::Accepted);
+    assert_eq!(receive(&mut client, wrote), FrameDisposition::Accepted);
     assert!(client.poll_outcome().unwrap().result.is_ok());
 }
 
 #[test]
-fn an_answer_that_nobody_is_owed_is_no_late_one() {
+fn an_unrelated_response_is_not_stale() {
     for stray in [
         expedited(NAME, &[1, 2, 3, 4]),
         SdoResponse::InitiateDownload { address: NAME },
@@ -445,7 +445,7 @@ fn an_answer_that_nobody_is_owed_is_no_late_one() {
         time_out(&mut client, POSITION);
         client.read(STATUS).unwrap();
         sent(&mut client, at(60));
-        assert_eq!(hear(&mut client, stray), FrameDisposition::Accepted);
+        assert_eq!(receive(&mut client, stray), FrameDisposition::Accepted);
         let (expected, got) = (STATUS, NAME);
         assert_eq!(
             client.poll_outcome().unwrap().result,
@@ -455,7 +455,7 @@ fn an_answer_that_nobody_is_owed_is_no_late_one() {
 }
 
 #[test]
-fn an_answer_in_order_settles_what_was_owed() {
+fn a_response_in_order_clears_a_pending_stale_one() {
     for answer in [
         expedited(STATUS, &[0x40, 1]),
         SdoResponse::Abort {
@@ -467,18 +467,18 @@ fn an_answer_in_order_settles_what_was_owed() {
         time_out(&mut client, POSITION);
         client.read(STATUS).unwrap();
         sent(&mut client, at(60));
-        assert_eq!(hear(&mut client, answer), FrameDisposition::Accepted);
+        assert_eq!(receive(&mut client, answer), FrameDisposition::Accepted);
         client.poll_outcome().unwrap();
         assert_eq!(client.pending_stale_response(), None);
     }
 }
 
 #[test]
-fn a_late_segment_does_not_disturb_the_next_transfer() {
+fn a_stale_segment_does_not_disturb_the_next_transfer() {
     let mut client = client();
     client.read(NAME).unwrap();
     sent(&mut client, at(0));
-    hear(&mut client, sized(NAME, 20));
+    receive(&mut client, sized(NAME, 20));
     sent(&mut client, at(0));
     client.handle_timeout(at(50));
     client.poll_outcome().unwrap();
@@ -489,22 +489,22 @@ fn a_late_segment_does_not_disturb_the_next_transfer() {
         "abort, then the request"
     );
     assert_eq!(
-        hear(&mut client, part(false, false, b"0123456")),
+        receive(&mut client, part(false, false, b"0123456")),
         FrameDisposition::Stale
     );
     assert_eq!(
-        hear(&mut client, expedited(STATUS, &[0x40, 1])),
+        receive(&mut client, expedited(STATUS, &[0x40, 1])),
         FrameDisposition::Accepted
     );
 }
 
 #[test]
-fn frames_of_others_and_answers_to_nothing_do_nothing() {
+fn foreign_and_unsolicited_frames_are_ignored() {
     let mut client = client();
     client.read(STATUS).unwrap();
     let answer = expedited(STATUS, &[0x40, 1]);
-    // It would fit, but nothing was sent yet.
-    assert_eq!(hear(&mut client, answer), FrameDisposition::Unsolicited);
+    // It fits, but the request was not sent yet.
+    assert_eq!(receive(&mut client, answer), FrameDisposition::Unsolicited);
     sent(&mut client, at(0));
     let two = NodeId::new(2).unwrap();
     assert_eq!(
@@ -516,7 +516,7 @@ fn frames_of_others_and_answers_to_nothing_do_nothing() {
         client.handle_frame(&request.to_frame(node())),
         FrameDisposition::Foreign
     );
-    assert_eq!(hear(&mut client, answer), FrameDisposition::Accepted);
-    // The controller of the bus may deliver a frame twice.
-    assert_eq!(hear(&mut client, answer), FrameDisposition::Unsolicited);
+    assert_eq!(receive(&mut client, answer), FrameDisposition::Accepted);
+    // The bus controller may deliver a frame twice.
+    assert_eq!(receive(&mut client, answer), FrameDisposition::Unsolicited);
 }
