@@ -1,14 +1,20 @@
-# What CI runs, and the shorter ways to parts of it.
-
 # Everything that CI checks.
 ci:
     bash .ci/run
 
-# Format, lints, tests: before every commit.
+# Format, lints and the tests that do not wait for real time: before every commit.
 check:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets -- -D warnings
+    cargo test --workspace --lib --bins --test virtual --test hard_cases --test recordings
+
+# Every test that needs nothing but the checkout.
+test:
     cargo test --workspace
+
+# Lines, import cycles, repeated type names, long comments.
+counts:
+    cargo test -p architecture -- --ignored --nocapture
 
 # The book, in docs/book.
 book:
@@ -18,6 +24,6 @@ book:
 scan *ARGS:
     cargo run --release -- capture --speed 56.25 {{ARGS}}
 
-# 200 captures in which something goes wrong, by seeds; --first SEED --captures N for others, --bless for the table of docs/src/chaos.md.
+# 200 seeded failure scenarios; --first SEED --captures N for others, --bless for the table of docs/src/chaos.md.
 chaos *ARGS:
     cargo test -p velomotion-tests --test chaos --locked -- --captures 200 {{ARGS}}

@@ -265,7 +265,7 @@ impl Asked {
             panic!("read by {:?}", self.taken);
         };
         assert_eq!(*address, self.address);
-        let mut expected = Vec::new();
+        let mut expected: Vec<u8> = Vec::new();
         match transfer {
             Initiate::Expedited(data) => expected.extend(data.as_slice()),
             Initiate::Unsized(bytes) => expected.extend(bytes),

@@ -1,3 +1,4 @@
+#![cfg(test)]
 //! The rules of the architecture that a test can check: which crate may depend on which, which
 //! crate may use which library, and which crates do no input or output.
 

@@ -1,4 +1,4 @@
-//! Tests on a CAN interface of the kernel. They are ignored by default; `tests/vcan/in-vm` runs them
+//! Tests on a CAN interface of the kernel. They are ignored by default; `tests/foreign/vcan/in-vm` runs them
 //! in a virtual machine.
 
 use protocol::canopen::{CobId, ExtendedId};

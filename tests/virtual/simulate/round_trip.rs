@@ -3,7 +3,7 @@
 use scanner::TiltSource;
 use sim::scene_file::SHIPPED;
 
-use crate::{Simulated, replayed};
+use super::{Simulated, replayed};
 
 fn rms_and_worst(errors: &[(f64, f64)]) -> (f64, f64) {
     let squares: f64 = errors.iter().map(|(error, _)| error * error).sum();

@@ -2,7 +2,7 @@
 
 use scanner::TiltSource;
 
-use crate::{Simulated, replayed};
+use super::{Simulated, replayed};
 
 /// What a decoder reads of a VLP-16 that stands in a scene: where from its own middle, metres, and the reflectivity it reports. And the shots it took.
 fn seen(scene: &str, duration_s: f64) -> (Vec<([f64; 3], u8)>, u64) {

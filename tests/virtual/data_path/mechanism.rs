@@ -2,7 +2,7 @@
 //! a turn of the motor. Polls take 0.8 to 2.5 ms, one in fifty up to 5 ms more, at 400 Hz; over CAN the positions come with SYNC.
 //!
 //! The angles of the points are held against the platform's own at the instants of their firings.
-//! `cargo test -p velomotion-tests --test data_path -- --nocapture real_drive` prints the figures.
+//! `cargo test -p velomotion-tests --test virtual -- --nocapture real_drive` prints the figures.
 
 use cloud::Points;
 use firmware_sim::epos2::Servo;

@@ -1,7 +1,7 @@
 //! The lidar's clock against simulated truth: three links, two lengths, every method; online and offline, and what they say of
 //! their own error.
 //!
-//! `cargo test -p velomotion-tests --test clocks -- --nocapture table` prints the table of the documentation.
+//! `cargo test -p velomotion-tests --test virtual -- --nocapture clocks::table` prints the table of the documentation.
 
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
 use sim::packet_clock::{ArrivalLink, Oscillator, PACKET_NS, PacketClock, TimedPacket};

@@ -422,7 +422,7 @@ fn page(columns: &[Vec<Cell>]) -> String {
         }
     }
     page.push_str(
-        "\nMade by `VELOMOTION_BLESS=1 cargo test -p velomotion-tests --test faults`, in virtual time.\nThe test fails if the page differs from the result.\n",
+        "\nMade by `VELOMOTION_BLESS=1 cargo test -p velomotion-tests --test virtual faults`, in virtual time.\nThe test fails if the page differs from the result.\n",
     );
     page
 }

@@ -7,7 +7,7 @@ use sim::effects::{BeamEffect, Effect, Listed};
 use sim::firing::{Echo, Echoes, Firing, Surroundings};
 use sim::scene_file::EffectLine;
 
-use crate::{Simulated, replayed};
+use super::{Simulated, replayed};
 
 /// Millimetres of a unit of distance.
 const MODELS: [(&str, &str, f64); 5] = [

@@ -26,7 +26,7 @@ const TARGETS: [Target; 6] = [
 ];
 
 fn inputs(target: &str) -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz_regressions/inputs");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("virtual/fuzz_regressions/inputs");
     let Ok(directory) = fs::read_dir(root.join(target)) else {
         return Vec::new();
     };
@@ -50,7 +50,7 @@ fn what_was_found_once_holds_now() {
         }
     }
     let stored =
-        fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz_regressions/inputs"));
+        fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("virtual/fuzz_regressions/inputs"));
     let stored: usize = stored
         .unwrap()
         .map(|target| fs::read_dir(target.unwrap().path()).unwrap().count())

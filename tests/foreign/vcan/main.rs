@@ -72,7 +72,7 @@ fn the_client_homes_and_sweeps_on_a_bus_of_the_kernel() {
 
 /// Runs this program's test `name` where the bus exists, and returns the files that it left.
 fn run_inside(name: &str) -> TempDir {
-    let runner = Path::new(env!("CARGO_MANIFEST_DIR")).join("vcan/in-vm");
+    let runner = Path::new(env!("CARGO_MANIFEST_DIR")).join("foreign/vcan/in-vm");
     let out = tempfile::tempdir().unwrap();
     let mut command = Command::new(&runner);
     command.args(["--env", &format!("{INSIDE}=1"), "--out"]);

@@ -1,0 +1,9 @@
+//! Tests across crates in virtual time: devices, clocks and links are simulated, nothing waits.
+
+mod clocks;
+mod data_path;
+mod faults;
+mod fuzz_regressions;
+mod patterns;
+mod simulate;
+mod uncertainty;
