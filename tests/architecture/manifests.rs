@@ -260,14 +260,17 @@ pub fn allowed_dependencies() -> Vec<(String, Vec<String>)> {
         let allowed: Vec<String> = match allowed {
             "-" => Vec::new(),
             "all of the above" => crates.iter().map(|(name, _)| name.clone()).collect(),
-            list => match list.strip_suffix(" and what it uses") {
-                Some(base) => {
-                    let used = crates.iter().find(|(name, _)| name == base);
-                    let used = used.map(|(_, used)| used.clone()).unwrap_or_default();
-                    [vec![base.to_owned()], used].concat()
-                }
-                None => list.split(", ").map(str::to_owned).collect(),
-            },
+            list => list
+                .split(", ")
+                .flat_map(|item| match item.strip_suffix(" and what it uses") {
+                    Some(base) => {
+                        let used = crates.iter().find(|(name, _)| name == base);
+                        let used = used.map(|(_, used)| used.clone()).unwrap_or_default();
+                        [vec![base.to_owned()], used].concat()
+                    }
+                    None => vec![item.to_owned()],
+                })
+                .collect(),
         };
         crates.extend(names.map(|name| (name, allowed.clone())));
     }
