@@ -23,7 +23,7 @@ use io::can::{CanPort, Slcan, SocketCan};
 use io::port::{Port, RecordingPort, SerialPort};
 use protocol::canopen::sdo::SdoClient;
 use protocol::canopen::slcan::Bitrate;
-use protocol::canopen::{CanFrame, Channel, CobId, NodeId, PdoNumber};
+use protocol::canopen::{CanFrame, CobId, CommunicationObject, NodeId, PdoNumber};
 use protocol::epos2::objects::POSITION_ACTUAL;
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Quadcounts, Span, Stamp};
@@ -232,7 +232,11 @@ impl Heard {
             samples: Vec::new(),
             beats: Vec::new(),
             answers: Vec::new(),
-            stream: Channel::TransmitPdo(PdoNumber::One, NodeId::new(axis.node).unwrap()).cob_id(),
+            stream: CommunicationObject::TransmitPdo(
+                PdoNumber::One,
+                NodeId::new(axis.node).unwrap(),
+            )
+            .cob_id(),
         }
     }
 

@@ -16,9 +16,9 @@ use drive::{
 };
 use firmware_sim::epos2::{CanServer, Node, NodeConfig, Rs232Server, UsbServer};
 use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
-use protocol::epos2::message::{Answer, ReadObject};
+use protocol::epos2::message::{ReadObject, SerialAnswer};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{DeviceError, Frame, objects};
+use protocol::epos2::{DeviceError, SerialFrame, objects};
 use protocol::record::{Direction, DriveLink};
 use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
 
@@ -190,7 +190,7 @@ impl World {
             (0, DriveLink::Usb) => {
                 let words = [0, 0, input.u16(), input.u16()];
                 let words = &words[..usize::from(choice >> 2) % 5];
-                let frame = Frame::new(Frame::ANSWER, words).expect("few words");
+                let frame = SerialFrame::new(SerialFrame::ANSWER, words).expect("few words");
                 usb::to_bytes(&frame).as_slice().to_vec()
             }
             (0, DriveLink::Can) => {
@@ -314,7 +314,7 @@ impl World {
         self.values.extend(
             pushed
                 .flatten()
-                .filter_map(|frame| Answer::parse(&frame).ok()?.value().ok())
+                .filter_map(|frame| SerialAnswer::parse(&frame).ok()?.value().ok())
                 .map(u32::cast_signed),
         );
         // As a recorder does: one record a frame on a CAN bus.
@@ -411,7 +411,7 @@ fn position(node: &mut Node) -> i32 {
         let frame = bytes.iter().find_map(|&byte| decoder.push(byte));
         let answer = frame
             .and_then(Result::ok)
-            .map(|frame| Answer::parse(&frame));
+            .map(|frame| SerialAnswer::parse(&frame));
         value = answer.and_then(Result::ok).and_then(|a| a.value().ok());
     });
     value.expect("the unit knows its position").cast_signed()

@@ -10,7 +10,7 @@ use drive::{DriveListener, Observation, ShaftSample};
 use protocol::canopen::sdo::{Expedited, Initiate, SdoRequest, SdoResponse};
 use protocol::canopen::{NodeId, SOCKETCAN_LEN};
 use protocol::epos2::message::ReadObject;
-use protocol::epos2::{CommError, Frame, objects, usb};
+use protocol::epos2::{CommError, SerialFrame, objects, usb};
 use protocol::record::{Direction, DriveLink};
 use units::{Span, Stamp};
 
@@ -85,7 +85,8 @@ fn sound(link: DriveLink, direction: Direction, value: u32) -> Vec<u8> {
         Direction::FromDevice => {
             let [low, high] = [value as u16, (value >> 16) as u16];
             let none = CommError::NONE.to_words();
-            Frame::new(Frame::ANSWER, &[none[0], none[1], low, high]).expect("few words")
+            SerialFrame::new(SerialFrame::ANSWER, &[none[0], none[1], low, high])
+                .expect("few words")
         }
     };
     match (link, direction) {
@@ -118,7 +119,7 @@ fn frame(link: DriveLink, input: &mut Input<'_>) -> Vec<u8> {
         }
         DriveLink::Usb | DriveLink::Rs232 => {
             let words: Vec<u16> = (0..input.u8() % 8).map(|_| input.u16()).collect();
-            let frame = Frame::new(opcode % 0x22, &words).expect("few words");
+            let frame = SerialFrame::new(opcode % 0x22, &words).expect("few words");
             match link {
                 DriveLink::Usb => usb::to_bytes(&frame).as_slice().to_vec(),
                 _ => {

@@ -5,12 +5,12 @@
 //! everything else that the unit says.
 
 use protocol::canopen::sdo::{Expedited, Initiate, SdoResponse};
-use protocol::canopen::{CanFrame, Channel, NodeId, PdoNumber};
-use protocol::epos2::message::{Answer, ReadObject};
+use protocol::canopen::{CanFrame, CommunicationObject, NodeId, PdoNumber};
+use protocol::epos2::message::{ReadObject, SerialAnswer};
 use protocol::epos2::objects::POSITION_ACTUAL;
 use protocol::epos2::rs232::{self, BodyDecoder};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{CommError, Frame};
+use protocol::epos2::{CommError, SerialFrame};
 use protocol::record::DriveLink;
 
 /// Counts looks at the shaft.
@@ -61,13 +61,15 @@ impl Marks {
         match (told, said.as_slice()) {
             (&[opcode], &[rs232::OKAY]) => self.opcode = opcode,
             // The answer is ready and waits.
-            (body, &[Frame::ANSWER]) => {
+            (body, &[SerialFrame::ANSWER]) => {
                 let body = decode_body(self.opcode, body);
                 self.waiting = body.filter(is_read).map(|_| self.qc);
             }
             (_, &[_]) => {}
             (_, body) => {
-                if let (Some(qc), Some(answer)) = (self.waiting, decode_body(Frame::ANSWER, body)) {
+                if let (Some(qc), Some(answer)) =
+                    (self.waiting, decode_body(SerialFrame::ANSWER, body))
+                {
                     said.clear();
                     let _ = rs232::encode_body(&marked(&answer, qc), said);
                 }
@@ -81,8 +83,10 @@ impl Marks {
         };
         let node = NodeId::new(1).expect("an id");
         let address = POSITION_ACTUAL.address;
-        let channel = frame.cob_id().map(Channel::of);
-        if channel == Some(Channel::TransmitPdo(PdoNumber::One, node)) && frame.data().len() == 8 {
+        let channel = frame.cob_id().map(CommunicationObject::of);
+        if channel == Some(CommunicationObject::TransmitPdo(PdoNumber::One, node))
+            && frame.data().len() == 8
+        {
             // Position and time: what the client has it send.
             let data = [&self.qc.to_le_bytes(), &frame.data()[4..]].concat();
             let id = frame.id();
@@ -99,27 +103,27 @@ impl Marks {
     }
 }
 
-fn is_read(request: &Frame) -> bool {
+fn is_read(request: &SerialFrame) -> bool {
     ReadObject::parse(request).is_ok_and(|read| read.address == POSITION_ACTUAL.address)
 }
 
-fn decode_usb(bytes: &[u8]) -> Option<Frame> {
+fn decode_usb(bytes: &[u8]) -> Option<SerialFrame> {
     let mut decoder = UsbDecoder::new();
     bytes.iter().find_map(|&byte| decoder.push(byte))?.ok()
 }
 
-fn decode_body(opcode: u8, bytes: &[u8]) -> Option<Frame> {
+fn decode_body(opcode: u8, bytes: &[u8]) -> Option<SerialFrame> {
     let mut decoder = BodyDecoder::new(opcode);
     bytes.iter().find_map(|&byte| decoder.push(byte))?.ok()
 }
 
 /// The answer with another value.
-fn marked(answer: &Frame, qc: i32) -> Frame {
-    match Answer::parse(answer) {
+fn marked(answer: &SerialFrame, qc: i32) -> SerialFrame {
+    match SerialAnswer::parse(answer) {
         Ok(parsed) if parsed.error == CommError::NONE && parsed.value().is_ok() => {
             let [a, b, c, d] = qc.to_le_bytes();
             let words = [0, 0, u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d])];
-            Frame::new(Frame::ANSWER, &words).expect("few words")
+            SerialFrame::new(SerialFrame::ANSWER, &words).expect("few words")
         }
         _ => *answer,
     }

@@ -6,11 +6,11 @@ use protocol::canopen::sdo::{
     Expedited, FrameDisposition, Initiate, SdoClient, SdoOutcome, SdoRequest, SdoResponse,
     SdoSegment, SdoValue, TransferDirection, TransferError,
 };
-use protocol::canopen::{CanFrame, Channel, Message, NodeId};
-use protocol::epos2::message::{Answer as UsbAnswer, ReadObject, WriteObject};
+use protocol::canopen::{BusMessage, CanFrame, CommunicationObject, NodeId};
+use protocol::epos2::message::{ReadObject, SerialAnswer as UsbAnswer, WriteObject};
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{CommError, Frame};
+use protocol::epos2::{CommError, SerialFrame};
 use units::{Host, Span, Stamp};
 
 use super::can_frames;
@@ -195,7 +195,7 @@ impl Asked {
             FrameDisposition::Foreign => {
                 assert_ne!(
                     frame.cob_id(),
-                    Some(Channel::SdoResponse(node_1()).cob_id())
+                    Some(CommunicationObject::SdoResponse(node_1()).cob_id())
                 );
             }
             FrameDisposition::Accepted => {
@@ -420,9 +420,9 @@ fn ask(node: &mut Node, server: &mut CanServer, request: &SdoRequest, told_apart
     server.input(node, &request.to_frame(id), &mut |frame| {
         is_whole(frame);
         if *told_apart {
-            Message::parse(frame).expect("a message of the predefined set");
+            BusMessage::parse(frame).expect("a message of the predefined set");
         }
-        if frame.cob_id() == Some(Channel::SdoResponse(id).cob_id()) {
+        if frame.cob_id() == Some(CommunicationObject::SdoResponse(id).cob_id()) {
             answers.push(*frame);
         }
     });
@@ -518,7 +518,7 @@ fn exchange(client: &mut SdoClient<ROOM>, node: &mut Node, server: &mut CanServe
     client.poll_outcome().expect("a cancelled transfer").result
 }
 
-fn usb(node: &mut Node, request: &Frame) -> UsbAnswer {
+fn usb(node: &mut Node, request: &SerialFrame) -> UsbAnswer {
     let mut answer = None;
     let mut decoder = UsbDecoder::new();
     UsbServer::new(0).input(node, &usb::to_bytes(request), &mut |bytes| {

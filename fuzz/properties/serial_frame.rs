@@ -3,10 +3,10 @@
 //! to what passed on the wire ([`super::drive_link`], [`super::drive_log`]).
 
 use firmware_sim::epos2::{Node, NodeConfig, Rs232Server, UsbServer};
-use protocol::epos2::message::{Answer, Request};
+use protocol::epos2::message::{SerialAnswer, SerialRequest};
 use protocol::epos2::rs232::{self, BodyDecoder};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{Frame, FrameError, MAX_WORDS};
+use protocol::epos2::{MAX_WORDS, SerialFrame, SerialFrameError};
 
 use super::input::Input;
 use super::{drive_link, drive_log};
@@ -29,14 +29,14 @@ pub fn holds(data: &[u8]) {
 }
 
 /// A frame of up to [`MAX_WORDS`] words.
-fn frame(input: &mut Input<'_>) -> Frame {
+fn frame(input: &mut Input<'_>) -> SerialFrame {
     let opcode = input.u8();
     let len = usize::from(input.u8()) % (MAX_WORDS + 1);
     let words: Vec<u16> = (0..len).map(|_| input.u16()).collect();
-    Frame::new(opcode, &words).expect("no more words than a frame has")
+    SerialFrame::new(opcode, &words).expect("no more words than a frame has")
 }
 
-fn decode_usb(bytes: &[u8]) -> Vec<Result<Frame, FrameError>> {
+fn decode_usb(bytes: &[u8]) -> Vec<Result<SerialFrame, SerialFrameError>> {
     let mut decoder = UsbDecoder::new();
     let pushed = bytes.iter().map(|&byte| decoder.push(byte));
     pushed.flatten().collect()
@@ -57,14 +57,14 @@ fn usb_bytes(bytes: &[u8]) {
 
 /// Whatever a frame holds, reading it as a message ends well, and an answer is written as it was
 /// read.
-fn read_message(frame: &Frame) {
-    if let Ok(answer) = Answer::parse(frame) {
+fn read_message(frame: &SerialFrame) {
+    if let Ok(answer) = SerialAnswer::parse(frame) {
         assert_eq!(answer.to_frame(), *frame);
     }
-    if let Ok(Some(Request::ReadObject(read))) = Request::parse(frame) {
+    if let Ok(Some(SerialRequest::ReadObject(read))) = SerialRequest::parse(frame) {
         assert_eq!(read.to_frame(), *frame);
     }
-    if let Ok(Some(Request::WriteObject(write))) = Request::parse(frame) {
+    if let Ok(Some(SerialRequest::WriteObject(write))) = SerialRequest::parse(frame) {
         assert_eq!(write.to_frame(), *frame);
     }
 }
@@ -146,7 +146,7 @@ fn usb_server(input: &mut Input<'_>) {
             let [Ok(frame)] = decode_usb(answer)[..] else {
                 panic!("no whole frame: {answer:X?}");
             };
-            Answer::parse(&frame).expect("an answer");
+            SerialAnswer::parse(&frame).expect("an answer");
         });
         // The shortest frame has two bytes of sync, two of head and two of checksum.
         assert!(answers <= bytes.len() / 4 + 1);
@@ -180,10 +180,10 @@ fn say_rs232(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) {
     server.input(node, bytes, &mut |chunk| {
         said += 1;
         if let [byte] = chunk {
-            assert!([rs232::OKAY, rs232::FAILED, Frame::ANSWER].contains(byte));
+            assert!([rs232::OKAY, rs232::FAILED, SerialFrame::ANSWER].contains(byte));
             return;
         }
-        let mut decoder = BodyDecoder::new(Frame::ANSWER);
+        let mut decoder = BodyDecoder::new(SerialFrame::ANSWER);
         let got: Vec<_> = chunk
             .iter()
             .filter_map(|&byte| decoder.push(byte))
@@ -191,7 +191,7 @@ fn say_rs232(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) {
         let [Ok(frame)] = got[..] else {
             panic!("no whole body: {chunk:X?}");
         };
-        Answer::parse(&frame).expect("an answer");
+        SerialAnswer::parse(&frame).expect("an answer");
     });
     assert!(said <= 2 * bytes.len(), "a handshake and an announcement");
 }

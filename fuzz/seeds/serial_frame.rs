@@ -3,7 +3,7 @@
 use protocol::epos2::message::{
     InitiateSegmentedRead, ReadObject, RequestCanFrame, SegmentedRead, WriteObject,
 };
-use protocol::epos2::{Frame, objects, rs232, usb};
+use protocol::epos2::{SerialFrame, objects, rs232, usb};
 
 use crate::Seed;
 
@@ -74,7 +74,7 @@ pub fn seeds() -> Vec<Seed> {
     seeds
 }
 
-fn requests() -> Vec<Frame> {
+fn requests() -> Vec<SerialFrame> {
     let read = |address| ReadObject { node: 1, address }.to_frame();
     let write = |address, value| {
         WriteObject {
@@ -97,7 +97,7 @@ fn requests() -> Vec<Frame> {
         }
         .to_frame(),
         SegmentedRead { toggle: false }.to_frame(),
-        Frame::new(RequestCanFrame::OPCODE, &[0x701, 8]).expect("few words"),
+        SerialFrame::new(RequestCanFrame::OPCODE, &[0x701, 8]).expect("few words"),
     ]
 }
 

@@ -238,17 +238,21 @@ impl Captured {
     /// Whether the last statusword in the log says that the power stage is off, so that the brake holds.
     #[must_use]
     pub fn brake_is_set(&self) -> bool {
-        use drive::cia402::State;
+        use drive::cia402::DeviceState;
         let mut last = None;
         self.listen(&mut |seen| {
             if let Observation::Statusword { value, .. } = seen {
-                last = State::from_statusword(value);
+                last = DeviceState::from_statusword(value);
             }
         });
         // An axis that was interrupted before its power stage was first on has nothing to set.
         !matches!(
             last,
-            Some(State::OperationEnabled | State::QuickStopActive | State::FaultReactionEnabled)
+            Some(
+                DeviceState::OperationEnabled
+                    | DeviceState::QuickStopActive
+                    | DeviceState::FaultReactionEnabled
+            )
         )
     }
 

@@ -1,7 +1,7 @@
 //! What a software drive is asked without a word on its line.
 
 use firmware_sim::epos2::Node;
-use protocol::epos2::cia402::State;
+use protocol::epos2::cia402::DeviceState;
 
 /// Whether its shaft moves in this control cycle.
 #[must_use]
@@ -15,6 +15,8 @@ pub fn moves(node: &Node) -> bool {
 pub fn is_powered(node: &Node) -> bool {
     matches!(
         node.state(),
-        State::OperationEnabled | State::QuickStopActive | State::FaultReactionEnabled
+        DeviceState::OperationEnabled
+            | DeviceState::QuickStopActive
+            | DeviceState::FaultReactionEnabled
     )
 }

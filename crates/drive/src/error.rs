@@ -6,7 +6,7 @@ use std::fmt;
 
 use protocol::canopen::nmt::NmtState;
 use protocol::canopen::sdo::TransferError;
-use protocol::epos2::cia402::State;
+use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
 use protocol::epos2::{CommError, DeviceError};
 use units::{DegPerS, DegPerS2, Degrees, Quadcounts, Rpm, Span};
@@ -294,7 +294,7 @@ impl fmt::Display for Operation {
 }
 
 fn state_text(statusword: u16) -> String {
-    State::from_statusword(statusword)
+    DeviceState::from_statusword(statusword)
         .map_or_else(|| "no known state".into(), |state| state.to_string())
 }
 

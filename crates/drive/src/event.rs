@@ -3,7 +3,7 @@
 use std::fmt;
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::State;
+use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
 use units::{Degrees, Host, Quadcounts, Stamp};
 
@@ -268,7 +268,7 @@ pub struct DriveStatus {
     /// Statusword (6041).
     pub statusword: u16,
     /// State; `None` if the statusword matches none.
-    pub state: Option<State>,
+    pub state: Option<DeviceState>,
     /// Modes of operation display (6061).
     pub mode: i8,
     /// Whether the axis is referenced.

@@ -6,9 +6,9 @@
 use protocol::canopen::sdo::{
     Expedited, GenericSdoRequest, GenericSdoResponse, GenericSdoSegment, Initiate,
 };
-use protocol::epos2::message::{Answer, SegmentedRead};
+use protocol::epos2::message::{SegmentedRead, SerialAnswer};
 use protocol::epos2::objects::Address;
-use protocol::epos2::{CommError, Frame, FrameError};
+use protocol::epos2::{CommError, SerialFrame, SerialFrameError};
 
 /// Bytes of the longest segment: those of the serial links (a length of six bits).
 pub(crate) const MAX_SEGMENT: usize = 63;
@@ -87,8 +87,8 @@ const VALUE_WORDS: usize = 2;
 
 impl Reply {
     /// Parses a frame of a serial link.
-    pub fn parse(frame: &Frame) -> Result<Self, FrameError> {
-        let answer = Answer::parse(frame)?;
+    pub fn parse(frame: &SerialFrame) -> Result<Self, SerialFrameError> {
+        let answer = SerialAnswer::parse(frame)?;
         let words = answer.data.as_slice().len();
         let segment = SegmentedRead::parse_answer(frame).ok().and_then(Result::ok);
         Ok(Self::Serial(SerialReply {

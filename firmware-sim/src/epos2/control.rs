@@ -4,9 +4,9 @@
 //! Commands without a ramp act when they are written, others from the next control cycle on.
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::{State, control, mode};
+use protocol::epos2::cia402::{DeviceState, control, mode};
 use protocol::epos2::device_error::Reaction;
-use protocol::epos2::objects::{self, Object};
+use protocol::epos2::objects::{self, TypedObject};
 
 use super::brake::StandstillTimer;
 use super::node::Node;
@@ -22,7 +22,7 @@ pub(super) enum Sequence {
     },
     /// Demand and shaft come to rest, the brake closes, the power is switched off.
     Leaving {
-        to: State,
+        to: DeviceState,
         step: LeavingStep,
     },
 }
@@ -37,7 +37,7 @@ pub(super) enum LeavingStep {
 }
 
 impl Sequence {
-    const fn leaving(to: State) -> Self {
+    const fn leaving(to: DeviceState) -> Self {
         Self::Leaving {
             to,
             step: LeavingStep::Standstill(StandstillTimer::NONE),
@@ -82,18 +82,18 @@ impl Node {
     /// Handles a write of the controlword.
     pub(super) fn command(&mut self, word: u16) {
         let old = core::mem::replace(&mut self.controlword, word);
-        if self.state == State::Fault {
+        if self.state == DeviceState::Fault {
             if word & !old & control::FAULT_RESET != 0 {
                 self.errors.acknowledge();
                 self.lost_demand = false;
-                self.state = State::SwitchOnDisabled;
+                self.state = DeviceState::SwitchOnDisabled;
             }
             return;
         }
         if let Some(command) = ControlCommand::of(word) {
             self.transition(command);
         }
-        if self.state == State::OperationEnabled && self.sequence == Sequence::Idle {
+        if self.state == DeviceState::OperationEnabled && self.sequence == Sequence::Idle {
             match self.mode {
                 mode::HOMING => self.homing_command(old, word),
                 // The mode reads the halt bit itself.
@@ -105,7 +105,7 @@ impl Node {
 
     fn transition(&mut self, command: ControlCommand) {
         use ControlCommand as C;
-        use State as S;
+        use DeviceState as S;
         match (self.state, command) {
             (S::SwitchOnDisabled, C::Shutdown) => self.state = S::ReadyToSwitchOn,
             (S::ReadyToSwitchOn, C::SwitchOn) => self.state = S::SwitchedOn,
@@ -134,7 +134,7 @@ impl Node {
 
     /// Starts "measure init", which ends in "operation enabled".
     fn enable(&mut self) {
-        self.state = State::MeasureInit;
+        self.state = DeviceState::MeasureInit;
         self.brake_released = true;
         self.position_mode = PositionMode::default();
         self.velocity_mode.abandon();
@@ -144,7 +144,7 @@ impl Node {
 
     /// Leaves "operation enabled" by its option code: 1 ramps down, other values stop the drive
     /// function at once.
-    fn leave(&mut self, to: State, option: Object<i16>) {
+    fn leave(&mut self, to: DeviceState, option: TypedObject<i16>) {
         if matches!(self.sequence, Sequence::Leaving { .. }) {
             return;
         }
@@ -162,12 +162,12 @@ impl Node {
         self.abandon_motion();
         self.sequence = Sequence::Idle;
         self.ramp_down(objects::QUICK_STOP_DECELERATION);
-        self.state = State::QuickStopActive;
+        self.state = DeviceState::QuickStopActive;
     }
 
     /// Switches the power off. The shaft stays in place, as neither friction nor load is simulated,
     /// and the demand equals its position.
-    fn power_off(&mut self, to: State) {
+    fn power_off(&mut self, to: DeviceState) {
         self.abandon_motion();
         self.shaft.rest();
         self.generator.rest_at(self.shaft.position());
@@ -184,13 +184,13 @@ impl Node {
     }
 
     /// Ramps to rest at a deceleration, limited by 60C5.
-    pub(super) fn ramp_down(&mut self, deceleration: Object<u32>) {
+    pub(super) fn ramp_down(&mut self, deceleration: TypedObject<u32>) {
         let rate = self.acceleration(deceleration);
         self.generator.stop(rate);
     }
 
     /// An acceleration, limited by 60C5.
-    pub(super) fn acceleration(&self, object: Object<u32>) -> u32 {
+    pub(super) fn acceleration(&self, object: TypedObject<u32>) -> u32 {
         self.dictionary
             .get(object)
             .min(self.dictionary.get(objects::MAX_ACCELERATION))
@@ -204,12 +204,14 @@ impl Node {
         self.errors.push(error);
         if matches!(
             self.state,
-            State::Fault | State::FaultReactionEnabled | State::FaultReactionDisabled
+            DeviceState::Fault
+                | DeviceState::FaultReactionEnabled
+                | DeviceState::FaultReactionDisabled
         ) {
             return;
         }
         if !self.is_powered() {
-            self.power_off(State::Fault);
+            self.power_off(DeviceState::Fault);
             return;
         }
         let ramp = match error.reaction() {
@@ -218,22 +220,22 @@ impl Node {
         };
         let Some(ramp) = ramp else {
             // One control cycle of fault reaction, then fault.
-            self.power_off(State::FaultReactionDisabled);
+            self.power_off(DeviceState::FaultReactionDisabled);
             self.sequence = Sequence::Leaving {
-                to: State::Fault,
+                to: DeviceState::Fault,
                 step: LeavingStep::Brake { left_ms: 0 },
             };
             return;
         };
         self.abandon_motion();
         self.ramp_down(ramp);
-        self.state = State::FaultReactionEnabled;
-        self.sequence = Sequence::leaving(State::Fault);
+        self.state = DeviceState::FaultReactionEnabled;
+        self.sequence = Sequence::leaving(DeviceState::Fault);
     }
 
     /// The ramp of the fault reaction option code (605E): 0 none, 1 slow-down, 2 and others quick
     /// stop.
-    fn fault_ramp(&self) -> Option<Object<u32>> {
+    fn fault_ramp(&self) -> Option<TypedObject<u32>> {
         match self.dictionary.get(objects::FAULT_OPTION) {
             0 => None,
             1 => Some(objects::PROFILE_DECELERATION),
@@ -247,7 +249,7 @@ impl Node {
             Sequence::Idle => {}
             Sequence::Enabling { left_ms: 0 } => {
                 self.sequence = Sequence::Idle;
-                self.state = State::OperationEnabled;
+                self.state = DeviceState::OperationEnabled;
             }
             Sequence::Enabling { left_ms } => {
                 self.sequence = Sequence::Enabling {
@@ -293,7 +295,7 @@ impl Node {
             return;
         }
         self.mode = mode;
-        if self.state == State::OperationEnabled && self.sequence == Sequence::Idle {
+        if self.state == DeviceState::OperationEnabled && self.sequence == Sequence::Idle {
             self.abandon_motion();
             if self.generator.is_moving() {
                 self.ramp_down(objects::PROFILE_DECELERATION);

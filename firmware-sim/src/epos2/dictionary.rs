@@ -1,7 +1,7 @@
 //! The object dictionary: the static table of entries ([`super::table`]) and their stored values.
 //! Effects of writes and computed values are in the node.
 
-use protocol::epos2::objects::{Address, Object, Scalar};
+use protocol::epos2::objects::{Address, Scalar, TypedObject};
 
 use super::Abort;
 use super::entry::DictionaryEntry;
@@ -67,7 +67,7 @@ impl Dictionary {
     }
 
     /// The stored value of a typed object.
-    pub fn get<T: Scalar>(&self, object: Object<T>) -> T {
+    pub fn get<T: Scalar>(&self, object: TypedObject<T>) -> T {
         object.decode(self.raw(object.address))
     }
 

@@ -2,7 +2,7 @@
 //! current of the motor.
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::{State, mode};
+use protocol::epos2::cia402::{DeviceState, mode};
 use protocol::epos2::objects;
 
 use super::node::Node;
@@ -10,8 +10,10 @@ use super::node::Node;
 impl Node {
     /// A deviation above 6065 is an error in all modes with position control.
     pub(super) fn watch_following(&mut self) {
-        let controlled = matches!(self.state, State::OperationEnabled | State::QuickStopActive)
-            && self.mode != mode::PROFILE_VELOCITY;
+        let controlled = matches!(
+            self.state,
+            DeviceState::OperationEnabled | DeviceState::QuickStopActive
+        ) && self.mode != mode::PROFILE_VELOCITY;
         let most = self.dictionary.get(objects::MAX_FOLLOWING_ERROR);
         if controlled && self.following_error().unsigned_abs() > u64::from(most) {
             self.lost_demand = true;

@@ -2,7 +2,7 @@
 //! (2071).
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::State;
+use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::{self, Address, input};
 
 use super::fixed::floor_qc;
@@ -52,11 +52,11 @@ impl Node {
             return;
         }
         let quick_stop = watched & !before & input::QUICK_STOP != 0;
-        if quick_stop && self.state == State::OperationEnabled {
+        if quick_stop && self.state == DeviceState::OperationEnabled {
             self.quick_stop();
         }
         let direction = self.generator.speed().0.signum();
-        let reacting = self.state == State::FaultReactionEnabled;
+        let reacting = self.state == DeviceState::FaultReactionEnabled;
         for (bit, into, error) in [
             (input::NEGATIVE_LIMIT, -1, DeviceError::NEGATIVE_LIMIT),
             (input::POSITIVE_LIMIT, 1, DeviceError::POSITIVE_LIMIT),

@@ -2,7 +2,7 @@
 
 use protocol::canopen::nmt::NmtState;
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::{State, mode, status};
+use protocol::epos2::cia402::{DeviceState, mode, status};
 use protocol::epos2::objects;
 
 use super::config::NodeConfig;
@@ -43,7 +43,7 @@ pub struct Node {
     pub(super) generator: Generator,
     /// The shaft, which follows the demand.
     pub(super) shaft: MotorShaft,
-    pub(super) state: State,
+    pub(super) state: DeviceState,
     pub(super) controlword: u16,
     pub(super) sequence: Sequence,
     pub(super) brake_released: bool,
@@ -92,7 +92,7 @@ impl Node {
         let mut node = Self {
             generator: Generator::new(shaft.position(), qc_per_turn),
             errors: Errors::default(),
-            state: State::SwitchOnDisabled,
+            state: DeviceState::SwitchOnDisabled,
             controlword: 0,
             sequence: Sequence::Idle,
             brake_released: false,
@@ -137,7 +137,7 @@ impl Node {
         self.watch_inputs();
         self.watch_software_limits();
         self.watch_following();
-        if self.state == State::OperationEnabled && self.sequence == Sequence::Idle {
+        if self.state == DeviceState::OperationEnabled && self.sequence == Sequence::Idle {
             match self.mode {
                 mode::HOMING => self.advance_homing(),
                 mode::PROFILE_VELOCITY => self.advance_velocity_mode(),
@@ -180,7 +180,7 @@ impl Node {
 
     /// State of the CiA 402 machine.
     #[must_use]
-    pub const fn state(&self) -> State {
+    pub const fn state(&self) -> DeviceState {
         self.state
     }
 

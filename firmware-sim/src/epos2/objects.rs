@@ -2,7 +2,7 @@
 //!
 //! Objects that are not named here are plain storage.
 
-use protocol::epos2::cia402::State;
+use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::{self, Address};
 
 use super::Abort;
@@ -155,13 +155,13 @@ impl Node {
 }
 
 /// States with current in the motor.
-pub(super) const fn is_powered(state: State) -> bool {
+pub(super) const fn is_powered(state: DeviceState) -> bool {
     matches!(
         state,
-        State::Refresh
-            | State::MeasureInit
-            | State::OperationEnabled
-            | State::QuickStopActive
-            | State::FaultReactionEnabled
+        DeviceState::Refresh
+            | DeviceState::MeasureInit
+            | DeviceState::OperationEnabled
+            | DeviceState::QuickStopActive
+            | DeviceState::FaultReactionEnabled
     )
 }

@@ -2,7 +2,7 @@
 //! (Firmware Specification, "Profile Position Mode").
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::{State, control, mode, status};
+use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects;
 
 use super::fixed::{Speed, fine, floor_qc};
@@ -130,7 +130,7 @@ impl Node {
     /// Error for motion outwards beyond a software limit, as after a new target close behind it.
     /// Inactive while homing; motion inwards is always allowed.
     pub(super) fn watch_software_limits(&mut self) {
-        if self.mode == mode::HOMING || self.state != State::OperationEnabled {
+        if self.mode == mode::HOMING || self.state != DeviceState::OperationEnabled {
             return;
         }
         let position = floor_qc(self.generator.position()) - self.origin;

@@ -1,6 +1,6 @@
 //! Parameters that survive power-off: save (1010) and the three restore commands (1011).
 
-use protocol::epos2::objects::{self, Address, Object};
+use protocol::epos2::objects::{self, Address, TypedObject};
 
 use super::Abort;
 use super::config::NodeConfig;
@@ -24,9 +24,11 @@ const VOLATILE: [Address; 8] = [
     objects::TARGET_POSITION.address,
     objects::TARGET_VELOCITY.address,
 ];
-const CURRENT_SETTING: Object<i16> = Object::new(0x2030, 0, "Current Mode Setting Value");
-const POSITION_SETTING: Object<i32> = Object::new(0x2062, 0, "Position Mode Setting Value");
-const VELOCITY_SETTING: Object<i32> = Object::new(0x206B, 0, "Velocity Mode Setting Value");
+const CURRENT_SETTING: TypedObject<i16> = TypedObject::new(0x2030, 0, "Current Mode Setting Value");
+const POSITION_SETTING: TypedObject<i32> =
+    TypedObject::new(0x2062, 0, "Position Mode Setting Value");
+const VELOCITY_SETTING: TypedObject<i32> =
+    TypedObject::new(0x206B, 0, "Velocity Mode Setting Value");
 
 /// Factory values, with the configured encoder.
 pub(super) fn factory(config: &NodeConfig) -> Dictionary {

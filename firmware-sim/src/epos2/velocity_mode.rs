@@ -7,15 +7,15 @@
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{control, status};
-use protocol::epos2::objects::{self, Object};
+use protocol::epos2::objects::{self, TypedObject};
 
 use super::fixed::Speed;
 use super::node::Node;
 
 /// Tolerance of the target speed, rpm; FFFFFFFF: reached at the end of the ramp.
-const VELOCITY_WINDOW: Object<u32> = Object::new(0x606D, 0, "Velocity Window");
+const VELOCITY_WINDOW: TypedObject<u32> = TypedObject::new(0x606D, 0, "Velocity Window");
 /// Time within the tolerance, ms.
-const VELOCITY_WINDOW_TIME: Object<u16> = Object::new(0x606E, 0, "Velocity Window Time");
+const VELOCITY_WINDOW_TIME: TypedObject<u16> = TypedObject::new(0x606E, 0, "Velocity Window Time");
 /// Bit 12 of the statusword in this mode: standstill.
 const SPEED_IS_ZERO: u16 = 1 << 12;
 

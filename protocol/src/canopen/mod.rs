@@ -20,11 +20,11 @@ pub mod slcan;
 pub mod sync;
 
 pub use abort_code::AbortCode;
-pub use cob_id::{CobId, CommunicationObject, CommunicationObject as Channel, NodeId, PdoNumber};
+pub use cob_id::{CobId, CommunicationObject, NodeId, PdoNumber};
 pub use error::{CanFrameError, MessageError, MessageKind};
 pub use frame::{CanFrame, CanId, ExtendedId, SOCKETCAN_LEN};
-pub use message::{BusMessage, BusMessage as Message};
-pub use object::{Address, Scalar, TypedObject, TypedObject as Object};
+pub use message::BusMessage;
+pub use object::{Address, Scalar, TypedObject};
 
 #[cfg(test)]
 mod tests;

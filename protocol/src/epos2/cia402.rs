@@ -33,8 +33,6 @@ pub enum DeviceState {
     Fault = 0x0108,
 }
 
-pub use DeviceState as State;
-
 /// Bits of the statusword that identify the state.
 const MASK: u16 = 0x417F;
 

@@ -20,8 +20,8 @@ pub mod usb;
 pub use crate::canopen::AbortCode as CommError;
 pub use crate::{Bounded, Full};
 pub use device_error::DeviceError;
-pub use error::{SerialFrameError, SerialFrameError as FrameError, SerialLayer};
-pub use frame::{MAX_WORDS, SerialFrame, SerialFrame as Frame, Words};
+pub use error::{SerialFrameError, SerialLayer};
+pub use frame::{MAX_WORDS, SerialFrame, Words};
 
 #[cfg(test)]
 mod tests;

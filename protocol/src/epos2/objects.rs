@@ -3,7 +3,7 @@
 //!
 //! A device may lack an object; it enforces access rights and limits.
 
-pub use crate::canopen::{Address, Object, Scalar};
+pub use crate::canopen::{Address, Scalar, TypedObject};
 
 /// An entry of [`ALL`], without its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub struct NamedObject {
 
 macro_rules! objects {
     ($($(#[doc = $doc:literal])+ $name:ident: $t:ty = $index:literal, $sub:literal, $text:literal;)*) => {
-        $($(#[doc = $doc])+ pub const $name: Object<$t> = Object::new($index, $sub, $text);)*
+        $($(#[doc = $doc])+ pub const $name: TypedObject<$t> = TypedObject::new($index, $sub, $text);)*
 
         /// All entries defined here.
         pub const ALL: &[NamedObject] = &[$(NamedObject {
@@ -204,8 +204,8 @@ pub const OUTPUT_BRAKE: u16 = 2;
 
 /// Entry `n` of the error history, 1 to 5, latest first.
 #[must_use]
-pub const fn error_history(n: u8) -> Object<u32> {
-    Object::new(0x1003, n, "Error History")
+pub const fn error_history(n: u8) -> TypedObject<u32> {
+    TypedObject::new(0x1003, n, "Error History")
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use io::can::{CanPort, SocketCan};
 use io::clock;
 use protocol::canopen::sdo::{FrameDisposition, SdoClient, SdoValue, TransferError};
 use protocol::canopen::{CanFrame, NodeId};
-use protocol::epos2::objects::{Address, Object, Scalar};
+use protocol::epos2::objects::{Address, Scalar, TypedObject};
 use units::{Host, Span, Stamp};
 
 /// For an answer, and for what a command brings about: an emulated machine on a busy host is slow.
@@ -80,7 +80,7 @@ impl Master {
     }
 
     /// Reads an object of up to four bytes.
-    pub fn read<T: Scalar>(&mut self, object: Object<T>) -> T {
+    pub fn read<T: Scalar>(&mut self, object: TypedObject<T>) -> T {
         let value = self.read_raw(object.address);
         value
             .and_then(|value| value.scalar())
@@ -94,7 +94,7 @@ impl Master {
     }
 
     /// Writes an object of up to four bytes.
-    pub fn write<T: Scalar>(&mut self, object: Object<T>, value: T) {
+    pub fn write<T: Scalar>(&mut self, object: TypedObject<T>, value: T) {
         self.sdo.write_scalar(object.address, value).unwrap();
         self.transfer()
             .unwrap_or_else(|error| panic!("{object:?}: {error}"));

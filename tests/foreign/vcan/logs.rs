@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use io::recording::Recording;
-use protocol::canopen::{CanFrame, Channel, CobId, NodeId, PdoNumber};
+use protocol::canopen::{CanFrame, CobId, CommunicationObject, NodeId, PdoNumber};
 use protocol::record::{Direction, Wire};
 
 use crate::onlooker;
@@ -62,7 +62,7 @@ fn of_the_log(path: &Path) -> Passed {
 }
 
 fn stream() -> CobId {
-    Channel::TransmitPdo(PdoNumber::One, node()).cob_id()
+    CommunicationObject::TransmitPdo(PdoNumber::One, node()).cob_id()
 }
 
 /// How many frames have this identifier.
@@ -95,7 +95,7 @@ fn compare(ours: &Passed, theirs: &Passed) {
     for (frame, heard) in theirs {
         let count = ours.get(frame).copied().unwrap_or_default();
         let frame = CanFrame::from_socketcan(frame).unwrap();
-        let heartbeat = frame.cob_id() == Some(Channel::Heartbeat(node()).cob_id());
+        let heartbeat = frame.cob_id() == Some(CommunicationObject::Heartbeat(node()).cob_id());
         if heartbeat || onlooker::is_probe(&frame) {
             continue;
         }

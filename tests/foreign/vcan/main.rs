@@ -27,8 +27,8 @@ use protocol::canopen::emcy::Emergency;
 use protocol::canopen::heartbeat::{HeartbeatConsumer, HeartbeatEvent};
 use protocol::canopen::nmt::{Nmt, NmtCommand, NmtState};
 use protocol::canopen::sdo::TransferError;
-use protocol::canopen::{CanFrame, Channel, NodeId, PdoNumber};
-use protocol::epos2::cia402::{State, control};
+use protocol::canopen::{CanFrame, CommunicationObject, NodeId, PdoNumber};
+use protocol::epos2::cia402::{DeviceState, control};
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::{CommError, DeviceError};
 use tempfile::TempDir;
@@ -198,7 +198,7 @@ fn aborts(master: &mut Master) {
 fn emergency(master: &mut Master, node: NodeId) {
     let told = |(frame, _): &bus::Heard| Emergency::parse(frame).ok();
     master.take_heard();
-    let id = Channel::ReceivePdo(PdoNumber::One, node).cob_id();
+    let id = CommunicationObject::ReceivePdo(PdoNumber::One, node).cob_id();
     master.send(&CanFrame::of(id, [0x06]));
     let emergency = master.wait_for("an emergency message", told);
     assert_eq!(emergency.node, node);
@@ -207,10 +207,10 @@ fn emergency(master: &mut Master, node: NodeId) {
     assert_eq!(master.read(objects::ERROR_REGISTER), emergency.register);
     let latest = master.read(objects::ERROR_HISTORY_1);
     assert_eq!(latest & 0xFFFF, u32::from(DeviceError::PDO_LENGTH.0));
-    stream::wait_for_state(master, State::Fault);
+    stream::wait_for_state(master, DeviceState::Fault);
     master.write(objects::CONTROLWORD, control::FAULT_RESET);
     assert!(master.wait_for("the end of the error", told).is_reset());
-    stream::wait_for_state(master, State::SwitchOnDisabled);
+    stream::wait_for_state(master, DeviceState::SwitchOnDisabled);
 }
 
 /// A node that is gone is missed.

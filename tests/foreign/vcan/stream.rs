@@ -5,11 +5,11 @@ use std::fmt;
 use io::clock;
 use protocol::canopen::heartbeat::Heartbeat;
 use protocol::canopen::pdo::{
-    Configuration, Layout, Mapping, Pdo, TransmissionType, configuration,
+    Configuration, MappedObject, Pdo, PdoLayout, TransmissionType, configuration,
 };
 use protocol::canopen::sync::SyncMessage;
-use protocol::canopen::{Channel, NodeId, PdoNumber};
-use protocol::epos2::cia402::{State, control, mode, status};
+use protocol::canopen::{CommunicationObject, NodeId, PdoNumber};
+use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects;
 use units::{Host, Span, Stamp};
 
@@ -26,12 +26,12 @@ const SPEED_QC_US: f64 = SPEED_RPM as f64 * 2000.0 / 60e6;
 const PDO: Pdo = Pdo::Transmit(PdoNumber::One);
 
 /// What is in the process data: position and time of the same instant.
-fn layout() -> Layout {
+fn layout() -> PdoLayout {
     let entries = [
-        Mapping::of(objects::POSITION_ACTUAL),
-        Mapping::of(objects::TIMESTAMP),
+        MappedObject::of(objects::POSITION_ACTUAL),
+        MappedObject::of(objects::TIMESTAMP),
     ];
-    Layout::new(&entries).unwrap()
+    PdoLayout::new(&entries).unwrap()
 }
 
 /// Has the node send its angle and time at each SYNC.
@@ -51,9 +51,9 @@ pub fn map_angle(master: &mut Master, node: NodeId) {
 /// Up to operation enabled, then at constant speed.
 pub fn enable_and_turn(master: &mut Master) {
     for (word, state) in [
-        (control::SHUTDOWN, State::ReadyToSwitchOn),
-        (control::SWITCH_ON, State::SwitchedOn),
-        (control::ENABLE_OPERATION, State::OperationEnabled),
+        (control::SHUTDOWN, DeviceState::ReadyToSwitchOn),
+        (control::SWITCH_ON, DeviceState::SwitchedOn),
+        (control::ENABLE_OPERATION, DeviceState::OperationEnabled),
     ] {
         master.write(objects::CONTROLWORD, word);
         wait_for_state(master, state);
@@ -78,9 +78,9 @@ pub fn halt(master: &mut Master) {
 }
 
 /// Waits until the statusword shows `state`.
-pub fn wait_for_state(master: &mut Master, state: State) {
+pub fn wait_for_state(master: &mut Master, state: DeviceState) {
     master.poll(&format!("{state:?}"), |master| {
-        State::from_statusword(master.read(objects::STATUSWORD)) == Some(state)
+        DeviceState::from_statusword(master.read(objects::STATUSWORD)) == Some(state)
     });
 }
 
@@ -93,7 +93,7 @@ struct Sample {
 
 impl Sample {
     fn of((frame, host): &Heard, node: NodeId) -> Option<Self> {
-        let wanted = Channel::TransmitPdo(PdoNumber::One, node).cob_id();
+        let wanted = CommunicationObject::TransmitPdo(PdoNumber::One, node).cob_id();
         let layout = layout();
         let data = (frame.cob_id() == Some(wanted)).then(|| frame.data())?;
         Some(Self {

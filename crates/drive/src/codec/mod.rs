@@ -9,12 +9,12 @@ mod rs232;
 use protocol::canopen::sdo::{Initiate, SEGMENT_LEN};
 use protocol::canopen::{CanFrame, CommunicationObject, NodeId, SOCKETCAN_LEN};
 use protocol::epos2::message::{
-    InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, Request, SegmentedRead,
-    SegmentedWrite, WriteObject, WriteSegment,
+    InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, SegmentedRead, SegmentedWrite,
+    SerialRequest, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::Address;
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{Frame, FrameError};
+use protocol::epos2::{SerialFrame, SerialFrameError};
 use protocol::record::DriveLink;
 use units::{Host, Stamp};
 
@@ -186,7 +186,7 @@ impl Codec {
 }
 
 /// The command that makes an access on the serial links.
-fn serial_frame(node: u8, address: Address, access: ObjectAccess) -> Frame {
+fn serial_frame(node: u8, address: Address, access: ObjectAccess) -> SerialFrame {
     let ObjectAccess::Transfer(request) = access else {
         return match access {
             ObjectAccess::Write { value, .. } => WriteObject {
@@ -217,7 +217,7 @@ fn serial_frame(node: u8, address: Address, access: ObjectAccess) -> Frame {
 /// Node, object and access of a command seen on a serial link. Segments name neither node nor
 /// object; `own_node` and the default address then stand in.
 pub(crate) fn parse_serial_request(
-    frame: &Frame,
+    frame: &SerialFrame,
     own_node: u8,
 ) -> Option<(u8, Address, ObjectAccess)> {
     let transfer = |request| {
@@ -227,26 +227,26 @@ pub(crate) fn parse_serial_request(
             ObjectAccess::Transfer(request),
         )
     };
-    Some(match Request::parse(frame).ok()?? {
-        Request::ReadObject(read) => (read.node, read.address, ObjectAccess::Read),
-        Request::WriteObject(write) => {
+    Some(match SerialRequest::parse(frame).ok()?? {
+        SerialRequest::ReadObject(read) => (read.node, read.address, ObjectAccess::Read),
+        SerialRequest::WriteObject(write) => {
             let value = write.value;
             let access = ObjectAccess::Write { value, width: 4 };
             (write.node, write.address, access)
         }
-        Request::InitiateSegmentedRead(InitiateSegmentedRead { node, address }) => {
+        SerialRequest::InitiateSegmentedRead(InitiateSegmentedRead { node, address }) => {
             let request = TransferRequest::InitiateUpload { address };
             (node, address, ObjectAccess::Transfer(request))
         }
-        Request::InitiateSegmentedWrite(InitiateSegmentedWrite { node, address, len }) => {
+        SerialRequest::InitiateSegmentedWrite(InitiateSegmentedWrite { node, address, len }) => {
             let transfer = Initiate::Segmented { size: Some(len) };
             let request = TransferRequest::InitiateDownload { address, transfer };
             (node, address, ObjectAccess::Transfer(request))
         }
-        Request::SegmentedRead(SegmentedRead { toggle }) => {
+        SerialRequest::SegmentedRead(SegmentedRead { toggle }) => {
             transfer(TransferRequest::UploadSegment { toggle })
         }
-        Request::SegmentedWrite(SegmentedWrite(WriteSegment { toggle, bytes })) => {
+        SerialRequest::SegmentedWrite(SegmentedWrite(WriteSegment { toggle, bytes })) => {
             // A serial segment does not say whether it is the last.
             let last = false;
             transfer(TransferRequest::DownloadSegment(TransferSegment {
@@ -259,10 +259,10 @@ pub(crate) fn parse_serial_request(
     })
 }
 
-fn decode_serial(frame: &Result<Frame, FrameError>) -> Decoded {
+fn decode_serial(frame: &Result<SerialFrame, SerialFrameError>) -> Decoded {
     match frame.as_ref().map(Reply::parse) {
         Ok(Ok(reply)) => Decoded::Reply(reply),
-        Ok(Err(FrameError::Opcode { .. })) => Decoded::Foreign,
+        Ok(Err(SerialFrameError::Opcode { .. })) => Decoded::Foreign,
         Ok(Err(_)) | Err(_) => Decoded::Damaged,
     }
 }

@@ -13,7 +13,7 @@
 
 use std::collections::VecDeque;
 
-use protocol::epos2::Frame;
+use protocol::epos2::SerialFrame;
 use protocol::epos2::rs232::{self, BodyDecoder, FAILED, FRAME_TIMEOUT_MS, OKAY};
 use units::{Host, Span, Stamp};
 
@@ -82,7 +82,7 @@ impl Rs232Master {
     }
 
     /// Starts a dialogue that ends at `deadline`; returns the opcode.
-    pub fn begin(&mut self, frame: &Frame, deadline: Stamp<Host>) -> Vec<u8> {
+    pub fn begin(&mut self, frame: &SerialFrame, deadline: Stamp<Host>) -> Vec<u8> {
         self.body.clear();
         // Cannot fail: every request has words.
         let _ = rs232::encode_body(frame, &mut self.body);
@@ -93,7 +93,7 @@ impl Rs232Master {
     }
 
     /// Encodes a complete request for a unit in an unknown state; the unit's bytes are discarded.
-    pub fn send_unsolicited(&mut self, frame: &Frame, now: Stamp<Host>) -> Vec<u8> {
+    pub fn send_unsolicited(&mut self, frame: &SerialFrame, now: Stamp<Host>) -> Vec<u8> {
         self.out.clear();
         self.state = DialogueState::Quiet {
             span: QUIET,
@@ -143,8 +143,8 @@ impl Rs232Master {
                 self.state = AwaitAnswer;
                 Some(Decoded::Handshake)
             }
-            (AwaitAnswer, Frame::ANSWER) => {
-                self.state = Answer(BodyDecoder::new(Frame::ANSWER));
+            (AwaitAnswer, SerialFrame::ANSWER) => {
+                self.state = Answer(BodyDecoder::new(SerialFrame::ANSWER));
                 self.send(vec![OKAY]);
                 Some(Decoded::Handshake)
             }

@@ -11,7 +11,7 @@ mod rs232;
 use protocol::canopen::sdo::Initiate;
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::UsbDecoder;
-use protocol::epos2::{CommError, DeviceError, Frame, FrameError};
+use protocol::epos2::{CommError, DeviceError, SerialFrame, SerialFrameError};
 use protocol::record::{Direction, DriveLink};
 use units::{Host, Quadcounts, Stamp};
 
@@ -223,7 +223,11 @@ impl DriveListener {
     }
 
     /// Records a request of a serial link; returns whether it is valid.
-    fn handle_request(&mut self, frame: &Result<Frame, FrameError>, host: Stamp<Host>) -> bool {
+    fn handle_request(
+        &mut self,
+        frame: &Result<SerialFrame, SerialFrameError>,
+        host: Stamp<Host>,
+    ) -> bool {
         let request = frame.as_ref().ok();
         let Some((node, address, access)) =
             request.and_then(|frame| parse_serial_request(frame, self.node))
@@ -255,7 +259,7 @@ impl DriveListener {
 
     fn handle_answer(
         &mut self,
-        frame: &Result<Frame, FrameError>,
+        frame: &Result<SerialFrame, SerialFrameError>,
         host: Stamp<Host>,
         noise: Observation,
         emit: &mut impl FnMut(Observation),

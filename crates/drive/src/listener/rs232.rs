@@ -7,7 +7,7 @@ use protocol::epos2::message::{
     SegmentedWrite, WriteObject,
 };
 use protocol::epos2::rs232::{BodyDecoder, FAILED, OKAY};
-use protocol::epos2::{Frame, FrameError};
+use protocol::epos2::{SerialFrame, SerialFrameError};
 use protocol::record::Direction;
 
 /// Opcodes of requests with an answer.
@@ -51,10 +51,10 @@ enum Awaiting {
 /// Result of a byte.
 pub(super) enum Rs232Event {
     Noise,
-    Request(Result<Frame, FrameError>),
+    Request(Result<SerialFrame, SerialFrameError>),
     /// An answer is ready: the request has been executed.
     Announced,
-    Answer(Result<Frame, FrameError>),
+    Answer(Result<SerialFrame, SerialFrameError>),
 }
 
 impl Rs232Listener {
@@ -83,7 +83,7 @@ impl Rs232Listener {
                 return Some(Rs232Event::Request(frame));
             }
             (Awaiting::AnswerOpcodeHandshake, OKAY) => {
-                Awaiting::Answer(BodyDecoder::new(Frame::ANSWER))
+                Awaiting::Answer(BodyDecoder::new(SerialFrame::ANSWER))
             }
             (Awaiting::AnswerHandshake, OKAY | FAILED) => Awaiting::Opcode,
             (_, opcode) if OPCODES.contains(&opcode) => Awaiting::OpcodeHandshake(opcode),
@@ -98,7 +98,7 @@ impl Rs232Listener {
                 (Awaiting::Body(BodyDecoder::new(*opcode)), None)
             }
             (Awaiting::BodyHandshake, OKAY) => (Awaiting::AnswerOpcode, None),
-            (Awaiting::AnswerOpcode, Frame::ANSWER) => {
+            (Awaiting::AnswerOpcode, SerialFrame::ANSWER) => {
                 (Awaiting::AnswerOpcodeHandshake, Some(Rs232Event::Announced))
             }
             (Awaiting::OpcodeHandshake(_) | Awaiting::BodyHandshake, FAILED) => {

@@ -12,7 +12,7 @@ use std::future::poll_fn;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Poll;
 
-use protocol::epos2::objects::{self, Address, Object, Scalar};
+use protocol::epos2::objects::{self, Address, Scalar, TypedObject};
 use units::{Host, Quadcounts, Span, Stamp};
 
 use crate::can_services::{Alarm, CanServices};
@@ -107,14 +107,14 @@ impl Ops {
     }
 
     /// Reads an object. Bits above the object's width are dropped.
-    pub async fn read<T: Scalar>(&self, object: Object<T>) -> Result<T, DriveError> {
+    pub async fn read<T: Scalar>(&self, object: TypedObject<T>) -> Result<T, DriveError> {
         Ok(self.read_timed(object).await?.0)
     }
 
     /// Reads an object; also returns the reply with its times.
     pub async fn read_timed<T: Scalar>(
         &self,
-        object: Object<T>,
+        object: TypedObject<T>,
     ) -> Result<(T, TimedReply), DriveError> {
         let request = self.request(object.address, ObjectAccess::Read);
         let reply = self.send(request).await?;
@@ -123,7 +123,11 @@ impl Ops {
     }
 
     /// Writes an object.
-    pub async fn write<T: Scalar>(&self, object: Object<T>, value: T) -> Result<(), DriveError> {
+    pub async fn write<T: Scalar>(
+        &self,
+        object: TypedObject<T>,
+        value: T,
+    ) -> Result<(), DriveError> {
         self.send(self.write_request(object, value)).await.map(drop)
     }
 
@@ -141,7 +145,7 @@ impl Ops {
     /// Writes an object and reads it back.
     pub async fn write_verified<T: Scalar>(
         &self,
-        object: Object<T>,
+        object: TypedObject<T>,
         value: T,
     ) -> Result<(), DriveError> {
         self.write(object, value).await?;
@@ -149,7 +153,11 @@ impl Ops {
     }
 
     /// Reads an object and compares its value.
-    pub async fn verify<T: Scalar>(&self, object: Object<T>, value: T) -> Result<(), DriveError> {
+    pub async fn verify<T: Scalar>(
+        &self,
+        object: TypedObject<T>,
+        value: T,
+    ) -> Result<(), DriveError> {
         let got = self.read(object).await?.to_raw();
         let expected = value.to_raw();
         if got != expected {
@@ -165,7 +173,7 @@ impl Ops {
     /// Changes the bits of `mask` in an object.
     pub async fn write_bits(
         &self,
-        object: Object<u16>,
+        object: TypedObject<u16>,
         mask: u16,
         bits: u16,
     ) -> Result<(), DriveError> {
@@ -177,7 +185,7 @@ impl Ops {
     /// Writes an object, with the retries of a read: executing the write twice does no harm.
     pub async fn write_idempotent<T: Scalar>(
         &self,
-        object: Object<T>,
+        object: TypedObject<T>,
         value: T,
     ) -> Result<(), DriveError> {
         let request = LinkRequest {
@@ -190,7 +198,7 @@ impl Ops {
     /// Writes an object before anything else, even before the link is resynchronised.
     pub async fn write_urgent<T: Scalar>(
         &self,
-        object: Object<T>,
+        object: TypedObject<T>,
         value: T,
     ) -> Result<(), DriveError> {
         let request = LinkRequest {
@@ -206,7 +214,7 @@ impl Ops {
     /// repeated if the link recovers without a reply.
     pub async fn write_last_attempt<T: Scalar>(
         &self,
-        object: Object<T>,
+        object: TypedObject<T>,
         value: T,
     ) -> Result<(), DriveError> {
         let timing = &self.config.timing;
@@ -277,7 +285,7 @@ impl Ops {
         self.aborts_on_alarm && core.can.as_ref().is_some_and(CanServices::has_alarm)
     }
 
-    fn write_request<T: Scalar>(&self, object: Object<T>, value: T) -> LinkRequest {
+    fn write_request<T: Scalar>(&self, object: TypedObject<T>, value: T) -> LinkRequest {
         let access = ObjectAccess::Write {
             value: value.to_raw(),
             width: T::BYTES,

@@ -4,7 +4,7 @@
 //! these again. Gains and motor data are left to the commissioning tool.
 
 use protocol::epos2::cia402::mode;
-use protocol::epos2::objects::{self, Object};
+use protocol::epos2::objects::{self, TypedObject};
 
 use crate::config::{BrakeConfig, LimitSwitchConfig, whole_ms};
 use crate::error::DriveError;
@@ -89,7 +89,7 @@ async fn configure_limit_switches(
     let functions = [(switches.negative, 0), (switches.positive, 1)];
     for (input, function) in functions {
         if let Some(input) = input {
-            write_if_different(ops, Object::new(0x2070, input, "input"), function).await?;
+            write_if_different(ops, TypedObject::new(0x2070, input, "input"), function).await?;
         }
     }
     let mask = switches.mask();
@@ -117,7 +117,7 @@ async fn configure_brake(ops: &Ops, brake: BrakeConfig) -> Result<(), DriveError
         .await?;
     ops.write_verified(objects::BRAKE_FALL, ms(brake.fall))
         .await?;
-    let output = Object::new(0x2079, brake.output, "output");
+    let output = TypedObject::new(0x2079, brake.output, "output");
     write_if_different(ops, output, objects::OUTPUT_BRAKE).await?;
     let bit = 1 << objects::OUTPUT_BRAKE;
     ops.write_bits(objects::OUTPUT_MASK, bit, bit).await
@@ -125,7 +125,11 @@ async fn configure_brake(ops: &Ops, brake: BrakeConfig) -> Result<(), DriveError
 
 /// Writes a terminal's function only if it differs: a drive refuses a function that another
 /// terminal has.
-async fn write_if_different(ops: &Ops, object: Object<u16>, value: u16) -> Result<(), DriveError> {
+async fn write_if_different(
+    ops: &Ops,
+    object: TypedObject<u16>,
+    value: u16,
+) -> Result<(), DriveError> {
     if ops.read(object).await? == value {
         return Ok(());
     }

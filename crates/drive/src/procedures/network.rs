@@ -10,7 +10,7 @@ use protocol::canopen::nmt::NmtCommand;
 use protocol::canopen::pdo::{self, TransmissionType};
 use protocol::canopen::{CanId, NodeId};
 use protocol::epos2::cia402::status;
-use protocol::epos2::objects::{self, Address, Object};
+use protocol::epos2::objects::{self, Address, TypedObject};
 
 use crate::can_services::{self, STREAM};
 use crate::config::whole_ms;
@@ -108,7 +108,7 @@ pub(super) async fn verify_stream(ops: &Ops) -> Result<(), DriveError> {
 async fn verify_mapping(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
     let (communication, mapping) = (STREAM.communication(), STREAM.mapping());
     let id = ops
-        .read(Object::<u32>::new(communication, 1, "COB-ID"))
+        .read(TypedObject::<u32>::new(communication, 1, "COB-ID"))
         .await?;
     let got = pdo::CommunicationId::from_u32(id);
     let expected = STREAM.channel(node).cob_id();
@@ -120,14 +120,14 @@ async fn verify_mapping(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
         });
     }
     let each_sync = TransmissionType::EACH_SYNC.to_u8();
-    ops.verify(Object::<u8>::new(communication, 2, "type"), each_sync)
+    ops.verify(TypedObject::<u8>::new(communication, 2, "type"), each_sync)
         .await?;
     let layout = can_services::layout();
     let entries = layout.entries();
-    let count = Object::<u8>::new(mapping, 0, "count");
+    let count = TypedObject::<u8>::new(mapping, 0, "count");
     ops.verify(count, entries.len() as u8).await?;
     for (sub, entry) in (1..).zip(entries) {
-        let object = Object::<u32>::new(mapping, sub, "entry");
+        let object = TypedObject::<u32>::new(mapping, sub, "entry");
         ops.verify(object, entry.to_u32()).await?;
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! The device control state machine (CiA 402): wait for a state, clear a fault, enable, change the
 //! mode.
 
-use protocol::epos2::cia402::{State, control, status};
+use protocol::epos2::cia402::{DeviceState, control, status};
 use protocol::epos2::objects;
 use units::Span;
 
@@ -21,16 +21,20 @@ const RESET_TIME: Span = Span::from_millis(20);
 /// Whether the drive is in fault or in its fault reaction.
 pub(super) fn is_fault(statusword: u16) -> bool {
     matches!(
-        State::from_statusword(statusword),
-        Some(State::Fault | State::FaultReactionDisabled | State::FaultReactionEnabled)
+        DeviceState::from_statusword(statusword),
+        Some(
+            DeviceState::Fault
+                | DeviceState::FaultReactionDisabled
+                | DeviceState::FaultReactionEnabled
+        )
     )
 }
 
 /// Whether the power stage is off.
 pub(super) fn is_off(statusword: u16) -> bool {
     matches!(
-        State::from_statusword(statusword),
-        Some(State::SwitchOnDisabled | State::ReadyToSwitchOn | State::Fault)
+        DeviceState::from_statusword(statusword),
+        Some(DeviceState::SwitchOnDisabled | DeviceState::ReadyToSwitchOn | DeviceState::Fault)
     )
 }
 
@@ -63,8 +67,12 @@ pub(super) async fn wait_for(
 }
 
 /// Like [`wait_for`]; also fails on a fault.
-async fn wait_for_state(ops: &Ops, expected: &'static str, state: State) -> Result<(), DriveError> {
-    let is = |word| State::from_statusword(word) == Some(state);
+async fn wait_for_state(
+    ops: &Ops,
+    expected: &'static str,
+    state: DeviceState,
+) -> Result<(), DriveError> {
+    let is = |word| DeviceState::from_statusword(word) == Some(state);
     let got = wait_for(ops, expected, |word| is(word) || is_fault(word)).await?;
     if is(got) {
         return Ok(());
@@ -76,7 +84,8 @@ async fn wait_for_state(ops: &Ops, expected: &'static str, state: State) -> Resu
 
 /// Clears any fault; the axis stays disabled.
 pub(super) async fn clear_fault(ops: &Ops) -> Result<(), DriveError> {
-    let is_settled = |word| !is_fault(word) || State::from_statusword(word) == Some(State::Fault);
+    let is_settled =
+        |word| !is_fault(word) || DeviceState::from_statusword(word) == Some(DeviceState::Fault);
     let mut got = wait_for(ops, "the end of the fault reaction", is_settled).await?;
     if !is_fault(got) {
         return Ok(());
@@ -113,21 +122,21 @@ pub(crate) async fn clear_faults(ops: Ops) -> Result<CommandOutcome, DriveError>
 /// Enables the power stage and opens the brake.
 pub(super) async fn enable(ops: &Ops) -> Result<(), DriveError> {
     let got = ops.read(objects::STATUSWORD).await?;
-    match State::from_statusword(got) {
-        Some(State::OperationEnabled) => return Ok(()),
-        Some(State::SwitchOnDisabled | State::ReadyToSwitchOn) => {}
+    match DeviceState::from_statusword(got) {
+        Some(DeviceState::OperationEnabled) => return Ok(()),
+        Some(DeviceState::SwitchOnDisabled | DeviceState::ReadyToSwitchOn) => {}
         // Any other state is left through "switch-on disabled".
         _ => {
             ops.write(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
                 .await?;
-            wait_for_state(ops, "switch-on disabled", State::SwitchOnDisabled).await?;
+            wait_for_state(ops, "switch-on disabled", DeviceState::SwitchOnDisabled).await?;
         }
     }
     ops.write(objects::CONTROLWORD, control::SHUTDOWN).await?;
-    wait_for_state(ops, "ready to switch on", State::ReadyToSwitchOn).await?;
+    wait_for_state(ops, "ready to switch on", DeviceState::ReadyToSwitchOn).await?;
     ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
         .await?;
-    wait_for_state(ops, "operation enabled", State::OperationEnabled).await?;
+    wait_for_state(ops, "operation enabled", DeviceState::OperationEnabled).await?;
     ops.report(CommandProgress::Enabled);
     Ok(())
 }
@@ -142,7 +151,7 @@ pub(super) async fn check_enabled(ops: &Ops) -> Result<u16, DriveError> {
     if is_fault(got) {
         return Err(DriveError::Fault { error: None });
     }
-    if State::from_statusword(got) != Some(State::OperationEnabled) {
+    if DeviceState::from_statusword(got) != Some(DeviceState::OperationEnabled) {
         return Err(DriveError::State {
             expected: "operation enabled",
             got,

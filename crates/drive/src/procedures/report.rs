@@ -2,7 +2,7 @@
 
 use protocol::canopen::sdo::TransferError;
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::State;
+use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::{self, error_history};
 use units::Quadcounts;
 
@@ -21,7 +21,7 @@ const MAXON: u32 = 0x0000_00FB;
 
 /// Identifies the drive; fails unless it is a servo drive by maxon.
 pub(super) async fn identify(ops: &Ops) -> Result<DriveIdentity, DriveError> {
-    let wrong = |object: objects::Object<u32>, expected, got| DriveError::WrongDevice {
+    let wrong = |object: objects::TypedObject<u32>, expected, got| DriveError::WrongDevice {
         address: object.address,
         what: object.name,
         expected,
@@ -88,7 +88,7 @@ pub(crate) async fn status(ops: Ops) -> Result<CommandOutcome, DriveError> {
     Ok(CommandOutcome::Status(DriveStatus {
         identity,
         statusword,
-        state: State::from_statusword(statusword),
+        state: DeviceState::from_statusword(statusword),
         mode: ops.read(objects::MODE_DISPLAY).await?,
         referenced,
         position,

@@ -1,7 +1,7 @@
 //! Features of a CAN bus: the stream at SYNC, NMT states, heartbeats both ways, boot-up.
 
 use protocol::canopen::nmt::NmtState;
-use protocol::epos2::message::Request;
+use protocol::epos2::message::SerialRequest;
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -54,7 +54,7 @@ fn the_stream_goes_on_while_the_state_is_asked_for() {
     }
     assert!((795..=805).contains(&moving.len()), "{}", moving.len());
     // The position was not polled.
-    let asked = |(_, request): &(Stamp<Host>, Request)| matches!(request, Request::ReadObject(r) if r.address.index == 0x6064);
+    let asked = |(_, request): &(Stamp<Host>, SerialRequest)| matches!(request, SerialRequest::ReadObject(r) if r.address.index == 0x6064);
     assert!(!rig.fake.requests.iter().any(asked));
 }
 
@@ -292,7 +292,7 @@ fn a_late_reply_is_not_used_for_the_next_read_of_the_same_object() {
     rig.run(DriveCommand::Home).unwrap();
     rig.forget();
     rig.fake.hand = Box::new(|n, request| match request {
-        Request::ReadObject(read) if read.address.index == 0x6064 && n % 37 == 0 => {
+        SerialRequest::ReadObject(read) if read.address.index == 0x6064 && n % 37 == 0 => {
             Fate::Late(Span::from_millis(150))
         }
         _ => Fate::Sent,

@@ -5,11 +5,11 @@
 use std::collections::BTreeMap;
 
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, ReadSegment, Request,
-    SegmentedRead, SegmentedWrite, WriteObject, WriteSegment,
+    InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, ReadSegment, SegmentedRead,
+    SegmentedWrite, SerialAnswer, SerialRequest, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::Address;
-use protocol::epos2::{Bounded, CommError, Frame};
+use protocol::epos2::{Bounded, CommError, SerialFrame};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -32,7 +32,7 @@ pub enum Fate {
 }
 
 /// Decides the fate of the reply to the n-th request (from 0).
-pub type Hand = Box<dyn FnMut(usize, &Request) -> Fate>;
+pub type Hand = Box<dyn FnMut(usize, &SerialRequest) -> Fate>;
 /// Transforms bytes that arrive at this time.
 pub type Distortion = Box<dyn FnMut(Stamp<Host>, Vec<u8>) -> Vec<u8>>;
 
@@ -81,7 +81,7 @@ pub struct Fake {
     pub distort: Distortion,
     pub turnaround: Span,
     answers: Vec<(Stamp<Host>, Vec<u8>)>,
-    pub requests: Vec<(Stamp<Host>, Request)>,
+    pub requests: Vec<(Stamp<Host>, SerialRequest)>,
     junk: u32,
 }
 
@@ -192,11 +192,11 @@ impl Fake {
     }
 
     /// Executes a request unless it is rejected; returns the answer and its fate.
-    pub fn execute(&mut self, request: Request, now: Stamp<Host>) -> (Frame, Fate) {
+    pub fn execute(&mut self, request: SerialRequest, now: Stamp<Host>) -> (SerialFrame, Fate) {
         let fate = (self.hand)(self.requests.len(), &request);
         self.requests.push((now, request));
         let answer = if fate == Fate::Rejected {
-            Answer::bare(CommError::CRC).to_frame()
+            SerialAnswer::bare(CommError::CRC).to_frame()
         } else {
             self.serve(&request, now)
         };
@@ -258,31 +258,33 @@ impl Fake {
         m.from + left.signum() * way.min(left.abs())
     }
 
-    fn serve(&mut self, request: &Request, now: Stamp<Host>) -> Frame {
+    fn serve(&mut self, request: &SerialRequest, now: Stamp<Host>) -> SerialFrame {
         match request {
-            Request::ReadObject(read) => ReadObject::answer(self.get(read.address, now)),
-            Request::WriteObject(write) => {
+            SerialRequest::ReadObject(read) => ReadObject::answer(self.get(read.address, now)),
+            SerialRequest::WriteObject(write) => {
                 WriteObject::answer(self.put(write.address, write.value, now))
             }
-            Request::InitiateSegmentedRead(InitiateSegmentedRead { address, .. }) => {
+            SerialRequest::InitiateSegmentedRead(InitiateSegmentedRead { address, .. }) => {
                 let known = (address.index, address.sub) == (0x1008, 0);
                 self.name_at = 0;
-                Answer::bare(if known {
+                SerialAnswer::bare(if known {
                     CommError::NONE
                 } else {
                     CommError::NO_OBJECT
                 })
                 .to_frame()
             }
-            Request::SegmentedRead(SegmentedRead { toggle }) => {
+            SerialRequest::SegmentedRead(SegmentedRead { toggle }) => {
                 let segment = self.segment(*toggle, 3);
                 SegmentedRead::answer(&Ok(segment))
             }
-            Request::InitiateSegmentedWrite(open) => Answer::bare(self.open_write(open)).to_frame(),
-            Request::SegmentedWrite(SegmentedWrite(segment)) => {
+            SerialRequest::InitiateSegmentedWrite(open) => {
+                SerialAnswer::bare(self.open_write(open)).to_frame()
+            }
+            SerialRequest::SegmentedWrite(SegmentedWrite(segment)) => {
                 SegmentedWrite::answer(self.write_segment(segment))
             }
-            _ => Answer::bare(CommError::COMMAND).to_frame(),
+            _ => SerialAnswer::bare(CommError::COMMAND).to_frame(),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use protocol::epos2::CommError;
 use protocol::epos2::DeviceError;
-use protocol::epos2::message::Request;
+use protocol::epos2::message::SerialRequest;
 use units::{Quadcounts, Span};
 
 use super::fake::{DISABLED, FAULT, Fate};
@@ -15,12 +15,12 @@ fn made_safe(rig: &Rig) -> bool {
         .any(|p| matches!(p, CommandProgress::MadeSafe(_)))
 }
 
-fn is_read(request: &Request, index: u16) -> bool {
-    matches!(request, Request::ReadObject(read) if read.address.index == index)
+fn is_read(request: &SerialRequest, index: u16) -> bool {
+    matches!(request, SerialRequest::ReadObject(read) if read.address.index == index)
 }
 
-fn is_write(request: &Request, index: u16, value: u32) -> bool {
-    matches!(request, Request::WriteObject(w) if w.address.index == index && w.value == value)
+fn is_write(request: &SerialRequest, index: u16, value: u32) -> bool {
+    matches!(request, SerialRequest::WriteObject(w) if w.address.index == index && w.value == value)
 }
 
 /// A rig in mid-move, without the record of the start.
@@ -318,7 +318,7 @@ fn damage_and_repetition_are_survived() {
         let mut rig = Rig::new(AxisConfig::default());
         // Reads and rejected writes are repeated; a write whose answer is damaged is not.
         rig.fake.hand = Box::new(move |n, request| {
-            let write = matches!(request, Request::WriteObject(_));
+            let write = matches!(request, SerialRequest::WriteObject(_));
             if n % every == 0 && !(write && fate == Fate::Damaged) {
                 fate
             } else {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use firmware_sim::epos2::{BrakeState, CanServer, Node, NodeConfig, Rs232Server, Servo, UsbServer};
 use protocol::canopen::CanFrame;
-use protocol::epos2::cia402::State;
+use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, CommError, DeviceError};
 use protocol::record::DriveLink;
@@ -265,7 +265,7 @@ fn from_home(world: &World, angle_deg: f64) -> MovePlan {
 #[test]
 fn connect_home_sweep_brake() {
     let mut world = World::new(NodeConfig::default());
-    assert_eq!(world.node.state(), State::Fault);
+    assert_eq!(world.node.state(), DeviceState::Fault);
     let Ok(CommandOutcome::Connected(connected)) = world.run(DriveCommand::Connect) else {
         panic!("{:?}", world.events.last())
     };
@@ -512,7 +512,7 @@ fn a_cut_cable_in_mid_sweep_is_told_and_on_can_stops_the_axis() {
                 world.now = world.next_tick;
                 world.wait();
             }
-            assert_eq!(world.node.state(), State::Fault);
+            assert_eq!(world.node.state(), DeviceState::Fault);
             let way = world.node.segment();
             assert_eq!(way.start, way.end, "it stands");
         }

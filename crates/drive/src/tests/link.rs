@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use protocol::canopen::CanFrame;
 use protocol::canopen::sdo::{self, Expedited, Initiate};
 use protocol::epos2::CommError;
-use protocol::epos2::message::{Answer, ReadObject, Request as Wire, WriteObject};
+use protocol::epos2::message::{ReadObject, SerialAnswer, SerialRequest as Wire, WriteObject};
 use protocol::epos2::objects::Address;
 use protocol::epos2::usb::{self, UsbDecoder};
 use protocol::record::DriveLink;
@@ -413,7 +413,7 @@ proptest! {
                 Just(usb::to_bytes(&WriteObject::answer(Ok(()))).to_vec()),
                 any::<u32>().prop_map(answer),
                 any::<u32>().prop_map(|code| {
-                    usb::to_bytes(&Answer::bare(CommError(code)).to_frame()).to_vec()
+                    usb::to_bytes(&SerialAnswer::bare(CommError(code)).to_frame()).to_vec()
                 }),
             ],
             0..60,

@@ -1,7 +1,7 @@
 //! The same scenarios on each link: commands and faults do not depend on the link.
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::message::Request;
+use protocol::epos2::message::SerialRequest;
 use protocol::record::DriveLink;
 use units::{Quadcounts, Span, Stamp};
 
@@ -355,7 +355,7 @@ fn loss_damage_repetition_and_refusal_are_survived() {
             // transfer is restarted as a whole.
             rig.fake.hand = Box::new(move |n, request| {
                 let repeated = match request {
-                    Request::ReadObject(_) => true,
+                    SerialRequest::ReadObject(_) => true,
                     _ => {
                         matches!(fate, Fate::Rejected | Fate::Twice)
                             || fate == Fate::Late(Span::from_millis(3))
@@ -425,10 +425,10 @@ fn a_reply_to_another_request_in_mid_sweep_is_ignored() {
     for link in LINKS {
         let mut rig = Rig::homed_on(link);
         rig.fake.hand = Box::new(|n, request| match request {
-            Request::ReadObject(read) if n % 11 == 5 && read.address.index == 0x6041 => {
+            SerialRequest::ReadObject(read) if n % 11 == 5 && read.address.index == 0x6041 => {
                 Fate::Another
             }
-            Request::ReadObject(read) if n % 17 == 5 && read.address.index == 0x6064 => {
+            SerialRequest::ReadObject(read) if n % 17 == 5 && read.address.index == 0x6064 => {
                 Fate::Another
             }
             _ => Fate::Sent,

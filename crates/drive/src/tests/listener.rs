@@ -42,7 +42,13 @@ fn a_log_gives_the_clients_samples_writes_and_states() {
 fn lost_and_late_answers_leave_the_log_right() {
     let mut rig = Rig::homed();
     rig.fake.hand = Box::new(|n, request| match n % 31 {
-        _ if matches!(request, protocol::epos2::message::Request::WriteObject(_)) => Fate::Sent,
+        _ if matches!(
+            request,
+            protocol::epos2::message::SerialRequest::WriteObject(_)
+        ) =>
+        {
+            Fate::Sent
+        }
         3 => Fate::Lost,
         11 => Fate::Late(Span::from_millis(120)),
         19 => Fate::Damaged,

@@ -212,7 +212,7 @@ fn status_changes_nothing() {
     let Ok(CommandOutcome::Status(status)) = rig.run(DriveCommand::Status) else {
         panic!("{:?}", rig.events)
     };
-    assert_eq!(status.state, Some(crate::cia402::State::Fault));
+    assert_eq!(status.state, Some(crate::cia402::DeviceState::Fault));
     assert_eq!(status.history, [DeviceError::CAN_PASSIVE]);
     assert_eq!((status.angle, status.position.0), (None, 1234));
     assert_eq!(status.mode, 1);

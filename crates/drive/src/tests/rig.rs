@@ -1,6 +1,6 @@
 //! The client with the scripted drive in virtual time; records everything on the wire.
 
-use protocol::epos2::message::Request;
+use protocol::epos2::message::SerialRequest;
 use protocol::record::{Direction, DriveLink};
 use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
 
@@ -123,7 +123,7 @@ impl Rig {
 
     /// When the drive received the first quick stop.
     pub fn quick_stop(&self) -> Option<Stamp<Host>> {
-        let is_stop = |request: &Request| matches!(request, Request::WriteObject(w) if w.address.index == 0x6040 && w.value == 0x0B);
+        let is_stop = |request: &SerialRequest| matches!(request, SerialRequest::WriteObject(w) if w.address.index == 0x6040 && w.value == 0x0B);
         let stop = self.fake.requests.iter().find(|(_, r)| is_stop(r));
         stop.map(|(at, _)| *at)
     }
@@ -154,7 +154,7 @@ impl Rig {
             .requests
             .iter()
             .filter_map(|(_, request)| match request {
-                Request::WriteObject(w) => Some((w.address.index, w.address.sub, w.value)),
+                SerialRequest::WriteObject(w) => Some((w.address.index, w.address.sub, w.value)),
                 _ => None,
             })
             .collect()

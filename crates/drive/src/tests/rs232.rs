@@ -1,10 +1,10 @@
 //! Features of RS232: a dialogue with missing bytes, and units that stay behind in it.
 
 use proptest::prelude::*;
-use protocol::epos2::message::{ReadObject, Request as Wire, WriteObject};
+use protocol::epos2::message::{ReadObject, SerialRequest as Wire, WriteObject};
 use protocol::epos2::objects::Address;
 use protocol::epos2::rs232::{BodyDecoder, FAILED, OKAY, encode_body};
-use protocol::epos2::{CommError, Frame};
+use protocol::epos2::{CommError, SerialFrame};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -40,7 +40,7 @@ struct Unit {
 enum UnitState {
     Opcode,
     Body(BodyDecoder),
-    Ready(Frame),
+    Ready(SerialFrame),
     Receipt,
 }
 
@@ -85,7 +85,7 @@ impl Unit {
         }
     }
 
-    fn execute(&mut self, frame: &Frame) -> Frame {
+    fn execute(&mut self, frame: &SerialFrame) -> SerialFrame {
         let request = Wire::parse(frame).unwrap().unwrap();
         self.executed.push(request);
         match request {

@@ -4,17 +4,17 @@
 use protocol::canopen::emcy::Emergency;
 use protocol::canopen::heartbeat::Heartbeat;
 use protocol::canopen::nmt::{NmtCommand, NmtState};
-use protocol::canopen::pdo::{Mapping, Pdo};
+use protocol::canopen::pdo::{MappedObject, Pdo};
 use protocol::canopen::sdo::{self, Expedited, Initiate};
-use protocol::canopen::{CanFrame, Message, NodeId, PdoNumber};
+use protocol::canopen::{BusMessage, CanFrame, NodeId, PdoNumber};
 use protocol::epos2::message::{
-    Answer, InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, Request, SegmentedRead,
-    SegmentedWrite, WriteObject, WriteSegment,
+    InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, SegmentedRead, SegmentedWrite,
+    SerialAnswer, SerialRequest, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::Address;
 use protocol::epos2::rs232::{BodyDecoder, FAILED, OKAY, encode_body};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{Bounded, CommError, Frame};
+use protocol::epos2::{Bounded, CommError, SerialFrame};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -32,7 +32,7 @@ pub enum Wire {
 pub enum UnitState {
     Opcode,
     Body(BodyDecoder),
-    Ready(Frame, Fate),
+    Ready(SerialFrame, Fate),
     Receipt,
 }
 
@@ -96,7 +96,7 @@ impl Wire {
             Self::Usb(decoder) => {
                 for &byte in bytes {
                     if let Some(Ok(frame)) = decoder.push(byte) {
-                        let request = Request::parse(&frame).unwrap().unwrap();
+                        let request = SerialRequest::parse(&frame).unwrap().unwrap();
                         let (answer, fate) = fake.execute(request, now);
                         usb_answer(fake, &answer, fate, now);
                     }
@@ -119,15 +119,15 @@ impl Wire {
 }
 
 /// The reply to a request of another kind: a read instead of a write, and vice versa.
-fn another(answer: &Frame) -> Frame {
-    if Answer::parse(answer).unwrap().data.is_empty() {
+fn another(answer: &SerialFrame) -> SerialFrame {
+    if SerialAnswer::parse(answer).unwrap().data.is_empty() {
         ReadObject::answer(Ok(0x1234))
     } else {
         WriteObject::answer(Ok(()))
     }
 }
 
-fn usb_answer(fake: &mut Fake, answer: &Frame, fate: Fate, now: Stamp<Host>) {
+fn usb_answer(fake: &mut Fake, answer: &SerialFrame, fate: Fate, now: Stamp<Host>) {
     let other = another(answer);
     let answer = if fate == Fate::Another {
         &other
@@ -166,7 +166,7 @@ fn rs232(state: UnitState, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> UnitS
                 UnitState::Opcode
             }
             Some(Ok(frame)) => {
-                let request = Request::parse(&frame).unwrap().unwrap();
+                let request = SerialRequest::parse(&frame).unwrap().unwrap();
                 let (answer, fate) = fake.execute(request, now);
                 match fate {
                     Fate::Rejected => {
@@ -200,18 +200,18 @@ fn rs232(state: UnitState, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> UnitS
 }
 
 fn can(fake: &mut Fake, frame: &CanFrame, now: Stamp<Host>) {
-    match Message::parse(frame).unwrap() {
-        Message::Nmt(nmt) => match nmt.command {
+    match BusMessage::parse(frame).unwrap() {
+        BusMessage::Nmt(nmt) => match nmt.command {
             NmtCommand::Start => fake.bus.state = NmtState::Operational,
             NmtCommand::EnterPreOperational => fake.bus.state = NmtState::PreOperational,
             other => panic!("{other:?}"),
         },
-        Message::Sync(_) => fake.sync(now),
-        Message::Heartbeat(heartbeat) => {
+        BusMessage::Sync(_) => fake.sync(now),
+        BusMessage::Heartbeat(heartbeat) => {
             assert_eq!(heartbeat.node.get(), 127);
             fake.bus.host_heartbeat = Some(now);
         }
-        Message::SdoRequest(to, request) => {
+        BusMessage::SdoRequest(to, request) => {
             assert_eq!(to, node());
             sdo_request(fake, &request, now);
         }
@@ -226,11 +226,14 @@ fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
                 node: NODE,
                 address,
             };
-            (Request::InitiateSegmentedRead(open), address)
+            (SerialRequest::InitiateSegmentedRead(open), address)
         }
         sdo::SdoRequest::InitiateUpload { address } => {
             let node = NODE;
-            (Request::ReadObject(ReadObject { node, address }), address)
+            (
+                SerialRequest::ReadObject(ReadObject { node, address }),
+                address,
+            )
         }
         sdo::SdoRequest::InitiateDownload {
             address,
@@ -246,10 +249,10 @@ fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
                 address,
                 value: data.to_u32(),
             };
-            (Request::WriteObject(write), address)
+            (SerialRequest::WriteObject(write), address)
         }
         sdo::SdoRequest::UploadSegment { toggle } => (
-            Request::SegmentedRead(SegmentedRead { toggle }),
+            SerialRequest::SegmentedRead(SegmentedRead { toggle }),
             Address::new(0x1008, 0),
         ),
         sdo::SdoRequest::InitiateDownload {
@@ -258,14 +261,17 @@ fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
         } => {
             let node = NODE;
             let open = InitiateSegmentedWrite { node, address, len };
-            (Request::InitiateSegmentedWrite(open), address)
+            (SerialRequest::InitiateSegmentedWrite(open), address)
         }
         sdo::SdoRequest::DownloadSegment(segment) => {
             let mut bytes = Bounded::new();
             bytes.extend(segment.bytes.iter().copied());
             let toggle = segment.toggle;
             let write = SegmentedWrite(WriteSegment { toggle, bytes });
-            (Request::SegmentedWrite(write), Address::new(0x1008, 0))
+            (
+                SerialRequest::SegmentedWrite(write),
+                Address::new(0x1008, 0),
+            )
         }
         sdo::SdoRequest::Abort { error, .. } => {
             fake.aborts.push(error);
@@ -296,25 +302,25 @@ fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
     fake.send(bytes, by, now);
 }
 
-fn sdo_answer(request: &Request, address: Address, answer: &Frame) -> sdo::SdoResponse {
-    let parsed = Answer::parse(answer).unwrap();
+fn sdo_answer(request: &SerialRequest, address: Address, answer: &SerialFrame) -> sdo::SdoResponse {
+    let parsed = SerialAnswer::parse(answer).unwrap();
     let error = parsed.error;
     if !error.is_none() {
         return sdo::SdoResponse::Abort { address, error };
     }
     match request {
-        Request::WriteObject(_) | Request::InitiateSegmentedWrite(_) => {
+        SerialRequest::WriteObject(_) | SerialRequest::InitiateSegmentedWrite(_) => {
             sdo::SdoResponse::InitiateDownload { address }
         }
-        Request::SegmentedWrite(_) => {
+        SerialRequest::SegmentedWrite(_) => {
             let toggle = SegmentedWrite::parse_answer(answer).unwrap().unwrap();
             sdo::SdoResponse::DownloadSegment { toggle }
         }
-        Request::InitiateSegmentedRead(_) => sdo::SdoResponse::InitiateUpload {
+        SerialRequest::InitiateSegmentedRead(_) => sdo::SdoResponse::InitiateUpload {
             address,
             transfer: Initiate::Segmented { size: None },
         },
-        Request::SegmentedRead(_) => {
+        SerialRequest::SegmentedRead(_) => {
             let read = SegmentedRead::parse_answer(answer).unwrap().unwrap();
             let mut segment = sdo::SdoSegment::cut(&read.bytes, 0, read.toggle, sdo::SEGMENT_LEN);
             segment.last = !read.more;
@@ -400,7 +406,7 @@ impl Fake {
         let at = now + self.bus.forth;
         let mut data = Vec::new();
         for sub in 1..=object((0x1A00, 0)) as u8 {
-            let entry = Mapping::from_u32(self.objects[&(0x1A00, sub)]);
+            let entry = MappedObject::from_u32(self.objects[&(0x1A00, sub)]);
             let value = match (entry.address.index, entry.address.sub) {
                 (0x1013, 0) => device_us(at),
                 _ => self

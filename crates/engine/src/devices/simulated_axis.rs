@@ -132,17 +132,17 @@ mod tests {
     use firmware_sim::epos2::Node;
     use protocol::epos2::DeviceError;
     use protocol::epos2::cia402::{control, mode, status};
-    use protocol::epos2::objects::{self, Object, Scalar};
+    use protocol::epos2::objects::{self, Scalar, TypedObject};
 
     use super::*;
     use crate::config::{AxisSettings, HomingSettings};
     use crate::devices::profile as devices;
 
-    fn set<T: Scalar>(node: &mut Node, object: Object<T>, value: T) {
+    fn set<T: Scalar>(node: &mut Node, object: TypedObject<T>, value: T) {
         node.write(object.address, object.encode(value)).unwrap();
     }
 
-    fn get<T: Scalar>(node: &Node, object: Object<T>) -> T {
+    fn get<T: Scalar>(node: &Node, object: TypedObject<T>) -> T {
         object.decode(node.read(object.address).unwrap().raw().unwrap())
     }
 

@@ -104,7 +104,7 @@ impl Worker {
         let service = &self.service;
         let report = Report::new(&service.name, status, service.simulated());
         let gearing = service.axis.gearing;
-        let fault = status.state == Some(protocol::epos2::cia402::State::Fault);
+        let fault = status.state == Some(protocol::epos2::cia402::DeviceState::Fault);
         let problem = fault.then(|| drive_in_fault(report.faults.first()));
         service.update_drive(|drive| {
             // The state of a drive that was not connected to is left as it was.

@@ -3,7 +3,7 @@
 //! Frames are found by [`UsbDecoder`]; their content is ignored, and a frame with a wrong CRC
 //! counts as a frame.
 
-use protocol::epos2::FrameError;
+use protocol::epos2::SerialFrameError;
 use protocol::epos2::usb::{DLE, UsbDecoder};
 
 /// A run of bytes that belong together.
@@ -34,7 +34,9 @@ impl Delimiter {
         match self.decoder.push(byte) {
             None if !within && self.decoder.is_within_frame() => self.start(),
             None => None,
-            Some(Ok(_) | Err(FrameError::Crc { .. })) => Some(StreamPiece::Frame(self.take())),
+            Some(Ok(_) | Err(SerialFrameError::Crc { .. })) => {
+                Some(StreamPiece::Frame(self.take()))
+            }
             // The sync pair of a new frame inside another frame.
             Some(Err(_)) if self.decoder.is_within_frame() => self.start(),
             Some(Err(_)) => Some(StreamPiece::Noise(self.take())),

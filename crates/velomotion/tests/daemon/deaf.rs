@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use firmware_sim::epos2::{Node, NodeConfig, UsbServer};
 use io::port::{Port, Pty};
-use protocol::epos2::cia402::State;
+use protocol::epos2::cia402::DeviceState;
 use serde_json::json;
 use units::Span;
 
@@ -21,7 +21,7 @@ struct Cable {
     cut: Arc<AtomicBool>,
     end: Arc<AtomicBool>,
     /// State of the drive, and where its shaft is, in its own units.
-    seen: Arc<Mutex<(State, i64)>>,
+    seen: Arc<Mutex<(DeviceState, i64)>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -65,7 +65,7 @@ impl Cable {
         }
     }
 
-    fn seen(&self) -> (State, i64) {
+    fn seen(&self) -> (DeviceState, i64) {
         *self.seen.lock().unwrap()
     }
 }
@@ -112,7 +112,7 @@ fn an_axis_that_could_not_be_stopped_is_said_to_move_until_it_is_brought_to_rest
     );
     // It goes on by itself, and whoever looks is told, however often the keeper has tried again.
     let (state, was) = cable.seen();
-    assert_eq!(state, State::OperationEnabled, "nothing reached it");
+    assert_eq!(state, DeviceState::OperationEnabled, "nothing reached it");
     wait("it goes on", || (cable.seen().1 != was).then_some(()));
     let connecting = || rig.status()["activity"]["doing"] == "connecting";
     wait("a try to reach it", || connecting().then_some(()));
@@ -133,7 +133,7 @@ fn an_axis_that_could_not_be_stopped_is_said_to_move_until_it_is_brought_to_rest
     let well = drive(&rig, "connected");
     assert_eq!(well["problem"], json!(null));
     let (state, at) = cable.seen();
-    assert_eq!(state, State::SwitchOnDisabled);
+    assert_eq!(state, DeviceState::SwitchOnDisabled);
     let gearing = axis.gearing;
     let angle = well["angle_deg"].as_f64().unwrap();
     assert!(

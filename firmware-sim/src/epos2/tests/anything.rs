@@ -10,7 +10,7 @@ use protocol::canopen::nmt::{Nmt, NmtCommand};
 use protocol::canopen::sdo::{Expedited, Initiate, SdoRequest};
 use protocol::canopen::{CanFrame, CobId, NodeId};
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::State::{self, *};
+use protocol::epos2::cia402::DeviceState::{self, *};
 use protocol::epos2::objects::{self, Address};
 
 use super::super::table::TABLE;
@@ -37,7 +37,7 @@ use By::*;
 
 /// The legal transitions, as the Firmware Specification's figure and tables of "Device Control"
 /// have them.
-const LEGAL: [(State, By, State); 41] = [
+const LEGAL: [(DeviceState, By, DeviceState); 41] = [
     (SwitchOnDisabled, Shutdown, ReadyToSwitchOn),
     (ReadyToSwitchOn, SwitchOn, SwitchedOn),
     (ReadyToSwitchOn, Enable, MeasureInit),
@@ -199,7 +199,7 @@ struct World {
     node: Node,
     can: CanServer,
     usb: UsbServer,
-    last: State,
+    last: DeviceState,
     /// Commands out of "operation enabled" since it was entered.
     asked: Vec<By>,
 }

@@ -1,13 +1,13 @@
 //! A shaft that cannot follow: following error, hard stops, homing against them.
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::{State, control, mode, status};
-use protocol::epos2::objects::{self, Object};
+use protocol::epos2::cia402::{DeviceState, control, mode, status};
+use protocol::epos2::objects::{self, TypedObject};
 
 use super::super::{Node, NodeConfig};
 use super::{arrive, command, enable, enabled, get, go, has, position, set, state, ticks, until};
 
-const FOLLOWING: Object<i16> = Object::new(0x20F4, 0, "Following Error Actual Value");
+const FOLLOWING: TypedObject<i16> = TypedObject::new(0x20F4, 0, "Following Error Actual Value");
 
 /// Hard stops at -20,000 and 30,000 world qc; index pulses at 700 + n 2000.
 fn between_stops(at: i32) -> Node {
@@ -46,11 +46,11 @@ fn a_blocked_motor_is_a_following_error() {
     assert!((980..1_020).contains(&get(&node, FOLLOWING)));
     assert!((4_900..5_100).contains(&get(&node, objects::CURRENT_ACTUAL)));
     let took = until(&mut node, 100, |node| {
-        state(node) == State::FaultReactionEnabled
+        state(node) == DeviceState::FaultReactionEnabled
     });
     assert!((29..33).contains(&took), "{took}");
     assert!(has(&node, status::FOLLOWING_ERROR));
-    let ramp = until(&mut node, 200, |node| state(node) == State::Fault);
+    let ramp = until(&mut node, 200, |node| state(node) == DeviceState::Fault);
     assert!((99..104).contains(&ramp), "{ramp}");
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0x8611);
     assert_eq!(get(&node, objects::ERROR_REGISTER), 0x21);
@@ -87,7 +87,7 @@ fn a_short_block_within_6065_is_caught_up() {
     arrive(&mut node);
     assert_eq!(
         (position(&node), state(&node)),
-        (50_000, State::OperationEnabled)
+        (50_000, DeviceState::OperationEnabled)
     );
 }
 
@@ -100,7 +100,7 @@ fn the_following_error_limit_can_be_widened() {
     arrive(&mut node);
     assert_eq!(
         (position(&node), state(&node)),
-        (0, State::OperationEnabled)
+        (0, DeviceState::OperationEnabled)
     );
     assert_eq!(get(&node, FOLLOWING), i16::MAX);
     assert_eq!(
@@ -114,7 +114,7 @@ fn the_following_error_limit_can_be_widened() {
 fn a_hard_stop_ends_a_move() {
     let mut node = between_stops(0);
     go(&mut node, 40_000, control::START_ABSOLUTE);
-    until(&mut node, 5_000, |node| state(node) == State::Fault);
+    until(&mut node, 5_000, |node| state(node) == DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0x8611);
     assert_eq!(position(&node), 30_000);
 }
@@ -167,7 +167,7 @@ fn a_threshold_above_the_limit_ends_in_a_following_error() {
     set(&mut node, objects::OUTPUT_CURRENT, 400);
     enable(&mut node);
     command(&mut node, control::START_HOMING);
-    until(&mut node, 5_000, |node| state(node) == State::Fault);
+    until(&mut node, 5_000, |node| state(node) == DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0x8611);
     assert!(!has(&node, status::REFERENCED));
 }
@@ -199,7 +199,7 @@ fn the_quick_stop_input_stops_the_axis() {
     enable(&mut node);
     set(
         &mut node,
-        Object::<u16>::new(0x2070, 4, "Configuration of Digital Input4"),
+        TypedObject::<u16>::new(0x2070, 4, "Configuration of Digital Input4"),
         5,
     );
     set(&mut node, objects::INPUT_MASK, 0xFFFF);
@@ -210,7 +210,7 @@ fn the_quick_stop_input_stops_the_axis() {
     );
     go(&mut node, 50_000, control::START_ABSOLUTE);
     until(&mut node, 1_000, |node| {
-        state(node) == State::QuickStopActive
+        state(node) == DeviceState::QuickStopActive
     });
     ticks(&mut node, 200);
     assert!((9_500..9_900).contains(&position(&node)));

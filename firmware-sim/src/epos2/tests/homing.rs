@@ -1,7 +1,7 @@
 //! Homing mode.
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::{State, control, mode, status};
+use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects;
 
 use super::super::{Node, NodeConfig, Region, Switch};
@@ -115,7 +115,7 @@ fn homing_ignores_limit_errors_and_software_limits() {
     home(&mut node, 17);
     assert_eq!(
         (state(&node), get(&node, objects::ERROR_COUNT)),
-        (State::OperationEnabled, 0)
+        (DeviceState::OperationEnabled, 0)
     );
 }
 

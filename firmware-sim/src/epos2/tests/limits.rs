@@ -1,7 +1,7 @@
 //! Limit switches, software limits, the brake.
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::{State, control};
+use protocol::epos2::cia402::{DeviceState, control};
 use protocol::epos2::objects;
 
 use super::super::{BrakeState, Node, NodeConfig, Region, Switch};
@@ -23,7 +23,7 @@ fn a_limit_switch_in_the_execution_mask_stops_the_axis_and_can_be_left() {
     let mut node = enabled();
     set(&mut node, objects::INPUT_EXECUTION_MASK, 0x0003);
     go(&mut node, -50_000, control::START_ABSOLUTE);
-    until(&mut node, 5000, |node| state(node) == State::Fault);
+    until(&mut node, 5000, |node| state(node) == DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0xFF06);
     assert_eq!(
         get(&node, objects::ERROR_COUNT),
@@ -37,7 +37,7 @@ fn a_limit_switch_in_the_execution_mask_stops_the_axis_and_can_be_left() {
     command(&mut node, control::FAULT_RESET);
     enable(&mut node);
     go(&mut node, -60_000, control::START_ABSOLUTE);
-    until(&mut node, 500, |node| state(node) == State::Fault);
+    until(&mut node, 500, |node| state(node) == DeviceState::Fault);
     assert!(position(&node) > at - 10, "moved on into the switch");
     command(&mut node, control::FAULT_RESET);
     enable(&mut node);
@@ -45,7 +45,7 @@ fn a_limit_switch_in_the_execution_mask_stops_the_axis_and_can_be_left() {
     arrive(&mut node);
     assert_eq!(
         (position(&node), state(&node)),
-        (0, State::OperationEnabled)
+        (0, DeviceState::OperationEnabled)
     );
 }
 
@@ -93,7 +93,7 @@ fn software_limits_refuse_targets_and_stop_an_axis_that_crosses_them() {
     set(&mut node, objects::MAX_POSITION, 10_000);
     go(&mut node, 10_001, control::START_ABSOLUTE);
     ticks(&mut node, 3);
-    assert_eq!((state(&node), position(&node)), (State::Fault, 0));
+    assert_eq!((state(&node), position(&node)), (DeviceState::Fault, 0));
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0xFF09);
     command(&mut node, control::FAULT_RESET);
     enable(&mut node);
@@ -107,7 +107,7 @@ fn software_limits_refuse_targets_and_stop_an_axis_that_crosses_them() {
     until(&mut node, 5000, |node| position(node) > -2_000);
     set(&mut node, objects::PROFILE_DECELERATION, 1_000);
     go(&mut node, -100, control::START_ABSOLUTE_AT_ONCE);
-    until(&mut node, 5000, |node| state(node) == State::Fault);
+    until(&mut node, 5000, |node| state(node) == DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0xFF09);
     // And back inside from outside.
     assert!(position(&node) > 0);
@@ -142,7 +142,7 @@ fn the_brake_opens_before_and_closes_after() {
         (BrakeState::Open, 0)
     );
     let took = until(&mut node, 200, |node| {
-        state(node) == State::OperationEnabled
+        state(node) == DeviceState::OperationEnabled
     });
     assert!((50..55).contains(&took), "{took}");
     go(&mut node, 100_000, control::START_ABSOLUTE);
@@ -154,10 +154,12 @@ fn the_brake_opens_before_and_closes_after() {
     assert_eq!(get(&node, objects::VELOCITY_ACTUAL), 0);
     assert_eq!(
         state(&node),
-        State::OperationEnabled,
+        DeviceState::OperationEnabled,
         "the motor holds while the brake closes"
     );
-    let fall = until(&mut node, 200, |node| state(node) == State::SwitchedOn);
+    let fall = until(&mut node, 200, |node| {
+        state(node) == DeviceState::SwitchedOn
+    });
     assert!((29..33).contains(&fall), "{fall}");
 }
 
@@ -173,14 +175,16 @@ fn a_standstill_that_is_not_found_is_not_waited_for_beyond_its_timeout() {
     let took = until(&mut node, 1_000, |node| node.brake() == BrakeState::Closed);
     assert!((200..203).contains(&took), "{took}");
     // A fault reaction that ramps takes the same way.
-    until(&mut node, 100, |node| state(node) == State::SwitchedOn);
+    until(&mut node, 100, |node| {
+        state(node) == DeviceState::SwitchedOn
+    });
     set(&mut node, objects::STANDSTILL_TIME, 50);
     command(&mut node, control::ENABLE_OPERATION);
     until(&mut node, 100, |node| {
-        state(node) == State::OperationEnabled
+        state(node) == DeviceState::OperationEnabled
     });
     node.inject(DeviceError::FOLLOWING);
-    let took = until(&mut node, 1_000, |node| state(node) == State::Fault);
+    let took = until(&mut node, 1_000, |node| state(node) == DeviceState::Fault);
     // Standstill and the brake's 10 ms.
     assert!((60..64).contains(&took), "{took}");
 }

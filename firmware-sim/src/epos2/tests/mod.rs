@@ -13,8 +13,8 @@ mod storage;
 mod velocity;
 
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::{State, control, status};
-use protocol::epos2::objects::{self, Object, Scalar};
+use protocol::epos2::cia402::{DeviceState, control, status};
+use protocol::epos2::objects::{self, Scalar, TypedObject};
 
 use super::{Node, NodeConfig};
 
@@ -27,11 +27,11 @@ fn healthy() -> Node {
     })
 }
 
-fn get<T: Scalar>(node: &Node, object: Object<T>) -> T {
+fn get<T: Scalar>(node: &Node, object: TypedObject<T>) -> T {
     object.decode(node.read(object.address).unwrap().raw().unwrap())
 }
 
-fn set<T: Scalar>(node: &mut Node, object: Object<T>, value: T) {
+fn set<T: Scalar>(node: &mut Node, object: TypedObject<T>, value: T) {
     node.write(object.address, object.encode(value)).unwrap();
 }
 
@@ -39,8 +39,8 @@ fn command(node: &mut Node, word: u16) {
     set(node, objects::CONTROLWORD, word);
 }
 
-fn state(node: &Node) -> State {
-    State::from_statusword(get(node, objects::STATUSWORD)).expect("a legal statusword")
+fn state(node: &Node) -> DeviceState {
+    DeviceState::from_statusword(get(node, objects::STATUSWORD)).expect("a legal statusword")
 }
 
 fn has(node: &Node, bits: u16) -> bool {
@@ -70,7 +70,9 @@ fn until(node: &mut Node, most: usize, done: impl Fn(&Node) -> bool) -> usize {
 fn enable(node: &mut Node) {
     command(node, control::SHUTDOWN);
     command(node, control::ENABLE_OPERATION);
-    until(node, 100, |node| state(node) == State::OperationEnabled);
+    until(node, 100, |node| {
+        state(node) == DeviceState::OperationEnabled
+    });
 }
 
 fn enabled() -> Node {

@@ -1,6 +1,6 @@
 //! Profile position mode, and the encoder between two control cycles.
 
-use protocol::epos2::cia402::{State, control, status};
+use protocol::epos2::cia402::{DeviceState, control, status};
 use protocol::epos2::objects;
 
 use super::super::Node;
@@ -99,7 +99,7 @@ fn halt_stops_and_gives_the_move_up() {
     ticks(&mut node, 500);
     assert_eq!(
         (position(&node), state(&node)),
-        (at, State::OperationEnabled)
+        (at, DeviceState::OperationEnabled)
     );
     go(&mut node, 0, control::START_ABSOLUTE);
     arrive(&mut node);
@@ -130,15 +130,15 @@ fn a_target_too_far_for_its_speed_is_6320() {
     set(&mut node, objects::PROFILE_VELOCITY, 0);
     go(&mut node, 1, control::START_ABSOLUTE);
     ticks(&mut node, 3);
-    assert_eq!(state(&node), State::Fault);
+    assert_eq!(state(&node), DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0x6320);
 }
 
 #[test]
 fn disable_operation_ramps_and_shutdown_does_not() {
     for (word, to, slowest) in [
-        (control::SWITCH_ON, State::SwitchedOn, 100),
-        (control::SHUTDOWN, State::ReadyToSwitchOn, 1),
+        (control::SWITCH_ON, DeviceState::SwitchedOn, 100),
+        (control::SHUTDOWN, DeviceState::ReadyToSwitchOn, 1),
     ] {
         let mut node = enabled();
         go(&mut node, 100_000, control::START_ABSOLUTE);

@@ -2,7 +2,7 @@
 
 use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::DeviceError;
-use protocol::epos2::cia402::{State, control};
+use protocol::epos2::cia402::{DeviceState, control};
 use protocol::epos2::objects;
 
 use super::super::{Node, NodeConfig};
@@ -11,27 +11,29 @@ use super::{command, enabled, get, go, healthy, position, set, state, ticks, unt
 #[test]
 fn the_way_up_and_down() {
     let mut node = healthy();
-    assert_eq!(state(&node), State::SwitchOnDisabled);
+    assert_eq!(state(&node), DeviceState::SwitchOnDisabled);
     command(&mut node, control::ENABLE_OPERATION);
     assert_eq!(
         state(&node),
-        State::SwitchOnDisabled,
+        DeviceState::SwitchOnDisabled,
         "no way up without shutdown"
     );
     command(&mut node, control::SHUTDOWN);
-    assert_eq!(state(&node), State::ReadyToSwitchOn);
+    assert_eq!(state(&node), DeviceState::ReadyToSwitchOn);
     command(&mut node, control::SWITCH_ON);
-    assert_eq!(state(&node), State::SwitchedOn);
+    assert_eq!(state(&node), DeviceState::SwitchedOn);
     command(&mut node, control::ENABLE_OPERATION);
-    assert_eq!(state(&node), State::MeasureInit);
-    until(&mut node, 10, |node| state(node) == State::OperationEnabled);
+    assert_eq!(state(&node), DeviceState::MeasureInit);
+    until(&mut node, 10, |node| {
+        state(node) == DeviceState::OperationEnabled
+    });
     command(&mut node, control::SWITCH_ON);
     ticks(&mut node, 2);
-    assert_eq!(state(&node), State::SwitchedOn);
+    assert_eq!(state(&node), DeviceState::SwitchedOn);
     command(&mut node, control::SHUTDOWN);
-    assert_eq!(state(&node), State::ReadyToSwitchOn);
+    assert_eq!(state(&node), DeviceState::ReadyToSwitchOn);
     command(&mut node, control::DISABLE_VOLTAGE);
-    assert_eq!(state(&node), State::SwitchOnDisabled);
+    assert_eq!(state(&node), DeviceState::SwitchOnDisabled);
 }
 
 #[test]
@@ -52,25 +54,25 @@ fn nmt_start_shows_in_bit_9() {
 #[test]
 fn the_fault_of_a_unit_without_can_is_cleared_by_a_rising_bit_7() {
     let mut node = Node::new(NodeConfig::default());
-    assert_eq!(state(&node), State::Fault);
+    assert_eq!(state(&node), DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_COUNT), 1);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0x8120);
     assert_eq!(get(&node, objects::ERROR_REGISTER), 0x11);
     command(&mut node, control::SHUTDOWN);
-    assert_eq!(state(&node), State::Fault);
+    assert_eq!(state(&node), DeviceState::Fault);
     command(&mut node, control::FAULT_RESET);
-    assert_eq!(state(&node), State::SwitchOnDisabled);
+    assert_eq!(state(&node), DeviceState::SwitchOnDisabled);
     assert_eq!(get(&node, objects::ERROR_REGISTER), 0);
     assert_eq!(get(&node, objects::ERROR_COUNT), 1, "the history stays");
     // The bit is still set: no edge, no reset.
     node.inject(DeviceError::OVERVOLTAGE);
     command(&mut node, control::FAULT_RESET);
-    assert_eq!(state(&node), State::Fault);
+    assert_eq!(state(&node), DeviceState::Fault);
     command(&mut node, 0);
     command(&mut node, control::FAULT_RESET);
-    assert_eq!(state(&node), State::SwitchOnDisabled);
+    assert_eq!(state(&node), DeviceState::SwitchOnDisabled);
     node.power_cycle();
-    assert_eq!(state(&node), State::Fault);
+    assert_eq!(state(&node), DeviceState::Fault);
 }
 
 #[test]
@@ -85,12 +87,12 @@ fn errors_that_ramp_and_errors_that_do_not() {
         node.inject(error);
         let at = position(&node);
         let expected = if ramps {
-            State::FaultReactionEnabled
+            DeviceState::FaultReactionEnabled
         } else {
-            State::FaultReactionDisabled
+            DeviceState::FaultReactionDisabled
         };
         assert_eq!(state(&node), expected);
-        let took = until(&mut node, 1000, |node| state(node) == State::Fault);
+        let took = until(&mut node, 1000, |node| state(node) == DeviceState::Fault);
         // 1000 rpm at 10000 rpm/s: 100 ms, half of 33.3 qc/ms.
         let way = position(&node) - at;
         if ramps {
@@ -111,21 +113,21 @@ fn quick_stop_ramps_stays_and_is_left_by_enable() {
     ticks(&mut node, 300);
     set(&mut node, objects::QUICK_STOP_DECELERATION, 20_000);
     command(&mut node, control::QUICK_STOP);
-    assert_eq!(state(&node), State::QuickStopActive);
+    assert_eq!(state(&node), DeviceState::QuickStopActive);
     let took = until(&mut node, 1000, |node| {
         get(node, objects::VELOCITY_ACTUAL) == 0
     });
     assert!((49..53).contains(&took), "{took}");
     ticks(&mut node, 500);
-    assert_eq!(state(&node), State::QuickStopActive);
+    assert_eq!(state(&node), DeviceState::QuickStopActive);
     let at = position(&node);
     command(&mut node, control::ENABLE_OPERATION);
     ticks(&mut node, 100);
     assert_eq!(
         (state(&node), position(&node)),
-        (State::OperationEnabled, at)
+        (DeviceState::OperationEnabled, at)
     );
     command(&mut node, control::QUICK_STOP);
     command(&mut node, control::DISABLE_VOLTAGE);
-    assert_eq!(state(&node), State::SwitchOnDisabled);
+    assert_eq!(state(&node), DeviceState::SwitchOnDisabled);
 }

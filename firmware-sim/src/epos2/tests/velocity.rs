@@ -1,13 +1,13 @@
 //! Profile velocity mode.
 
-use protocol::epos2::cia402::{State, control, mode, status};
-use protocol::epos2::objects::{self, Object};
+use protocol::epos2::cia402::{DeviceState, control, mode, status};
+use protocol::epos2::objects::{self, TypedObject};
 
 use super::super::Node;
 use super::{command, enable, enabled, get, go, has, healthy, position, set, state, ticks, until};
 
-const WINDOW: Object<u32> = Object::new(0x606D, 0, "Velocity Window");
-const WINDOW_TIME: Object<u16> = Object::new(0x606E, 0, "Velocity Window Time");
+const WINDOW: TypedObject<u32> = TypedObject::new(0x606D, 0, "Velocity Window");
+const WINDOW_TIME: TypedObject<u16> = TypedObject::new(0x606E, 0, "Velocity Window Time");
 const SPEED_IS_ZERO: u16 = 1 << 12;
 
 fn turning(rpm: i32) -> Node {
@@ -71,7 +71,7 @@ fn halt_stops_and_goes_on_when_it_is_lifted() {
     assert!((100..103).contains(&took), "{took}");
     ticks(&mut node, 2);
     assert!(has(&node, status::TARGET_REACHED | SPEED_IS_ZERO));
-    assert_eq!(state(&node), State::OperationEnabled);
+    assert_eq!(state(&node), DeviceState::OperationEnabled);
     command(&mut node, control::ENABLE_OPERATION);
     until(&mut node, 500, |node| velocity(node) == 1_000);
 }
@@ -82,12 +82,12 @@ fn quick_stop_and_disable_take_their_ramps() {
         (
             control::QUICK_STOP,
             objects::QUICK_STOP_DECELERATION,
-            State::QuickStopActive,
+            DeviceState::QuickStopActive,
         ),
         (
             control::SWITCH_ON,
             objects::PROFILE_DECELERATION,
-            State::SwitchedOn,
+            DeviceState::SwitchedOn,
         ),
     ] {
         let mut node = turning(1_000);
@@ -115,14 +115,14 @@ fn the_velocity_window_counts_its_time() {
 fn a_software_limit_stops_it_and_an_acceleration_of_0_is_6320() {
     let mut node = turning(1_000);
     set(&mut node, objects::MAX_POSITION, 5_000);
-    until(&mut node, 2_000, |node| state(node) == State::Fault);
+    until(&mut node, 2_000, |node| state(node) == DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0xFF09);
     let mut node = turning(0);
     ticks(&mut node, 5);
     set(&mut node, objects::PROFILE_ACCELERATION, 0);
     set(&mut node, objects::TARGET_VELOCITY, 100);
     ticks(&mut node, 3);
-    assert_eq!(state(&node), State::Fault);
+    assert_eq!(state(&node), DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0x6320);
 }
 
@@ -146,7 +146,7 @@ fn a_held_shaft_takes_the_limit_current_and_no_following_error() {
     ticks(&mut node, 2_000);
     assert!((position(&node) - at).abs() <= 34);
     assert_eq!(velocity(&node), 0);
-    assert_eq!(state(&node), State::OperationEnabled);
+    assert_eq!(state(&node), DeviceState::OperationEnabled);
     assert_eq!(get(&node, objects::CURRENT_ACTUAL), 25_000);
     let held = position(&node);
     node.unblock();

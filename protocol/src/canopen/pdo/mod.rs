@@ -11,7 +11,4 @@ mod layout;
 
 pub use communication::{CommunicationId, TransmissionType};
 pub use configuration::{Configuration, Pdo, Write, configuration};
-pub use layout::{
-    LayoutError, MAX_ENTRIES, MappedObject, MappedObject as Mapping, PdoError, PdoLayout,
-    PdoLayout as Layout,
-};
+pub use layout::{LayoutError, MAX_ENTRIES, MappedObject, PdoError, PdoLayout};

@@ -8,7 +8,6 @@ mod bus;
 mod object;
 mod segmented;
 
-pub use self::{SerialAnswer as Answer, SerialRequest as Request};
 pub use bus::{GatewayNmt, RequestCanFrame, SendCanFrame};
 pub use object::{ReadObject, WriteObject};
 pub use segmented::{

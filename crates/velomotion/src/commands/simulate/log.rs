@@ -11,7 +11,7 @@ use drive::cia402::control;
 use io::log::LogWriter;
 use protocol::epos2::message::{ReadObject, WriteObject};
 use protocol::epos2::objects::{self, Address};
-use protocol::epos2::{Frame, usb};
+use protocol::epos2::{SerialFrame, usb};
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use scanner::config::{AxisConfig, MountConfig};
 use scanner::{LidarConfig, ScanConfig, SweepPlan};
@@ -89,7 +89,12 @@ impl<'a> Log<'a> {
         ControlFlow::Break(())
     }
 
-    fn frame(&mut self, host: Stamp<Host>, direction: Direction, frame: &Frame) -> ControlFlow<()> {
+    fn frame(
+        &mut self,
+        host: Stamp<Host>,
+        direction: Direction,
+        frame: &SerialFrame,
+    ) -> ControlFlow<()> {
         let bytes = usb::to_bytes(frame);
         self.record(&Record {
             host,
@@ -226,7 +231,7 @@ fn rings(simulation: &Simulation) -> Vec<u8> {
 }
 
 /// Frame of a request to the drive.
-fn request(drive_request: DriveRequest, gearing: Gearing) -> Frame {
+fn request(drive_request: DriveRequest, gearing: Gearing) -> SerialFrame {
     let write = |address: Address, value: u32| {
         let write = WriteObject {
             node: NODE,
