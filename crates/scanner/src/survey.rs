@@ -64,7 +64,7 @@ impl Survey {
                 frame,
             } => {
                 self.link = Some(link);
-                let host = self.clock_steps.to_monotonic(record.host);
+                let host = self.clock_steps.monotonic(record.host);
                 let frame = DriveFrame {
                     link,
                     direction,

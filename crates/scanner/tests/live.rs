@@ -1,6 +1,5 @@
 //! The live cloud equals a replay of the same records, up to the errors of the streaming clock and
 //! trajectory.
-#![expect(clippy::unwrap_used, reason = "a test")]
 
 use std::collections::HashMap;
 

@@ -4,6 +4,7 @@
 //! `$VELOMOTION_RECORDINGS`, or of `shared/recordings` beside the checkout.
 #![expect(
     clippy::disallowed_methods,
+    clippy::panic,
     clippy::unwrap_used,
     reason = "a bench of recordings"
 )]

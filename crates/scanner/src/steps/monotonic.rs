@@ -68,7 +68,7 @@ impl ClockSteps {
     }
 
     /// Takes the stamp of a record of the drive, and returns its monotonic time.
-    pub fn to_monotonic(&mut self, host: Stamp<Host>) -> Stamp<Host> {
+    pub fn monotonic(&mut self, host: Stamp<Host>) -> Stamp<Host> {
         if let Some(last) = self.last {
             let length = host.saturating_since(last);
             let advance = self.lidar_advance(last, host);

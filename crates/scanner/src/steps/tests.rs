@@ -94,8 +94,8 @@ impl Recorded {
                 Entry::Poll(request, answer) => {
                     let stamp = Stamp::from_nanos;
                     let sewn = (
-                        seen.monotonic.to_monotonic(stamp(request)),
-                        seen.monotonic.to_monotonic(stamp(answer)),
+                        seen.monotonic.monotonic(stamp(request)),
+                        seen.monotonic.monotonic(stamp(answer)),
                     );
                     seen.polls.push(sewn);
                     seen.monotonic.sample();
