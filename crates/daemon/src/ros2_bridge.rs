@@ -48,28 +48,32 @@ pub fn start(state: &Arc<DaemonState>) -> Result<Option<Bridge>, Failure> {
     check(state.settings().ros2.as_ref())?;
     #[cfg(feature = "ros2")]
     if let Some(settings) = &state.settings().ros2 {
-        let scans: Arc<dyn ros2::ScanService> = state.clone();
+        let scans: Arc<dyn ros2::ScanService> = Arc::new(BridgeScans(Arc::clone(state)));
         let counts = Arc::clone(&state.ros2);
         return Bridge::start(&scans, settings.clone(), counts).map(Some);
     }
     Ok(None)
 }
 
+/// The scans of a daemon, for the bridge.
 #[cfg(feature = "ros2")]
-impl ros2::ScanService for Arc<DaemonState> {
+struct BridgeScans(Arc<DaemonState>);
+
+#[cfg(feature = "ros2")]
+impl ros2::ScanService for BridgeScans {
     fn devices(&self) -> &Arc<engine::service::DeviceService> {
-        &self.service
+        &self.0.service
     }
 
     fn start_capture(
         &self,
         request: &engine::capture::request::CaptureRequest,
     ) -> Result<String, String> {
-        crate::http::captures::start(self, request).map_err(|refusal| refusal.to_string())
+        crate::http::captures::start(&self.0, request).map_err(|refusal| refusal.to_string())
     }
 
     fn log(&self, scan: &str) -> std::path::PathBuf {
-        DaemonState::log(self, scan)
+        self.0.log(scan)
     }
 }
 
