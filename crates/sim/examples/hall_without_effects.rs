@@ -1,7 +1,7 @@
-//! One sweep through the hall without any effect; prints a checksum of all that comes out.
+//! One sweep through the hall without effects; prints a checksum of the output.
 //!
-//! It is built twice, with the feature `effects` and without, to count instructions: what nobody asked for must not cost any
-//! (`tests/unasked_is_absent.rs`).
+//! Built with and without the feature `effects` to count instructions: absent effects must not cost
+//! any (`tests/unasked_is_absent.rs`).
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;

@@ -1,7 +1,8 @@
-//! How many points the shipped scenes give, beside Table 4 of the paper: `cargo run --release -p velomotion-sim --example scan_counts`.
+//! Numbers of points of the shipped scenes against Table 4 of the paper: `cargo run --release -p
+//! velomotion-sim --example scan_counts`.
 //!
-//! The simulator's engine makes them, with all effects that the scene files ask for. What decides whether a beam returns is light
-//! (`reflectance`), the scanner's own frame and tripod (`own_shadow`), and the sensor's 1 to 100 m.
+//! All effects of the scene files are on. Light (`reflectance`), the scanner's frame and tripod
+//! (`own_shadow`) and the sensor's range of 1 to 100 m decide whether a beam returns.
 
 use std::error::Error;
 use std::num::NonZeroUsize;
@@ -12,7 +13,8 @@ use sim::scene_file::SceneFile;
 use sim::scenery::shipped;
 use sim::simulate::{SimulationEvent, SimulationSink};
 
-/// A scene of ours, the paper's place, and its points: VLP-16 level for 0.1 s, velomotion's fast scan in 0.8 s.
+/// A scene, the paper's place, and its points: VLP-16 level for 0.1 s, velomotion's fast scan in
+/// 0.8 s.
 const PLACES: [(&str, &str, u64, u64); 3] = [
     ("hall", "building hall", 27_998, 201_851),
     ("parking", "parking area", 20_141, 158_351),
@@ -20,12 +22,12 @@ const PLACES: [(&str, &str, u64, u64); 3] = [
 ];
 /// Shots a second that the paper's shares are of: 28,800 a turn.
 const PAPERS_SHOTS_PER_S: f64 = 288_000.0;
-/// How fast the fast scan is, degrees per second.
+/// Speed of the fast scan, degrees per second.
 const FAST_DEG_S: f64 = 56.25;
-/// How long a level sensor looks: a turn of the VLP-16 at 10 Hz, seconds.
+/// Duration with a level sensor: a revolution of the VLP-16 at 10 Hz, seconds.
 const TURN_S: f64 = 0.1;
 
-/// What became of the shots.
+/// Counts of shots.
 #[derive(Clone, Copy)]
 struct Count {
     shots: f64,
@@ -133,7 +135,8 @@ mod tests {
         }
     }
 
-    /// The paper's scan times: 45 degrees at 1.07 and 56.25 deg/s, to hundredths of a second cut off as it has them, and a turn of the VLP-16.
+    /// The paper's scan times: 45 degrees at 1.07 and 56.25 deg/s, cut to hundredths of a second as
+    /// in the paper, and a revolution of the VLP-16.
     #[test]
     fn scans_take_as_long_as_the_papers() {
         for (speed_deg_s, hundredths) in [(1.07, 4_205.0), (FAST_DEG_S, 80.0)] {

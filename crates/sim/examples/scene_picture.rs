@@ -1,9 +1,11 @@
-//! A picture of a scene, PNG on standard output: `cargo run --release -p velomotion-sim --example scene_picture -- hall > hall.png`.
+//! A picture of a scene, PNG on standard output: `cargo run --release -p velomotion-sim --example
+//! scene_picture -- hall > hall.png`.
 //!
-//! Above, the scene from outside in sunlight, with what a level VLP-16 at the origin meets in one turn; nearer walls and the
-//! ceiling of what encloses the scanner are cut away. Below, all that can be seen from the scanner, 360 by 105 degrees: nearer is brighter and
-//! warmer, and what returns nothing is black. Takes the name of a shipped scene, and six numbers for another
-//! camera: where it is and what it looks at (metres).
+//! Above, the scene from outside in sunlight, with what a level VLP-16 at the origin meets in one
+//! turn; nearer walls and the ceiling of what encloses the scanner are cut away. Below, all that
+//! can be seen from the scanner, 360 by 105 degrees: nearer is brighter and warmer, and what
+//! returns nothing is black. Takes the name of a shipped scene, and six numbers for another camera:
+//! where it is and what it looks at (metres).
 
 use std::error::Error;
 use std::io::{Write, stdout};
@@ -47,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let text = shipped(&name).ok_or(format!("no scene {name} comes with it"))?;
     let placed = Scenery::parse(text)?.place(seed(text), &mut no_files)?;
     let caster = placed.caster()?;
-    // The scanner on its tripod stands in the picture and not in the scan.
+    // The scanner on its tripod is in the picture and not in the scan.
     let tripod = Cylinder {
         radius_m: 0.2,
         bottom_m: -1.2,
@@ -88,7 +90,7 @@ fn screen(colour: DVec3) -> [u8; 3] {
     bytes.map(|byte| byte.round() as u8)
 }
 
-/// Objects within which the scanner stands.
+/// Objects around the scanner.
 fn enclosing(placed: &Placed) -> Vec<bool> {
     let inside = |surface: &Surface| match surface {
         Surface::Sphere(sphere) => sphere.radius_m > 5.0,
@@ -208,7 +210,7 @@ impl Seen<'_> {
         })
     }
 
-    /// What a level VLP-16 meets, where the camera sees it too.
+    /// The points of a level VLP-16 that the camera sees.
     fn dots(&self, camera: &Camera, image: &mut [DVec3]) -> Result<(), Box<dyn Error>> {
         let (sensor, mount) = (LidarSensor::vlp16(), LidarMount::above(0.0));
         for azimuth in (0..1_200).map(|step| f64::from(step) * 0.3) {

@@ -1,12 +1,13 @@
-//! Ray casting: which surface a ray meets first, how far away, and on request the normal there.
+//! Ray casting: the first surface along a ray, its distance, and on request the normal there.
 //!
-//! A [`Caster`] holds objects: surfaces, each at its [`Placement`]. It answers for one ray ([`Caster::nearest`], [`Caster::any`]) or for many
-//! ([`Caster::nearest_of`]), in f64 and without a gap between triangles. Every answer is a function of its ray and the objects
-//! alone: the same bits by one ray or many, in any order, on any number of threads, with any registers.
+//! A [`Caster`] holds objects: surfaces, each at its [`Placement`]. It casts one ray
+//! ([`Caster::nearest`], [`Caster::any`]) or many ([`Caster::nearest_of`]), in f64 and without gaps
+//! between triangles. Every result is a function of its ray and the objects alone: the same bits
+//! for one ray or many, in any order, on any number of threads, with any registers.
 //!
-//! How it is fast: trees of boxes with eight children (`bvh`), boxes in f32 and what is in them in f64 (`beam`, `triangle`), and
-//! eight rays at a time where they go nearly the same way (`packet`). Why no crate does it: docs/src/rays.md.
-//! Left out: materials, effects, time; files; everything about a sensor.
+//! It is fast by trees of boxes with eight children (`bvh`), boxes in f32 with contents in f64
+//! (`beam`, `triangle`), and eight rays at a time where they go nearly the same way (`packet`).
+//! docs/src/rays.md compares it with published crates.
 
 mod batch;
 mod beam;

@@ -1,10 +1,10 @@
 //! The effects, one file each, and the configuration that a scene file's `[effects]` maps to.
 //!
-//! Effects act in the order of [`EffectsConfig`], whatever the file's order: light before noise, the
-//! servo before the gear. A new effect needs a file and a line in the list below.
+//! Effects act in the order of [`EffectsConfig`], not of the file: light before noise,
+//! the servo before the gear. A new effect needs a file and a line in the list below.
 
-/// Implements what the effects have in common: the name, the reason for inactivity, and the settings
-/// that add the effect to its list.
+/// Implements what the effects have in common: the name, the reason for inactivity, and the
+/// settings that add the effect to its list.
 macro_rules! effect {
     ($effect:ident, $settings:ident, $($list:ident).+: $pointer:ident, $name:literal,
      idle: $idle:literal, $(needs: $needs:expr,)? new: $new:expr) => {
@@ -118,7 +118,8 @@ macro_rules! effects_config {
                 names.into_iter().flatten()
             }
 
-            /// Creates the configured effects for a run with `seed`. `stopwatch` measures their cost.
+            /// Creates the configured effects for a run with `seed`. `stopwatch` measures their
+            /// cost.
             ///
             /// # Errors
             /// [`InvalidSetting`] for the first setting that is invalid.

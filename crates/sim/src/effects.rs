@@ -17,9 +17,9 @@
 //! code instantiated for it contains no code of effects. A `Vec` of [`Listed`] holds the effects
 //! that a scene file configures.
 //!
-//! The first five are shared by threads that take firings in any order. Their results depend only on
-//! their arguments and their [`Source`](crate::random::Source), so one seed gives the same bytes on
-//! any number of threads. The last three run in order of time in one thread and may keep state.
+//! The first five are shared by threads that take firings in any order. Their results depend only
+//! on their arguments and their [`Source`](crate::random::Source), so one seed gives the same bytes
+//! on any number of threads. The last three run in order of time in one thread and may keep state.
 
 mod listed;
 

@@ -1,5 +1,5 @@
-//! Scenes, ray casting, the tilted lidar and ground truth: both devices of the scanner in one virtual
-//! world.
+//! Scenes, ray casting, the tilted lidar and ground truth: both devices of the scanner in one
+//! virtual world.
 //!
 //! [`Rig`] runs both devices with the drive's firmware, driven by bytes and time; [`Truth`] tells
 //! where every beam met the scene. [`simulate`] runs whole scenes for every lidar model as fast as

@@ -23,7 +23,8 @@ pub(crate) struct LidarClock {
 }
 
 impl LidarClock {
-    /// A clock that shows `at_start_us` past the hour at `start`. A drift that is not a number is 0.
+    /// A clock that shows `at_start_us` past the hour at `start`. A drift that is not a number is
+    /// 0.
     pub fn new(start: Stamp<Host>, at_start_us: u32, drift_ppm: f64) -> Self {
         let drift_ppm = if drift_ppm.is_nan() { 0.0 } else { drift_ppm };
         Self {

@@ -1,7 +1,7 @@
 //! Commanded motion of the tilt axis: angle over time, exact, in closed form.
 //!
-//! Time is in seconds from the start of the simulation. [`MechanismEffect`](crate::effects::MechanismEffect)
-//! applies servo and gear.
+//! Time is in seconds from the start of the simulation.
+//! [`MechanismEffect`](crate::effects::MechanismEffect) applies servo and gear.
 
 use thiserror::Error;
 
@@ -100,8 +100,8 @@ impl AxisMotion {
         })
     }
 
-    /// Consecutive sweeps. With `accel_deg_s2` each is a trapezoid, or a triangle where the distance
-    /// is too short; without, the speed changes at once, as in ideal scan patterns.
+    /// Consecutive sweeps. With `accel_deg_s2` each is a trapezoid, or a triangle where the
+    /// distance is too short; without, the speed changes at once, as in ideal scan patterns.
     ///
     /// # Errors
     /// [`MotionError`] for numbers outside the ranges in [`Sweeps`].
@@ -352,7 +352,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(256))]
 
-        /// Whatever the profile (trapezoid, triangle, no way at all): it is continuous, its rate is its slope, and it gets there.
+        /// For every profile (trapezoid, triangle, no distance) the motion is continuous, its rate is
+        /// its slope, and it gets there.
         #[test]
         fn the_rate_is_the_slope_of_the_angle(
             from in -180.0..180.0, to in -180.0..180.0, speed in 0.01..500.0, accel in 1.0..1e5, both: bool, count in 0_u32..4,

@@ -381,8 +381,8 @@ impl HeadRotation {
         6.0 * f64::from(self.rpm)
     }
 
-    /// The azimuth at a lidar time since the start, 0..360 degrees. Whole revolutions are removed in
-    /// integers, so the azimuth stays exact for runs of any length.
+    /// The azimuth at a lidar time since the start, 0..360 degrees. Whole revolutions are removed
+    /// in integers, so the azimuth stays exact for runs of any length.
     pub(crate) fn azimuth_deg(self, device_ns: i64) -> f64 {
         let in_minute = device_ns.rem_euclid(MINUTE_NS);
         // Saturates only for speeds that no head has.

@@ -1,8 +1,8 @@
 //! Reproducible random numbers: by key (seed, effect name, firing, channel) or in sequence.
 //!
 //! Keys make effects independent of each other and of the number of threads. The mixing function is
-//! that of SplitMix64 (Steele, Lea and Flood 2014), a bijection of 64 bits, applied once per part of
-//! the key; a sequence is SplitMix64 itself. Not for cryptography.
+//! that of SplitMix64 (Steele, Lea and Flood 2014), a bijection of 64 bits, applied once per part
+//! of the key; a sequence is SplitMix64 itself. Not for cryptography.
 
 use core::f64::consts::TAU;
 

@@ -1,10 +1,10 @@
 //! Both devices of the scanner in one virtual world, the drive with its firmware.
 //!
-//! Host time is true time. Each control cycle of the drive (1 ms) fixes the motion of the shaft until
-//! the next. A lidar packet is made when its last firing ends, by the same
+//! Host time is true time. Each control cycle of the drive (1 ms) fixes the motion of the shaft
+//! until the next. A lidar packet is made when its last firing ends, by the same
 //! [`packet_maker`](crate::packet_maker) as in [`crate::simulate`]. The output depends on the
-//! configuration and on the input bytes and their times, not on the steps of [`Rig::advance`]. Delays
-//! of the transports are not included; [`crate::link`] has them.
+//! configuration and on the input bytes and their times, not on the steps of [`Rig::advance`].
+//! Delays of the transports are not included; [`crate::link`] has them.
 
 mod attachment;
 mod shaft;
@@ -80,8 +80,8 @@ impl Default for RigLidar {
 }
 
 impl RigConfig {
-    /// The paper's scanner in the hall: lidar 0.06 m above the axis, 500-line encoder, gear of 120:1,
-    /// 10 Hz.
+    /// The paper's scanner in the hall: lidar 0.06 m above the axis, 500-line encoder, gear of
+    /// 120:1, 10 Hz.
     #[must_use]
     pub fn new(start: Stamp<Host>) -> Self {
         Self {
@@ -139,8 +139,8 @@ const fn clock_effect(clock: LidarClock) -> RigEffects {
 
 /// The two devices and the world around them.
 ///
-/// The caller calls [`Rig::advance`] with the time, passes on the host's bytes and takes the devices'
-/// bytes. Datagrams and answers are kept until they are taken.
+/// The caller calls [`Rig::advance`] with the time, passes on the host's bytes and takes the
+/// devices' bytes. Datagrams and answers are kept until they are taken.
 #[derive(Debug)]
 pub struct Rig {
     lidar: Lidar,
@@ -259,8 +259,8 @@ impl Rig {
         self.now
     }
 
-    /// Drops the shaft's motion before `host`, so that a run of days needs bounded memory; the truth
-    /// begins there. The last second is kept, because packets need it.
+    /// Drops the shaft's motion before `host`, so that a run of days needs bounded memory; the
+    /// truth begins there. The last second is kept, because packets need it.
     pub fn forget_before(&mut self, host: Stamp<Host>) {
         let last_second = self.now.saturating_add(-Span::from_secs(1));
         let since = host.min(last_second).saturating_since(self.lidar.start);

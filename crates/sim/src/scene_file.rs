@@ -114,8 +114,8 @@ impl SceneEffects {
         self.lines.retain(|line| !is_out(line.name));
     }
 
-    /// Sets all moving objects, those of the scene and those of the effect's table. Without a table,
-    /// `line` configures the effect.
+    /// Sets all moving objects, those of the scene and those of the effect's table. Without a
+    /// table, `line` configures the effect.
     fn set_moving_objects(&mut self, all: MovingObjects, line: usize, stopwatch: Stopwatch) {
         let name = MovingObjects::NAME;
         // No other effect moves objects.
@@ -130,7 +130,8 @@ impl SceneEffects {
 }
 
 impl SceneFile {
-    /// Reads a scene file. `seed` replaces the file's seed; `stopwatch` measures the cost of effects.
+    /// Reads a scene file. `seed` replaces the file's seed; `stopwatch` measures the cost of
+    /// effects.
     ///
     /// # Errors
     /// [`SceneFileError`] for text that is not TOML, unknown or missing keys and invalid values.

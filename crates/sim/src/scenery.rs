@@ -1,10 +1,9 @@
-//! What stands around the scanner: the objects and materials of a scene file.
+//! The surroundings of the scanner: objects and materials of a scene file.
 //!
-//! [`Scenery::parse`] gives what the text says, every number in its range and every key known. [`Scenery::place`] makes of it
-//! what rays are cast at ([`Placed`]); mesh files it gets through a function, for there are no files here. Scenes that come with the
-//! simulator are in [`SHIPPED`]. Whatever is wrong is told with its line and column, and what was expected.
+//! [`Scenery::parse`] reads and checks the text. [`Scenery::place`] makes the objects that rays are
+//! cast at ([`Placed`]); the caller provides the bytes of mesh files. [`SHIPPED`] has the scenes of
+//! the simulator. Errors have a line and a column.
 //!
-//! Left out: the other sections of a scene file; what light does with materials, and moving what moves (effects); files.
 
 mod error;
 mod generators;
@@ -54,8 +53,8 @@ impl Scenery {
     /// Reads `[materials]` and `[[objects]]` of a scene file and ignores its other sections.
     ///
     /// # Errors
-    /// [`SceneryError`] with line and column, for text that is not TOML, an unknown key, a value out
-    /// of range or an unknown material.
+    /// [`SceneryError`] with line and column, for text that is not TOML, an unknown key, a value
+    /// out of range or an unknown material.
     pub fn parse(text: &str) -> Result<Self, SceneryError> {
         let sections: ScenerySections =
             toml::from_str(text).map_err(|error| SceneryError::toml(text, &error))?;

@@ -77,8 +77,8 @@ impl LidarSensor {
         Self::new(PacketModel::PuckHiRes, tables::hi_res(), 100.0)
     }
 
-    /// HDL-32E (its manual; drawing 86-0106 revision B): 32 lasers from -30.67 to 10.67 degrees, 1 to
-    /// 70 m as in the paper's Table 3.
+    /// HDL-32E (its manual; drawing 86-0106 revision B): 32 lasers from -30.67 to 10.67 degrees, 1
+    /// to 70 m as in the paper's Table 3.
     #[must_use]
     pub fn hdl32e() -> Self {
         Self::new(PacketModel::Hdl32e, tables::hdl32e(), 70.0)
@@ -90,15 +90,16 @@ impl LidarSensor {
         Self::new(PacketModel::Vlp32c, tables::vlp32c(), 200.0)
     }
 
-    /// A 2D scanner: a VLP-16 of which only laser 14 is active, 1 degree below level. Its packets are
-    /// those of a VLP-16 whose other lasers never return, so any reader places its points correctly.
+    /// A 2D scanner: a VLP-16 of which only laser 14 is active, 1 degree below level. Its packets
+    /// are those of a VLP-16 whose other lasers never return, so any reader places its points
+    /// correctly.
     #[must_use]
     pub fn single_beam() -> Self {
         Self::vlp16().only(14)
     }
 
-    /// The same sensor with one active laser, by its number in firing order. Laser 15 of the HDL-32E
-    /// is exactly level.
+    /// The same sensor with one active laser, by its number in firing order. Laser 15 of the
+    /// HDL-32E is exactly level.
     #[must_use]
     pub fn only(mut self, laser: usize) -> Self {
         let bit = u32::try_from(laser)
@@ -165,13 +166,13 @@ impl LidarSensor {
         }
     }
 
-    /// Origin (metres) and direction (length 1) of a laser's ray in the frame of the platform's base:
-    /// origin on the tilt axis, x right, y forward, z up. `azimuth_deg` is the head's azimuth when the
-    /// laser fires; `None` where there is no such laser.
+    /// Origin (metres) and direction (length 1) of a laser's ray in the frame of the platform's
+    /// base: origin on the tilt axis, x right, y forward, z up. `azimuth_deg` is the head's azimuth
+    /// when the laser fires; `None` where there is no such laser.
     ///
-    /// The plain definition of a ray, a composition of rigid motions: the direction is raised about x
-    /// by the elevation and rotated about the vertical by the azimuth (clockwise seen from above, y
-    /// to x), the head is moved onto its mount, and the platform tilts about y (z to x).
+    /// The plain definition of a ray, a composition of rigid motions: the direction is raised about
+    /// x by the elevation and rotated about the vertical by the azimuth (clockwise seen from above,
+    /// y to x), the head is moved onto its mount, and the platform tilts about y (z to x).
     #[must_use]
     pub fn ray(
         &self,

@@ -93,8 +93,8 @@ pub enum SimulationEvent<'a> {
     },
 }
 
-/// A request to the drive: the position all the time, six writes before each move, and a probe after
-/// a missing answer.
+/// A request to the drive: the position all the time, six writes before each move, and a probe
+/// after a missing answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DriveRequest {
     /// Read the position of the shaft.

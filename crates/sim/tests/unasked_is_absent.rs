@@ -52,7 +52,7 @@ fn counted(program: &Path, into: &Path) -> (u64, String) {
 
 #[test]
 #[ignore = "needs valgrind"]
-fn a_scene_without_effects_costs_what_it_did_before_there_were_any() {
+fn absent_effects_cost_no_instructions() {
     let into = Path::new(env!("CARGO_TARGET_TMPDIR")).join("unasked");
     std::fs::create_dir_all(&into).unwrap();
     let without = built(&[], &into);

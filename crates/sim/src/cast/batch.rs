@@ -1,6 +1,6 @@
-//! Many rays at once: eight of one beam together, from wherever they are kept, on one thread or several.
+//! Many rays: eight of one beam together, from any storage, on one thread or several.
 //!
-//! Left out: how eight rays are cast ([`Caster`]).
+//! [`Caster`] casts the eight rays.
 
 use fearless_simd::{Simd, dispatch};
 use rayon::prelude::*;
@@ -10,12 +10,13 @@ use super::packet::{LANES, Lanes, Nearest};
 use super::ray::{Hit, Normal, Ray, Reach};
 use super::threads::Threads;
 
-/// How many packets of each beam one thread takes at a time.
+/// Packets of each beam that one thread takes at a time.
 const PACKETS_AT_A_TIME: usize = 8;
 
-/// Rays in the order in which a lidar fires: `beams` of them a firing, firing after firing.
+/// Rays in firing order: `beams` of them per firing, firing after firing.
 ///
-/// Rays of one beam in consecutive firings are cast together. If there is no such order, one beam is right.
+/// Rays of one beam in consecutive firings are cast together. Rays without such an order are one
+/// beam.
 #[derive(Clone, Copy, Debug)]
 pub struct Rays<'a> {
     rays: &'a [Ray],
@@ -23,7 +24,8 @@ pub struct Rays<'a> {
 }
 
 impl<'a> Rays<'a> {
-    /// Rays of firings of so many beams; zero counts as one. The last firing need not be whole.
+    /// Rays of firings with this number of beams; zero counts as one. The last firing may be
+    /// partial.
     #[must_use]
     pub fn new(rays: &'a [Ray], beams: usize) -> Self {
         // More beams than rays: one firing, of which there are these.
@@ -32,9 +34,11 @@ impl<'a> Rays<'a> {
     }
 }
 
-/// Where packets of up to eight rays come from and where what they hit goes, so that nobody has to copy rays into a list.
+/// A source of packets of up to eight rays and a destination of their hits, without copies of the
+/// rays.
 pub(crate) trait Packets {
-    /// Sets the lanes of a packet; the answer has a bit for each that holds a ray, bit 0 for the first. What is no ray hits nothing.
+    /// Sets the lanes of a packet. The result has a bit for each lane with a ray, bit 0 for the
+    /// first. An invalid ray hits nothing.
     fn load(&self, packet: usize, lanes: &mut Lanes) -> u64;
 
     /// Takes what those lanes hit.
@@ -85,7 +89,7 @@ impl<N: Normal> Packets for Piece<'_, N> {
 }
 
 impl Caster {
-    /// As [`Caster::nearest`] for every ray, in their order: the first of `hits` for the first ray, up to the shorter of both.
+    /// As [`Caster::nearest`] for every ray in order, up to the length of the shorter list.
     pub fn nearest_of<N: Normal>(
         &self,
         rays: &Rays<'_>,
@@ -116,7 +120,7 @@ impl Caster {
         }
     }
 
-    /// What the rays of so many packets hit, on the caller's thread.
+    /// Casts packets of rays on the caller's thread.
     // Not generic over where they come from, so that it is compiled once.
     pub(crate) fn nearest_in(&self, packets: usize, reach: Reach, of: &mut dyn Packets) {
         let reach = reach.clean();

@@ -1,16 +1,18 @@
-//! What a ray, or eight rays that go much the same way, asks of boxes: may it enter, and from where.
+//! Test of one ray, or of eight nearly parallel rays, against boxes: which they may enter, and
+//! where.
 //!
-//! The answer errs on the safe side only. Everything is f32; slabs are moved outward by [`Beam::slack`], which is more than all
-//! roundings of the test together can make (after Ize, Robust BVH Ray Traversal, 2013, whose factors are relative to the slab: ours
-//! is absolute, and holds for a beam of rays as well). Left out: what is in the boxes.
+//! Errors are on the safe side only. Everything is f32; slabs are moved outward by [`Beam::slack`],
+//! more than all rounding of the test together (after Ize, Robust BVH Ray Traversal, 2013, whose
+//! factors are relative to the slab; this slack is absolute and holds for beams of rays as well).
 
 use fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 
 use super::bvh::Node;
 
-/// Roundings of the test are below 2^-21 of the coordinates that go in; twice over for both ends of an interval, twice over to be sure.
+/// Rounding of the test is below 2^-21 of the coordinates; doubled for both ends of an interval,
+/// and doubled as a margin.
 const SLACK: f64 = 1.0 / (1 << 19) as f64;
-/// A direction is never nearer to parallel than this; within any scene that is less than the slack.
+/// Smallest component of a direction; within any scene its effect is less than the slack.
 const LEAST_DIRECTION: f64 = 1e-18;
 
 /// The least and the greatest coordinate of rays along each axis.
@@ -90,7 +92,7 @@ impl Beam<false> {
 }
 
 impl<const THICK: bool> Beam<THICK> {
-    /// All rays between these origins and directions, in a tree whose coordinates reach so far.
+    /// All rays between these origins and directions, in a tree with coordinates up to `reach_m`.
     #[inline(always)]
     pub(super) fn about(origin: &Spread, direction: &Spread, reach_m: f64) -> Self {
         let slack = Self::slack(origin, reach_m);
@@ -101,7 +103,7 @@ impl<const THICK: bool> Beam<THICK> {
         ])
     }
 
-    /// How far slabs are moved outward, metres: by what f32 makes of the coordinates.
+    /// Distance by which slabs are moved outward, metres: the f32 rounding of the coordinates.
     #[inline(always)]
     fn slack(origin: &Spread, reach_m: f64) -> f64 {
         let mut far = reach_m;
@@ -111,7 +113,8 @@ impl<const THICK: bool> Beam<THICK> {
         far * SLACK
     }
 
-    /// From where on the beam may be within each of a node's boxes, and for which that is not beyond `up_to`.
+    /// Where the beam may enter each of a node's boxes, and which of them it enters no farther than
+    /// `up_to`.
     #[inline(always)]
     pub(super) fn enter<S: Simd>(
         &self,
@@ -137,9 +140,9 @@ impl<const THICK: bool> Beam<THICK> {
     }
 }
 
-/// How far a walk is to look for hits up to here.
+/// The largest distance at which a walk looks for hits.
 #[inline(always)]
 pub(super) fn up_to(range_m: f64) -> f32 {
-    // What this rounds off is within the slack.
+    // The rounding is within the slack.
     range_m as f32
 }

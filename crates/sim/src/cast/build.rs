@@ -1,23 +1,25 @@
-//! Building the tree: the surface area heuristic (MacDonald and Booth 1990; binned, Wald 2007), eight children at a time.
+//! Construction of the tree by the surface area heuristic (MacDonald and Booth 1990; binned, Wald
+//! 2007), eight children at a time.
 //!
-//! One input and one [`Quality`] give one tree, on any machine. Left out: triangles cut in two, several threads.
+//! One input and one [`Quality`] give the same tree on any machine.
 
 use super::bvh::{Bounds, Bvh, LEVELS, MOST_SHARING, Node, leaf};
 
 /// More places along an axis than this are not tried.
 const MOST_BINS: usize = 64;
 
-/// How much work goes into the tree over a mesh. It changes how long rays take, never what they meet.
+/// Effort for the tree over a mesh. It changes the time of rays, never their hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quality {
-    /// Parts of each axis between which a cut is tried, up to 64: the one with the least expected cost is made. Below two there is nothing to try,
-    /// and every cut goes through the middle of the triangles along their widest axis.
+    /// Bins per axis between which cuts are tried, up to 64; the cut with the least expected cost
+    /// is made. Below two, every cut goes through the middle of the triangles along their widest
+    /// axis.
     pub bins: usize,
     /// So many triangles may share a box, 1 to 16.
     pub sharing: usize,
 }
 
-/// What casters are fast with: 16 bins, and a box of its own for every triangle.
+/// Default of casters: 16 bins, and a box for every triangle.
 impl Default for Quality {
     fn default() -> Self {
         Self {
@@ -130,7 +132,7 @@ fn parts(items: &mut [Item], job: &Job, bins: &mut Bins) -> Vec<Part> {
             .map(|at| Part::over(items, at, at + 1))
             .collect();
     }
-    // Cuts go through the middle where the best ones could make a tree too deep for the stack.
+    // Cuts go through the middle where the best ones could make the tree too deep for the stack.
     let balanced = (end - begin - 1).ilog2() as usize / 3 + 1;
     let by_area = bins.can_cut() && job.level + balanced < LEVELS;
     let mut parts = vec![Part::over(items, begin, end)];
@@ -158,7 +160,7 @@ fn parts(items: &mut [Item], job: &Job, bins: &mut Bins) -> Vec<Part> {
     parts
 }
 
-/// Orders the items of a part so that those before the answer are one side of the best cut.
+/// Sorts the items of a part so that those before the result are one side of the best cut.
 fn cut(items: &mut [Item], part: &Part, bins: Option<&mut Bins>) -> usize {
     let middle = part.begin + part.len() / 2;
     let Some(slice) = items.get_mut(part.begin..part.end) else {
@@ -225,7 +227,7 @@ impl Binning {
     }
 }
 
-/// What falls into each bin, and what lies at or behind it: room that is used again for every cut.
+/// Contents of each bin and of all bins from it on; the memory is reused for every cut.
 struct Bins {
     of: Vec<(Bounds, usize)>,
     behind: Vec<(f64, usize)>,
@@ -248,7 +250,8 @@ impl Bins {
         self.count() > 1
     }
 
-    /// Axis and first bin behind the cut with the least expected cost; `None` if no cut separates anything.
+    /// Axis and first bin behind the cut with the least expected cost; `None` if no cut separates
+    /// anything.
     fn cheapest(&mut self, items: &[Item], centres: &Bounds) -> Option<(usize, usize)> {
         let mut best = (f64::INFINITY, None);
         for axis in 0..3 {
@@ -290,7 +293,7 @@ impl Bins {
     }
 }
 
-/// What testing so many items costs: they go by fours.
+/// Cost of testing this number of items, which go by fours.
 fn blocks(count: usize) -> f64 {
     count.div_ceil(4) as f64
 }

@@ -1,8 +1,8 @@
-//! The tree of boxes: up to eight children a node, one item a leaf unless its [`Quality`] says otherwise, so that every triangle has a box of its
-//! own and one step tests eight of them.
+//! The tree of boxes: up to eight children a node, one item a leaf unless its [`Quality`] says
+//! otherwise, so that every triangle has a box of its own and one step tests eight of them.
 //!
-//! Boxes are f32 and hold their items with room to spare; what is in them is tested in f64, so boxes decide what is looked at
-//! and never what is hit. Left out: changing a tree once it is built.
+//! Boxes are f32 and contain their items with a margin. Their contents are tested in f64, so boxes
+//! decide what is tested and never what is hit.
 
 use fearless_simd::{Simd, prelude::*};
 
@@ -18,7 +18,7 @@ pub(super) const MOST_SHARING: usize = 16;
 /// The most items: a balanced tree of them has nine levels.
 pub(super) const MOST_ITEMS: usize = 1 << MORE;
 
-/// The child that is `count` items from `first` on: 1 to [`MOST_SHARING`] of them, below [`MOST_ITEMS`].
+/// The child of `count` items from `first` on: 1 to [`MOST_SHARING`] of them, below [`MOST_ITEMS`].
 pub(super) const fn leaf(first: usize, count: usize) -> u32 {
     first as u32 | (count as u32 - 1) << MORE | LEAF
 }
@@ -91,7 +91,7 @@ impl Bounds {
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Node {
-    /// Low x, high x, low y, high y, low z, high z; an empty place has a box that nothing enters.
+    /// Low x, high x, low y, high y, low z, high z; an unused child has an empty box.
     pub slabs: [[f32; 8]; 6],
     /// A node, or items with [`LEAF`] ([`leaf`]).
     pub child: [u32; 8],
@@ -143,13 +143,15 @@ impl Stack {
 }
 
 impl Bvh {
-    /// A tree over items with these boxes, and the order in which its leaves name them: leaf `i` is item `order[i]`.
+    /// A tree over items with these boxes, and the order of its leaves: leaf `i` is item
+    /// `order[i]`.
     pub(super) fn over(boxes: &[Bounds], quality: Quality) -> (Self, Vec<u32>) {
         build::build(boxes, quality)
     }
 
-    /// Calls `visit` for every item whose box the beam may enter no farther than `up_to`, roughly the nearest first; it answers how far
-    /// is of interest from then on, and anything negative ends the walk.
+    /// Calls `visit` for every item whose box the beam may enter no farther than `up_to`, roughly
+    /// the nearest first; it answers how far is of interest from then on, and anything negative
+    /// ends the walk.
     #[inline(always)]
     pub(super) fn walk<S: Simd, const THICK: bool>(
         &self,

@@ -1,7 +1,7 @@
 //! Objects in a scene, and what rays meet first among them.
 //!
-//! Finite objects are in a tree of their own, about the middle of the scene; endless planes are asked one after the other. Left out: how one object
-//! is met.
+//! Finite objects are in a tree of their own, about the middle of the scene; endless planes are
+//! asked one after the other. Left out: how one object is met.
 
 use fearless_simd::{Level, Simd, dispatch};
 use thiserror::Error;
@@ -17,14 +17,15 @@ use super::placement::Placement;
 use super::ray::{Hit, Normal, Ray, Reach};
 use super::surface::Object;
 
-/// So few objects are asked one after the other.
+/// Up to this number, objects are tested one after the other.
 const FEW: usize = 4;
 /// Rays whose directions differ by more than this go one by one.
 const WIDE: f64 = 0.15;
-/// Rays whose origins differ by more than this, relative to the size of the scene, go one by one.
+/// Rays whose origins differ by more than this, relative to the size of the scene, are cast one by
+/// one.
 const FAR_APART: f64 = 1e-3;
 
-/// What cannot be cast at.
+/// Invalid geometry.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum CastError {
     /// More objects than a tree holds.
@@ -43,9 +44,9 @@ pub enum CastError {
     /// There is no such object.
     #[error("sim: expected an object below {objects}, got {got}")]
     NoObject {
-        /// How many there are.
+        /// Number of objects.
         objects: usize,
-        /// Which was asked for.
+        /// The requested object.
         got: usize,
     },
 }
@@ -54,7 +55,8 @@ pub enum CastError {
 #[derive(Clone, Debug)]
 pub struct Caster {
     objects: Vec<Object>,
-    /// Those that are asked one after the other, by number: planes, and everything else if that is few.
+    /// Numbers of the objects that are tested one after the other: planes, and all others if they
+    /// are few.
     each: Vec<u32>,
     /// All others, by number, in the order of the tree's leaves.
     leaves: Vec<u32>,
@@ -117,7 +119,7 @@ impl Caster {
         &self.objects
     }
 
-    /// Moves an object and sorts the scene anew; trees within meshes stay as they are.
+    /// Moves an object and rebuilds the tree of objects; trees within meshes do not change.
     ///
     /// # Errors
     /// [`CastError::NoObject`] if there is none of this number.
@@ -133,7 +135,7 @@ impl Caster {
         self.arrange()
     }
 
-    /// Sorts objects into those that are asked one after the other and the tree.
+    /// Sorts objects into those that are tested one after the other and the tree.
     fn arrange(&mut self) -> Result<(), CastError> {
         self.each.clear();
         let (mut finite, mut boxes) = (Vec::new(), Vec::new());
@@ -175,7 +177,8 @@ impl Caster {
         Ok(())
     }
 
-    /// What a ray hits first within its reach; [`Hit`] says which of equals. `N` is `()` or, for normals, [`DVec3`].
+    /// The first hit of a ray within its reach; [`Hit`] defines the order of equal distances. `N`
+    /// is `()` or, for normals, [`DVec3`].
     #[must_use]
     pub fn nearest<N: Normal>(&self, ray: &Ray, reach: Reach) -> Option<Hit<N>> {
         self.finish(ray, self.best::<false>(ray, reach).hit())
@@ -187,13 +190,13 @@ impl Caster {
         self.best::<true>(ray, reach).has_hit()
     }
 
-    /// Not generic over what is asked, so that it is compiled here and once.
+    /// Not generic over the normal, so that it is compiled once.
     fn best<const ANY: bool>(&self, ray: &Ray, reach: Reach) -> Best {
         let (ray, reach) = (arrays(ray), reach.clean());
         dispatch!(self.level, simd => self.one::<_, ANY>(simd, &mut Stacks::new(), ray, reach))
     }
 
-    /// Adds what is asked beyond range, object and primitive.
+    /// Adds the normal if it is wanted.
     #[inline(always)]
     pub(super) fn finish<N: Normal>(&self, ray: &Ray, hit: Option<Hit>) -> Option<Hit<N>> {
         hit.map(|hit| Hit {
@@ -226,7 +229,7 @@ impl Caster {
         Some((middle_m, radius_m))
     }
 
-    /// What one ray hits; if `ANY`, whatever is found first.
+    /// The hit of one ray; if `ANY`, the first one found.
     #[inline(always)]
     fn one<S: Simd, const ANY: bool>(
         &self,
@@ -287,7 +290,7 @@ impl Caster {
         }
     }
 
-    /// What eight rays hit, or those of them that are wanted.
+    /// The hits of the wanted ones of eight rays.
     #[inline(always)]
     pub(super) fn eight<S: Simd>(
         &self,

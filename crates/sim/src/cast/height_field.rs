@@ -1,7 +1,7 @@
 //! Height fields: a grid of heights, two triangles a cell.
 //!
-//! It becomes a mesh, so that it is as watertight and as fast as one and there is one triangle test, at the price of memory: some
-//! 80 bytes a triangle. Left out: holes, level of detail.
+//! A field becomes a mesh, as watertight and fast as any, with one triangle test, at the price of
+//! some 80 bytes per triangle.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -17,7 +17,7 @@ pub struct HeightField {
     spacing_m: [f64; 2],
 }
 
-/// What is no height field.
+/// An invalid height field.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum HeightFieldError {
     /// Fewer than two columns or rows of heights, or their number does not fill them.
@@ -39,7 +39,8 @@ pub enum HeightFieldError {
 }
 
 impl HeightField {
-    /// `columns` heights along x and then so many such rows along y (metres), `spacing_m` apart along x and y. The first is at x = y = 0.
+    /// Rows of `columns` heights along x (metres), one after the other along y, with `spacing_m`
+    /// along x and y. The first height is at x = y = 0.
     ///
     /// # Errors
     /// [`HeightFieldError`] if the heights do not fill the grid or the spacing is not above zero.
@@ -65,8 +66,8 @@ impl HeightField {
         })
     }
 
-    /// The field as triangles: the cell whose least corner is at column `i` and row `j` has numbers `2 (j (columns - 1) + i)`, the half at
-    /// that corner and along x, and the one above it.
+    /// The field as triangles. The cell with its lowest corner at column `i` and row `j` has the
+    /// triangles `2 (j (columns - 1) + i)`, the half at that corner and along x, and the next one.
     ///
     /// # Errors
     /// [`HeightFieldError::Mesh`] for heights that are not finite, or too many of them.

@@ -1,7 +1,7 @@
 //! Triangle meshes.
 //!
-//! Vertices are kept from an origin of the mesh's own, whose coordinates are short, so that taking it away is exact and map
-//! coordinates cost no precision. Left out: files, materials, normals of vertices.
+//! Vertices are relative to an origin of the mesh whose coordinates are short, so that the
+//! subtraction is exact and map coordinates cost no precision.
 
 use fearless_simd::{Simd, prelude::*, u64x8};
 use glam::DVec3;
@@ -37,7 +37,7 @@ struct Face {
     id: u32,
 }
 
-/// What is no mesh.
+/// An invalid mesh.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum MeshError {
     /// More triangles than a tree holds.
@@ -56,7 +56,7 @@ pub enum MeshError {
     Index {
         /// Its number, from 0.
         triangle: usize,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
         /// The vertex it names.
         got: u32,
@@ -64,11 +64,12 @@ pub enum MeshError {
 }
 
 impl Mesh {
-    /// The mesh of these triangles, each three numbers of vertices (metres), counterclockwise as seen from outside. Triangles without an area
-    /// keep their numbers and are never hit.
+    /// A mesh of these triangles, each three vertex numbers, counterclockwise seen from outside.
+    /// Vertices are in metres. Triangles without an area keep their numbers and are never hit.
     ///
     /// # Errors
-    /// [`MeshError`] for a vertex that is not finite, a number that has no vertex, or more than 2^27 triangles.
+    /// [`MeshError`] for a vertex that is not finite, an unknown vertex number, or more than 2^27
+    /// triangles.
     pub fn new(vertices_m: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
         if triangles.len() > MOST_ITEMS {
             return Err(MeshError::TooMany(triangles.len()));
@@ -115,7 +116,8 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// The same triangles with a tree of this quality: rays meet the same, sooner or later. What [`Mesh::new`] makes has the default one.
+    /// The same triangles with a tree of this quality, which changes only the time of rays.
+    /// [`Mesh::new`] uses the default quality.
     #[must_use]
     pub fn rebuilt(&self, quality: Quality) -> Self {
         let mut mesh = Self {
@@ -132,7 +134,8 @@ impl Mesh {
         mesh
     }
 
-    /// Makes the tree over the faces, which are in the order of their numbers, and puts them into the order of its leaves.
+    /// Builds the tree over the faces, which are in order of their numbers, and sorts them in the
+    /// order of its leaves.
     fn arrange(&mut self, quality: Quality) {
         let mut boxes = Vec::with_capacity(self.faces.len());
         self.bounds = Bounds::EMPTY;
@@ -162,7 +165,7 @@ impl Mesh {
         self.bvh.nodes.len()
     }
 
-    /// How many triangles with an area there are.
+    /// Number of triangles with an area.
     #[must_use]
     pub fn triangles(&self) -> usize {
         self.faces.len()

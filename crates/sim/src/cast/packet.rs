@@ -1,7 +1,7 @@
 //! Eight rays side by side, and the nearest that each has hit.
 //!
-//! Rays of a lidar that follow one another go nearly the same way: they walk a tree together. Where they do not, or a scene turns
-//! them apart, they walk it one by one; a result is the same either way, bit for bit. Left out: what they hit.
+//! Consecutive rays of a lidar go nearly the same way and walk a tree together. Where they do not,
+//! they walk it one by one; the result is the same, bit for bit.
 
 use fearless_simd::{Simd, f64x8, mask64x8, prelude::*, u64x8};
 
@@ -68,7 +68,8 @@ impl Lanes {
         sound.to_bitmask()
     }
 
-    /// Those of the lanes that go the way of the first of them: farthest along the same axis, to the same sides; and that axis.
+    /// The lanes with the same dominant axis and the same signs as the first of them; and that
+    /// axis.
     #[inline(always)]
     pub(super) fn alike<S: Simd>(&self, simd: S, lanes: u64) -> (u64, usize) {
         let [x, y, z] = loaded(simd, &self.direction);
@@ -116,7 +117,7 @@ pub(super) fn spread<S: Simd>(of: [f64x8<S>; 3]) -> Spread {
     }
 }
 
-/// What an object is told: how far away hits begin, and by which number it goes.
+/// Parameters of a test of an object: distance above which hits count, and the object's number.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ask {
     pub above_m: f64,
@@ -130,7 +131,7 @@ const NONE: u64 = u64::MAX;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Best {
     pub(super) range_m: f64,
-    /// Object, then primitive, in the order that decides between equal distances; [`NONE`] before any.
+    /// Object, then primitive, which order equal distances; [`NONE`] without a hit.
     what: u64,
 }
 
@@ -144,7 +145,7 @@ impl Best {
         }
     }
 
-    /// Takes a hit if it is nearer than what is there; the caller has looked at the lower end.
+    /// Takes a hit if it is nearer than the present one; the caller checks the lower limit.
     #[inline(always)]
     pub(super) fn offer(&mut self, range_m: f64, object: u32, primitive: u32) -> bool {
         let what = u64::from(object) << 32 | u64::from(primitive);
@@ -160,7 +161,7 @@ impl Best {
         self.what != NONE
     }
 
-    /// What was hit.
+    /// The hit.
     #[inline(always)]
     pub(crate) fn hit(self) -> Option<Hit> {
         if !self.has_hit() {
@@ -192,7 +193,7 @@ impl Nearest {
         }
     }
 
-    /// How far any of the lanes still looks.
+    /// The largest distance at which any of these lanes looks for hits.
     #[inline(always)]
     pub(super) fn farthest<S: Simd>(&self, simd: S, lanes: u64) -> f64 {
         let ranges = f64x8::simd_from(simd, self.range_m);
@@ -218,7 +219,8 @@ impl Nearest {
         self.what[lane % LANES] = best.what;
     }
 
-    /// As [`Best::offer`] to those of the lanes that met it above the lower end, each its own primitive; whether any took it.
+    /// As [`Best::offer`] for the lanes with a hit above the lower limit, each with its own
+    /// primitive. Returns whether any was taken.
     #[inline(always)]
     pub(super) fn offer8<S: Simd>(
         &mut self,

@@ -1,6 +1,5 @@
-//! Where an object stands: a rotation, then a translation.
+//! Placement of an object: a rotation, then a translation. Scaling and shear would change ranges.
 //!
-//! Left out: scaling and shear, which would change ranges.
 
 use fearless_simd::{Simd, f64x8};
 use glam::{DMat3, DVec3};
@@ -8,7 +7,7 @@ use thiserror::Error;
 
 use super::ray::FARTHEST_M;
 
-/// How far from orthonormal a rotation's columns may be.
+/// Largest deviation of a rotation's columns from orthonormal ones.
 const TOLERANCE: f64 = 1e-9;
 
 /// The rigid motion from an object's own frame to the world's.
@@ -16,11 +15,11 @@ const TOLERANCE: f64 = 1e-9;
 pub struct Placement {
     rotation: DMat3,
     translation_m: DVec3,
-    /// Whether there is any rotation: most objects have none, and most rays meet one of them.
+    /// Whether there is a rotation; most objects have none.
     turned: bool,
 }
 
-/// What is no rigid motion.
+/// An invalid rigid motion.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum PlacementError {
     /// Columns that are not orthonormal and right-handed.
@@ -42,7 +41,7 @@ impl Default for Placement {
 }
 
 impl Placement {
-    /// First the rotation, whose columns are the object's axes, then the translation in metres.
+    /// A rotation, whose columns are the object's axes, then a translation in metres.
     ///
     /// # Errors
     /// [`PlacementError`] if the rotation is not one within 1e-9, or the translation is not finite.

@@ -1,6 +1,6 @@
-//! What a caster is asked and what it answers.
+//! Rays and hits.
 //!
-//! Left out: what a surface is made of; object and primitive say where to look that up.
+//! Object and primitive of a hit identify its material.
 
 use std::fmt::Debug;
 use std::num::NonZeroU32;
@@ -8,7 +8,7 @@ use std::num::NonZeroU32;
 use glam::DVec3;
 use thiserror::Error;
 
-/// How far from 1 the length of a direction may be.
+/// Largest deviation of a direction's length from 1.
 pub(super) const LENGTH_TOLERANCE: f64 = 1e-6;
 /// The greatest coordinate of anything, metres: within it no f32 of a tree overflows.
 pub(super) const FARTHEST_M: f64 = 1e15;
@@ -20,7 +20,7 @@ pub struct Ray {
     direction: DVec3,
 }
 
-/// What is no ray.
+/// An invalid ray.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum RayError {
     /// The origin is not finite, or so far away that nothing is known there.
@@ -35,7 +35,8 @@ impl Ray {
     /// The ray from `origin_m` (metres) along `direction` (length 1 within 1e-6).
     ///
     /// # Errors
-    /// [`RayError`] for an origin or direction with NaN or an infinity, or a direction of another length.
+    /// [`RayError`] for an origin or direction that is not finite, or a direction of another
+    /// length.
     #[inline]
     pub fn new(origin_m: DVec3, direction: DVec3) -> Result<Self, RayError> {
         // A NaN fails either comparison.
@@ -75,11 +76,12 @@ impl Ray {
     }
 }
 
-/// Which hits count: those farther than `above_m` and no farther than `up_to_m` from the ray's origin, metres. Others are not there.
+/// Distances at which hits count, from the ray's origin, metres: farther than `above_m` and no
+/// farther than `up_to_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// Exclusive; what is below zero counts as zero. At zero a ray that starts on a surface can hit it at once, as its origin was rounded
-    /// to one side or the other: see [`Reach::ON_SURFACE_M`].
+    /// Exclusive; what is below zero counts as zero. At zero a ray that starts on a surface can hit
+    /// it at once, as its origin was rounded to one side or the other: see [`Reach::ON_SURFACE_M`].
     pub above_m: f64,
     /// Inclusive.
     pub up_to_m: f64,
@@ -92,8 +94,8 @@ impl Default for Reach {
 }
 
 impl Reach {
-    /// What is no farther than this from a ray's origin is the surface it starts on: a nanometre, some roundings of coordinates of half a
-    /// million metres.
+    /// Surfaces no farther than this are the one on which the ray starts: a nanometre, some
+    /// rounding of coordinates of half a million metres.
     pub const ON_SURFACE_M: f64 = 1e-9;
 
     /// From just ahead of the origin ([`Reach::ON_SURFACE_M`]) to a distance in metres.
@@ -135,17 +137,17 @@ impl ObjectId {
     }
 }
 
-/// What a ray hit first. Of several things at exactly one distance it is the one with the least object, then primitive.
+/// The first hit of a ray. At equal distances the lowest object counts, then the lowest primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<N = ()> {
     /// Distance along the ray, metres.
     pub range_m: f64,
     /// Which object.
     pub object: ObjectId,
-    /// Which part of it: the triangle of a mesh by its place in the list, the face of a box (-x, +x, -y, +y, -z, +z), of a
-    /// cylinder 0 for the mantle, 1 for the bottom, 2 for the top; else 0.
+    /// Part of the object: the triangle of a mesh by its number, the face of a box (-x, +x, -y, +y,
+    /// -z, +z), of a cylinder 0 for the mantle, 1 for the bottom, 2 for the top; else 0.
     pub primitive: u32,
-    /// The surface's normal there, if it was asked for.
+    /// The surface's normal, if it is wanted.
     pub normal: N,
 }
 
@@ -179,8 +181,9 @@ impl Normal for () {
     fn wanted(_: impl FnOnce() -> DVec3) -> Self {}
 }
 
-/// Length 1, in the frame of the rays. It points out of solids, up from planes and height fields, and from the side where a triangle's
-/// vertices go round counterclockwise; a triangle without an area has none (zero).
+/// Length 1, in the frame of the rays. It points out of solids, up from planes and height fields,
+/// and to the side from which a triangle is counterclockwise; it is zero for a triangle without an
+/// area.
 impl Normal for DVec3 {
     #[inline(always)]
     fn wanted(normal: impl FnOnce() -> DVec3) -> Self {

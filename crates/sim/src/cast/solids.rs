@@ -1,8 +1,9 @@
 //! Sphere, box, cylinder and plane, each in its own frame.
 //!
-//! A ray's line crosses each of them at most twice; it hits the first crossing ahead, so that all are seen from inside as from
-//! outside. Nothing is computed from an edge, so that edges and corners have no cracks. Left out: where they stand ([`Placement`]), and eight rays at
-//! once (`solids8`).
+//! A ray's line crosses each of them at most twice; it hits the first crossing ahead, so that all
+//! are seen from inside as from outside. Nothing is computed from an edge, so that edges and
+//! corners have no cracks. Left out: where they stand ([`Placement`]), and eight rays at once
+//! (`solids8`).
 //!
 //! [`Placement`]: super::Placement
 
@@ -10,7 +11,8 @@ use glam::DVec3;
 
 use super::bvh::Bounds;
 
-/// Where a line crosses a surface: distance along the ray and primitive, in order; NaN where it does not.
+/// Intersections of a line with a surface in order: distance along the ray and primitive; NaN for
+/// none.
 pub(crate) type Crossings = [(f64, u32); 2];
 
 /// A line that crosses nothing.
@@ -37,8 +39,8 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// By the perpendicular from the centre to the ray: the discriminant of the quadratic would subtract squares of the distance, which for
-    /// a small sphere far away leaves nothing of its radius.
+    /// By the perpendicular from the centre to the ray: the discriminant of the quadratic subtracts
+    /// squares of the distance, which loses the radius of a small distant sphere.
     #[inline]
     pub(crate) fn crossings(&self, origin: DVec3, direction: DVec3) -> Crossings {
         let nearest = -origin.dot(direction);
@@ -81,7 +83,8 @@ impl Plane {
     }
 }
 
-/// A box along the axes: a room seen from inside, a crate seen from outside. Its primitives are the faces -x, +x, -y, +y, -z, +z.
+/// A box along the axes, visible from inside and outside. Its primitives are the faces -x, +x, -y,
+/// +y, -z, +z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
     pub(super) low_m: DVec3,
@@ -110,7 +113,8 @@ impl Cuboid {
         self.high_m
     }
 
-    /// The overlap of the three slabs. Closed at both ends, so that a ray exactly through an edge counts as meeting it.
+    /// The overlap of the three slabs, closed at both ends, so that a ray exactly through an edge
+    /// meets it.
     #[inline]
     pub(crate) fn crossings(&self, origin: DVec3, direction: DVec3) -> Crossings {
         let mut enter = (f64::NEG_INFINITY, 0);
@@ -157,7 +161,8 @@ impl Cuboid {
     }
 }
 
-/// A cylinder about the z axis, seen from inside and outside. Its primitives: 0 the mantle, 1 the bottom, 2 the top.
+/// A cylinder about the z axis, visible from inside and outside. Its primitives: 0 the mantle, 1
+/// the bottom, 2 the top.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     /// Metres; its sign does not matter.
@@ -171,7 +176,8 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// The overlap of the endless cylinder, in the form of [`Sphere`], with the slab between the ends.
+    /// The overlap of the infinite cylinder, in the form of [`Sphere`], with the slab between the
+    /// ends.
     #[inline]
     pub(crate) fn crossings(&self, origin: DVec3, direction: DVec3) -> Crossings {
         let Some((near, far)) = self.round(origin, direction) else {
@@ -211,7 +217,8 @@ impl Cylinder {
             let within = from.length() <= radius_m;
             return within.then_some((f64::NEG_INFINITY, f64::INFINITY));
         }
-        // The distance of the line from the axis is exact where the foot of the perpendicular, far along a steep ray, is not.
+        // The distance of the line from the axis is exact; the foot of the perpendicular, far along
+        // a steep ray, is not.
         let miss = from.perp_dot(level).abs() / level_squared.sqrt();
         let half_squared = (radius_m - miss) * (radius_m + miss);
         if half_squared < 0.0 {

@@ -1,6 +1,7 @@
-//! Sphere, box, cylinder and plane, eight rays at a time: what [`super::solids`] does to one, operation for operation, so that the bits are the same.
+//! Sphere, box, cylinder and plane for eight rays at a time: the operations of [`super::solids`] in
+//! the same order, so that the bits are the same.
 //!
-//! A branch there is a selection here; where a line crosses nothing, distances are NaN. Left out: why it is done so.
+//! A branch there is a selection here; distances without an intersection are NaN.
 
 use fearless_simd::{Simd, f64x8, mask64x8, prelude::*, u64x8};
 
@@ -56,7 +57,7 @@ impl Sphere {
         let foot = [x + nearest * dx, y + nearest * dy, z + nearest * dz];
         let miss = dot(foot, foot).sqrt();
         let radius_m = f64x8::splat(simd, self.radius_m.abs());
-        // Beside the sphere the root is of a negative number: NaN.
+        // For a miss the root is of a negative number: NaN.
         let half = ((radius_m - miss) * (radius_m + miss)).sqrt();
         let only = u64x8::splat(simd, 0);
         [(nearest - half, only), (nearest + half, only)]
@@ -108,7 +109,7 @@ impl Cylinder {
         let miss = (x * dy - y * dx).abs() / level_squared.sqrt();
         let half_squared = (radius_m - miss) * (radius_m + miss);
         let nearest = -(x * dx + y * dy) / level_squared;
-        // Beside the cylinder the root is of a negative number: NaN.
+        // For a miss the root is of a negative number: NaN.
         let half = (half_squared / level_squared).sqrt();
         let (mut near, mut far) = (nearest - half, nearest + half);
         let mut through = mask64x8::splat(simd, true);

@@ -1,6 +1,6 @@
-//! An object: one of the surfaces, and where it stands.
+//! Objects: surfaces at their placements.
 //!
-//! Left out: what a surface is made of.
+//! Materials are the scene's.
 
 use std::sync::Arc;
 
@@ -26,7 +26,8 @@ pub enum Surface {
     Cuboid(Cuboid),
     /// A cylinder about the z axis.
     Cylinder(Cylinder),
-    /// Triangles; a height field becomes such ([`super::HeightField::mesh`]). Several objects can share one mesh.
+    /// Triangles; a height field becomes a mesh ([`super::HeightField::mesh`]). Several objects may
+    /// share one.
     Mesh(Arc<Mesh>),
 }
 
@@ -83,19 +84,20 @@ impl Object {
         self
     }
 
-    /// What it is.
+    /// Its surface.
     #[must_use]
     pub const fn surface(&self) -> &Surface {
         &self.surface
     }
 
-    /// Where it stands.
+    /// Its placement.
     #[must_use]
     pub const fn placement(&self) -> &Placement {
         &self.placement
     }
 
-    /// Box in the object's frame, or rather from [`Object::origin_m`]; `None` of what is endless.
+    /// Bounds in the object's frame, relative to [`Object::origin_m`]; `None` for infinite
+    /// surfaces.
     fn own_bounds(&self) -> Option<Bounds> {
         match &self.surface {
             Surface::Plane => None,
@@ -106,8 +108,8 @@ impl Object {
         }
     }
 
-    /// Box in the world, with room for what the motion rounds off; `None` of what is endless. An object without extent in its own frame
-    /// (NaN, ends the wrong way round) gives `Err`.
+    /// Box in the world, with room for what the motion rounds off; `None` of what is endless. An
+    /// object without extent in its own frame (NaN, ends the wrong way round) gives `Err`.
     pub(super) fn bounds(&self) -> Result<Option<Bounds>, Bounds> {
         let Some(own) = self.own_bounds() else {
             return Ok(None);
@@ -141,7 +143,7 @@ impl Object {
         Ok(Some(bounds))
     }
 
-    /// Where coordinates of the surface begin in its frame: meshes have an origin of their own.
+    /// Origin of the surface's coordinates in its frame: meshes have an origin of their own.
     #[inline(always)]
     fn origin_m(&self) -> DVec3 {
         match &self.surface {

@@ -56,7 +56,8 @@ pub(super) fn ray(origin: DVec3, direction: DVec3) -> Ray {
     Ray::new(origin, direction).unwrap()
 }
 
-/// A closed, lumpy ball about the origin, of 2 `sectors` (`rings` - 1) triangles; vertices and triangles.
+/// A closed, lumpy ball about the origin, of 2 `sectors` (`rings` - 1) triangles; vertices and
+/// triangles.
 pub(super) fn ball(
     rings: u32,
     sectors: u32,

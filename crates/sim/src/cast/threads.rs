@@ -1,6 +1,6 @@
-//! How many threads share the work.
+//! The threads that share the work.
 //!
-//! The threads are started once and kept. What they compute does not depend on how many there are. Left out: which work to share.
+//! They are started once and kept. Results do not depend on their number.
 
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -16,9 +16,9 @@ pub struct Threads(Option<Arc<ThreadPool>>);
 #[derive(Debug, Error)]
 #[error("sim: expected {wanted} threads, the system says: {reason}")]
 pub struct ThreadsError {
-    /// How many were asked for.
+    /// The requested number.
     wanted: NonZeroUsize,
-    /// What the system said.
+    /// The system's message.
     reason: String,
 }
 

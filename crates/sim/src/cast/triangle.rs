@@ -1,12 +1,14 @@
 //! A ray against a triangle in f64, without a gap between neighbours.
 //!
-//! After Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): the triangle is moved and sheared until the ray is
-//! the z axis, which does the same to a vertex whichever triangle it belongs to; then the origin is inside if it lies to one side of
-//! all three edges. The paper decides that by a difference of products and takes it again in higher precision where it is zero.
-//! Here every difference of products is Kahan's with a fused multiply-add (good to 1.5 units in the last place; Jeannerod, Louvet
-//! and Muller 2013), so its sign is always right, and slivers get their weights right too: the hit is on the ray and within the triangle's
-//! box, which is why boxes may cull. Fused and not fused are written out, so that every machine and every width gives the same bits.
-//! Left out: which triangles to test, and which of two hits counts.
+//! After Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): the triangle is
+//! translated and sheared until the ray is the z axis, which treats a vertex the same in every
+//! triangle. The origin is inside if it is on one side of all three edges. The paper decides that
+//! by a difference of products and repeats it in higher precision where it is zero. Here every
+//! difference of products is Kahan's with a fused multiply-add (good to 1.5 units in the last
+//! place; Jeannerod, Louvet and Muller 2013), so its sign is always right, and the weights of
+//! slivers are right too: the hit is on the ray and within the triangle's box, so boxes may cull.
+//! Fused and unfused operations are written out, so that every machine and every width gives the
+//! same bits.
 
 use fearless_simd::{Simd, f64x8, prelude::*};
 
@@ -70,7 +72,7 @@ impl Sheared {
         ]
     }
 
-    /// Where the ray's line meets the triangle, in lengths of the direction; NaN if it does not.
+    /// Distance of the intersection in lengths of the direction; NaN without one.
     #[inline(always)]
     pub(super) fn meet(&self, corners: &Corners) -> f64 {
         let [a, b, c] = *corners;
@@ -96,8 +98,8 @@ fn edge(p: [f64; 3], q: [f64; 3]) -> f64 {
     p[0].mul_add(q[1], -product) + rounding
 }
 
-/// Eight rays that go farthest along one axis, moved and sheared until each is the z axis: to meet single triangles with. Scenes are what a
-/// [`Caster`](super::Caster) is for.
+/// Eight rays with the same dominant axis, translated and sheared until each is the z axis, for
+/// tests of single triangles. [`Caster`](super::Caster) is for scenes.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheared8<S: Simd> {
     simd: S,
@@ -108,7 +110,8 @@ pub struct Sheared8<S: Simd> {
 }
 
 impl<S: Simd> Sheared8<S> {
-    /// Origins (metres) and directions by coordinate; each goes farthest along `axis` (0 x, 1 y, 2 z).
+    /// Origins (metres) and directions by coordinate, with the dominant axis `axis` (0 x, 1 y, 2
+    /// z).
     #[inline(always)]
     #[must_use]
     pub fn new(simd: S, axis: usize, origin: [f64x8<S>; 3], direction: [f64x8<S>; 3]) -> Self {
@@ -136,7 +139,8 @@ impl<S: Simd> Sheared8<S> {
         ]
     }
 
-    /// Where the line of each ray meets a triangle, in lengths of its direction, NaN for those that do not; `None` if none does.
+    /// Distances of the intersections in lengths of the directions, NaN without one; `None` if no
+    /// ray meets the triangle.
     #[inline(always)]
     #[must_use]
     pub fn meet(&self, corners: &Corners) -> Option<f64x8<S>> {

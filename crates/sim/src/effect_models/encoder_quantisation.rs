@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_says_the_edge_below() {
+    fn the_encoder_reports_the_edge_below() {
         let mut encoder =
             EncoderQuantisation::new(&EncoderQuantisationSettings::default()).unwrap();
         for (shaft, counts) in [

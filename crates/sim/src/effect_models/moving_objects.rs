@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_is_placed_once() {
+    fn static_boxes_are_placed_once() {
         let mut surroundings = around(Scene::new());
         let standing = MovingObjects::of(&MovingObjectsSettings {
             boxes: vec![MovingBox {

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_it_stands_on_hides_what_is_below() {
+    fn the_base_hides_beams_below() {
         let shadow = OwnShadow::new(&OwnShadowSettings {
             sectors: Vec::new(),
             below_deg: Some(-40.0),

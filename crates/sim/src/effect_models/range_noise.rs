@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_deviation_changes_nothing() {
+    fn invalid_deviations_change_nothing() {
         for sd_m in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(changes(sd_m, false).iter().all(|change| *change == 0.0));
         }

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn light_falls_with_incidence_and_so_does_what_is_reported() {
+    fn light_and_reported_reflectivity_fall_with_incidence() {
         let reflectance = Reflectance::new(&ReflectanceSettings::default(), 1).unwrap();
         let slant = |deg: f64| Echo {
             normal: DVec3::new(deg.to_radians().sin(), -deg.to_radians().cos(), 0.0),

@@ -63,7 +63,7 @@ mod tests {
     use crate::effects::MessageKind;
 
     #[test]
-    fn what_is_held_up_is_overtaken() {
+    fn delayed_packets_are_overtaken() {
         let settings = ReorderSettings {
             share: 0.2,
             later_us: 2_000.0,

@@ -28,8 +28,8 @@ pub struct Echo {
 pub struct Echoes {
     /// The strongest returns.
     pub strongest: [Echo; MAX_LASERS],
-    /// The last return where that is not the strongest, else the second strongest; none for a single
-    /// return.
+    /// The last return where that is not the strongest, else the second strongest; none for a
+    /// single return.
     pub other: [Echo; MAX_LASERS],
     /// Whether `other` is reported.
     pub two: bool,

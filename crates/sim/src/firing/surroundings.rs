@@ -103,8 +103,8 @@ impl Surroundings {
         self.range
     }
 
-    /// The first surface within the sensor's range along a ray from `origin_m` in `direction` (length
-    /// 1), in the frame of the base. A nearer surface blocks the ray.
+    /// The first surface within the sensor's range along a ray from `origin_m` in `direction`
+    /// (length 1), in the frame of the base. A nearer surface blocks the ray.
     #[must_use]
     pub fn meet(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
         let first = self.first_static(origin_m, direction);
@@ -135,13 +135,14 @@ impl Surroundings {
         });
     }
 
-    /// The static surfaces that all lasers of consecutive firings meet; there are no second returns,
-    /// and none for lasers that do not fire.
+    /// The static surfaces that all lasers of consecutive firings meet; there are no second
+    /// returns, and none for lasers that do not fire.
     pub(crate) fn meet_all(&self, firings: &[Firing], echoes: &mut [Echoes]) {
         batch::firings(self, firings, echoes);
     }
 
-    /// Replaces static surfaces, as [`Surroundings::meet_all`] found them, by moving ones before them.
+    /// Replaces static surfaces, as [`Surroundings::meet_all`] found them, by moving ones before
+    /// them.
     #[cold]
     #[inline(never)]
     pub(crate) fn meet_bodies(&self, firing: &Firing, echoes: &mut Echoes) {
@@ -156,8 +157,8 @@ impl Surroundings {
         }
     }
 
-    /// Whether a moving object may be within a cone about a ray, `half_width` radians (well below 1)
-    /// from its axis to its side. May be true without one.
+    /// Whether a moving object may be within a cone about a ray, `half_width` radians (well below
+    /// 1) from its axis to its side. May be true without one.
     #[must_use]
     pub fn may_move_near(&self, origin_m: DVec3, direction: DVec3, half_width: f64) -> bool {
         let near = |body: &Body| body.may_be_near(origin_m, direction, half_width);

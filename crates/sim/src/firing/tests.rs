@@ -52,7 +52,7 @@ fn bits(echo: &Echo) -> [u64; 7] {
 }
 
 #[test]
-fn a_packet_meets_what_its_rays_meet_one_by_one() {
+fn packets_meet_the_same_as_single_rays() {
     let near = DetectionRange {
         min_m: 6.0,
         max_m: 30.0,
@@ -147,7 +147,7 @@ fn a_fan_is_its_rays() {
 }
 
 #[test]
-fn what_is_no_ray_meets_nothing() {
+fn invalid_rays_meet_nothing() {
     let around = Surroundings::new(scene("hall"), LidarSensor::vlp16().range(), true);
     let mut all = firings(&LidarSensor::vlp16(), 24, 1);
     for (at, firing) in all.iter_mut().enumerate() {
@@ -191,7 +191,7 @@ fn mesh() -> Surface {
 }
 
 #[test]
-fn what_moves_is_met_where_it_is_by_packets_and_by_rays() {
+fn moving_objects_are_met_by_packets_and_by_rays() {
     let sensor = LidarSensor::vlp16();
     let hall = scene("hall");
     let objects = [
@@ -274,7 +274,7 @@ fn what_moves_is_met_where_it_is_by_packets_and_by_rays() {
 
 /// Absorbing and too near surfaces hide moving ones behind them, and moving ones can absorb.
 #[test]
-fn what_returns_nothing_still_blocks() {
+fn absorbing_surfaces_block() {
     let dark = |radius_m| {
         let mut placed = made_of(Object::new(Sphere { radius_m }), 70)
             .placed()

@@ -209,7 +209,7 @@ fn the_simulation_sees_the_same_directions() {
 }
 
 #[test]
-fn what_a_scan_sees_lies_in_its_view_and_fills_it() {
+fn directions_of_a_scan_fill_its_field_of_view() {
     for text in [
         "vlp16",
         "hdl32e,from=20",
@@ -247,7 +247,7 @@ fn what_a_scan_sees_lies_in_its_view_and_fills_it() {
 }
 
 #[test]
-fn what_is_no_pattern_is_said() {
+fn invalid_patterns_are_reported() {
     let wrong = |text: &str| {
         let built = PatternRequest::parse(text).and_then(|request| request.build());
         built.unwrap_err().to_string()
@@ -296,7 +296,7 @@ fn what_is_no_pattern_is_said() {
 }
 
 #[test]
-fn what_is_no_number_is_not_set_as_one() {
+fn options_without_numbers_reject_numbers() {
     let mut request = PatternRequest::parse("velomotion16:50").unwrap();
     for (key, words) in [
         (

@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_seen_from_near_to_far_is_what_is_seen_at_each_distance() {
+    fn the_view_of_a_range_is_the_intersection_of_its_distances() {
         let view = |range_m| FieldOfView::new([-15.0, 15.0], [0.0, 0.0], [0.5; 2], range_m);
         let (near, far, both) = (view([1.0; 2]), view([50.0; 2]), view([1.0, 50.0]));
         for k in -90..=90 {

@@ -124,7 +124,8 @@ fn packets_agree_with_the_truth_within_their_rounding() {
             let seen = origin + found.range_m * direction;
             let point = truth.point(found.device_ns, found.laser as u8).unwrap();
             let error = seen.distance(DVec3::from_array(point));
-            // 1 mm of range; 0.005 deg of azimuth, as far as the beam is level; 1 us at 56.25 deg/s.
+            // 1 mm of range; 0.005 deg of azimuth, as far as the beam is level; 1 us at 56.25
+            // deg/s.
             let level = sensor.beams()[found.laser].elevation_deg.to_radians().cos();
             let across =
                 found.range_m * (level * 0.005_f64.to_radians() + 56.25e-6_f64.to_radians());
@@ -138,7 +139,8 @@ fn packets_agree_with_the_truth_within_their_rounding() {
             worst = worst.max(error);
         }
     }
-    // 602 packets fit 0.8 s, and the bound is reached: stamps and angles are no better than claimed.
+    // 602 packets fit 0.8 s, and the bound is reached: stamps and angles are no better than
+    // claimed.
     assert_eq!(compared, 602 * 384);
     assert!(worst > 0.0017, "{worst}");
 }

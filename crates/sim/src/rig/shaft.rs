@@ -1,6 +1,6 @@
 //! Course of the motor shaft: its position at every control cycle, linear in between.
 //!
-//! Eight bytes per millisecond. The position is the mechanical one, whatever the drive calls zero.
+//! Eight bytes per millisecond. Positions are mechanical, independent of the drive.s zero.
 
 use units::{Gearing, Span};
 

@@ -1,4 +1,5 @@
-//! Both devices together: what comes out depends on what came in when, and the encoder tells what truly happens.
+//! Both devices together: the output depends on the input and its times, and the encoder agrees
+//! with the truth.
 
 use firmware_sim::epos2::Servo;
 use proptest::prelude::*;
@@ -12,7 +13,8 @@ fn after(ns: i64) -> Stamp<Host> {
     START + Span::from_nanos(ns)
 }
 
-/// A USB frame made by hand: CRC-16/XMODEM over words, high byte first, length before operation; each 0x90 doubled.
+/// A USB frame made by hand: CRC-16/XMODEM over words, high byte first, length before operation;
+/// each 0x90 doubled.
 fn frame(opcode: u8, words: &[u16]) -> Vec<u8> {
     let header = u16::from_be_bytes([words.len() as u8, opcode]);
     let crc = std::iter::once(&header)
@@ -78,7 +80,7 @@ fn ask(rig: &mut Rig, request: &[u8]) -> i32 {
     value
 }
 
-/// What moves the axis by `by_qc` in profile position mode, one request a millisecond.
+/// Requests that move the axis by `by_qc` in profile position mode, one per millisecond.
 fn motion(by_qc: i32) -> Vec<Vec<u8>> {
     vec![
         write(0x6040, 0, 0x80),
@@ -127,7 +129,8 @@ fn the_encoder_tells_where_the_platform_truly_is_within_the_millisecond_too() {
     let truth = rig.truth();
     let mut moved_within_a_cycle = 0;
     for &(at, position) in &read_at {
-        // 0.0015 deg a quadcount; the drive calls the place of power-on 0, which is -3000 qc from level.
+        // 0.0015 deg per quadcount; the drive's zero is its position at power-on, -3000 qc from
+        // level.
         let exact = truth.tilt_deg_at(at).unwrap() / 0.0015 + 3_000.0;
         let ahead = exact - f64::from(position);
         assert!(
@@ -225,7 +228,7 @@ fn the_seed_decides_the_garbage_of_the_drive_and_nothing_of_the_lidar() {
     assert_eq!(run(1).1, run(2).1);
 }
 
-/// Answers to a position request each 1.1 ms of a move, lidar packets, and the truth in the end.
+/// Answers to a position request each 1.1 ms of a move, lidar packets, and the truth at the end.
 fn moved(config: RigConfig) -> (Vec<DriveOutput>, Vec<Datagram>, Truth) {
     let mut rig = Rig::new(config);
     for request in motion(-9_000) {
@@ -286,7 +289,8 @@ fn a_servo_that_lags_shows_in_the_encoder_as_in_the_platform() {
     assert!((most_behind - 0.597).abs() < 0.01, "{most_behind}");
 }
 
-/// Answers, datagrams, truth, and degrees moved in a run with `inputs` (each at its instant, ns) that is also stopped at each of `stops`.
+/// Answers, datagrams, truth and degrees moved in a run with `inputs` (each at its time, ns) that
+/// also stops at each of `stops`.
 fn outcome(
     inputs: &[(i64, Vec<u8>)],
     stops: &[i64],

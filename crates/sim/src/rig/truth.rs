@@ -1,7 +1,7 @@
 //! Ground truth of a rig's run: where beams met the scene, the platform's tilt, the clocks.
 //!
-//! Points are computed on request from the recorded motion of the shaft, without the rounding of the
-//! packets.
+//! Points are computed on request from the recorded motion of the shaft, without the rounding of
+//! the packets.
 
 use firmware_sim::vlp16::SEQUENCE_PERIOD_NS;
 use units::{Host, Span, Stamp};

@@ -1,4 +1,5 @@
-//! Casting against an independent slow reference: marching along the ray by signed distance, then bisection.
+//! Casting against an independent slow reference: marching along the ray by signed distance, then
+//! bisection.
 
 use glam::{DMat3, DVec3, Vec3Swizzles, dvec2, dvec3};
 use proptest::prelude::*;
@@ -169,7 +170,8 @@ proptest! {
         let hit = scene(twice.iter().map(|twice| (twice.object.clone(), 5))).cast(origin, direction, 0.0, 99.0);
         let expected = reference(&twice, origin, direction).filter(|&t| t <= 99.0);
         match (hit, expected) {
-            // Where the ray all but touches, a rounding of the place along it is much larger than that of the distance.
+            // Where the ray nearly touches, rounding along the ray is much larger than that of the
+            // distance.
             (Some(hit), Some(t)) => prop_assert!((hit.range_m - t).abs() < 1e-9, "{} {t}", hit.range_m),
             (None, None) => {}
             // The march steps over chords shorter than 0.1 mm.
@@ -242,7 +244,7 @@ fn range_limits_are_closed_and_near_surfaces_block() {
     assert_eq!(from(&scene, 2.0, 1.0, 48.0), Some(48.0));
     assert_eq!(from(&scene, 2.0, 1.0, 47.999), None);
     assert_eq!(from(&scene, 51.0, 0.0, FAR), None);
-    // What absorbs blocks as well.
+    // An absorbing surface blocks as well.
     scene.placed.materials[0].absorbing = true;
     assert_eq!(from(&scene, 0.0, 0.0, 100.0), None);
     assert_eq!(from(&scene, 2.0, 0.0, 100.0), Some(48.0));
@@ -290,7 +292,7 @@ fn cylinders_from_above_below_and_within() {
 }
 
 #[test]
-fn what_is_not_finite_meets_nothing() {
+fn rays_that_are_not_finite_meet_nothing() {
     let scene = scene([
         (between(DVec3::splat(-5.0), DVec3::splat(5.0)), 0),
         (plane_through(dvec3(0.0, 0.0, -1.0), DVec3::Z), 0),
@@ -307,7 +309,7 @@ fn what_is_not_finite_meets_nothing() {
     assert_eq!(Scene::new().cast(DVec3::ZERO, DVec3::X, 0.0, FAR), None);
 }
 
-/// Low-discrepancy numbers in 0..1: many different rays without a generator of random numbers.
+/// Low-discrepancy numbers in 0..1: many different rays without random numbers.
 fn spread(i: u32) -> DVec3 {
     let i = f64::from(i);
     dvec3(
@@ -344,14 +346,16 @@ fn a_closed_room_returns_every_ray_aimed_at_its_edges_and_corners() {
         let length = origin.distance(target);
         let hit = scene.cast(origin, (target - origin) / length, 0.0, FAR);
         let range = hit.map(|hit| hit.range_m).unwrap();
-        // The aim is rounded: near the target the ray may be some 1e-15 m off, and off a wall seen at a grazing angle that is more.
+        // The direction is rounded: near the target the ray may be some 1e-15 m off, and more at a
+        // grazing angle.
         assert!((range - length).abs() < 1e-11, "{origin} {target} {range}");
     }
 }
 
 #[test]
 fn stacked_boxes_have_no_cracks() {
-    // 4 x 4 boxes side by side, coordinates that no binary fraction holds: every ray at the seams from in front meets one.
+    // 4 x 4 adjacent boxes with coordinates that no binary fraction holds: every ray at the joints
+    // from the front meets one.
     let edge = |i: u32| 0.1 + 0.7 * f64::from(i);
     let places = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
     let boxes = places.map(|(i, j)| {

@@ -24,7 +24,7 @@ fn the_least_scene_is_a_vlp16_that_stands_without_effects() {
 }
 
 #[test]
-fn a_motion_that_cannot_be_is_told_with_the_values_line() {
+fn invalid_motions_are_reported_with_their_line() {
     let text = |rest: &str| {
         format!(
             "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -45\n{rest}\n"
@@ -70,7 +70,7 @@ fn shipped_scenes_are_sound() {
 }
 
 #[test]
-fn everything_said_is_heard() {
+fn all_keys_take_effect() {
     let text = format!(
         "seed = 7\nlidar_clock_us = 5\nstart_unix_s = 10.5\n{LEAST}[sensor]\nmodel = \"hdl32e\"\nreturns = \"dual\"\nrpm = 1200\n\
          start_deg = 90.0\nonly_laser = 15\n[mount]\nd_m = 0.25\n\n[effects.range_noise]\nsd_m = 0.02\n"
@@ -97,7 +97,8 @@ fn everything_said_is_heard() {
     let _: &dyn SurfaceEffect = &**listed.effect();
 }
 
-/// The real places ask for what a real scanner makes of them, the ideal ones for nothing; what is left out is as if nobody asked.
+/// Real places have the effects of a real scanner, ideal ones none; an effect that is left out is
+/// absent.
 #[test]
 fn effects_of_shipped_scenes_can_be_left_out() {
     for (name, text) in SHIPPED {
@@ -127,7 +128,7 @@ fn effects_of_shipped_scenes_can_be_left_out() {
 }
 
 #[test]
-fn errors_name_the_line_and_what_is_wrong() {
+fn errors_name_the_line_and_the_fault() {
     let with = |more: &str| format!("{LEAST}{more}\n");
     assert_eq!(error("scene = \"hall\"\n[motion\n").0, 2);
     let (line, what) = error(&with("[sensor]\nmodle = \"vlp16\""));
@@ -154,7 +155,7 @@ fn errors_name_the_line_and_what_is_wrong() {
 }
 
 #[test]
-fn any_text_is_read_or_refused() {
+fn any_text_is_read_or_rejected() {
     let whole = SHIPPED[0].1;
     for end in 0..whole.len() {
         let _ = SceneFile::parse(&whole[..end], None, None);
@@ -162,7 +163,7 @@ fn any_text_is_read_or_refused() {
 }
 
 #[test]
-fn what_stands_around_is_the_files_own_or_a_shipped_scene() {
+fn surroundings_are_the_files_own_or_a_shipped_scene() {
     let own = LEAST.replace("scene = \"hall\"", "about = \"a ball\"")
         + "[materials]\ndull = { reflectivity = 7 }\n[[objects]]\nmaterial = \"dull\"\nsphere = { radius_m = 4 }\n";
     let look = |text: &str| {
@@ -223,7 +224,7 @@ fn ideal_sensors_other_ranges_and_mounts_in_general() {
     );
 }
 
-/// What the documentation shows is a scene.
+/// The example of the documentation is a valid scene.
 #[test]
 fn the_example_of_the_documentation_is_a_scene() {
     let page = include_str!("../../../../docs/src/scenes.md");

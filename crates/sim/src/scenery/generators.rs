@@ -1,6 +1,6 @@
-//! Geometry that is made up: cars in a car park, trees, facades, a quarry. One seed gives one result.
+//! Generated geometry: a car park, trees, facades, a quarry. One seed gives one result.
 //!
-//! Drawn to be like such places, measured nowhere. Left out: terrain of a file (`height_field` with heights), anything that moves.
+//! Modelled on such places, not measured.
 
 mod draws;
 mod facade;
@@ -23,7 +23,7 @@ use super::materials::MaterialAssignment;
 use crate::cast::{Cuboid, Surface};
 use crate::random::Draws;
 
-/// A surface of what a table stands for, in the table's own frame.
+/// A surface of a generated object, in the object's frame.
 #[derive(Clone, Debug)]
 pub(super) struct ObjectPart {
     pub surface: Surface,

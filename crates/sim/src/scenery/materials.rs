@@ -10,8 +10,8 @@ use crate::cast::{CastError, Caster, Object};
 pub struct Material {
     /// Its name in the scene.
     pub name: String,
-    /// Calibrated reflectivity as the VLP-16 reports it (63-9243): 0..=100 the percentage of diffusely
-    /// reflected light, 101..=255 retroreflecting.
+    /// Calibrated reflectivity as the VLP-16 reports it (63-9243): 0..=100 the percentage of
+    /// diffusely reflected light, 101..=255 retroreflecting.
     pub reflectivity: u8,
     /// Share of specularly reflected light, 0..=1.
     pub specular: f64,

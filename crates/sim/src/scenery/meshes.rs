@@ -1,7 +1,7 @@
-//! Mesh files: Wavefront OBJ, PLY (text and binary) and glTF 2.0 (text and GLB), read through the crates that are made for each.
+//! Mesh files: Wavefront OBJ, PLY (text and binary) and glTF 2.0 (text and GLB).
 //!
-//! Only triangles are taken out of them; polygons are cut into triangles that fan out from their first corner. Left out: materials, normals,
-//! textures, animation; what is not geometry is passed over. The crates are used in these files alone.
+//! Only triangles are read; polygons become triangle fans from their first corner. Materials,
+//! normals, textures and animation are ignored.
 
 mod gltf;
 mod obj;
@@ -23,7 +23,7 @@ pub enum MeshFormat {
     Gltf,
 }
 
-/// What is no mesh file.
+/// An invalid mesh file.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshFileError {
@@ -36,7 +36,7 @@ pub enum MeshFileError {
     /// Contents that are not what the ending says.
     #[error("{format:?}: {message}")]
     Contents {
-        /// What it was read as.
+        /// The format it was read as.
         format: MeshFormat,
         /// What is wrong in it.
         message: String,
@@ -113,7 +113,7 @@ pub(super) fn read(
     })
 }
 
-/// What a reader runs into.
+/// An error of a reader.
 #[derive(Debug)]
 enum Fault {
     /// In the file itself.

@@ -8,19 +8,20 @@ use super::error::FilePosition;
 use super::materials::Placed;
 use crate::cast::{Object, Placement, PlacementError};
 
-/// How something moves: its origin along a line, the thing about its origin.
+/// A motion: the origin moves along a line, the object rotates about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Travel {
     /// Where its origin is at the start, metres in the frame of the base.
     pub from_m: DVec3,
     /// Metres per second along the axes of the base.
     pub velocity_m_s: DVec3,
-    /// Turning about an axis of that direction in the base's frame, degrees per second its length.
+    /// Rotation about this axis in the base's frame, with degrees per second as its length.
     pub turn_deg_s: DVec3,
 }
 
 impl Travel {
-    /// Where its frame is so many seconds after the start; then its axes are those of the base.
+    /// The placement of its frame at a time after the start; at the start its axes are those of the
+    /// base.
     ///
     /// # Errors
     /// [`PlacementError`] once it has gone out of all bounds.
@@ -34,22 +35,23 @@ impl Travel {
     }
 }
 
-/// Something of a scene that moves as one: all parts of an object, or of one of its copies.
+/// Objects that move as one: all parts of an object, or of one of its copies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moving {
-    /// Which of the placed objects, as they stand at the start.
+    /// Indices of the placed objects.
     pub objects: Range<usize>,
-    /// How they move together.
+    /// Their common motion.
     pub travel: Travel,
     /// Which line of the scene asks for it.
     pub at: FilePosition,
 }
 
 impl Placed {
-    /// What stands, and what moves, each in a frame of its own whose origin is the travel's and whose axes are the base's at the start.
+    /// The static objects, and the moving ones, each in a frame whose origin is the motion's and
+    /// whose axes are the base's at the start.
     ///
     /// # Errors
-    /// [`PlacementError`] for what stands out of all bounds.
+    /// [`PlacementError`] for coordinates out of range.
     pub fn divided(&self) -> Result<(Self, Vec<(Moving, Self)>), PlacementError> {
         let mut moves = vec![false; self.objects.len()];
         for moving in &self.moving {

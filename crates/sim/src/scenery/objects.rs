@@ -18,21 +18,23 @@ pub struct MaterialTable {
     pub absorbing: bool,
 }
 
-/// One of `[[objects]]`: exactly one shape, and where it stands. The rotation comes first, then the translation.
+/// One of `[[objects]]`: exactly one shape, and its placement. The rotation comes first, then the
+/// translation.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectTable {
     /// For people.
     pub name: String,
-    /// What it is made of; without it, something that scatters half the light.
+    /// Its material; without one, it reflects half the light diffusely.
     pub material: Option<String>,
-    /// Where its origin is, metres in the frame of the base: origin on the tilt axis, y along it, z up.
+    /// Position of its origin, metres in the frame of the base: origin on the tilt axis, y along
+    /// it, z up.
     pub position_m: [f64; 3],
-    /// How it is turned about x, then y, then z of the base, degrees.
+    /// Rotation about x, then y, then z of the base, degrees.
     pub rotation_deg: [f64; 3],
-    /// How its origin moves, metres per second.
+    /// Velocity of its origin, metres per second.
     pub velocity_m_s: [f64; 3],
-    /// How it turns about its origin: the axis, and degrees per second its length.
+    /// Rotation about its origin: the axis, with degrees per second as its length.
     pub turn_deg_s: [f64; 3],
     /// The same thing several times.
     pub copies: Copies,
@@ -57,13 +59,14 @@ pub struct ObjectTable {
     pub trees: Option<Trees>,
 }
 
-/// Where else an object stands: offsets from its position, turned with it; without any, at its position alone.
+/// Copies of an object: offsets from its position, rotated with it. Without any, there is one at
+/// its position.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Copies {
     /// Offsets one by one, metres.
     pub at_m: Vec<[f64; 3]>,
-    /// How many along x, y and z; with `step_m`.
+    /// Number along x, y and z; with `step_m`.
     pub counts: Option<[u32; 3]>,
     /// From one to the next along x, y and z, metres.
     pub step_m: [f64; 3],
@@ -82,7 +85,8 @@ pub struct SphereShape {
 #[serde(deny_unknown_fields)]
 pub struct PlaneShape {}
 
-/// `box = { size_m = [x, y, z] }` about the origin, or `box = { from_m = .., to_m = .. }`: seen from inside and outside.
+/// `box = { size_m = [x, y, z] }` about the origin, or `box = { from_m = .., to_m = .. }`: visible
+/// from inside and outside.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BoxShape {
@@ -122,7 +126,7 @@ const fn yes() -> bool {
 pub struct MeshShape {
     /// Path from the scene file.
     pub file: String,
-    /// What one unit of the file is, metres.
+    /// Length of one unit of the file, metres.
     #[serde(default = "one")]
     pub unit_m: f64,
     /// Whether the file's up is y, as glTF has it; without it, whether it is glTF.
@@ -138,7 +142,7 @@ const fn one() -> f64 {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HeightFieldShape {
-    /// How many heights along x.
+    /// Number of heights along x.
     pub columns: Option<usize>,
     /// From one to the next along x and y, metres.
     pub spacing_m: Option<[f64; 2]>,
@@ -148,8 +152,8 @@ pub struct HeightFieldShape {
     pub quarry: Option<Quarry>,
 }
 
-/// `facade = { width_m = W, height_m = H, .. }`: a wall of a building in the plane y = 0 from the origin along x, its storeys of windows its panes
-/// on it, its front looking to -y.
+/// `facade = { width_m = W, height_m = H, .. }`: a wall of a building in the plane y = 0 from the
+/// origin along x, its storeys of windows its panes on it, its front looking to -y.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Facade {
@@ -157,17 +161,17 @@ pub struct Facade {
     pub width_m: f64,
     /// Metres.
     pub height_m: f64,
-    /// How deep the building behind it is, metres.
+    /// Depth of the building, metres.
     pub depth_m: f64,
-    /// Windows beside one another.
+    /// Windows per storey.
     pub columns: u32,
     /// Windows above one another.
     pub storeys: u32,
     /// Width and height of a window, metres.
     pub window_m: [f64; 2],
-    /// How far the first row's sill is above the ground, metres.
+    /// Height of the first row's sill above the ground, metres.
     pub sill_m: f64,
-    /// What panes are made of.
+    /// Material of the panes.
     pub glass: String,
 }
 

@@ -92,7 +92,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// What a table stands for, in its own frame.
+    /// The surfaces of a table, in its own frame.
     fn parts(
         &mut self,
         number: u64,

@@ -6,7 +6,7 @@ macro_rules! scenes {
     };
 }
 
-/// All of them: name and scene file. None needs a file beside it.
+/// All shipped scenes: name and scene file. None needs another file.
 pub const SHIPPED: [(&str, &str); 6] = scenes!(
     "hollow-sphere",
     "planes",

@@ -20,7 +20,7 @@ fn wrong(text: &str) -> String {
     error.to_string()
 }
 
-/// How far off a ray hits, of which reflectivity; and its normal.
+/// Distance, reflectivity and normal of a ray's hit.
 fn hit(placed: &Placed, caster: &Caster, from: DVec3, to: DVec3) -> Option<(f64, u8, DVec3)> {
     let ray = Ray::new(from, to.normalize()).unwrap();
     let hit = caster.nearest::<DVec3>(&ray, Reach::default())?;
@@ -50,9 +50,9 @@ fn every_shipped_scene_can_be_cast_at() {
     assert!(shipped("hall").is_some() && shipped("nowhere").is_none());
 }
 
-/// The rig stands in the hall; distances by hand.
+/// The rig's hall; distances by hand.
 #[test]
-fn the_hall_is_the_rigs() {
+fn the_rig_is_in_the_hall() {
     let [hall, rig] = ["hall", "rig"].map(|name| placed(shipped(name).unwrap()));
     assert_eq!(format!("{:?}", hall.objects), format!("{:?}", rig.objects));
     assert_eq!(
@@ -104,7 +104,7 @@ fn the_papers_sphere_and_planes_are_exact() {
 }
 
 #[test]
-fn a_key_that_is_not_known_names_itself_the_keys_there_are_and_its_line() {
+fn unknown_keys_are_reported_with_the_known_keys_and_the_line() {
     let text = "[[objects]]\nname = \"ball\"\nsphere = { radios_m = 1 }\n";
     assert_eq!(
         wrong(text),
@@ -127,7 +127,7 @@ fn a_key_that_is_not_known_names_itself_the_keys_there_are_and_its_line() {
 }
 
 #[test]
-fn values_that_cannot_be_are_told_with_their_line() {
+fn invalid_values_are_reported_with_their_line() {
     let object = |rest: &str| {
         format!("\n[materials]\ngrey = {{ reflectivity = 50 }}\n[[objects]]\n{rest}\n")
     };
@@ -215,7 +215,7 @@ fn values_that_cannot_be_are_told_with_their_line() {
 }
 
 #[test]
-fn values_that_cannot_be_are_told_with_their_own_line() {
+fn invalid_values_are_reported_with_their_own_line() {
     let text = "[materials]\ngrey = { reflectivity = 50 }\n[materials.sky]\nabsorbing = true\nspecular = 2\n";
     assert_eq!(
         wrong(text),
@@ -365,7 +365,7 @@ sphere = { radius_m = 0.5 }
 }
 
 #[test]
-fn what_moves_is_where_its_velocity_takes_it() {
+fn moving_objects_follow_their_velocity() {
     let text = "[[objects]]\nplane = {}\n[[objects]]\nposition_m = [5, 0, 0]\nvelocity_m_s = [0, 2, 0]\nturn_deg_s = [0, 0, 45]\n\
                 box = { size_m = [4, 1, 1] }\n";
     let scenery = Scenery::parse(text).unwrap();
@@ -388,9 +388,9 @@ fn what_moves_is_where_its_velocity_takes_it() {
     assert!(moving.travel.at(1e18).is_err());
 }
 
-/// A facade is a wall and its panes: they turn about the facade's origin, not each about its own.
+/// The parts of a facade rotate about the facade's origin, not each about its own.
 #[test]
-fn parts_of_what_moves_stay_together_and_copies_go_alone() {
+fn parts_of_moving_objects_stay_together_and_copies_move_alone() {
     let text = "[materials]\nglass = { reflectivity = 6 }\n[[objects]]\nsphere = { radius_m = 1 }\n[[objects]]\nposition_m = [5, 6, 0]\n\
                 rotation_deg = [0, 0, -90]\nturn_deg_s = [0, 0, 90]\ncopies = { at_m = [[0, 0, 0], [40, 0, 0]] }\n\
                 facade = { width_m = 12, height_m = 9, depth_m = 5, columns = 3, storeys = 2, window_m = [2, 1.5], sill_m = 1, glass = \"glass\" }\n";
@@ -414,7 +414,8 @@ fn parts_of_what_moves_stay_together_and_copies_go_alone() {
     });
     let (mut met, mut glass) = (0, 0);
     for ray in rays {
-        // A quarter turn on, each about its own origin, the same is seen from where the scanner has gone round with it.
+        // After a quarter of a revolution about its origin, a body looks the same from a scanner
+        // that went round with it.
         for (moving, body) in &moves {
             let (body_caster, place) = (body.caster().unwrap(), moving.travel.at(1.0).unwrap());
             let from = moving.travel.from_m;
@@ -456,7 +457,7 @@ fn parts_of_what_moves_stay_together_and_copies_go_alone() {
 }
 
 #[test]
-fn what_is_made_up_depends_on_the_seed_alone() {
+fn generated_geometry_depends_only_on_the_seed() {
     for name in ["parking", "quarry"] {
         let scenery = Scenery::parse(shipped(name).unwrap()).unwrap();
         let look = |seed| {

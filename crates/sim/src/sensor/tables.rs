@@ -1,7 +1,7 @@
 //! The makers' tables of lasers.
 //!
-//! Written down by what orders them, the place from below and the order of firing, and by the crossing of the beams where there is one.
-//! Left out: azimuths and ranges of single units.
+//! Written by their rules: the place from below, the firing order, and the crossing of the beams
+//! where there is one.
 
 use super::LaserBeam;
 
@@ -15,9 +15,11 @@ pub(super) fn vlp16() -> Vec<LaserBeam> {
     in_turn(16, 2_304, |ring| beam(f64::from(ring)))
 }
 
-/// Puck Hi-Res: the same with 4/3 of a degree between lasers, and origins as the manual prints them.
+/// Puck Hi-Res: the same with 4/3 of a degree between lasers, and origins as the manual prints
+/// them.
 pub(super) fn hi_res() -> Vec<LaserBeam> {
-    // By distance from the horizon: elevation in hundredths of a degree, start in tenths of a millimetre below the middle.
+    // By distance from the horizon: elevation in hundredths of a degree, origin in tenths of a
+    // millimetre below the middle.
     const ABOVE: [(i32, i32); 8] = [
         (67, 9),
         (200, 18),
@@ -43,8 +45,9 @@ pub(super) fn hi_res() -> Vec<LaserBeam> {
     })
 }
 
-/// HDL-32E: low and high laser in turn, 1.152 us apart; 4/3 of a degree between lasers, printed to 0.01; beams cross 28.95 mm from the axis
-/// (drawing 86-0106, revision B), printed to 0.01 mm.
+/// HDL-32E: low and high lasers alternately, 1.152 us apart; 4/3 of a degree between lasers,
+/// printed to 0.01; beams cross 28.95 mm from the axis (drawing 86-0106, revision B), printed to
+/// 0.01 mm.
 pub(super) fn hdl32e() -> Vec<LaserBeam> {
     in_turn(32, 1_152, |ring| {
         let exact_deg = (4.0 * f64::from(ring) - 92.0) / 3.0;
@@ -53,9 +56,10 @@ pub(super) fn hdl32e() -> Vec<LaserBeam> {
     })
 }
 
-/// VLP-32C: sixteen pairs 2.304 us apart (63-9325, section 9.5). Where its rays start is not published: all in one point.
+/// VLP-32C: sixteen pairs 2.304 us apart (63-9325, section 9.5). The origins of its rays are not
+/// published: all in one point.
 pub(super) fn vlp32c() -> Vec<LaserBeam> {
-    // Thousandths of a degree of elevation, and tenths of azimuth; the two of a pair beside each other.
+    // Thousandths of a degree of elevation, and tenths of azimuth, by pair.
     const PAIRS: [[(i32, i32); 2]; 16] = [
         [(-25_000, 14), (-1_000, -42)],
         [(-1_667, 14), (-15_639, -14)],
@@ -88,7 +92,8 @@ pub(super) fn vlp32c() -> Vec<LaserBeam> {
         .collect()
 }
 
-/// Lasers that fire by turns from the lower and the upper half, from below; elevation (deg) and start (mm) by place.
+/// Lasers that fire alternately from the lower and the upper half, from below; elevation (deg) and
+/// origin (mm) by place.
 fn in_turn(count: i32, period_ns: i64, of_ring: impl Fn(i32) -> (f64, f64)) -> Vec<LaserBeam> {
     (0..count)
         .map(|number| {
@@ -104,7 +109,8 @@ fn in_turn(count: i32, period_ns: i64, of_ring: impl Fn(i32) -> (f64, f64)) -> V
         .collect()
 }
 
-/// How high a beam starts that crosses the others so far from the axis, millimetres in steps of `step_mm`.
+/// Height of the origin of a beam that crosses the others at this distance from the axis,
+/// millimetres, in steps of `step_mm`.
 fn crossing_mm(elevation_deg: f64, distance_mm: f64, step_mm: f64) -> f64 {
     let exact = -distance_mm * elevation_deg.to_radians().tan();
     (exact / step_mm).round() / step_mm.recip()

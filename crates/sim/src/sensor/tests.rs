@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use super::*;
 
 #[test]
-fn the_rules_give_what_the_manuals_print() {
+fn tables_agree_with_the_manuals() {
     let row = |beam: &LaserBeam| (beam.elevation_deg, beam.origin_m * 1e3);
     let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9;
     let origins = [
@@ -95,9 +95,9 @@ fn the_head_turns_between_the_first_laser_and_each_other() {
     }
 }
 
-/// Eq. 4-6 of "Analysis of 3D Scan Measurement Distribution with Application to a Multi-Beam Lidar on a
-/// Rotating Platform" (2018) as printed, with z raised in the head's frame by the laser's vertical
-/// origin.
+/// Eq. 4-6 of "Analysis of 3D Scan Measurement Distribution with Application to a Multi-Beam Lidar
+/// on a Rotating Platform" (2018) as printed, with z raised in the head's frame by the laser's
+/// vertical origin.
 fn printed(range_m: f64, beam: &LaserBeam, azimuth_deg: f64, tilt_deg: f64, d_m: f64) -> DVec3 {
     let (sw, cw) = beam.elevation_deg.to_radians().sin_cos();
     let (sa, ca) = azimuth_deg.to_radians().sin_cos();
@@ -113,8 +113,8 @@ fn printed(range_m: f64, beam: &LaserBeam, azimuth_deg: f64, tilt_deg: f64, d_m:
 #[test]
 fn origins_of_the_vlp16_follow_from_one_crossing() {
     let sensor = LidarSensor::vlp16();
-    // The beams cross close to one point, 41.91 mm from the axis: origin = -41.91 mm x tan(elevation),
-    // printed to 0.1 mm; they mirror about the middle of the stack.
+    // The beams cross close to one point, 41.91 mm from the axis: origin = -41.91 mm x
+    // tan(elevation), printed to 0.1 mm; they mirror about the middle of the stack.
     for (beam, mirrored) in sensor.beams().iter().zip(sensor.beams().iter().rev()) {
         let crossing = -0.041_91 * beam.elevation_deg.to_radians().tan();
         assert!((beam.origin_m - crossing).abs() < 0.6e-4, "{beam:?}");

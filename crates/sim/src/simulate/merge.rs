@@ -2,8 +2,8 @@
 //!
 //! The host polls the drive at even intervals, but not before the previous answer arrives or times
 //! out. Before each move it writes the commands and repeats them until they are acknowledged; the
-//! axis moves on time in any case. After a timeout it sends probe requests until one is answered, as
-//! the drive client does.
+//! axis moves on time in any case. After a timeout it sends probe requests until one is answered,
+//! as the drive client does.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::{BinaryHeap, VecDeque};

@@ -15,7 +15,7 @@ use crate::scenes;
 use crate::sensor::{LidarMount, LidarSensor, ReturnMode};
 use firmware_sim::vlp16::DATA_PORT;
 
-/// What a run gave.
+/// The output of a run.
 #[derive(Default)]
 struct Taken {
     times: Vec<i64>,
@@ -269,7 +269,7 @@ fn run_with<F: FiringEffects, M: MechanismEffect, E: EncoderEffect, L: LinkEffec
 }
 
 #[test]
-fn a_window_leaves_blocks_out_and_packets_straddle_the_gap() {
+fn packets_straddle_the_gap_of_a_limited_view() {
     let mut simulation = hall(LidarSensor::vlp16());
     simulation.motion = AxisMotion::fixed(0.0, 0.5).unwrap();
     simulation.polls = None;
@@ -353,7 +353,7 @@ fn distances(taken: &Taken) -> Vec<u16> {
 }
 
 #[test]
-fn one_more_effect_leaves_the_draws_of_the_others_as_they_were() {
+fn another_effect_does_not_change_draws() {
     let simulation = hall(LidarSensor::vlp16());
     let noise = RangeNoise::new(0.05, 3);
     let (alone, _) = run_with(&simulation, &mut with((), noise, ()));
@@ -426,7 +426,8 @@ fn a_mechanism_stands_between_encoder_and_platform() {
     }
 }
 
-/// Every third message is lost, every fifth comes twice, and all are late by up to 4 ms, so that they overtake each other.
+/// Every third message is lost, every fifth comes twice, and all are delayed by up to 4 ms, so that
+/// they overtake each other.
 #[derive(Debug)]
 struct Bad(crate::random::Source);
 
@@ -456,7 +457,7 @@ impl LinkEffect for Bad {
 }
 
 #[test]
-fn whatever_a_link_does_events_come_in_order_and_moves_are_commanded() {
+fn events_come_in_order_and_moves_are_commanded_over_bad_links() {
     let simulation = hall(LidarSensor::vlp16());
     let mut effects = Effects {
         firings: FiringEffectSet::default(),
@@ -533,7 +534,7 @@ fn a_laser_that_is_covered_never_fires() {
 }
 
 #[test]
-fn what_cannot_be_run_is_refused() {
+fn invalid_simulations_are_rejected() {
     let mut simulation = hall(LidarSensor::vlp16());
     simulation.motion = AxisMotion::fixed(0.0, 86_401.0).unwrap();
     let mut none = Effects::<FiringEffectSet>::default();

@@ -76,8 +76,8 @@ impl<'a> SharedRun<'a> {
     }
 }
 
-/// Makes all packets and passes them to `take` in order until it returns `Break`. Returns the copies
-/// of the effects that the threads worked with.
+/// Makes all packets and passes them to `take` in order until it returns `Break`. Returns the
+/// copies of the effects that the threads worked with.
 pub(super) fn run<F: FiringEffects>(
     run: &SharedRun<'_>,
     effects: &F,

@@ -1,4 +1,5 @@
-//! The same bits however it is asked: tree or every triangle, one ray or eight, one thread or several, narrow registers or wide.
+//! The same bits by tree or by every triangle, one ray or eight, one thread or several, narrow
+//! registers or wide.
 
 use fearless_simd::Level;
 use proptest::prelude::*;
@@ -77,7 +78,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
-    fn the_tree_gives_what_every_triangle_gives_bit_for_bit(seed: u64, count in 1_usize..400) {
+    fn the_tree_agrees_with_all_triangles_bit_for_bit(seed: u64, count in 1_usize..400) {
         let mut numbers = Numbers(seed);
         let (vertices, triangles) = soup(&mut numbers, count);
         let caster = mesh(&(vertices.clone(), triangles.clone()));
@@ -93,7 +94,7 @@ proptest! {
     }
 
     #[test]
-    fn beams_of_rays_give_what_every_triangle_gives_bit_for_bit(
+    fn beams_of_rays_agree_with_all_triangles_bit_for_bit(
         seed: u64, step in 1e-5_f64..2e-2, tilted: bool,
     ) {
         let mut numbers = Numbers(seed);
@@ -197,7 +198,7 @@ fn one_ray_or_many_any_threads_any_registers_give_the_same_bits() {
     }
 }
 
-/// Along and beside faces, edges and axes, from within and without: where single rays take another branch.
+/// Along faces, edges and axes, from inside and outside: where single rays take another branch.
 #[test]
 fn solids_give_the_same_bits_by_one_ray_and_by_eight() {
     let mut numbers = Numbers(77);
@@ -275,7 +276,7 @@ fn solids_give_the_same_bits_by_one_ray_and_by_eight() {
 }
 
 #[test]
-fn objects_in_a_tree_give_what_each_alone_gives() {
+fn objects_in_a_tree_agree_with_each_alone() {
     let caster = scene();
     let alone: Vec<Caster> = caster
         .objects()

@@ -1,5 +1,5 @@
-//! The slow reference: fractions of any length, nothing rounded. It knows nothing of shears and trees: Cramer's rule on
-//! `origin + t direction = a + u (b - a) + v (c - a)`.
+//! The slow reference: fractions of any length, nothing rounded. It knows nothing of shears and
+//! trees: Cramer's rule on `origin + t direction = a + u (b - a) + v (c - a)`.
 
 use num_rational::BigRational;
 
@@ -34,7 +34,8 @@ fn rounded(of: &BigRational) -> f64 {
     whole.to_string().parse::<f64>().unwrap() / 2.0_f64.powi(80)
 }
 
-/// Distance to a triangle ahead, edges and corners included; `None` for a miss and for a ray in its plane.
+/// Distance to a triangle ahead, edges and corners included; `None` for a miss and for a ray in its
+/// plane.
 pub(in crate::cast) fn triangle(ray: &Ray, corners: [DVec3; 3]) -> Option<BigRational> {
     let (origin, along) = (exact(ray.origin_m()), exact(ray.direction()));
     let [a, b, c] = corners.map(exact);
@@ -53,7 +54,7 @@ pub(in crate::cast) fn triangle(ray: &Ray, corners: [DVec3; 3]) -> Option<BigRat
     (u >= zero && v >= zero && &u + &v <= one && range > zero).then_some(range)
 }
 
-/// Not farther from the ray's line than the triangle is long, with room: fractions take their time, and others cannot be hit.
+/// Whether a ray passes near enough to a triangle to hit it; others skip the slow fractions.
 fn is_near(ray: &Ray, [a, b, c]: &[DVec3; 3]) -> bool {
     let long = (b - a).length().max((c - a).length());
     let from = *a - ray.origin_m();
@@ -75,7 +76,8 @@ pub(in crate::cast) fn nearest(
         .map(|range| rounded(&range))
 }
 
-/// Where a ray meets a sphere about the origin, by the quadratic formula in fractions; the root by bisection down to 2^-100.
+/// Distance to a sphere about the origin, by the quadratic formula in fractions; the root by
+/// bisection to 2^-100.
 pub(in crate::cast) fn sphere(ray: &Ray, centre: DVec3, radius_m: f64) -> Option<f64> {
     let along = exact(ray.direction());
     let from = minus(&exact(ray.origin_m()), &exact(centre));

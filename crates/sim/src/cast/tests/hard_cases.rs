@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A flat grid of 2 x 40 x 40 triangles about `middle`, whose vertices are not on round numbers.
+/// A flat grid of 2 x 40 x 40 triangles about `middle` with vertices off round numbers.
 fn sheet(middle: DVec3, cell: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut numbers = Numbers(3);
     let mut vertices = Vec::new();
@@ -141,7 +141,8 @@ fn a_sphere_of_a_metre_a_kilometre_away() {
             None => missed += 1,
             Some((ours, exact)) => {
                 met += 1;
-                // The rounding of a direction's length alone is 1e-13 of a kilometre; near the rim it goes by the root.
+                // The rounding of a direction's length alone is 1e-13 of a kilometre; near the rim
+                // it grows by the root.
                 assert!((ours - exact).abs() < 1e-10, "{ours} {exact}");
             }
         }
@@ -327,7 +328,7 @@ fn a_ray_along_a_plane_or_in_a_face() {
         vec![[0, 1, 2]],
     ));
     assert_eq!(first(&sheet, &ray(DVec3::ZERO, DVec3::X)), None);
-    // In a face of a box: not through the face, which it never crosses, but where it enters the box.
+    // A ray in the plane of a face meets the box where it enters, not that face.
     let crate_ = Caster::new([Object::new(Cuboid::new(DVec3::ZERO, DVec3::ONE))]).unwrap();
     let in_face = ray(DVec3::new(-2.0, 0.5, 1.0), DVec3::X);
     assert_eq!(
@@ -339,7 +340,7 @@ fn a_ray_along_a_plane_or_in_a_face() {
 }
 
 #[test]
-fn what_is_not_finite_is_no_ray_and_no_surface() {
+fn numbers_that_are_not_finite_are_rejected() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
         for axis in 0..3 {
             let mut off = DVec3::X;

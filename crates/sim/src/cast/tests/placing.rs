@@ -73,7 +73,7 @@ fn an_object_that_moves_is_met_where_it_went() {
 }
 
 #[test]
-fn what_stretches_or_mirrors_is_no_placement() {
+fn stretching_and_mirroring_are_rejected() {
     for bad in [
         DMat3::IDENTITY * 2.0,
         DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)),
@@ -101,7 +101,7 @@ fn of_two_at_one_distance_the_first_given_counts() {
 }
 
 #[test]
-fn an_answer_is_no_larger_than_what_it_says() {
+fn hits_are_small() {
     assert_eq!(size_of::<Option<Hit>>(), 16);
     assert_eq!(size_of::<Option<Hit<DVec3>>>(), 40);
 }

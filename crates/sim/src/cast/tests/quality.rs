@@ -10,7 +10,7 @@ fn qualities() -> impl Iterator<Item = Quality> {
 }
 
 #[test]
-fn rays_meet_the_same_whatever_the_tree_is_like() {
+fn rays_meet_the_same_with_any_tree() {
     let (vertices, triangles) = ball(14, 18, 4.0, 0.3);
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
     let mut numbers = Numbers(21);
@@ -54,12 +54,13 @@ fn a_tree_does_not_depend_on_the_one_before() {
 }
 
 #[test]
-fn a_quality_is_what_it_says() {
+fn qualities_shape_the_tree() {
     let (vertices, triangles) = ball(40, 60, 4.0, 0.3);
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
     let nodes = |bins, sharing| mesh.rebuilt(Quality { bins, sharing }).nodes();
     assert_eq!(nodes(16, 1), mesh.nodes());
-    // Every node but the root is a child, and every triangle: with eight children a node there are at least an eighth as many.
+    // Every node but the root is a child, and every triangle: with eight children per node there
+    // are at least an eighth as many.
     assert!(mesh.nodes() > mesh.triangles() / 8);
     assert!(nodes(16, 4) < mesh.nodes() && nodes(16, 8) < nodes(16, 4));
     // Out of bounds counts as the bound.

@@ -101,7 +101,7 @@ fn an_edge_close_before_a_wall_makes_a_mixed_pixel() {
 
 /// The map and the four corners against sub-rays at every shot.
 #[test]
-fn what_is_left_alone_would_not_have_changed() {
+fn footprints_without_sub_rays_would_not_change() {
     let surroundings = around(scenes::hall());
     let divergence = divergence();
     let (mut missed, mut shots, mut acted) = (0, 0, 0);
@@ -133,7 +133,7 @@ fn what_is_left_alone_would_not_have_changed() {
 
 /// Near moving objects the result is the same as without a map, wherever the box is.
 #[test]
-fn a_map_of_what_stands_is_right_beside_what_moves() {
+fn the_map_of_static_objects_holds_near_moving_ones() {
     let walker = MovingObjects::of(&MovingObjectsSettings {
         boxes: vec![MovingBox {
             at_m: [3.0, 4.0, 0.3],

@@ -84,7 +84,7 @@ fn among(returns: [u16; 2], others: [u16; 2], within: u16) -> bool {
 }
 
 #[test]
-fn one_more_effect_leaves_what_is_drawn_for_shots_as_it_was() {
+fn another_effect_does_not_change_draws_per_shot() {
     // Fog that is dense enough to return, and fog that only dims.
     let (dense, thin) = (TABLES[4].1, "visibility_m = 1000.0");
     let nothing = shots(&[], thin, 1);
@@ -129,7 +129,7 @@ fn one_more_effect_leaves_what_is_drawn_for_shots_as_it_was() {
 }
 
 #[test]
-fn one_more_effect_leaves_the_clocks_way_as_it_was() {
+fn another_effect_does_not_change_the_clock() {
     let clock = |names: &[&str]| {
         let clocks = configured(names).firings.clock;
         (0..1_000)
@@ -156,7 +156,7 @@ fn delays(names: &[&str], kind: MessageKind) -> Vec<Vec<i64>> {
 
 /// Consecutive links: each acts on a message as it does alone.
 #[test]
-fn one_more_effect_leaves_what_is_drawn_for_messages_as_it_was() {
+fn another_effect_does_not_change_draws_per_message() {
     for kind in [
         MessageKind::Data,
         MessageKind::Position,
@@ -169,7 +169,7 @@ fn one_more_effect_leaves_what_is_drawn_for_messages_as_it_was() {
             assert_eq!(acts, kind.is_from_lidar() || !on_lidar_only, "{effect}");
             for (other, _) in TABLES.iter().filter(|(other, _)| *other != effect) {
                 let both = delays(&[effect, other], kind);
-                // It waits for a tick, whatever the arrival.
+                // It waits for a tick, independent of the arrival.
                 if *other == "batching" && kind.is_from_lidar() {
                     for ((number, both), alone) in (0..).zip(&both).zip(&alone) {
                         let tick = |delay: &i64| {

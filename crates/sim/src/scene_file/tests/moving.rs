@@ -1,4 +1,5 @@
-//! Objects of a scene file that move, through the whole simulation: where the truth has them at each firing.
+//! Moving objects of a scene file through the whole simulation, against their true positions at
+//! each firing.
 
 use crate::effect_models::Explanation;
 use crate::packet_maker::TruePoint;
@@ -35,7 +36,7 @@ impl SimulationSink for Taken {
     }
 }
 
-/// A plate that stands upright along x, 2 m wide and high.
+/// An upright plate along x, 2 m wide and high.
 const PLATE: &str = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 2 3 4\n";
 
 /// All but the objects.
@@ -63,7 +64,8 @@ fn run(text: &str, threads: usize) -> (Taken, SceneFile) {
     (taken, scene)
 }
 
-/// When the first laser of a point's firing fired, seconds since the start: things are where they are then.
+/// Time of the first laser of a point's firing, seconds since the start, for which objects are
+/// placed.
 fn fired_s(point: &TruePoint) -> f64 {
     (point.device_ns / 55_296 * 55_296) as f64 * 1e-9
 }
@@ -97,7 +99,8 @@ fn a_box_at_2_m_s_is_at_each_firing_where_it_went() {
         faces[2] > 500 && faces[0] > 100 && faces[1] == 0 && faces[3] == 0,
         "{faces:?}"
     );
-    // Sheared: in one turn, 0.1 s, its front is 0.2 m farther where the head comes to it later. Here turn by turn.
+    // Sheared: in one revolution, 0.1 s, its front is 0.2 m farther where the head comes to it
+    // later. Here revolution by revolution.
     let front = |from_s: f64| {
         let turn = taken.points.iter().filter(|point| {
             point.reflectivity == 3 && (from_s..from_s + 0.1).contains(&fired_s(point))
@@ -142,7 +145,7 @@ fn a_mesh_that_turns_and_goes_is_where_it_turned_to() {
 }
 
 #[test]
-fn what_moves_together_with_the_effects_own_boxes_on_any_threads() {
+fn moving_objects_and_boxes_act_together_on_any_number_of_threads() {
     let table = "[effects.range_noise]\nsd_m = 0.01\n[effects.moving_objects]\n\
                  boxes = [{ at_m = [0, -5, 0], size_m = [1, 1, 2], reflectivity = 44 }]\n[effects.divergence]\n";
     let text = format!("{BEFORE}{BOX}{MESH}{table}");

@@ -3,7 +3,7 @@
 use super::super::objects::Facade;
 use super::ObjectPart;
 
-/// How far panes stand out of the wall, metres: so that they are what a beam meets.
+/// Distance of panes from the wall, metres, so that beams meet them.
 const PANE_M: f64 = 0.01;
 
 pub(in super::super) fn facade(config: &Facade, wall: u32, glass: u32) -> Vec<ObjectPart> {

@@ -8,11 +8,12 @@ use super::super::materials::MaterialAssignment;
 use super::{Draws, ObjectPart};
 use crate::cast::Cylinder;
 
-/// `parked_cars = { bays = N, .. }`: bays beside one another from the origin along x, cars along y with their middles at y = 0, either way round.
+/// `parked_cars = { bays = N, .. }`: adjacent bays from the origin along x, cars along y with their
+/// centres at y = 0, facing either way.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ParkedCars {
-    /// How many bays.
+    /// Number of bays.
     pub bays: u32,
     /// Width of a bay, metres.
     #[serde(default = "usual_pitch")]

@@ -1,4 +1,4 @@
-//! A quarry: a pit with a floor, steep faces and berms in turn, a way out, and heaps of rubble.
+//! A quarry: a pit with a floor, alternating steep faces and berms, a way out, and heaps of rubble.
 
 use glam::{DVec2, dvec2};
 use serde::Deserialize;
@@ -16,21 +16,21 @@ pub struct Quarry {
     pub size_m: f64,
     /// From one height to the next, metres.
     pub spacing_m: f64,
-    /// How far the first face is off, on average, metres.
+    /// Mean distance of the first face, metres.
     pub floor_m: f64,
     /// Where the middle of the floor is, metres: the scanner need not stand there.
     pub middle_m: [f64; 2],
-    /// How far faces run in and out of their circle, over its radius.
+    /// Relative deviation of faces from a circle.
     pub winding: f64,
     /// Height of each face, metres.
     pub faces_m: Vec<f64>,
-    /// How steep faces are, degrees.
+    /// Slope of faces, degrees.
     pub face_deg: f64,
     /// Width of the berm above each face, metres.
     pub berm_m: f64,
-    /// The way out: where its middle is, counterclockwise from x, and how wide it is, degrees.
+    /// The way out: bearing of its centre, counterclockwise from x, and its width, degrees.
     pub way_out_deg: [f64; 2],
-    /// How many heaps.
+    /// Number of heaps.
     pub heaps: u32,
     /// Their least and greatest height, metres.
     pub heap_m: [f64; 2],
@@ -90,7 +90,7 @@ impl Quarry {
         }
     }
 
-    /// How far to the side of the square its middle is, metres: where the grid begins.
+    /// Half side of the grid, metres.
     pub(in super::super) fn half_m(&self) -> f64 {
         0.5 * (self.columns() - 1) as f64 * self.spacing_m
     }
@@ -99,7 +99,7 @@ impl Quarry {
         (self.size_m / self.spacing_m) as usize + 1
     }
 
-    /// How high the ground is before heaps and roughness.
+    /// Height of the ground without heaps and roughness.
     fn pit(&self, seed: u64, at_m: DVec2) -> f64 {
         let from_middle = at_m - DVec2::from_array(self.middle_m);
         let out = from_middle.normalize_or_zero();

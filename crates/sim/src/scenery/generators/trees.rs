@@ -8,11 +8,12 @@ use super::super::materials::MaterialAssignment;
 use super::{Draws, ObjectPart};
 use crate::cast::{Cylinder, Sphere};
 
-/// `trees = { count = N, from_m = [x, y], to_m = [x, y], .. }`: anywhere in a rectangle, their feet at z = 0.
+/// `trees = { count = N, from_m = [x, y], to_m = [x, y], .. }`: anywhere in a rectangle, their feet
+/// at z = 0.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Trees {
-    /// How many.
+    /// Number of trees.
     pub count: u32,
     /// A corner of where they stand, metres.
     pub from_m: [f64; 2],

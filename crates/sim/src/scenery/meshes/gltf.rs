@@ -1,7 +1,7 @@
 //! glTF 2.0, text and GLB, through `gltf`.
 //!
-//! The crate reads and checks the document. Bytes of accessors are taken here, because its own readers take offsets and counts for granted. Left out:
-//! sparse accessors and data within the document (`data:`), which are said to be missing.
+//! The crate reads and checks the document. Accessors are read here, because the crate's own
+//! readers trust offsets and counts. Sparse accessors and data URIs are errors.
 
 use ::gltf::accessor::{DataType, Dimensions};
 use ::gltf::buffer::Source;
@@ -138,7 +138,7 @@ impl Reader {
             _ => numbers.len().saturating_sub(2),
         };
         let first = u32::try_from(self.soup.vertices.len()).map_err(|_| "too many vertices")?;
-        // What reflects turns the triangles' insides out.
+        // A reflection reverses the orientation of triangles.
         let mirrored = matrix.determinant() < 0.0;
         for at in 0..triangles {
             let [a, b, c] = fan(at).map(|corner| numbers.get(corner).copied());

@@ -214,7 +214,7 @@ fn several_objects_share_a_file_that_is_read_once() {
     assert_eq!((placed.objects.len(), asked), (4, 1));
 }
 
-/// What a file of this name and these contents is refused for.
+/// The error for a file of this name with these contents.
 fn refused(name: &str, bytes: &[u8]) -> MeshFileError {
     let text = format!("\n[[objects]]\nmesh = {{ file = \"{name}\" }}\n");
     let mut file = |_: &str| Ok(bytes.to_vec());
@@ -286,7 +286,8 @@ fn malformed_meshes_are_refused() {
     );
 }
 
-/// Nothing that a file holds makes a reader panic: every file cut short anywhere, and with any one byte another.
+/// No contents of a file make a reader panic: every file cut at any byte, and with any one byte
+/// changed.
 #[test]
 fn broken_files_are_errors_or_meshes_but_never_panics() {
     for (format, bytes) in [
