@@ -52,7 +52,7 @@ pub fn select<'a>(
 
 /// A name that belongs to no study.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no study {name:?}; the studies are {}", known.join(", "))]
+#[error("there is no study {name:?}")]
 pub struct UnknownStudy {
     /// The unknown name.
     pub name: String,

@@ -35,8 +35,10 @@ const BOOK: Book<'_> = Book {
 /// file fails.
 pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, Failure> {
     let selected = tradeoff::select(&STUDIES, &arguments.only).map_err(|error| {
-        Failure::new(Kind::Usage, error.to_string())
-            .help("give --only names of that list, or leave it out for all studies")
+        Failure::new(Kind::Usage, error.to_string()).help(format!(
+            "choose from {}, or leave --only out for all studies",
+            error.known.join(", ")
+        ))
     })?;
     let names: Vec<&str> = selected.iter().map(|study| study.name()).collect();
     prepare(arguments, &names)?;
