@@ -1,7 +1,4 @@
 //! Date and time of NMEA 0183 RMC sentences.
-//!
-//! The `nmea` crate needs `chrono` and `nom`, parses 30 kinds of sentences and rejects a leap
-//! second.
 
 use core::fmt;
 
