@@ -1,6 +1,7 @@
-//! `analyze --report DIR`: the page, its figures, and every curve as a table.
+//! `analyze --report DIR`: page, figures and curves.
 //!
-//! What is drawn is `analysis::figures`'. Pictures of dots (PNG) are left out: they would take a renderer of SVG, which is larger than the program's own code.
+//! `analysis::figures` draws. There are no PNG pictures: an SVG renderer would be larger than the
+//! program's own code.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +16,7 @@ use crate::terminal::Progress;
 use engine::failure::{Failure, Kind};
 use engine::output::{make_folder, write_text};
 
-/// A folder that fills.
+/// A report folder under construction.
 pub struct Folder {
     path: PathBuf,
     force: bool,
@@ -23,10 +24,11 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// The folder asked for, if any; it is made now, so that nothing is measured in vain.
+    /// Creates the requested folder, before anything is measured.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for one that holds something, unless `--force`; [`Kind::BadInput`] for one that cannot be made.
+    /// [`Kind::Usage`] for a folder with files, without `--force`; [`Kind::BadInput`] if it cannot
+    /// be created.
     pub fn new(arguments: &cli::Analyze) -> Result<Option<Self>, Failure> {
         let Some(path) = arguments.report.clone() else {
             return Ok(None);
@@ -51,7 +53,7 @@ impl Folder {
         }))
     }
 
-    /// What is drawn of a scan: no more than is needed of it, whatever its size.
+    /// Stores what the figures need of a scan, independent of its size.
     pub fn add(&mut self, input: &Input, pattern: &PatternReport) {
         self.scans.scans.push(AnalyzedScan {
             name: pattern.name.clone(),
@@ -70,10 +72,10 @@ impl Folder {
         });
     }
 
-    /// Writes all files and says which.
+    /// Writes all files and reports them.
     ///
     /// # Errors
-    /// [`Kind::BadInput`] where the system refuses.
+    /// [`Kind::BadInput`] if the system refuses.
     pub fn write(&self, report: &AnalyzeReport, progress: &Progress) -> Result<(), Failure> {
         let scans = &self.scans;
         let json = json(report);
@@ -97,7 +99,7 @@ impl Folder {
     }
 }
 
-/// Whether a name is taken by more than an empty folder.
+/// Whether the path exists and is more than an empty folder.
 fn holds_something(path: &Path) -> bool {
     match std::fs::read_dir(path) {
         Ok(mut entries) => entries.next().is_some(),
@@ -105,7 +107,7 @@ fn holds_something(path: &Path) -> bool {
     }
 }
 
-/// The command that measures the same again.
+/// The command that repeats the measurement.
 fn command(arguments: &cli::Analyze) -> String {
     let mut words = vec!["velomotion analyze".to_owned()];
     let inputs = arguments.inputs.iter();

@@ -1,7 +1,8 @@
-//! What is to be analysed: a pattern by its name, a cloud, or a log or recording, as the directions of its points.
+//! Inputs of the analysis: a named pattern, a cloud, or a log or recording, as directions of
+//! points.
 //!
-//! Directions are as seen from the base's origin, on the tilt axis; where a recording has no tilt, from the sensor; of clouds from their origin or where the user says that the scanner was.
-//! Left out: what can be seen (`view`), and what becomes of them.
+//! Directions start at the origin of the base, on the tilt axis; without tilt at the sensor; for
+//! clouds at their origin or `--origin`.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -22,45 +23,46 @@ use engine::reconstruct::replay;
 use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::source::Source;
 
-/// Directions, and what is known of how they came about.
+/// Directions and their provenance.
 pub struct Input {
-    /// What it is called.
+    /// Name of the input.
     pub name: String,
-    /// Where its points are, length 1.
+    /// Unit directions of the points.
     pub directions: Vec<DVec3>,
-    /// Turns of the lidar, where they are known.
+    /// Revolutions of the lidar, if known.
     pub frames: Option<u64>,
-    /// How long the scan took, where that is known, seconds.
+    /// Duration of the scan, if known, seconds.
     pub scan_s: Option<f64>,
-    /// Points in the origin, which have no direction.
+    /// Points at the origin, which have no direction.
     pub without_direction: u64,
-    /// Rows whose coordinates are no numbers: shots without a return, mostly.
+    /// Rows with NaN coordinates, mostly shots without a return.
     pub without_numbers: u64,
-    /// What the scan can see, where that is known: of patterns and logs.
+    /// Field of view, if known: for patterns and logs.
     pub view: Option<Seen>,
-    /// What may mislead, beside what is measured.
+    /// Warnings.
     pub warnings: Vec<String>,
-    /// Where the origin lies in what the file has; only of clouds.
+    /// Position of the origin relative to a cloud.
     pub outside: Option<Outside>,
     /// The pattern, if it is one.
     pub pattern: Option<Pattern>,
 }
 
-/// What an argument names.
+/// An input named by an argument.
 pub enum Named<'a> {
     /// A pattern.
     Pattern(Box<Pattern>),
-    /// A cloud in a format that is read.
+    /// A cloud in a readable format.
     Cloud(&'a Path, Format),
-    /// Anything else: a log or a recording.
+    /// A log or a recording.
     Log(&'a Path),
 }
 
 impl<'a> Named<'a> {
-    /// Says what it is, before any of it is read: a pattern by its name, else by the extension. Text has more than one: `.xyz`, `.txt` and `.asc` are read as `.csv` is.
+    /// Classifies an argument without reading the file: by pattern name, else by extension. `.xyz`,
+    /// `.txt` and `.asc` are read like `.csv`.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for patterns that cannot be, [`Kind::BadInput`] for files that are not there.
+    /// [`Kind::Usage`] for invalid patterns, [`Kind::BadInput`] for missing files.
     pub fn new(argument: &'a str) -> Result<Self, Failure> {
         if PatternRequest::is_one(argument) {
             let pattern = PatternRequest::parse(argument).and_then(|wish| wish.build());
@@ -82,15 +84,15 @@ impl<'a> Named<'a> {
         })
     }
 
-    /// Whether it is a cloud, which may be seen from elsewhere than its origin.
+    /// Whether it is a cloud, which may have another origin.
     pub const fn is_cloud(&self) -> bool {
         matches!(self, Self::Cloud(..))
     }
 
-    /// Its directions: those of a cloud from `origin_m`.
+    /// Reads the directions; those of a cloud start at `origin_m`.
     ///
     /// # Errors
-    /// [`Kind::BadInput`] for files that cannot be read, or hold no point.
+    /// [`Kind::BadInput`] for unreadable files and files without points.
     pub fn read(&self, origin_m: DVec3, interrupt: &AtomicBool) -> Result<Input, Failure> {
         match self {
             Self::Pattern(pattern) => Ok(of_pattern(pattern)),
@@ -100,13 +102,13 @@ impl<'a> Named<'a> {
     }
 }
 
-/// Extensions of text with a row a point, beside the one that is written.
+/// Extensions of text files with one row per point, apart from `.csv`.
 const TEXTS: [&str; 3] = ["xyz", "txt", "asc"];
 
 const HINT: &str = "name a pattern (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), \
                     or a log or recording (pcapng, pcap)";
 
-/// A pattern that cannot be.
+/// The failure for an invalid pattern.
 pub fn pattern_failure(error: &PatternError) -> Failure {
     let help = match error {
         PatternError::Name { .. } => HINT,
@@ -133,7 +135,7 @@ fn of_pattern(pattern: &Pattern) -> Input {
     }
 }
 
-/// What the mount makes of the sensor of a pattern that is tilted.
+/// Geometry of the sensor of a tilted pattern.
 pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
     let (settings, range) = (pattern.settings(), pattern.range());
     let tilt = settings.tilt;
@@ -196,14 +198,14 @@ fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failu
     })
 }
 
-/// Where points are, seen from the origin; and how many are in it. All are finite.
+/// Directions of finite points from the origin, and the number of points at the origin.
 fn directions(
     path: &Path,
     positions: Vec<DVec3>,
     without_numbers: u64,
 ) -> Result<(Vec<DVec3>, u64), Failure> {
     let all = positions.len();
-    // Scaled first: squares of what is very large or very small are neither.
+    // Scaling first avoids overflow and underflow of the squares.
     let direction = |place: DVec3| (place / place.abs().max_element()).try_normalize();
     let directions: Vec<DVec3> = positions.into_iter().filter_map(direction).collect();
     let wrong = |what: &str, help: &str| {
@@ -229,7 +231,7 @@ fn directions(
     }
 }
 
-/// Keeps the points of a log, and how the platform tilted.
+/// Collects the points of a log and its tilt samples.
 struct Kept {
     points: Points,
     track: TiltTrack,

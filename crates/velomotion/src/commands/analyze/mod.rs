@@ -1,6 +1,6 @@
-//! `velomotion analyze`: how densely and how evenly scans cover what is about them.
+//! `velomotion analyze`: density and evenness of scans.
 //!
-//! Patterns come from `sim`, clouds and logs from their files (`input`); what is measured is `analysis`'s. Left out: how it is said (`report`), and drawn (`folder`).
+//! Patterns come from `sim`, clouds and logs from files (`input`); `analysis` measures.
 
 mod folder;
 mod input;
@@ -42,27 +42,27 @@ use input::{Input, Named};
 
 /// Classes of the histogram.
 const CLASSES: usize = 10;
-/// The sphere that the JSON's K - K_csr is of.
+/// Radius of the sphere for K - K_csr in the JSON.
 const RADIUS_M: f64 = 1.0;
-/// A share of pairs on edges that nobody need know of: a few in a cloud are chance.
+/// Share of pairs on bin edges below which no warning is due: a few in a cloud are chance.
 const LEAST_ON_EDGES: f64 = 1e-8;
-/// How often it is looked whether the user wants no more of it.
+/// Interval of checks for an interrupt.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
-/// So many points, and what is under way is said.
+/// Number of points above which progress is reported.
 const MANY_POINTS: usize = 1_000_000;
-/// Holes that are counted one by one: with so many a report of eleven million points takes half a minute.
+/// Holes counted one by one; more would take half a minute at eleven million points.
 const MOST_HOLES: usize = 2_000;
 
 /// Runs the command.
 ///
 /// # Errors
-/// [`Kind::Usage`] for patterns that cannot be, [`Kind::BadInput`] for files that cannot be read.
+/// [`Kind::Usage`] for invalid patterns, [`Kind::BadInput`] for unreadable files.
 pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
     let (arguments, common, flag) = (arguments.clone(), common.clone(), Arc::clone(&interrupt));
     let (done, all) = mpsc::channel();
-    // What is measured can take minutes, and nothing is left of it that would have to be put in order: so it is simply not waited for after Ctrl-C.
-    // Who is not waited for any more sends to nobody.
+    // A measurement can take minutes and holds no resources to release, so Ctrl-C abandons its
+    // thread.
     let work = move || drop(done.send(measured(&arguments, &common, &flag)));
     std::thread::Builder::new().spawn(work).map_err(|error| {
         Failure::new(Kind::Incomplete, format!("cannot start a thread: {error}"))
@@ -80,17 +80,17 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<CommandOutput, F
         }
     };
     go_on(&interrupt)?;
-    // Files are written here, where nobody goes away in the middle.
+    // Files are written on this thread, which is never abandoned.
     if let Some((folder, report, progress)) = folder {
         folder.write(&report, &progress)?;
     }
     Ok(said)
 }
 
-/// What is said, and the folder that is still to be written.
+/// The output, and the folder to be written.
 type Measured = (CommandOutput, Option<(Folder, AnalyzeReport, Progress)>);
 
-/// Measures all that was asked for.
+/// Measures all inputs.
 fn measured(
     arguments: &cli::Analyze,
     common: &Common,
@@ -135,17 +135,17 @@ fn measured(
     Ok((said, folder.map(|folder| (folder, report, progress))))
 }
 
-/// What is the same for all inputs.
+/// Settings common to all inputs.
 struct Measure {
     level: u32,
     locator: Locator,
     /// Bins of the K function.
     edges: Edges,
-    /// How far that may be off.
+    /// Tolerated error of K.
     tolerance: f64,
-    /// The degree of harmonics, if it is to be found by those.
+    /// Degree of harmonics, if requested.
     degree: Option<usize>,
-    /// Middles of the bins.
+    /// Centres of the bins.
     places: Vec<DVec3>,
 }
 
@@ -241,7 +241,7 @@ impl Measure {
         })
     }
 
-    /// Of each bin, whether its middle is in view.
+    /// Whether the centre of each bin is in view.
     fn in_view(&self, view: &FieldOfView) -> Vec<bool> {
         let depths = self.places.iter().map(|place| view.depth_rad(*place));
         depths.map(|depth| depth >= 0.0).collect()
@@ -331,7 +331,7 @@ fn blind(input: &Input, least_deg: f64) -> Result<Blind, DensityError> {
         }
         None => None,
     };
-    // How far a ray is from the axis does not depend on the tilt, if it starts there.
+    // The distance of a ray from the axis is independent of the tilt if it starts on the axis.
     let pattern = input.pattern.as_ref();
     let on_axis = pattern.is_some_and(|pattern| pattern.settings().d_m == 0.0);
     let found = found.as_ref();
@@ -345,7 +345,7 @@ fn blind(input: &Input, least_deg: f64) -> Result<Blind, DensityError> {
     })
 }
 
-/// What to say where pairs lie on edges of bins, so that the last bit of their points decides.
+/// Warning about pairs on bin edges, which rounding decides.
 fn on_edges(estimate: &Estimate) -> Option<String> {
     let (pairs, bins) = (estimate.on_edges?, estimate.edges.bins());
     let n = estimate.points as f64;
@@ -376,7 +376,7 @@ fn failure(name: &str, error: &DensityError) -> Failure {
     Failure::new(Kind::BadInput, format!("{name}: {error}")).help("take out what is no point")
 }
 
-/// Unless the user wants no more of it.
+/// Checks for an interrupt.
 fn go_on(interrupt: &AtomicBool) -> Result<(), Failure> {
     match interrupt.load(Ordering::Relaxed) {
         true => Err(

@@ -1,7 +1,9 @@
-//! `velomotion analyze PATTERN --sweep`: many settings of one pattern, and which of them nothing beats for the time that a scan takes.
+//! `velomotion analyze PATTERN --sweep`: many settings of one pattern, and those on the Pareto
+//! front against scan time.
 //!
-//! Three things are measured where the scan can see: the largest hole; how far it is to the nearest point for 99 % of directions, which unlike the
-//! hole is not decided by the one worst place; and how uneven the bins are (sd over mean). Left out: how patterns are made and measured.
+//! Three quantities are measured within the field of view: the largest hole; the distance to the
+//! nearest point for 99 % of directions, which is not decided by a single place; and the evenness
+//! of the bins (sd over mean).
 
 use std::fmt::Write;
 use std::str::FromStr;
@@ -21,13 +23,13 @@ use super::{Measure, failure, go_on};
 use crate::terminal::Progress;
 use engine::failure::{Failure, Kind};
 
-/// Numbers of a pattern that are tried.
+/// Parameters to vary.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     ranges: Vec<SettingRange>,
 }
 
-/// One of them.
+/// One parameter with its range.
 #[derive(Clone, Debug, PartialEq)]
 struct SettingRange {
     key: String,
@@ -36,42 +38,42 @@ struct SettingRange {
     steps: usize,
 }
 
-/// Steps of a range unless it says.
+/// Default number of steps.
 const STEPS: usize = 8;
-/// The most settings.
+/// Upper limit on settings.
 const MOST: usize = 10_000;
 
-/// What came of it.
+/// Report on all settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepReport {
-    /// The pattern as it was named.
+    /// Pattern as named by the user.
     pub pattern: String,
-    /// What was varied, in the order of the settings' values.
+    /// Varied parameters, in the order of `values`.
     pub keys: Vec<String>,
-    /// The settings, by the time that a scan takes.
+    /// Settings ordered by scan time.
     pub settings: Vec<SweepSetting>,
 }
 
-/// Of one setting.
+/// Report on one setting.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepSetting {
-    /// Its values.
+    /// Values of the parameters.
     pub values: Vec<f64>,
-    /// How long a scan takes, seconds.
+    /// Duration of a scan, seconds.
     pub scan_s: f64,
     /// Points.
     pub points: u64,
     /// Radius of the largest hole in view, degrees.
     pub hole_deg: f64,
-    /// 99 % of directions in view have a point within this, degrees.
+    /// Distance to the nearest point that 99 % of directions in view do not exceed, degrees.
     pub gap_deg: f64,
-    /// Standard deviation over mean of points a bin, of the bins in view.
+    /// Standard deviation over mean of the points per bin in view.
     pub sd_over_mean_in_view: f64,
-    /// Whether no other setting is as good in time and largest hole, and better in one of them.
+    /// Whether the setting is on the Pareto front of time and largest hole.
     pub best_hole: bool,
-    /// The same of time and gap.
+    /// Whether it is on the front of time and gap.
     pub best_gap: bool,
-    /// The same of time and `sd_over_mean_in_view`.
+    /// Whether it is on the front of time and `sd_over_mean_in_view`.
     pub best_evenness: bool,
 }
 
@@ -134,7 +136,7 @@ impl FromStr for SettingRange {
                 "{key}: expected at least 2 steps from {from} to {to}"
             ));
         }
-        // One number is one setting, however many steps there are to it.
+        // A single value is a single setting.
         let steps = if from == to { 1 } else { steps };
         let key = key.to_owned();
         Ok(Self {
@@ -147,7 +149,7 @@ impl FromStr for SettingRange {
 }
 
 impl SettingRange {
-    /// The value of a step: by equal factors where both ends are above 0, else by equal differences. The ends are met exactly.
+    /// Value of a step: geometric if both ends are positive, else linear. Both ends are exact.
     fn value(&self, step: usize) -> f64 {
         if step == 0 {
             return self.from;
@@ -165,10 +167,10 @@ impl SettingRange {
 }
 
 impl Sweep {
-    /// Tries all settings of the one pattern that is named.
+    /// Measures all settings of one named pattern.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for anything but one pattern, and for settings that it has not.
+    /// [`Kind::Usage`] for anything but one pattern, and for parameters it does not have.
     pub(super) fn run(
         &self,
         inputs: &[String],
@@ -185,7 +187,7 @@ impl Sweep {
         };
         let wish =
             PatternRequest::parse(name).map_err(|error| pattern_failure(&error).help(EXAMPLE))?;
-        // All are checked before the first is made.
+        // All are checked before the first is measured.
         let patterns = self.patterns(&wish)?;
         let mut settings = Vec::with_capacity(patterns.len());
         progress.begin_count(patterns.len() as u64);
@@ -253,7 +255,7 @@ fn measured(
         points: directions.len() as u64,
         hole_deg: hole.map_or(180.0, |hole| hole.hole.radius_rad.to_degrees()),
         gap_deg: gap.map_or(180.0, f64::to_degrees),
-        // Nothing in view is as uneven as can be.
+        // A scan without points in view counts as maximally uneven.
         sd_over_mean_in_view: statistics.sd_over_mean().unwrap_or(f64::MAX),
         best_hole: false,
         best_gap: false,
@@ -261,7 +263,7 @@ fn measured(
     })
 }
 
-/// Marks the fronts.
+/// Marks the Pareto fronts.
 fn mark(settings: &mut [SweepSetting]) {
     let costs = |of: fn(&SweepSetting) -> f64| -> Vec<bool> {
         let costs = settings
@@ -269,7 +271,7 @@ fn mark(settings: &mut [SweepSetting]) {
             .map(|setting| vec![setting.scan_s, of(setting)]);
         front(&costs.collect::<Vec<_>>())
     };
-    // Holes are known to 100 times the least tolerance.
+    // Hole sizes are accurate to 100 times the smallest tolerance.
     let holes = costs(|setting| (setting.hole_deg * 100.0).round());
     let gaps = costs(|setting| setting.gap_deg);
     let even = costs(|setting| setting.sd_over_mean_in_view);
@@ -281,7 +283,7 @@ fn mark(settings: &mut [SweepSetting]) {
 }
 
 impl SweepReport {
-    /// For people: the settings of the fronts.
+    /// Table of the settings on the fronts.
     #[must_use]
     pub fn text(&self) -> String {
         let best = |s: &&SweepSetting| s.best_hole || s.best_gap || s.best_evenness;
@@ -291,7 +293,8 @@ impl SweepReport {
             self.pattern,
             self.settings.len()
         );
-        // All three are of what is in view: what is of all bins has other headings elsewhere.
+        // All three columns refer to the field of view, so their headings differ from those of
+        // other tables.
         let before = 9 * self.keys.len() + 18;
         let [a, b, c] = ["in view "; 3];
         let _ = writeln!(text, "{:before$} {a:>9} {b:>9} {c:>10}", "");
@@ -344,7 +347,7 @@ mod tests {
             (speed.value(0), speed.value(7), speed.steps),
             (5.0, 56.25, 8)
         );
-        // Equal factors, and equal differences through 0.
+        // Geometric steps, and linear steps through 0.
         assert!((speed.value(1) / speed.value(0) - speed.value(7) / speed.value(6)).abs() < 1e-12);
         let starts: Vec<f64> = (0..5).map(|step| start.value(step)).collect();
         assert_eq!(starts, [-90.0, -45.0, 0.0, 45.0, 90.0]);

@@ -1,6 +1,4 @@
-//! What `analyze` says to people: tables of 80 columns.
-//!
-//! Left out: what is said (`report`).
+//! Report of `analyze` as tables of 80 columns.
 
 use std::fmt::Write;
 
@@ -14,7 +12,7 @@ use super::report::{
 const WIDTH: usize = 80;
 
 impl AnalyzeReport {
-    /// For people.
+    /// The report as text.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = self.table();
@@ -25,7 +23,7 @@ impl AnalyzeReport {
         text.trim_end().to_owned()
     }
 
-    /// Side by side.
+    /// Columns of a comparison.
     fn table(&self) -> String {
         let names = self.patterns.iter().map(|p| p.name.chars().count());
         let long = names.clone().any(|length| length > NAME);
@@ -66,7 +64,7 @@ impl AnalyzeReport {
     }
 }
 
-/// The longest name that stands beside its numbers.
+/// Longest name of a row label.
 const NAME: usize = 14;
 
 impl PatternReport {
@@ -179,7 +177,7 @@ impl PatternReport {
 }
 
 impl BinReport {
-    /// How many of them hold a point, and how even they are.
+    /// Coverage and evenness of some bins.
     fn line(&self, which: &str) -> Option<String> {
         let (coverage, uneven) = (self.coverage?, self.sd_over_mean?);
         let s = &self.statistics;
@@ -208,7 +206,7 @@ impl KReport {
 
 impl HoleReport {
     fn line(&self, what: &str) -> String {
-        // No zero with a sign.
+        // Avoids a signed zero.
         let [x, y, z] = self
             .centre
             .map(|axis| if axis.abs() < 5e-4 { 0.0 } else { axis });
@@ -242,7 +240,7 @@ impl DeviceReport {
     }
 }
 
-/// A bar a class, the longest as long as there is room.
+/// One bar per class; the longest fills the available width.
 fn histogram(classes: &[HistogramClass]) -> String {
     const BAR: usize = 50;
     let most = classes
@@ -267,7 +265,7 @@ fn histogram(classes: &[HistogramClass]) -> String {
     text
 }
 
-/// A number of four digits or so, in at most so many places.
+/// A number with about four digits and at most `places` decimals.
 pub(super) fn number(x: f64, places: usize) -> String {
     let decimals = match x.abs() {
         size if size < 1.0 => 4,
@@ -279,7 +277,8 @@ pub(super) fn number(x: f64, places: usize) -> String {
     format!("{x:.decimals$}")
 }
 
-/// A number with three decimals, as far as there is room: means are of whole points, and half a hundredth is not to be rounded by its last bit.
+/// A number with three decimals if there is room, so that rounding does not depend on the last bit
+/// of a half.
 fn thousandths(x: f64, places: usize) -> String {
     let whole = format!("{:.0}", x.trunc()).len();
     let decimals = places.saturating_sub(whole + 1).min(3);

@@ -1,6 +1,8 @@
-//! What a scan can see: of patterns by their settings, of logs by their lidar, sweeps and mount. And whether a cloud's origin is in the cloud at all.
+//! Field of view of patterns (from their settings) and logs (from lidar, sweeps and mount), and the
+//! position of a cloud's origin.
 //!
-//! Left out: the geometry of it, which is `sim`'s ([`FieldOfView`]), and clouds: nothing in them says how they were scanned.
+//! `sim` has the geometry ([`FieldOfView`]). Clouds have no view: they do not tell how they were
+//! scanned.
 
 use cloud::TiltTrack;
 use glam::DVec3;
@@ -11,27 +13,29 @@ use sim::patterns::{FieldOfView, Pattern, SPHERE_M};
 
 use engine::reconstruct::report::ScanReport;
 
-/// What a scan can see, and by what it is known.
+/// A field of view and its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Seen {
     /// The directions.
     #[serde(skip)]
     pub view: FieldOfView,
-    /// Lowest and highest laser above the sensor's own horizontal, degrees.
+    /// Lowest and highest laser above the sensor's horizontal plane, degrees.
     pub elevations_deg: [f64; 2],
-    /// Least and greatest tilt, degrees.
+    /// Smallest and largest tilt, degrees.
     pub tilt_deg: [f64; 2],
     /// Height of the sensor above the tilt axis, metres.
     pub d_m: f64,
-    /// The distances at all of which the scan sees the directions of the view, metres from the origin of the base: those of a pattern's sphere, and those between which 98 % of a log's points lie.
+    /// Range of distances from the origin of the base at all of which the scan sees the view,
+    /// metres: the radius of a pattern's sphere, or the interval that holds 98 % of a log's points.
     pub distance_m: [f64; 2],
 }
 
-/// Points nearer or farther than this share of them do not count for the distances of a view, or for where a cloud is.
+/// Share of the nearest and farthest points that is ignored for distances and for the position of a
+/// cloud.
 const FEW: f64 = 0.01;
 
 impl Seen {
-    /// Of a pattern: at the hollow sphere where its points are.
+    /// View of a pattern, at its hollow sphere.
     #[must_use]
     pub fn of_pattern(pattern: &Pattern) -> Self {
         let tilts = pattern.tilts_deg();
@@ -44,7 +48,7 @@ impl Seen {
         }
     }
 
-    /// Of a log: `None` where its lidar's model is not known, or there are several lidars.
+    /// View of a log; `None` for an unknown model or several lidars.
     #[must_use]
     pub fn of_log(scan: &ScanReport, track: &TiltTrack, places: &[DVec3]) -> Option<Self> {
         if scan.contents.sensors.len() > 1 {
@@ -77,20 +81,20 @@ impl Seen {
     }
 }
 
-/// How an origin lies to a cloud: outside of where 98 % of its points are along an axis.
+/// An origin outside the box that holds 98 % of a cloud's points along each axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outside {
     origin_m: DVec3,
-    /// From the origin to the box of those points, metres.
+    /// Distance from the origin to the box, metres.
     off_m: f64,
-    /// The middle of the box in the cloud's own coordinates.
+    /// Centre of the box in cloud coordinates.
     middle_m: DVec3,
-    /// How large the box is from corner to corner.
+    /// Diagonal of the box.
     size_m: f64,
 }
 
 impl Outside {
-    /// Of points as seen from `origin_m`; `None` where the origin is among them.
+    /// Position of `origin_m` relative to the points; `None` if it lies among them.
     pub fn new(places: &[DVec3], origin_m: DVec3) -> Option<Self> {
         let axis = |of: fn(&DVec3) -> f64| middle(&mut places.iter().map(of).collect::<Vec<_>>());
         let (x, y, z) = (axis(|p| p.x)?, axis(|p| p.y)?, axis(|p| p.z)?);
@@ -105,7 +109,7 @@ impl Outside {
         })
     }
 
-    /// What to say of it where a hole of this radius shows that all points lie on one side.
+    /// Warning, if a hole of this radius shows that all points lie on one side.
     pub fn warning(&self, hole_deg: f64) -> Option<String> {
         if hole_deg <= 90.0 {
             return None;
@@ -122,7 +126,7 @@ impl Outside {
     }
 }
 
-/// The least and the greatest of some numbers.
+/// Minimum and maximum.
 fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     let [low, high] = numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
         [low.min(x), high.max(x)]
@@ -130,7 +134,7 @@ fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     (low <= high).then_some([low, high])
 }
 
-/// The least and the greatest of all numbers but the hundredth at each end; orders them as it needs.
+/// Minimum and maximum without a hundredth at each end; reorders `numbers`.
 fn middle(numbers: &mut [f64]) -> Option<[f64; 2]> {
     let last = numbers.len().checked_sub(1)?;
     let few = (FEW * last as f64) as usize;
@@ -174,7 +178,7 @@ mod tests {
             said.contains("--origin") && said.contains("about 450000,5400000,0"),
             "{said}"
         );
-        // A scan of one wall is no mistake.
+        // A scan of a single wall is valid.
         let beside = Outside::new(&corners(DVec3::new(11.0, 0.0, 0.0)), DVec3::ZERO).unwrap();
         assert_eq!(beside.warning(80.0), None);
     }
