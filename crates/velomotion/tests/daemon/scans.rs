@@ -266,10 +266,10 @@ fn a_sleep_that_only_its_end_shows_makes_a_scan_partial() {
     let slept = Arc::new(AtomicI64::new(0));
     let told = Arc::clone(&slept);
     let rig = Rig::with("", |options| {
-        // Nobody but whoever has the drive gets to look at the clocks in time.
+        // Only the device thread sees the suspension.
         options.environment.suspended =
             Arc::new(
-                move || match std::thread::current().name() == Some("keeper") {
+                move || match std::thread::current().name() == Some("devices") {
                     true => Span::from_nanos(told.load(Ordering::Relaxed)),
                     false => Span::ZERO,
                 },
