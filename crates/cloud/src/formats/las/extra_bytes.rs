@@ -81,7 +81,7 @@ pub(super) fn record(extras: &[ExtraColumn]) -> Vlr {
     Vlr {
         user_id: "LASF_Spec".to_owned(),
         record_id: 4,
-        description: "ExtraColumn bytes".to_owned(),
+        description: "Extra bytes".to_owned(),
         data,
     }
 }
@@ -108,7 +108,9 @@ mod tests {
         }
         assert_eq!(usize::from(length(&extras)), expected);
         assert_eq!(expected, 27);
-        assert_eq!(record(&extras).data.len(), 7 * RECORD_BYTES);
+        let record = record(&extras);
+        assert_eq!(record.data.len(), 7 * RECORD_BYTES);
+        assert_eq!(record.description, "Extra bytes");
     }
 
     #[test]
