@@ -52,7 +52,7 @@ fn check(name: &str, doubt: Option<String>, fine: &str, values: Values) -> Diagn
 fn devices(contents: &Contents) -> Diagnostic {
     let doubt = contents
         .simulated
-        .then(|| "SIMULATED: simulated devices, not a real scan".to_owned());
+        .then(|| "SIMULATED: software devices, not a scan of anything real".to_owned());
     let values = Values::new().with("simulated", contents.simulated);
     check("devices", doubt, "real devices", values)
 }
@@ -78,7 +78,7 @@ fn lidar(scan: &ScanReport) -> Diagnostic {
 
 fn clock(sync: &SyncReport) -> Diagnostic {
     let steps = sync.steps.len();
-    let doubt = (steps > 0).then(|| format!("{steps} clock steps were found and corrected"));
+    let doubt = (steps > 0).then(|| format!("clocks were set {steps} times, which was undone"));
     let values = Values::new()
         .with("method", sync.clock_method)
         .with("residual_us", sync.clock_residual_us)
@@ -124,5 +124,5 @@ fn cloud(scan: &ScanReport) -> Diagnostic {
         [one] => Some((*one).clone()),
         [first, rest @ ..] => Some(format!("{first}; and {} more", rest.len())),
     };
-    check("cloud", doubt, "no warnings", values)
+    check("cloud", doubt, "nothing is doubtful", values)
 }

@@ -191,7 +191,7 @@ impl<'a> FrameWriter<'a> {
             metadata.comments.push(frame_comment(&frame));
             if self.plan.organised {
                 metadata.comments.push(
-                    "organised: one row per ring, lowest first, one column per firing; in dual return the rings of the second returns follow"
+                    "organised: a row a ring, the lowest first, a column a firing; in dual return the second returns' rings follow"
                         .to_owned(),
                 );
             }
