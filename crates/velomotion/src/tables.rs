@@ -198,7 +198,7 @@ mod tests {
         };
         assert_eq!(
             reception_line(&others),
-            "0 lidar packets, 0 dropped by the kernel, 9 of other senders left out; 0 records dropped by the log"
+            "0 lidar packets, 0 dropped by the kernel, 9 of other senders omitted; 0 records dropped by the log"
         );
     }
 }

@@ -14,7 +14,7 @@ fn names_are_not_broken_at_the_end_of_a_line() {
 fn frames_go_to_files_only() {
     let path = recording("vlp16-strongest-gps.pcap");
     let line = format!("replay {} --tilt none --frames 180 -o -", path.display());
-    Place::new().fails(&line, 2, &["stdout takes one", "turn.ply"]);
+    Place::new().fails(&line, 2, &["stdout takes one", "frame.ply"]);
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn assert_frames_in_utc(path: &Path, least: usize) {
     };
     let place = Place::new();
     let input = path.display();
-    for options in ["-o whole.ply", "--frames 180 -o turn.ply"] {
+    for options in ["-o whole.ply", "--frames 180 -o frame.ply"] {
         let line = format!("replay {input} --tilt none --time utc {options}");
         assert!(place.run(&line).status.success());
     }

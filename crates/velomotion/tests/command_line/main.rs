@@ -221,7 +221,7 @@ fn speeds_and_angles_that_cannot_be_are_refused_before_anything_moves() {
     place.fails(
         "capture --speed 10 -o a.ply --log a.ply",
         2,
-        &["both a.ply"],
+        &["recording a.ply"],
     );
     place.fails("capture --speed 10 -o - --json", 2, &["stdout"]);
     place.fails(
@@ -327,7 +327,7 @@ fn a_recording_for_ros_is_a_bag_and_leaves_the_metadata_of_another_alone() {
     assert!(output.status.success() && place.path("an.mcap").is_file());
     assert_eq!(metadata(), first);
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("of another recording"), "{said}");
+    assert!(said.contains("belongs to another recording"), "{said}");
 }
 
 #[test]
@@ -430,7 +430,7 @@ fn simulate_makes_a_log_that_replay_reads_and_says_what_is_wrong_where() {
     assert_eq!(said["returned"].as_u64(), Some(rows as u64));
     place.fails("simulate stand.toml", 2, &["exists"]);
     let over = "simulate stand.toml -o stand.toml --force";
-    place.fails(over, 2, &["stand.toml", "made of"]);
+    place.fails(over, 2, &["stand.toml", "overwrite its input"]);
     // The lidar alone, for programs that read one type of link a file.
     let output = place.run("simulate rig -o rig.pcap --json");
     let (made, told) = (json(&output), json(&place.run("info rig.pcap --json")));

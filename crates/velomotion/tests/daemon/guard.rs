@@ -148,7 +148,7 @@ fn nobody_else_is_let_in_without_a_token() {
         assert_eq!(output.status.code(), Some(2));
         let said = said(&output);
         assert!(
-            said.contains("no token is set") && said.contains("help:"),
+            said.contains("without a token") && said.contains("help:"),
             "{said}"
         );
     }

@@ -109,7 +109,10 @@ fn a_failure_has_its_priority_in_the_journal_and_nowhere_else() {
         lines[0].starts_with("<3>cannot read the configuration missing.toml"),
         "{journal}"
     );
-    assert!(lines[1].starts_with("<3>name a text file"), "{journal}");
+    assert!(
+        lines[1].starts_with("<3>name an existing text file"),
+        "{journal}"
+    );
     let plain = said_to(folder.path(), line, false);
     assert!(plain.contains("missing.toml"), "{plain}");
     assert!(
