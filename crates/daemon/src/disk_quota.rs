@@ -50,7 +50,7 @@ impl DiskQuota {
     /// The quota of a download of at most this many bytes.
     ///
     /// # Errors
-    /// [`disk_full`] where it would not leave `reserve_bytes` and what captures may still need.
+    /// `disk_full` where it would not leave `reserve_bytes` and what captures may still need.
     pub fn take(state: &Arc<DaemonState>, bytes: u64) -> Result<Arc<Self>, Failure> {
         let quota = Self::new(state, Purpose::Download);
         quota.check(bytes)?;

@@ -169,7 +169,7 @@ pub fn promise(bytes: u64) -> String {
 /// Refuses a capture without enough disk space.
 ///
 /// # Errors
-/// [`disk_full`], with the bytes needed.
+/// `disk_full`, with the bytes needed.
 pub fn fits(state: &DaemonState, plan: &CaptureEstimate) -> Result<(), Failure> {
     let reserve = state.settings().reserve_bytes;
     let Ok(free) = (state.free_bytes)(state.scans.folder()) else {

@@ -1,7 +1,7 @@
 //! One firing of all lasers: where each ray starts and goes, and what comes back.
 //!
 //! [`LidarSensor::ray`](crate::sensor::LidarSensor::ray) is the plain definition of a ray.
-//! [`Firing::aim`] computes all rays of a firing from one head rotation, one tilt and, per laser,
+//! `Firing::aim` computes all rays of a firing from one head rotation, one tilt and, per laser,
 //! the small tilt since the first laser. A test holds the two against each other. [`Surroundings`]
 //! casts the rays.
 

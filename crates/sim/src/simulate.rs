@@ -1,7 +1,7 @@
 //! Simulation of whole scenes: a scene, a sensor and a motion in; the devices' bytes and the true
 //! points out.
 //!
-//! Threads make packets in chunks (`threads`) with [`packet_maker`](crate::packet_maker), which the
+//! Threads make packets in chunks (`threads`) with `packet_maker`, which the
 //! rig uses too. Packets are then merged with the drive's polls in order of time and go through the
 //! links (`merge`). [`Simulation::run`] is generic over the effects, so that absent effects cost
 //! nothing. One simulation and one seed give the same bytes on any number of threads.

@@ -1,4 +1,4 @@
-//! Measurements behind velomotion's own choices. One file per study; [`studies`] lists them.
+//! Measurements behind velomotion's own choices. One file per study; `studies` lists them.
 //!
 //! ```sh
 //! cargo run --release -p studies -- --markdown docs/src

@@ -36,8 +36,8 @@ macro_rules! command {
             /// The request in `frame`.
             ///
             /// # Errors
-            /// [`SerialFrameError::Opcode`](crate::epos2::FrameError::Opcode),
-            /// [`SerialFrameError::WordCount`](crate::epos2::FrameError::WordCount).
+            /// [`SerialFrameError::Opcode`](crate::epos2::SerialFrameError::Opcode),
+            /// [`SerialFrameError::WordCount`](crate::epos2::SerialFrameError::WordCount).
             pub fn parse(
                 frame: &crate::epos2::SerialFrame,
             ) -> Result<Self, crate::epos2::SerialFrameError> {
