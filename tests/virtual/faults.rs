@@ -242,7 +242,7 @@ fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: S
         .contents
         .warnings
         .iter()
-        .any(|w| w.contains("angles may be off"));
+        .any(|w| w.contains("angle error may reach"));
     assert!(
         worst_mm < WORST_MM || doubted,
         "{name}: worst point {worst_mm} mm off, and no word of it"

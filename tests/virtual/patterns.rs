@@ -92,7 +92,7 @@ fn the_book_prints_what_the_report_prints() {
     let book = include_str!("../../docs/src/paper.md");
     let table = book
         .split("## ")
-        .find(|part| part.starts_with("Points a bin"));
+        .find(|part| part.starts_with("Points per bin"));
     let rows: Vec<Vec<&str>> = table
         .unwrap()
         .lines()

@@ -106,7 +106,9 @@ fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
     let cruise = scan["sweeps"][0]["cruise_deg_s"].as_f64().unwrap();
     assert!((cruise.abs() - 56.25).abs() < 0.5, "{scan}");
     // In real time on a busy machine the polls may stall: then the report says so, else the cloud is true.
-    let doubted = scan["warnings"].to_string().contains("angles may be off");
+    let doubted = scan["warnings"]
+        .to_string()
+        .contains("angle error may reach");
     let of = |name: &str| scan["truth"][name].as_f64().unwrap();
     assert!(
         doubted || (of("rms_m") < 10e-3 && of("worst_m") < 0.1),
