@@ -4,7 +4,8 @@
 //!
 //! Devices and sockets are not used. Times are those of the made-up day, not of a clock.
 //!
-//! `cargo bench -p velomotion-tests --bench day [-- SCANS]`; it fails where memory grows after the second hour.
+//! `cargo bench -p velomotion-tests --bench day [-- SCANS]`; it fails where memory grows after the
+//! second hour.
 
 use std::sync::Arc;
 use std::sync::mpsc::channel;

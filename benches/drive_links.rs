@@ -1,9 +1,10 @@
-//! How fast the drive's position can be asked for over each link, and what that costs: real time, real pseudo-terminals, the
-//! software drive in a process of its own.
+//! How fast the drive's position can be asked for over each link, and what that costs: real time,
+//! real pseudo-terminals, the software drive in a process of its own.
 //!
-//! `cargo bench -p velomotion-tests --bench drive_links` prints the tables of docs/src/links.md. `-- --seconds N` is how long each
-//! row is measured (10 s; 60 s for the stream at SYNC), `-- --can IFACE` adds an interface of the kernel.
-//! Left out: wire time, which a pseudo-terminal does not have; the page says what it adds.
+//! `cargo bench -p velomotion-tests --bench drive_links` prints the tables of docs/src/links.md.
+//! `-- --seconds N` is how long each row is measured (10 s; 60 s for the stream at SYNC), `-- --can
+//! IFACE` adds an interface of the kernel. Left out: wire time, which a pseudo-terminal does not
+//! have; the page says what it adds.
 
 use std::cell::RefCell;
 use std::io::{BufRead, BufReader};
@@ -153,8 +154,8 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
     measured
 }
 
-/// Reads the position by SDO for so long, one read after the other, at most one a period: what is left on a bus whose drive refuses
-/// to be mapped.
+/// Reads the position by SDO for so long, one read after the other, at most one a period: what is
+/// left on a bus whose drive refuses to be mapped.
 fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> Measured {
     let mut bus: Box<dyn CanPort> = match kind {
         DeviceKind::Can => Box::new(SocketCan::open(&drive.port).unwrap()),

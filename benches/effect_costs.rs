@@ -1,8 +1,9 @@
 //! What each effect of the simulator adds to a sweep through the hall, alone and all together.
 //!
-//! `cargo bench -p velomotion-tests --bench effect_costs` prints the table of docs/src/effects.md. Instructions are counted by valgrind's callgrind
-//! and are the same on any day; times are the least of `-- --rounds N` (9) on one thread, all taking turns.
-//! Left out: other scenes. What an effect costs depends on how often it has to act.
+//! `cargo bench -p velomotion-tests --bench effect_costs` prints the table of docs/src/effects.md.
+//! Instructions are counted by valgrind's callgrind and are the same on any day; times are the
+//! least of `-- --rounds N` (9) on one thread, all taking turns. Left out: other scenes. What an
+//! effect costs depends on how often it has to act.
 
 use std::env;
 use std::num::NonZeroUsize;

@@ -1,12 +1,15 @@
-//! What the best angles cost a replay: the same log by straight lines between samples and by the truest curve of each sweep.
+//! What the best angles cost a replay: the same log by straight lines between samples and by the
+//! truest curve of each sweep.
 //!
 //! `cargo bench -p velomotion-tests --bench replay_methods [-- --runs N]`
 //!
-//! A whole replay each time, as `velomotion replay LOG -o CLOUD.ply` makes it: the log read twice from its file, clocks and angles found,
-//! every point placed and written. The logs are captures in virtual time of the card's scan, 45 degrees at 56.25 deg/s, with an ideal drive
-//! and with one whose servo lags and whose gear ripples. The two ways take turns, each round another one first; what counts is the ratio
-//! within a round, so that what else the machine does falls on both. On Linux it is the processor's time that counts, which a busy machine
-//! stretches least. Logs and clouds are in the temporary folder: in memory, where that is.
+//! A whole replay each time, as `velomotion replay LOG -o CLOUD.ply` makes it: the log read twice
+//! from its file, clocks and angles found, every point placed and written. The logs are captures in
+//! virtual time of the card's scan, 45 degrees at 56.25 deg/s, with an ideal drive and with one
+//! whose servo lags and whose gear ripples. The two ways take turns, each round another one first;
+//! what counts is the ratio within a round, so that what else the machine does falls on both. On
+//! Linux it is the processor's time that counts, which a busy machine stretches least. Logs and
+//! clouds are in the temporary folder: in memory, where that is.
 
 use std::fs;
 use std::path::Path;
@@ -98,7 +101,8 @@ fn compare(name: &str, captured: &Captured, runs: usize) {
     );
 }
 
-/// Seconds that this thread has had a processor for, where that is known, else seconds that went by.
+/// Seconds that this thread has had a processor for, where that is known, else seconds that went
+/// by.
 fn now_s() -> f64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     let known = fs::read_to_string("/proc/thread-self/schedstat").ok();

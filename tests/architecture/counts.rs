@@ -1,4 +1,5 @@
-//! Figures about the source text: lines, names, cycles. They have ceilings, and one command prints them.
+//! Figures about the source text: lines, names, cycles. They have ceilings, and one command prints
+//! them.
 
 use std::collections::BTreeMap;
 use std::fmt;

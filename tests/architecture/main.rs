@@ -17,8 +17,8 @@ const FIRST_CRATE_WITH_IO: &str = "io";
 
 /// Crates that a crate does not depend on even in its tests.
 ///
-/// The simulator states the geometry independently (invariant 3), and only `scanner` joins lidar and
-/// drive (invariant 2).
+/// The simulator states the geometry independently (invariant 3), and only `scanner` joins lidar
+/// and drive (invariant 2).
 const INDEPENDENT: [(&str, &[&str]); 3] = [
     ("sim", &["lidar", "drive", "scanner", "cloud"]),
     ("lidar", &["drive", "sim"]),

@@ -84,7 +84,8 @@ impl Workspace {
         self.members.iter().find(|member| member.package == package)
     }
 
-    /// The short names of the members that `member` depends on directly, development included on request.
+    /// The short names of the members that `member` depends on directly, development included on
+    /// request.
     pub fn internal_dependencies<'a>(
         &'a self,
         member: &'a Member,
@@ -98,10 +99,11 @@ impl Workspace {
             .map(|dependency| dependency.name.as_str())
     }
 
-    /// The packages outside the workspace that `cargo test --workspace` enables directly, with the member that does.
+    /// The packages outside the workspace that `cargo test --workspace` enables directly, with the
+    /// member that does.
     ///
-    /// Features start from every member's defaults and spread along dependencies within the workspace, as cargo's
-    /// resolver unifies them.
+    /// Features start from every member's defaults and spread along dependencies within the
+    /// workspace, as cargo's resolver unifies them.
     pub fn default_build(&self) -> BTreeSet<(&str, &str)> {
         let mut enabled: BTreeSet<(&str, String)> = self
             .members

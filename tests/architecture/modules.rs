@@ -1,8 +1,8 @@
 //! The import graph of every crate: which file names items of which other file.
 //!
 //! The graph comes from the syntax tree. Imports, paths in code and paths in macro arguments are
-//! resolved through re-exports to the file that defines the item. Items under `#[cfg(test)]` are left
-//! out. A re-export (`pub use`) alone is no edge: it gives a name, it needs nothing.
+//! resolved through re-exports to the file that defines the item. Items under `#[cfg(test)]` are
+//! left out. A re-export (`pub use`) alone is no edge: it gives a name, it needs nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -21,7 +21,8 @@ pub struct SourceFile {
     pub krate: String,
     /// Relative to the root of the repository.
     pub path: PathBuf,
-    /// The folder whose modules may import each other freely: `a/` for `a.rs`, `a/mod.rs` and `a/b.rs`.
+    /// The folder whose modules may import each other freely: `a/` for `a.rs`, `a/mod.rs` and
+    /// `a/b.rs`.
     pub folder: PathBuf,
     /// Lines of code: neither blank, nor comment, nor under `#[cfg(test)]`.
     pub code_lines: usize,
@@ -119,7 +120,8 @@ impl Sources {
         cycles
     }
 
-    /// The files that a file needs, directly or through others, with itself only if it is in a cycle.
+    /// The files that a file needs, directly or through others, with itself only if it is in a
+    /// cycle.
     pub fn reached_from(&self, file: usize) -> BTreeSet<usize> {
         let mut reached = BTreeSet::new();
         let mut pending = vec![file];

@@ -1,4 +1,5 @@
-//! Clouds in other people's readers: MCAP in mcap and rosbags, E57 in pye57, PLY and PCD in Open3D. LAZ in laspy is beside.
+//! Clouds in other people's readers: MCAP in mcap and rosbags, E57 in pye57, PLY and PCD in Open3D.
+//! LAZ in laspy is beside.
 
 use cloud::Summary;
 use serde_json::{Value, json};

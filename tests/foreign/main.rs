@@ -1,6 +1,7 @@
 //! Programs of other projects read velomotion's files.
 //!
-//! `VELOMOTION_PYTHON` names a python3 that has the packages of `requirements.txt`; tshark is Debian's.
+//! `VELOMOTION_PYTHON` names a python3 that has the packages of `requirements.txt`; tshark is
+//! Debian's.
 
 mod clouds;
 mod ray_casting;
@@ -55,8 +56,8 @@ fn velodyne_decoder_decodes_our_log_to_the_same_points() {
     assert!(result["ours"].as_u64().unwrap() > 180_000, "{result}");
     assert_eq!(result["same_rings"], true, "{result}");
     let of = |name: &str| result[name].as_f64().unwrap();
-    // 1 mm, apart from azimuth: theirs are whole hundredths of a degree, interpolated by whole hundredths a block,
-    // which is up to 3 mm at the hall's 17 m.
+    // 1 mm, apart from azimuth: theirs are whole hundredths of a degree, interpolated by whole
+    // hundredths a block, which is up to 3 mm at the hall's 17 m.
     assert!(of("max_difference_turned_m") < 1e-3, "{result}");
     assert!(of("their_azimuth_off_grid_deg") < 1e-4, "{result}");
     assert!(of("max_azimuth_difference_deg") < 0.0125, "{result}");

@@ -1,4 +1,5 @@
-//! Somebody else's ray caster (open3d, over embree) meets a mesh of 100,000 triangles where ours does.
+//! Somebody else's ray caster (open3d, over embree) meets a mesh of 100,000 triangles where ours
+//! does.
 
 use std::fs;
 use std::path::{Path, PathBuf};

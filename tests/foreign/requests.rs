@@ -1,4 +1,5 @@
-//! Bad requests, and good ones in any order: PyPI schemathesis makes them from the daemon's own description.
+//! Bad requests, and good ones in any order: PyPI schemathesis makes them from the daemon's own
+//! description.
 
 use std::path::Path;
 
@@ -52,7 +53,8 @@ fn fuzz(daemon: &Daemon, folder: &Path, more: &[&str]) {
             "--seed",
             "1",
         ])
-        // What an axis can do depends on its configuration, and whether it can now on what it does: a good request may be refused.
+        // What an axis can do depends on its configuration, and whether it can now on what it does:
+        // a good request may be refused.
         .args(["--exclude-checks", "positive_data_acceptance"])
         .args([
             "--request-timeout",

@@ -136,8 +136,8 @@ fn says_why(trajectory: &Trajectory) -> bool {
     })
 }
 
-/// Nanoseconds since 1970 do not fit a double: whatever went through one would be off by a quarter of a microsecond, in f32 seconds of
-/// the hour by 244 us, which is 0.014 degrees here.
+/// Nanoseconds since 1970 do not fit a double: whatever went through one would be off by a quarter
+/// of a microsecond, in f32 seconds of the hour by 244 us, which is 0.014 degrees here.
 #[test]
 fn angles_of_2100_are_those_of_today() {
     for method in methods() {
@@ -160,7 +160,8 @@ fn angles_of_2100_are_those_of_today() {
     }
 }
 
-/// Motions at the edge of being one: where a division by a ramp, a speed or a way would be one by nothing.
+/// Motions at the edge of being one: where a division by a ramp, a speed or a way would be one by
+/// nothing.
 #[test]
 fn motions_at_the_edge() {
     for (name, motion, most_deg) in [
@@ -290,8 +291,8 @@ fn a_motion_of_which_nothing_is_known() {
     }
 }
 
-/// A recording may end anywhere in a sweep (a cable, the power, Ctrl-C): what comes after the last sample is in no sample, and way and
-/// last ramp cannot be told.
+/// A recording may end anywhere in a sweep (a cable, the power, Ctrl-C): what comes after the last
+/// sample is in no sample, and way and last ramp cannot be told.
 #[test]
 fn samples_end_in_mid_sweep() {
     for part in [0.02, 0.06, 0.125, 0.2, 0.5, 0.88, 0.95, 0.99] {
@@ -322,8 +323,8 @@ fn samples_end_in_mid_sweep() {
     }
 }
 
-/// The cruise alone: start and beginning, ramps and way are one straight line together, and an unregularised fit's condition would be 1e7
-/// and more. With both ramps it is some tens.
+/// The cruise alone: start and beginning, ramps and way are one straight line together, and an
+/// unregularised fit's condition would be 1e7 and more. With both ramps it is some tens.
 #[test]
 fn the_cruise_alone_is_a_fit_that_says_so() {
     let whole = CARD.sweep(TODAY);
@@ -381,7 +382,8 @@ fn a_sweep_of_three_samples() {
     }
 }
 
-/// Stamps of one instant: a coarse clock, or frames read from one buffer. Differences of time are divisors.
+/// Stamps of one instant: a coarse clock, or frames read from one buffer. Differences of time are
+/// divisors.
 #[test]
 fn samples_of_identical_times() {
     let sweep = CARD.sweep(TODAY);
@@ -407,8 +409,8 @@ fn samples_of_identical_times() {
     }
 }
 
-/// A turn worked out step by step from the last one drifts: a quaternion in f32 by thousandths of a degree over a slow scan's
-/// 2e5 firings. Each tilt here is worked out from its own angle.
+/// A turn worked out step by step from the last one drifts: a quaternion in f32 by thousandths of a
+/// degree over a slow scan's 2e5 firings. Each tilt here is worked out from its own angle.
 #[test]
 fn tilts_do_not_drift_over_a_slow_scan() {
     const STEPS: u32 = 200_000;

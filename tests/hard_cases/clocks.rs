@@ -11,8 +11,9 @@ fn mid_sweep(setting: Setting) -> Span {
     begin.saturating_since(setting.start) + (end - begin).half()
 }
 
-/// NTP sets the host's clock while the platform moves: half of the packets and polls are stamped by another clock than the
-/// rest, and the pairing of requests and answers sees time go back. The cloud must be as good as any.
+/// NTP sets the host's clock while the platform moves: half of the packets and polls are stamped by
+/// another clock than the rest, and the pairing of requests and answers sees time go back. The
+/// cloud must be as good as any.
 #[test]
 fn the_hosts_clock_is_set_in_mid_sweep() {
     for attached in [Attachment::Usb, Attachment::Rs232, Attachment::Can] {
@@ -64,7 +65,8 @@ fn the_hosts_clock_is_set_in_mid_sweep() {
     }
 }
 
-/// A leap second is inserted by setting the clock back at midnight UTC: 2016-12-31 23:59:60, the last one so far, during the sweep.
+/// A leap second is inserted by setting the clock back at midnight UTC: 2016-12-31 23:59:60, the
+/// last one so far, during the sweep.
 #[test]
 fn a_scan_across_a_leap_second() {
     let midnight = Stamp::<Host>::from_nanos(1_483_228_800_000_000_000);
@@ -89,8 +91,8 @@ fn a_scan_across_a_leap_second() {
     );
 }
 
-/// The first pulse per second sets the lidar's clock, here back as well, so that its times come twice within the sweep; or it begins
-/// anew. Host times and angles are as if nothing had been.
+/// The first pulse per second sets the lidar's clock, here back as well, so that its times come
+/// twice within the sweep; or it begins anew. Host times and angles are as if nothing had been.
 #[test]
 fn the_lidars_clock_is_set_in_mid_sweep() {
     let middle = mid_sweep(Setting::default());
@@ -150,7 +152,8 @@ fn arrival(device: i64, host: i64) -> Arrival {
     }
 }
 
-/// 2100-01-01 in nanoseconds needs 62 bits, a double has 53: whatever goes through one loses half a microsecond.
+/// 2100-01-01 in nanoseconds needs 62 bits, a double has 53: whatever goes through one loses half a
+/// microsecond.
 #[test]
 fn the_year_2100() {
     const EPOCH: i64 = 4_102_444_800_000_000_001;
@@ -182,7 +185,8 @@ fn packets_of_one_instant() {
     assert!(clock.bound() < Span::from_millis(1));
 }
 
-/// One packet gives an offset, two no drift of a thousand ppm out of their jitter; and the bound admits how little that is.
+/// One packet gives an offset, two no drift of a thousand ppm out of their jitter; and the bound
+/// admits how little that is.
 #[test]
 fn one_packet_and_two() {
     let one = LidarClock::fit(&[arrival(5, 1_000)]).unwrap();
@@ -226,7 +230,8 @@ fn packets_out_of_order() {
     assert!(apart.as_nanos().abs() < 40_000, "{apart:?}");
 }
 
-/// While packets come in, a clock that is set is noticed: at once where time goes back, within five seconds where it leaps.
+/// While packets come in, a clock that is set is noticed: at once where time goes back, within five
+/// seconds where it leaps.
 #[test]
 fn the_online_clock_begins_anew() {
     for (device_by, host_by, within) in [

@@ -144,8 +144,9 @@ fn assert_true<A: Fn(f64) -> f64, S: Fn(f64) -> bool>(
         );
         let raw = (seen.range_m / 0.002).round() as u16;
         assert_eq!(raw, range_raw(truth - head.begin_ns), "firing {i}");
-        // Between two azimuths of the wire their rounding is all. Behind the last of a packet whose successor is missing, or before
-        // a gap, the step of the block before is carried on, a hundredth off at most, for up to 0.82 of a block.
+        // Between two azimuths of the wire their rounding is all. Behind the last of a packet whose
+        // successor is missing, or before a gap, the step of the block before is carried on, a
+        // hundredth off at most, for up to 0.82 of a block.
         let carried_on = i % per_packet >= per_packet - 2 || slack_ns > 0;
         let tolerance_deg = if carried_on {
             2.7 * WIRE_DEG
@@ -223,8 +224,8 @@ fn azimuth_wraps_anywhere_in_a_packet() {
     }
 }
 
-/// A packet goes on filling behind the gap, 155 ms later than its place in the packet says; interpolating over the jump smears
-/// azimuths over the part of the turn that was never seen.
+/// A packet goes on filling behind the gap, 155 ms later than its place in the packet says;
+/// interpolating over the jump smears azimuths over the part of the turn that was never seen.
 #[test]
 fn blocks_behind_the_gap_of_a_limited_view_fired_a_gap_later() {
     for (dual, rpm) in [(false, 300.0), (true, 300.0), (false, 1_200.0)] {
@@ -247,7 +248,8 @@ fn blocks_behind_the_gap_of_a_limited_view_fired_a_gap_later() {
     }
 }
 
-/// One laser sees two surfaces, one sees only a last return, one only a strongest, one both at one distance, one nothing.
+/// One laser sees two surfaces, one sees only a last return, one only a strongest, one both at one
+/// distance, one nothing.
 #[test]
 fn dual_returns_may_be_missing_on_either_side() {
     let mut last: Returns = [(0, 0); LASERS];
@@ -314,8 +316,9 @@ fn dual_returns_may_be_missing_on_either_side() {
     }
 }
 
-/// Firmware before 3.0.29 has no factory bytes, and what stands there is the HDL-32E's: with its timing every azimuth between
-/// blocks and every elevation would be wrong. Spacing tells, also where packets are lost right at the start.
+/// Firmware before 3.0.29 has no factory bytes, and what stands there is the HDL-32E's: with its
+/// timing every azimuth between blocks and every elevation would be wrong. Spacing tells, also
+/// where packets are lost right at the start.
 #[test]
 fn a_vlp16_of_2014_calls_itself_an_hdl32e() {
     for lost in [0, 1, 2] {
@@ -336,7 +339,8 @@ fn a_vlp16_of_2014_calls_itself_an_hdl32e() {
     }
 }
 
-/// The rotor spins up: a mean rate, or the last packet's, puts azimuths off by more than a step of the wire.
+/// The rotor spins up: a mean rate, or the last packet's, puts azimuths off by more than a step of
+/// the wire.
 #[test]
 fn the_rotor_changes_its_speed() {
     for spin_up in [-600.0, -100.0, 100.0, 600.0] {
@@ -353,8 +357,9 @@ fn the_rotor_changes_its_speed() {
     }
 }
 
-/// A packet's last block has no successor in it. Its second sequence is half a step on, not at the block's own azimuth, and where
-/// the next packet is there its azimuth is used: here the rotor halves its speed in mid-packet, so that a packet's mean is wrong.
+/// A packet's last block has no successor in it. Its second sequence is half a step on, not at the
+/// block's own azimuth, and where the next packet is there its azimuth is used: here the rotor
+/// halves its speed in mid-packet, so that a packet's mean is wrong.
 #[test]
 fn the_last_block_turns_at_the_rate_of_the_next_packet() {
     let knee_s = 23.0 * SEQUENCE_PERIOD_NS as f64 * 1e-9 - 55.296e-6;

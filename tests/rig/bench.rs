@@ -1,7 +1,8 @@
-//! A software scanner in real time that a daemon takes for hardware: a drive on a pseudo-terminal, a lidar on loopback, and a hand on both.
+//! A software scanner in real time that a daemon takes for hardware: a drive on a pseudo-terminal,
+//! a lidar on loopback, and a hand on both.
 //!
-//! It lives in the test's process, so that killing a daemon does not end it, its cable can be pulled while its motor runs on, and the drive can
-//! be looked at without a word on its line.
+//! It lives in the test's process, so that killing a daemon does not end it, its cable can be
+//! pulled while its motor runs on, and the drive can be looked at without a word on its line.
 
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::{Path, PathBuf};
@@ -24,8 +25,8 @@ use crate::drive::{is_powered, moves};
 /// What truly happened so long ago is forgotten: a bench may run for hours.
 const MEMORY: Span = Span::from_secs(1);
 
-/// No more time than this passes between two looks at the drive's line: on a machine that is too busy the devices' time runs slower, and they
-/// answer all the same.
+/// No more time than this passes between two looks at the drive's line: on a machine that is too
+/// busy the devices' time runs slower, and they answer all the same.
 const SLICE: Span = Span::from_millis(20);
 
 /// What is done to the devices, and how the axis is.

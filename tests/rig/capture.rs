@@ -1,4 +1,5 @@
-//! A whole capture in virtual time: the log file that the program would have written, and what it makes of it.
+//! A whole capture in virtual time: the log file that the program would have written, and what it
+//! makes of it.
 
 mod log;
 mod rejoin;
@@ -235,7 +236,8 @@ impl Captured {
         self.rejoined
     }
 
-    /// Whether the last statusword in the log says that the power stage is off, so that the brake holds.
+    /// Whether the last statusword in the log says that the power stage is off, so that the brake
+    /// holds.
     #[must_use]
     pub fn brake_is_set(&self) -> bool {
         use drive::cia402::DeviceState;
@@ -288,8 +290,8 @@ impl Captured {
                 let bytes = protocol::epos2::usb::to_bytes(&write.to_frame());
                 vec![Mark::Whole(bytes.to_vec())]
             }
-            // Where the unit takes part in the dialogue the body follows; nothing else is written while the axis moves. Where it does not,
-            // the body goes out unasked.
+            // Where the unit takes part in the dialogue the body follows; nothing else is written
+            // while the axis moves. Where it does not, the body goes out unasked.
             DriveLink::Rs232 => {
                 let mut body = Vec::new();
                 rs232::encode_body(&write.to_frame(), &mut body).unwrap();

@@ -1,8 +1,10 @@
-//! Faults on purpose: a wrapper around a port that hurts what passes, and things done to the drive behind it.
+//! Faults on purpose: a wrapper around a port that hurts what passes, and things done to the drive
+//! behind it.
 //!
-//! On a serial line bytes are hurt. A CAN controller lets no damaged frame through: it destroys it on the bus and has it sent
-//! again, so there what a serial line would corrupt comes late, or never if it never passes whole.
-//! Everything is seeded and happens in virtual time, so that a fault that breaks something breaks it again.
+//! On a serial line bytes are hurt. A CAN controller lets no damaged frame through: it destroys it
+//! on the bus and has it sent again, so there what a serial line would corrupt comes late, or never
+//! if it never passes whole. Everything is seeded and happens in virtual time, so that a fault that
+//! breaks something breaks it again.
 
 use std::collections::VecDeque;
 

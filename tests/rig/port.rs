@@ -39,7 +39,8 @@ impl Links {
             Attachment::Usb | Attachment::Slcan => (LinkModel::USB, 0),
             // A UART of the machine itself at 115,200 baud: ten bits a byte.
             Attachment::Rs232 => (QUICK, 86_806),
-            // A controller of the machine itself at 1 Mbit/s: eight bits a byte, and the rest of the frame.
+            // A controller of the machine itself at 1 Mbit/s: eight bits a byte, and the rest of
+            // the frame.
             Attachment::Can => (QUICK, 8_000),
         };
         Self {
@@ -172,7 +173,8 @@ impl World {
             if to >= until {
                 return None;
             }
-            // Never far beyond what comes next, as it may be answered. What is sent later arrives later.
+            // Never far beyond what comes next, as it may be answered. What is sent later arrives
+            // later.
             to = (to + STEP).min(until).min(next.unwrap_or(until));
             self.advance(to);
         }

@@ -1,7 +1,8 @@
-//! The lidar's clock against simulated truth: three links, two lengths, every method; online and offline, and what they say of
-//! their own error.
+//! The lidar's clock against simulated truth: three links, two lengths, every method; online and
+//! offline, and what they say of their own error.
 //!
-//! `cargo test -p velomotion-tests --test virtual -- --nocapture clocks::table` prints the table of the documentation.
+//! `cargo test -p velomotion-tests --test virtual -- --nocapture clocks::table` prints the table of
+//! the documentation.
 
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
 use sim::packet_clock::{ArrivalLink, Oscillator, PACKET_NS, PacketClock, TimedPacket};
@@ -166,7 +167,8 @@ fn hulls(packets: &[TimedPacket], block_s: f64) -> Off {
     }))
 }
 
-/// Olson's, from a second after the start on; the share of packets at which its bound held, and its mean.
+/// Olson's, from a second after the start on; the share of packets at which its bound held, and its
+/// mean.
 fn online(packets: &[TimedPacket]) -> (Off, f64, f64) {
     let mut clock = OnlineClock::new();
     let mut errors = Vec::new();
@@ -247,8 +249,8 @@ impl Row {
     }
 }
 
-/// The bars are those of the clock's own figures, for every single run; the other columns show that the links are as hard as they are
-/// said to be.
+/// The bars are those of the clock's own figures, for every single run; the other columns show that
+/// the links are as hard as they are said to be.
 #[test]
 fn table() {
     println!(
@@ -276,8 +278,8 @@ fn table() {
     }
 }
 
-/// The bound is one: it holds in 99 of 100 recordings of any length, and is no excuse: within five times the greatest error on
-/// average, or a microsecond of it.
+/// The bound is one: it holds in 99 of 100 recordings of any length, and is no excuse: within five
+/// times the greatest error on average, or a microsecond of it.
 #[test]
 fn the_bound_holds_and_says_something() {
     for link in ArrivalLink::ALL {

@@ -1,8 +1,9 @@
-//! What becomes of a scan when something goes wrong in mid-sweep: every fault over every way to the drive in virtual time, the
-//! tables of the docs made of it.
+//! What becomes of a scan when something goes wrong in mid-sweep: every fault over every way to the
+//! drive in virtual time, the tables of the docs made of it.
 //!
-//! For every fault: no hang, no panic, no lost scan, and the axis told to stop soon after the fault can be seen.
-//! `VELOMOTION_BLESS=1` writes docs/src/faults.md anew; without, the test fails where the page is not what happens.
+//! For every fault: no hang, no panic, no lost scan, and the axis told to stop soon after the fault
+//! can be seen. `VELOMOTION_BLESS=1` writes docs/src/faults.md anew; without, the test fails where
+//! the page is not what happens.
 
 use std::fmt::Write;
 
@@ -19,7 +20,8 @@ use velomotion_tests::inject::Fault;
 enum Must {
     /// The sweep is made to its end all the same.
     Survive,
-    /// Either that, or the axis is told to stop within 0.2 s: how long the line is dead to the client depends on which bits were hurt.
+    /// Either that, or the axis is told to stop within 0.2 s: how long the line is dead to the
+    /// client depends on which bits were hurt.
     SurviveOrStop,
     /// The axis is told to stop within this time of the fault.
     StopWithin(Span),
@@ -33,7 +35,8 @@ const fn ms(ms: i64) -> Span {
     Span::from_millis(ms)
 }
 
-/// A fault that the drive or its answers show at once: the next look is at most 20 ms away, and 100 ms are allowed after it.
+/// A fault that the drive or its answers show at once: the next look is at most 20 ms away, and 100
+/// ms are allowed after it.
 const SEEN: Must = Must::StopWithin(ms(120));
 /// A held motor is seen when the demand is 2000 qc (3 degrees) ahead of it: 100 ms at 30 deg/s.
 const FOLLOWING: Must = Must::StopWithin(ms(220));
@@ -186,7 +189,8 @@ const WAYS: [(Attachment, &str); 4] = [
 /// What a way to the drive cannot do as well as the others.
 fn must(attached: Attachment, fault: Fault, must: Must) -> Must {
     match (attached, fault) {
-        // A dialogue of single bytes without frame starts: what is doubled or put in between for ever cannot be told from it.
+        // A dialogue of single bytes without frame starts: what is doubled or put in between for
+        // ever cannot be told from it.
         (Attachment::Rs232, Fault::AnswersDoubled(_) | Fault::Noise(_)) => Must::End,
         // What is late holds up what follows: for as long neither positions nor heartbeats come.
         (Attachment::Slcan | Attachment::Can, Fault::AnswersLate(_, late)) if late > ms(100) => {
@@ -213,7 +217,8 @@ struct Cell {
     doubted: bool,
 }
 
-/// However the polls were hurt, no point of the cloud may be farther than this from the truth without a warning.
+/// However the polls were hurt, no point of the cloud may be farther than this from the truth
+/// without a warning.
 const WORST_MM: f64 = 20.0;
 
 fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: Span) -> Cell {

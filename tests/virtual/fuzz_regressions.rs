@@ -1,7 +1,9 @@
-//! What fuzzing once found, run through the same properties on stable Rust: `inputs/TARGET/NAME`, one file an input.
+//! What fuzzing once found, run through the same properties on stable Rust: `inputs/TARGET/NAME`,
+//! one file an input.
 //!
-//! The properties are the fuzz targets' own (`fuzz/properties`). Here also stands that they look at anything at all: a
-//! session that goes well must give samples, packets of a sensor firings. Left out: fuzzing itself.
+//! The properties are the fuzz targets' own (`fuzz/properties`). Here also stands that they look at
+//! anything at all: a session that goes well must give samples, packets of a sensor firings. Left
+//! out: fuzzing itself.
 
 #[path = "../../fuzz/properties/mod.rs"]
 mod properties;

@@ -1,4 +1,5 @@
-//! The 2018 paper's analysis of scan patterns, made again: patterns of `sim`, measured by `analysis`.
+//! The 2018 paper's analysis of scan patterns, made again: patterns of `sim`, measured by
+//! `analysis`.
 
 use analysis::density::{
     BinCounts, Icosahedron, Locator, Statistics, TOLERANCE_RAD, bands, holes, largest_hole, rows,
@@ -69,7 +70,8 @@ fn densities_are_the_papers() {
     }
 }
 
-/// The figures that were found to come closest, which differ from the printed ones in the last place.
+/// The figures that were found to come closest, which differ from the printed ones in the last
+/// place.
 #[test]
 fn densities_are_what_they_were_found_to_be() {
     for (text, mean, sd, least, most) in [
@@ -78,7 +80,8 @@ fn densities_are_what_they_were_found_to_be() {
         ("velomotion16:50", "50.681", 63.23, 0, 235),
     ] {
         let ours = statistics(&pattern(text).directions());
-        // As `analyze` prints it: with two decimals the last bit would decide between 202.72 and the paper's 202.73.
+        // As `analyze` prints it: with two decimals the last bit would decide between 202.72 and
+        // the paper's 202.73.
         assert_eq!(format!("{:.3}", ours.mean), mean, "{text}");
         assert!((ours.sd - sd).abs() < 0.011, "{text}: {}", ours.sd);
         assert_eq!(ours.min, least, "{text}");
@@ -142,7 +145,8 @@ fn poles_on_the_tilt_axis_are_densest() {
             poles > times * mean && around < 0.8 * mean,
             "{text}: {poles} {around} {mean}"
         );
-        // From the pole to the belt it only falls, but for the edge of the head's own fan at 15 deg.
+        // From the pole to the belt it only falls, but for the edge of the head's own fan at 15
+        // deg.
         let zones: Vec<f64> = [15.0, 30.0, 45.0, 60.0, 75.0]
             .map(|a| zone(&directions, a, a + 15.0))
             .to_vec();
@@ -168,7 +172,8 @@ fn poles_on_the_tilt_axis_are_densest() {
 
 #[test]
 fn blind_rows_stay_at_any_speed() {
-    // How far a point is from the tilt axis does not depend on the tilt: the bands that a level scan leaves out stay.
+    // How far a point is from the tilt axis does not depend on the tilt: the bands that a level
+    // scan leaves out stay.
     let least = 0.1_f64.to_radians();
     let level = bands(&pattern("vlp16").directions(), AXIS, least).unwrap();
     assert!(level.len() > 20, "{}", level.len());
@@ -213,7 +218,8 @@ fn the_poles_themselves_are_holes_at_any_speed() {
 
 #[test]
 fn the_largest_holes_are_those_that_the_fan_leaves() {
-    // Level, the fan of 15 deg leaves caps of 75; swept to one side, 53 deg are left below where the sweep began and ended.
+    // Level, the fan of 15 deg leaves caps of 75; swept to one side, 53 deg are left below where
+    // the sweep began and ended.
     for (text, radius_deg, at_least) in [
         ("vlp16", 75.0, 0.0),
         ("velomotion16:50", 53.13, 0.0),

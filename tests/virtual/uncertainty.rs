@@ -1,9 +1,10 @@
-//! Whether points are off by what their column `sd` says, against the simulator's truth: the normalised error, the root mean square of
-//! error over sd, is 1 where it does.
+//! Whether points are off by what their column `sd` says, against the simulator's truth: the
+//! normalised error, the root mean square of error over sd, is 1 where it does.
 //!
-//! Errors of a fit, of a clock and of the polls' delays are common to many points of one scan, so every figure is over several seeds.
-//! What no scan tells, and sd leaves out, is taken away first as a calibration would: of each way to the drive one delay and one zero
-//! of the angle, over all of its seeds and speeds.
+//! Errors of a fit, of a clock and of the polls' delays are common to many points of one scan, so
+//! every figure is over several seeds. What no scan tells, and sd leaves out, is taken away first
+//! as a calibration would: of each way to the drive one delay and one zero of the angle, over all
+//! of its seeds and speeds.
 
 use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
@@ -42,7 +43,8 @@ struct Seen {
     case: usize,
     seed: u64,
     range_m: f64,
-    /// How far off, and how far a degree of tilt would move it; of an angle the first of three is in use.
+    /// How far off, and how far a degree of tilt would move it; of an angle the first of three is
+    /// in use.
     error: [f64; 3],
     per_deg: [f64; 3],
     rate_deg_s: f64,
@@ -76,7 +78,8 @@ fn points(captured: &Captured, case: usize, seed: u64) -> Vec<Seen> {
     seen.collect()
 }
 
-/// Takes away what one delay and one zero of the angle explain: weighted least squares in two unknowns.
+/// Takes away what one delay and one zero of the angle explain: weighted least squares in two
+/// unknowns.
 fn calibrate(seen: &mut [Seen]) -> (f64, f64) {
     let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (mut normal, mut right) = ([0.0; 3], [0.0; 2]);
@@ -154,7 +157,8 @@ fn points_are_off_by_what_sd_says_over_can() {
     points_are_off_by_what_sd_says(Attachment::Can, None);
 }
 
-/// A servo of 15 Hz that overshoots, on both links. The gear is true: what it adds no encoder sees, and sd cannot hold.
+/// A servo of 15 Hz that overshoots, on both links. The gear is true: what it adds no encoder sees,
+/// and sd cannot hold.
 #[test]
 fn points_are_off_by_what_sd_says_behind_a_servo_that_lags() {
     let servo = Servo::SecondOrder {

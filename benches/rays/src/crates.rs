@@ -1,4 +1,5 @@
-//! The crates that could stand in place of our own tree, as their documentation shows them, one ray at a time: neither casts several.
+//! The crates that could stand in place of our own tree, as their documentation shows them, one ray
+//! at a time: neither casts several.
 
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
@@ -14,7 +15,8 @@ use sim::cast::Ray;
 use crate::scene::Triangles;
 use crate::timed;
 
-/// obvhs: eight children in 80 bytes, triangles by Moller and Trumbore, all f32, slowest and best build.
+/// obvhs: eight children in 80 bytes, triangles by Moller and Trumbore, all f32, slowest and best
+/// build.
 pub fn obvhs(of: &Triangles, rays: &[Ray]) -> String {
     let corner = |at: u32| of.vertices[at as usize].as_vec3().into();
     let triangles: Vec<Triangle> = of
@@ -74,7 +76,8 @@ impl BHShape<f64, 3> for Shape {
     }
 }
 
-/// bvh: two children, f64 as ours. Its triangle test takes one side only, so that each triangle is asked from both.
+/// bvh: two children, f64 as ours. Its triangle test takes one side only, so that each triangle is
+/// asked from both.
 pub fn bvh(of: &Triangles, rays: &[Ray]) -> String {
     let corner = |at: u32| Point3::from(of.vertices[at as usize].to_array());
     let mut shapes: Vec<Shape> = of

@@ -1,5 +1,5 @@
-//! velomotion's ray caster and two crates, for `benches/rays/run`: writes scenes and rays to a folder, then does the work that it is
-//! named on standard input and answers how long that took.
+//! velomotion's ray caster and two crates, for `benches/rays/run`: writes scenes and rays to a
+//! folder, then does the work that it is named on standard input and answers how long that took.
 //!
 //! usage: rays FOLDER
 

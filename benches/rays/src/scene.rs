@@ -101,7 +101,8 @@ fn add_ball(to: &mut Triangles, rings: u32, sectors: u32, place: impl Fn(DVec3) 
     }
 }
 
-/// A VLP-16 at 600 rpm, 0.2 m from an axis on which it is tilted from -45 degrees to 0 while it fires.
+/// A VLP-16 at 600 rpm, 0.2 m from an axis on which it is tilted from -45 degrees to 0 while it
+/// fires.
 pub fn rays() -> Vec<Ray> {
     let mut rays = Vec::with_capacity(FIRINGS * BEAMS);
     for firing in 0..FIRINGS {

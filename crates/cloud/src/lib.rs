@@ -1,7 +1,7 @@
 //! Point clouds: columns of points, the geometry of the tilt mount, and sinks that keep them.
 //!
-//! [`Points`] is a structure of arrays with the requested columns ([`Fields`]). [`mount`] is Eq. 4-6
-//! of the paper. A [`Sink`] takes batches of points; [`formats`] are sinks that write files,
+//! [`Points`] is a structure of arrays with the requested columns ([`Fields`]). [`mount`] is Eq.
+//! 4-6 of the paper. A [`Sink`] takes batches of points; [`formats`] are sinks that write files,
 //! [`messages`] encodes a scan as ROS 2 messages, [`read`] reads the positions of a file.
 //!
 //! ```

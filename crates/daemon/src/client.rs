@@ -1,4 +1,5 @@
-//! How the commands talk to a daemon that has the device: HTTP over its Unix socket, a connection a request.
+//! How the commands talk to a daemon that has the device: HTTP over its Unix socket, a connection a
+//! request.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;

@@ -1,5 +1,5 @@
-//! Quotas of disk space for clouds. A cloud made for a download leaves the reserve and what captures
-//! may still need; a scan's own cloud may use the reserve.
+//! Quotas of disk space for clouds. A cloud made for a download leaves the reserve and what
+//! captures may still need; a scan's own cloud may use the reserve.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, OnceLock};

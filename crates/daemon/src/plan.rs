@@ -113,7 +113,8 @@ fn resolution_deg(model: Option<&str>, tilt_deg: f64, turns: f64) -> f64 {
     analysis::device::vertical_resolution_deg(tilt_deg + high - low, count, turns)
 }
 
-/// Time of homing from the present angle at the speed of the search, without the search of the edge.
+/// Time of homing from the present angle at the speed of the search, without the search of the
+/// edge.
 fn homing_s(state: &DaemonState) -> Option<f64> {
     let homing = &state.service.config().axis.homing;
     let angle_deg = state.service.angle_deg()?;

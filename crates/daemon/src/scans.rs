@@ -52,7 +52,8 @@ fn cannot(path: &Path, what: &str, error: &std::io::Error) -> Failure {
     .help("check the free space and the write permission of the folder; scans = \"...\" under [daemon] names another")
 }
 
-/// Takes the scans folder for this process, making it where it is missing, until what is returned is dropped.
+/// Takes the scans folder for this process, making it where it is missing, until what is returned
+/// is dropped.
 ///
 /// # Errors
 /// [`Kind::BadInput`] where another daemon has it, or it cannot be written to.
@@ -72,8 +73,8 @@ pub fn lock(folder: &Path) -> Result<fs::File, Failure> {
 }
 
 impl Scans {
-    /// The scans in `folder`, which is made where it is missing. Those that were under way when nobody could end them are
-    /// [`ScanState::Making`]: [`Scans::unfinished`] lists them.
+    /// The scans in `folder`, which is made where it is missing. Those that were under way when
+    /// nobody could end them are [`ScanState::Making`]: [`Scans::unfinished`] lists them.
     ///
     /// # Errors
     /// Where the folder cannot be made or read.
@@ -195,7 +196,8 @@ impl Scans {
     /// Changes a scan, in the list and on the disk. `None` where there is no such scan.
     ///
     /// # Errors
-    /// Where it cannot be written; the list has it then, and [`Scans::settle`] writes it once there is room.
+    /// Where it cannot be written; the list has it then, and [`Scans::settle`] writes it once there
+    /// is room.
     pub fn change(
         &self,
         id: &str,
@@ -243,7 +245,8 @@ impl Scans {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds a sentence to what was said of a scan, unless much was said already. It reaches the disk with the next change.
+    /// Adds a sentence to what was said of a scan, unless much was said already. It reaches the
+    /// disk with the next change.
     pub fn say(&self, id: &str, message: &str) {
         if let Some(record) = self.scans().get_mut(id)
             && record.messages.len() < MESSAGES
@@ -383,8 +386,8 @@ impl Scans {
         (scans.len() as u64, bytes)
     }
 
-    /// Deletes the oldest scans until there are no more than `scans` of no more than `bytes`; which. The newest stays, and those whose record
-    /// could not be read.
+    /// Deletes the oldest scans until there are no more than `scans` of no more than `bytes`;
+    /// which. The newest stays, and those whose record could not be read.
     pub fn retain(&self, scans: u64, bytes: u64) -> Vec<ScanView> {
         let (mut count, mut size) = self.size();
         let list = self.list();

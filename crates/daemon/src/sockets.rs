@@ -24,8 +24,8 @@ pub fn folder() -> PathBuf {
         .unwrap_or_else(std::env::temp_dir)
 }
 
-/// The socket's name for a device: its port as the configuration calls it. What a link to it leads to is another file when the cable
-/// comes back elsewhere, and none before it is there.
+/// The socket's name for a device: its port as the configuration calls it. What a link to it leads
+/// to is another file when the cable comes back elsewhere, and none before it is there.
 ///
 /// # Errors
 /// Where the profile names no port.
@@ -51,8 +51,8 @@ fn name_of(place: &Path) -> String {
     format!("velomotion{name}.daemon.sock")
 }
 
-/// The sockets where a daemon that has the device may listen, the likeliest first. A daemon may know the port by another name, of those
-/// that udev gives it.
+/// The sockets where a daemon that has the device may listen, the likeliest first. A daemon may
+/// know the port by another name, of those that udev gives it.
 #[must_use]
 pub fn candidates(profile: &str, device: &Device) -> Vec<PathBuf> {
     let Ok(named) = place(profile, device) else {
@@ -67,7 +67,8 @@ pub fn candidates(profile: &str, device: &Device) -> Vec<PathBuf> {
     trusted(places.iter().map(|place| name_of(place)).collect())
 }
 
-/// The sockets where a daemon may listen that looks for its drive: it may have found the one at `device`'s port.
+/// The sockets where a daemon may listen that looks for its drive: it may have found the one at
+/// `device`'s port.
 #[must_use]
 pub fn looking(device: &Device) -> Vec<PathBuf> {
     match device.kind == DeviceKind::Usb && device.port.is_some() {
@@ -111,7 +112,8 @@ fn other_names(place: &Path) -> Vec<PathBuf> {
     names
 }
 
-/// Whether whoever made it may be told what to do: this user, or the system. The temporary folder is everybody's.
+/// Whether whoever made it may be told what to do: this user, or the system. The temporary folder
+/// is everybody's.
 fn is_trusted(socket: &Path) -> bool {
     let owner = std::fs::metadata(socket).map(|there| there.uid());
     let own = std::fs::metadata("/proc/self").map(|there| there.uid());
@@ -133,7 +135,8 @@ mod tests {
         std::fs::write(path("ttyUSB1"), "").unwrap();
         std::os::unix::fs::symlink("ttyUSB0", path("velomotion-epos2")).unwrap();
         std::os::unix::fs::symlink("ttyUSB1", path("other")).unwrap();
-        // CaptureRequest for by either name, both are tried; before the cable is there, the one that is known.
+        // CaptureRequest for by either name, both are tried; before the cable is there, the one
+        // that is known.
         assert_eq!(other_names(&path("ttyUSB0")), [path("velomotion-epos2")],);
         assert_eq!(other_names(&path("velomotion-epos2")), [path("ttyUSB0")]);
         std::fs::remove_file(path("ttyUSB0")).unwrap();

@@ -1,6 +1,8 @@
-//! A picture of a cloud for lists: its points from above and one side, coloured by height, edges shaded by depth, on nothing.
+//! A picture of a cloud for lists: its points from above and one side, coloured by height, edges
+//! shaded by depth, on nothing.
 //!
-//! The view is the one that the page opens with. Left out: every format but the PLY that this program writes, and the other columns.
+//! The view is the one that the page opens with. Left out: every format but the PLY that this
+//! program writes, and the other columns.
 
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 
@@ -71,7 +73,8 @@ type Point = [f64; 3];
 /// The picture of a PLY cloud, as PNG with a transparent ground.
 ///
 /// # Errors
-/// Where the cloud cannot be read or is none of this program's. One that ends too early is drawn as far as it goes.
+/// Where the cloud cannot be read or is none of this program's. One that ends too early is drawn as
+/// far as it goes.
 pub fn of_ply(cloud: &mut (impl Read + Seek)) -> Result<Vec<u8>, ThumbnailError> {
     let mut cloud = BufReader::with_capacity(1 << 16, cloud);
     let header = Header::read(&mut cloud)?;
@@ -233,7 +236,8 @@ fn picture(points: &[Point]) -> Picture {
     };
     for &point in points {
         let to_eye = [eye[0] - point[0], eye[1] - point[1], eye[2] - point[2]];
-        // Every surface was seen from the scanner: what shows its back to the eye stands in the way.
+        // Every surface was seen from the scanner: what shows its back to the eye stands in the
+        // way.
         let facing = -dot(unit(point), unit(to_eye));
         let depth_m = away_m - dot(point, back);
         let hides = (point[2] > -0.5 && facing < -0.1) || point[2] > ceiling_m;
@@ -292,7 +296,8 @@ impl Picture {
         }
     }
 
-    /// How bright a sample is: the darker, the farther it lies behind its neighbours (eye-dome lighting, Boucheny 2009).
+    /// How bright a sample is: the darker, the farther it lies behind its neighbours (eye-dome
+    /// lighting, Boucheny 2009).
     fn light(&self, x: i64, y: i64, here: &Sample) -> f64 {
         const AROUND: [(i64, i64); 8] = [
             (-2, 0),
@@ -372,7 +377,8 @@ mod tests {
         writer.into_inner().into_inner()
     }
 
-    /// A floor of 10 m by 10 m, 1 m below the scanner, and a wall 4 m high behind it as seen from the eye.
+    /// A floor of 10 m by 10 m, 1 m below the scanner, and a wall 4 m high behind it as seen from
+    /// the eye.
     fn corner() -> Vec<Point> {
         let line = || (-100..=100).map(|i| f64::from(i) * 0.05);
         let floor = line().flat_map(|x| line().map(move |y| [x, y, -1.0]));

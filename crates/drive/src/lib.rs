@@ -1,7 +1,8 @@
 //! The client of the tilt axis' EPOS2 drive, without I/O, and a listener that decodes logs.
 //!
-//! [`DriveClient`] is a state machine: the caller passes bytes and times in and takes bytes and events
-//! out. [`DriveListener`] only observes. Neither opens a port, reads a clock or knows about lidars.
+//! [`DriveClient`] is a state machine: the caller passes bytes and times in and takes bytes and
+//! events out. [`DriveListener`] only observes. Neither opens a port, reads a clock or knows about
+//! lidars.
 //!
 //! # Example
 //! A client sends nothing before a command starts. `Connect` begins with reading the device type:

@@ -1,5 +1,5 @@
-//! Names of `rmw_zenoh_cpp` (Jazzy and later): keys, liveliness tokens, gids, attachments, as in its
-//! `liveliness_utils.cpp`, `attachment_helpers.cpp` and `qos.cpp`.
+//! Names of `rmw_zenoh_cpp` (Jazzy and later): keys, liveliness tokens, gids, attachments, as in
+//! its `liveliness_utils.cpp`, `attachment_helpers.cpp` and `qos.cpp`.
 
 use cloud::messages::MessageType;
 use xxhash_rust::xxh3::xxh3_128;
@@ -19,7 +19,8 @@ const GID_BYTES: usize = 16;
 /// What `rmw_zenoh` knows a publisher or a client by.
 pub type Gid = [u8; GID_BYTES];
 
-/// What is offered (`rmw/types.h`): history is keep last, and deadline, lifespan and liveliness are without limit.
+/// What is offered (`rmw/types.h`): history is keep last, and deadline, lifespan and liveliness are
+/// without limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quality {
     /// Reliable, else best effort.
@@ -115,7 +116,8 @@ pub fn gid(token: &str) -> Gid {
     xxh3_128(token.as_bytes()).to_le_bytes()
 }
 
-/// What goes with a message: its number, from 1, when it was sent (nanoseconds since 1970), and who sent it.
+/// What goes with a message: its number, from 1, when it was sent (nanoseconds since 1970), and who
+/// sent it.
 #[must_use]
 pub fn attachment(number: i64, sent_ns: i64, gid: &Gid) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(ATTACHMENT_BYTES);
@@ -207,7 +209,8 @@ mod tests {
         assert_eq!(text(false, false, 5), "2::,5:,:,:,,");
     }
 
-    /// Vectors of the xxHash project's own test program for XXH3-128 with seed 0: of nothing; and the order of bytes.
+    /// Vectors of the xxHash project's own test program for XXH3-128 with seed 0: of nothing; and
+    /// the order of bytes.
     #[test]
     fn gids_are_xxh3_with_the_low_half_first() {
         assert_eq!(

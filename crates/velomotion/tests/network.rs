@@ -1,4 +1,5 @@
-//! The lidar's network as a user can set it: group, sender and ports of a live capture, fragments of a recorded one.
+//! The lidar's network as a user can set it: group, sender and ports of a live capture, fragments
+//! of a recorded one.
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
 
 #[path = "software_drive/mod.rs"]
@@ -136,7 +137,8 @@ fn group_sender_and_ports_are_the_configurations_and_the_log_replays() {
     configure(LIDAR);
     let line = "capture --speed 80 --to -8 -o scan.ply --json --force";
     let mut output = velomotion(place, line);
-    // A drive in another process is silent while the machine keeps it waiting, and the capture stops as it must.
+    // A drive in another process is silent while the machine keeps it waiting, and the capture
+    // stops as it must.
     for _ in 0..3 {
         if output.status.code() != Some(5) || !said(&output).contains("silence") {
             break;
@@ -163,7 +165,8 @@ fn group_sender_and_ports_are_the_configurations_and_the_log_replays() {
     assert!(first.unwrap() == again.unwrap(), "not the same cloud");
 }
 
-/// A classic pcap of bare IP packets: each datagram in two fragments, on a port that is not the factory's.
+/// A classic pcap of bare IP packets: each datagram in two fragments, on a port that is not the
+/// factory's.
 fn fragmented(rig: &mut Rig) -> (Vec<u8>, u64) {
     let mut file = vec![0xD4, 0xC3, 0xB2, 0xA1, 2, 0, 4, 0];
     file.extend([0; 8]);

@@ -51,7 +51,8 @@ impl Bench {
 
     fn json(&self, line: &str) -> serde_json::Value {
         let mut output = self.run(&format!("{line} --json"));
-        // A drive in another process is silent while the machine keeps it waiting, and the client stops as it must.
+        // A drive in another process is silent while the machine keeps it waiting, and the client
+        // stops as it must.
         for _ in 0..3 {
             let said = String::from_utf8_lossy(&output.stderr);
             if output.status.code() != Some(5) || !said.contains("silence") {

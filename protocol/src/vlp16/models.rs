@@ -107,10 +107,10 @@ pub static PUCK_HI_RES: Model = Model {
 /// used as printed; no azimuth offsets. Where its rays start is in the maker's drawing 86-0106
 /// (revision B, sheet 2), not in the manual.
 ///
-/// Appendix E of the manual's early editions gives a laser's time as -542.592 us plus 46.08 us per block
-/// plus 1.152 us per laser: one after the other, not in pairs, and from a timestamp written when the
-/// packet ended. The times here count from the first firing, like the other models' and as the
-/// maker's viewer has it.
+/// Appendix E of the manual's early editions gives a laser's time as -542.592 us plus 46.08 us per
+/// block plus 1.152 us per laser: one after the other, not in pairs, and from a timestamp written
+/// when the packet ended. The times here count from the first firing, like the other models' and as
+/// the maker's viewer has it.
 pub static HDL_32E: Model = Model {
     name: "HDL-32E",
     product: Product::Hdl32e,

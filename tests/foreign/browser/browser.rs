@@ -1,4 +1,5 @@
-//! Debian's Chromium through its WebDriver: one `chromedriver`, a window a look, and what tests do in one.
+//! Debian's Chromium through its WebDriver: one `chromedriver`, a window a look, and what tests do
+//! in one.
 
 use std::collections::BTreeSet;
 use std::future::Future;
@@ -285,7 +286,8 @@ impl Page {
         assert_eq!(complaints, json!([]), "{what} on {:?}", self.screen);
     }
 
-    /// A processor that draws in place of a graphics card may be late for the driver's own patience.
+    /// A processor that draws in place of a graphics card may be late for the driver's own
+    /// patience.
     async fn screenshot(&self) -> Vec<u8> {
         let begin = Instant::now();
         loop {

@@ -1,7 +1,8 @@
-//! The daemon's page in Debian's Chromium, against the real daemon and software devices: scans made and counted, faults read, the connection lost.
+//! The daemon's page in Debian's Chromium, against the real daemon and software devices: scans made
+//! and counted, faults read, the connection lost.
 //!
-//! The tests need `chromedriver` and `chromium`.
-//! `VELOMOTION_SCREENSHOTS=FOLDER` keeps the pictures; those of docs/src/page are made so.
+//! The tests need `chromedriver` and `chromium`. `VELOMOTION_SCREENSHOTS=FOLDER` keeps the
+//! pictures; those of docs/src/page are made so.
 
 mod browser;
 
@@ -179,7 +180,8 @@ fn a_sweep_is_watched_and_stopped_by_key_and_by_finger() {
                 points(text) > 20_000
             })
             .await;
-            // Where the processor draws, a picture takes seconds, and each lets the cloud grow by 300,000 points.
+            // Where the processor draws, a picture takes seconds, and each lets the cloud grow by
+            // 300,000 points.
             if std::env::var_os("VELOMOTION_SCREENSHOTS").is_some() {
                 page.run(TO_THE_TOP).await;
                 page.picture("live").await;

@@ -1,7 +1,8 @@
-//! A CANopen master of few lines on an interface of the kernel: SDO transfers one after the other, and all else that is
-//! heard kept with the kernel's time.
+//! A CANopen master of few lines on an interface of the kernel: SDO transfers one after the other,
+//! and all else that is heard kept with the kernel's time.
 //!
-//! It is not the project's own client of the drive: what it asserts it asserts about the bus and the node.
+//! It is not the project's own client of the drive: what it asserts it asserts about the bus and
+//! the node.
 
 use io::can::{CanPort, SocketCan};
 use io::clock;

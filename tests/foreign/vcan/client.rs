@@ -1,5 +1,5 @@
-//! The project's own client of the drive on a bus of the kernel: connects, homes and sweeps as a capture does, with a log of
-//! its frames and somebody else's beside it.
+//! The project's own client of the drive on a bus of the kernel: connects, homes and sweeps as a
+//! capture does, with a log of its frames and somebody else's beside it.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -62,7 +62,8 @@ pub fn sweep(out: &Path) {
         ..AxisSettings::default()
     })
     .unwrap();
-    // An emulated machine on a busy one may stand still for longer than a drive may be silent; that is tested in virtual time.
+    // An emulated machine on a busy one may stand still for longer than a drive may be silent; that
+    // is tested in virtual time.
     axis.can.host_limit = Span::from_secs(2);
     axis.can.node_limit = Span::from_secs(2);
     axis.timing.timeout_moving = Span::from_secs(1);
@@ -109,7 +110,8 @@ pub fn sweep(out: &Path) {
     };
     assert!((arrived.angle.0 + 45.0).abs() < 0.01, "{arrived:?}");
     session.run(DriveCommand::Brake, &mut |_| {}).unwrap();
-    // What answers the last SYNCs may come after what ends the command: the log has it when something else has been asked.
+    // What answers the last SYNCs may come after what ends the command: the log has it when
+    // something else has been asked.
     session.run(DriveCommand::Status, &mut |_| {}).unwrap();
     assert_eq!(session.port().port().0.dropped(), 0);
     drop(session);

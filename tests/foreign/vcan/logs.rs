@@ -1,4 +1,5 @@
-//! The logs of a sweep, the project's own and `candump`'s: what is in them, and what tshark makes of them.
+//! The logs of a sweep, the project's own and `candump`'s: what is in them, and what tshark makes
+//! of them.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -19,7 +20,8 @@ pub const CANDUMP_LOG: &str = "candump.log";
 /// Frames and how often each of them passed.
 type Passed = BTreeMap<[u8; 16], usize>;
 
-/// SYNCs have their samples, `candump` heard what the client said and heard, and tshark dissects both logs as CANopen.
+/// SYNCs have their samples, `candump` heard what the client said and heard, and tshark dissects
+/// both logs as CANopen.
 pub fn check(folder: &Path) {
     let ours = of_the_log(&folder.join(LOG));
     tshark(&folder.join(LOG), &ours);
@@ -33,7 +35,8 @@ fn node() -> NodeId {
     NodeId::new(1).unwrap()
 }
 
-/// The frames of the log; none of the stream's may be missing but where the machine is kept waiting.
+/// The frames of the log; none of the stream's may be missing but where the machine is kept
+/// waiting.
 fn of_the_log(path: &Path) -> Passed {
     let mut recording = Recording::open(path).unwrap();
     let mut passed = Passed::new();
@@ -54,8 +57,9 @@ fn of_the_log(path: &Path) -> Passed {
     println!("{syncs} SYNCs, {samples} samples");
     // A second and more of the sweep alone, at 1 kHz.
     assert!(syncs > 1_000, "{syncs}");
-    // On a machine that has time every SYNC has its sample (the test says how many). Where this one is kept waiting, the software drive
-    // is late for some; never for many, and it never sends what was not asked for.
+    // On a machine that has time every SYNC has its sample (the test says how many). Where this one
+    // is kept waiting, the software drive is late for some; never for many, and it never sends what
+    // was not asked for.
     let lost = syncs.checked_sub(samples).unwrap();
     assert!(lost <= 3 + syncs / 50, "{lost} of {syncs}");
     passed
@@ -88,8 +92,9 @@ fn of_candump(text: &str) -> Passed {
     passed
 }
 
-/// What is in the log was on the bus, as often; what `candump` has besides is what it was shown, the node's heartbeat before and
-/// after the client, and the last answers, which nobody read any more.
+/// What is in the log was on the bus, as often; what `candump` has besides is what it was shown,
+/// the node's heartbeat before and after the client, and the last answers, which nobody read any
+/// more.
 fn compare(ours: &Passed, theirs: &Passed) {
     let mut unread = 0;
     for (frame, heard) in theirs {

@@ -1,8 +1,8 @@
 //! The software EPOS2 on a CAN interface of the kernel (`velomotion firmware-sim --can vcan0`), and
 //! CANopen masters on other sockets: one made for the test, and the project's own client.
 //!
-//! If the kernel has no CAN, `in-vm` runs this program's test again in an emulated machine. The logs
-//! of the client and of `candump` are then read outside, by tshark too.
+//! If the kernel has no CAN, `in-vm` runs this program's test again in an emulated machine. The
+//! logs of the client and of `candump` are then read outside, by tshark too.
 
 mod bus;
 mod client;
@@ -178,7 +178,8 @@ fn identity(master: &mut Master) {
     assert_eq!(serial.bytes[..4], low.to_le_bytes());
 }
 
-/// What the node refuses it refuses with a reason (CiA 301, "SDO abort codes"), and the next transfer is as good as any.
+/// What the node refuses it refuses with a reason (CiA 301, "SDO abort codes"), and the next
+/// transfer is as good as any.
 fn aborts(master: &mut Master) {
     let refused = |error| Err(TransferError::Aborted(error));
     let read = master.read_raw(Address::new(0x5FFF, 0)).map(drop);
@@ -194,7 +195,8 @@ fn aborts(master: &mut Master) {
     assert_eq!(master.read(objects::DEVICE_TYPE), 0x0002_0192);
 }
 
-/// Process data that is too short is error 8210: told at once, kept in the history, and its end told, too.
+/// Process data that is too short is error 8210: told at once, kept in the history, and its end
+/// told, too.
 fn emergency(master: &mut Master, node: NodeId) {
     let told = |(frame, _): &bus::Heard| Emergency::parse(frame).ok();
     master.take_heard();

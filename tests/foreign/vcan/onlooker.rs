@@ -16,7 +16,8 @@ const LOOK: Span = Span::from_millis(10);
 /// Bytes of its socket's queue: it, too, loses what does not fit.
 const RECEIVE_BUFFER: &str = "4194304";
 
-/// Frames that nobody answers to, by which is seen how far `candump` is: at its beginning, and at its end.
+/// Frames that nobody answers to, by which is seen how far `candump` is: at its beginning, and at
+/// its end.
 const BEGIN: u8 = b'?';
 const END: u8 = b'!';
 

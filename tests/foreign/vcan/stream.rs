@@ -1,4 +1,5 @@
-//! The angle of a turning motor on SYNC, as a capture over CAN takes it: TPDO 1 with position and time, 1000 a second.
+//! The angle of a turning motor on SYNC, as a capture over CAN takes it: TPDO 1 with position and
+//! time, 1000 a second.
 
 use std::fmt;
 
@@ -19,7 +20,8 @@ const SYNCS: usize = 1000;
 const PERIOD: Span = Span::from_millis(1);
 /// For the last samples after the last SYNC.
 const REST: Span = Span::from_secs(1);
-/// Away from the positive limit switch, beside which the axis starts; 20 qc/ms, 30 degrees in the second.
+/// Away from the positive limit switch, beside which the axis starts; 20 qc/ms, 30 degrees in the
+/// second.
 const SPEED_RPM: i32 = -600;
 /// The same, of the default rig's 2000 qc a turn.
 const SPEED_QC_US: f64 = SPEED_RPM as f64 * 2000.0 / 60e6;
@@ -133,7 +135,8 @@ impl fmt::Display for Report {
     }
 }
 
-/// Beats for a second; every SYNC must bring its sample, and every sample must lie on the motor's line.
+/// Beats for a second; every SYNC must bring its sample, and every sample must lie on the motor's
+/// line.
 pub fn one_second(master: &mut Master, node: NodeId) -> Report {
     master.take_heard();
     let begin = clock::now() + PERIOD;
@@ -176,7 +179,8 @@ pub fn one_second(master: &mut Master, node: NodeId) -> Report {
     }
 }
 
-/// Position and time of a sample belong together: at constant speed they are a line, but for the encoder's whole counts.
+/// Position and time of a sample belong together: at constant speed they are a line, but for the
+/// encoder's whole counts.
 fn on_the_line(samples: &[Sample]) {
     let first = &samples[0];
     let mut before_us = 0;

@@ -16,7 +16,8 @@ fn every_packet_twice_is_every_packet_once() {
     );
 }
 
-/// Neighbours change places on the way, also over the hour, where the later one has the smaller stamp.
+/// Neighbours change places on the way, also over the hour, where the later one has the smaller
+/// stamp.
 #[test]
 fn packets_out_of_order_are_put_back() {
     let head = steady(600.0, BEGIN_NS - 121 * BLOCK_NS);
@@ -42,7 +43,8 @@ fn a_packet_that_comes_too_late_is_left_out() {
     assert_eq!((stats.late, stats.reordered, stats.lost_packets), (1, 0, 1));
 }
 
-/// Other programs' datagrams, cut ones, an HDL-64E's, and position packets between the data change nothing but counts.
+/// Other programs' datagrams, cut ones, an HDL-64E's, and position packets between the data change
+/// nothing but counts.
 #[test]
 fn foreign_packets_change_nothing() {
     let head = steady(600.0, BEGIN_NS);
@@ -84,7 +86,8 @@ fn foreign_packets_change_nothing() {
     assert_eq!(counts, (20, 2, 3, 1, 0));
 }
 
-/// The host's stack hands over packets in batches of 15 ms and more: arrival says nothing of firing.
+/// The host's stack hands over packets in batches of 15 ms and more: arrival says nothing of
+/// firing.
 #[test]
 fn packets_arrive_in_batches() {
     let head = steady(600.0, BEGIN_NS - 60 * BLOCK_NS);
@@ -104,7 +107,8 @@ fn packets_arrive_in_batches() {
     }
 }
 
-/// Packets are missing and the rotor has turned on: what is behind the gap is neither moved nor joined to what was before.
+/// Packets are missing and the rotor has turned on: what is behind the gap is neither moved nor
+/// joined to what was before.
 #[test]
 fn nothing_is_guessed_across_lost_packets() {
     for lost in [1, 3, 75, 150] {

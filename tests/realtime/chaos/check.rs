@@ -1,4 +1,5 @@
-//! What must hold of the scans whatever has happened: the list, the folder and the files agree, and what is incomplete says so.
+//! What must hold of the scans whatever has happened: the list, the folder and the files agree, and
+//! what is incomplete says so.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -63,7 +64,8 @@ pub fn agree(scans: &[ScanView], folder: &Path) -> Result<(), String> {
     }
 }
 
-/// Whether the disk has what the list says, which comes first: where it was full, it is written when there is room again.
+/// Whether the disk has what the list says, which comes first: where it was full, it is written
+/// when there is room again.
 pub fn written(scan: &ScanView, folder: &Path) -> bool {
     let told = fs::read(folder.join(&scan.id).join("scan.json")).ok();
     let told: Option<serde_json::Value> = told.and_then(|text| serde_json::from_slice(&text).ok());

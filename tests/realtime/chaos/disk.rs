@@ -1,4 +1,5 @@
-//! A small disk of its own, which can be filled to the last bytes: a tmpfs, where this user may mount one.
+//! A small disk of its own, which can be filled to the last bytes: a tmpfs, where this user may
+//! mount one.
 
 use std::fs::File;
 use std::io::Write;

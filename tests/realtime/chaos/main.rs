@@ -1,8 +1,10 @@
-//! Two hundred captures in which something goes wrong, each by a seed, and what must hold whatever it was:
-//! every scan is whole, or partial and marked so; none is lost silently; the motor is never left moving without a master.
+//! Two hundred captures in which something goes wrong, each by a seed, and what must hold whatever
+//! it was: every scan is whole, or partial and marked so; none is lost silently; the motor is never
+//! left moving without a master.
 //!
-//! `cargo test -p velomotion-tests --test chaos -- [--captures N] [--first SEED] [--bless]`. Without arguments the first twenty seeds, which
-//! have every kind of fault; `--bless` writes the table of docs/src/chaos.md.
+//! `cargo test -p velomotion-tests --test chaos -- [--captures N] [--first SEED] [--bless]`.
+//! Without arguments the first twenty seeds, which have every kind of fault; `--bless` writes the
+//! table of docs/src/chaos.md.
 
 mod check;
 mod disk;

@@ -108,7 +108,8 @@ impl Drop for Process {
     }
 }
 
-/// The sockets of daemons in a folder: of the one that runs, once what a killed one left was cleared away.
+/// The sockets of daemons in a folder: of the one that runs, once what a killed one left was
+/// cleared away.
 fn sockets(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let there = std::fs::read_dir(folder).map_err(|error| error.to_string())?;
     let paths = there.flatten().map(|entry| entry.path());

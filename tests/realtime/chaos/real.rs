@@ -1,4 +1,5 @@
-//! Captures in real time: a daemon in a process of its own, devices in this one, and a disk that may be full.
+//! Captures in real time: a daemon in a process of its own, devices in this one, and a disk that
+//! may be full.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -33,7 +34,8 @@ pub enum Came {
 pub struct Made {
     /// What came of it.
     pub came: Came,
-    /// From the start of the next daemon, or the cable's return, until the axis stood with its power off.
+    /// From the start of the next daemon, or the cable's return, until the axis stood with its
+    /// power off.
     pub safe_after: Option<Duration>,
 }
 
@@ -234,7 +236,8 @@ impl World {
         })
     }
 
-    /// The scan of that name once nothing is to be expected of it any more, with its record on the disk.
+    /// The scan of that name once nothing is to be expected of it any more, with its record on the
+    /// disk.
     fn over(&self, name: &str) -> Result<ScanView, String> {
         let mut lost = None;
         let over = wait("the end of the scan", || {

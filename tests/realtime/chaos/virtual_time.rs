@@ -1,4 +1,5 @@
-//! Captures in virtual time, filed as a daemon files what it records: a folder with a log, whose cloud is still to be made.
+//! Captures in virtual time, filed as a daemon files what it records: a folder with a log, whose
+//! cloud is still to be made.
 
 use std::fs::File;
 
@@ -18,7 +19,8 @@ use velomotion_tests::port::Links;
 use crate::check::Wanted;
 use crate::plan::{Plan, Virtual};
 
-/// A drive that listens for heartbeats stands so long after the last one at most: 1016 is 100 ms, and then comes the ramp.
+/// A drive that listens for heartbeats stands so long after the last one at most: 1016 is 100 ms,
+/// and then comes the ramp.
 const ALONE: Span = Span::from_millis(1_500);
 /// A client that connects has the axis at rest, its power off, within this time.
 const SAFE: Span = Span::from_secs(2);
@@ -57,7 +59,8 @@ pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String>
     Ok(wanted)
 }
 
-/// What must become of a capture by its packets. Those that are lost before the first that is heard, or after the sweep, nobody misses.
+/// What must become of a capture by its packets. Those that are lost before the first that is
+/// heard, or after the sweep, nobody misses.
 fn of_packets(captured: &Captured) -> Wanted {
     if captured.missed_packets() > 0 {
         return Wanted::Less;

@@ -32,8 +32,8 @@ pub(super) fn set_lidar(packets: &mut [Arrived], from: Stamp<Host>, by: Span) {
     }
 }
 
-/// Writes both devices' records in the order in which they came; their number. From an instant on they may be stamped by a clock
-/// that was set.
+/// Writes both devices' records in the order in which they came; their number. From an instant on
+/// they may be stamped by a clock that was set.
 pub(super) fn write_log(
     path: &Path,
     config: &ScanConfig,

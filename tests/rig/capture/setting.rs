@@ -53,7 +53,8 @@ pub struct PacketLoss {
 }
 
 impl PacketLoss {
-    /// Loses what is to be lost; how many data packets that were, and how many of them between two that came.
+    /// Loses what is to be lost; how many data packets that were, and how many of them between two
+    /// that came.
     pub(super) fn lose(
         &self,
         packets: &mut Vec<Arrived>,

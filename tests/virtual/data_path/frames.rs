@@ -1,4 +1,5 @@
-//! Frames of a tilting scan: all of its points, turn by turn, and organised with the shots that brought nothing back.
+//! Frames of a tilting scan: all of its points, turn by turn, and organised with the shots that
+//! brought nothing back.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -34,7 +35,8 @@ fn frames(log: &Path, output: &Path, organised: bool) -> ScanReport {
     replay::frames(&request, &plan).unwrap()
 }
 
-/// The clouds in a folder, in order of their numbers, without what stands before `mark`, and the header up to it.
+/// The clouds in a folder, in order of their numbers, without what stands before `mark`, and the
+/// header up to it.
 fn clouds(folder: &Path, mark: &str) -> Vec<(String, Vec<u8>)> {
     let mut paths: Vec<_> = std::fs::read_dir(folder)
         .unwrap()
@@ -69,8 +71,8 @@ fn frames_hold_the_whole_cloud_in_its_order() {
     let cloud = &whole[whole.len() - rows.len()..];
     let mut rounded = 0;
     for (a, b) in cloud.chunks(29).zip(rows.chunks(29)) {
-        // x, y, z; intensity, ring, time; tilt. Frames are placed point by point, the cloud in blocks: a nanometre may round a place to
-        // the next of what a float holds.
+        // x, y, z; intensity, ring, time; tilt. Frames are placed point by point, the cloud in
+        // blocks: a nanometre may round a place to the next of what a float holds.
         assert_eq!(a[12..25], b[12..25], "the frames are not the cloud");
         for at in [0, 4, 8, 25] {
             let bits = |row: &[u8]| u32::from_le_bytes(row[at..at + 4].try_into().unwrap());

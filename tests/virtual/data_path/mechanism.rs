@@ -1,5 +1,6 @@
-//! A drive and a gear as they are: a servo that lags at 15 Hz, and a platform that is off what the encoder says by 0.003 degrees once
-//! a turn of the motor. Polls take 0.8 to 2.5 ms, one in fifty up to 5 ms more, at 400 Hz; over CAN the positions come with SYNC.
+//! A drive and a gear as they are: a servo that lags at 15 Hz, and a platform that is off what the
+//! encoder says by 0.003 degrees once a turn of the motor. Polls take 0.8 to 2.5 ms, one in fifty
+//! up to 5 ms more, at 400 Hz; over CAN the positions come with SYNC.
 //!
 //! The angles of the points are held against the platform's own at the instants of their firings.
 //! `cargo test -p velomotion-tests --test virtual -- --nocapture real_drive` prints the figures.
@@ -58,7 +59,8 @@ struct Off {
     delay_us: f64,
 }
 
-/// One point in so many is compared: some 5000 instants, so that neither polls nor ripple keep in step with them.
+/// One point in so many is compared: some 5000 instants, so that neither polls nor ripple keep in
+/// step with them.
 const EVERY: usize = 37;
 
 fn off(captured: &Captured, cloud: &Points) -> Off {
@@ -91,8 +93,8 @@ fn off(captured: &Captured, cloud: &Points) -> Off {
 
 const SEEDS: u64 = 4;
 
-/// The bar: worst below 0.011 degrees, and root mean square over days below 0.0028, of which the ripple alone, which no encoder sees,
-/// is 0.0021.
+/// The bar: worst below 0.011 degrees, and root mean square over days below 0.0028, of which the
+/// ripple alone, which no encoder sees, is 0.0021.
 fn as_true_as_its_gear(day: impl Fn(u64) -> Setting, servo: Servo) {
     let mut sum = 0.0;
     for seed in 0..SEEDS {

@@ -20,7 +20,8 @@ fn solve(captured: &Captured, tolerance: &str) -> Result<Alignment, ScanError> {
     survey.solve(&config, &TiltSource::Log, Accuracy::Within(tolerance))
 }
 
-/// The range's share of a point's error: half of 2 mm, and the azimuth's 0.01 degrees at the distance of this room's corners.
+/// The range's share of a point's error: half of 2 mm, and the azimuth's 0.01 degrees at the
+/// distance of this room's corners.
 const RANGES_M: f64 = 2e-3;
 
 #[test]

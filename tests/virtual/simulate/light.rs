@@ -4,7 +4,8 @@ use scanner::TiltSource;
 
 use super::{Simulated, replayed};
 
-/// What a decoder reads of a VLP-16 that stands in a scene: where from its own middle, metres, and the reflectivity it reports. And the shots it took.
+/// What a decoder reads of a VLP-16 that stands in a scene: where from its own middle, metres, and
+/// the reflectivity it reports. And the shots it took.
 fn seen(scene: &str, duration_s: f64) -> (Vec<([f64; 3], u8)>, u64) {
     let text = format!("[motion]\nkind = \"fixed\"\nduration_s = {duration_s}\n{scene}");
     let scene = Simulated::new(&text, |_| {});
@@ -33,8 +34,9 @@ fn normal_below(x: f64) -> f64 {
     (0..steps).map(|step| width * density(step)).sum()
 }
 
-/// From 1 to 100 m; within, what has light enough: a target of 10 % half the time at 50 m, light falling with the square of range, noise a fifth of the threshold.
-/// What is noticed is reported with its own reflectivity at any range.
+/// From 1 to 100 m; within, what has light enough: a target of 10 % half the time at 50 m, light
+/// falling with the square of range, noise a fifth of the threshold. What is noticed is reported
+/// with its own reflectivity at any range.
 #[test]
 fn targets_of_known_reflectivity_are_seen_as_far_as_the_manual_says_and_reported_as_they_are() {
     for (range_m, reflectivities) in [
@@ -105,7 +107,8 @@ fn a_plane_that_is_tilted_reports_less_by_the_cosine_of_incidence() {
     }
 }
 
-/// Asphalt from 1.2 m above: `0.14 sin(e)^3 / 1.2^2` comes back at e below level, and 4e-5 is noticed half the time: at 4.3 degrees.
+/// Asphalt from 1.2 m above: `0.14 sin(e)^3 / 1.2^2` comes back at e below level, and 4e-5 is
+/// noticed half the time: at 4.3 degrees.
 #[test]
 fn ground_that_is_grazed_drops_out() {
     let ground = "[materials]\nasphalt = { reflectivity = 14 }\n[[objects]]\nmaterial = \"asphalt\"\nplane = {}\nposition_m = [0, 0, -1.2]\n";
@@ -126,7 +129,8 @@ fn ground_that_is_grazed_drops_out() {
     assert!(five > 0.98 && three < 0.01, "{five} {three}");
 }
 
-/// A window 25 m ahead: it dazzles where it faces the sensor, and elsewhere is too dark to be noticed, 1.2 % of a white wall.
+/// A window 25 m ahead: it dazzles where it faces the sensor, and elsewhere is too dark to be
+/// noticed, 1.2 % of a white wall.
 #[test]
 fn glass_returns_where_it_faces_the_sensor() {
     let window = "[materials]\nglass = { reflectivity = 6, specular = 0.8 }\n[[objects]]\nmaterial = \"glass\"\nplane = {}\n\

@@ -109,7 +109,8 @@ impl Simulated {
         ((since + 1_000) / self.firing_ns, laser)
     }
 
-    /// Every point of a cloud with the truth nearest to it among those of its firing and laser: distance and range, metres.
+    /// Every point of a cloud with the truth nearest to it among those of its firing and laser:
+    /// distance and range, metres.
     fn errors(&self, cloud: &Points) -> Vec<(f64, f64)> {
         let shots = cloud.device_time().iter().zip(cloud.laser());
         cloud

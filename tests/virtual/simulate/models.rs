@@ -52,7 +52,8 @@ fn scene(model: &str, returns: &str) -> String {
     )
 }
 
-/// Half a unit of range; half a hundredth of a degree of azimuth, or three quarters in the last packet, whose rate nobody follows up.
+/// Half a unit of range; half a hundredth of a degree of azimuth, or three quarters in the last
+/// packet, whose rate nobody follows up.
 fn bound_m(range_m: f64, unit_mm: f64) -> f64 {
     let across = range_m * 0.0076_f64.to_radians();
     (0.5e-3 * unit_mm).hypot(across) + 1e-6

@@ -15,7 +15,8 @@ fn shipped(of: &str) -> &'static str {
     SHIPPED.iter().find(|(name, _)| *name == of).unwrap().1
 }
 
-/// Range in steps of 2 mm and azimuth in hundredths of a degree are all that the ideal scanner loses.
+/// Range in steps of 2 mm and azimuth in hundredths of a degree are all that the ideal scanner
+/// loses.
 #[test]
 fn the_hall_comes_back_as_it_was() {
     let scene = Simulated::new(shipped("hall"), |scene| scene.effects.leave_out(|_| true));
@@ -66,7 +67,8 @@ fn noise_of_ranges_is_as_large_as_asked_for() {
     assert!((0.11..0.19).contains(&worst_m), "{worst_m}");
 }
 
-/// The hall as it comes and the footprint of the beam: noise of 1 cm, and at edges some points that lie between two surfaces.
+/// The hall as it comes and the footprint of the beam: noise of 1 cm, and at edges some points that
+/// lie between two surfaces.
 #[test]
 fn the_hall_as_a_real_scanner_would_see_it() {
     let text = shipped("hall").to_owned() + "\n[effects.divergence]\n";
@@ -93,8 +95,9 @@ fn the_hall_as_a_real_scanner_would_see_it() {
     );
 }
 
-/// One request or answer in fifty is lost. The host gives it up after 20 ms and asks for a marker, so nothing after it is taken for something
-/// else; were it not to, every later answer could belong to either of two requests and the sweep would seem to end there.
+/// One request or answer in fifty is lost. The host gives it up after 20 ms and asks for a marker,
+/// so nothing after it is taken for something else; were it not to, every later answer could belong
+/// to either of two requests and the sweep would seem to end there.
 #[test]
 fn lost_answers_of_the_drive_cost_samples_and_nothing_else() {
     for seed in [3, 5, 8] {

@@ -22,7 +22,8 @@ impl Columns {
         }
     }
 
-    /// Writes a value that grows from row to row, a block of every column at a time, as points come. Gives the rows.
+    /// Writes a value that grows from row to row, a block of every column at a time, as points
+    /// come. Gives the rows.
     pub fn write(&mut self) -> usize {
         self.value = black_box(self.value.wrapping_add(1));
         let rows = self.wide[0].len();

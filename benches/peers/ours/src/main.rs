@@ -1,7 +1,8 @@
 //! velomotion's side of the benchmark: `peers-ours RECORDING FOLDER`.
 //!
-//! It first puts what the others need into FOLDER (`packets.bin`, `points.bin`, `angles.csv`) and says what the recording is, in one
-//! line of JSON. Then it does what it is told, a name a line, and answers with seconds on the core and by the clock, passes and points. Left out: who runs
+//! It first puts what the others need into FOLDER (`packets.bin`, `points.bin`, `angles.csv`) and
+//! says what the recording is, in one line of JSON. Then it does what it is told, a name a line,
+//! and answers with seconds on the core and by the clock, passes and points. Left out: who runs
 //! when, and what the figures mean; `run` knows that.
 
 mod limits;

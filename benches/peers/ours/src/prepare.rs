@@ -37,7 +37,8 @@ impl Packets {
             })
     }
 
-    /// The platform goes from 0 to -45 degrees and back at 56.25 deg/s, its angle known every millisecond.
+    /// The platform goes from 0 to -45 degrees and back at 56.25 deg/s, its angle known every
+    /// millisecond.
     pub fn angles(&self) -> Vec<(f64, f64)> {
         let (from, to) = (self.hosts.iter().min(), self.hosts.iter().max());
         let seconds = (*to.expect("packets") - *from.expect("packets")).as_secs_f64();
@@ -75,7 +76,8 @@ pub fn packets(path: &Path) -> Packets {
 /// Writes the parts and describes them as a JSON object.
 ///
 /// - `packets.bin`: i64 host time in nanoseconds and 1206 bytes a packet.
-/// - `points.bin`: 40 bytes a point in order of firing: x, y, z in metres (sensor's frame; x right, y forward) and device time in
+/// - `points.bin`: 40 bytes a point in order of firing: x, y, z in metres (sensor's frame; x right,
+///   y forward) and device time in
 ///   seconds as f64, firing as u32 counted from the first, ring, reflectivity, laser, a byte of nothing.
 /// - `angles.csv`: what `replay --tilt` takes.
 pub fn prepare(packets: &Packets, folder: &Path) -> String {

@@ -1,4 +1,5 @@
-//! What is measured of velomotion, by name. A pass goes once through the recording and says how many points that made.
+//! What is measured of velomotion, by name. A pass goes once through the recording and says how
+//! many points that made.
 
 use std::hint::black_box;
 

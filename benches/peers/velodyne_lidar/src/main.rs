@@ -1,7 +1,8 @@
 //! velodyne-lidar's side of the benchmark: `peers-velodyne-lidar FOLDER RECORDING CONFIGURATION`.
 //!
-//! Does what it is told, a name a line of stdin, and answers with seconds on the core and by the clock, passes and points. Points are the returns with a distance;
-//! the crate gives a point for every channel, and never the last turn, which it keeps waiting for the next one.
+//! Does what it is told, a name a line of stdin, and answers with seconds on the core and by the
+//! clock, passes and points. Points are the returns with a distance; the crate gives a point for
+//! every channel, and never the last turn, which it keeps waiting for the next one.
 
 use std::hint::black_box;
 use std::io::{BufRead, Write};

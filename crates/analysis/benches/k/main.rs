@@ -1,4 +1,5 @@
-//! CPU seconds of the ways to the K function: `cargo bench -p velomotion-analysis --bench k [-- WHAT...]`.
+//! CPU seconds of the ways to the K function: `cargo bench -p velomotion-analysis --bench k [--
+//! WHAT...]`.
 //!
 //! What is `exact:FRAMES`, `avx2:FRAMES`, `least:FRAMES`, `two:FRAMES` (two threads),
 //! `turned:FRAMES`, `sampled:FRAMES`, `gridded:FRAMES` or `harmonics:FRAMES` (to degree 64): an

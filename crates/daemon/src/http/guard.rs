@@ -201,7 +201,8 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Trust, (Refusal, bo
     ))
 }
 
-/// Whether a page of this origin may request changes: the daemon's own at `host`, or a `listed` one.
+/// Whether a page of this origin may request changes: the daemon's own at `host`, or a `listed`
+/// one.
 fn may_change(origin: &str, host: &str, listed: &[Origin]) -> bool {
     origin.parse().is_ok_and(|origin: Origin| {
         Origin::of_host(host).as_ref() == Some(&origin) || listed.contains(&origin)

@@ -21,7 +21,8 @@ type Asset = (&'static str, &'static str, &'static [u8]);
 const HTML: &str = "text/html; charset=utf-8";
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
-/// What the page is made of (`web/build` makes it). Everything is in the binary: there may be no network.
+/// What the page is made of (`web/build` makes it). Everything is in the binary: there may be no
+/// network.
 const ASSETS: [Asset; 6] = [
     ("/", HTML, include_bytes!("../../web/dist/index.html")),
     ("/page.js", SCRIPT, include_bytes!("../../web/dist/page.js")),

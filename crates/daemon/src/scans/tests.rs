@@ -21,7 +21,8 @@ fn what_is_newest_does_not_hang_on_the_clock() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     let ids: Vec<String> = (0..4).map(|_| finished(&scans, None)).collect();
-    // The clock was years ahead when the first was made, and the battery of the clock was empty at the last.
+    // The clock was years ahead when the first was made, and the battery of the clock was empty at
+    // the last.
     let set = |id: &str, at: f64| scans.change(id, |record| record.head.started_s = at);
     set(&ids[0], 4e9).unwrap();
     set(&ids[3], 1.0).unwrap();
@@ -60,7 +61,8 @@ fn what_cannot_be_read_is_shown_and_left_as_it_is() {
     edit(&later, "\"both_ways\": false", "\"zigzag\": 3");
     // A state that this one does not know.
     let bytes = edit(&strange, "\"whole\"", "\"superb\"");
-    // A folder of somebody's: a log and a cloud that nobody made here, and what else he keeps there.
+    // A folder of somebody's: a log and a cloud that nobody made here, and what else he keeps
+    // there.
     let theirs = scans.place("hall");
     fs::create_dir(&theirs).unwrap();
     for name in [LOG, CLOUD, "hall.e57", "photo.jpg"] {

@@ -34,8 +34,8 @@ impl CaptureLog {
     /// Creates the log and records what `lidar` receives from now on.
     ///
     /// # Errors
-    /// [`Kind::Usage`] where the log exists, [`Kind::BadInput`] where it cannot be created, and where
-    /// the lidar's sockets have failed.
+    /// [`Kind::Usage`] where the log exists, [`Kind::BadInput`] where it cannot be created, and
+    /// where the lidar's sockets have failed.
     pub fn start(
         lidar: &Arc<LidarReceiver>,
         path: &Path,

@@ -1,4 +1,5 @@
-//! The drive's port, whatever it is: opened by the device's profile, and what to do where it cannot be had.
+//! The drive's port, whatever it is: opened by the device's profile, and what to do where it cannot
+//! be had.
 
 use std::path::{Path, PathBuf};
 
@@ -41,8 +42,8 @@ pub enum Looks {
     On,
 }
 
-/// What the drive of a profile is reached by: a serial port's path, or the name of a CAN interface. One that is looked for is among what is
-/// `plugged` in.
+/// What the drive of a profile is reached by: a serial port's path, or the name of a CAN interface.
+/// One that is looked for is among what is `plugged` in.
 ///
 /// # Errors
 /// [`Kind::BadInput`] where the profile names none, [`Kind::NoDevice`] where none is found.
@@ -117,7 +118,8 @@ fn found(plugged: &ConnectedDevices, looks: Looks) -> Result<PathBuf, Failure> {
     Err(Failure::new(Kind::NoDevice, message).help(help))
 }
 
-/// Opens the port of a device at `place`. The software scanner's is a USB drive on a pseudo-terminal.
+/// Opens the port of a device at `place`. The software scanner's is a USB drive on a
+/// pseudo-terminal.
 ///
 /// # Errors
 /// [`Kind::NoDevice`].
@@ -197,7 +199,8 @@ fn can_failure(place: &Path, error: &CanError) -> Failure {
     }
 }
 
-/// A CAN bus as the drive client and the log know it: a `struct can_frame` of 16 bytes a frame. Errors name the interface.
+/// A CAN bus as the drive client and the log know it: a `struct can_frame` of 16 bytes a frame.
+/// Errors name the interface.
 pub struct BusLine<C: CanPort>(pub C);
 
 impl<C: CanPort> Port for BusLine<C> {

@@ -1,9 +1,9 @@
 //! Runs the drive client over a port: bytes and the time go in, frames come out.
 //!
-//! The client is a machine without I/O; this loop is all that stands between it and a wire. Time comes from the port, so
-//! that the same loop runs against the clock and, in tests, in virtual time.
-//! Whatever ends a procedure early (Ctrl-C, a fault, a panic in whoever watches), the axis is stopped before this returns, or
-//! the error says that it could not be.
+//! The client is a machine without I/O; this loop is all that stands between it and a wire. Time
+//! comes from the port, so that the same loop runs against the clock and, in tests, in virtual
+//! time. Whatever ends a procedure early (Ctrl-C, a fault, a panic in whoever watches), the axis is
+//! stopped before this returns, or the error says that it could not be.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,7 +22,8 @@ pub enum SessionError {
     /// A stop was asked for, and the drive did not do it.
     #[error("stopped by the user, but the axis may still move: {0}")]
     NotStopped(DriveError),
-    /// The drive refused, reported a fault or did not answer. The axis has stopped unless the error says otherwise.
+    /// The drive refused, reported a fault or did not answer. The axis has stopped unless the error
+    /// says otherwise.
     #[error("{0}")]
     Drive(DriveError),
     /// The port failed. A stop was sent if the port still took it; no answer can be waited for.
@@ -60,7 +61,8 @@ pub struct Session<P: Port> {
     client: DriveClient,
     port: P,
     interrupt: Arc<AtomicBool>,
-    /// Whether a command was begun that can move or power the axis, and none has ended since that leaves it disabled.
+    /// Whether a command was begun that can move or power the axis, and none has ended since that
+    /// leaves it disabled.
     unsafe_to_leave: bool,
 }
 
@@ -72,7 +74,8 @@ const STOP_TRIES: u32 = 5;
 const LAST_RESORT: Span = Span::from_secs(1);
 
 impl<P: Port> Session<P> {
-    /// A session over `port`, whose time it keeps, that stops the axis when `interrupt` becomes true.
+    /// A session over `port`, whose time it keeps, that stops the axis when `interrupt` becomes
+    /// true.
     pub fn new(client: DriveClient, port: P, interrupt: Arc<AtomicBool>) -> Self {
         Self {
             client,
@@ -201,11 +204,13 @@ fn powers(kind: CommandKind) -> bool {
 }
 
 impl<P: Port> Drop for Session<P> {
-    /// After a panic, or an error of the port: the stop is sent all the same, and its end waited for where one can come.
+    /// After a panic, or an error of the port: the stop is sent all the same, and its end waited
+    /// for where one can come.
     fn drop(&mut self) {
         if self.unsafe_to_leave && self.client.start(DriveCommand::Stop).is_ok() {
             let until = self.port.now().saturating_add(LAST_RESORT);
-            // There is nobody left to tell; whoever dropped the session has the error that led here.
+            // There is nobody left to tell; whoever dropped the session has the error that led
+            // here.
             let _ = self.pump(&mut |_| {}, false, Some(until));
         }
     }

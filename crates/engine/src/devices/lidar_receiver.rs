@@ -1,7 +1,8 @@
-//! The lidar, heard on a thread of its own from when it is listened to until nobody wants it any more, whether or not a log is being
-//! written.
+//! The lidar, heard on a thread of its own from when it is listened to until nobody wants it any
+//! more, whether or not a log is being written.
 //!
-//! What a log gets begins and ends at turns of that thread, so that the counts belong to the log exactly. Left out: what the packets mean.
+//! What a log gets begins and ends at turns of that thread, so that the counts belong to the log
+//! exactly. Left out: what the packets mean.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Sender, channel};
@@ -17,12 +18,15 @@ use crate::devices::lidar_sockets::{DATA_PORT, LidarSockets, POSITION_PORT};
 use crate::devices::simulated::Destinations;
 use crate::failure::{Failure, Kind};
 
-/// How long packets gather while nobody records them: their times are the kernel's, and rates are looked at every second.
+/// How long packets gather while nobody records them: their times are the kernel's, and rates are
+/// looked at every second.
 const UNRECORDED: Duration = Duration::from_millis(50);
-/// A thread that has not come round after this long will not: it looks up every 50 ms, and when it is asked.
+/// A thread that has not come round after this long will not: it looks up every 50 ms, and when it
+/// is asked.
 const TURN_LIMIT: Duration = Duration::from_secs(10);
 
-/// Whoever else looks at every record of the lidar. It is on the way of the packets: it may not wait.
+/// Whoever else looks at every record of the lidar. It is on the way of the packets: it may not
+/// wait.
 pub type PacketTap = Box<dyn FnMut(&Record<'_>) + Send>;
 
 /// A lidar that is listened to. Dropped, the listening ends.
@@ -46,7 +50,8 @@ struct Requests {
     failed: Option<Failure>,
 }
 
-/// Where records go from the turn on, if that is to change, and who wants to know the counts at the turn.
+/// Where records go from the turn on, if that is to change, and who wants to know the counts at the
+/// turn.
 struct Request {
     log: Option<Option<RecorderHandle>>,
     answer: Sender<Result<ListenCounts, Failure>>,
@@ -103,7 +108,8 @@ impl LidarReceiver {
         self.ask(None)
     }
 
-    /// Gives records to `log` from now on, or to none; what was heard before, all of which went where records went until now.
+    /// Gives records to `log` from now on, or to none; what was heard before, all of which went
+    /// where records went until now.
     ///
     /// # Errors
     /// Where the sockets have failed.
@@ -198,7 +204,8 @@ fn turn(
     })
 }
 
-/// In a log the lidar's packets stand under the ports that they have by the manual, whatever the socket's was.
+/// In a log the lidar's packets stand under the ports that they have by the manual, whatever the
+/// socket's was.
 fn with_port_of_the_lidar<'a>(record: &Record<'a>, local: Destinations) -> Record<'a> {
     let mut record = *record;
     if let Wire::Lidar { port, .. } = &mut record.wire {

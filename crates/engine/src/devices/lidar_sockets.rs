@@ -35,7 +35,8 @@ impl LidarSockets {
     /// Binds the sockets.
     ///
     /// # Errors
-    /// [`Kind::NoDevice`](crate::failure::Kind::NoDevice) where another program has the ports, or the address is not this machine's.
+    /// [`Kind::NoDevice`](crate::failure::Kind::NoDevice) where another program has the ports, or
+    /// the address is not this machine's.
     pub fn bind(config: &ListenConfig) -> Result<Self, Failure> {
         let listener = LidarListener::bind(config).map_err(|error| lidar_failure(&error))?;
         let mut local = listener.sockets().iter().map(|s| s.address().port());

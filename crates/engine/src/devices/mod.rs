@@ -1,4 +1,5 @@
-//! The drive and the lidar: which ones, how they are opened, and the software devices that stand in for them.
+//! The drive and the lidar: which ones, how they are opened, and the software devices that stand in
+//! for them.
 
 pub mod drive_port;
 pub mod drive_session;

@@ -9,8 +9,8 @@ use crate::failure::{Failure, Kind};
 /// Acceleration while homing, of an axis that may take so much.
 const HOMING_ACCELERATION: RpmPerS = RpmPerS(5_000);
 
-/// The device to use and its name: `--device`, else the configuration's, else `auto`, whatever is plugged in when its port is wanted
-/// ([`ports::place`](crate::devices::drive_port::place)).
+/// The device to use and its name: `--device`, else the configuration's, else `auto`, whatever is
+/// plugged in when its port is wanted ([`ports::place`](crate::devices::drive_port::place)).
 ///
 /// # Errors
 /// [`Kind::Usage`] for a name that is not there.

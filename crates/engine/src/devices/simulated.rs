@@ -1,5 +1,5 @@
-//! The software scanner in real time: one thread that moves a [`sim::Rig`] along with the host's clock, answers on a
-//! pseudo-terminal and sends lidar packets over loopback.
+//! The software scanner in real time: one thread that moves a [`sim::Rig`] along with the host's
+//! clock, answers on a pseudo-terminal and sends lidar packets over loopback.
 
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::{Path, PathBuf};
@@ -55,8 +55,8 @@ enum SimulatorError {
 
 /// Longest nap: the drive's control cycle.
 const CYCLE: Span = Span::from_millis(1);
-/// Where the machine is too busy for the devices, their time runs slower: else they would catch up for ever longer, answer nothing meanwhile,
-/// and not see that they are to stop.
+/// Where the machine is too busy for the devices, their time runs slower: else they would catch up
+/// for ever longer, answer nothing meanwhile, and not see that they are to stop.
 const LONGEST_STEP: Span = Span::from_millis(500);
 
 impl Simulated {
@@ -171,7 +171,8 @@ fn run(
     Ok(rig.truth())
 }
 
-/// The software scanner that fits an axis: its drive, and the lidar at 10 Hz in the hall, switched on at `start`.
+/// The software scanner that fits an axis: its drive, and the lidar at 10 Hz in the hall, switched
+/// on at `start`.
 #[must_use]
 pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> RigConfig {
     RigConfig {

@@ -1,9 +1,10 @@
-//! The mechanics around the software drive: where its switches, mechanical stops and index pulses are, and where the shaft stands at
-//! power-on.
+//! The mechanics around the software drive: where its switches, mechanical stops and index pulses
+//! are, and where the shaft stands at power-on.
 //!
-//! They are placed so that homing as configured finds its reference where the configuration says that it is. What homing does not
-//! look for is there all the same, as on a real axis: a limit switch at least a degree beyond either end, a home switch in the middle
-//! (input 4, the factory's choice), mechanical stops 15 degrees behind the limit switches. Left out: friction, load, play.
+//! They are placed so that homing as configured finds its reference where the configuration says
+//! that it is. What homing does not look for is there all the same, as on a real axis: a limit
+//! switch at least a degree beyond either end, a home switch in the middle (input 4, the factory's
+//! choice), mechanical stops 15 degrees behind the limit switches. Left out: friction, load, play.
 
 use drive::AxisConfig;
 use firmware_sim::epos2::{NodeConfig, Region, Switch};
@@ -32,8 +33,8 @@ struct Places {
     start: i32,
 }
 
-/// The software drive that fits an axis: its encoder, switches and stops where homing expects them, the shaft some way below the upper
-/// limit.
+/// The software drive that fits an axis: its encoder, switches and stops where homing expects them,
+/// the shaft some way below the upper limit.
 #[must_use]
 pub fn node(axis: &AxisConfig) -> NodeConfig {
     let places = Places::of(axis);
@@ -81,11 +82,13 @@ impl Places {
         let degree = qc(DEGREE);
         let (min, max) = (qc(axis.limits.min), qc(axis.limits.max));
         let middle = qc(Degrees(0.5 * (axis.limits.min.0 + axis.limits.max.0)));
-        // HomingSettings finds its reference at its home position less the way it goes on from there.
+        // HomingSettings finds its reference at its home position less the way it goes on from
+        // there.
         let home_position = axis.homing.home_position;
         let reference = qc(Degrees(home_position.0 - axis.homing.offset.0));
         let method = axis.homing.method;
-        // Where an index pulse is the reference, what is looked for before it is half a turn of the motor farther on.
+        // Where an index pulse is the reference, what is looked for before it is half a turn of the
+        // motor farther on.
         let by_index = matches!(method, 1 | 2 | 7 | 11 | 33 | 34 | -1 | -2);
         let half_turn = i32::try_from(axis.gearing.qc_per_motor_turn() / 2).unwrap_or(0);
         let before = if by_index { half_turn } else { 0 };

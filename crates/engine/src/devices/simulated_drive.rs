@@ -1,4 +1,5 @@
-//! The software EPOS2 alone, in real time: its control cycle follows the host's clock, its frames come and go on a port.
+//! The software EPOS2 alone, in real time: its control cycle follows the host's clock, its frames
+//! come and go on a port.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -34,7 +35,8 @@ pub enum SoftwareDriveError {
 }
 
 const CYCLE: Span = Span::from_millis(1);
-/// After a pause longer than this (a suspended machine) the drive goes on from now instead of living through it.
+/// After a pause longer than this (a suspended machine) the drive goes on from now instead of
+/// living through it.
 const LONGEST_PAUSE: Span = Span::from_secs(1);
 /// Frames from the bus that are taken in one cycle: more than 1 Mbit/s carries in a millisecond.
 const FRAMES_A_CYCLE: usize = 32;

@@ -32,8 +32,8 @@ pub(super) fn angle_warnings(alignment: &Alignment) -> Vec<String> {
     warnings
 }
 
-/// Planned sweeps that are cut incomplete_sweeps or absent. Empty for a log without a plan or without any
-/// sweep.
+/// Planned sweeps that are cut incomplete_sweeps or absent. Empty for a log without a plan or
+/// without any sweep.
 pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
     let Some(plan) = config.sweep.filter(|_| !alignment.sweeps.is_empty()) else {
         return Vec::new();

@@ -76,7 +76,8 @@ impl RecordingCounts {
         count_pair(&mut self.foreign, port, size);
     }
 
-    /// RecordingCounts the completion of a datagram; its earlier fragments were counted as not reassembled.
+    /// RecordingCounts the completion of a datagram; its earlier fragments were counted as not
+    /// reassembled.
     pub(super) fn reassembled(&mut self, fragments: u64) {
         let before = fragments.saturating_sub(1);
         self.fragments = self.fragments.saturating_sub(before);

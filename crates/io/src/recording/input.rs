@@ -1,7 +1,7 @@
 //! Source of a recording: a file, a named pipe, or standard input (`-`).
 //!
-//! A pipe can be read once. For several passes [`RecordingInput`] copies it to a temporary file, up to a
-//! limit.
+//! A pipe can be read once. For several passes [`RecordingInput`] copies it to a temporary file, up
+//! to a limit.
 
 use std::fs::File;
 use std::io::{self, Read, Write};

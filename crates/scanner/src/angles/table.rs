@@ -65,8 +65,8 @@ impl AngleTable {
     /// Rows of (seconds, degrees), in strictly increasing time.
     ///
     /// # Errors
-    /// [`AngleTableError::Short`] with fewer than two rows, [`AngleTableError::Range`] for times and
-    /// angles that cannot be, [`AngleTableError::Order`] where time does not increase.
+    /// [`AngleTableError::Short`] with fewer than two rows, [`AngleTableError::Range`] for times
+    /// and angles that cannot be, [`AngleTableError::Order`] where time does not increase.
     pub fn new(rows: Vec<(f64, f64)>) -> Result<Self, AngleTableError> {
         if rows.len() < 2 {
             return Err(AngleTableError::Short { rows: rows.len() });

@@ -111,7 +111,8 @@ impl RegularisedParameters {
     }
 }
 
-/// Priors of `now` towards the command `command`. The servo's parameters are at the indexes `servo`.
+/// Priors of `now` towards the command `command`. The servo's parameters are at the indexes
+/// `servo`.
 pub(super) fn priors(
     now: &Profile,
     command: &Profile,

@@ -91,7 +91,8 @@ fn k_is_what_the_contract_says(k: &serde_json::Value) {
     assert!((number("max_abs") - area * 0.094_93).abs() < area * 1e-5);
 }
 
-/// A grid of 0.4 degrees has pairs on the edges of 150 bins, and none on those of 151: the first is warned of, in JSON and beside it.
+/// A grid of 0.4 degrees has pairs on the edges of 150 bins, and none on those of 151: the first is
+/// warned of, in JSON and beside it.
 #[test]
 fn bins_whose_edges_pairs_lie_on_are_warned_of() {
     let place = Place::new();
@@ -180,7 +181,8 @@ fn a_view_is_that_of_the_sensor_where_it_is() {
             [hole, pattern["gaps"]["of_99_percent_deg"].as_f64().unwrap()]
         })
         .collect();
-    // A level sensor's circles lie at most 2 deg apart, however high it is. Near the sphere the upper ones are farther apart, and lower ones closer.
+    // A level sensor's circles lie at most 2 deg apart, however high it is. Near the sphere the
+    // upper ones are farther apart, and lower ones closer.
     assert!((found[0][0] - 1.02).abs() < 0.01, "{found:?}");
     assert!(found[1][0] < 1.08 && found[1][1] < 1.08, "{found:?}");
     assert!(found[2][0] < 1.6 && found[2][1] < 1.6, "{found:?}");
@@ -191,7 +193,8 @@ fn a_view_is_that_of_the_sensor_where_it_is() {
     }
 }
 
-/// A log's view is that of its lidar, sweep and mount: what comes of it is what comes of its pattern. A cloud has none, and none is made up.
+/// A log's view is that of its lidar, sweep and mount: what comes of it is what comes of its
+/// pattern. A cloud has none, and none is made up.
 #[test]
 fn logs_have_a_view_and_clouds_have_none() {
     let place = Place::new();
@@ -216,7 +219,8 @@ fn logs_have_a_view_and_clouds_have_none() {
     };
     let number = |of: &serde_json::Value, path: &str| of.pointer(path).unwrap().as_f64().unwrap();
     for (path, within) in [
-        // A log begins at an azimuth of its own and has ramps; the rim that it cannot see would be a hole of 55 deg.
+        // A log begins at an azimuth of its own and has ramps; the rim that it cannot see would be
+        // a hole of 55 deg.
         ("/hole_in_view/radius_deg", 1.5),
         ("/gaps/of_99_percent_deg", 0.4),
         ("/gaps/median_deg", 0.05),
@@ -291,7 +295,8 @@ fn a_sweep_and_a_report_tell_the_same_of_a_pattern() {
     );
 }
 
-/// Where an origin is far from the cloud, as with coordinates of a country, that is said, and there is a way out.
+/// Where an origin is far from the cloud, as with coordinates of a country, that is said, and there
+/// is a way out.
 #[test]
 fn a_cloud_far_from_its_origin_is_warned_of_and_can_be_moved() {
     let place = Place::new();

@@ -1,4 +1,5 @@
-//! The program as other programs meet it: exit codes, messages, JSON, and that nothing is ever overwritten unasked.
+//! The program as other programs meet it: exit codes, messages, JSON, and that nothing is ever
+//! overwritten unasked.
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
 
 mod analyze;
@@ -89,7 +90,8 @@ fn the_version_says_which_commit_it_is() {
 fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
     let place = Place::new();
     let mut output = place.run("capture --speed 56.25 -o scan.ply --json");
-    // Software devices are silent while the machine keeps them waiting, and the capture stops as it must.
+    // Software devices are silent while the machine keeps them waiting, and the capture stops as it
+    // must.
     for _ in 0..3 {
         let said = String::from_utf8_lossy(&output.stderr);
         if output.status.code() != Some(5) || !said.contains("silence") {
@@ -105,7 +107,8 @@ fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
     assert_eq!(scan["sweeps"].as_array().unwrap().len(), 1);
     let cruise = scan["sweeps"][0]["cruise_deg_s"].as_f64().unwrap();
     assert!((cruise.abs() - 56.25).abs() < 0.5, "{scan}");
-    // In real time on a busy machine the polls may stall: then the report says so, else the cloud is true.
+    // In real time on a busy machine the polls may stall: then the report says so, else the cloud
+    // is true.
     let doubted = scan["warnings"]
         .to_string()
         .contains("angle error may reach");
@@ -134,7 +137,8 @@ fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
     assert_eq!(json(&again)["points"], scan["points"]);
     assert_eq!(std::fs::read(place.path("again.ply")).unwrap(), ply);
 
-    // The column is the last one of a line; without other errors a point is off by its range's steps at the least.
+    // The column is the last one of a line; without other errors a point is off by its range's
+    // steps at the least.
     let with_sd = place.run("replay scan.pcapng -o sd.csv --uncertainty");
     assert!(with_sd.status.success());
     let text = std::fs::read_to_string(place.path("sd.csv")).unwrap();

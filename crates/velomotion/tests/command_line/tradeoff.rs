@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// Every study in a quick look: one JSON object, the same beside the page and its figures, and nothing overwritten unasked.
+/// Every study in a quick look: one JSON object, the same beside the page and its figures, and
+/// nothing overwritten unasked.
 #[test]
 fn what_accuracy_costs_is_measured_and_shown() {
     let place = Place::new();

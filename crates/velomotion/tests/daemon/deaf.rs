@@ -1,4 +1,5 @@
-//! A cable that is out for seconds while its adapter stays plugged in: the port is there, and nothing gets through.
+//! A cable that is out for seconds while its adapter stays plugged in: the port is there, and
+//! nothing gets through.
 
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -128,7 +129,8 @@ fn an_axis_that_could_not_be_stopped_is_said_to_move_until_it_is_brought_to_rest
         "{problem}"
     );
 
-    // The cable is in again. Nobody asks for anything: the axis is brought to rest, and only then is all well.
+    // The cable is in again. Nobody asks for anything: the axis is brought to rest, and only then
+    // is all well.
     cable.cut.store(false, Ordering::Release);
     let well = drive(&rig, "connected");
     assert_eq!(well["problem"], json!(null));

@@ -9,7 +9,8 @@ use serde_json::json;
 
 use crate::rig::{Rig, sweep, wait};
 
-/// A daemon whose keeper panics once, the next time that it shows that it is alive while it does `when`, after the flag is set.
+/// A daemon whose keeper panics once, the next time that it shows that it is alive while it does
+/// `when`, after the flag is set.
 fn fragile(when: AxisTask) -> (Rig, Arc<AtomicBool>) {
     let defect = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&defect);
@@ -68,7 +69,8 @@ fn a_keeper_that_is_gone_ends_the_daemon_with_an_error() {
     wait("the keeper's end", || {
         rig.daemon().is_broken().then_some(())
     });
-    // `velomotion daemon` looks at that ten times a second, ends, and its service manager starts it again.
+    // `velomotion daemon` looks at that ten times a second, ends, and its service manager starts it
+    // again.
     let failure = rig.daemon.take().unwrap().stop(|| true).unwrap_err();
     assert_eq!(failure.kind, Kind::DeviceFault);
     assert!(failure.message.contains("panicked"), "{failure:?}");

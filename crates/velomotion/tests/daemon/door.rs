@@ -32,7 +32,8 @@ impl Deaf {
         let stream = TcpStream::connect(address).unwrap();
         stream.set_nonblocking(true).unwrap();
         let mut deaf = Self(stream);
-        // Until the buffers on the way are full of requests, whose answers are far more than those on the way back hold.
+        // Until the buffers on the way are full of requests, whose answers are far more than those
+        // on the way back hold.
         while deaf.say(path) == Some(true) {}
         deaf
     }

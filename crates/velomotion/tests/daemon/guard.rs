@@ -27,7 +27,8 @@ fn pages_of_other_sites_get_nothing() {
         "null",
         "http://127.0.0.1",
         "http://127.0.0.1:1",
-        // The same host and port, but this daemon speaks no TLS: whatever answers there is another's.
+        // The same host and port, but this daemon speaks no TLS: whatever answers there is
+        // another's.
         &format!("https://{}", rig.address),
         &format!("ws://{}", rig.address),
         &format!("http://{}/", rig.address),

@@ -88,7 +88,8 @@ fn the_book_states_the_limits() {
     }
 }
 
-/// A daemon that has a whole scan `made` with a cloud of so many bytes, and a `log` that somebody else makes.
+/// A daemon that has a whole scan `made` with a cloud of so many bytes, and a `log` that somebody
+/// else makes.
 fn with_a_scan(bytes: u64, waits: Waits, log: impl FnOnce(&Path)) -> Rig {
     Rig::with("", |options| {
         options.waits = waits;
@@ -199,7 +200,8 @@ fn there_are_no_more_clouds_being_made_at_once_than_allowed() {
     assert_eq!(rig.get(CLOUD).status, 200);
     let log = rig.folder.path().join("scans/made/log.pcapng");
     wait("an end of all of them", || {
-        // Whoever has it open, or opens it now, finds its end. Opened both ways a pipe does not wait.
+        // Whoever has it open, or opens it now, finds its end. Opened both ways a pipe does not
+        // wait.
         drop(std::fs::File::options().read(true).write(true).open(&log));
         waiting.iter().all(|one| one.is_finished()).then_some(())
     });

@@ -1,4 +1,5 @@
-//! The daemon against the simulator, on loopback: as its page, other programs and the commands meet it.
+//! The daemon against the simulator, on loopback: as its page, other programs and the commands meet
+//! it.
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
 
 mod api;

@@ -1,4 +1,5 @@
-//! A daemon in this process or in its own, a client of a few lines, and ways to wait for a condition.
+//! A daemon in this process or in its own, a client of a few lines, and ways to wait for a
+//! condition.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -80,7 +81,8 @@ impl Rig {
         self.finished(begun.json()["id"].as_str().unwrap())
     }
 
-    /// A whole scan: software devices are silent while the machine keeps them waiting, and a capture stops as it must.
+    /// A whole scan: software devices are silent while the machine keeps them waiting, and a
+    /// capture stops as it must.
     pub fn whole_scan(&self, asked: &Value) -> Value {
         for _ in 0..4 {
             let scan = self.scan(asked);
@@ -289,7 +291,8 @@ pub fn place() -> tempfile::TempDir {
     folder
 }
 
-/// Begins a sweep that lasts long enough to be interrupted, and waits until the axis moves; the scan's id.
+/// Begins a sweep that lasts long enough to be interrupted, and waits until the axis moves; the
+/// scan's id.
 pub fn sweep(address: SocketAddr) -> String {
     for _ in 0..4 {
         ready(address);

@@ -168,7 +168,8 @@ fn a_log_whose_end_never_reached_the_disk_makes_no_whole_scan() {
     let id = id.as_str().unwrap();
     let config = rig.daemon().state().service.config().clone();
     rig.daemon.take().unwrap().stop(|| true).unwrap();
-    // As a power cut leaves it while the cloud is made, on a disk that said it had the log and did not. In the folder lies more than ours.
+    // As a power cut leaves it while the cloud is made, on a disk that said it had the log and did
+    // not. In the folder lies more than ours.
     let place = rig.log(id).parent().unwrap().to_owned();
     let record = std::fs::read_to_string(place.join("scan.json")).unwrap();
     let making = record.replacen("\"whole\"", "\"making\"", 1);

@@ -1,5 +1,6 @@
-//! ROS 2 over zenoh: the daemon beside a router and subscribers of other people's (PyPI's `eclipse-zenoh`), which decode with `rosbags` and read the graph
-//! with `zenoh-ros2-sdk`. No ROS is needed.
+//! ROS 2 over zenoh: the daemon beside a router and subscribers of other people's (PyPI's
+//! `eclipse-zenoh`), which decode with `rosbags` and read the graph with `zenoh-ros2-sdk`. No ROS
+//! is needed.
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
 
 mod calls;

@@ -67,7 +67,8 @@ fn a_router_that_is_late_and_comes_back_finds_everything_again() {
     assert_eq!(mount(&router, "again")["said"], before["said"]);
 }
 
-/// A router that takes nothing is not waited for by the capture; once it takes something again, it gets what is new.
+/// A router that takes nothing is not waited for by the capture; once it takes something again, it
+/// gets what is new.
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn a_router_that_stalls_costs_the_capture_nothing() {

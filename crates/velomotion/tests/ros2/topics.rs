@@ -202,12 +202,14 @@ fn check_motion(peer: &Peer, who: &str) {
             assert!((got - wanted).abs() < 1e-12, "{transform} at {angle}");
         }
     }
-    // Who joined between the two of a pair has one more of one; the last one's transform may be on its way.
+    // Who joined between the two of a pair has one more of one; the last one's transform may be on
+    // its way.
     assert!(compared + 2 >= joints.len() && compared > 10, "{compared}");
     assert!((lowest + 45.0).abs() < 0.2, "{lowest} deg");
 }
 
-/// Numbers rise by one, from 1 where all were heard; times are those of now; the gid is that of the publisher's token.
+/// Numbers rise by one, from 1 where all were heard; times are those of now; the gid is that of the
+/// publisher's token.
 fn check_attachments(peer: &Peer, who: &str) {
     let tokens = peer.tokens();
     for (_, key) in TOPICS {
@@ -240,7 +242,8 @@ fn check_attachments(peer: &Peer, who: &str) {
     }
 }
 
-/// What was sent of the last scan is what its recording for `ros2 bag` has, but for the names of frames.
+/// What was sent of the last scan is what its recording for `ros2 bag` has, but for the names of
+/// frames.
 fn check_bytes(rig: &Rig, id: &str, peer: &Peer) {
     let recording = rig.get(&format!("/api/v1/scans/{id}/cloud?format=mcap"));
     assert_eq!(recording.status, 200, "{}", recording.text());
@@ -255,7 +258,8 @@ fn check_bytes(rig: &Rig, id: &str, peer: &Peer) {
     for (number, recorded) in last.iter().zip(&recorded) {
         let file = peer.folder.path().join(format!("near-{number}.cdr"));
         let sent = std::fs::read(file).unwrap();
-        // Encapsulation and stamp; then the frame's name, padded to four: "left/tilt_base" and "tilt_base" with their zeros.
+        // Encapsulation and stamp; then the frame's name, padded to four: "left/tilt_base" and
+        // "tilt_base" with their zeros.
         let (sent_head, sent_rest) = sent.split_at(12);
         let (head, rest) = recorded.split_at(12);
         assert_eq!(sent_head, head);

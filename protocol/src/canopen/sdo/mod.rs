@@ -1,14 +1,15 @@
 //! SDO, service data objects (CiA 301, "SDO services"): access to one entry of a node's object
 //! dictionary.
 //!
-//! The client sends an [`SdoRequest`], the node's server returns an [`SdoResponse`]. Up to four bytes
-//! travel in the first exchange (expedited transfer), more in segments of seven (segmented transfer).
-//! [`SdoTransfer`] holds the rules of one transfer, [`SdoClient`] adds time limits and stale responses.
-//! Both are state machines without I/O. Block transfer is not supported: its messages are `Unknown`,
-//! and a node aborts them with [`AbortCode::COMMAND`](crate::canopen::AbortCode::COMMAND).
+//! The client sends an [`SdoRequest`], the node's server returns an [`SdoResponse`]. Up to four
+//! bytes travel in the first exchange (expedited transfer), more in segments of seven (segmented
+//! transfer). [`SdoTransfer`] holds the rules of one transfer, [`SdoClient`] adds time limits and
+//! stale responses. Both are state machines without I/O. Block transfer is not supported: its
+//! messages are `Unknown`, and a node aborts them with
+//! [`AbortCode::COMMAND`](crate::canopen::AbortCode::COMMAND).
 //!
-//! [`SdoTransfer`] is generic over the capacity of a segment: the EPOS2 carries the same transfers over
-//! its serial links, in segments of up to 63 bytes.
+//! [`SdoTransfer`] is generic over the capacity of a segment: the EPOS2 carries the same transfers
+//! over its serial links, in segments of up to 63 bytes.
 
 mod client;
 mod data;

@@ -1,5 +1,5 @@
-//! Tests on a CAN interface of the kernel. They are ignored by default; `tests/foreign/vcan/in-vm` runs them
-//! in a virtual machine.
+//! Tests on a CAN interface of the kernel. They are ignored by default; `tests/foreign/vcan/in-vm`
+//! runs them in a virtual machine.
 
 use protocol::canopen::{CobId, ExtendedId};
 use socketcan::Frame as _;
