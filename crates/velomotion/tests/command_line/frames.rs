@@ -51,10 +51,10 @@ fn assert_frames_in_utc(path: &Path, least: usize) {
         assert!(place.run(&line).status.success());
     }
     let whole = rows(std::fs::read(place.path("whole.ply")).unwrap());
-    let turns = (0..).map_while(|i| std::fs::read(place.path(&format!("turn-{i:05}.ply"))).ok());
-    let turns: Vec<Vec<u8>> = turns.map(rows).collect();
-    assert!(turns.len() >= least, "{}", turns.len());
-    assert_eq!(turns.concat(), whole);
+    let frames = (0..).map_while(|i| std::fs::read(place.path(&format!("frame-{i:05}.ply"))).ok());
+    let frames: Vec<Vec<u8>> = frames.map(rows).collect();
+    assert!(frames.len() >= least, "{}", frames.len());
+    assert_eq!(frames.concat(), whole);
     let organised =
         format!("replay {input} --tilt none --time utc --frames 180 --organised -o o.pcd");
     assert!(place.run(&organised).status.success());

@@ -233,7 +233,7 @@ fn speeds_and_angles_that_cannot_be_are_refused_before_anything_moves() {
     place.fails(
         "capture --speed 10 --log -",
         2,
-        &["a log is a file", "--log"],
+        &["a log must be a file", "--log"],
     );
     place.fails("capture --speed 10 -o cloud.xyzzy", 2, &[".xyzzy", ".laz"]);
 }
