@@ -59,10 +59,12 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
         &interrupt,
         target,
     );
-    if let (Ok(scan), Some(capture)) = (&mut made, &by_daemon)
+    // The daemon's own scan is complete when the command ends. A daemon that is gone costs nothing.
+    if let Some(Ok(truth)) = by_daemon.as_ref().map(|capture| capture.truth(&interrupt))
+        && let Ok(scan) = &mut made
         && plan.scan.simulated
     {
-        scan.truth = capture.truth(&interrupt)?;
+        scan.truth = truth;
     }
     // A log without a sweep does not replace an older one.
     if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
