@@ -178,7 +178,9 @@ fn from_file(path: &str, tilt: &TiltSource) -> usize {
     while let Some(record) = recording.next_record().expect("a readable file") {
         survey.observe(&record);
     }
-    let alignment = survey.solve(&config, tilt, Accuracy::Best).expect("packets and angles");
+    let alignment = survey
+        .solve(&config, tilt, Accuracy::Best)
+        .expect("packets and angles");
     let mut count = Count::default();
     let mut placer = Placer::new(&alignment, Options::default(), &mut count);
     let mut recording = Recording::open(path).expect("a recording");
