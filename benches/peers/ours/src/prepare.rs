@@ -78,7 +78,7 @@ pub fn packets(path: &Path) -> Packets {
 /// - `packets.bin`: i64 host time in nanoseconds and 1206 bytes a packet.
 /// - `points.bin`: 40 bytes a point in order of firing: x, y, z in metres (sensor's frame; x right,
 ///   y forward) and device time in
-///   seconds as f64, firing as u32 counted from the first, ring, reflectivity, laser, a byte of nothing.
+///   seconds as f64, firing as u32 counted from the first, ring, reflectivity, laser, a zero byte.
 /// - `angles.csv`: what `replay --tilt` takes.
 pub fn prepare(packets: &Packets, folder: &Path) -> String {
     let mut raw = Vec::new();

@@ -238,11 +238,8 @@ fn the_log_before_a_full_disk_is_readable() {
 }
 
 #[test]
+#[ignore = "needs tshark"]
 fn wireshark_reads_logs_without_warnings() {
-    if Command::new("tshark").arg("--version").output().is_err() {
-        eprintln!("skipped: tshark is not installed");
-        return;
-    }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.pcapng");
     let config = LogConfig {
