@@ -3,7 +3,7 @@
 //! corrections.
 #![expect(clippy::unwrap_used, reason = "a test of recordings")]
 
-#[path = "../benches/common/mod.rs"]
+#[path = "../../../benches/common/mod.rs"]
 mod common;
 
 use std::sync::Arc;

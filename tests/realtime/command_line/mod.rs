@@ -1,0 +1,463 @@
+//! The program seen from other programs: exit codes, messages, JSON, and that nothing is
+//! overwritten without `--force`.
+
+mod analyze;
+mod frames;
+mod packets;
+mod tradeoff;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+struct Place(tempfile::TempDir);
+
+impl Place {
+    /// An empty directory with a configuration that names the simulator.
+    fn new() -> Self {
+        let place = Self(tempfile::tempdir().unwrap());
+        std::fs::write(place.path("velomotion.toml"), "device = \"sim\"\n").unwrap();
+        place
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn run(&self, line: &str) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_velomotion"))
+            .args(line.split_whitespace())
+            .current_dir(self.0.path())
+            .env("XDG_CONFIG_HOME", self.0.path())
+            .env_remove("RUST_LOG")
+            .output()
+            .unwrap()
+    }
+
+    /// Runs a command that must fail with `code` and print each of `words` on stderr.
+    fn fails(&self, line: &str, code: i32, words: &[&str]) {
+        let before = self.files();
+        let output = self.run(line);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{line}:\n{said}");
+        let flat = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        for word in words {
+            assert!(flat.contains(word), "{line}: no {word:?} in:\n{said}");
+        }
+        assert!(said.contains("help:"), "{line}: no next step in:\n{said}");
+        assert_eq!(self.files(), before, "{line} left files behind");
+    }
+
+    fn files(&self) -> Vec<(PathBuf, Vec<u8>)> {
+        let mut files: Vec<_> = std::fs::read_dir(self.0.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .map(|path| (path.clone(), std::fs::read(path).unwrap_or_default()))
+            .collect();
+        files.sort();
+        files
+    }
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    let text = String::from_utf8_lossy(&output.stdout);
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error} in stdout:\n{text}"))
+}
+
+#[test]
+fn the_version_says_which_commit_it_is() {
+    let place = Place::new();
+    let output = place.run("--version");
+    let said = String::from_utf8(output.stdout).unwrap();
+    let version = format!("velomotion {}", env!("CARGO_PKG_VERSION"));
+    let rest = said.trim_end().strip_prefix(&version).unwrap();
+    let commit = rest
+        .strip_prefix(" (")
+        .and_then(|rest| rest.strip_suffix(')'));
+    match commit.and_then(|commit| commit.split_once(' ')) {
+        Some((hash, day)) => assert!(
+            hash.len() >= 12
+                && hash.bytes().all(|digit| digit.is_ascii_hexdigit())
+                && day.len() == 10,
+            "{said}"
+        ),
+        // Packages without a repository.
+        None => assert_eq!(rest, ""),
+    }
+}
+
+#[test]
+fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
+    let place = Place::new();
+    let mut output = place.run("capture --speed 56.25 -o scan.ply --json");
+    // Software devices go silent while a busy machine does not schedule them, and the capture
+    // stops.
+    for _ in 0..3 {
+        let said = String::from_utf8_lossy(&output.stderr);
+        if output.status.code() != Some(5) || !said.contains("silence") {
+            break;
+        }
+        output = place.run("capture --speed 56.25 -o scan.ply --json --force");
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let scan = json(&output);
+    assert_eq!(scan["simulated"], true);
+    assert!(scan["points"].as_u64().unwrap() > 180_000, "{scan}");
+    assert_eq!(scan["sweeps"].as_array().unwrap().len(), 1);
+    let cruise = scan["sweeps"][0]["cruise_deg_s"].as_f64().unwrap();
+    assert!((cruise.abs() - 56.25).abs() < 0.5, "{scan}");
+    // On a busy machine polls may stall. Then the report has a warning; otherwise the cloud is
+    // right.
+    let doubted = scan["warnings"]
+        .to_string()
+        .contains("angle error may reach");
+    let of = |name: &str| scan["truth"][name].as_f64().unwrap();
+    assert!(
+        doubted || (of("rms_m") < 10e-3 && of("worst_m") < 0.1),
+        "{scan}"
+    );
+    assert_eq!(scan["lost_records"], 0);
+    assert_eq!(scan["tilt"]["transport"], "usb");
+    assert_eq!(scan["packets"]["malformed"], 0);
+
+    let ply = std::fs::read(place.path("scan.ply")).unwrap();
+    let header = String::from_utf8_lossy(&ply[..2_000]).into_owned();
+    assert!(header.to_lowercase().contains("simulated"), "{header}");
+    for property in ["x", "y", "z", "intensity", "ring", "time", "tilt"] {
+        assert!(header.contains(&format!(" {property}\n")), "{header}");
+    }
+
+    let again = place.run("replay scan.pcapng -o again.ply --json");
+    assert!(
+        again.status.success(),
+        "{}",
+        String::from_utf8_lossy(&again.stderr)
+    );
+    assert_eq!(json(&again)["points"], scan["points"]);
+    assert_eq!(std::fs::read(place.path("again.ply")).unwrap(), ply);
+
+    // `sd` is the last column of a row. Its least value is the range's step.
+    let with_sd = place.run("replay scan.pcapng -o sd.csv --uncertainty");
+    assert!(with_sd.status.success());
+    let text = std::fs::read_to_string(place.path("sd.csv")).unwrap();
+    let mut lines = text.lines().skip_while(|line| line.starts_with('#'));
+    assert!(lines.next().unwrap().ends_with(",tilt_deg,sd_m"));
+    let sds = lines.map(|line| line.rsplit(',').next().unwrap().parse::<f64>().unwrap());
+    let least = sds.fold(f64::INFINITY, f64::min);
+    assert!((0.000_57..0.000_8).contains(&least), "{least}");
+    std::fs::remove_file(place.path("sd.csv")).unwrap();
+
+    // The log reads as a plain lidar recording, too, and names its device.
+    let info = place.run("info scan.pcapng --json");
+    assert!(json(&info)["tilt"]["samples"].as_u64().unwrap() > 100);
+    // `-q` keeps the result.
+    let quiet = place.run("info scan.pcapng -q").stdout;
+    assert!(!quiet.is_empty() && quiet == place.run("info scan.pcapng").stdout);
+    place.fails(
+        "replay scan.pcapng -o scan.ply",
+        2,
+        &["scan.ply", "--force"],
+    );
+    place.fails(
+        "capture --speed 56.25 -o scan.ply",
+        2,
+        &["scan.ply", "--force"],
+    );
+
+    cut_off(&place);
+}
+
+/// A truncated log gives what it holds and reports where it ends.
+fn cut_off(place: &Place) {
+    let log = std::fs::read(place.path("scan.pcapng")).unwrap();
+    std::fs::write(place.path("cut.pcapng"), &log[..log.len() * 2 / 3 + 5]).unwrap();
+    let output = place.run("replay cut.pcapng --tilt none -o cut.ply --json");
+    assert_eq!(output.status.code(), Some(6));
+    assert!(json(&output)["truncated"].is_string());
+    assert!(json(&output)["points"].as_u64().unwrap() > 100_000);
+}
+
+#[test]
+fn ctrl_c_in_mid_sweep_saves_what_there_is_and_exits_130() {
+    let place = Place::new();
+    let mut capture = Command::new(env!("CARGO_BIN_EXE_velomotion"))
+        .args("capture --speed 5 -o scan.ply -vv".split(' '))
+        .current_dir(place.0.path())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Homing is not a profile move: the first profile move is the sweep.
+    let mut said = std::io::BufReader::new(capture.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("Moving(") {
+        line.clear();
+        assert!(
+            std::io::BufRead::read_line(&mut said, &mut line).unwrap() > 0,
+            "no motion"
+        );
+    }
+    let rest = std::thread::spawn(move || {
+        let mut text = String::new();
+        std::io::Read::read_to_string(&mut said, &mut text).map(|_| text)
+    });
+    let kill = Command::new("kill")
+        .args(["-INT", &capture.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    assert_eq!(capture.wait().unwrap().code(), Some(130));
+    let said = rest.join().unwrap().unwrap();
+    assert!(said.contains("stopped by the user"), "{said}");
+    assert!(place.path("scan.pcapng").is_file(), "the log is gone");
+}
+
+#[test]
+fn speeds_and_angles_that_cannot_be_are_refused_before_anything_moves() {
+    let place = Place::new();
+    place.fails("capture --speed 0", 2, &["speed 0 deg/s", "1 rpm"]);
+    place.fails("capture --speed -5", 2, &["speed"]);
+    place.fails("capture --speed nan", 2, &["speed"]);
+    place.fails("capture --speed 0.001", 2, &["rpm"]);
+    place.fails("capture --speed 100", 2, &["100", "98"]);
+    place.fails("capture --speed 10 --to -60", 2, &["-60", "-45"]);
+    place.fails("capture --speed 10 --from 5", 2, &["5 deg", "-45"]);
+    place.fails("capture --speed 10 --from -10 --to -10", 2, &["-10"]);
+    place.fails("capture --speed 10 --accel 0", 2, &["accel"]);
+    place.fails(
+        "capture --speed 10 -o a.ply --log a.ply",
+        2,
+        &["recording a.ply"],
+    );
+    place.fails("capture --speed 10 -o - --json", 2, &["stdout"]);
+    place.fails(
+        "capture --speed 10 --log -",
+        2,
+        &["a log must be a file", "--log"],
+    );
+    place.fails("capture --speed 10 -o cloud.xyzzy", 2, &[".xyzzy", ".laz"]);
+}
+
+#[test]
+fn devices_that_are_not_there_are_named() {
+    let place = Place::new();
+    place.fails(
+        "capture --speed 10 --device nowhere",
+        2,
+        &["nowhere", "sim"],
+    );
+    let bench =
+        "[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\nport = '/dev/nothing-here'\n";
+    std::fs::write(place.path("bench.toml"), bench).unwrap();
+    place.fails(
+        "capture --speed 10 --config bench.toml",
+        4,
+        &["/dev/nothing-here"],
+    );
+    place.fails("capture --speed 10 --config none.toml", 3, &["none.toml"]);
+    std::fs::write(place.path("typo.toml"), "[axis]\nmin_degg = 1\n").unwrap();
+    place.fails(
+        "capture --speed 10 --config typo.toml",
+        3,
+        &["min_degg", "line 2"],
+    );
+}
+
+#[test]
+fn files_that_are_no_recordings_are_refused() {
+    let place = Place::new();
+    std::fs::write(place.path("empty.pcap"), b"").unwrap();
+    std::fs::write(
+        place.path("text.pcap"),
+        b"this is no recording at all, but it is long enough",
+    )
+    .unwrap();
+    std::fs::write(place.path("other.pcap"), ping()).unwrap();
+    for verb in ["info", "replay --tilt none"] {
+        place.fails(&format!("{verb} missing.pcap"), 3, &["missing.pcap"]);
+        place.fails(&format!("{verb} empty.pcap"), 3, &["empty"]);
+        place.fails(&format!("{verb} text.pcap"), 3, &["pcap"]);
+    }
+    place.fails("replay --tilt none other.pcap", 3, &["no lidar"]);
+    place.fails("info .", 3, &["name one recording in it"]);
+    place.fails("replay --tilt missing.csv other.pcap", 3, &["missing.csv"]);
+}
+
+/// A classic pcap with one Ethernet frame of another protocol (ARP).
+fn ping() -> Vec<u8> {
+    let mut file = vec![0xD4, 0xC3, 0xB2, 0xA1, 2, 0, 4, 0];
+    file.extend([0; 8]);
+    file.extend(65_535u32.to_le_bytes());
+    file.extend(1u32.to_le_bytes());
+    let mut frame = vec![0xFF; 12];
+    frame.extend([0x08, 0x06]);
+    frame.extend([0; 46]);
+    file.extend(1_600_000_000u32.to_le_bytes());
+    file.extend([0; 4]);
+    file.extend((frame.len() as u32).to_le_bytes());
+    file.extend((frame.len() as u32).to_le_bytes());
+    file.extend(frame);
+    file
+}
+
+/// A cut of a real recording.
+fn recording(name: &str) -> PathBuf {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/recordings");
+    Path::new(folder).join(name).canonicalize().unwrap()
+}
+
+/// A whole recording; the repository holds a cut of it.
+fn whole_recording(name: &str) -> PathBuf {
+    let folder = std::env::var_os("VELOMOTION_RECORDINGS").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings"),
+        PathBuf::from,
+    );
+    folder.join(name).canonicalize().unwrap()
+}
+
+#[test]
+fn a_recording_for_ros_is_a_bag_and_leaves_the_metadata_of_another_alone() {
+    let path = recording("vlp16-strongest-gps.pcap");
+    let place = Place::new();
+    let line = |options: &str| format!("replay {} --tilt none {options}", path.display());
+    let metadata = || std::fs::read_to_string(place.path("metadata.yaml")).unwrap();
+    assert!(place.run(&line("-o scan.mcap")).status.success());
+    let first = metadata();
+    assert!(first.contains("- \"scan.mcap\"\n"), "{first}");
+    let words = &["scan.mcap", "--force"];
+    place.fails(&line("-o scan.mcap"), 2, words);
+    std::fs::write(place.path("metadata.yaml"), "files:\n  - scan.mcap\n").unwrap();
+    assert!(place.run(&line("-o scan.mcap --force")).status.success());
+    assert_eq!(metadata(), first);
+    let output = place.run(&line("-o an.mcap"));
+    assert!(output.status.success() && place.path("an.mcap").is_file());
+    assert_eq!(metadata(), first);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("belongs to another recording"), "{said}");
+}
+
+#[test]
+fn a_real_recording_becomes_a_cloud() {
+    let path = recording("vlp16-strongest-gps.pcap");
+    let place = Place::new();
+    let line = format!("replay {} --tilt none -o cloud.csv --json", path.display());
+    let output = place.run(&line);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let scan = json(&output);
+    assert_eq!(scan["points"], 7_747);
+    assert_eq!(scan["packets"]["data"], 26);
+    assert_eq!(scan["packets"]["position"], 5);
+    assert_eq!(scan["lost_packets"], 0);
+    assert_eq!(scan["simulated"], false);
+    // A plain recording has no tilt: an error, not a guess.
+    place.fails(
+        &format!("replay {}", path.display()),
+        3,
+        &["no tilt", "--tilt none"],
+    );
+}
+
+#[test]
+fn another_rigs_angles_can_be_attached() {
+    let path = recording("vlp16-strongest-gps.pcap");
+    let place = Place::new();
+    std::fs::write(
+        place.path("angles.csv"),
+        "time_s,angle_deg\n0.0,-10\n0.02,-20\n",
+    )
+    .unwrap();
+    let line = format!(
+        "replay {} --tilt angles.csv -o cloud.ply --json",
+        path.display()
+    );
+    let output = place.run(&line);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let scan = json(&output);
+    let points = scan["points"].as_u64().unwrap();
+    let left_out = scan["left_out"].as_u64().unwrap();
+    // The table covers 0.02 s of 0.0345 s: only points within it are placed.
+    assert_eq!(points + left_out, 7_747);
+    assert!((3_500..5_500).contains(&points), "{points}");
+    std::fs::write(
+        place.path("late.csv"),
+        "time_s,angle_deg\n2e9,-10\n2.1e9,-20\n",
+    )
+    .unwrap();
+    place.fails(
+        &format!("replay {} --tilt late.csv", path.display()),
+        3,
+        &["do not overlap"],
+    );
+    std::fs::write(place.path("bad.csv"), "time_s,angle_deg\n0.0,x\n").unwrap();
+    place.fails(
+        &format!("replay {} --tilt bad.csv", path.display()),
+        3,
+        &["bad.csv", "line 2"],
+    );
+}
+
+#[test]
+fn simulate_makes_a_log_that_replay_reads_and_says_what_is_wrong_where() {
+    let place = Place::new();
+    place.fails("simulate castle", 3, &["scene castle", "hall"]);
+    let scene = "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.05\n";
+    std::fs::write(
+        place.path("wrong.toml"),
+        format!("{scene}[effects]\nrange_nois = 1\n"),
+    )
+    .unwrap();
+    place.fails(
+        "simulate wrong.toml",
+        3,
+        &["wrong.toml, line 6", "range_nois"],
+    );
+    std::fs::write(place.path("stand.toml"), scene).unwrap();
+    place.fails("simulate stand.toml --truth t.xyz", 2, &["t.xyz", ".ply"]);
+    place.fails("simulate stand.toml --truth - --json", 2, &["stdout"]);
+    place.fails("simulate stand.toml -o -", 2, &["file", ".pcapng"]);
+    let output = place.run("simulate stand.toml --truth t.csv --json --threads 2");
+    assert!(output.status.success(), "{output:?}");
+    let said = json(&output);
+    assert_eq!(said["packets"], 37);
+    assert_eq!(said["share_returned"], 1.0);
+    assert_eq!(said["effects"].as_array().unwrap().len(), 0);
+    assert_eq!(said["log"], "stand.pcapng");
+    let truth = std::fs::read_to_string(place.path("t.csv")).unwrap();
+    assert!(truth.contains("SIMULATED"), "{:?}", truth.lines().next());
+    let rows = truth.lines().filter(|line| !line.starts_with('#')).count() - 1;
+    assert_eq!(said["returned"].as_u64(), Some(rows as u64));
+    place.fails("simulate stand.toml", 2, &["exists"]);
+    let over = "simulate stand.toml -o stand.toml --force";
+    place.fails(over, 2, &["stand.toml", "overwrite its input"]);
+    // The lidar alone, for programs that read one link type per file.
+    let output = place.run("simulate rig -o rig.pcap --json");
+    let (made, told) = (json(&output), json(&place.run("info rig.pcap --json")));
+    assert_eq!(told["packets"]["data"], made["packets"]);
+    assert_eq!(
+        (&told["packets"]["other"], &told["returns"]),
+        (&0.into(), &made["returns"])
+    );
+    let asks = format!("{scene}[effects.tilt_limits]\nfrom_deg = -45.0\nto_deg = 45.0\n");
+    std::fs::write(place.path("asks.toml"), asks).unwrap();
+    let output = place.run("simulate asks.toml --explain --json");
+    let told = &json(&output)["explanation"]["on"][0];
+    assert_eq!(told["effect"], "tilt_limits");
+    assert_eq!((&told["line"], &told["acted"]), (&5.into(), &0.into()));
+    assert!(told["not_needed"].as_str().unwrap().contains("stops"));
+    let output = place.run("simulate asks.toml --without all --force --json");
+    assert_eq!(json(&output)["effects"].as_array().unwrap().len(), 0);
+    let output = place.run("simulate asks.toml --without weather,loss --force --json");
+    assert_eq!(json(&output)["effects"].as_array().unwrap().len(), 1);
+    let unknown = place.run("simulate asks.toml --without fog");
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&unknown.stderr).contains("weather"));
+    let output = place.run("replay stand.pcapng --tilt none -o s.ply --json");
+    assert_eq!(json(&output)["points"].as_u64(), Some(rows as u64));
+    assert_eq!(json(&output)["simulated"], true);
+}

@@ -1,0 +1,105 @@
+//! `velomotion tradeoff`.
+
+use super::*;
+
+/// A quick run of every study gives one JSON object, the same on stdout and in the report, and
+/// overwrites nothing.
+#[test]
+fn what_accuracy_costs_is_measured_and_shown() {
+    let place = Place::new();
+    let output = place.run("tradeoff --quick --json --report out --markdown book");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let report = json(&output);
+    assert_eq!(
+        (&report["schema"], &report["effort"]),
+        (&1.into(), &"quick".into())
+    );
+    for key in ["cpu", "cores", "os", "build"] {
+        assert!(!report["machine"][key].is_null(), "{key}");
+    }
+    let studies = report["studies"].as_array().unwrap();
+    let names: Vec<&str> = studies
+        .iter()
+        .map(|s| s["name"].as_str().unwrap())
+        .collect();
+    for name in ["trajectory", "k-function", "scan-speed"] {
+        assert!(names.contains(&name), "{names:?}");
+    }
+    for study in studies {
+        study_is_whole(study);
+        assert!(said.contains(study["title"].as_str().unwrap()), "{said}");
+    }
+    let file = |name: &str| std::fs::read_to_string(place.path(name)).unwrap();
+    assert_eq!(
+        serde_json::from_str::<serde_json::Value>(&file("out/tradeoff.json")).unwrap(),
+        report
+    );
+    let (html, page) = (file("out/index.html"), file("book/tradeoff.md"));
+    for name in names {
+        let figure = file(&format!("out/{name}.svg"));
+        assert!(
+            figure.starts_with("<svg") && html.contains(&figure),
+            "{name}"
+        );
+        assert_eq!(file(&format!("book/tradeoff/{name}.svg")), figure);
+        assert!(page.contains(&format!("(tradeoff/{name}.svg)")), "{name}");
+    }
+    place.fails(
+        "tradeoff --quick --report out",
+        2,
+        &["index.html", "--force"],
+    );
+    place.fails("tradeoff --only nonsense", 2, &["nonsense", "scan-speed"]);
+
+    // Computed values repeat, and the text fits a terminal.
+    let again = place.run("tradeoff --quick --only scan-speed,trajectory --json");
+    let again = json(&again);
+    assert_eq!(Some(&again["studies"][1]), studies.last());
+    assert_eq!(again["studies"].as_array().unwrap().len(), 2);
+    let text = place.run("tradeoff --quick --only scan-speed");
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(
+        text.contains("56.25 deg/s") && text.contains("A quick look"),
+        "{text}"
+    );
+    assert!(
+        text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
+}
+
+/// Checks that every row has every column, that spreads are ordered, and that fronts name rows.
+fn study_is_whole(study: &serde_json::Value) {
+    let rows = study["rows"].as_array().unwrap();
+    let columns = study["columns"].as_array().unwrap();
+    assert!(rows.len() > 3 && columns.len() > 1, "{study}");
+    for row in rows {
+        let values = row["values"].as_object().unwrap();
+        assert_eq!(values.len(), columns.len(), "{row}");
+        for column in columns {
+            let value = &values[column["key"].as_str().unwrap()];
+            let of = |name: &str| value[name].as_f64().unwrap();
+            if value.is_object() {
+                assert!(
+                    0.0 < of("min") && of("min") <= of("median") && of("median") <= of("max"),
+                    "{row}"
+                );
+                assert!(value["runs"].as_u64().unwrap() > 1, "{row}");
+            } else {
+                // An unknown bound is null.
+                assert!(value.is_null() || value.as_f64().unwrap() >= 0.0, "{row}");
+            }
+        }
+    }
+    for trade in study["trades"].as_array().unwrap() {
+        let front = trade["front"].as_array().unwrap();
+        assert!(!front.is_empty(), "{trade}");
+        assert!(
+            front
+                .iter()
+                .all(|name| rows.iter().any(|row| row["name"] == *name)),
+            "{trade}"
+        );
+    }
+}

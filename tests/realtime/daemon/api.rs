@@ -1,0 +1,266 @@
+//! Requests and their answers.
+
+use serde_json::{Value, json};
+
+use super::rig::{Rig, kept_waiting, post, request};
+
+/// Bodies of invalid captures.
+fn impossible() -> Vec<Value> {
+    vec![
+        json!({}),
+        json!([]),
+        json!("fast"),
+        json!(null),
+        json!({"speed_deg_s": 0.0}),
+        json!({"speed_deg_s": -5.0}),
+        json!({"speed_deg_s": 1e300}),
+        json!({"speed_deg_s": 100.0}),
+        json!({"speed_deg_s": "10"}),
+        json!({"speed_deg_s": 10.0, "to_deg": -60.0}),
+        json!({"speed_deg_s": 10.0, "from_deg": 5.0}),
+        json!({"speed_deg_s": 10.0, "from_deg": -10.0, "to_deg": -10.0}),
+        json!({"speed_deg_s": 10.0, "accel_deg_s2": 0.0}),
+        json!({"speed_deg_s": 10.0, "sweeps": 0}),
+        json!({"speed_deg_s": 10.0, "sweeps": 10_001}),
+        json!({"speed_deg_s": 10.0, "sweeps": -1}),
+        json!({"speed_deg_s": 10.0, "sweeps": 1.5}),
+        json!({"speed_deg_s": 10.0, "tolerance": "some"}),
+        json!({"speed_deg_s": 10.0, "name": "../../etc"}),
+        json!({"speed_deg_s": 10.0, "name": ""}),
+        json!({"speed_deg_s": 10.0, "speed": 10.0}),
+    ]
+}
+
+#[test]
+fn what_cannot_be_is_refused_and_nothing_moves() {
+    let rig = Rig::new();
+    rig.ready();
+    for body in impossible() {
+        let what = body.to_string();
+        rig.post("/api/v1/captures", &body).refused(400, &what);
+    }
+    for body in [
+        json!({}),
+        json!({"to_deg": 10.0}),
+        json!({"to_deg": -60.0}),
+        json!({"to_deg": -10.0, "speed_deg_s": 1e9}),
+        json!({"to_deg": -10.0, "accel_deg_s2": -1.0}),
+        json!({"to_deg": null}),
+        json!({"to_deg": -10.0, "now": true}),
+    ] {
+        rig.post("/api/v1/tilt/goto", &body)
+            .refused(400, &body.to_string());
+    }
+    for path in [
+        "/api/v1/plan",
+        "/api/v1/plan?speed_deg_s=x",
+        "/api/v1/plan?speed_deg_s=10&speed_deg_s=11",
+        "/api/v1/plan?speed_deg_s=NaN",
+        "/api/v1/plan?speed_deg_s=10&name=a/b",
+        "/api/v1/events",
+        "/api/v1/events?points=perhaps",
+        "/api/v1/events?thin=0",
+        "/api/v1/events?thin=100000",
+    ] {
+        rig.get(path).refused(400, path);
+    }
+    for path in [
+        "/api/v1/scans/none",
+        "/api/v1/scans/none/log",
+        "/api/v1/scans/none/cloud",
+        "/api/v1/scans/none/thumbnail",
+        "/api/v1/scans/..%2f..%2fetc%2fpasswd",
+        "/api/v1/scans/%00",
+        "/api/v2/status",
+        "/nothing",
+        "/../../etc/passwd",
+    ] {
+        rig.get(path).refused(404, path);
+    }
+    for (method, path) in [
+        ("PUT", "/api/v1/captures"),
+        ("GET", "/api/v1/captures"),
+        ("POST", "/api/v1/status"),
+        ("DELETE", "/api/v1/scans"),
+        ("PATCH", "/api/v1/scans/none"),
+        ("POST", "/"),
+    ] {
+        let answer = request(rig.address, method, path, "", "");
+        answer.refused(405, path);
+        assert!(
+            answer.head.to_lowercase().contains("\nallow:"),
+            "{}",
+            answer.head
+        );
+    }
+    let text = "content-type: text/plain\r\n";
+    request(
+        rig.address,
+        "POST",
+        "/api/v1/captures",
+        text,
+        "{\"speed_deg_s\": 10}",
+    )
+    .refused(415, "text");
+    let json_type = "content-type: application/json\r\n";
+    request(
+        rig.address,
+        "POST",
+        "/api/v1/captures",
+        json_type,
+        "{\"speed",
+    )
+    .refused(400, "half a body");
+    // Nothing has moved: the axis has no reference yet.
+    let status = rig.status();
+    assert_eq!(status["activity"]["doing"], "idle");
+    assert_eq!(status["drive"]["referenced"], false);
+    assert_eq!(rig.get("/api/v1/scans").json()["scans"], json!([]));
+}
+
+#[test]
+fn a_plan_says_what_a_capture_would_be() {
+    let rig = Rig::new();
+    rig.ready();
+    let plan = rig.get("/api/v1/plan?speed_deg_s=56.25&accel_deg_s2=500&sweeps=2&both_ways=true");
+    let plan = plan.json();
+    assert_eq!(plan["motor_rpm"], 1125);
+    let near = |key: &str, wanted: f64, within: f64| {
+        let got = plan[key].as_f64().unwrap();
+        assert!((got - wanted).abs() < within, "{key}: {got}, not {wanted}");
+    };
+    near("cruise_deg_s", 56.25, 1e-9);
+    near("sweep_s", 0.8 + 56.25 / 500.0, 1e-3);
+    near("moves_s", 2.0 * (0.8 + 56.25 / 500.0), 1e-3);
+    // 10 revolutions per second.
+    near("step_deg", 5.625, 0.05);
+    // The paper's value: 75 deg shared by 16 lasers in 8 revolutions.
+    near("resolution_deg", 0.586, 0.005);
+    assert_eq!(rig.get("/api/v1/plan?speed_deg_s=1").status, 200);
+}
+
+#[test]
+fn the_way_home_before_a_scan_is_planned_and_seen() {
+    let rig = Rig::new();
+    rig.ready();
+    let plan = || rig.get("/api/v1/plan?speed_deg_s=56.25").json();
+    assert_eq!(
+        plan()["homing_s"],
+        json!(null),
+        "nobody knows where the axis is"
+    );
+    let mut seen: Vec<f64> = Vec::new();
+    // Software devices go silent while a busy machine does not schedule them.
+    for _ in 0..4 {
+        rig.ready();
+        for (path, body) in [
+            ("home", json!({})),
+            ("goto", json!({"to_deg": -30.0, "speed_deg_s": 50.0})),
+        ] {
+            let moved = rig.post(&format!("/api/v1/tilt/{path}"), &body);
+            assert!(
+                moved.status == 200 || kept_waiting(&moved.text()),
+                "{}",
+                moved.text()
+            );
+        }
+        let homing_s = plan()["homing_s"].as_f64().unwrap();
+        let begun = rig.post("/api/v1/captures", &json!({"speed_deg_s": 56.25}));
+        assert_eq!(begun.status, 201, "{}", begun.text());
+        // Status reports angles while the axis homes.
+        seen.clear();
+        super::rig::wait("the sweep", || {
+            let status = rig.status();
+            let (activity, drive) = (&status["activity"], &status["drive"]);
+            if activity["homes"] == true
+                && let Some(angle) = drive["angle_deg"].as_f64()
+            {
+                seen.push(angle);
+            }
+            (activity["step"].as_u64() > Some(0) || activity["doing"] == "idle").then_some(())
+        });
+        rig.post("/api/v1/captures/stop", &json!({}));
+        rig.finished(begun.json()["id"].as_str().unwrap());
+        let ways = |from: f64, to: f64| seen.iter().any(|angle| (from..to).contains(angle));
+        // 30 deg at 10 deg/s.
+        if (homing_s - 3.0).abs() < 0.01 && ways(-28.0, -20.0) && ways(-15.0, -5.0) {
+            return;
+        }
+    }
+    panic!("{seen:?}");
+}
+
+#[test]
+fn the_axis_is_moved_by_hand() {
+    let rig = Rig::new();
+    rig.ready();
+    let home = rig.post("/api/v1/tilt/home", &json!({}));
+    assert_eq!(home.status, 200, "{}", home.text());
+    assert_eq!(home.json()["referenced"], true);
+    let there = rig.post(
+        "/api/v1/tilt/goto",
+        &json!({"to_deg": -5.0, "speed_deg_s": 50.0}),
+    );
+    assert_eq!(there.status, 200, "{}", there.text());
+    let angle = rig.get("/api/v1/tilt").json()["angle_deg"]
+        .as_f64()
+        .unwrap();
+    assert!((angle + 5.0).abs() < 0.01, "{angle}");
+    let stopped = rig.post("/api/v1/tilt/stop", &json!({}));
+    assert_eq!(stopped.status, 200, "{}", stopped.text());
+    assert_eq!(rig.post("/api/v1/tilt/clear", &json!({})).status, 200);
+    assert_eq!(rig.status()["simulated"], true);
+}
+
+#[test]
+fn one_motion_at_a_time_and_a_stop_takes_over() {
+    let rig = Rig::new();
+    rig.ready();
+    let address = rig.address;
+    let long = std::thread::spawn(move || post(address, "/api/v1/tilt/home", &json!({})));
+    super::rig::wait("homing", || {
+        (rig.status()["activity"]["doing"] == "homing").then_some(())
+    });
+    let busy = rig.post("/api/v1/captures", &json!({"speed_deg_s": 10.0}));
+    assert_eq!(busy.refused(409, "busy").json()["kind"], "busy");
+    rig.post("/api/v1/tilt/goto", &json!({"to_deg": -5.0}))
+        .refused(409, "busy");
+    assert_eq!(rig.post("/api/v1/tilt/stop", &json!({})).status, 200);
+    assert_eq!(rig.status()["activity"]["doing"], "idle");
+    let answer = long.join().unwrap();
+    assert_eq!(answer.refused(409, "stopped").json()["kind"], "interrupted");
+}
+
+#[test]
+fn figures_for_prometheus_and_the_page_are_there() {
+    let rig = Rig::new();
+    rig.ready();
+    let metrics = rig.get("/metrics");
+    assert_eq!(metrics.status, 200);
+    let text = metrics.text();
+    for line in [
+        "velomotion_drive_connected 1",
+        "velomotion_lidar_connected 1",
+        "velomotion_captures_total 0",
+        "# EOF",
+    ] {
+        assert!(text.contains(line), "no {line} in\n{text}");
+    }
+    let page = rig.get("/");
+    assert!(page.text().contains("<!doctype html>"));
+    assert!(page.head.to_lowercase().contains("content-security-policy"));
+    let described = rig.get("/api/v1/openapi.json").json();
+    assert_eq!(described["openapi"], "3.1.0");
+    // The schema describes every key of the answer.
+    let status = rig.status();
+    let wanted = &described["components"]["schemas"]["Status"]["properties"];
+    for part in ["activity", "drive", "lidar", "axis", "disk", "clients"] {
+        let keys =
+            |value: &Value| -> Vec<String> { value.as_object().unwrap().keys().cloned().collect() };
+        assert_eq!(
+            keys(&status[part]),
+            keys(&wanted[part]["properties"]),
+            "{part}"
+        );
+    }
+}

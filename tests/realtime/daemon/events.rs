@@ -1,0 +1,149 @@
+//! Live events: every subscriber gets every event, and slow ones are disconnected.
+
+use std::net::{SocketAddr, TcpStream};
+use std::time::Duration;
+
+use engine::service::events::MessageLevel;
+use serde_json::{Value, json};
+use tungstenite::{Message, WebSocket};
+
+use super::rig::{Rig, wait};
+
+/// Opens a WebSocket with this query.
+pub fn connect(address: SocketAddr, query: &str) -> Result<WebSocket<TcpStream>, String> {
+    let stream = TcpStream::connect(address).unwrap();
+    stream
+        .set_read_timeout(Some(Duration::from_secs(60)))
+        .unwrap();
+    let url = format!("ws://{address}/api/v1/events{query}");
+    tungstenite::client(url, stream)
+        .map(|(socket, _)| socket)
+        .map_err(|error| error.to_string())
+}
+
+/// What one client received until the end of scan `id`.
+#[derive(Debug, Default, PartialEq)]
+struct Heard {
+    frames: Vec<u32>,
+    points: u64,
+    motions: usize,
+    states: Vec<String>,
+    angles_fall: bool,
+}
+
+fn listen(mut socket: WebSocket<TcpStream>) -> Heard {
+    let mut heard = Heard::default();
+    let mut angles = Vec::new();
+    loop {
+        match socket.read().unwrap() {
+            Message::Binary(bytes) => {
+                let u32_at = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+                let count = u32_at(4) as usize;
+                assert_eq!(&bytes[..4], b"VMP1");
+                assert_eq!(bytes.len(), 32 + 22 * count);
+                assert_eq!(u32_at(20), 0, "the live view left records out");
+                heard.frames.push(u32_at(16));
+                heard.points += count as u64;
+            }
+            Message::Text(text) => {
+                let event: Value = serde_json::from_str(&text).unwrap();
+                match event["type"].as_str().unwrap() {
+                    "motion" => {
+                        heard.motions += 1;
+                        angles.push(event["angle_deg"].as_f64().unwrap());
+                    }
+                    "scan" => {
+                        let state = event["scan"]["state"].as_str().unwrap().to_owned();
+                        let over = ["whole", "partial", "failed"].contains(&state.as_str());
+                        heard.states.push(state);
+                        if over {
+                            heard.angles_fall = angles.last() < angles.first();
+                            return heard;
+                        }
+                    }
+                    "status" => assert!(event["status"]["activity"]["doing"].is_string()),
+                    other => assert_eq!(other, "message"),
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn eight_clients_during_a_sweep_hear_the_same_and_the_capture_loses_nothing() {
+    let rig = Rig::new();
+    for attempt in 1.. {
+        rig.ready();
+        let clients: Vec<_> = (0..8)
+            .map(|_| {
+                let socket = connect(rig.address, "").unwrap();
+                std::thread::spawn(move || listen(socket))
+            })
+            .collect();
+        let thinned = connect(rig.address, "?thin=10").unwrap();
+        let thinned = std::thread::spawn(move || listen(thinned));
+        wait("all nine", || {
+            (rig.daemon().state().events().clients() == 9).then_some(())
+        });
+        let scan = rig.scan(&json!({"speed_deg_s": 56.25}));
+        let heard: Vec<Heard> = clients.into_iter().map(|c| c.join().unwrap()).collect();
+        let thinned = thinned.join().unwrap();
+        if scan["state"] != "whole" && attempt < 4 {
+            // The software drive went silent on a busy machine.
+            assert!(super::rig::kept_waiting(&scan["why"].to_string()), "{scan}");
+            continue;
+        }
+        assert_eq!(scan["state"], "whole", "{scan}");
+        assert_eq!(scan["lost_records"], 0);
+        assert_eq!(scan["reception"]["dropped_by_kernel"], 0);
+        let points = scan["points"].as_u64().unwrap();
+        for one in &heard {
+            assert_eq!(one.states, ["recording", "making", "whole"]);
+            assert!(one.motions > 3 && one.angles_fall, "{one:?}");
+            let numbers: Vec<u32> = (0..one.frames.len() as u32).collect();
+            assert_eq!(one.frames, numbers, "frames in order, none missing");
+            assert_eq!(one.points, heard[0].points);
+            assert!(
+                one.points.abs_diff(points) < points / 50,
+                "{} of {points}",
+                one.points
+            );
+        }
+        assert_eq!(thinned.frames, heard[0].frames);
+        assert!((heard[0].points / 10..heard[0].points / 9).contains(&thinned.points));
+        assert_eq!(rig.status()["clients"]["dropped"], 0);
+        return;
+    }
+}
+
+#[test]
+fn who_stops_reading_is_dropped() {
+    let rig = Rig::new();
+    let mut idle = connect(rig.address, "").unwrap();
+    let events = rig.daemon().state().events();
+    wait("it is there", || (events.clients() == 1).then_some(()));
+    // More than the sockets' buffers hold. The sender never waits: the daemon notices the lag while
+    // it sends.
+    let long = "x".repeat(100_000);
+    let mut told = 0;
+    wait("the client is disconnected", || {
+        for _ in 0..100 {
+            events.message(MessageLevel::Info, long.clone(), None);
+            told += 1;
+        }
+        (events.disconnected() == 1).then_some(())
+    });
+    wait("its place is free", || {
+        (events.clients() == 0).then_some(())
+    });
+    // The client meets the end once it reads again.
+    let mut read = 0;
+    while idle.read().is_ok() {
+        read += 1;
+    }
+    assert!(read < told, "{read} of {told}");
+    assert_eq!(rig.status()["clients"]["dropped"], 1);
+    // Other clients are served.
+    assert!(connect(rig.address, "").unwrap().read().unwrap().is_text());
+}

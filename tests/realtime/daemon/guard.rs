@@ -1,0 +1,156 @@
+//! Origins, hosts and tokens.
+
+use std::net::SocketAddr;
+
+use super::rig::{Answer, Rig, request, run, said};
+
+const TOKEN: &str = "0123456789abcdef-secret";
+
+fn capture(address: SocketAddr, headers: &str) -> Answer {
+    let headers = format!("content-type: application/json\r\n{headers}");
+    request(address, "POST", "/api/v1/captures", &headers, "{}")
+}
+
+fn status(address: SocketAddr, headers: &str) -> Answer {
+    request(address, "GET", "/api/v1/status", headers, "")
+}
+
+#[test]
+fn pages_of_other_sites_get_nothing() {
+    let rig = Rig::new();
+    let own = format!("origin: http://{}\r\n", rig.address);
+    // Refused for its body, not for its origin.
+    capture(rig.address, &own).refused(400, "own page");
+    capture(rig.address, "").refused(400, "a program");
+    for origin in [
+        "http://evil.example",
+        "null",
+        "http://127.0.0.1",
+        "http://127.0.0.1:1",
+        // Same host and port, but this daemon has no TLS: the page belongs to another server.
+        &format!("https://{}", rig.address),
+        &format!("ws://{}", rig.address),
+        &format!("http://{}/", rig.address),
+    ] {
+        let foreign = format!("origin: {origin}\r\n");
+        let answer = capture(rig.address, &foreign);
+        assert_eq!(answer.refused(403, origin).json()["kind"], "denied");
+        let socket = format!(
+            "{foreign}upgrade: websocket\r\nconnection: upgrade\r\nsec-websocket-version: 13\r\nsec-websocket-key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
+        );
+        request(rig.address, "GET", "/api/v1/events", &socket, "").refused(403, origin);
+    }
+    // A foreign name that a foreign DNS server resolves to this address.
+    status(rig.address, "host: evil.example\r\n").refused(403, "rebound");
+    let both = "host: evil.example:80\r\norigin: http://evil.example:80\r\n";
+    capture(rig.address, both).refused(403, "rebound");
+    assert_eq!(status(rig.address, "host: localhost:1\r\n").status, 200);
+}
+
+#[test]
+fn a_proxy_with_tls_is_let_in_where_it_is_named() {
+    let more = format!("token = '{TOKEN}'\norigins = ['https://scanner.example']");
+    let rig = Rig::with(&more, |_| {});
+    let from = |origin: &str| {
+        let headers = format!(
+            "host: scanner.example\r\nauthorization: Bearer {TOKEN}\r\norigin: {origin}\r\n"
+        );
+        capture(rig.address, &headers)
+    };
+    // Refused for its body, not for its origin.
+    from("https://scanner.example").refused(400, "the proxy's page");
+    from("https://scanner.example:443").refused(400, "the same");
+    for other in [
+        "https://scanner.example:8443",
+        "https://evil.example",
+        "https://scanner.example.evil.example",
+    ] {
+        let refused = from(other);
+        let said = refused.refused(403, other).json();
+        assert!(said["help"].as_str().unwrap().contains("origins"), "{said}");
+    }
+    // A host name does not replace the token.
+    let bare = "host: scanner.example\r\norigin: https://scanner.example\r\n";
+    capture(rig.address, bare).refused(401, "no token");
+}
+
+#[test]
+fn a_token_is_asked_of_everybody() {
+    let rig = Rig::with(&format!("token = '{TOKEN}'"), |_| {});
+    let with = |given: &str| status(rig.address, &format!("authorization: {given}\r\n"));
+    assert_eq!(with(&format!("Bearer {TOKEN}")).status, 200);
+    assert_eq!(with(&format!("bearer  {TOKEN}")).status, 200);
+    for wrong in [
+        "Bearer".to_owned(),
+        "Bearer ".to_owned(),
+        "Bearer wrong".to_owned(),
+        format!("Bearer {TOKEN}x"),
+        format!("Bearer {}", &TOKEN[1..]),
+        format!("Basic {TOKEN}"),
+        TOKEN.to_owned(),
+    ] {
+        assert_eq!(with(&wrong).refused(401, &wrong).json()["kind"], "denied");
+    }
+    for path in [
+        "/",
+        "/metrics",
+        "/api/v1/openapi.json",
+        "/api/v1/scans",
+        "/nothing",
+    ] {
+        rig.get(path).refused(401, path);
+    }
+    // With a token any host name is accepted.
+    let proxied = format!("host: scanner.example\r\nauthorization: Bearer {TOKEN}\r\n");
+    assert_eq!(status(rig.address, &proxied).status, 200);
+}
+
+#[test]
+fn a_browser_signs_in_once() {
+    let rig = Rig::with(&format!("token = '{TOKEN}'"), |_| {});
+    let page = request(rig.address, "GET", "/", "accept: text/html\r\n", "");
+    assert_eq!(page.status, 401);
+    assert!(page.text().contains("<form"), "{}", page.text());
+    let form = "content-type: application/x-www-form-urlencoded\r\n";
+    let login = |body: &str| request(rig.address, "POST", "/login", form, body);
+    assert_eq!(login("token=wrong").status, 401);
+    assert_eq!(login("").status, 400);
+    assert_eq!(login(&format!("token={TOKEN}&more=1")).status, 400);
+    let answer = login(&format!("token={TOKEN}"));
+    assert_eq!(answer.status, 303, "{}", answer.head);
+    let cookie = answer
+        .head
+        .lines()
+        .find_map(|line| line.strip_prefix("set-cookie: "))
+        .unwrap();
+    assert!(
+        cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"),
+        "{cookie}"
+    );
+    assert!(!cookie.contains(TOKEN));
+    let cookie = cookie.split(';').next().unwrap();
+    let with = |cookie: &str| status(rig.address, &format!("cookie: a=b; {cookie}\r\n")).status;
+    assert_eq!(with(cookie), 200);
+    assert_eq!(with("velomotion=00000000000000000000000000000000"), 401);
+    let json = "content-type: application/json\r\n";
+    let body = format!("{{\"token\": \"{TOKEN}\"}}");
+    assert_eq!(
+        request(rig.address, "POST", "/login", json, &body).status,
+        204
+    );
+}
+
+#[test]
+fn nobody_else_is_let_in_without_a_token() {
+    let folder = super::rig::place();
+    for address in ["0.0.0.0:0", "[::]:0"] {
+        let output = run(folder.path(), &format!("daemon --listen {address}"));
+        assert_eq!(output.status.code(), Some(2));
+        let said = said(&output);
+        assert!(
+            said.contains("without a token") && said.contains("help:"),
+            "{said}"
+        );
+    }
+    assert!(!folder.path().join("velomotion").exists());
+}

@@ -1,0 +1,85 @@
+//! Clients that send many requests, send them early, or send the wrong shape.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use serde_json::json;
+
+use super::rig::{Rig, kept_waiting, post, request, wait};
+
+/// A list is not an object: its numbers in order must not begin a sweep.
+#[test]
+fn a_list_in_place_of_an_object_moves_nothing() {
+    let rig = Rig::new();
+    rig.ready();
+    for (path, body) in [
+        (
+            "/api/v1/captures",
+            json!([50, 0, -45, 500, 1, false, null, "list"]),
+        ),
+        ("/api/v1/tilt/goto", json!([-5, 10, null])),
+    ] {
+        rig.post(path, &body).refused(400, "expected a JSON object");
+    }
+    assert_eq!(rig.status()["activity"]["doing"], "idle");
+    let scans = rig.get("/api/v1/scans").json();
+    assert!(scans["scans"].as_array().unwrap().is_empty(), "{scans}");
+}
+
+/// A stop that arrives before the scan has its name stops the scan.
+#[test]
+fn a_stop_just_after_the_start_is_not_lost() {
+    let rig = Rig::new();
+    for _ in 0..8 {
+        rig.ready();
+        let address = rig.address;
+        // 45 s without a stop.
+        let begun = std::thread::spawn(move || {
+            post(address, "/api/v1/captures", &json!({ "speed_deg_s": 1.0 }))
+        });
+        let stopped = wait("a stop of a capture", || {
+            let stopped = rig.post("/api/v1/captures/stop", &json!({})).json();
+            (stopped["stopped"] == true).then_some(stopped)
+        });
+        let begun = begun.join().unwrap();
+        assert_eq!(begun.status, 201, "{}", begun.text());
+        let id = begun.json()["id"].as_str().unwrap().to_owned();
+        assert!(
+            stopped["scan"].is_null() || stopped["scan"] == id.as_str(),
+            "{stopped}"
+        );
+        let scan = rig.finished(&id);
+        assert_ne!(scan["state"], "whole", "{scan}");
+    }
+}
+
+/// Frequent reads of the status must not get moves refused.
+#[test]
+fn looking_at_the_axis_has_no_move_refused() {
+    let rig = Rig::new();
+    rig.ready();
+    let address = rig.address;
+    let over = Arc::new(AtomicBool::new(false));
+    let looking: Vec<_> = (0..2)
+        .map(|_| {
+            let over = Arc::clone(&over);
+            std::thread::spawn(move || {
+                let mut looks = 0;
+                while !over.load(Ordering::Relaxed) {
+                    let look = request(address, "GET", "/api/v1/tilt", "", "");
+                    looks += usize::from(look.status == 200);
+                }
+                looks
+            })
+        })
+        .collect();
+    for to in [-1.0, 0.0].repeat(6) {
+        let moved = rig.post("/api/v1/tilt/goto", &json!({ "to_deg": to }));
+        let late = kept_waiting(&moved.text());
+        assert!(moved.status == 200 || late, "{}", moved.text());
+    }
+    over.store(true, Ordering::Relaxed);
+    for thread in looking {
+        assert!(thread.join().unwrap() > 0);
+    }
+}

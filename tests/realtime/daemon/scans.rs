@@ -1,0 +1,469 @@
+//! Scans on disk: listed, downloaded, deleted, found after a restart.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
+
+use cloud::formats::Format;
+use daemon::{Daemon, Options, disk_quota};
+use serde_json::json;
+use units::Span;
+
+use super::rig::{Process, Rig, finished, place, request, run, sweep, wait};
+
+#[test]
+fn a_scan_is_listed_downloaded_as_replay_makes_it_and_deleted() {
+    let rig = Rig::new();
+    rig.ready();
+    let scan = rig.whole_scan(&json!({"speed_deg_s": 56.25, "name": "hall"}));
+    let id = scan["id"].as_str().unwrap();
+    assert!(id.starts_with("hall-simulated-"), "{id}");
+    assert_eq!(scan["simulated"], true);
+    assert_eq!(scan["report"]["points"], scan["points"]);
+    assert!(
+        scan["report"]["truth"]["rms_m"].as_f64().unwrap() < 0.05,
+        "{scan}"
+    );
+    let list = rig.get("/api/v1/scans").json();
+    assert_eq!(list["scans"][0]["id"], id);
+    assert_eq!(
+        rig.status()["disk"]["scans"].as_u64(),
+        Some(list["scans"].as_array().unwrap().len() as u64)
+    );
+
+    let log = rig.get(&format!("/api/v1/scans/{id}/log"));
+    assert_eq!(log.body, std::fs::read(rig.log(id)).unwrap());
+    let folder = rig.folder.path();
+    for (query, option, extension) in [
+        ("", "", "ply"),
+        (
+            "?format=ply&uncertainty=true&echo=true",
+            "--uncertainty --echo",
+            "ply",
+        ),
+        ("?format=pcd", "", "pcd"),
+        ("?format=las", "", "las"),
+        ("?format=laz&uncertainty=true", "--uncertainty", "laz"),
+        ("?format=CSV", "", "csv"),
+    ] {
+        let cloud = rig.get(&format!("/api/v1/scans/{id}/cloud{query}"));
+        assert_eq!(cloud.status, 200, "{query}: {}", cloud.text());
+        assert!(
+            cloud.head.contains(&format!("{id}.{extension}\"")),
+            "{}",
+            cloud.head
+        );
+        let file = folder.join(format!("again.{extension}"));
+        let line = format!(
+            "replay {} -o {} --force {option}",
+            rig.log(id).display(),
+            file.display()
+        );
+        assert!(run(folder, &line).status.success(), "{line}");
+        assert!(
+            cloud.body == std::fs::read(&file).unwrap(),
+            "{query}: not what replay makes"
+        );
+    }
+    let wrong = rig.get(&format!("/api/v1/scans/{id}/cloud?format=xyz"));
+    assert!(wrong.refused(400, "format").text().contains(".laz"));
+    rig.get(&format!("/api/v1/scans/{id}/cloud?formt=ply"))
+        .refused(400, "misspelt");
+    let picture = rig.get(&format!("/api/v1/scans/{id}/thumbnail"));
+    assert_eq!(picture.status, 200);
+    assert!(picture.body.starts_with(b"\x89PNG"));
+
+    let path = format!("/api/v1/scans/{id}");
+    assert_eq!(request(rig.address, "DELETE", &path, "", "").status, 204);
+    request(rig.address, "DELETE", &path, "", "").refused(404, "deleted");
+    rig.get(&path).refused(404, "deleted");
+    assert!(!rig.log(id).exists());
+}
+
+#[test]
+fn a_scan_that_is_stopped_is_partial_and_kept() {
+    let mut rig = Rig::new();
+    let id = sweep(rig.address);
+    let path = format!("/api/v1/scans/{id}");
+    request(rig.address, "DELETE", &path, "", "").refused(409, "while it is made");
+    rig.get(&format!("{path}/cloud"))
+        .refused(409, "while it is made");
+    let stopped = rig.post("/api/v1/captures/stop", &json!({})).json();
+    assert_eq!(
+        (&stopped["stopped"], &stopped["scan"]),
+        (&json!(true), &json!(id))
+    );
+    let scan = rig.finished(&id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    assert_eq!(scan["why"]["kind"], "interrupted");
+    assert!(scan["points"].as_u64().unwrap() > 0, "{scan}");
+    assert_eq!(
+        rig.post("/api/v1/captures/stop", &json!({})).json()["stopped"],
+        false
+    );
+
+    // The end of the daemon interrupts another sweep; the next daemon finds it.
+    let second = sweep(rig.address);
+    let config = rig.daemon().state().service.config().clone();
+    rig.daemon.take().unwrap().stop(|| false).unwrap();
+    let folder = rig.folder.path().to_owned();
+    let again = Daemon::start(Options {
+        config,
+        listen: Some("127.0.0.1:0".parse().unwrap()),
+        runtime: Some(folder),
+        ..Options::default()
+    })
+    .unwrap();
+    let second = again.state().scans.whole(&second).unwrap();
+    assert!(second.scan.points > Some(0), "{second:?}");
+    let why = second.scan.head.why.unwrap();
+    assert!(why.message.contains("the daemon was stopped"), "{why:?}");
+    again.stop(|| false).unwrap();
+}
+
+#[test]
+fn a_scan_in_which_the_daemon_is_killed_is_found_at_the_next_start() {
+    let folder = place();
+    let daemon = Process::start(folder.path());
+    let id = sweep(daemon.address);
+    let log = folder
+        .path()
+        .join("velomotion/scans")
+        .join(&id)
+        .join("log.pcapng");
+    // The last half second of a log may be lost: the log must hold more of the sweep.
+    wait("a log", || {
+        (std::fs::metadata(&log).ok()?.len() > 4_000_000).then_some(())
+    });
+    daemon.signal("-KILL");
+    drop(daemon);
+    let again = Process::start(folder.path());
+    let scan = finished(again.address, &id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    assert!(
+        scan["why"]["error"]
+            .as_str()
+            .unwrap()
+            .contains("in the middle of this scan")
+    );
+    assert!(scan["points"].as_u64().unwrap() > 0);
+    assert_eq!(scan["asked"]["speed_deg_s"], 5.0);
+    // A second daemon finds the device in use.
+    let second = run(folder.path(), "daemon --listen 127.0.0.1:0");
+    assert_eq!(
+        second.status.code(),
+        Some(4),
+        "{}",
+        super::rig::said(&second)
+    );
+    again.signal("-TERM");
+    let mut again = again;
+    assert_eq!(again.child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn a_log_whose_end_never_reached_the_disk_makes_no_whole_scan() {
+    let mut rig = Rig::new();
+    rig.ready();
+    let id = rig.whole_scan(&json!({"speed_deg_s": 56.25}))["id"].clone();
+    let id = id.as_str().unwrap();
+    let config = rig.daemon().state().service.config().clone();
+    rig.daemon.take().unwrap().stop(|| true).unwrap();
+    // The state that a power cut leaves during the making of a cloud, on a disk that confirmed the
+    // log and lost it. The folder also holds other files.
+    let place = rig.log(id).parent().unwrap().to_owned();
+    let record = std::fs::read_to_string(place.join("scan.json")).unwrap();
+    let making = record.replacen("\"whole\"", "\"making\"", 1);
+    assert_ne!(making, record);
+    std::fs::write(place.join("scan.json"), making).unwrap();
+    let log = std::fs::File::options()
+        .write(true)
+        .open(rig.log(id))
+        .unwrap();
+    log.set_len(log.metadata().unwrap().len() * 4 / 5).unwrap();
+    for name in ["photo.jpg", "notes.partial", ".cloud.ply.1-0.partial"] {
+        std::fs::write(place.join(name), name).unwrap();
+    }
+    let again = Daemon::start(Options {
+        config,
+        listen: Some("127.0.0.1:0".parse().unwrap()),
+        runtime: Some(rig.folder.path().to_owned()),
+        ..Options::default()
+    })
+    .unwrap();
+    let scan = finished(again.address(), id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    let why = scan["why"]["error"].as_str().unwrap();
+    assert!(
+        why.contains("the log is incomplete") && why.contains("cut short"),
+        "{why}"
+    );
+    for (name, stays) in [
+        ("photo.jpg", true),
+        ("notes.partial", true),
+        (".cloud.ply.1-0.partial", false),
+    ] {
+        assert_eq!(place.join(name).exists(), stays, "{name}");
+    }
+    again.stop(|| false).unwrap();
+}
+
+#[test]
+fn a_disk_that_is_nearly_full_ends_a_scan_and_begins_none() {
+    let free = Arc::new(AtomicU64::new(u64::MAX));
+    let told = Arc::clone(&free);
+    let rig = Rig::with("", |options| {
+        options.config.daemon.reserve_bytes = 1_000_000_000;
+        options.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
+    });
+    let id = sweep(rig.address);
+    free.store(999_999_999, Ordering::Relaxed);
+    let scan = rig.finished(&id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    assert!(
+        scan["why"]["error"]
+            .as_str()
+            .unwrap()
+            .contains("disk is nearly full"),
+        "{scan}"
+    );
+    assert!(scan["points"].as_u64().unwrap() > 0);
+    let refused = rig.post("/api/v1/captures", &json!({"speed_deg_s": 56.25}));
+    assert!(
+        refused.refused(409, "full").text().contains("may need"),
+        "{}",
+        refused.text()
+    );
+    assert_eq!(rig.status()["activity"]["doing"], "idle");
+}
+
+#[test]
+fn a_machine_that_has_slept_connects_anew_and_the_scan_is_partial() {
+    let slept = Arc::new(AtomicI64::new(0));
+    let told = Arc::clone(&slept);
+    let rig = Rig::with("", |options| {
+        options.environment.suspended =
+            Arc::new(move || Span::from_nanos(told.load(Ordering::Relaxed)));
+    });
+    rig.ready();
+    let connects = || rig.daemon().state().service.connects();
+    let id = sweep(rig.address);
+    let before = connects();
+    slept.store(3_600_000_000_000, Ordering::Relaxed);
+    let scan = rig.finished(&id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    assert!(
+        scan["why"]["error"]
+            .as_str()
+            .unwrap()
+            .contains("suspended for 3600 s"),
+        "{scan}"
+    );
+    wait("the drive anew", || (connects() > before).then_some(()));
+    rig.ready();
+}
+
+#[test]
+fn a_sleep_that_only_its_end_shows_makes_a_scan_partial() {
+    let slept = Arc::new(AtomicI64::new(0));
+    let told = Arc::clone(&slept);
+    let rig = Rig::with("", |options| {
+        // Only the device thread sees the suspension.
+        options.environment.suspended =
+            Arc::new(
+                move || match std::thread::current().name() == Some("devices") {
+                    true => Span::from_nanos(told.load(Ordering::Relaxed)),
+                    false => Span::ZERO,
+                },
+            );
+    });
+    let id = sweep(rig.address);
+    slept.store(60_000_000_000, Ordering::Relaxed);
+    rig.post("/api/v1/captures/stop", &json!({}));
+    let scan = rig.finished(&id);
+    assert_eq!(scan["state"], "partial", "{scan}");
+    let why = scan["why"]["error"].as_str().unwrap();
+    assert_eq!(why, "the machine was suspended for 60 s");
+    assert_eq!(scan["recording"]["error"], why);
+    // The next scan is not affected.
+    let next = rig.ready().whole_scan(&json!({"speed_deg_s": 56.25}));
+    assert_eq!(next["why"], json!(null));
+}
+
+/// The scan's record on disk.
+fn written(rig: &Rig, id: &str) -> serde_json::Value {
+    let record = rig.log(id).with_file_name("scan.json");
+    serde_json::from_slice(&std::fs::read(record).unwrap()).unwrap()
+}
+
+#[test]
+fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
+    let (free, looks) = (
+        Arc::new(AtomicU64::new(u64::MAX)),
+        Arc::new(AtomicU64::new(0)),
+    );
+    let disk = || {
+        let (told, looked) = (Arc::clone(&free), Arc::clone(&looks));
+        move |options: &mut Options| {
+            options.free_bytes = Arc::new(move |_| {
+                looked.fetch_add(1, Ordering::SeqCst);
+                Ok(told.load(Ordering::SeqCst))
+            });
+        }
+    };
+    let mut rig = Rig::with("", disk());
+    let id = sweep(rig.address);
+    free.store(0, Ordering::SeqCst);
+    let waits = |scan: &serde_json::Value| {
+        assert_eq!(
+            (&scan["state"], &scan["waits_for_room"]),
+            (&json!("failed"), &json!(true)),
+            "{scan}"
+        );
+        assert_eq!(scan["points"], json!(null), "{scan}");
+    };
+    let scan = rig.finished(&id);
+    waits(&scan);
+    let why = scan["why"].to_string();
+    assert!(
+        why.contains("nearly full") && why.contains("the disk is full"),
+        "{why}"
+    );
+    let summary = scan["summary"].as_str().unwrap();
+    assert!(
+        summary.contains(" The log is kept: its cloud is made as soon as the disk has room. "),
+        "{summary}"
+    );
+    assert!(!summary.contains('/'), "{summary}");
+    wait("its record", || {
+        (written(&rig, &id)["state"] == "failed").then_some(())
+    });
+    waits(&written(&rig, &id));
+    rig.get(&format!("/api/v1/scans/{id}/cloud"))
+        .refused(507, "full");
+    // One byte less than it may need above the reserve.
+    let needs = daemon::plan::most_cloud_bytes(scan["log_bytes"].as_u64().unwrap());
+    free.store(1_000 + needs - 1, Ordering::SeqCst);
+    let before = looks.load(Ordering::SeqCst);
+    // The status, once per second, reads free space, too.
+    wait("looks", || {
+        (looks.load(Ordering::SeqCst) > before + 8).then_some(())
+    });
+    waits(&rig.get(&format!("/api/v1/scans/{id}")).json());
+    // The state survives a restart.
+    let config = rig.daemon().state().service.config().clone();
+    rig.daemon.take().unwrap().stop(|| false).unwrap();
+    waits(&written(&rig, &id));
+    let mut options = Options {
+        config,
+        listen: Some("127.0.0.1:0".parse().unwrap()),
+        runtime: Some(rig.folder.path().to_owned()),
+        ..Options::default()
+    };
+    disk()(&mut options);
+    let again = Daemon::start(options).unwrap();
+    rig.address = again.address();
+    rig.daemon = Some(again);
+    waits(&rig.get(&format!("/api/v1/scans/{id}")).json());
+    free.store(1_000 + needs, Ordering::SeqCst);
+    let scan = wait("the cloud", || {
+        let scan = rig.get(&format!("/api/v1/scans/{id}")).json();
+        (scan["state"] == "partial").then_some(scan)
+    });
+    assert!(scan["points"].as_u64().unwrap() > 0, "{scan}");
+    assert_eq!(scan["waits_for_room"], false);
+    assert!(
+        scan["why"]["error"]
+            .as_str()
+            .unwrap()
+            .contains("nearly full"),
+        "{scan}"
+    );
+    wait("its record", || {
+        let told = written(&rig, &id);
+        (told["state"] == "partial" && told["waits_for_room"] == false).then_some(())
+    });
+    let counters = &rig.daemon().state().counters;
+    let counts = [&counters.partial, &counters.failed].map(|count| count.load(Ordering::Relaxed));
+    assert_eq!(counts, [1, 0]);
+}
+
+#[test]
+fn a_scan_that_waits_for_room_can_be_deleted() {
+    let free = Arc::new(AtomicU64::new(u64::MAX));
+    let told = Arc::clone(&free);
+    let rig = Rig::with("", |options| {
+        options.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
+    });
+    let id = sweep(rig.address);
+    free.store(0, Ordering::Relaxed);
+    assert_eq!(rig.finished(&id)["waits_for_room"], true);
+    let path = format!("/api/v1/scans/{id}");
+    assert_eq!(request(rig.address, "DELETE", &path, "", "").status, 204);
+    assert!(!rig.log(&id).exists());
+}
+
+#[test]
+fn a_download_takes_no_room_that_a_scan_was_promised() {
+    // Free bytes for a number of reads, and for all later ones.
+    let (free, looks) = (
+        Arc::new(AtomicU64::new(u64::MAX)),
+        Arc::new(AtomicU64::new(u64::MAX)),
+    );
+    let (told, left) = (Arc::clone(&free), Arc::clone(&looks));
+    let rig = Rig::with("", |options| {
+        options.free_bytes = Arc::new(move |_| {
+            let lasts = |left: u64| left.checked_sub(1);
+            match left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, lasts) {
+                Ok(_) => Ok(told.load(Ordering::Relaxed)),
+                Err(_) => Ok(0),
+            }
+        });
+    });
+    rig.ready();
+    let scan = rig.whole_scan(&json!({"speed_deg_s": 56.25}));
+    let (id, points) = (
+        scan["id"].as_str().unwrap(),
+        scan["points"].as_u64().unwrap(),
+    );
+    let path = |format: Format| {
+        format!("/api/v1/scans/{id}/cloud?format={format}&uncertainty=true&echo=true")
+    };
+    for format in Format::ALL {
+        let most = disk_quota::most_bytes(format, points);
+        // Exactly the reserve of these tests.
+        free.store(1_000 + most - 1, Ordering::Relaxed);
+        let refused = rig.get(&path(format));
+        assert_eq!(refused.refused(507, "full").json()["kind"], "incomplete");
+        free.store(1_000 + most, Ordering::Relaxed);
+        let made = rig.get(&path(format));
+        assert_eq!(made.status, 200, "{format}: {}", made.text());
+        assert!(
+            made.body.len() as u64 <= most,
+            "{format}: {}",
+            made.body.len()
+        );
+    }
+    // An existing cloud needs no space.
+    free.store(0, Ordering::Relaxed);
+    assert_eq!(rig.get(&format!("/api/v1/scans/{id}/cloud")).status, 200);
+    // The disk fills up after the making of the cloud has begun.
+    free.store(u64::MAX, Ordering::Relaxed);
+    looks.store(1, Ordering::Relaxed);
+    rig.get(&path(Format::Pcd)).refused(507, "filled up");
+    looks.store(u64::MAX, Ordering::Relaxed);
+    // A running scan may need more than is left.
+    let running = sweep(rig.address);
+    free.store(
+        1_000 + disk_quota::most_bytes(Format::Pcd, points),
+        Ordering::Relaxed,
+    );
+    let refused = rig.get(&path(Format::Pcd));
+    let said = refused.refused(507, "promised").text();
+    assert!(said.contains("may still need"), "{said}");
+    let status = rig.status();
+    assert_eq!(status["activity"]["scan"], running.as_str(), "{status}");
+    free.store(u64::MAX, Ordering::Relaxed);
+    assert_eq!(rig.get(&path(Format::Pcd)).status, 200);
+    rig.post("/api/v1/captures/stop", &json!({}));
+    rig.finished(&running);
+}

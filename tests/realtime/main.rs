@@ -1,0 +1,8 @@
+//! The program in real time: commands, the daemon on loopback, software devices in processes of their own.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
+
+mod command_line;
+mod daemon;
+mod network;
+mod software_drive;
+mod tilt;

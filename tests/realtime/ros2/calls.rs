@@ -1,0 +1,118 @@
+//! Services, called as `ros2 service call` with rmw_zenoh does.
+
+use cloud::messages::TRIGGER;
+use serde_json::{Value, json};
+
+use crate::peer::{Peer, connected, daemon, endpoint, figure, python};
+use crate::rig::{Rig, sweeps};
+
+fn key(service: &str) -> String {
+    let hash = TRIGGER.hash;
+    format!("0/velomotion/{service}/std_srvs::srv::dds_::Trigger_/{hash}")
+}
+
+/// Calls a service. Returns success and message.
+fn call(router: &mut Peer, service: &str) -> (bool, String) {
+    let command = json!({ "do": "call", "key": key(service), "attachment": true });
+    let said = router.ask(&command);
+    let answers: Vec<&Value> = said
+        .iter()
+        .filter(|v| v.get("answered").is_some())
+        .collect();
+    assert_eq!(answers.len(), 1, "{said:?}");
+    let answer = answers[0];
+    assert_eq!(
+        (&answer["own"], &answer["later"]),
+        (&json!(true), &json!(true))
+    );
+    let message = answer["message"].as_str().unwrap().to_owned();
+    (answer["success"] == true, message)
+}
+
+/// Begins a capture and waits until the axis sweeps. Returns the scan's id.
+fn begin(rig: &Rig, router: &mut Peer) -> String {
+    for _ in 0..4 {
+        rig.ready();
+        let (done, id) = call(router, "start_capture");
+        assert!(done, "{id}");
+        if sweeps(rig.address) {
+            return id;
+        }
+        // The software drive went silent on a busy machine.
+        let scan = rig.finished(&id);
+        assert!(scan["why"].to_string().contains("silence"), "{scan}");
+    }
+    panic!("the machine is too slow");
+}
+
+#[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
+fn a_capture_is_begun_and_stopped_by_calls() {
+    let python = python();
+    let place = endpoint();
+    let mut router = Peer::start(&python, "router", &place);
+    let rig = daemon(
+        &place,
+        "[daemon.ros2.capture]\nspeed_deg_s = 5.0\nname = 'called'\n",
+    );
+    connected(&rig, true);
+    rig.ready();
+    let (done, message) = call(&mut router, "stop_capture");
+    assert_eq!(
+        (done, message.as_str()),
+        (true, "nothing was being captured")
+    );
+
+    let id = begin(&rig, &mut router);
+    assert!(id.contains("called"), "{id}");
+    let (done, message) = call(&mut router, "start_capture");
+    assert!(!done && message.contains("busy"), "{message}");
+    let (done, message) = call(&mut router, "stop_capture");
+    assert_eq!((done, message), (true, format!("stopped {id}")));
+    assert_eq!(rig.status()["activity"]["doing"], "idle");
+    let scan = rig.finished(&id);
+    assert_eq!(
+        (&scan["state"], &scan["asked"]["speed_deg_s"]),
+        (&json!("partial"), &json!(5.0))
+    );
+
+    // A request that is not rmw_zenoh's moves nothing.
+    let command = json!({ "do": "call", "key": key("start_capture"), "attachment": false });
+    let said = router.ask(&command);
+    assert!(
+        said.iter()
+            .any(|v| v["refused"].to_string().contains("33 bytes")),
+        "{said:?}"
+    );
+    assert_eq!(rig.status()["activity"]["doing"], "idle");
+    assert_eq!(
+        rig.get("/api/v1/scans").json()["scans"]
+            .as_array()
+            .unwrap()
+            .len() as u64,
+        scans(&rig)
+    );
+}
+
+/// Number of scans begun.
+fn scans(rig: &Rig) -> u64 {
+    figure(rig, "captures")
+}
+
+/// Without a configured capture the service does not exist.
+#[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
+fn nothing_moves_by_ros_unless_it_is_configured() {
+    let python = python();
+    let place = endpoint();
+    let mut router = Peer::start(&python, "router", &place);
+    let rig = daemon(&place, "");
+    connected(&rig, true);
+    rig.ready();
+    let command = json!({ "do": "call", "key": key("start_capture"), "attachment": true });
+    let said = router.ask(&command);
+    let answered = said.iter().any(|v| v.get("answered").is_some());
+    assert!(!answered, "{said:?}");
+    assert!(call(&mut router, "stop_capture").0);
+    assert_eq!(scans(&rig), 0);
+}

@@ -1,0 +1,11 @@
+//! ROS 2 over zenoh: the daemon with a router and subscribers of PyPI's `eclipse-zenoh`, which
+//! decode with `rosbags` and read the graph with `zenoh-ros2-sdk`. No ROS installation is needed.
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
+
+mod calls;
+mod network;
+mod peer;
+#[path = "../daemon/rig.rs"]
+#[allow(dead_code)] // all of it is for others
+mod rig;
+mod topics;

@@ -1,0 +1,117 @@
+//! Routers that start late, disappear, return or block.
+
+use cloud::messages::Topic;
+use serde_json::{Value, json};
+
+use crate::peer::{Peer, connected, daemon, endpoint, figure, python};
+use crate::rig::{finished, sweep, wait};
+
+const MOUNT: &str = "0/tf_static";
+
+/// The single message of the mount that `who` received.
+fn mount(peer: &Peer, who: &str) -> Value {
+    let heard = wait("the mount", || {
+        let heard = peer.heard(who, "/tf_static");
+        (!heard.is_empty()).then_some(heard)
+    });
+    assert_eq!(heard.len(), 1, "{heard:?}");
+    heard[0].clone()
+}
+
+/// The mount is sent once. Early subscribers, late subscribers and those at another router each get
+/// it once.
+#[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
+fn a_router_that_is_late_and_comes_back_finds_everything_again() {
+    let python = python();
+    let place = endpoint();
+    let rig = daemon(&place, "");
+    rig.ready();
+    connected(&rig, false);
+
+    let mut router = Peer::start(&python, "router", &place);
+    router.subscribe("before", Topic::StaticTransforms, MOUNT);
+    connected(&rig, true);
+    let before = mount(&router, "before");
+    router.subscribe("later", Topic::StaticTransforms, MOUNT);
+    let later = mount(&router, "later");
+    for key in ["said", "number", "gid", "sent_ns"] {
+        assert_eq!(before[key], later[key], "{key}");
+    }
+    let transforms = &before["said"]["transforms"];
+    let of = |number: usize| {
+        let one = &transforms[number];
+        (one["parent"].as_str(), one["child"].as_str())
+    };
+    assert_eq!(of(0), (Some("base_link"), Some("tilt_base")));
+    assert_eq!(of(1), (Some("tilt_platform"), Some("lidar")));
+    assert_eq!(transforms[1]["translation"], json!([0.0, 0.0, 0.06]));
+    let tokens = wait("all tokens", || {
+        let tokens = router.tokens();
+        // A node, six publishers, one service.
+        (tokens.len() == 8).then_some(tokens)
+    });
+
+    drop(router);
+    connected(&rig, false);
+    let mut router = Peer::start(&python, "router", &place);
+    connected(&rig, true);
+    let mut again = wait("all tokens again", || {
+        let tokens = router.tokens();
+        (tokens.len() == 8).then_some(tokens)
+    });
+    let mut tokens = tokens;
+    tokens.sort();
+    again.sort();
+    assert_eq!(tokens, again);
+    router.subscribe("again", Topic::StaticTransforms, MOUNT);
+    assert_eq!(mount(&router, "again")["said"], before["said"]);
+}
+
+/// A capture does not wait for a blocked router. Once the router reads again it gets new messages.
+#[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
+fn a_router_that_stalls_costs_the_capture_nothing() {
+    let python = python();
+    let place = endpoint();
+    let mut router = Peer::start(&python, "router", &place);
+    router.subscribe("a", Topic::LivePoints, "0/velomotion/live_points");
+    router.subscribe("a", Topic::Diagnostics, "0/diagnostics");
+    let rig = daemon(&place, "");
+    connected(&rig, true);
+    let heard = |router: &Peer| router.heard("a", "/diagnostics").len();
+    wait("diagnostics", || (heard(&router) > 0).then_some(()));
+
+    let id = sweep(rig.address);
+    router.signal("-STOP");
+    let scan = finished(rig.address, &id);
+    let why = scan["why"].to_string();
+    assert!(
+        scan["state"] == "whole" || why.contains("silence"),
+        "{scan}"
+    );
+    assert_eq!(scan["lost_records"], 0, "{scan}");
+    router.signal("-CONT");
+
+    connected(&rig, true);
+    let before = heard(&router);
+    wait("new diagnostics", || {
+        (heard(&router) > before + 2).then_some(())
+    });
+    let frames = router.heard("a", "/velomotion/live_points").len() as u64;
+    assert!(frames <= figure(&rig, "ros2_frames"));
+}
+
+/// Connecting to a port that does not speak zenoh is retried and disturbs nothing else.
+#[test]
+fn what_never_answers_is_no_router() {
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let rig = daemon(&format!("tcp/{}", silent.local_addr().unwrap()), "");
+    let scan = rig.ready().whole_scan(&json!({ "speed_deg_s": 56.25 }));
+    assert_eq!(scan["lost_records"], 0);
+    // One attempt was made.
+    drop(silent.accept().unwrap());
+    for name in ["ros2_connected", "ros2_messages", "ros2_missed"] {
+        assert_eq!(figure(&rig, name), 0, "{name}");
+    }
+}

@@ -1,0 +1,178 @@
+//! `velomotion tilt` with the software drive in its own process.
+
+use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
+use std::process::{Child, Command, Output, Stdio};
+
+/// A software drive that runs until dropped, and a configuration that names it.
+struct Bench {
+    folder: tempfile::TempDir,
+    drive: Child,
+}
+
+impl Bench {
+    fn new(interface: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let link = folder.path().join("epos");
+        let mut drive = velomotion()
+            .args(["firmware-sim", interface, "--link"])
+            .arg(&link)
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut port = String::new();
+        let mut said = BufReader::new(drive.stdout.take().unwrap());
+        said.read_line(&mut port).unwrap();
+        assert_eq!(link.canonicalize().unwrap(), PathBuf::from(port.trim()));
+        let config = format!(
+            "[device]\ndefault = 'soft'\n[device.soft]\nkind = '{}'\nport = '{}'\n",
+            interface.trim_start_matches('-'),
+            link.display()
+        );
+        std::fs::write(folder.path().join("velomotion.toml"), config).unwrap();
+        Self { folder, drive }
+    }
+
+    fn command(&self, line: &str) -> Command {
+        let mut command = velomotion();
+        command
+            .args(line.split_whitespace())
+            .current_dir(self.folder.path())
+            .env("XDG_RUNTIME_DIR", self.folder.path());
+        command
+    }
+
+    fn run(&self, line: &str) -> Output {
+        self.command(line).output().unwrap()
+    }
+
+    fn json(&self, line: &str) -> serde_json::Value {
+        let mut output = self.run(&format!("{line} --json"));
+        // The drive's process goes silent while a busy machine does not schedule it, and the client
+        // stops.
+        for _ in 0..3 {
+            let said = String::from_utf8_lossy(&output.stderr);
+            if output.status.code() != Some(5) || !said.contains("silence") {
+                break;
+            }
+            output = self.run(&format!("{line} --json"));
+        }
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{line}: {said}");
+        serde_json::from_slice(&output.stdout).unwrap()
+    }
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        drop(self.drive.stdin.take());
+        let _ = self.drive.wait();
+    }
+}
+
+fn velomotion() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_velomotion"))
+}
+
+#[test]
+fn the_axis_is_looked_at_homed_moved_and_its_faults_explained() {
+    let bench = Bench::new("--usb");
+    let new = bench.json("tilt status");
+    assert_eq!(
+        (&new["state"], &new["referenced"]),
+        (&"fault".into(), &false.into()),
+        "{new}"
+    );
+    assert_eq!(new["angle_deg"], serde_json::Value::Null);
+    assert_eq!(new["faults"][0]["code"], "8120");
+    // Reading the status changes nothing.
+    assert_eq!(bench.json("tilt status"), new);
+
+    // Clearing takes the drive out of its fault; the history keeps the error.
+    let cleared = bench.json("tilt faults --clear");
+    assert_eq!(cleared["state"], "switch-on disabled", "{cleared}");
+    assert_eq!(cleared["faults"][0]["code"], "8120");
+    let said = bench.run("tilt faults");
+    let said = String::from_utf8_lossy(&said.stdout).into_owned();
+    assert!(
+        said.contains("CAN Passive Mode Error") && said.contains("wiring"),
+        "{said}"
+    );
+
+    // Before homing no angle is known.
+    let lost = bench.run("tilt goto -20");
+    assert_eq!(lost.status.code(), Some(5));
+    let homed = bench.json("tilt home");
+    assert_eq!(homed["referenced"], true);
+    assert_eq!(homed["angle_deg"], 0.0);
+    let moved = bench.json("tilt goto -20 --speed 40");
+    assert!(
+        (moved["angle_deg"].as_f64().unwrap() + 20.0).abs() < 0.001,
+        "{moved}"
+    );
+    assert_eq!(
+        moved["state"], "switch-on disabled",
+        "the power stage is left on"
+    );
+
+    let outside = bench.run("tilt goto -46");
+    assert_eq!(outside.status.code(), Some(2));
+}
+
+#[test]
+fn every_link_homes_and_moves_the_same_axis() {
+    for interface in ["--usb", "--rs232", "--slcan"] {
+        let bench = Bench::new(interface);
+        let homed = bench.json("tilt home");
+        assert_eq!(
+            (&homed["referenced"], &homed["angle_deg"]),
+            (&true.into(), &0.0.into()),
+            "{interface}: {homed}"
+        );
+        let moved = bench.json("tilt goto -20 --speed 40");
+        let angle = moved["angle_deg"].as_f64().unwrap();
+        assert!((angle + 20.0).abs() < 0.001, "{interface}: {moved}");
+        assert_eq!(moved["state"], "switch-on disabled", "{interface}: {moved}");
+    }
+}
+
+#[test]
+fn tilt_stop_stops_a_move_of_another_process() {
+    let bench = Bench::new("--usb");
+    bench.json("tilt home");
+    let mut moving = bench.command("tilt goto -40 --speed 1 -vv");
+    let mut moving = moving
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(moving.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("Moving(") {
+        line.clear();
+        assert!(said.read_line(&mut line).unwrap() > 0, "no motion");
+    }
+    let rest = std::thread::spawn(move || said.lines().count());
+    let stopped = bench.json("tilt stop");
+    assert_eq!(stopped["stopped"], true);
+    assert_eq!(moving.wait().unwrap().code(), Some(130));
+    rest.join().unwrap();
+    let status = bench.json("tilt status");
+    assert!(status["angle_deg"].as_f64().unwrap() > -39.0, "{status}");
+    assert_eq!(status["state"], "switch-on disabled");
+    // No process holds the drive: the stop goes to the drive itself.
+    assert_eq!(bench.json("tilt stop")["state"], "switch-on disabled");
+}
+
+#[test]
+fn the_software_drive_goes_with_its_link_when_stdin_closes() {
+    let bench = Bench::new("--rs232");
+    let link = bench.folder.path().join("epos");
+    assert!(link.is_symlink());
+    let mut bench = bench;
+    drop(bench.drive.stdin.take());
+    assert!(bench.drive.wait().unwrap().success());
+    assert!(!link.is_symlink());
+}
