@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use daemon::cloud_builder::{self, CloudJob};
 use daemon::scans::{LOG, Scans};
 use daemon::state::DaemonState;
-use engine::capture::request::CaptureRequest;
+use engine::capture_request::CaptureRequest;
 use engine::config::Config;
 use engine::devices::profile;
 use engine::service::events::{Event, Events, PointsRequest};

@@ -23,7 +23,7 @@ fn daemon(bench: &Bench, folder: &Path) -> Daemon {
     let daemon = daemon.unwrap();
     let connected = || {
         let status = daemon.state().service.status();
-        let well = engine::service::status::DeviceState::Connected;
+        let well = engine::service::status::DeviceHealth::Connected;
         status.drive.state == well && status.lidar.state == well
     };
     while !connected() {

@@ -4,7 +4,8 @@ use protocol::vlp16::models;
 
 use crate::health_monitor::disk_full;
 use crate::state::DaemonState;
-use engine::capture::request::{CapturePlan, CaptureRequest};
+use engine::capture::request::CapturePlan;
+use engine::capture_request::CaptureRequest;
 use engine::failure::Failure;
 use serde::Serialize;
 

@@ -67,7 +67,7 @@ impl ros2::ScanService for BridgeScans {
 
     fn start_capture(
         &self,
-        request: &engine::capture::request::CaptureRequest,
+        request: &engine::capture_request::CaptureRequest,
     ) -> Result<String, String> {
         crate::http::captures::start(&self.0, request).map_err(|refusal| refusal.to_string())
     }

@@ -15,7 +15,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use io::files::{NewFile, Overwrite};
 
 use crate::limits::MESSAGES;
-use engine::capture::request::CaptureRequest;
+use engine::capture_request::CaptureRequest;
 use engine::failure::{Failure, Kind};
 use engine::output::file_failure;
 use engine::service::scan_record::{

@@ -4,6 +4,7 @@
 //! a cloud of a log or recording. The engine parses no arguments and prints nothing.
 
 pub mod capture;
+pub mod capture_request;
 pub mod config;
 pub mod default_paths;
 pub mod devices;

@@ -17,13 +17,13 @@ use cloud::{Fields, Sink, SinkError};
 use self::companion::write_beside;
 use crate::failure::{Failure, Kind};
 
-pub use self::file::{Buffered, Shared};
+pub use self::file::{Buffered, SharedFile};
 pub use self::texts::{make_folder, write_text};
 
 /// A cloud's destination, opened before anything is measured.
 pub struct Target {
     path: PathBuf,
-    file: Option<Shared>,
+    file: Option<SharedFile>,
     sink: Box<dyn Sink + Send>,
 }
 
@@ -84,10 +84,10 @@ impl Target {
     pub fn file(
         path: &Path,
         force: bool,
-        writer: impl FnOnce(Shared) -> Box<dyn Sink + Send>,
+        writer: impl FnOnce(SharedFile) -> Box<dyn Sink + Send>,
     ) -> Result<Self, Failure> {
         let file = NewFile::create(path, overwrite(force)).map_err(|error| file_failure(&error))?;
-        let shared = Shared::new(file);
+        let shared = SharedFile::new(file);
         Ok(Self {
             path: path.to_owned(),
             file: Some(shared.clone()),

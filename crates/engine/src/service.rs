@@ -29,7 +29,7 @@ use units::{Rpm, Span};
 pub use device_thread::DeviceThread;
 pub use lease::{AxisLease, LeaseError};
 
-use crate::capture::jog::{self, JogRequest, Report};
+use crate::capture::jog::{self, AxisReport, JogRequest};
 use crate::capture::request::CapturePlan;
 use crate::capture::run::{self, Outcome};
 use crate::config::{Config, Device};
@@ -42,7 +42,7 @@ use lease::StopSignal;
 use lidar_stats::LidarStats;
 use live_preview::{LivePreview, PreviewInput};
 use status::{
-    Activity, AxisStatus, AxisTask, ClientsStatus, DeviceState, DiskStatus, DriveSnapshot,
+    Activity, AxisStatus, AxisTask, ClientsStatus, DeviceHealth, DiskStatus, DriveSnapshot,
     LidarStatus, ServiceStatus,
 };
 
@@ -124,21 +124,21 @@ pub type CaptureResult = Result<CaptureEnd, Failure>;
 #[derive(Clone, Debug)]
 pub enum Stopped {
     /// This service, which then asked the drive for its state.
-    Reported(Box<Report>),
+    Reported(Box<AxisReport>),
     /// The command that owns this service, which ends now.
     ByCommand,
 }
 
-/// State that clients follow. Locked for moments only, never while a device or disk is waited for.
+/// ServiceState that clients follow. Locked for moments only, never while a device or disk is waited for.
 #[derive(Clone, Default)]
-struct State {
+struct ServiceState {
     activity: Activity,
     /// Stop signal of the current lease.
     stop: Option<StopSignal>,
     drive: DriveSnapshot,
     lidar: LidarStatus,
     disk: DiskStatus,
-    report: Option<Report>,
+    report: Option<AxisReport>,
     /// Time of the report, unless something has happened since.
     reported_at: Option<Instant>,
     /// Whether the axis may move although no lease is held.
@@ -154,7 +154,7 @@ pub struct DeviceService {
     lifetime: Lifetime,
     environment: Environment,
     events: Arc<Events>,
-    state: watch::Sender<State>,
+    state: watch::Sender<ServiceState>,
     preview: PreviewInput,
     receiver: Mutex<Option<Arc<LidarReceiver>>>,
     lidar_stats: Arc<Mutex<LidarStats>>,
@@ -194,7 +194,7 @@ impl DeviceService {
             lifetime: options.lifetime,
             environment: options.environment,
             events: Arc::new(Events::new(resident)),
-            state: watch::Sender::new(State::default()),
+            state: watch::Sender::new(ServiceState::default()),
             preview: PreviewInput::default(),
             receiver: Mutex::default(),
             lidar_stats: Arc::default(),
@@ -271,7 +271,7 @@ impl DeviceService {
     /// As [`CapturePlan::of`].
     pub fn plan(
         &self,
-        request: &crate::capture::request::CaptureRequest,
+        request: &crate::capture_request::CaptureRequest,
         cloud: std::path::PathBuf,
         log: std::path::PathBuf,
     ) -> Result<CapturePlan, Failure> {
@@ -300,7 +300,7 @@ impl DeviceService {
     pub fn require_drive(&self) -> Result<(), LeaseError> {
         let state = self.state.borrow();
         let drive = &state.drive;
-        if drive.state != DeviceState::Absent {
+        if drive.state != DeviceHealth::Absent {
             return Ok(());
         }
         Err(LeaseError::Failure(drive.problem.clone().unwrap_or_else(
@@ -316,7 +316,7 @@ impl DeviceService {
     pub fn require_lidar(&self) -> Result<(), LeaseError> {
         let state = self.state.borrow();
         let lidar = &state.lidar;
-        if lidar.state == DeviceState::Connected {
+        if lidar.state == DeviceHealth::Connected {
             return Ok(());
         }
         Err(LeaseError::Failure(lidar.problem.clone().unwrap_or_else(
@@ -353,7 +353,7 @@ impl DeviceService {
     pub fn jog(
         self: &Arc<Self>,
         request: JogRequest,
-    ) -> Result<oneshot::Receiver<Result<Report, Failure>>, LeaseError> {
+    ) -> Result<oneshot::Receiver<Result<AxisReport, Failure>>, LeaseError> {
         let commands = jog::commands(request, &self.config, &self.device)?;
         let task = match request {
             JogRequest::Home => AxisTask::Homing,
@@ -377,7 +377,7 @@ impl DeviceService {
     ///
     /// # Errors
     /// As [`DeviceService::jog`], and where the motion failed.
-    pub async fn run_jog(self: &Arc<Self>, request: JogRequest) -> Result<Report, LeaseError> {
+    pub async fn run_jog(self: &Arc<Self>, request: JogRequest) -> Result<AxisReport, LeaseError> {
         let commands = jog::commands(request, &self.config, &self.device);
         commands?;
         if !matches!(request, JogRequest::Status) {
@@ -464,7 +464,7 @@ impl DeviceService {
     /// Waits until the axis is idle. All motion has time limits of its own.
     async fn wait_idle(&self) {
         let mut state = self.state.subscribe();
-        let idle = |state: &State| state.activity.doing == AxisTask::Idle;
+        let idle = |state: &ServiceState| state.activity.doing == AxisTask::Idle;
         let _ = state.wait_for(idle).await;
     }
 
@@ -479,7 +479,7 @@ impl DeviceService {
     pub async fn wait_for_lidar(&self) {
         let unknown = || {
             let state = self.state.borrow();
-            state.lidar.state == DeviceState::Absent && state.lidar.problem.is_none()
+            state.lidar.state == DeviceHealth::Absent && state.lidar.problem.is_none()
         };
         let mut left = LIDAR_WAIT;
         while unknown() && !left.is_zero() {
@@ -576,7 +576,7 @@ impl DeviceService {
     /// The drive's report where it need not be asked: while the axis is busy, and shortly after
     /// the last report.
     #[must_use]
-    pub fn known_report(&self) -> Option<Report> {
+    pub fn known_report(&self) -> Option<AxisReport> {
         let state = self.state.borrow();
         let busy = state.activity.doing != AxisTask::Idle;
         let fresh = |at: Instant| at.elapsed() < REPORT_LIFETIME;
@@ -596,7 +596,7 @@ impl DeviceService {
             .is_some_and(|report| report.referenced)
     }
 
-    fn set_report(&self, report: Option<Report>) {
+    fn set_report(&self, report: Option<AxisReport>) {
         self.state.send_modify(|state| {
             state.reported_at = report.is_some().then(Instant::now);
             state.report = report;
@@ -639,7 +639,7 @@ impl DeviceService {
         self.report_device("lidar", changed);
     }
 
-    fn report_device(&self, device: &str, changed: Option<(DeviceState, Option<Failure>)>) {
+    fn report_device(&self, device: &str, changed: Option<(DeviceHealth, Option<Failure>)>) {
         let Some((state, problem)) = changed else {
             return;
         };
@@ -648,11 +648,11 @@ impl DeviceService {
                 let text = format!("{device}: {}", problem.message);
                 self.events.message(MessageLevel::Error, text, problem.help);
             }
-            (DeviceState::Connected, None) => {
+            (DeviceHealth::Connected, None) => {
                 let text = format!("{device}: connected");
                 self.events.message(MessageLevel::Info, text, None);
             }
-            (DeviceState::Absent | DeviceState::Fault, None) => {}
+            (DeviceHealth::Absent | DeviceHealth::Fault, None) => {}
         }
         self.send_status();
     }
@@ -696,13 +696,13 @@ impl DeviceService {
         drop(receiver);
         let summary = locked(&self.lidar_stats).summary();
         let (state, problem) = match &counts {
-            Err(failure) => (DeviceState::Fault, Some(failure.clone())),
+            Err(failure) => (DeviceHealth::Fault, Some(failure.clone())),
             Ok(_) if summary.silence >= LIDAR_SILENCE => {
                 let config = lidar_sockets::listen_config(&self.device);
-                (DeviceState::Absent, Some(run::silence(&config)))
+                (DeviceHealth::Absent, Some(run::silence(&config)))
             }
-            Ok(_) if summary.packets > 0 => (DeviceState::Connected, None),
-            Ok(_) => (DeviceState::Absent, None),
+            Ok(_) if summary.packets > 0 => (DeviceHealth::Connected, None),
+            Ok(_) => (DeviceHealth::Absent, None),
         };
         self.update_lidar(|lidar| {
             lidar.state = state;

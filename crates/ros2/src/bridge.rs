@@ -10,7 +10,7 @@ use engine::failure::{Failure, Kind};
 use engine::service::events::MessageLevel;
 use tokio::runtime::{Builder, Runtime};
 
-use crate::link::Link;
+use crate::link::RouterLink;
 use crate::{Context, Counts, ScanService, calls, clouds, events};
 
 /// Between two attempts to reach a router.
@@ -109,7 +109,7 @@ fn run(context: &Context, [calls_runtime, events_runtime, scans_runtime]: &[Runt
     let mut reported = false;
     while !context.stop.is_set() {
         let (inbox, waiting) = calls::queue();
-        let link = match Link::open(context, &inbox) {
+        let link = match RouterLink::open(context, &inbox) {
             Ok(link) => link,
             Err(error) => {
                 if !reported {
@@ -141,7 +141,7 @@ fn run(context: &Context, [calls_runtime, events_runtime, scans_runtime]: &[Runt
 }
 
 /// Reports a change of the router's connection.
-pub(crate) fn report_connection(context: &Context, link: &Link) {
+pub(crate) fn report_connection(context: &Context, link: &RouterLink) {
     let before = context.counts.is_connected();
     let now = link.update_connection();
     let router = context.settings.router.endpoint();

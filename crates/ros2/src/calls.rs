@@ -19,13 +19,13 @@ use engine::config::ros2::Ros2;
 use crate::Context;
 use crate::bridge::STOP_POLL;
 use crate::link::{self, Error, Request};
-use crate::rmw::{self, Entity, Quality};
+use crate::rmw::{self, Entity, QualityOfService};
 
 /// Calls that wait for their answers.
 const WAITING: usize = 8;
 
 /// QoS of services (`rmw_qos_profile_services_default`).
-const QUALITY: Quality = Quality {
+const QUALITY: QualityOfService = QualityOfService {
     reliable: true,
     latched: false,
     depth: 10,

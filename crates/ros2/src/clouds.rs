@@ -19,7 +19,7 @@ use tokio::runtime::Runtime;
 
 use crate::Context;
 use crate::bridge::STOP_POLL;
-use crate::link::Link;
+use crate::link::RouterLink;
 
 /// The name of the output in failures.
 const OUTPUT: &str = "ros2";
@@ -64,7 +64,7 @@ fn finished_scan(event: &Event) -> Option<&ScanView> {
 }
 
 /// Sends clouds until the bridge ends.
-pub(crate) fn run(context: &Context, link: &Link, finished: Receiver<Arc<Event>>) {
+pub(crate) fn run(context: &Context, link: &RouterLink, finished: Receiver<Arc<Event>>) {
     let mut last = String::new();
     while !context.stop.is_set() {
         let Ok(event) = finished.recv_timeout(STOP_POLL) else {
@@ -90,7 +90,7 @@ pub(crate) fn run(context: &Context, link: &Link, finished: Receiver<Arc<Event>>
     }
 }
 
-fn send(context: &Context, link: &Link, scan: &ScanView) -> Result<(), Failure> {
+fn send(context: &Context, link: &RouterLink, scan: &ScanView) -> Result<(), Failure> {
     let source = Source::open(&context.scans.log(&scan.id), None)?;
     let asked = scan.asked.as_ref();
     let request = Reconstruction {

@@ -13,17 +13,17 @@ use units::{Degrees, Host, Metres, Stamp};
 use engine::failure::Failure;
 use engine::service::events::{Event, NoEvent, PointsRequest};
 use engine::service::live_preview::PreviewFrame;
-use engine::service::status::{AxisTask, DeviceState, ServiceStatus};
+use engine::service::status::{AxisTask, DeviceHealth, ServiceStatus};
 use tokio::runtime::Runtime;
 
 use crate::bridge::{STOP_POLL, report_connection};
-use crate::link::{Error, Link};
+use crate::link::{Error, RouterLink};
 use crate::{Context, Counts, rmw};
 
 /// Makes messages of events.
 struct Publisher<'a> {
     context: &'a Context,
-    link: &'a Link,
+    link: &'a RouterLink,
     node: String,
     frames: Frames,
     cloud: CloudMessage,
@@ -33,7 +33,7 @@ struct Publisher<'a> {
 }
 
 /// Publishes events until the bridge ends.
-pub(crate) fn run(context: &Context, link: &Link, runtime: &Runtime) -> Result<(), Error> {
+pub(crate) fn run(context: &Context, link: &RouterLink, runtime: &Runtime) -> Result<(), Error> {
     let settings = &context.settings;
     let mut publisher = Publisher {
         context,
@@ -131,13 +131,13 @@ impl Publisher<'_> {
 
 fn device(
     name: String,
-    (state, problem): (DeviceState, &Option<Failure>),
+    (state, problem): (DeviceHealth, &Option<Failure>),
     values: Vec<(String, String)>,
 ) -> Diagnostic {
     let (level, usual) = match state {
-        DeviceState::Connected => (DiagnosticLevel::Ok, "connected"),
-        DeviceState::Absent => (DiagnosticLevel::Error, "absent"),
-        DeviceState::Fault => (DiagnosticLevel::Error, "fault"),
+        DeviceHealth::Connected => (DiagnosticLevel::Ok, "connected"),
+        DeviceHealth::Absent => (DiagnosticLevel::Error, "absent"),
+        DeviceHealth::Fault => (DiagnosticLevel::Error, "fault"),
     };
     let message = problem.as_ref().map(|problem| match &problem.help {
         Some(help) => format!("{} ({help})", problem.message),

@@ -16,7 +16,7 @@ use crate::link::Error;
 
 /// The message kept.
 #[derive(Default)]
-struct Kept {
+struct LatchedMessage {
     bytes: Vec<u8>,
     attachment: Vec<u8>,
     time: Option<Timestamp>,
@@ -24,7 +24,7 @@ struct Kept {
 
 /// Answers later subscribers.
 pub struct Latched {
-    kept: Arc<Mutex<Kept>>,
+    kept: Arc<Mutex<LatchedMessage>>,
     _queryable: Queryable<()>,
     _token: LivelinessToken,
 }
@@ -32,7 +32,7 @@ pub struct Latched {
 impl Latched {
     /// For messages that the session `zid` sends with `key`.
     pub fn declare(session: &Session, zid: &str, key: &str) -> Result<Self, Error> {
-        let kept = Arc::new(Mutex::new(Kept::default()));
+        let kept = Arc::new(Mutex::new(LatchedMessage::default()));
         let place = format!("{key}/@adv/pub/{zid}/uhlc/_");
         let (answers, answered) = (Arc::clone(&kept), key.to_owned());
         let queryable = session
@@ -53,7 +53,7 @@ impl Latched {
 
     /// Keeps the last message.
     pub fn keep(&self, bytes: &[u8], attachment: &[u8], time: Timestamp) {
-        *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = Kept {
+        *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = LatchedMessage {
             bytes: bytes.to_vec(),
             attachment: attachment.to_vec(),
             time: Some(time),
@@ -61,7 +61,7 @@ impl Latched {
     }
 }
 
-fn answer(query: &Query, key: &str, kept: &Mutex<Kept>) -> Result<(), Error> {
+fn answer(query: &Query, key: &str, kept: &Mutex<LatchedMessage>) -> Result<(), Error> {
     let (bytes, attachment, time) = {
         let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(time) = kept.time else {

@@ -19,7 +19,7 @@ mod rmw;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use engine::capture::request::CaptureRequest;
+use engine::capture_request::CaptureRequest;
 use engine::config::ros2::Ros2 as Ros2Config;
 use engine::service::DeviceService;
 

@@ -20,7 +20,7 @@ use engine::service::events::PointsRequest;
 
 use crate::calls::{self, Service};
 use crate::latched::Latched;
-use crate::rmw::{self, Entity, Gid, Quality};
+use crate::rmw::{self, Entity, Gid, QualityOfService};
 use crate::{Context, Counts};
 
 /// Wait for a router before the bridge looks whether it ends.
@@ -35,14 +35,14 @@ pub type Error = zenoh::Error;
 pub type Request = (i64, Gid);
 
 /// QoS of a topic, as ROS 2's own drivers, broadcasters and updaters have it.
-const fn quality(topic: Topic) -> Quality {
+const fn quality(topic: Topic) -> QualityOfService {
     let (reliable, latched, depth) = match topic {
         Topic::Points | Topic::JointStates | Topic::Diagnostics => (true, false, 10),
         Topic::LivePoints => (false, false, 5),
         Topic::Transforms => (true, false, 100),
         Topic::StaticTransforms => (true, true, 1),
     };
-    Quality {
+    QualityOfService {
         reliable,
         latched,
         depth,
@@ -66,7 +66,7 @@ fn name(settings: &Ros2, topic: Topic) -> String {
 }
 
 /// A session.
-pub struct Link {
+pub struct RouterLink {
     counts: Arc<Counts>,
     session: Session,
     channels: BTreeMap<Topic, Channel>,
@@ -83,7 +83,7 @@ struct Channel {
     latched: Option<Latched>,
 }
 
-impl Link {
+impl RouterLink {
     /// Connects and declares everything; calls of services go to `calls`.
     pub fn open(context: &Context, inbox: &calls::Inbox) -> Result<Self, Error> {
         let settings = &context.settings;

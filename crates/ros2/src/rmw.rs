@@ -22,7 +22,7 @@ pub type Gid = [u8; GID_BYTES];
 /// What is offered (`rmw/types.h`): history is keep last, and deadline, lifespan and liveliness are
 /// without limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Quality {
+pub struct QualityOfService {
     /// Reliable, else best effort.
     pub reliable: bool,
     /// Transient local, else volatile.
@@ -31,7 +31,7 @@ pub struct Quality {
     pub depth: u32,
 }
 
-impl Quality {
+impl QualityOfService {
     /// As tokens have it: what is `rmw_zenoh`'s default is left empty.
     fn text(self) -> String {
         let reliability = if self.reliable { "" } else { "2" };
@@ -88,7 +88,7 @@ pub fn token(
     zid: &str,
     (id, entity): (u32, Entity),
     (name, kind): (&str, &MessageType),
-    quality: Quality,
+    quality: QualityOfService,
 ) -> String {
     let entity = match entity {
         Entity::Publisher => "MP",
@@ -151,7 +151,7 @@ mod tests {
         toml::from_str(text).unwrap()
     }
 
-    const RELIABLE: Quality = Quality {
+    const RELIABLE: QualityOfService = QualityOfService {
         reliable: true,
         latched: false,
         depth: 10,
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn qualities_leave_the_usual_out() {
         let text = |reliable, latched, depth| {
-            Quality {
+            QualityOfService {
                 reliable,
                 latched,
                 depth,

@@ -8,15 +8,15 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cloud::Fields;
 use engine::capture::jog::JogRequest;
-use engine::capture::request::CaptureRequest;
+use engine::capture_request::CaptureRequest;
 use engine::reconstruct::decoder_options::DecoderRequest;
 use engine::reconstruct::replay;
 use lidar::Duplicates;
 use protocol::vlp16::{Model, models};
 use scanner::Tolerance;
 
-use crate::commands::analyze::Sweep;
-use engine::reconstruct::source::SensorName;
+use crate::sweep_ranges::SweepRanges;
+use engine::reconstruct::source::SensorAddress;
 
 /// Version, and the commit of the build.
 pub const VERSION: &str = env!("VELOMOTION_VERSION");
@@ -69,9 +69,9 @@ pub enum Command {
     /// Measure on this machine what accuracy costs in time
     Tradeoff(Tradeoff),
     /// Show, home, move or stop the tilt axis
-    Tilt(Tilt),
+    Tilt(TiltArguments),
     /// Run the scanner as a service for browsers and other programs
-    Daemon(Daemon),
+    Daemon(DaemonArguments),
     /// Check this machine's scanner setup and suggest fixes
     Doctor,
     /// Run the simulated EPOS2 alone, to develop a client against it
@@ -104,7 +104,7 @@ pub struct Capture {
     pub log: Option<PathBuf>,
     /// Accuracy.
     #[command(flatten)]
-    pub accuracy: Accuracy,
+    pub accuracy: AccuracyArguments,
     /// Output.
     #[command(flatten)]
     pub output: Output,
@@ -135,10 +135,10 @@ pub struct Replay {
     pub organised: bool,
     /// Packet decoding.
     #[command(flatten)]
-    pub lidar: Lidar,
+    pub lidar: LidarArguments,
     /// Accuracy.
     #[command(flatten)]
-    pub accuracy: Accuracy,
+    pub accuracy: AccuracyArguments,
     /// Output.
     #[command(flatten)]
     pub output: Output,
@@ -185,14 +185,14 @@ fn effect_or_all() -> PossibleValuesParser {
 
 /// Requested accuracy.
 #[derive(Clone, Copy, Debug, Default, Args)]
-pub struct Accuracy {
+pub struct AccuracyArguments {
     /// Tolerated point error at a distance, such as 2mm@20m: selects the cheapest sufficient method
     /// [default: the most accurate]
     #[arg(long, value_name = "LENGTH@DISTANCE", allow_hyphen_values = true)]
     pub tolerance: Option<Tolerance>,
 }
 
-impl Accuracy {
+impl AccuracyArguments {
     /// The accuracy requested from the scanner.
     #[must_use]
     pub fn wanted(&self) -> scanner::Accuracy {
@@ -203,10 +203,10 @@ impl Accuracy {
 
 /// Packet decoding.
 #[derive(Clone, Debug, Default, Args)]
-pub struct Lidar {
+pub struct LidarArguments {
     /// Lidar to use if the recording holds several
     #[arg(long, value_name = "ADDRESS[:PORT]")]
-    pub sensor: Option<SensorName>,
+    pub sensor: Option<SensorAddress>,
     /// Model, if neither the factory byte nor the timing of the packets identifies it
     #[arg(long, value_enum)]
     pub model: Option<ModelName>,
@@ -263,7 +263,7 @@ impl From<TimeArgument> for replay::TimeReference {
     }
 }
 
-impl Lidar {
+impl LidarArguments {
     /// The request to the engine.
     #[must_use]
     pub fn request(&self) -> DecoderRequest {
@@ -397,7 +397,7 @@ pub struct Analyze {
         value_name = "KEY=FROM..TO[/N][,...]",
         allow_hyphen_values = true
     )]
-    pub sweep: Option<Sweep>,
+    pub sweep: Option<SweepRanges>,
     /// Folder for a report: page (index.html), figures (SVG), curves (CSV) and analyze.json
     #[arg(long, value_name = "DIR", conflicts_with = "sweep")]
     pub report: Option<PathBuf>,
@@ -428,7 +428,7 @@ pub struct Tradeoff {
 
 /// `daemon`.
 #[derive(Clone, Copy, Debug, Args)]
-pub struct Daemon {
+pub struct DaemonArguments {
     /// Address and port to listen on; port 0 selects a free one [default: the configuration's,
     /// 127.0.0.1:8016]
     #[arg(long, value_name = "ADDRESS:PORT")]
@@ -437,7 +437,7 @@ pub struct Daemon {
 
 /// `tilt`.
 #[derive(Clone, Debug, Args)]
-pub struct Tilt {
+pub struct TiltArguments {
     /// Request to the axis.
     #[command(subcommand)]
     pub verb: TiltVerb,

@@ -4,5 +4,29 @@ pub mod cli;
 pub mod commands;
 pub mod logging;
 pub mod signals;
+pub mod sweep_ranges;
 pub mod tables;
 pub mod terminal;
+
+use cli::{Cli, Command};
+use commands::CommandOutput;
+use engine::failure::Failure;
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Failure`] without a result.
+pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
+    match &cli.command {
+        Command::Capture(arguments) => commands::capture::run(arguments, &cli.common),
+        Command::Replay(arguments) => commands::replay::run(arguments, &cli.common),
+        Command::Simulate(arguments) => commands::simulate::run(arguments, &cli.common),
+        Command::Info(arguments) => commands::info::run(arguments),
+        Command::Analyze(arguments) => commands::analyze::run(arguments, &cli.common),
+        Command::Tradeoff(arguments) => commands::tradeoff::run(arguments, &cli.common),
+        Command::Tilt(arguments) => commands::tilt::run(arguments, &cli.common),
+        Command::Daemon(arguments) => commands::daemon::run(arguments, &cli.common),
+        Command::Doctor => commands::doctor::run(&cli.common),
+        Command::FirmwareSim(arguments) => commands::firmware_sim::run(arguments, &cli.common),
+    }
+}

@@ -88,29 +88,29 @@ fn with_priority(priority: u8, text: &str) -> String {
 struct Journal;
 
 /// Writer of one event.
-struct Event {
+struct JournalLine {
     priority: u8,
 }
 
 impl<'a> MakeWriter<'a> for Journal {
-    type Writer = Event;
+    type Writer = JournalLine;
 
-    fn make_writer(&'a self) -> Event {
-        Event { priority: ERROR }
+    fn make_writer(&'a self) -> JournalLine {
+        JournalLine { priority: ERROR }
     }
 
-    fn make_writer_for(&'a self, about: &Metadata<'_>) -> Event {
+    fn make_writer_for(&'a self, about: &Metadata<'_>) -> JournalLine {
         let priority = match *about.level() {
             Level::ERROR => ERROR,
             Level::WARN => 4,
             Level::INFO => 6,
             _ => 7,
         };
-        Event { priority }
+        JournalLine { priority }
     }
 }
 
-impl Write for Event {
+impl Write for JournalLine {
     /// Receives an event in a single call.
     fn write(&mut self, text: &[u8]) -> io::Result<usize> {
         let lines = with_priority(self.priority, &String::from_utf8_lossy(text));

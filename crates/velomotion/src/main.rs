@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use engine::failure::{Failure, Kind};
 use velomotion::cli::{Cli, Common};
-use velomotion::commands::{self, CommandOutput};
+use velomotion::commands::CommandOutput;
 use velomotion::logging;
 use velomotion::terminal::to_stderr;
 
@@ -14,7 +14,7 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     keep_words_whole();
     start_log(&cli.common);
-    let (said, failure) = match commands::run(&cli) {
+    let (said, failure) = match velomotion::run(&cli) {
         Ok(mut said) => {
             let failure = said.failure.take();
             (Some(said), failure)

@@ -13,12 +13,12 @@ use crate::cli::Common;
 pub struct Progress {
     quiet: bool,
     terminal: bool,
-    sweep: Option<Sweep>,
+    sweep: Option<MoveBar>,
     run: Option<ProgressBar>,
 }
 
 /// A move in progress.
-struct Sweep {
+struct MoveBar {
     bar: ProgressBar,
     plan: MovePlan,
     started: Option<Stamp<Host>>,
@@ -62,7 +62,7 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template("{bar:40} {msg}") {
             bar.set_style(style);
         }
-        self.sweep = Some(Sweep {
+        self.sweep = Some(MoveBar {
             bar,
             plan: *plan,
             started: None,

@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 
 use daemon::client::Client;
 use velomotion::cli::{self, Cli, Common};
-use velomotion::commands;
 
 /// What makes this program a daemon.
 pub const ARGUMENT: &str = "--be-a-daemon";
@@ -25,7 +24,7 @@ pub struct Process {
 /// Is the daemon of a configuration, as the command is.
 pub fn be(path: &str) -> i32 {
     let cli = Cli {
-        command: cli::Command::Daemon(cli::Daemon {
+        command: cli::Command::Daemon(cli::DaemonArguments {
             listen: Some(([127, 0, 0, 1], 0).into()),
         }),
         common: Common {
@@ -36,7 +35,7 @@ pub fn be(path: &str) -> i32 {
             verbose: 1,
         },
     };
-    match commands::run(&cli) {
+    match velomotion::run(&cli) {
         Ok(_) => 0,
         Err(failure) => {
             eprintln!("{failure}");

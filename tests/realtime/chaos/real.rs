@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use engine::capture::request::CaptureRequest;
+use engine::capture_request::CaptureRequest;
 use engine::service::scan_record::{ScanState, ScanView};
 use serde_json::Value;
 use tempfile::TempDir;

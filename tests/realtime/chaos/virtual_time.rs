@@ -5,9 +5,9 @@ use std::fs::File;
 
 use daemon::scans::{LOG, Scans};
 use drive::DriveError;
-use engine::capture::log_recorder::LogCounts;
-use engine::capture::request::CaptureRequest;
+use engine::capture::log_recorder::CaptureCounts;
 use engine::capture::run::RecordingEnd;
+use engine::capture_request::CaptureRequest;
 use engine::devices::drive_session::SessionError;
 use engine::service::scan_record::ScanState;
 use io::recording::Recording;
@@ -90,7 +90,7 @@ fn last_packet(captured: &Captured) -> Option<Stamp<Host>> {
 
 /// The recording is over: its cloud waits to be made.
 fn done(scans: &Scans, id: &str, ended: Result<(), SessionError>) -> Result<(), String> {
-    let counts = LogCounts {
+    let counts = CaptureCounts {
         lidar: io::udp::ListenCounts::default(),
         log: io::log::RecorderCounts::default(),
     };

@@ -7,7 +7,7 @@ use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::Response;
-use engine::capture::request::CaptureRequest;
+use engine::capture_request::CaptureRequest;
 use engine::failure::{Failure, Kind};
 use engine::service::events::Event;
 use engine::service::scan_record::check_name;

@@ -16,7 +16,7 @@ use prometheus_client::registry::Registry;
 use super::Api;
 use super::refusal::{Reason, Refusal};
 use crate::state::DaemonState;
-use engine::service::status::{AxisTask, DeviceState};
+use engine::service::status::{AxisTask, DeviceHealth};
 
 /// `GET /metrics`.
 pub async fn metrics(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
@@ -47,7 +47,7 @@ impl Collector for Figures {
     fn encode(&self, mut encoder: DescriptorEncoder<'_>) -> fmt::Result {
         let status = self.0.service.status();
         let (drive, lidar, disk) = (&status.drive, &status.lidar, &status.disk);
-        let connected = |state| f64::from(u8::from(state == DeviceState::Connected));
+        let connected = |state| f64::from(u8::from(state == DeviceHealth::Connected));
         let gauges = [
             (
                 "drive_connected",

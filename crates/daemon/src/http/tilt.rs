@@ -6,7 +6,7 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
-use engine::capture::jog::{JogRequest, Report};
+use engine::capture::jog::{AxisReport, JogRequest};
 use engine::service::{DeviceService, Stopped};
 use serde::{Deserialize, Serialize};
 
@@ -49,7 +49,7 @@ pub struct StoppedCommand {
 #[serde(untagged)]
 pub enum StopAnswer {
     /// Of a daemon: the drive's state.
-    Report(Box<Report>),
+    Report(Box<AxisReport>),
     /// Of a command.
     Command(StoppedCommand),
 }

@@ -12,7 +12,7 @@ use crate::failure::{Failure, Kind};
 
 /// State of the drive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct AxisReport {
     /// Name of the device's profile.
     pub device: String,
     /// The drive's state (CiA 402).
@@ -36,14 +36,14 @@ pub struct Report {
     /// Whether the home switch is pressed.
     pub home_switch: bool,
     /// The error history, newest first.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<DriveFault>,
     /// Whether the drive is software.
     pub simulated: bool,
 }
 
 /// An entry of the error history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Fault {
+pub struct DriveFault {
     /// Four hexadecimal digits.
     pub code: String,
     /// Name in the Firmware Specification.
@@ -57,7 +57,7 @@ pub struct Fault {
 /// A request to look at or move the axis outside a capture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JogRequest {
-    /// Report the state; nothing moves.
+    /// AxisReport the state; nothing moves.
     Status,
     /// Find the zero position at the limit switch.
     Home,
@@ -154,7 +154,7 @@ pub fn run<P: Port>(
     }
 }
 
-impl Report {
+impl AxisReport {
     /// The report on the drive called `device`.
     #[must_use]
     pub fn new(device: &str, status: &DriveStatus, simulated: bool) -> Self {
@@ -180,9 +180,9 @@ impl Report {
 
 /// A fault of the drive with its meaning and remedy.
 #[must_use]
-pub fn fault(error: DeviceError) -> Fault {
+pub fn fault(error: DeviceError) -> DriveFault {
     let meaning = error.meaning();
-    Fault {
+    DriveFault {
         code: format!("{:04X}", error.0),
         name: meaning.map(|m| m.name.to_owned()),
         meaning: meaning.map(|m| m.meaning.to_owned()),

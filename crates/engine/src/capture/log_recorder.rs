@@ -23,7 +23,7 @@ pub struct CaptureLog {
 
 /// Counts of a recording.
 #[derive(Clone, Copy, Debug)]
-pub struct LogCounts {
+pub struct CaptureCounts {
     /// Packets received, and dropped by the kernel.
     pub lidar: ListenCounts,
     /// Records in the log.
@@ -89,13 +89,13 @@ impl CaptureLog {
     /// # Errors
     /// [`Kind::Incomplete`] where the log could not be written completely or the lidar's socket
     /// failed; what was written stays.
-    pub fn finish(self, waiting: &mut dyn FnMut()) -> Result<LogCounts, Failure> {
+    pub fn finish(self, waiting: &mut dyn FnMut()) -> Result<CaptureCounts, Failure> {
         let counts = self.lidar.record_to(None);
         let log = self
             .log
             .finish_while(waiting)
             .map_err(|e| log_failure(&e))?;
-        Ok(LogCounts {
+        Ok(CaptureCounts {
             lidar: since(counts?, self.before),
             log,
         })

@@ -2,83 +2,40 @@
 
 use std::path::PathBuf;
 
-use scanner::{Accuracy, ScanConfig, SweepPlan, Tolerance};
-use serde::{Deserialize, Serialize};
+use scanner::{Accuracy, ScanConfig, SweepPlan};
 use units::{DegPerS, DegPerS2, Degrees};
 
 use crate::capture::moves::{self as motion, Step, SweepRequest};
+use crate::capture_request::{CaptureRequest, MAX_SWEEPS};
 use crate::config::{Config, Device};
 use crate::devices::profile as devices;
 use crate::devices::simulated;
 use crate::failure::{Failure, Kind};
 
-/// A requested capture. Absent values default to those of the axis or the device.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CaptureRequest {
-    /// Cruise speed of the tilt axis, degrees per second.
-    pub speed_deg_s: f64,
-    /// Angle where the sweep starts, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub from_deg: Option<f64>,
-    /// Angle where the sweep ends, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub to_deg: Option<f64>,
-    /// Acceleration, degrees per second squared.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub accel_deg_s2: Option<f64>,
-    /// Number of sweeps; 2 if `both_ways`, else 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sweeps: Option<u32>,
-    /// Whether the return move is a sweep too.
-    #[serde(default)]
-    pub both_ways: bool,
-    /// Tolerated point error at a distance, such as `2mm@20m`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tolerance: Option<String>,
-    /// Name of the scan, if it is stored by name.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
-}
-
-/// Upper limit of the sweeps per capture.
-pub const MAX_SWEEPS: u32 = 10_000;
-
-impl CaptureRequest {
-    /// Requested accuracy of the cloud.
-    ///
-    /// # Errors
-    /// [`Kind::Usage`] for an invalid tolerance.
-    pub fn accuracy(&self) -> Result<Accuracy, Failure> {
-        let Some(text) = &self.tolerance else {
-            return Ok(Accuracy::Best);
-        };
-        let tolerance: Result<Tolerance, _> = text.parse();
-        tolerance.map(Accuracy::Within).map_err(|error| {
-            Failure::new(Kind::Usage, format!("tolerance: {error}"))
-                .help("give a length at a distance, such as 2mm@20m")
-        })
+/// The sweeps with the defaults of this axis and device filled in.
+fn sweep_request(
+    request: &CaptureRequest,
+    config: &Config,
+    device: &Device,
+) -> Result<SweepRequest, Failure> {
+    let sweeps = request
+        .sweeps
+        .unwrap_or(if request.both_ways { 2 } else { 1 });
+    if !(1..=MAX_SWEEPS).contains(&sweeps) {
+        return Err(Failure::new(
+            Kind::Usage,
+            format!("sweeps: expected 1 to {MAX_SWEEPS}, got {sweeps}"),
+        )
+        .help("run several captures"));
     }
-
-    /// The sweeps with the defaults of this axis and device filled in.
-    fn sweep_request(&self, config: &Config, device: &Device) -> Result<SweepRequest, Failure> {
-        let sweeps = self.sweeps.unwrap_or(if self.both_ways { 2 } else { 1 });
-        if !(1..=MAX_SWEEPS).contains(&sweeps) {
-            return Err(Failure::new(
-                Kind::Usage,
-                format!("sweeps: expected 1 to {MAX_SWEEPS}, got {sweeps}"),
-            )
-            .help("run several captures"));
-        }
-        Ok(SweepRequest {
-            from: Degrees(self.from_deg.unwrap_or(config.axis.max_deg)),
-            to: Degrees(self.to_deg.unwrap_or(config.axis.min_deg)),
-            speed: DegPerS(self.speed_deg_s),
-            acceleration: DegPerS2(self.accel_deg_s2.unwrap_or(device.accel_deg_s2)),
-            sweeps,
-            both_ways: self.both_ways,
-        })
-    }
+    Ok(SweepRequest {
+        from: Degrees(request.from_deg.unwrap_or(config.axis.max_deg)),
+        to: Degrees(request.to_deg.unwrap_or(config.axis.min_deg)),
+        speed: DegPerS(request.speed_deg_s),
+        acceleration: DegPerS2(request.accel_deg_s2.unwrap_or(device.accel_deg_s2)),
+        sweeps,
+        both_ways: request.both_ways,
+    })
 }
 
 /// A checked capture: moves, files, metadata.
@@ -118,7 +75,7 @@ impl CapturePlan {
         log: PathBuf,
     ) -> Result<Self, Failure> {
         let axis = devices::axis(&config.axis)?;
-        let sweep_request = request.sweep_request(config, device)?;
+        let sweep_request = sweep_request(request, config, device)?;
         let steps = motion::steps(&sweep_request, &axis, Degrees(config.axis.homing.to_deg))?;
         let simulated = devices::simulated(device);
         Ok(Self {

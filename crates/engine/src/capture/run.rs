@@ -16,7 +16,7 @@ use sim::Truth;
 use units::{Degrees, Host, Stamp};
 
 use crate::capture::completeness::{self, SilenceWatch};
-use crate::capture::log_recorder::{CaptureLog, LogCounts};
+use crate::capture::log_recorder::{CaptureCounts, CaptureLog};
 use crate::capture::moves::{self, MoveProgress, Step};
 use crate::capture::request::CapturePlan;
 use crate::devices::drive_session::{Session, SessionError};
@@ -84,7 +84,7 @@ pub enum CaptureEvent<'a> {
 /// The end of a recording: motion and log, either of which may have failed.
 pub struct RecordingEnd {
     motion: Result<(), SessionError>,
-    log: Result<LogCounts, Failure>,
+    log: Result<CaptureCounts, Failure>,
     /// Why the capture itself stopped the axis.
     stopped: Option<Failure>,
 }
@@ -253,7 +253,10 @@ pub fn cloud(
 impl RecordingEnd {
     /// The end of a motion and of its log.
     #[must_use]
-    pub const fn new(motion: Result<(), SessionError>, log: Result<LogCounts, Failure>) -> Self {
+    pub const fn new(
+        motion: Result<(), SessionError>,
+        log: Result<CaptureCounts, Failure>,
+    ) -> Self {
         Self {
             motion,
             log,
@@ -373,8 +376,8 @@ fn add_help(failure: Failure, line: &str) -> Failure {
     failure.help(help)
 }
 
-fn reception(counts: &LogCounts) -> Reception {
-    let LogCounts { lidar, log } = counts;
+fn reception(counts: &CaptureCounts) -> Reception {
+    let CaptureCounts { lidar, log } = counts;
     Reception {
         packets: lidar.data + lidar.position,
         dropped_by_kernel: lidar.dropped,
@@ -384,12 +387,12 @@ fn reception(counts: &LogCounts) -> Reception {
     }
 }
 
-fn lost_records(counts: &LogCounts) -> u64 {
+fn lost_records(counts: &CaptureCounts) -> u64 {
     counts.lidar.dropped + counts.log.dropped + counts.log.refused
 }
 
 /// The failure of a recording with losses.
-fn loss(counts: &LogCounts) -> Option<Failure> {
+fn loss(counts: &CaptureCounts) -> Option<Failure> {
     let losses = [
         (
             counts.lidar.dropped,

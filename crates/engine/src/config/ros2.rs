@@ -4,7 +4,7 @@
 
 use serde::Deserialize;
 
-use crate::capture::request::CaptureRequest;
+use crate::capture_request::CaptureRequest;
 
 /// Longest name or address, bytes.
 const LONGEST: usize = 200;

@@ -15,7 +15,7 @@ use io::udp::{GATHER, LidarListener, ListenCounts, UdpError};
 use protocol::record::{Record, Wire};
 
 use crate::devices::lidar_sockets::{DATA_PORT, LidarSockets, POSITION_PORT};
-use crate::devices::simulated::Destinations;
+use crate::devices::simulated::LidarPorts;
 use crate::failure::{Failure, Kind};
 
 /// How long packets gather while nobody records them: their times are the kernel's, and rates are
@@ -31,12 +31,12 @@ pub type PacketTap = Box<dyn FnMut(&Record<'_>) + Send>;
 
 /// A lidar that is listened to. Dropped, the listening ends.
 pub struct LidarReceiver {
-    shared: Arc<Shared>,
+    shared: Arc<ReceiverState>,
     thread: Option<JoinHandle<()>>,
 }
 
 #[derive(Default)]
-struct Shared {
+struct ReceiverState {
     /// Set where the thread is to come round.
     turn: AtomicBool,
     stop: AtomicBool,
@@ -46,18 +46,18 @@ struct Shared {
 
 #[derive(Default)]
 struct Requests {
-    waiting: Vec<Request>,
+    waiting: Vec<CountsRequest>,
     failed: Option<Failure>,
 }
 
 /// Where records go from the turn on, if that is to change, and who wants to know the counts at the
 /// turn.
-struct Request {
+struct CountsRequest {
     log: Option<Option<RecorderHandle>>,
     answer: Sender<Result<ListenCounts, Failure>>,
 }
 
-impl Shared {
+impl ReceiverState {
     fn requests(&self) -> MutexGuard<'_, Requests> {
         self.requests.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -69,7 +69,7 @@ impl LidarReceiver {
     /// # Errors
     /// [`Kind::NoDevice`] where the system gives no thread.
     pub fn start(sockets: LidarSockets, onlooker: PacketTap) -> Result<Self, Failure> {
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(ReceiverState::default());
         let theirs = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
             .name("lidar".to_owned())
@@ -124,7 +124,7 @@ impl LidarReceiver {
             if let Some(failure) = &requests.failed {
                 return Err(failure.clone());
             }
-            requests.waiting.push(Request { log, answer });
+            requests.waiting.push(CountsRequest { log, answer });
         }
         self.come_round();
         counts.recv_timeout(TURN_LIMIT).unwrap_or_else(|_| {
@@ -156,7 +156,7 @@ impl Drop for LidarReceiver {
     }
 }
 
-fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &Shared) {
+fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &ReceiverState) {
     let (mut listener, ports) = sockets.into_parts();
     let mut log = None;
     while !shared.stop.load(Ordering::Acquire) {
@@ -189,10 +189,10 @@ fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &Shared) {
 /// Listens until it is to come round.
 fn turn(
     listener: &mut LidarListener,
-    ports: Destinations,
+    ports: LidarPorts,
     log: Option<&RecorderHandle>,
     onlooker: &mut PacketTap,
-    shared: &Shared,
+    shared: &ReceiverState,
 ) -> Result<ListenCounts, UdpError> {
     listener.run(&shared.turn, |record| {
         shared.packets.fetch_add(1, Ordering::Relaxed);
@@ -206,7 +206,7 @@ fn turn(
 
 /// In a log the lidar's packets stand under the ports that they have by the manual, whatever the
 /// socket's was.
-fn with_port_of_the_lidar<'a>(record: &Record<'a>, local: Destinations) -> Record<'a> {
+fn with_port_of_the_lidar<'a>(record: &Record<'a>, local: LidarPorts) -> Record<'a> {
     let mut record = *record;
     if let Wire::Lidar { port, .. } = &mut record.wire {
         if *port == local.data {

@@ -4,7 +4,7 @@ use io::udp::{LidarListener, ListenConfig};
 
 use crate::config::Device;
 use crate::devices::lidar_receiver::lidar_failure;
-use crate::devices::simulated::Destinations;
+use crate::devices::simulated::LidarPorts;
 use crate::failure::Failure;
 
 /// UDP port of data packets (VLP-16 manual, section 9).
@@ -15,7 +15,7 @@ pub const POSITION_PORT: u16 = 8308;
 /// The lidar's sockets, bound; nothing is recorded yet.
 pub struct LidarSockets {
     listener: LidarListener,
-    ports: Destinations,
+    ports: LidarPorts,
 }
 
 /// Where a device's lidar is to be heard.
@@ -40,7 +40,7 @@ impl LidarSockets {
     pub fn bind(config: &ListenConfig) -> Result<Self, Failure> {
         let listener = LidarListener::bind(config).map_err(|error| lidar_failure(&error))?;
         let mut local = listener.sockets().iter().map(|s| s.address().port());
-        let ports = Destinations {
+        let ports = LidarPorts {
             data: local.next().unwrap_or(DATA_PORT),
             position: local.next().unwrap_or(POSITION_PORT),
         };
@@ -49,12 +49,12 @@ impl LidarSockets {
 
     /// The local ports.
     #[must_use]
-    pub fn ports(&self) -> Destinations {
+    pub fn ports(&self) -> LidarPorts {
         self.ports
     }
 
     /// The sockets, and which local ports they have.
-    pub(crate) fn into_parts(self) -> (LidarListener, Destinations) {
+    pub(crate) fn into_parts(self) -> (LidarListener, LidarPorts) {
         (self.listener, self.ports)
     }
 }

@@ -21,7 +21,7 @@ use crate::failure::{Failure, Kind};
 
 /// Where the software lidar sends its packets.
 #[derive(Clone, Copy, Debug)]
-pub struct Destinations {
+pub struct LidarPorts {
     /// Local port that receives data packets.
     pub data: u16,
     /// Local port that receives position packets.
@@ -32,12 +32,12 @@ pub struct Destinations {
 pub struct Simulated {
     port: PathBuf,
     stop: Arc<AtomicBool>,
-    requests: Sender<Request>,
+    requests: Sender<SimulatorRequest>,
     thread: JoinHandle<Result<Truth, SimulatorError>>,
 }
 
 /// What whoever has the devices may want of them.
-enum Request {
+enum SimulatorRequest {
     /// What truly happened so far.
     Truth(Sender<Truth>),
     /// What happened before that is of no interest.
@@ -64,7 +64,7 @@ impl Simulated {
     ///
     /// # Errors
     /// Where the machine gives no pseudo-terminal or no socket.
-    pub fn start(config: RigConfig, to: Destinations) -> Result<Self, Failure> {
+    pub fn start(config: RigConfig, to: LidarPorts) -> Result<Self, Failure> {
         let cannot = |what: &str, error: &dyn std::fmt::Display| {
             Failure::new(Kind::NoDevice, format!("the simulator cannot open {what}: {error}"))
                 .help("see whether this machine gives out pseudo-terminals (/dev/ptmx) and loopback sockets")
@@ -98,14 +98,14 @@ impl Simulated {
     #[must_use]
     pub fn truth(&self) -> Option<Truth> {
         let (answer, truth) = channel();
-        self.requests.send(Request::Truth(answer)).ok()?;
+        self.requests.send(SimulatorRequest::Truth(answer)).ok()?;
         truth.recv().ok()
     }
 
     /// Lets the devices forget what happened before `host`: they may run for days.
     pub fn forget_before(&self, host: Stamp<Host>) {
         // Devices that have failed have nothing to forget.
-        let _ = self.requests.send(Request::Forget(host));
+        let _ = self.requests.send(SimulatorRequest::Forget(host));
     }
 
     /// Whether the devices have failed.
@@ -135,17 +135,17 @@ impl Simulated {
 fn run(
     mut rig: Rig,
     mut pty: Pty,
-    (socket, to): (&UdpSocket, Destinations),
+    (socket, to): (&UdpSocket, LidarPorts),
     stop: &AtomicBool,
-    requests: &Receiver<Request>,
+    requests: &Receiver<SimulatorRequest>,
 ) -> Result<Truth, SimulatorError> {
     let mut buffer = [0; 512];
     while !stop.load(Ordering::Relaxed) {
         while let Ok(request) = requests.try_recv() {
             match request {
                 // Whoever went away needs no answer.
-                Request::Truth(answer) => drop(answer.send(rig.truth())),
-                Request::Forget(host) => rig.forget_before(host),
+                SimulatorRequest::Truth(answer) => drop(answer.send(rig.truth())),
+                SimulatorRequest::Forget(host) => rig.forget_before(host),
             }
         }
         let now = io::clock::now();

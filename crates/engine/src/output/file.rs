@@ -49,9 +49,9 @@ impl<F: Read + Write> Read for Buffered<F> {
 
 /// The file, shared by the writer inside a sink and the commit.
 #[derive(Clone)]
-pub struct Shared(Arc<Mutex<Option<NewFile>>>);
+pub struct SharedFile(Arc<Mutex<Option<NewFile>>>);
 
-impl Shared {
+impl SharedFile {
     pub(super) fn new(file: NewFile) -> Self {
         Self(Arc::new(Mutex::new(Some(file))))
     }
@@ -74,7 +74,7 @@ impl Shared {
     }
 }
 
-impl Write for Shared {
+impl Write for SharedFile {
     fn write(&mut self, bytes: &[u8]) -> stdio::Result<usize> {
         self.with(|file| file.write(bytes))
     }
@@ -84,13 +84,13 @@ impl Write for Shared {
     }
 }
 
-impl Read for Shared {
+impl Read for SharedFile {
     fn read(&mut self, bytes: &mut [u8]) -> stdio::Result<usize> {
         self.with(|file| file.read(bytes))
     }
 }
 
-impl Seek for Shared {
+impl Seek for SharedFile {
     fn seek(&mut self, to: SeekFrom) -> stdio::Result<u64> {
         self.with(|file| file.seek(to))
     }

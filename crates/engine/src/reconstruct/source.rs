@@ -21,12 +21,12 @@ use crate::failure::{Failure, Kind};
 pub struct Source {
     path: PathBuf,
     input: RecordingInput,
-    wanted: Option<SensorName>,
+    wanted: Option<SensorAddress>,
 }
 
 /// Name of a sensor: its address, and its data port if one address has several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SensorName {
+pub struct SensorAddress {
     address: Ipv4Addr,
     port: Option<u16>,
 }
@@ -42,7 +42,7 @@ pub struct Pass {
     pub sensors: Vec<Sensor>,
 }
 
-impl FromStr for SensorName {
+impl FromStr for SensorAddress {
     type Err = String;
 
     /// `ADDRESS` or `ADDRESS:PORT`.
@@ -63,7 +63,7 @@ impl FromStr for SensorName {
     }
 }
 
-impl fmt::Display for SensorName {
+impl fmt::Display for SensorAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.address)?;
         match self.port {
@@ -75,8 +75,8 @@ impl fmt::Display for SensorName {
 
 /// Name of a sensor.
 #[must_use]
-pub fn name(sensor: &Sensor) -> SensorName {
-    SensorName {
+pub fn name(sensor: &Sensor) -> SensorAddress {
+    SensorAddress {
         address: Ipv4Addr::from(sensor.source),
         port: sensor.data_port,
     }
@@ -120,7 +120,7 @@ impl Source {
     ///
     /// # Errors
     /// [`Kind::BadInput`] for a missing, empty or foreign file.
-    pub fn open(path: &Path, wanted: Option<SensorName>) -> Result<Self, Failure> {
+    pub fn open(path: &Path, wanted: Option<SensorAddress>) -> Result<Self, Failure> {
         let input = RecordingInput::open(path, SPOOL_LIMIT).map_err(|error| failure(&error))?;
         let source = Self {
             path: path.to_owned(),
@@ -298,10 +298,10 @@ mod tests {
     #[test]
     fn sensors_are_named_by_address_and_port() {
         for text in ["192.168.1.201", "10.0.0.7:2369"] {
-            assert_eq!(text.parse::<SensorName>().unwrap().to_string(), text);
+            assert_eq!(text.parse::<SensorAddress>().unwrap().to_string(), text);
         }
         for text in ["", "lidar", "10.0.0.7:", "10.0.0.7:70000", "10.0.0:2368"] {
-            assert!(text.parse::<SensorName>().is_err(), "{text}");
+            assert!(text.parse::<SensorAddress>().is_err(), "{text}");
         }
     }
 }

@@ -19,7 +19,7 @@ use super::execute::{lost_port, panic_failure};
 use super::lease::AxisLease;
 use super::status::AxisTask;
 use super::{CaptureResult, DeviceService, Lifetime};
-use crate::capture::jog::{self, Report};
+use crate::capture::jog::{self, AxisReport};
 use crate::capture::request::CapturePlan;
 use crate::devices::drive_port;
 use crate::devices::drive_session::SessionError;
@@ -45,7 +45,7 @@ pub(super) enum Order {
     Jog {
         lease: AxisLease,
         commands: Vec<DriveCommand>,
-        answer: oneshot::Sender<Result<Report, Failure>>,
+        answer: oneshot::Sender<Result<AxisReport, Failure>>,
     },
     /// Opens the devices again after a suspension.
     Reopen,

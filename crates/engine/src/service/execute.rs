@@ -10,9 +10,9 @@ use super::drive_connection::{AxisKnowledge, DriveConnection};
 use super::events::MessageLevel;
 use super::lease::{AxisLease, StopSignal};
 use super::motion_reporter::MotionReporter;
-use super::status::DeviceState;
+use super::status::DeviceHealth;
 use super::{CaptureEnd, CaptureResult, Lifetime, suspension};
-use crate::capture::jog::{self, Fault, Homing, Report};
+use crate::capture::jog::{self, AxisReport, DriveFault, Homing};
 use crate::capture::request::CapturePlan;
 use crate::capture::run::{self, CaptureEvent, CaptureJob, Outcome};
 use crate::devices::drive_port;
@@ -25,7 +25,7 @@ impl Worker {
     pub(super) fn read_state(
         &self,
         connection: &mut DriveConnection,
-    ) -> Result<Report, SessionError> {
+    ) -> Result<AxisReport, SessionError> {
         self.jog(connection, &[], &StopSignal::default())
     }
 
@@ -35,7 +35,7 @@ impl Worker {
         connection: &mut DriveConnection,
         commands: &[DriveCommand],
         stop: &StopSignal,
-    ) -> Result<Report, SessionError> {
+    ) -> Result<AxisReport, SessionError> {
         let service = &self.service;
         connection.drain_stale()?;
         let opened = &mut connection.opened;
@@ -100,9 +100,9 @@ impl Worker {
     }
 
     /// Takes in the drive's report on its state.
-    fn report_status(&self, status: &DriveStatus, axis: AxisKnowledge) -> Report {
+    fn report_status(&self, status: &DriveStatus, axis: AxisKnowledge) -> AxisReport {
         let service = &self.service;
-        let report = Report::new(&service.name, status, service.simulated());
+        let report = AxisReport::new(&service.name, status, service.simulated());
         let gearing = service.axis.gearing;
         let fault = status.state == Some(protocol::epos2::cia402::DeviceState::Fault);
         let problem = fault.then(|| drive_in_fault(report.faults.first()));
@@ -110,8 +110,8 @@ impl Worker {
             // The state of a drive that was not connected to is left as it was.
             if axis == AxisKnowledge::AtRest || (fault && axis == AxisKnowledge::Unknown) {
                 drive.state = match fault {
-                    true => DeviceState::Fault,
-                    false => DeviceState::Connected,
+                    true => DeviceHealth::Fault,
+                    false => DeviceHealth::Connected,
                 };
                 drive.problem = problem;
             }
@@ -130,7 +130,7 @@ impl Worker {
 
     pub(super) fn drive_fault(&self, failure: Failure) {
         self.service.update_drive(|drive| {
-            drive.state = DeviceState::Fault;
+            drive.state = DeviceHealth::Fault;
             drive.problem = Some(failure);
         });
     }
@@ -251,7 +251,7 @@ impl Worker {
 }
 
 /// The problem of a drive in fault, by the newest entry of its error history.
-fn drive_in_fault(newest: Option<&Fault>) -> Failure {
+fn drive_in_fault(newest: Option<&DriveFault>) -> Failure {
     let name = newest.and_then(|fault| fault.name.as_deref());
     let code = newest.map_or("", |fault| fault.code.as_str());
     Failure::new(

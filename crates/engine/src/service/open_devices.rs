@@ -9,17 +9,17 @@ use protocol::record::DriveLink;
 use super::device_thread::{Backoff, Worker};
 use super::drive_connection::DriveConnection;
 use super::events::MessageLevel;
-use super::status::{DeviceState, DriveSnapshot};
+use super::status::{DeviceHealth, DriveSnapshot};
 use super::{DeviceService, Lifetime};
 use crate::config::DeviceKind;
 use crate::devices::drive_port::{self, Looks};
 use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::{LidarSockets, listen_config};
-use crate::devices::simulated::{self, Destinations, Simulated};
+use crate::devices::simulated::{self, LidarPorts, Simulated};
 use crate::failure::{Failure, Kind};
 
 /// UDP port that nothing reads (discard, RFC 863), for a software lidar that is not needed.
-const DISCARD: Destinations = Destinations {
+const DISCARD: LidarPorts = LidarPorts {
     data: 9,
     position: 9,
 };
@@ -66,7 +66,7 @@ impl Worker {
                 self.lidar_retry.failed();
                 self.service.set_receiver(None);
                 self.service.update_lidar(|lidar| {
-                    lidar.state = DeviceState::Fault;
+                    lidar.state = DeviceHealth::Fault;
                     lidar.problem = Some(failure);
                 });
             }
@@ -143,7 +143,7 @@ impl Worker {
         self.service.set_report(None);
         self.service.update_drive(|drive| {
             *drive = DriveSnapshot {
-                state: DeviceState::Absent,
+                state: DeviceHealth::Absent,
                 problem,
                 port: drive.port.take(),
                 ..DriveSnapshot::default()

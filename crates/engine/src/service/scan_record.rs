@@ -4,15 +4,15 @@ use std::ops::{Deref, DerefMut};
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::capture::request::CaptureRequest;
 use crate::capture::run::Outcome;
+use crate::capture_request::CaptureRequest;
 use crate::failure::{Failure, Kind};
 use crate::reconstruct::report::Reception;
 
 /// Longest name of a scan, bytes.
 pub const NAME_BYTES: usize = 60;
 
-/// State of a scan.
+/// ServiceState of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ScanState {
@@ -44,7 +44,7 @@ pub struct ScanHead {
     /// Name given by the user.
     #[serde(default)]
     pub name: Option<String>,
-    /// State.
+    /// ServiceState.
     pub state: ScanState,
     /// Why it is incomplete.
     pub why: Option<Failure>,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::capture::jog::Fault;
+use crate::capture::jog::DriveFault;
 use crate::failure::Failure;
 
 /// What the axis is used for.
@@ -50,10 +50,10 @@ pub struct Activity {
     pub packets: u64,
 }
 
-/// State of a device.
+/// ServiceState of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum DeviceState {
+pub enum DeviceHealth {
     /// Not connected.
     #[default]
     Absent,
@@ -66,15 +66,15 @@ pub enum DeviceState {
 /// The drive.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct DriveSnapshot {
-    /// State.
-    pub state: DeviceState,
+    /// ServiceState.
+    pub state: DeviceHealth,
     /// What is wrong and what to do about it.
     pub problem: Option<Failure>,
     /// Port.
     pub port: Option<String>,
     /// usb, rs232 or can.
     pub link: Option<&'static str>,
-    /// State of the CiA 402 state machine.
+    /// ServiceState of the CiA 402 state machine.
     pub cia402: Option<String>,
     /// Whether the axis is homed.
     pub referenced: bool,
@@ -83,14 +83,14 @@ pub struct DriveSnapshot {
     /// Speed of the axis, degrees per second.
     pub speed_deg_s: f64,
     /// Error history, newest first.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<DriveFault>,
 }
 
 /// The lidar.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LidarStatus {
-    /// State.
-    pub state: DeviceState,
+    /// ServiceState.
+    pub state: DeviceHealth,
     /// What is wrong and what to do about it.
     pub problem: Option<Failure>,
     /// Model.

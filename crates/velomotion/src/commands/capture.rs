@@ -6,8 +6,9 @@ use std::time::SystemTime;
 
 use daemon::client::Client;
 use daemon::local::LocalService;
-use engine::capture::request::{CapturePlan, CaptureRequest};
+use engine::capture::request::CapturePlan;
 use engine::capture::run;
+use engine::capture_request::CaptureRequest;
 use engine::config::{self, Config};
 use engine::default_paths;
 use engine::devices::profile;
@@ -16,7 +17,7 @@ use engine::output::{self, Aside, Target};
 use engine::reconstruct::report::ScanReport;
 
 use super::CommandOutput;
-use super::device_backend::{DaemonCapture, LocalCapture, Recording, record};
+use super::device_backend::{DaemonCapture, LocalCapture, RecordedScan, record};
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::Progress;
@@ -51,7 +52,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
     let stdout = target.is_stdout();
-    let Recording { outcome, truth } = recording;
+    let RecordedScan { outcome, truth } = recording;
     let mut made = run::cloud(
         &plan,
         truth.as_ref(),
@@ -80,7 +81,7 @@ fn record_locally(
     config: Config,
     interrupt: &Arc<AtomicBool>,
     progress: &mut Progress,
-) -> Result<Recording, Failure> {
+) -> Result<RecordedScan, Failure> {
     let device = (plan.name.clone(), plan.device.clone());
     let local = LocalService::start(config, device, true, interrupt)?;
     if let Some(warning) = local.port_warning() {

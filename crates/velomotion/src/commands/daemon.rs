@@ -21,7 +21,7 @@ const SIGNAL_POLL: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 /// [`Failure`] where it cannot start, or its devices' thread is gone.
-pub fn run(arguments: &cli::Daemon, common: &Common) -> Result<CommandOutput, Failure> {
+pub fn run(arguments: &cli::DaemonArguments, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
     let daemon = Daemon::start(Options {
         config: config::load(common.config.as_deref())?,
@@ -48,7 +48,7 @@ pub fn run(arguments: &cli::Daemon, common: &Common) -> Result<CommandOutput, Fa
         return Err(Failure::new(Kind::DeviceFault, "the device thread is gone")
             .help("check that the axis is at rest; run with -vv and report the messages"));
     }
-    Ok(CommandOutput::nothing())
+    Ok(CommandOutput::default())
 }
 
 /// Ends the daemon. A second signal ends the wait for clouds.

@@ -10,8 +10,9 @@ use std::time::{Duration, Instant};
 use daemon::client::Client;
 use daemon::http::tilt::{Goto, StopAnswer};
 use daemon::local::LocalService;
-use engine::capture::request::{CapturePlan, CaptureRequest};
+use engine::capture::request::CapturePlan;
 use engine::capture::run::Outcome;
+use engine::capture_request::CaptureRequest;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, file_failure, overwrite};
 use engine::reconstruct::report;
@@ -35,7 +36,7 @@ const INTERRUPT_POLL: Duration = Duration::from_millis(5);
 const LIDAR_REFRESH: u32 = 20;
 
 /// A recorded capture.
-pub struct Recording {
+pub struct RecordedScan {
     /// What became of it.
     pub outcome: Outcome,
     /// The simulator's truth, of a capture of this process with software devices.
@@ -50,7 +51,7 @@ pub struct CaptureProgress {
     /// The axis, until the recording has ended.
     axis: Option<AxisProgress>,
     /// The end.
-    end: Option<Recording>,
+    end: Option<RecordedScan>,
 }
 
 /// Progress of the axis during a capture.
@@ -85,7 +86,7 @@ pub fn record(
     plan: &CapturePlan,
     interrupt: &AtomicBool,
     progress: &mut Progress,
-) -> Result<Recording, Failure> {
+) -> Result<RecordedScan, Failure> {
     let (mut printed, mut stopped, mut step) = (0, false, 0);
     let begin = Instant::now();
     loop {
@@ -157,7 +158,7 @@ impl CaptureBackend for LocalCapture<'_> {
                 return Ok(CaptureProgress {
                     messages: warnings.map(|line| format!("warning: {line}")).collect(),
                     axis: None,
-                    end: Some(Recording {
+                    end: Some(RecordedScan {
                         outcome: end.outcome,
                         truth: end.truth,
                     }),
@@ -279,7 +280,7 @@ impl CaptureBackend for DaemonCapture<'_> {
         Ok(CaptureProgress {
             messages: details.messages,
             axis: None,
-            end: Some(Recording {
+            end: Some(RecordedScan {
                 outcome: Outcome {
                     failure: details.recording,
                     lost_records: details.lost_records,

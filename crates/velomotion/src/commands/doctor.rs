@@ -36,7 +36,7 @@ enum Verdict {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-struct Report {
+struct Findings {
     findings: Vec<Finding>,
 }
 
@@ -60,7 +60,7 @@ pub fn run(common: &Common) -> Result<CommandOutput, Failure> {
     findings.extend(profiles(&config, &interfaces));
     findings.push(axis(&config.axis));
     findings.push(receive_buffer(&read));
-    let report = Report { findings };
+    let report = Findings { findings };
     let text = text(&report);
     Ok(CommandOutput::result(&report, text))
 }
@@ -222,7 +222,7 @@ fn receive_buffer(read: Sysfs<'_>) -> Finding {
     }
 }
 
-fn text(report: &Report) -> String {
+fn text(report: &Findings) -> String {
     let mut lines = Vec::new();
     for finding in &report.findings {
         let mark = match finding.verdict {

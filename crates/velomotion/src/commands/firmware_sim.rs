@@ -39,7 +39,7 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
     let ended = software_drive::run(simulated::node(&axis), interface, &stop);
     drop(link);
     ended.map_err(|error| failed(&error))?;
-    Ok(CommandOutput::nothing())
+    Ok(CommandOutput::default())
 }
 
 /// Opens a pseudo-terminal with its optional link.

@@ -12,10 +12,11 @@ pub mod simulate;
 pub mod tilt;
 pub mod tradeoff;
 
-use crate::cli::{Cli, Command};
 use engine::failure::Failure;
+use engine::reconstruct::report::ScanReport;
 
 /// Output of a command: one JSON object or text.
+#[derive(Default)]
 pub struct CommandOutput {
     /// Output with `--json`.
     pub json: serde_json::Value,
@@ -29,45 +30,13 @@ pub struct CommandOutput {
     pub is_result: bool,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// [`Failure`] without a result.
-pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
-    match &cli.command {
-        Command::Capture(arguments) => capture::run(arguments, &cli.common),
-        Command::Replay(arguments) => replay::run(arguments, &cli.common),
-        Command::Simulate(arguments) => simulate::run(arguments, &cli.common),
-        Command::Info(arguments) => info::run(arguments),
-        Command::Analyze(arguments) => analyze::run(arguments, &cli.common),
-        Command::Tradeoff(arguments) => tradeoff::run(arguments, &cli.common),
-        Command::Tilt(arguments) => tilt::run(arguments, &cli.common),
-        Command::Daemon(arguments) => daemon::run(arguments, &cli.common),
-        Command::Doctor => doctor::run(&cli.common),
-        Command::FirmwareSim(arguments) => firmware_sim::run(arguments, &cli.common),
-    }
-}
-
 impl CommandOutput {
-    /// No output.
-    const fn nothing() -> Self {
-        Self {
-            json: serde_json::Value::Null,
-            text: String::new(),
-            failure: None,
-            stdout_taken: false,
-            is_result: false,
-        }
-    }
-
     /// Report of an action.
     fn report(report: &impl serde::Serialize, text: String) -> Self {
         Self {
             json: json(report),
             text,
-            failure: None,
-            stdout_taken: false,
-            is_result: false,
+            ..Self::default()
         }
     }
 
@@ -80,18 +49,11 @@ impl CommandOutput {
     }
 
     /// Report on a scan.
-    #[must_use]
-    pub fn scan(
-        scan: &engine::reconstruct::report::ScanReport,
-        failure: Option<Failure>,
-        stdout_taken: bool,
-    ) -> Self {
+    fn scan(scan: &ScanReport, failure: Option<Failure>, stdout_taken: bool) -> Self {
         Self {
-            json: json(scan),
-            text: crate::tables::scan_table(scan),
             failure,
             stdout_taken,
-            is_result: false,
+            ..Self::report(scan, crate::tables::scan_table(scan))
         }
     }
 }

@@ -3,7 +3,7 @@
 use daemon::client::Client;
 use daemon::http::tilt::StopAnswer;
 use daemon::local::LocalService;
-use engine::capture::jog::{self, Report};
+use engine::capture::jog::{self, AxisReport};
 use engine::config;
 use engine::devices::profile;
 use engine::failure::Failure;
@@ -18,7 +18,7 @@ use crate::tables::table;
 ///
 /// # Errors
 /// [`Failure`] where the drive is absent, refuses, or fails.
-pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<CommandOutput, Failure> {
+pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOutput, Failure> {
     let verb = arguments.verb;
     let config = config::load(common.config.as_deref())?;
     let (name, device) = profile::choose(&config, common.device.as_deref())?;
@@ -47,7 +47,7 @@ pub fn run(arguments: &cli::Tilt, common: &Common) -> Result<CommandOutput, Fail
 }
 
 /// The report as the verb shows it.
-fn output(verb: &TiltVerb, report: &Report, simulated: &str) -> CommandOutput {
+fn output(verb: &TiltVerb, report: &AxisReport, simulated: &str) -> CommandOutput {
     let text = match verb {
         TiltVerb::Faults { .. } => faults_table(report),
         _ => status_table(report, simulated),
@@ -60,7 +60,7 @@ fn output(verb: &TiltVerb, report: &Report, simulated: &str) -> CommandOutput {
     }
 }
 
-fn status_table(report: &Report, simulated: &str) -> String {
+fn status_table(report: &AxisReport, simulated: &str) -> String {
     let yes = |on: bool| if on { "pressed" } else { "free" };
     let angle = match report.angle_deg {
         Some(angle) => format!("{angle:.4} deg"),
@@ -94,7 +94,7 @@ fn status_table(report: &Report, simulated: &str) -> String {
     table(rows)
 }
 
-fn faults_table(report: &Report) -> String {
+fn faults_table(report: &AxisReport) -> String {
     if report.faults.is_empty() {
         return "no faults in the drive's history".to_owned();
     }

@@ -29,7 +29,6 @@ pub use report::{
     AnalyzeReport, BinReport, Blind, Density, DeviceReport, GapReport, HoleReport, KReport,
     PatternReport,
 };
-pub use sweep::Sweep;
 pub use view::Seen;
 
 use super::CommandOutput;

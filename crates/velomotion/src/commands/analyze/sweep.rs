@@ -6,7 +6,6 @@
 //! of the bins (sd over mean).
 
 use std::fmt::Write;
-use std::str::FromStr;
 use std::sync::atomic::AtomicBool;
 
 use analysis::density::{
@@ -20,32 +19,13 @@ use sim::patterns::{Pattern, PatternRequest};
 use super::input::pattern_failure;
 use super::text::number;
 use super::{Measure, failure, go_on};
+use crate::sweep_ranges::SweepRanges;
 use crate::terminal::Progress;
 use engine::failure::{Failure, Kind};
 
-/// Parameters to vary.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sweep {
-    ranges: Vec<SettingRange>,
-}
-
-/// One parameter with its range.
-#[derive(Clone, Debug, PartialEq)]
-struct SettingRange {
-    key: String,
-    from: f64,
-    to: f64,
-    steps: usize,
-}
-
-/// Default number of steps.
-const STEPS: usize = 8;
-/// Upper limit on settings.
-const MOST: usize = 10_000;
-
 /// Report on all settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SweepReport {
+pub struct SettingsReport {
     /// Pattern as named by the user.
     pub pattern: String,
     /// Varied parameters, in the order of `values`.
@@ -77,96 +57,7 @@ pub struct SweepSetting {
     pub best_evenness: bool,
 }
 
-impl FromStr for Sweep {
-    type Err = String;
-
-    /// `KEY=FROM..TO[/N]`, several with commas.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let ranges: Vec<SettingRange> = text
-            .split(',')
-            .map(SettingRange::from_str)
-            .collect::<Result<_, _>>()?;
-        for (place, range) in ranges.iter().enumerate() {
-            if ranges
-                .iter()
-                .take(place)
-                .any(|other| other.key == range.key)
-            {
-                return Err(format!("{}: expected one range of it, got two", range.key));
-            }
-        }
-        let settings = ranges
-            .iter()
-            .try_fold(1_usize, |all, range| all.checked_mul(range.steps));
-        match settings {
-            Some(1..=MOST) => Ok(Self { ranges }),
-            _ => Err(format!("expected at most {MOST} settings in all")),
-        }
-    }
-}
-
-impl FromStr for SettingRange {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("expected KEY=FROM..TO or KEY=FROM..TO/STEPS, got {text:?}");
-        let (key, range) = text.split_once('=').ok_or_else(wrong)?;
-        if matches!(key, "tilt" | "seam") {
-            return Err(format!(
-                "{key} is no number and has no range: set it in the pattern's name, as in velomotion16:50,{}",
-                if key == "tilt" {
-                    "tilt=stepped"
-                } else {
-                    "seam=once"
-                }
-            ));
-        }
-        let (range, steps) = match range.split_once('/') {
-            Some((range, steps)) => (range, steps.parse().map_err(|_| wrong())?),
-            None => (range, STEPS),
-        };
-        let (from, to) = range.split_once("..").ok_or_else(wrong)?;
-        let number = |text: &str| text.parse::<f64>().ok().filter(|n| n.is_finite());
-        let (from, to) = (
-            number(from).ok_or_else(wrong)?,
-            number(to).ok_or_else(wrong)?,
-        );
-        if steps == 0 || (steps == 1 && from != to) {
-            return Err(format!(
-                "{key}: expected at least 2 steps from {from} to {to}"
-            ));
-        }
-        // A single value is a single setting.
-        let steps = if from == to { 1 } else { steps };
-        let key = key.to_owned();
-        Ok(Self {
-            key,
-            from,
-            to,
-            steps,
-        })
-    }
-}
-
-impl SettingRange {
-    /// Value of a step: geometric if both ends are positive, else linear. Both ends are exact.
-    fn value(&self, step: usize) -> f64 {
-        if step == 0 {
-            return self.from;
-        }
-        if step + 1 >= self.steps {
-            return self.to;
-        }
-        let share = step as f64 / (self.steps - 1) as f64;
-        if self.from > 0.0 && self.to > 0.0 {
-            self.from * (self.to / self.from).powf(share)
-        } else {
-            self.from + (self.to - self.from) * share
-        }
-    }
-}
-
-impl Sweep {
+impl SweepRanges {
     /// Measures all settings of one named pattern.
     ///
     /// # Errors
@@ -177,7 +68,7 @@ impl Sweep {
         measure: &Measure,
         mut progress: Progress,
         interrupt: &AtomicBool,
-    ) -> Result<SweepReport, Failure> {
+    ) -> Result<SettingsReport, Failure> {
         let [name] = inputs else {
             let what = format!(
                 "--sweep tries settings of one pattern, not of {}",
@@ -200,7 +91,7 @@ impl Sweep {
         progress.end_run();
         settings.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
         mark(&mut settings);
-        Ok(SweepReport {
+        Ok(SettingsReport {
             pattern: name.clone(),
             keys: self.ranges.iter().map(|range| range.key.clone()).collect(),
             settings,
@@ -282,7 +173,7 @@ fn mark(settings: &mut [SweepSetting]) {
     }
 }
 
-impl SweepReport {
+impl SettingsReport {
     /// Table of the settings on the fronts.
     #[must_use]
     pub fn text(&self) -> String {
@@ -339,7 +230,7 @@ mod tests {
 
     #[test]
     fn ranges_are_read_and_their_ends_met() {
-        let sweep: Sweep = "speed=5..56.25,start=-90..90/5".parse().unwrap();
+        let sweep: SweepRanges = "speed=5..56.25,start=-90..90/5".parse().unwrap();
         let [speed, start] = sweep.ranges.as_slice() else {
             panic!("{sweep:?}");
         };
@@ -366,19 +257,23 @@ mod tests {
             "speed=5..6/x",
             "speed=5..inf",
         ] {
-            assert!(text.parse::<Sweep>().is_err(), "{text}");
+            assert!(text.parse::<SweepRanges>().is_err(), "{text}");
         }
-        let many = "speed=1..2/101,rpm=1..2/100".parse::<Sweep>();
+        let many = "speed=1..2/101,rpm=1..2/100".parse::<SweepRanges>();
         assert_eq!(many.unwrap_err(), "expected at most 10000 settings in all");
-        let twice = "rpm=300..600,rpm=600..900".parse::<Sweep>();
+        let twice = "rpm=300..600,rpm=600..900".parse::<SweepRanges>();
         assert_eq!(twice.unwrap_err(), "rpm: expected one range of it, got two");
-        let tilt = "tilt=1..2".parse::<Sweep>().unwrap_err();
+        let tilt = "tilt=1..2".parse::<SweepRanges>().unwrap_err();
         assert!(
             tilt.contains("tilt is no number") && tilt.contains("tilt=stepped"),
             "{tilt}"
         );
         for one in ["speed=5..5/1", "speed=5..5", "speed=5..5/9"] {
-            assert_eq!(one.parse::<Sweep>().unwrap().ranges[0].steps, 1, "{one}");
+            assert_eq!(
+                one.parse::<SweepRanges>().unwrap().ranges[0].steps,
+                1,
+                "{one}"
+            );
         }
     }
 
