@@ -75,20 +75,20 @@ pub enum Either {
 
 /// Every row of the table, in its order.
 pub const ROWS: [&str; 15] = [
-    "nothing",
-    "the link to the drive, or the drive",
-    "USB gone, or the program killed, as the drive sees it",
+    "no fault",
+    "drive or its link",
+    "drive loses its client",
     "lidar packets lost",
-    "lidar gone",
-    "the host's clock set",
-    "the lidar's clock set",
-    "killed: a log that ends anywhere",
+    "lidar silent",
+    "host clock set",
+    "lidar clock set",
+    "killed: log cut off at any byte",
     "Ctrl-C",
-    "USB gone (real)",
-    "lidar gone (real)",
+    "USB unplugged (real)",
+    "lidar silent (real)",
     "lidar packets lost (real)",
-    "kill -9 and restarted (real)",
-    "SIGTERM and restarted (real)",
+    "kill -9 and restart (real)",
+    "SIGTERM and restart (real)",
     "disk full (real)",
 ];
 

@@ -1,4 +1,4 @@
-//! What came of the faults, as docs/src/chaos.md shows it.
+//! Results per fault, the table of docs/src/chaos.md.
 
 use std::fmt;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use engine::service::scan_record::ScanState;
 use crate::plan::ROWS;
 use crate::real::{Came, Made};
 
-/// Where the page's table stands.
+/// Markers around the table in the page.
 const MARKS: (&str, &str) = ("<!-- table -->\n", "<!-- end of the table -->");
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,7 +20,7 @@ struct Row {
     safe_after: Option<Duration>,
 }
 
-/// A row a fault.
+/// Results, one row per fault.
 #[derive(Clone, Debug)]
 pub struct Table([Row; ROWS.len()]);
 
@@ -31,7 +31,7 @@ impl Default for Table {
 }
 
 impl Table {
-    /// One more capture.
+    /// Counts one capture.
     pub fn count(&mut self, row: usize, made: Made) {
         let row = &mut self.0[row];
         *match made.came {
@@ -43,7 +43,7 @@ impl Table {
         row.safe_after = row.safe_after.max(made.safe_after);
     }
 
-    /// Writes it into the page.
+    /// Replaces the table in the page.
     pub fn bless(&self) {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/src/chaos.md");
         let page = std::fs::read_to_string(path).unwrap();
@@ -57,7 +57,7 @@ impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "| fault | captures | whole | partial | failed | skipped | the axis safe again after at most |"
+            "| fault | captures | whole | partial | failed | skipped | longest time until the axis is safe |"
         )?;
         writeln!(f, "|---|---|---|---|---|---|---|")?;
         for (name, row) in ROWS.iter().zip(&self.0) {

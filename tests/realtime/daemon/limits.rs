@@ -38,7 +38,7 @@ fn the_book_states_the_limits() {
             ),
         ),
         (
-            "of those from one other host, without the token",
+            "of these, from one other host without the token",
             format!("{SHARE}; one more takes the place of the oldest"),
         ),
         (
@@ -46,14 +46,17 @@ fn the_book_states_the_limits() {
             format!("{LOCAL_CONNECTIONS}; one more takes the place of the oldest"),
         ),
         (
-            "silence of a client that is sent the page that signs in",
+            "time without reading, client at the sign-in page",
             seconds(waits.write),
         ),
         ("WebSocket clients", SUBSCRIBERS.to_string()),
         ("messages queued for a client", limits::QUEUE.to_string()),
-        ("a message of a client", kib(limits::CLIENT_MESSAGE_BYTES)),
         (
-            "silence of a WebSocket client (it must answer pings)",
+            "message of a WebSocket client",
+            kib(limits::CLIENT_MESSAGE_BYTES),
+        ),
+        (
+            "time without a message or pong of a WebSocket client",
             seconds(waits.silence),
         ),
         (
@@ -62,23 +65,23 @@ fn the_book_states_the_limits() {
         ),
         ("downloads", format!("{DOWNLOADS} at once")),
         (
-            "silence of a client that downloads, or is sent anything else",
+            "time without reading, any other client",
             seconds(waits.download),
         ),
         (
-            "browsers signed in",
+            "signed-in browsers",
             format!("{}, the oldest is forgotten", limits::SIGNED_IN),
         ),
-        ("points of a live frame", thousands(limits::FRAME_POINTS)),
+        ("points of a live message", thousands(limits::FRAME_POINTS)),
         (
-            "records that wait for the live view",
+            "records queued for the live view",
             format!(
-                "{}, more are left out of it",
+                "{}, more are omitted from it",
                 thousands(limits::WAITING_RECORDS)
             ),
         ),
         (
-            "sentences kept of a scan",
+            "messages stored per scan",
             format!("{}, the first ones", limits::MESSAGES),
         ),
         ("name of a scan", format!("{} bytes", limits::NAME_BYTES)),
