@@ -193,7 +193,7 @@ impl Page {
                 let place = self.picture("failed").await;
                 eprintln!(
                     "what happened: {}",
-                    self.run("return document.querySelector('#said')?.innerText")
+                    self.run("return document.querySelector('#messages')?.innerText")
                         .await
                 );
                 panic!("{css} is {text:?}, not {what}; {}", place.display());

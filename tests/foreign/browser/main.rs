@@ -126,11 +126,9 @@ fn a_scan_is_started_seen_and_counted() {
             .map(|text| points(text.as_str().unwrap()))
             .max();
         assert!(most.unwrap_or(0) > said / 2, "{most:?} of {said} live");
-        let residual = page
-            .until_has("#last-facts", "Clock, packets above it")
-            .await;
+        let residual = page.until_has("#last-facts", "Clock residual").await;
         assert!(
-            residual.contains("Angle by") && residual.contains("\u{b5}s"),
+            residual.contains("Angle method") && residual.contains("\u{b5}s"),
             "{residual}"
         );
         page.until_true("document.querySelector('.scan img.thumb')?.naturalWidth === 324")

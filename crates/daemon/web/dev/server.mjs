@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// The page without a daemon: the API with made-up data, for working on the page. What counts is `velomotion daemon` with its simulator.
-// node dev/server.mjs PORT [CLOUD.ply] ; /dev/MODE changes what it pretends: idle, live, fault, absent, gone, token.
+// Serves the page and an API with artificial data, for work on the page without a daemon.
+// node dev/server.mjs PORT [CLOUD.ply] ; /dev/MODE selects a mode: idle, live, fault, absent, gone, token.
 import { createHash } from "node:crypto";
 import { readFileSync, statSync } from "node:fs";
 import { createServer } from "node:http";

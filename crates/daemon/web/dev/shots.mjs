@@ -1,12 +1,12 @@
 #!/usr/bin/env node
-// Pictures of the page as the made-up server shows it: node dev/shots.mjs http://127.0.0.1:8017 FOLDER. Needs chromedriver and chromium.
+// Screenshots of the page on the development server: node dev/shots.mjs http://127.0.0.1:8017 FOLDER. Needs chromedriver and chromium.
 import { spawn } from "node:child_process";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 
 const [root, folder] = [process.argv[2] ?? "http://127.0.0.1:8017", process.argv[3] ?? "shots"];
 const only = process.argv[4];
 mkdirSync(folder, { recursive: true });
-const audit = readFileSync(new URL("../../../../tests/browser/audit.js", import.meta.url), "utf8");
+const audit = readFileSync(new URL("../../../../tests/foreign/browser/audit.js", import.meta.url), "utf8");
 const DRIVER = 9517;
 const driver = spawn("chromedriver", [`--port=${DRIVER}`], { stdio: "ignore" });
 const wait = (ms) => new Promise((done) => setTimeout(done, ms));

@@ -1,6 +1,6 @@
-// What the daemon is asked and what it answers (docs: The daemon). Left out: how anything looks.
+// Requests to the daemon and its answers (docs: The daemon).
 
-/** What is wrong, and what to do. */
+/** An error and its remedy. */
 export interface Problem {
   error: string;
   help?: string | null;
@@ -28,7 +28,7 @@ export interface Status {
   activity: {
     doing: Doing;
     scan?: string | null;
-    /** The axis searches its home: first of all in a capture. */
+    /** The axis is homing, also at the start of a capture. */
     homes?: boolean;
     /** From 1; 0 before the first move. */
     step?: number | null;
@@ -36,7 +36,7 @@ export interface Status {
     from_deg?: number | null;
     to_deg?: number | null;
     left_s?: number | null;
-    /** Of the lidar, in this capture. */
+    /** Lidar packets in this capture. */
     packets?: number | null;
   };
   drive: {
@@ -65,7 +65,7 @@ export interface Status {
     min_deg: number;
     max_deg: number;
     max_speed_deg_s: number;
-    /** One turn of the motor a minute. */
+    /** Speed at 1 rpm of the motor. */
     min_speed_deg_s?: number;
     max_accel_deg_s2: number;
     accel_deg_s2: number;
@@ -81,8 +81,8 @@ export interface Status {
   };
 }
 
-/** What a capture is asked to do; only the speed is needed. */
-export interface Asked {
+/** Request of a capture; only the speed is required. */
+export interface CaptureRequest {
   speed_deg_s: number;
   from_deg?: number;
   to_deg?: number;
@@ -100,13 +100,13 @@ export interface Scan {
   name?: string | null;
   state: ScanState;
   why?: Problem | null;
-  /** Whether its cloud is made once the disk has room. */
+  /** Whether the cloud is made when the disk has room. */
   waits_for_room?: boolean;
-  /** Why it is incomplete and what there is of it, in sentences. */
+  /** Why the scan is incomplete and what exists of it, as sentences. */
   summary?: string | null;
   started_s: number;
   simulated: boolean;
-  asked?: { [key in keyof Asked]?: Asked[key] | null } | null;
+  asked?: { [key in keyof CaptureRequest]?: CaptureRequest[key] | null } | null;
   points?: number | null;
   duration_s?: number | null;
   bytes?: number | null;
@@ -116,7 +116,7 @@ export interface Scan {
   report?: Report | null;
 }
 
-/** Of `capture --json`, what the page shows. */
+/** The part of `capture --json` that the page shows. */
 export interface Report {
   lost_packets?: number;
   lost_records?: number;
@@ -132,25 +132,25 @@ export interface Report {
   truth?: { rms_m: number; worst_m: number } | null;
 }
 
-/** What a capture would be. */
+/** Plan of a capture. */
 export interface Plan {
   motor_rpm: number;
   cruise_deg_s: number;
   sweep_s: number;
   /** All moves, without homing. */
   moves_s: number;
-  /** Tilt between two turns of the lidar; null while its speed is not known. */
+  /** Tilt per revolution of the lidar; null while its speed is unknown. */
   step_deg?: number | null;
-  /** Mean vertical resolution: what all lasers see in a sweep, shared by the lasers in all turns. */
+  /** Mean vertical resolution: the elevation range seen in a sweep over the number of scan lines. */
   resolution_deg?: number | null;
-  /** Before the first move, about; null while the axis does not know where it is. */
+  /** Approximate duration of homing before the first move; null while the angle is unknown. */
   homing_s?: number | null;
   frames?: number | null;
   bytes: number;
 }
 
-/** A request that was refused or went wrong, in the daemon's own words. */
-export class Refused extends Error {
+/** A refused or failed request, with the daemon's error message. */
+export class RequestError extends Error {
   readonly help: string | null;
   readonly status: number;
 
@@ -163,8 +163,8 @@ export class Refused extends Error {
 
 const ROOT = "/api/v1/";
 
-/** Asks; throws `Refused` with what to do next. */
-export async function ask<T>(method: string, path: string, body?: unknown): Promise<T> {
+/** Sends a request; throws `RequestError` with the remedy. */
+export async function sendRequest<T>(method: string, path: string, body?: unknown): Promise<T> {
   const init: RequestInit = { method, credentials: "same-origin", cache: "no-store" };
   if (body !== undefined) {
     init.headers = { "content-type": "application/json" };
@@ -174,13 +174,13 @@ export async function ask<T>(method: string, path: string, body?: unknown): Prom
   try {
     answer = await fetch(path.startsWith("/") ? path : ROOT + path, init);
   } catch {
-    const help = "see whether it runs, and whether this device still reaches it";
-    throw new Refused({ error: "the daemon does not answer", help }, 0);
+    const help = "check that it runs and that this device can reach it";
+    throw new RequestError({ error: "the daemon does not answer", help }, 0);
   }
   const text = await answer.text();
-  const said = parse(text);
-  if (!answer.ok) throw new Refused(problem(said, text, answer.status), answer.status);
-  return said as T;
+  const body_json = parse(text);
+  if (!answer.ok) throw new RequestError(problem(body_json, text, answer.status), answer.status);
+  return body_json as T;
 }
 
 function parse(text: string): unknown {
@@ -191,29 +191,29 @@ function parse(text: string): unknown {
   }
 }
 
-function problem(said: unknown, text: string, status: number): Problem {
-  if (typeof said === "object" && said !== null && "error" in said) return said as Problem;
+function problem(json: unknown, text: string, status: number): Problem {
+  if (typeof json === "object" && json !== null && "error" in json) return json as Problem;
   return { error: text.slice(0, 200) || `the daemon answers ${status}` };
 }
 
 export const api = {
-  status: () => ask<Status>("GET", "status"),
+  status: () => sendRequest<Status>("GET", "status"),
   scans: async () => {
-    const said = await ask<Scan[] | { scans: Scan[] }>("GET", "scans");
-    return Array.isArray(said) ? said : said.scans;
+    const answer = await sendRequest<Scan[] | { scans: Scan[] }>("GET", "scans");
+    return Array.isArray(answer) ? answer : answer.scans;
   },
-  scan: (id: string) => ask<Scan>("GET", `scans/${encodeURIComponent(id)}`),
-  remove: (id: string) => ask<unknown>("DELETE", `scans/${encodeURIComponent(id)}`),
-  plan: (asked: Asked) => ask<Plan>("GET", `plan?${query(asked)}`),
-  capture: (asked: Asked) => ask<Scan>("POST", "captures", asked),
-  stopCapture: () => ask<unknown>("POST", "captures/stop"),
-  stop: () => ask<unknown>("POST", "tilt/stop"),
-  home: () => ask<unknown>("POST", "tilt/home"),
-  clear: () => ask<unknown>("POST", "tilt/clear"),
-  goto: (to_deg: number, speed_deg_s: number) => ask<unknown>("POST", "tilt/goto", { to_deg, speed_deg_s }),
+  scan: (id: string) => sendRequest<Scan>("GET", `scans/${encodeURIComponent(id)}`),
+  remove: (id: string) => sendRequest<unknown>("DELETE", `scans/${encodeURIComponent(id)}`),
+  plan: (request: CaptureRequest) => sendRequest<Plan>("GET", `plan?${query(request)}`),
+  capture: (request: CaptureRequest) => sendRequest<Scan>("POST", "captures", request),
+  stopCapture: () => sendRequest<unknown>("POST", "captures/stop"),
+  stop: () => sendRequest<unknown>("POST", "tilt/stop"),
+  home: () => sendRequest<unknown>("POST", "tilt/home"),
+  clear: () => sendRequest<unknown>("POST", "tilt/clear"),
+  goto: (to_deg: number, speed_deg_s: number) => sendRequest<unknown>("POST", "tilt/goto", { to_deg, speed_deg_s }),
 };
 
-/** Where a scan's cloud comes from. */
+/** URL of a scan's cloud. */
 export function cloudUrl(id: string, format: string, uncertainty = false): string {
   const more = uncertainty ? "&uncertainty=true" : "";
   return `${ROOT}scans/${encodeURIComponent(id)}/cloud?format=${format}${more}`;
@@ -222,14 +222,14 @@ export function cloudUrl(id: string, format: string, uncertainty = false): strin
 export const logUrl = (id: string) => `${ROOT}scans/${encodeURIComponent(id)}/log`;
 export const thumbnailUrl = (id: string) => `${ROOT}scans/${encodeURIComponent(id)}/thumbnail`;
 
-/** The events' address on this page's own host; every `thin`th live point. */
+/** URL of the events on this page's host, with every `thin`th live point. */
 export function eventsUrl(thin: number): string {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   return `${scheme}://${location.host}${ROOT}events?points=true&thin=${thin}`;
 }
 
-/** What of a request the plan is asked about: it knows neither name nor tolerance. */
-function query(asked: Asked): string {
-  const { name: _name, tolerance: _tolerance, ...rest } = asked;
+/** Query of the plan: the request without name and tolerance. */
+function query(request: CaptureRequest): string {
+  const { name: _name, tolerance: _tolerance, ...rest } = request;
   return new URLSearchParams(Object.entries(rest).map(([key, value]) => [key, String(value)])).toString();
 }

@@ -1,4 +1,4 @@
-// The few lines that stand in for a framework.
+// Helpers for DOM elements.
 
 type Child = Node | string | null | false;
 type Attributes = Record<string, string | number | boolean | ((event: Event) => void)>;
@@ -15,14 +15,14 @@ export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Att
   return element;
 }
 
-/** The element of that id; the page's own HTML has it. */
+/** The element of index.html with that id. */
 export function id<T extends HTMLElement = HTMLElement>(name: string): T {
   const element = document.getElementById(name);
   if (element === null) throw new Error(`no #${name}`);
   return element as T;
 }
 
-/** Writes only what changed, so that screen readers and layout are left alone. */
+/** Sets a changed text only, so that screen readers and layout are not disturbed. */
 export function text(element: Element, words: string): void {
   if (element.textContent !== words) element.textContent = words;
 }

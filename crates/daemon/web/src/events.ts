@@ -1,4 +1,4 @@
-// The WebSocket of events: keeps it open, says at once when it is lost, comes back by itself. Left out: what the events mean.
+// The WebSocket of events: reports a lost connection at once and reconnects automatically.
 
 import { type Scan, type Status, eventsUrl } from "./api.ts";
 import { type Frame, parseFrame } from "./frame.ts";
@@ -10,7 +10,7 @@ export interface Motion {
   packets?: number | null;
 }
 
-export interface Said {
+export interface Message {
   level: "info" | "warning" | "error";
   text: string;
   help?: string | null;
@@ -18,16 +18,16 @@ export interface Said {
 
 export interface Listener {
   opened(): void;
-  /** Lost, and tried again after so many seconds. */
-  lost(again_s: number): void;
+  /** The connection is lost; the next attempt is after `retry_s`. */
+  lost(retry_s: number): void;
   status(status: Status): void;
   motion(motion: Motion): void;
   scan(scan: Scan, deleted: boolean): void;
-  message(said: Said): void;
+  message(message: Message): void;
   points(frame: Frame): void;
 }
 
-/** The daemon says something every second; after so long without a word the line is dead even if nobody closed it. */
+/** The daemon sends a status every second; a connection silent for so long is dead, even if it was never closed. */
 const SILENCE_MS = 4_000;
 const WAITS_S = [0.5, 1, 2, 4, 8];
 
@@ -42,7 +42,7 @@ export class Events {
 
   constructor(private readonly listener: Listener) {}
 
-  /** Of live points every so many-th is sent. */
+  /** Only every n-th live point is sent. */
   get every(): number {
     return this.thin;
   }
@@ -53,22 +53,22 @@ export class Events {
     const socket = new WebSocket(eventsUrl(this.thin));
     socket.binaryType = "arraybuffer";
     this.socket = socket;
-    this.listen();
+    this.restart_timeout();
     socket.onopen = () => {
       this.tries = 0;
       this.opened_ms = performance.now();
-      this.listen();
+      this.restart_timeout();
       this.listener.opened();
     };
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
-      this.listen();
+      this.restart_timeout();
       if (typeof event.data === "string") this.text(event.data);
       else this.binary(event.data);
     };
     socket.onclose = () => this.lost(socket);
   }
 
-  /** For good, until `open`. */
+  /** Closes the connection until the next `open`. */
   close(): void {
     clearTimeout(this.silence);
     const socket = this.socket;
@@ -76,7 +76,7 @@ export class Events {
     socket?.close();
   }
 
-  private listen(): void {
+  private restart_timeout(): void {
     clearTimeout(this.silence);
     this.silence = window.setTimeout(() => {
       const socket = this.socket;
@@ -86,7 +86,7 @@ export class Events {
 
   private lost(socket: WebSocket): void {
     if (socket !== this.socket) return;
-    // Cut off in mid-sweep after having worked: this device is too slow for all points, so ask for fewer.
+    // A working connection that is cut off in mid-sweep: this device is too slow for all points, so request fewer.
     const worked = performance.now() - this.opened_ms > 1_000 && this.tries === 0;
     if (this.capturing && worked) this.thin = Math.min(64, this.thin * 4);
     this.close();
@@ -114,7 +114,7 @@ export class Events {
       case "scan":
         return this.listener.scan(event["scan"] as Scan, event["deleted"] === true);
       case "message":
-        return this.listener.message(event as unknown as Said);
+        return this.listener.message(event as unknown as Message);
     }
   }
 

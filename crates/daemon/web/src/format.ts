@@ -1,4 +1,4 @@
-// Numbers, sizes and moments for people, in the page's own language (English) and the reader's own time zone.
+// Formats numbers, sizes and times in English and the reader's time zone.
 
 const whole = new Intl.NumberFormat("en", { maximumFractionDigits: 0 });
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
@@ -14,7 +14,7 @@ export function fixed(n: number, decimals: number): string {
   return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "\u2212");
 }
 
-/** With so many significant digits, without trailing zeros. */
+/** With a number of significant digits, without trailing zeros. */
 export function digits(n: number, significant = 3): string {
   return String(Number(n.toPrecision(significant))).replace("-", "\u2212");
 }
@@ -26,7 +26,7 @@ export function bytes(n: number): string {
   return `${unit === 0 ? size : size.toPrecision(3)} ${units[unit]}`;
 }
 
-/** With a capital at its begin and a stop at its end. */
+/** With a capital letter at the start and a full stop at the end. */
 export function sentence(text: string): string {
   const stop = /[.!?]$/.test(text) ? "" : ".";
   return text.charAt(0).toUpperCase() + text.slice(1) + stop;

@@ -1,4 +1,4 @@
-// Points as they are measured: the binary messages of the events (docs: The daemon, Events). Left out: what is done with them.
+// Live points: the binary messages of the events (docs: The daemon, Events).
 
 const HEAD_BYTES = 32;
 const POINT_BYTES = 22;
@@ -6,14 +6,14 @@ const MOST_POINTS = 16_384;
 /** "VMP1", little-endian. */
 const MAGIC = 0x31504d56;
 
-/** Columns of some points. Lengths: 3 N of positions, N of the others. */
+/** Points as columns: 3 N positions, N of each other value. */
 export interface Columns {
   count: number;
   /** Metres. */
   positions: Float32Array;
   /** Seconds after the cloud's or frame's first point. */
   times: Float32Array;
-  /** Metres; empty where nobody worked it out. */
+  /** Metres; empty if not computed. */
   sds: Float32Array;
   intensities: Uint8Array;
   rings: Uint8Array;
@@ -24,12 +24,12 @@ export interface Frame extends Columns {
   start_s: number;
   /** Within the scan, from 0. */
   number: number;
-  /** Records left out of the live cloud so far. */
+  /** Records omitted from the live cloud so far. */
   left_out: number;
   tilt_deg: number;
 }
 
-/** A frame, or null where the bytes are none. The columns are views into `bytes`. */
+/** Parses a frame; null if the bytes are not a frame. The columns are views into `bytes`. */
 export function parseFrame(bytes: ArrayBuffer): Frame | null {
   if (bytes.byteLength < HEAD_BYTES) return null;
   const head = new DataView(bytes);

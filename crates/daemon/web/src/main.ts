@@ -1,6 +1,6 @@
-// The page: ties what the daemon says to what is shown. Each part of it is a file in panels/ or view/.
+// The page: passes the daemon's events to the panels and the view.
 
-import { type Scan, type Status, Refused, api, ask } from "./api.ts";
+import { type Scan, type Status, RequestError, api, sendRequest } from "./api.ts";
 import { id, show, text } from "./dom.ts";
 import { Events, type Listener } from "./events.ts";
 import { count } from "./format.ts";
@@ -12,7 +12,7 @@ import * as signin from "./panels/signin.ts";
 import * as sweep from "./panels/sweep.ts";
 import { Viewer } from "./viewer.ts";
 
-/** The newest scan is put in view by itself if it is not larger than this. */
+/** Largest newest scan that is opened automatically. */
 const SMALL_POINTS = 3_000_000;
 
 let viewer: Viewer | null = null;
@@ -35,12 +35,12 @@ const listener: Listener = {
     control.setConnected(true);
     void list();
   },
-  lost(again_s) {
-    if (connected) alarm("Connection to the daemon lost. The scanner goes on by itself.");
+  lost(retry_s) {
+    if (connected) alarm("Connection to the daemon lost. A running scan continues.");
     connected = false;
     control.setConnected(false);
     devices.setLink("Offline", "bad");
-    text(id("lost"), `Connection to the daemon lost: what is shown is old, the scanner goes on by itself. Trying again${again_s >= 1 ? ` every ${again_s} s` : ""}.`);
+    text(id("lost"), `Connection to the daemon lost: displayed values are old. A running scan continues. Reconnecting${retry_s >= 1 ? ` in ${retry_s} s` : ""}.`);
     show(id("lost"), true);
     void probe();
   },
@@ -71,8 +71,8 @@ const listener: Listener = {
     if (scan.state === "recording" && before !== "recording") viewer?.begin(scan.id, scan.name || scan.id, scan.simulated);
     if (before !== scan.state) void finished(scan);
   },
-  message(said) {
-    note(said.level, said.text, said.help);
+  message(message) {
+    note(message.level, message.text, message.help);
   },
   points(frame) {
     viewer?.frame(frame, events.every);
@@ -81,11 +81,11 @@ const listener: Listener = {
 
 const events = new Events(listener);
 
-/** A scan that came to its end: said, measured up, and shown if it was watched. */
+/** Reports the end of a scan, and opens its cloud if the scan is in view. */
 async function finished(scan: Scan): Promise<void> {
   if (scan.state === "recording" || scan.state === "making") return;
   const title = scan.name || scan.id;
-  if (scan.state === "whole") announce(`Scan ${title} is whole: ${count(scan.points ?? 0)} points`);
+  if (scan.state === "whole") announce(`Scan ${title} is complete: ${count(scan.points ?? 0)} points`);
   else note(scan.state === "failed" ? "error" : "warning", `Scan ${title} ${scan.state === "failed" ? "has no cloud" : "is partial"}.`, scan.summary);
   if (viewer?.shown === scan.id) {
     if (scan.state === "failed") viewer.ended(scan.id, title, scan.simulated);
@@ -94,14 +94,14 @@ async function finished(scan: Scan): Promise<void> {
   await last();
 }
 
-/** Clock and angle of the newest scan that has a cloud. */
+/** Shows clock and angle of the newest scan with a cloud. */
 async function last(): Promise<void> {
   const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
   if (newest === undefined) return devices.setLast(null);
   try {
-    const whole = await api.scan(newest.id);
-    scans.set(whole);
-    devices.setLast(whole);
+    const scan = await api.scan(newest.id);
+    scans.set(scan);
+    devices.setLast(scan);
   } catch {
     devices.setLast(newest);
   }
@@ -118,12 +118,12 @@ async function list(): Promise<void> {
   }
 }
 
-/** Whether the daemon wants a token, which a WebSocket that is refused does not tell. */
+/** Checks whether the daemon requires a token; a refused WebSocket does not give the reason. */
 async function probe(): Promise<void> {
   try {
     listener.status(await api.status());
   } catch (error) {
-    if (error instanceof Refused && error.status === 401) {
+    if (error instanceof RequestError && error.status === 401) {
       events.close();
       show(id("lost"), false);
       devices.setLink("Sign in", "warn");
@@ -132,21 +132,21 @@ async function probe(): Promise<void> {
   }
 }
 
-/** Which formats this daemon makes: its own description says. */
+/** Reads the daemon's cloud formats from its API description. */
 async function formats(): Promise<void> {
   try {
-    const description = await ask<{ paths?: Record<string, { get?: { parameters?: { name: string; schema?: { enum?: string[] } }[] } }> }>("GET", "openapi.json");
+    const description = await sendRequest<{ paths?: Record<string, { get?: { parameters?: { name: string; schema?: { enum?: string[] } }[] } }> }>("GET", "openapi.json");
     const path = Object.entries(description.paths ?? {}).find(([name]) => name.endsWith("/cloud"))?.[1];
     const known = path?.get?.parameters?.find((parameter) => parameter.name === "format")?.schema?.enum;
     if (known !== undefined && known.length > 0) scans.setFormats(known);
   } catch {
-    // The usual ones are offered then.
+    // The default list remains.
   }
 }
 
 control.wire(() => {
-  const asked = sweep.asked();
-  if (asked !== null) void control.command("Start", () => api.capture(asked));
+  const capture = sweep.capture_request();
+  if (capture !== null) void control.command("Start", () => api.capture(capture));
 });
 sweep.wire();
 scans.wire((scan) => {
@@ -157,7 +157,7 @@ signin.wire(() => {
   events.open();
   void formats();
 });
-// A phone that was in a pocket comes back at once.
+// A phone that wakes up reconnects at once.
 document.addEventListener("visibilitychange", () => {
   if (!document.hidden && !connected) events.open();
 });

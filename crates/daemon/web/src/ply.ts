@@ -1,5 +1,4 @@
-// Binary little-endian PLY as it comes over the wire: header, then rows in whatever pieces the network gives. Pure: no worker, no DOM.
-// Left out: ASCII, big-endian, lists, faces.
+// Incremental parser of binary little-endian PLY, without lists and faces. It needs neither worker nor DOM.
 
 import type { Columns } from "./frame.ts";
 
@@ -7,7 +6,7 @@ const SIZES: Record<string, number> = {
   char: 1, int8: 1, uchar: 1, uint8: 1, short: 2, int16: 2, ushort: 2, uint16: 2,
   int: 4, int32: 4, uint: 4, uint32: 4, float: 4, float32: 4, double: 8, float64: 8,
 };
-/** A header longer than this is none. */
+/** Longest accepted header. */
 const MOST_HEADER_BYTES = 65_536;
 
 type Get = (view: DataView, at: number) => number;
@@ -31,7 +30,7 @@ function getter(kind: string, offset: number): Get {
   }
 }
 
-/** Reads the header's lines; throws where it is of another kind of PLY. */
+/** Parses the header; throws for other kinds of PLY. */
 export function parseHeader(text: string): Header {
   const header: Header = { count: -1, rowBytes: 0, columns: new Map() };
   let element = "";
@@ -56,7 +55,7 @@ export function parseHeader(text: string): Header {
   return header;
 }
 
-/** Bytes in, batches of points out. */
+/** Turns bytes into batches of points. */
 export class PlyReader {
   private rest: Uint8Array = new Uint8Array(0);
   private header: Header | null = null;
@@ -66,7 +65,7 @@ export class PlyReader {
   /** Points in a batch. */
   constructor(private readonly batch: number) {}
 
-  /** Points that the header promises; null before it is read. */
+  /** Number of points in the header; null before it is read. */
   get count(): number | null {
     return this.header?.count ?? null;
   }
@@ -76,7 +75,7 @@ export class PlyReader {
     return this.read;
   }
 
-  /** Takes a piece, gives the whole batches that are there by now. */
+  /** Takes bytes and yields the complete batches. */
   *push(piece: Uint8Array): Generator<Columns> {
     const bytes = new Uint8Array(this.rest.length + piece.length);
     bytes.set(this.rest);
@@ -86,21 +85,21 @@ export class PlyReader {
     yield* this.batches(this.batch);
   }
 
-  /** The rows after the last whole batch; throws where the file is cut off. */
+  /** Yields the rows after the last complete batch; throws if the file is cut off. */
   *end(): Generator<Columns> {
     if (this.header === null) throw new Error("PLY: no header");
     yield* this.batches(1);
-    if (this.read < this.header.count) throw new Error(`PLY: ${this.read} of ${this.header.count} points, then nothing`);
+    if (this.read < this.header.count) throw new Error(`PLY: ${this.read} of ${this.header.count} points, then the file ends`);
   }
 
   private takeHeader(): boolean {
     const start = new TextDecoder("latin1").decode(this.rest.subarray(0, MOST_HEADER_BYTES));
     const end = /end_header\r?\n/.exec(start);
     if (end === null) {
-      if (!"ply".startsWith(start.slice(0, 3)) || this.rest.length >= MOST_HEADER_BYTES) throw new Error("PLY: this is none");
+      if (!"ply".startsWith(start.slice(0, 3)) || this.rest.length >= MOST_HEADER_BYTES) throw new Error("not a PLY file");
       return false;
     }
-    if (!start.startsWith("ply")) throw new Error("PLY: this is none");
+    if (!start.startsWith("ply")) throw new Error("not a PLY file");
     this.header = parseHeader(start.slice(0, end.index));
     this.rest = this.rest.subarray(end.index + end[0].length);
     return true;
@@ -110,8 +109,8 @@ export class PlyReader {
     const header = this.header;
     if (header === null) return;
     for (;;) {
-      const there = Math.floor(this.rest.length / header.rowBytes);
-      const take = Math.min(there, this.batch, header.count - this.read);
+      const available = Math.floor(this.rest.length / header.rowBytes);
+      const take = Math.min(available, this.batch, header.count - this.read);
       const last = this.read + take === header.count;
       if (take === 0 || (take < least && !last)) return;
       yield this.rows(header, take);

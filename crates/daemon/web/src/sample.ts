@@ -1,4 +1,4 @@
-// What range of values a colour map is to span: found in a sample of the points, so that single outliers do not stretch it.
+// Value ranges of the colour maps, from quantiles of a sample, so that outliers do not stretch them.
 
 import type { Columns } from "./frame.ts";
 
@@ -7,22 +7,22 @@ export interface Range {
   high: number;
 }
 
-/** For each way of colouring, the range; `sd` null where no point has one. */
+/** The range of each field; `sd` is null if the cloud lacks it. */
 export interface Ranges {
   height: Range;
   intensity: Range;
   ring: Range;
   time: Range;
   sd: Range | null;
-  /** Where a ceiling begins, if there is one; metres above the tilt axis. */
+  /** Height of the ceiling's lower edge above the tilt axis, metres; null without a ceiling. */
   ceiling_m: number | null;
-  /** Distance from the scanner within which 97 % of the points are, metres. */
+  /** Radius around the scanner with 97 % of the points, metres. */
   reach_m: number;
 }
 
 const MOST = 8_192;
 
-/** A sample of bounded size: every `stride`th point, the stride doubled whenever it is full. */
+/** A sample of bounded size: every `stride`th point; the stride doubles when the sample is full. */
 export class Sample {
   private heights: number[] = [];
   private intensities: number[] = [];
@@ -75,7 +75,7 @@ export class Sample {
 
 const ascending = (values: number[]) => [...values].sort((a, b) => a - b);
 
-/** Many points of nearly one height above all others are a ceiling. */
+/** Detects a ceiling: many points at nearly the greatest height. */
 function ceiling(sorted: number[]): number | null {
   const top = quantile(sorted, 0.97);
   const begin = top - 0.5;

@@ -1,4 +1,4 @@
-// The view: which cloud is in it, how it is coloured, its tools and legend. Left out: drawing (view/).
+// The view: its cloud, colours, tools and legend. view/ draws it.
 
 import { type Scan, cloudUrl } from "./api.ts";
 import { attribute, id, show, text } from "./dom.ts";
@@ -8,19 +8,19 @@ import type { Range, Ranges } from "./sample.ts";
 import { Live, Loaded } from "./view/cloud.ts";
 import { type MapName, css, table } from "./view/maps.ts";
 import { RING_STEP_M, Stage } from "./view/stage.ts";
-import type { Order, Told } from "./worker.ts";
+import type { LoadRequest, LoadEvent } from "./worker.ts";
 
 type Field = "height" | "intensity" | "ring" | "time" | "sd";
 const FIELDS: Field[] = ["height", "intensity", "ring", "time", "sd"];
 const NOTES: Record<Field, string> = {
-  height: "above the tilt axis", intensity: "as the lidar calibrates it", ring: "0 is the lowest", time: "since the first point", sd: "how far off, RMS expected",
+  height: "above the tilt axis", intensity: "calibrated by the lidar", ring: "0 is the lowest", time: "since the first point", sd: "expected error, RMS",
 };
 /** Phones have less memory on the graphics card. */
 const small = matchMedia("(max-width: 899px)");
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
 export class Viewer {
-  /** The scan in view, or the one that is being measured. */
+  /** The scan in view, finished or running. */
   shown: string | null = null;
   private readonly stage: Stage;
   private begun: string | null = null;
@@ -49,9 +49,9 @@ export class Viewer {
     this.paint();
   }
 
-  /** A scan begins: what is measured from now on is shown. */
+  /** Shows the live points of a new scan. */
   begin(scan: string, title: string, simulated: boolean): void {
-    // Whoever opened another scan meanwhile is not taken away from it.
+    // If the user opened another scan meanwhile, it stays in view.
     if (this.begun === scan) return;
     this.begun = scan;
     this.clear();
@@ -59,23 +59,23 @@ export class Viewer {
     this.live = new Live(this.stage.points, small.matches ? 1_500_000 : 6_000_000);
     this.stage.scene.add(this.live.group);
     this.head(`Live: ${title}`, simulated);
-    this.say(0, "");
+    this.describe(0, "");
     this.changed(scan);
   }
 
-  /** A scan that was watched ended without a cloud: what was seen of it stays in view. */
+  /** A scan in view ended without a cloud: its live points stay in view. */
   ended(scan: string, title: string, simulated: boolean): void {
     if (this.live === null || this.live.count === 0) return this.forget(scan);
-    this.head(`${title}: no cloud, as seen live`, simulated);
+    this.head(`${title}: no cloud, live points only`, simulated);
   }
 
-  /** Of live points every `thin`th comes here. */
+  /** Adds live points; the daemon sends every `thin`th. */
   frame(frame: Frame, thin: number): void {
     this.stage.setTilt(frame.tilt_deg);
     const live = this.live;
     if (live === null) return;
     live.add(frame, frame.start_s);
-    this.say(live.received, [thin > 1 ? `every ${thin}th of those measured` : "", live.count < live.received ? `${count(live.count)} drawn` : "", frame.left_out > 0 ? `${count(frame.left_out)} records not shown live, all are recorded` : ""].filter(Boolean).join("; "));
+    this.describe(live.received, [thin > 1 ? `every ${thin}th point` : "", live.count < live.received ? `${count(live.count)} drawn` : "", frame.left_out > 0 ? `${count(frame.left_out)} records not shown live, but recorded` : ""].filter(Boolean).join("; "));
     const now_ms = performance.now();
     if (now_ms - this.legend_ms > 250) {
       this.legend_ms = now_ms;
@@ -88,7 +88,7 @@ export class Viewer {
     this.stage.setTilt(tilt_deg);
   }
 
-  /** Shows a scan from the list. What is in view stays until the new cloud comes, where it is the same scan's live one. */
+  /** Shows a scan from the list. Live points of the same scan stay in view until the cloud is loaded. */
   open(scan: Scan): void {
     const follows = this.live !== null && this.shown === scan.id;
     const again = this.shown === scan.id;
@@ -98,12 +98,12 @@ export class Viewer {
     this.opened = scan;
     if (!again) this.fitted = false;
     this.head(scan.name || scan.id, scan.simulated);
-    text(id("view-note"), follows ? "live so far, the cloud is loading" : "");
+    text(id("view-note"), follows ? "live points; the cloud is loading" : "");
     this.download(scan, this.field === "sd", follows);
     this.changed(scan.id);
   }
 
-  /** The scan is gone: nothing of it stays in view. */
+  /** Removes a deleted scan from the view. */
   forget(scan: string): void {
     if (this.shown !== scan) return;
     this.clear();
@@ -127,13 +127,13 @@ export class Viewer {
     progress.removeAttribute("value");
     show(progress, true);
     if (!follows) this.swap(cloud);
-    worker.onmessage = ({ data }: MessageEvent<Told>) => {
+    worker.onmessage = ({ data }: MessageEvent<LoadEvent>) => {
       if (worker !== this.worker) return;
       if (data.kind === "points") {
         cloud.add(data.columns, data.ranges);
         attribute(progress, "value", String(data.read / Math.max(1, data.total)));
         if (this.loaded !== cloud) return;
-        this.say(data.read, `of ${count(data.total)}`);
+        this.describe(data.read, `of ${count(data.total)}`);
         this.range(data.ranges);
         this.stage.draw();
       } else {
@@ -142,12 +142,12 @@ export class Viewer {
         if (data.kind === "failed") return this.failed(data.error);
         this.swap(cloud);
         this.range(cloud.ranges);
-        this.say(data.total, data.every > 1 ? `every ${data.every}th drawn` : "");
+        this.describe(data.total, data.every > 1 ? `every ${data.every}th drawn` : "");
         this.stage.draw();
       }
     };
-    worker.onerror = () => this.failed("the cloud could not be read");
-    const order: Order = { url: new URL(cloudUrl(scan.id, "ply", uncertainty), location.href).href, most: small.matches ? 3_000_000 : 12_000_000 };
+    worker.onerror = () => this.failed("the cloud cannot be read");
+    const order: LoadRequest = { url: new URL(cloudUrl(scan.id, "ply", uncertainty), location.href).href, most: small.matches ? 3_000_000 : 12_000_000 };
     worker.postMessage(order);
   }
 
@@ -187,7 +187,7 @@ export class Viewer {
     show(id("view-empty"), false);
   }
 
-  private say(points: number, more: string): void {
+  private describe(points: number, more: string): void {
     text(id("view-points"), `${count(points)} points`);
     text(id("view-note"), more);
   }
@@ -207,7 +207,7 @@ export class Viewer {
     this.stage.fit(this.ranges?.reach_m ?? 15, from);
   }
 
-  /** The range and the legend of the chosen field. */
+  /** Updates range and legend of the selected field. */
   private colour(): void {
     const range = this.ranges?.[this.field] ?? null;
     const legend = id("legend");
@@ -232,7 +232,7 @@ export class Viewer {
     text(id("legend-high"), words(of.high));
   }
 
-  /** Colours of the theme and of the chosen map. */
+  /** Applies the colours of the theme and of the selected map. */
   private paint(): void {
     const night = dark.matches;
     const colours = table(this.map, night);
@@ -252,7 +252,7 @@ export class Viewer {
     const field = id<HTMLSelectElement>("field");
     field.addEventListener("change", () => {
       this.field = field.value as Field;
-      // Most clouds are kept without that column; the daemon makes it when asked.
+      // Stored clouds mostly lack that column; the daemon adds it on request.
       if (this.field === "sd" && this.ranges !== null && this.ranges.sd === null && this.opened !== null) this.open(this.opened);
       this.colour();
     });
@@ -270,7 +270,7 @@ export class Viewer {
       const { low, high } = this.ranges?.height ?? { low: -2, high: 10 };
       const all = Number(below.value) === 100;
       const limit = low + ((high - low) * Number(below.value)) / 100;
-      text(id("below-said"), all ? "nothing" : `above ${fixed(limit, 1)} m`);
+      text(id("hidden-heights"), all ? "nothing" : `above ${fixed(limit, 1)} m`);
       this.stage.uniform("below_m", all ? 1e6 : limit);
     });
     const check = (name: string, set: (on: boolean) => void) => {

@@ -1,28 +1,28 @@
-// Downloads and parses a scan's cloud beside the page, so that the page answers meanwhile. Left out: the pictures.
+// Downloads and parses a scan's cloud in a worker, so that the page stays responsive.
 //
-// The points of a batch are shuffled: any beginning of it is then an even sample, which is what is drawn while the view moves.
+// Each batch is shuffled, so that its first points are an even sample, which the moving view draws.
 
 import type { Columns } from "./frame.ts";
 import { PlyReader } from "./ply.ts";
 import { type Ranges, Sample } from "./sample.ts";
 
-export interface Order {
+export interface LoadRequest {
   url: string;
-  /** Points to keep at most; of more, every second, third... is kept. */
+  /** Maximum number of points to keep; larger clouds are thinned evenly. */
   most: number;
 }
 
-export type Told =
+export type LoadEvent =
   | { kind: "points"; columns: Columns; ranges: Ranges; read: number; total: number; every: number }
   | { kind: "done"; read: number; total: number; every: number }
   | { kind: "failed"; error: string; status: number };
 
 const BATCH = 65_536;
 
-/** The worker's own global; the page's types know another. */
+/** The worker's global scope, which the DOM types do not cover. */
 const here = self as unknown as {
-  onmessage: ((event: MessageEvent<Order>) => void) | null;
-  postMessage(told: Told, transfer?: Transferable[]): void;
+  onmessage: ((event: MessageEvent<LoadRequest>) => void) | null;
+  postMessage(event: LoadEvent, transfer?: Transferable[]): void;
 };
 
 here.onmessage = (event) => {
@@ -31,11 +31,11 @@ here.onmessage = (event) => {
   });
 };
 
-async function load(order: Order): Promise<void> {
+async function load(order: LoadRequest): Promise<void> {
   const answer = await fetch(order.url, { credentials: "same-origin" });
   if (!answer.ok || answer.body === null) {
-    const said = (await answer.json().catch(() => null)) as { error?: string; help?: string } | null;
-    const error = [said?.error ?? `the daemon answers ${answer.status}`, said?.help].filter(Boolean).join(": ");
+    const problem = (await answer.json().catch(() => null)) as { error?: string; help?: string } | null;
+    const error = [problem?.error ?? `the daemon answers ${answer.status}`, problem?.help].filter(Boolean).join(": ");
     here.postMessage({ kind: "failed", error, status: answer.status });
     return;
   }
@@ -62,7 +62,7 @@ async function load(order: Order): Promise<void> {
   here.postMessage({ kind: "done", read: ply.done, total, every: Math.max(1, Math.ceil(total / order.most)) });
 }
 
-/** `keep` of the points, in an order drawn by lot, the same lot each time. */
+/** `keep` of the points in a random order, with a fixed seed. */
 function shuffled(columns: Columns, keep: number): Columns {
   const { count } = columns;
   const order = new Uint32Array(count).map((_, i) => i);

@@ -56,7 +56,7 @@ test("a file that is cut off is not whole", () => {
   const bytes = file(250, false);
   assert.throws(() => read(bytes.subarray(0, bytes.length - 1), 64), /249 of 250/);
 });
-test("what is no PLY is refused", () => {
-  assert.throws(() => read(Buffer.from('{"error": "no such scan"}'), 5), /none/);
+test("other files are refused", () => {
+  assert.throws(() => read(Buffer.from('{"error": "no such scan"}'), 5), /not a PLY file/);
   assert.throws(() => read(Buffer.from("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n"), 500), /ascii/);
 });

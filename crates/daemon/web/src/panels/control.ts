@@ -1,6 +1,6 @@
-// Start, home, stop. Stop is never disabled, is the Escape key too, and is sent again until it is answered.
+// Start, home and stop. Stop is never disabled, also has the Escape key, and is repeated until it is answered.
 
-import { type Status, Refused, api } from "../api.ts";
+import { type Status, RequestError, api } from "../api.ts";
 import { attribute, id, show, text } from "../dom.ts";
 import { duration, fixed } from "../format.ts";
 import type { Motion } from "../events.ts";
@@ -22,16 +22,16 @@ let status: Status | null = null;
 let connected = false;
 let asking = false;
 let stopping = false;
-/** Seconds that were left when the move began. */
+/** Duration of the move, seconds. */
 let whole_s = 0;
 let stepped = 0;
 
-export function wire(asked: () => void): void {
+export function wire(start_capture: () => void): void {
   stop.addEventListener("click", () => void halt());
   home.addEventListener("click", () => void command("Home", () => api.home()));
   id("sweep").addEventListener("submit", (event) => {
     event.preventDefault();
-    asked();
+    start_capture();
   });
   document.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || status === null || status.activity.doing === "idle") return;
@@ -40,14 +40,14 @@ export function wire(asked: () => void): void {
   }, { capture: true });
 }
 
-/** Asks for a motion; says what was refused. */
+/** Sends a command and reports its error. */
 export async function command(what: string, go: () => Promise<unknown>): Promise<void> {
   asking = true;
   draw();
   try {
     await go();
   } catch (error) {
-    // A stop by the user ends the motion with an answer of its own; that is no news to whoever pressed it.
+    // A stop by the user ends the motion with an error, which the user need not see.
     if (!stopping) refused(what, error);
   } finally {
     asking = false;
@@ -56,7 +56,7 @@ export async function command(what: string, go: () => Promise<unknown>): Promise
 }
 
 export function refused(what: string, error: unknown): void {
-  if (error instanceof Refused) note("error", `${what}: ${error.message}`, error.help);
+  if (error instanceof RequestError) note("error", `${what}: ${error.message}`, error.help);
   else note("error", `${what}: ${String(error)}`);
 }
 
@@ -67,13 +67,13 @@ async function halt(): Promise<void> {
   try {
     for (let attempt = 1; ; attempt += 1) {
       try {
-        // A capture is stopped so that what was swept is saved; whatever else moves, as it is.
-        if (status?.activity.scan) await api.stopCapture().catch(notNow);
+        // Stopping a capture saves the swept part; other motions are just stopped.
+        if (status?.activity.scan) await api.stopCapture().catch(stopOtherMotion);
         else await api.stop();
         announce("Stopped");
         return;
       } catch (error) {
-        const lost = error instanceof Refused && error.status === 0;
+        const lost = error instanceof RequestError && error.status === 0;
         if (!lost || attempt === STOP_TRIES) return refused("Stop", error);
         await new Promise((again) => setTimeout(again, 200));
       }
@@ -84,9 +84,9 @@ async function halt(): Promise<void> {
   }
 }
 
-/** The scan was over before the daemon heard of it; whatever moves by now is stopped all the same. */
-async function notNow(error: unknown): Promise<unknown> {
-  if (error instanceof Refused && error.status === 409) return api.stop();
+/** The scan had ended before the request arrived; any other motion is stopped nevertheless. */
+async function stopOtherMotion(error: unknown): Promise<unknown> {
+  if (error instanceof RequestError && error.status === 409) return api.stop();
   throw error;
 }
 
@@ -105,16 +105,16 @@ export function setStatus(now: Status): void {
   draw();
 }
 
-/** Twenty times a second: how long it still takes. */
+/** Shows the remaining time; called 20 times a second. */
 export function setMotion(motion: Motion): void {
   const left_s = motion.left_s ?? null;
   if (left_s === null) return;
   whole_s = Math.max(whole_s, left_s);
   progress.value = whole_s > 0 ? 1 - left_s / whole_s : 0;
-  if (status !== null) text(doing, said(status, left_s));
+  if (status !== null) text(doing, activityText(status, left_s));
 }
 
-function said(now: Status, left_s: number | null): string {
+function activityText(now: Status, left_s: number | null): string {
   const { doing: what, homes, step, steps, to_deg } = now.activity;
   if (homes) return WORDS.homing ?? "";
   const parts = [WORDS[what] ?? what];
@@ -124,7 +124,7 @@ function said(now: Status, left_s: number | null): string {
   return parts.join(" \u00b7 ");
 }
 
-/** Why nothing can be begun; null where it can. */
+/** Why no motion can start; null if it can. */
 function obstacle(): string | null {
   if (!connected) return "No connection to the daemon.";
   if (status === null) return "Waiting for the daemon.";
@@ -137,7 +137,7 @@ function obstacle(): string | null {
 function draw(): void {
   const moving = status !== null && status.activity.doing !== "idle" && status.activity.doing !== "connecting";
   const obstacle_now = obstacle();
-  // Homing needs no lidar, and takes the drive out of a fault.
+  // Homing needs no lidar, and clears a fault of the drive.
   const homes = obstacle_now === null || (connected && status !== null && status.drive.state !== "absent");
   start.disabled = asking || moving || obstacle_now !== null;
   home.disabled = asking || moving || !homes;
@@ -147,9 +147,9 @@ function draw(): void {
   attribute(doing, "data-moving", String(moving));
   if (stopping) text(doing, "Stopping");
   else if (!connected) text(doing, "No connection");
-  else if (status !== null) text(doing, obstacle_now !== null && !moving ? "Not ready" : said(status, status.activity.left_s ?? null));
+  else if (status !== null) text(doing, obstacle_now !== null && !moving ? "Not ready" : activityText(status, status.activity.left_s ?? null));
   show(progress, moving);
   const title = !connected ? "No connection" : moving ? (WORDS[status?.activity.doing ?? ""] ?? "Moving") : obstacle_now !== null ? "Not ready" : null;
-  const whole = title === null ? "velomotion" : `${title} \u2013 velomotion`;
-  if (document.title !== whole) document.title = whole;
+  const full = title === null ? "velomotion" : `${title} \u2013 velomotion`;
+  if (document.title !== full) document.title = full;
 }

@@ -1,4 +1,4 @@
-// The two devices: chips at the top, what is wrong and what to do, the tilt gauge, facts. Left out: the buttons (control.ts).
+// The two devices: chips in the header, problems with remedies, the tilt gauge, values. control.ts has the buttons.
 
 import { type Fault, type Problem, type Scan, type Status, api } from "../api.ts";
 import { attribute, h, id, show, text } from "../dom.ts";
@@ -16,7 +16,7 @@ function chip(name: string, words: string, tone: Tone): void {
   text(element, words);
 }
 
-/** A list of facts; what did not change is not touched. */
+/** Updates a list of values; unchanged rows are not touched. */
 function facts(list: HTMLElement, rows: Fact[]): void {
   while (list.children.length > rows.length) list.lastElementChild?.remove();
   rows.forEach(([name, value, tone], i) => {
@@ -53,20 +53,20 @@ export function setStatus(status: Status): void {
 
   const lost = (lidar.lost_packets ?? 0) + (lidar.dropped_by_kernel ?? 0);
   const share = lidar.packets ? lost / (lidar.packets + lost) : 0;
-  const heard: Fact[] = [
+  const lidar_facts: Fact[] = [
     ["Model", [lidar.model, lidar.return_mode].filter(Boolean).join(", ") || "\u2013"],
-    ["Turns", lidar.rpm ? `${count(lidar.rpm)} rpm` : "\u2013"],
+    ["Revolutions", lidar.rpm ? `${count(lidar.rpm)} rpm` : "\u2013"],
     ["Packets", typeof lidar.packets_per_s === "number" ? `${count(lidar.packets_per_s)} /s` : "\u2013", silent ? "warn" : "off"],
-    ["Lost", lost === 0 ? "none" : `${count(lidar.lost_packets ?? 0)} on the way, ${count(lidar.dropped_by_kernel ?? 0)} here (${digits(100 * share, 2)} %)`, lost === 0 ? "off" : "warn"],
+    ["Lost", lost === 0 ? "none" : `${count(lidar.lost_packets ?? 0)} in the network, ${count(lidar.dropped_by_kernel ?? 0)} in this host (${digits(100 * share, 2)} %)`, lost === 0 ? "off" : "warn"],
   ];
-  if (status.activity.doing === "capturing") heard.push(["In this scan", `${count(status.activity.packets ?? 0)} packets`]);
-  facts(id("lidar-facts"), heard);
+  if (status.activity.doing === "capturing") lidar_facts.push(["In this scan", `${count(status.activity.packets ?? 0)} packets`]);
+  facts(id("lidar-facts"), lidar_facts);
   spark(lidar.packets_per_s ?? 0);
   const faults = drive.faults.map(faultWords);
   const rows: Fact[] = [
     ["State", drive.cia402 ?? STATES[drive.state] ?? drive.state, drive.state === "fault" ? "bad" : "off"],
     ["Link", [drive.link, drive.port].filter(Boolean).join(", ") || "\u2013"],
-    ["Angle known", drive.referenced === true ? "yes" : drive.referenced === false ? "no: it homes first" : "\u2013"],
+    ["Angle known", drive.referenced === true ? "yes" : drive.referenced === false ? "no, homing required" : "\u2013"],
   ];
   if (faults.length > 0) rows.push(["Fault history", faults.join("; "), drive.state === "fault" ? "bad" : "off"]);
   if (typeof disk?.free_bytes === "number") {
@@ -76,25 +76,25 @@ export function setStatus(status: Status): void {
   facts(id("drive-facts"), rows);
 }
 
-/** An entry of the drive's error history in words. */
+/** Formats an entry of the drive's error history. */
 function faultWords(fault: Fault): string {
   return [fault.code, fault.name ?? fault.meaning].filter(Boolean).join(" ");
 }
 
 let shown = "";
 
-/** What is wrong with a device, and what to do, above everything else. */
+/** Shows problems of the devices with their remedies, above everything else. */
 function problems(status: Status): void {
   const found: { device: string; state: string; problem: Problem }[] = [];
   for (const [device, of] of [["Drive", status.drive], ["Lidar", status.lidar]] as const) {
     if (of.problem) found.push({ device, state: of.state, problem: of.problem });
-    else if (of.state !== "connected") found.push({ device, state: of.state, problem: { error: of.state === "absent" ? "nothing is heard of it" : "it is in fault" } });
+    else if (of.state !== "connected") found.push({ device, state: of.state, problem: { error: of.state === "absent" ? "not connected" : "in fault" } });
   }
   const now = JSON.stringify([found, status.activity.doing === "connecting"]);
   if (now === shown) return;
   shown = now;
   const list = id("problems");
-  list.replaceChildren(...found.map(({ device, state, problem }) => h("section", { class: "problem", "aria-label": `${device}: what is wrong`, "data-device": device.toLowerCase(), "data-state": state },
+  list.replaceChildren(...found.map(({ device, state, problem }) => h("section", { class: "problem", "aria-label": `Problem: ${device}`, "data-device": device.toLowerCase(), "data-state": state },
     h("h2", {}, `${device} ${STATES[state] ?? state}`),
     h("p", {}, sentence(problem.error)),
     problem.help ? h("p", { class: "todo" }, `What to do: ${problem.help}`) : null,
@@ -113,7 +113,7 @@ export function setMotion(motion: Motion): void {
 
 let marked = "";
 
-/** The arc of the gauge from limit to limit; 0 is level, and the needle is what the lidar turns about. */
+/** Draws the arc of the gauge between the limits. 0 is level; the needle is the lidar's axis of rotation. */
 function marks(min_deg: number, max_deg: number): void {
   const now = `${min_deg} ${max_deg}`;
   if (now === marked) return;
@@ -137,7 +137,7 @@ function marks(min_deg: number, max_deg: number): void {
 
 const rates: number[] = [];
 
-/** Packets a second over the last two minutes. */
+/** Draws the packet rate of the last two minutes. */
 function spark(rate: number): void {
   rates.push(rate);
   if (rates.length > 120) rates.shift();
@@ -146,7 +146,7 @@ function spark(rate: number): void {
   attribute(id("spark").firstElementChild as Element, "d", path);
 }
 
-/** Clock and angle of a scan, with what they may be off by. */
+/** Shows clock and angle of a scan with their error bounds. */
 export function setLast(scan: Scan | null): void {
   const sync = scan?.report?.sync;
   if (!scan || !sync) return facts(id("last-facts"), [["Scan", scan ? (scan.name || scan.id) : "none yet"]]);
@@ -154,13 +154,13 @@ export function setLast(scan: Scan | null): void {
   const add = (name: string, value: number | null | undefined, unit: string, scale = 1) => {
     if (typeof value === "number") rows.push([name, `${digits(value * scale)} ${unit}`]);
   };
-  add("Clock, packets above it", sync.clock_residual_us, "\u00b5s");
-  add("Clock off by at most", sync.clock_bound_us, "\u00b5s");
-  add("Angle, samples agree to", sync.angle_rms_deg, "\u00b0 RMS");
-  add("Angle off by at most", sync.angle_bound_deg, "\u00b0");
-  if (sync.angle_method) rows.push(["Angle by", sync.angle_method]);
+  add("Clock residual", sync.clock_residual_us, "\u00b5s");
+  add("Clock error at most", sync.clock_bound_us, "\u00b5s");
+  add("Angle residual", sync.angle_rms_deg, "\u00b0 RMS");
+  add("Angle error at most", sync.angle_bound_deg, "\u00b0");
+  if (sync.angle_method) rows.push(["Angle method", sync.angle_method]);
   const lost = (scan.report?.lost_packets ?? 0) + (scan.report?.lost_records ?? 0);
   rows.push(["Lost", lost === 0 ? "nothing" : `${count(lost)} packets`, lost === 0 ? "off" : "warn"]);
-  add("Against truth, RMS", scan.report?.truth?.rms_m, "mm", 1e3);
+  add("Error against truth, RMS", scan.report?.truth?.rms_m, "mm", 1e3);
   facts(id("last-facts"), rows);
 }

@@ -1,16 +1,16 @@
-// What is said: to screen readers in few words, and in a list that stays. Left out: standing problems (devices.ts).
+// Messages: short ones for screen readers, and a list. devices.ts shows current problems.
 
 import { h, id } from "../dom.ts";
 
 const MOST = 40;
-const list = id<HTMLOListElement>("said");
+const list = id<HTMLOListElement>("messages");
 const polite = id("announce");
 const urgent = id("alarm");
 const clock = new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit", second: "2-digit" });
 
 let timer = 0;
 
-/** For the ear alone, after a short pause: of several in a row the last counts. */
+/** Announces to screen readers after a short pause; the latest text wins. */
 export function announce(words: string): void {
   clearTimeout(timer);
   timer = window.setTimeout(() => {
@@ -18,17 +18,17 @@ export function announce(words: string): void {
   }, 400);
 }
 
-/** For the ear, at once. */
+/** Announces to screen readers at once. */
 export function alarm(words: string): void {
   urgent.textContent = words;
 }
 
-/** For the list; errors are spoken too. */
+/** Adds a message to the list; errors are announced too. */
 export function note(level: "info" | "warning" | "error", text: string, help?: string | null): void {
   const now = new Date();
-  const whole = help ? `${text}\n${help}` : text;
-  const item = h("li", { "data-level": level }, h("time", { datetime: now.toISOString() }, clock.format(now)), level === "info" ? null : `${level}: `, whole);
+  const full = help ? `${text}\n${help}` : text;
+  const item = h("li", { "data-level": level }, h("time", { datetime: now.toISOString() }, clock.format(now)), level === "info" ? null : `${level}: `, full);
   list.prepend(item);
   while (list.children.length > MOST) list.lastElementChild?.remove();
-  if (level === "error") alarm(whole);
+  if (level === "error") alarm(full);
 }

@@ -1,4 +1,4 @@
-// The list of scans: pictures, opening, downloads, deleting. Left out: drawing a cloud (viewer.ts).
+// The list of scans: pictures, opening, downloads, deleting.
 
 import { type Scan, api, cloudUrl, logUrl, thumbnailUrl } from "../api.ts";
 import { h, id, show, text } from "../dom.ts";
@@ -6,15 +6,15 @@ import { bytes, compact, moment } from "../format.ts";
 import { command } from "./control.ts";
 import { announce } from "./messages.ts";
 
-/** Extensions that the daemon makes clouds in, with what they are good for. */
+/** Cloud formats: extension and displayed name. */
 const FORMATS: [string, string][] = [
   ["ply", "PLY"], ["laz", "LAZ"], ["las", "LAS"], ["pcd", "PCD"], ["e57", "E57"], ["csv", "CSV"], ["mcap", "MCAP (ROS 2)"],
 ];
-const STATES: Record<string, string> = { recording: "recording", making: "making the cloud", whole: "whole", partial: "partial", failed: "no cloud" };
+const STATES: Record<string, string> = { recording: "recording", making: "making the cloud", whole: "complete", partial: "partial", failed: "no cloud" };
 
 const list = id<HTMLUListElement>("scans");
 const scans = new Map<string, Scan>();
-const told = new Set<string>();
+const updated = new Set<string>();
 const cards = new Map<string, { card: HTMLLIElement; drawn: string }>();
 let formats = FORMATS;
 let current: string | null = null;
@@ -24,7 +24,7 @@ export function wire(open: (scan: Scan) => void): void {
   opened = open;
 }
 
-/** Only these formats, where the daemon says which it knows. */
+/** Offers the formats that the daemon supports. */
 export function setFormats(known: string[]): void {
   const names = new Map(FORMATS);
   formats = known.map((format) => [format, names.get(format) ?? format.toUpperCase()]);
@@ -33,23 +33,23 @@ export function setFormats(known: string[]): void {
 export const all = () => [...scans.values()].sort((a, b) => b.started_s - a.started_s);
 export const get = (name: string) => scans.get(name);
 
-/** What was said of a scan while the list was on its way is newer than the list. */
+/** Loads the list. Events received while it was loading are newer than the list. */
 export async function load(list: () => Promise<Scan[]>): Promise<void> {
-  told.clear();
+  updated.clear();
   const now = await list();
-  for (const key of [...scans.keys()]) if (!told.has(key)) scans.delete(key);
-  for (const scan of now) if (!told.has(scan.id)) scans.set(scan.id, scan);
+  for (const key of [...scans.keys()]) if (!updated.has(key)) scans.delete(key);
+  for (const scan of now) if (!updated.has(scan.id)) scans.set(scan.id, scan);
   draw();
 }
 
 export function set(scan: Scan): void {
-  told.add(scan.id);
+  updated.add(scan.id);
   scans.set(scan.id, { ...scans.get(scan.id), ...scan });
   draw();
 }
 
 export function remove(name: string): void {
-  told.add(name);
+  updated.add(name);
   scans.delete(name);
   draw();
 }
@@ -95,7 +95,7 @@ function draw(): void {
 
 function content(scan: Scan): Node[] {
   const title = scan.name || scan.id;
-  const there = scan.state === "whole" || scan.state === "partial";
+  const has_cloud = scan.state === "whole" || scan.state === "partial";
   const busy = scan.state === "recording" || scan.state === "making";
   const picture = scan.thumbnail
     ? h("img", { class: "thumb", src: thumbnailUrl(scan.id), alt: `Picture of ${title}`, loading: "lazy", width: 108, height: 72 })
@@ -106,9 +106,9 @@ function content(scan: Scan): Node[] {
   ].filter((part) => part !== null).join(" \u00b7 ");
   const speed = scan.asked?.speed_deg_s;
   const row = h("div", { class: "row" },
-    there ? h("button", { type: "button", "data-role": "open", "aria-label": `Open ${title} in the view`, click: () => opened(scan) }, "Open") : null,
-    busy ? null : downloads(scan, title, there),
-    busy ? null : h("button", { type: "button", "data-role": "delete", "aria-label": `Delete ${title}`, click: () => void ask(scan) }, "Delete"),
+    has_cloud ? h("button", { type: "button", "data-role": "open", "aria-label": `Open ${title} in the view`, click: () => opened(scan) }, "Open") : null,
+    busy ? null : downloads(scan, title, has_cloud),
+    busy ? null : h("button", { type: "button", "data-role": "delete", "aria-label": `Delete ${title}`, click: () => void confirm_delete(scan) }, "Delete"),
   );
   return [
     picture,
@@ -124,10 +124,10 @@ function content(scan: Scan): Node[] {
   ];
 }
 
-/** One list of formats; what is chosen is downloaded. */
-function downloads(scan: Scan, title: string, there: boolean): HTMLElement {
+/** A list of formats; choosing one downloads it. */
+function downloads(scan: Scan, title: string, has_cloud: boolean): HTMLElement {
   const choose = h("select", { "data-role": "download", "aria-label": `Download ${title} as` }, h("option", { value: "" }, "Download"),
-    ...(there ? formats.map(([format, words]) => h("option", { value: format }, words)) : []),
+    ...(has_cloud ? formats.map(([format, words]) => h("option", { value: format }, words)) : []),
     h("option", { value: "log" }, "log (pcapng)"));
   choose.addEventListener("change", () => {
     const format = choose.value;
@@ -143,12 +143,12 @@ function downloads(scan: Scan, title: string, there: boolean): HTMLElement {
   return choose;
 }
 
-async function ask(scan: Scan): Promise<void> {
+async function confirm_delete(scan: Scan): Promise<void> {
   const dialog = id<HTMLDialogElement>("delete");
   text(id("delete-what"), scan.name ? `${scan.name} (${scan.id})` : scan.id);
   dialog.returnValue = "";
   const before = document.activeElement;
-  // Not modal: nothing may stand between the user and stop.
+  // Not modal: the stop button must remain usable.
   dialog.show();
   const escape = (event: KeyboardEvent) => {
     if (event.key === "Escape") dialog.close("keep");

@@ -1,6 +1,6 @@
-// Signing in with the daemon's token. It is sent once; the browser keeps the cookie, this page keeps nothing.
+// Sign-in with the daemon's token. It is sent once; the browser stores the cookie, the page stores nothing.
 
-import { Refused, ask } from "../api.ts";
+import { RequestError, sendRequest } from "../api.ts";
 import { id, text } from "../dom.ts";
 
 const dialog = id<HTMLDialogElement>("signin");
@@ -8,7 +8,7 @@ const field = id<HTMLInputElement>("token");
 const wrong = id("signin-wrong");
 
 export function wire(signed: () => void): void {
-  // Without a token there is nothing to be seen: the dialog stays.
+  // Nothing can be shown without the token, so the dialog stays open.
   dialog.addEventListener("cancel", (event) => event.preventDefault());
   id("signin-form").addEventListener("submit", (event) => {
     event.preventDefault();
@@ -22,13 +22,13 @@ export function open(): void {
 
 async function send(signed: () => void): Promise<void> {
   try {
-    await ask("POST", "/login", { token: field.value });
+    await sendRequest("POST", "/login", { token: field.value });
     field.value = "";
     text(wrong, "");
     dialog.close();
     signed();
   } catch (error) {
-    text(wrong, error instanceof Refused ? [error.message, error.help].filter(Boolean).join(": ") : String(error));
+    text(wrong, error instanceof RequestError ? [error.message, error.help].filter(Boolean).join(": ") : String(error));
     field.select();
   }
 }

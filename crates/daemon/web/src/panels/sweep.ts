@@ -1,6 +1,6 @@
-// The form of the next scan, and what it would be: time, resolution, bytes. Left out: pressing Start (control.ts).
+// The form of the next scan, and its plan: duration, resolution, bytes. control.ts handles Start.
 
-import { type Asked, type Plan, type Status, Refused, api } from "../api.ts";
+import { type CaptureRequest, type Plan, type Status, RequestError, api } from "../api.ts";
 import { attribute, h, id } from "../dom.ts";
 import { bytes, digits, duration } from "../format.ts";
 
@@ -30,15 +30,15 @@ export function wire(): void {
   both.addEventListener("change", () => attribute(sweeps, "placeholder", both.checked ? "2" : "1"));
   form.addEventListener("input", (event) => {
     if (event.target !== slide) align();
-    later();
+    request_plan_later();
   });
 }
 
-/** The motor makes whole turns a minute: the slider keeps to speeds that can be. */
+/** Rounds to a possible speed: the motor turns at whole rpm. */
 function round(deg_s: number): number {
-  const turns = deg_s / least_deg_s;
-  const step = turns < 200 ? 1 : 5;
-  return Number((Math.max(1, Math.round(turns / step) * step) * least_deg_s).toFixed(4));
+  const rpm = deg_s / least_deg_s;
+  const step = rpm < 200 ? 1 : 5;
+  return Number((Math.max(1, Math.round(rpm / step) * step) * least_deg_s).toFixed(4));
 }
 
 function align(): void {
@@ -46,7 +46,7 @@ function align(): void {
   if (deg_s > 0) slide.value = String(Math.log(deg_s / least_deg_s) / Math.log(most_deg_s / least_deg_s));
 }
 
-/** The axis's limits and what is taken where a field is empty. */
+/** Sets the axis's limits and the defaults of empty fields. */
 export function setStatus(status: Status): void {
   const { axis } = status;
   const now = JSON.stringify(axis);
@@ -64,63 +64,63 @@ export function setStatus(status: Status): void {
     attribute(field, "placeholder", String(usual));
   }
   align();
-  later();
+  request_plan_later();
 }
 
-/** The capture that the form asks for; null where a field is wrong, which the browser then says. */
-export function asked(): Asked | null {
+/** The capture request of the form; null if a field is invalid, which the browser then reports. */
+export function capture_request(): CaptureRequest | null {
   unfold();
   if (!form.reportValidity()) return null;
   return read();
 }
 
-/** A field that is wrong cannot be pointed at where it is folded away. */
+/** Opens folded sections with invalid fields, since the browser cannot point at hidden ones. */
 function unfold(): void {
   for (const more of form.querySelectorAll("details")) if (more.querySelector(":invalid") !== null) more.open = true;
 }
 
-/** The field that is wrong, in words; null where none is. */
-function wrong(): string | null {
+/** Describes the first invalid field; null if all are valid. */
+function invalid_field(): string | null {
   const field = form.querySelector<HTMLInputElement>("input:invalid");
   if (field === null) return null;
   const label = field.closest("label")?.firstChild?.textContent?.trim() ?? field.name;
   return `${label}: ${field.validity.patternMismatch ? field.title : field.validationMessage}`;
 }
 
-function read(): Asked {
-  const asked: Asked = { speed_deg_s: Number(speed.value) };
-  if (from.value !== "") asked.from_deg = Number(from.value);
-  if (to.value !== "") asked.to_deg = Number(to.value);
-  if (accel.value !== "") asked.accel_deg_s2 = Number(accel.value);
-  if (sweeps.value !== "") asked.sweeps = Number(sweeps.value);
-  if (both.checked) asked.both_ways = true;
-  if (tolerance.value.trim() !== "") asked.tolerance = tolerance.value.trim();
-  if (name.value.trim() !== "") asked.name = name.value.trim();
-  return asked;
+function read(): CaptureRequest {
+  const request: CaptureRequest = { speed_deg_s: Number(speed.value) };
+  if (from.value !== "") request.from_deg = Number(from.value);
+  if (to.value !== "") request.to_deg = Number(to.value);
+  if (accel.value !== "") request.accel_deg_s2 = Number(accel.value);
+  if (sweeps.value !== "") request.sweeps = Number(sweeps.value);
+  if (both.checked) request.both_ways = true;
+  if (tolerance.value.trim() !== "") request.tolerance = tolerance.value.trim();
+  if (name.value.trim() !== "") request.name = name.value.trim();
+  return request;
 }
 
-/** Asks for the plan a moment after the last change. */
-function later(): void {
+/** Requests the plan shortly after the last change. */
+function request_plan_later(): void {
   clearTimeout(timer);
   timer = window.setTimeout(() => void plan(), 250);
 }
 
 async function plan(): Promise<void> {
   const mine = ++serial;
-  const words = wrong();
-  if (words !== null) return say(words);
+  const words = invalid_field();
+  if (words !== null) return show_error(words);
   try {
     const found = await api.plan(read());
     if (mine === serial) draw(found);
   } catch (error) {
-    if (mine !== serial || (error instanceof Refused && (error.status === 0 || error.status === 401))) return;
-    const words = error instanceof Refused ? [error.message, error.help].filter(Boolean).join(": ") : String(error);
-    say(words);
+    if (mine !== serial || (error instanceof RequestError && (error.status === 0 || error.status === 401))) return;
+    const words = error instanceof RequestError ? [error.message, error.help].filter(Boolean).join(": ") : String(error);
+    show_error(words);
   }
 }
 
-/** Why there is no plan. */
-function say(words: string): void {
+/** Shows why there is no plan. */
+function show_error(words: string): void {
   out.replaceChildren(h("p", { class: "wrong" }, words));
 }
 
@@ -129,13 +129,13 @@ function draw(found: Plan): void {
   const step = found.step_deg ?? null;
   const resolution = found.resolution_deg ?? null;
   const homing_s = found.homing_s ?? null;
-  const homes = homing_s === null ? ", and homing first" : homing_s >= 0.1 ? `, ${duration(homing_s)} of it to the home first` : "";
-  const all = `${duration(found.moves_s + (homing_s ?? 0))} in all${homes}`;
-  const turn = step === null ? "" : `${digits(step)}\u00b0 of tilt a turn \u00b7 `;
+  const homes = homing_s === null ? ", plus homing" : homing_s >= 0.1 ? `, including ${duration(homing_s)} to the home position` : "";
+  const all = `${duration(found.moves_s + (homing_s ?? 0))} in total${homes}`;
+  const step_words = step === null ? "" : `${digits(step)}\u00b0 of tilt per revolution \u00b7 `;
   out.replaceChildren(
-    cell(duration(found.sweep_s), "a sweep"),
+    cell(duration(found.sweep_s), "per sweep"),
     resolution === null ? cell("\u2013", "mean vertical resolution") : cell(`${digits(resolution)}\u00b0`, "mean vertical resolution"),
     h("p", {}, all),
-    h("p", {}, `${turn}${digits(found.motor_rpm, 4)} rpm \u00b7 ${bytes(found.bytes)} at most`),
+    h("p", {}, `${step_words}${digits(found.motor_rpm, 4)} rpm \u00b7 ${bytes(found.bytes)} at most`),
   );
 }

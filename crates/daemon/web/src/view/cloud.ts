@@ -1,11 +1,11 @@
-// Points on the graphics card, in chunks. Left out: how they are drawn (shaders.ts), where they come from.
+// Points on the graphics card, in chunks.
 
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Points, type RawShaderMaterial, Sphere, Vector3 } from "three";
 
 import type { Columns } from "../frame.ts";
 import { type Ranges, Sample } from "../sample.ts";
 
-/** Points of a chunk of a cloud that grows. */
+/** Points per chunk of a growing cloud. */
 const CHUNK = 65_536;
 const FAR = new Sphere(new Vector3(), 1e4);
 
@@ -20,7 +20,7 @@ function chunk(columns: Columns, material: RawShaderMaterial): Points {
   return new Points(geometry, material);
 }
 
-/** A cloud that came whole batches at a time: its points live on the graphics card alone. */
+/** A downloaded cloud, stored on the graphics card only. */
 export class Loaded {
   readonly group = new Group();
   ranges: Ranges | null = null;
@@ -40,7 +40,7 @@ export class Loaded {
     this.count += columns.count;
   }
 
-  /** Draws this share of every chunk: the order in a chunk is by lot. */
+  /** Draws this share of every chunk, whose points are in random order. */
   share(share: number): void {
     for (const child of this.group.children) {
       const points = child as Points;
@@ -54,15 +54,15 @@ export class Loaded {
   }
 }
 
-/** Main memory need not keep what the card has. */
+/** Frees the main memory of an uploaded attribute. */
 function forget(this: BufferAttribute): void {
   (this as { array: ArrayLike<number> }).array = new (this.array.constructor as new (n: number) => Float32Array)(0);
 }
 
-/** A cloud that grows point by point while it is measured. Where there are too many, every second goes. */
+/** A cloud that grows during a scan. If it has too many points, every second one is removed. */
 export class Live {
   readonly group = new Group();
-  /** Points that came, kept or not. */
+  /** Points received, kept or not. */
   received = 0;
   private sample = new Sample();
   private stride = 1;
@@ -97,7 +97,7 @@ export class Live {
   }
 
   share(): void {
-    // Always drawn whole: it is bounded, and its order is that of time.
+    // Always drawn completely: its size is bounded, and its points are in order of time.
   }
 
   dispose(): void {
@@ -159,7 +159,7 @@ export class Live {
   }
 }
 
-/** Sends what is new of a chunk to the card. */
+/** Uploads the new points of a chunk. */
 function upload(points: Points, count: number): void {
   const uploaded = points.userData["uploaded"] as number;
   if (uploaded === count) return;

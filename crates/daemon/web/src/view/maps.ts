@@ -1,4 +1,4 @@
-// Colour maps that people with any colour vision can read: their lightness rises evenly from end to end. 64 samples of matplotlib's (CC0).
+// Colour maps for any colour vision: their lightness rises evenly. 64 samples of matplotlib's (CC0).
 
 export type MapName = "viridis" | "cividis" | "grey";
 
@@ -27,7 +27,7 @@ function samples(name: MapName): Rgb[] {
 /** Steps of the colour table. */
 export const STEPS = 256;
 
-/** The table as RGBA bytes. The end of the map that would vanish against the background is left out. */
+/** The table as RGBA bytes, without the end of the map that is invisible on the background. */
 export function table(name: MapName, dark: boolean): Uint8Array {
   const colours = samples(name);
   const [low, high] = dark ? [name === "grey" ? 0.25 : 0.1, 1] : [0, name === "grey" ? 0.75 : 0.86];

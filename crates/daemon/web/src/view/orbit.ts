@@ -1,5 +1,4 @@
-// Where the eye is: turning about a point, moving sideways, nearer and farther, by mouse, touch, wheel and keys. z stays up.
-// Left out: what is seen.
+// Orbit camera: rotates about a target, pans and zooms by mouse, touch, wheel and keys. z stays up.
 
 import { type PerspectiveCamera, Spherical, Vector3 } from "three";
 
@@ -9,10 +8,10 @@ const UP = new Vector3(0, 0, 1);
 
 export class Orbit {
   readonly target = new Vector3();
-  /** Whether the user has moved the eye since the last `look`. */
+  /** Whether the user has moved the camera since the last `look`. */
   touched = false;
   private distance_m = 30;
-  /** Where the eye stands as seen from the target: clockwise from north is not meant; mathematically, from x towards y, radians. */
+  /** Direction from the target to the camera, from x towards y, radians. */
   private azimuth = -2.2;
   /** Above the horizon, radians. */
   private elevation = 0.6;
@@ -33,7 +32,7 @@ export class Orbit {
     this.apply();
   }
 
-  /** Puts the eye there: radians, metres. */
+  /** Sets the camera: radians, metres. */
   look(azimuth: number, elevation: number, distance_m: number, target = new Vector3()): void {
     this.azimuth = azimuth;
     this.elevation = elevation;
@@ -54,7 +53,7 @@ export class Orbit {
     this.moved();
   }
 
-  /** Shares of the view's height, right and up. */
+  /** Pans by shares of the view's height, right and up. */
   pan(right: number, up: number): void {
     const span = 2 * this.distance_m * Math.tan((this.camera.fov * Math.PI) / 360);
     const matrix = this.camera.matrix.elements;
@@ -70,7 +69,7 @@ export class Orbit {
 
   private apply(): void {
     const eye = new Vector3().setFromSpherical(new Spherical(this.distance_m, Math.PI / 2 - this.elevation, 0));
-    // Spherical has y up: turn it so that z is.
+    // Spherical has y up; rotate so that z is up.
     const flat = eye.z;
     this.camera.position.set(flat * Math.cos(this.azimuth), flat * Math.sin(this.azimuth), eye.y).add(this.target);
     this.camera.near = Math.max(0.02, this.distance_m / 200);
@@ -101,12 +100,12 @@ export class Orbit {
     this.pointers.set(event.pointerId, event);
   }
 
-  /** Two fingers: their middle moves sideways, their distance zooms. */
+  /** Two fingers: their midpoint pans, their distance zooms. */
   private pinch(before: PointerEvent, now: PointerEvent, height: number): void {
     const other = [...this.pointers.values()].find((pointer) => pointer.pointerId !== now.pointerId);
     if (other === undefined) return;
-    const apart = (one: PointerEvent) => Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY);
-    this.zoom(Math.max(apart(before), 1) / Math.max(apart(now), 1));
+    const distance = (one: PointerEvent) => Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY);
+    this.zoom(Math.max(distance(before), 1) / Math.max(distance(now), 1));
     this.pan(-(now.clientX - before.clientX) / 2 / height, (now.clientY - before.clientY) / 2 / height);
   }
 

@@ -1,5 +1,4 @@
-// What the graphics card does: places and colours points, then shades edges by depth. Left out: everything that is not done a point or a
-// pixel at a time.
+// Shaders: place and colour the points, then shade edges by depth.
 
 /** `field`: 0 height, 1 intensity, 2 ring, 3 time, 4 uncertainty. */
 export const POINT_VERTEX = /* glsl */ `
@@ -25,9 +24,9 @@ flat out vec3 colour;
 void main() {
   vec4 seen = modelViewMatrix * vec4(position, 1.0);
   gl_Position = projectionMatrix * seen;
-  // A pixel size that grows towards the eye, so that near surfaces close.
+  // Points grow towards the camera, so that near surfaces look closed.
   gl_PointSize = clamp(size * height_px * 0.012 / -seen.z, size, 4.0 * size);
-  // Every surface was seen from the scanner, in the middle: what shows its back to the eye stands in the way.
+  // Every surface faces the scanner at the origin: a surface whose back faces the camera hides the interior.
   bool back = cutaway && position.z > -0.5 && dot(normalize(-position), normalize(eye - position)) < -0.1;
   back = back || (cutaway && position.z > ceiling_m && eye.z > ceiling_m);
   if (back || position.z > below_m) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
@@ -75,7 +74,7 @@ void main() {
   gl_Position = vec4(position.xy, 0.0, 1.0);
 }`;
 
-/** Eye-dome lighting (Boucheny 2009): a pixel is darker the farther it lies behind its neighbours. */
+/** Eye-dome lighting (Boucheny 2009): a pixel is darker the farther it is behind its neighbours. */
 export const SCREEN_FRAGMENT = /* glsl */ `
 precision highp float;
 uniform highp sampler2D picture;
@@ -100,7 +99,7 @@ void main() {
     float turn = float(i) * 0.7853981634;
     float there = distance_log2(at + 1.4 * pixel_size * vec2(cos(turn), sin(turn)));
     if (there < 0.0) continue;
-    // Where there is nothing here, a point beside it still leaves no mark: only points are shaded.
+    // Only points are shaded, not the background next to them.
     behind += here < 0.0 ? 0.0 : max(0.0, here - there);
   }
   pixel = vec4(colour.rgb * exp(-strength * behind / 8.0), 1.0);

@@ -1,4 +1,4 @@
-// The picture: camera, points, the scanner in the middle, rings on the floor, depth shading. Draws only when something changed.
+// The scene: camera, points, scanner, rings on the floor, depth shading. Draws only after a change.
 
 import {
   BufferAttribute, BufferGeometry, ClampToEdgeWrapping, ColorManagement, DataTexture, DepthTexture, GLSL3, Group, LinearSRGBColorSpace, LineSegments,
@@ -10,11 +10,11 @@ import { STEPS } from "./maps.ts";
 import { Orbit } from "./orbit.ts";
 import * as shaders from "./shaders.ts";
 
-/** Colours here are what is written, nothing is converted. */
+/** Colours are used as given, without conversion. */
 ColorManagement.enabled = false;
 
 type Rgb = [number, number, number];
-/** A picture that takes longer than this while the view moves is drawn of fewer points next time. */
+/** If a picture takes longer while the view moves, the next one has fewer points. */
 const SLOW_MS = 45;
 const QUICK_MS = 20;
 
@@ -22,7 +22,7 @@ export class Stage {
   readonly orbit: Orbit;
   readonly points: RawShaderMaterial;
   readonly scene = new Scene();
-  /** Told what share of the points to draw. */
+  /** Called with the share of the points to draw. */
   share: (share: number) => void = () => {};
   private readonly renderer: WebGLRenderer;
   private readonly camera = new PerspectiveCamera(50, 1, 0.1, 1_000);
@@ -77,7 +77,7 @@ export class Stage {
     this.resize();
   }
 
-  /** Radians of the usual view, and so far away that `reach_m` fits. */
+  /** Sets one of the standard views at a distance where `reach_m` fits. */
   fit(reach_m: number, from: "usual" | "top" | "scanner" = "usual"): void {
     const wide = 2.4 / this.camera.aspect;
     const away = Math.max(1.5, wide) * reach_m;
@@ -116,7 +116,7 @@ export class Stage {
     this.draw();
   }
 
-  /** Positive turns z towards x, as everywhere in this program. */
+  /** Sets the tilt angle; positive angles rotate z towards x. */
   setTilt(tilt_deg: number): void {
     const turn = (tilt_deg * Math.PI) / 180;
     if (Math.abs(this.head.rotation.y - turn) < 1e-4) return;
@@ -124,7 +124,7 @@ export class Stage {
     this.draw();
   }
 
-  /** Draws with the next picture. */
+  /** Schedules a picture. */
   draw(): void {
     if (this.frame === 0) this.frame = requestAnimationFrame(() => this.render());
   }
@@ -170,7 +170,7 @@ export class Stage {
     this.renderer.render(this.screen, this.flat);
   }
 
-  /** Fewer points while pictures are slow, more while they are quick. */
+  /** Draws fewer points while pictures are slow, more while they are fast. */
   private adapt(): void {
     const now_ms = performance.now();
     const took_ms = now_ms - this.last_ms;
@@ -225,7 +225,7 @@ function tripod(material: RawShaderMaterial): LineSegments {
   return segments(lines, material);
 }
 
-/** The lidar on its platform, tilting about y: a drum, and the plane that its rings lie about. */
+/** The lidar on its platform, tilting about y: a cylinder and its horizontal plane. */
 function scanner(material: RawShaderMaterial): LineSegments {
   const lines = [...circle(0.14, -0.1, 24), ...circle(0.14, 0.14, 24)];
   for (let i = 0; i < 8; i += 1) {
